@@ -1,0 +1,34 @@
+# abbe_library(NAME SOURCES a.cpp ... DEPENDS geometry ... [LINK lib ...] [PRIVATE_LINK lib ...] [TESTS a_test.cpp ...])
+#
+# One static library per folder of src/abbe. DEPENDS names other folders; TESTS are the unit tests that stand beside the
+# sources, built into one program per folder.
+include(AbbeFlags)
+
+function(abbe_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LINK;PRIVATE_LINK;TESTS;TEST_LINK" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(abbe_${name} STATIC ${ARG_SOURCES})
+    set(scope PUBLIC)
+    target_link_libraries(abbe_${name} PRIVATE abbe_flags ${ARG_PRIVATE_LINK})
+    set_target_properties(abbe_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON EXPORT_NAME ${name})
+  else()
+    add_library(abbe_${name} INTERFACE)
+    set(scope INTERFACE)
+    set_target_properties(abbe_${name} PROPERTIES EXPORT_NAME ${name})
+  endif()
+  add_library(abbe::${name} ALIAS abbe_${name})
+  target_compile_features(abbe_${name} ${scope} cxx_std_20)
+  target_include_directories(abbe_${name} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  foreach(dependency IN LISTS ARG_DEPENDS)
+    target_link_libraries(abbe_${name} ${scope} abbe::${dependency})
+  endforeach()
+  target_link_libraries(abbe_${name} ${scope} ${ARG_LINK})
+  set_property(GLOBAL APPEND PROPERTY ABBE_LIBRARIES abbe_${name})
+
+  if(ABBE_TESTS AND ARG_TESTS)
+    add_executable(${name}_test ${ARG_TESTS})
+    target_link_libraries(${name}_test PRIVATE abbe::${name} abbe_flags ${ARG_TEST_LINK} GTest::gtest_main GTest::gmock)
+    gtest_discover_tests(${name}_test TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST PROPERTIES LABELS quick)
+  endif()
+endfunction()

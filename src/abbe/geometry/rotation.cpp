@@ -1,0 +1,53 @@
+#include "abbe/geometry/rotation.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace abbe {
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& a) {
+  Eigen::Matrix3d m;
+  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  return m;
+}
+
+Eigen::Matrix3d rotation_about(const Eigen::Vector3d& unit_axis, double angle) {
+  const double half_sine = std::sin(0.5 * angle);
+  const Eigen::Matrix3d k = skew(unit_axis);
+  return Eigen::Matrix3d::Identity() + std::sin(angle) * k + 2.0 * half_sine * half_sine * k * k;
+}
+
+Eigen::Matrix3d rotation_from_error_angles(const Eigen::Vector3d& angles) {
+  return rotation_about(Eigen::Vector3d::UnitZ(), angles.z()) * rotation_about(Eigen::Vector3d::UnitY(), angles.y()) *
+         rotation_about(Eigen::Vector3d::UnitX(), angles.x());
+}
+
+Eigen::Vector3d error_angles_from_rotation(const Eigen::Matrix3d& r) {
+  return {std::atan2(r(2, 1), r(2, 2)), std::atan2(-r(2, 0), std::hypot(r(2, 1), r(2, 2))),
+          std::atan2(r(1, 0), r(0, 0))};
+}
+
+Eigen::Matrix3d error_angle_axes(const Eigen::Vector3d& angles) {
+  const Eigen::Matrix3d about_z = rotation_about(Eigen::Vector3d::UnitZ(), angles.z());
+  const Eigen::Matrix3d about_y = rotation_about(Eigen::Vector3d::UnitY(), angles.y());
+  Eigen::Matrix3d axes;
+  axes << about_z * about_y.col(0), about_z.col(1), Eigen::Vector3d::UnitZ();
+  return axes;
+}
+
+Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& r) {
+  // Through the quaternion: accurate both near zero and near pi, where the matrix formula loses digits.
+  Eigen::Quaterniond q(r);
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  const double sine = q.vec().norm();
+  if (sine < 1e-160) return Eigen::Vector3d::Zero();
+  return (2.0 * std::atan2(sine, q.w()) / sine) * q.vec();
+}
+
+Eigen::Matrix3d rotation_from_vector(const Eigen::Vector3d& vector) {
+  const double angle = vector.norm();
+  if (angle < 1e-160) return Eigen::Matrix3d::Identity();
+  return rotation_about(vector / angle, angle);
+}
+
+}  // namespace abbe

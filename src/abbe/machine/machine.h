@@ -1,0 +1,81 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "abbe/geometry/rigid_transform.h"
+
+namespace abbe {
+
+enum class AxisKind { linear, rotary };
+
+/// Which side of the bed an axis carries.
+enum class ChainSide { workpiece, tool };
+
+/// One axis of a serial chain, described in the machine frame with every axis at its zero.
+struct Axis {
+  std::string name;                                        ///< ISO 841 letter and optional number: "X", "C", "C2"
+  AxisKind kind = AxisKind::linear;
+  ChainSide side = ChainSide::tool;
+  bool primed = false;                                     ///< positive command moves what it carries the other way
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();    ///< unit vector of positive motion of an unprimed axis
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();         ///< mm; rotary: a point on the axis; linear: reference point
+  double travel_min = 0;                                   ///< mm or rad
+  double travel_max = 0;                                   ///< mm or rad
+  bool endless = false;                                    ///< rotary without travel limits
+
+  /// +1, or -1 for a primed axis: displacement of the carried body = sense() * command.
+  double sense() const { return primed ? -1.0 : 1.0; }
+};
+
+/// A serial machine from the workpiece to the tool.
+///
+/// Machine frame: fixed to the bed, right-handed, axes X Y Z of ISO 841. All directions and points are given in it
+/// with every axis at zero. The workpiece frame and the tool frame are parallel to it there (the workpiece frame may
+/// be turned by `bed_from_workpiece`).
+struct Machine {
+  std::string name;
+  std::string description;
+  std::vector<Axis> axes;            ///< in chain order, workpiece to tool; workpiece-side axes come first
+  RigidTransform bed_from_workpiece; ///< workpiece frame with all axes at zero; mm
+  Eigen::Vector3d tool_reference = Eigen::Vector3d::Zero();  ///< spindle gauge point with all axes at zero, mm
+  Eigen::Vector3d tool_offset = Eigen::Vector3d::Zero();     ///< functional point from the gauge point, mm
+  Eigen::Vector3d tool_direction = Eigen::Vector3d::UnitZ(); ///< unit, from the functional point to the spindle
+
+  std::size_t workpiece_axis_count() const;
+
+  /// Index of the axis of that name, or npos.
+  std::size_t find_axis(std::string_view axis_name) const;
+  static constexpr std::size_t npos = static_cast<std::size_t>(-1);
+
+  /// The chain in words: "w C' X' b Z t".
+  std::string chain() const;
+};
+
+/// Default kind of an axis from its ISO 841 letter: X Y Z U V W P Q R linear, A B C D E rotary.
+/// @returns false for any other letter
+bool axis_kind_from_letter(char letter, AxisKind& kind);
+
+/// Default direction from the letter: X U P A D -> x, Y V Q B E -> y, Z W R C -> z.
+Eigen::Vector3d direction_from_letter(char letter);
+
+/// Displacement of the body carried by one axis without errors: bed-side frame from carried frame.
+///
+/// linear: Trans(sense q u); rotary: Trans(point) Rot(u, sense q) Trans(-point).
+/// @param position  command, mm or rad
+RigidTransform nominal_motion(const Axis& axis, double position);
+
+/// bed_from_tool without errors, at the functional point.
+/// @param positions  commands in chain order, [axes.size()], mm or rad
+RigidTransform nominal_bed_from_tool(const Machine& machine, const std::vector<double>& positions);
+
+/// bed_from_workpiece without errors.
+RigidTransform nominal_bed_from_workpiece(const Machine& machine, const std::vector<double>& positions);
+
+/// workpiece_from_tool without errors: (workpiece-side axes, bed to workpiece)^-1 (tool-side axes, bed to tool) tool.
+RigidTransform nominal_workpiece_from_tool(const Machine& machine, const std::vector<double>& positions);
+
+}  // namespace abbe
