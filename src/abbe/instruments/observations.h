@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace abbe {
+
+/// An unknown of a set-up: the pose of an instrument, an offset of a target.
+struct SetupUnknown {
+  std::string name;               ///< "tracker1.x", "reflector2.offset_z"
+  bool is_angle = false;          ///< rad if true, mm if false
+  double scale = 1;               ///< typical size, mm or rad: only for scaling and finite steps, never for the result
+};
+
+/// All readings of one set-up of one instrument, as weighted residuals of the machine's errors and the set-up's unknowns.
+///
+/// The identification knows instruments only through this. Residual = (measured - modelled) / standard uncertainty, after
+/// whitening if a reading's components are correlated, so that every residual has variance 1 if model and noise are right.
+/// Readings are numbered in the order of the data; `rows()` residuals belong to each.
+class Observations {
+ public:
+  virtual ~Observations() = default;
+
+  virtual std::string name() const = 0;
+  virtual std::size_t reading_count() const = 0;
+  virtual int rows() const = 0;
+
+  virtual const std::vector<SetupUnknown>& unknowns() const = 0;
+  /// Present values of the unknowns, [unknowns().size()], mm or rad.
+  virtual std::vector<double> unknown_values() const = 0;
+
+  /// Axis commands of one reading, chain order, mm or rad: to say where a residual is.
+  virtual std::vector<double> positions(std::size_t reading) const = 0;
+
+  /// Sets the point at which evaluate() works. Not thread-safe against evaluate().
+  /// @param machine  values of ErrorSet::parameters() of the model the observations were built with
+  /// @param setup    values of unknowns()
+  virtual void set_parameters(std::span<const double> machine, std::span<const double> setup) = 0;
+
+  /// Largest number of readings per call of evaluate().
+  static constexpr std::size_t kBlockSize = 128;
+
+  /// Residuals and, if wanted, the Jacobian of the MODELLED values (so d(residual)/d(parameter) = -jacobian) of readings
+  /// first .. first + count - 1. Thread-safe. Does not allocate per reading.
+  ///
+  /// @param machine_parameters  indices of the machine parameters wanted
+  /// @param setup_parameters    indices of the unknowns wanted; their columns follow the machine's
+  /// @param residuals  out, residuals[row * count + k]; dimensionless
+  /// @param jacobian   null or out, jacobian[column * stride + row * count + k], per mm or rad; stride >= rows() * count
+  virtual void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
+                        std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
+                        std::size_t stride) const = 0;
+};
+
+}  // namespace abbe
