@@ -16,11 +16,13 @@ enum class PoseStatus { not_run, ok, out_of_range };
 /// the prime marks the axis line displaced by the location errors. Source: docs/conventions.md.
 RigidTransform actual_motion(const Machine& machine, const ErrorSet& errors, std::size_t axis, double position);
 
-/// workpiece_from_tool with errors, at the functional point (tool frame parallel to the machine's with all axes at zero).
+/// workpiece_from_tool with errors, at the functional point (tool frame parallel to the machine's with all axes at
+/// zero).
 /// @param positions  commands in chain order, [axes], mm or rad
 RigidTransform actual_workpiece_from_tool(const Machine& machine, const ErrorSet& errors,
                                           const std::vector<double>& positions);
-RigidTransform actual_bed_from_tool(const Machine& machine, const ErrorSet& errors, const std::vector<double>& positions);
+RigidTransform actual_bed_from_tool(const Machine& machine, const ErrorSet& errors,
+                                    const std::vector<double>& positions);
 RigidTransform actual_bed_from_workpiece(const Machine& machine, const ErrorSet& errors,
                                          const std::vector<double>& positions);
 
@@ -31,7 +33,8 @@ using Deviation = Eigen::Matrix<double, 6, 1>;
 ///
 /// @param positions      commands in chain order, [axes], mm or rad
 /// @param deviation      translation of the functional point (mm), then rotation vector of R_actual R_nominal^T (rad)
-/// @param by_parameters  if not null: d(deviation)/d(ErrorSet::parameters()), becomes [6, parameter_count]; its rotation
+/// @param by_parameters  if not null: d(deviation)/d(ErrorSet::parameters()), becomes [6, parameter_count]; its
+/// rotation
 ///                       rows are the instantaneous rotation (the twist), equal to the derivative of the rotation
 ///                       vector to first order in the deviation
 /// @param by_positions   if not null: twist of the actual pose per axis command, becomes [6, axes]

@@ -26,12 +26,12 @@ enum class BasisKind { monomial, legendre, chebyshev, fourier, bspline, table_li
 /// Positions in mm or rad; every function value is dimensionless, so a coefficient has the unit of the error motion.
 struct Basis {
   BasisKind kind = BasisKind::legendre;
-  int order = 0;               ///< degree, number of harmonics or number of intervals; tables: unused
-  double from = 0;             ///< first valid position, mm or rad
-  double to = 0;               ///< last valid position
-  double period = 0;           ///< fourier; periodic bspline and table_linear; mm or rad
-  bool periodic = false;       ///< bspline, table_linear: wraps around with `period`; valid everywhere
-  std::vector<double> nodes;   ///< tables: increasing positions, first = from, last = to
+  int order = 0;                ///< degree, number of harmonics or number of intervals; tables: unused
+  double from = 0;              ///< first valid position, mm or rad
+  double to = 0;                ///< last valid position
+  double period = 0;            ///< fourier; periodic bspline and table_linear; mm or rad
+  bool periodic = false;        ///< bspline, table_linear: wraps around with `period`; valid everywhere
+  std::vector<double> nodes{};  ///< tables: increasing positions, first = from, last = to
 
   std::size_t size() const;
 
@@ -50,7 +50,8 @@ struct Basis {
   /// d(evaluate)/d(position), per mm or rad.
   double slope(double position, std::span<const double> coefficients) const;
 
-  /// Short name of one function for parameter names: "P2", "T3", "s^2", "cos1", "sin2", "B4", "@120" (node in mm or deg).
+  /// Short name of one function for parameter names: "P2", "T3", "s^2", "cos1", "sin2", "B4", "@120" (node in mm or
+  /// deg).
   std::string function_name(std::size_t index, bool rotary) const;
 
   bool operator==(const Basis&) const = default;

@@ -13,7 +13,8 @@ namespace abbe {
 /// A body of the machine in whose frame a point is given or seen.
 enum class Body { bed, workpiece, tool };
 
-/// Axis commands of many poses, structure of arrays: axis[i][k] is the command of axis i (chain order) at pose k; mm or rad.
+/// Axis commands of many poses, structure of arrays: axis[i][k] is the command of axis i (chain order) at pose k; mm or
+/// rad.
 struct PositionArrays {
   std::span<const double* const> axis;  ///< [axes] pointers to [count] values, no alignment needed
   std::size_t count = 0;
@@ -76,7 +77,8 @@ class ChainPlan {
   /// @param start       [count] points in the frame of `from`, mm
   /// @param seen        [count] as transform() gave them
   /// @param rows        quantities, each with arrays of [count]
-  /// @param parameters  indices into ErrorSet::parameters(); the tool offset error is accepted where from or to is the tool
+  /// @param parameters  indices into ErrorSet::parameters(); the tool offset error is accepted where from or to is the
+  /// tool
   /// @param jacobian    out: jacobian[parameter * stride + row * count + k], parameter and row counted in the
   ///                    arguments' order; stride >= rows * count. Parameters without influence give 0.
   /// @param by_start    if not null: out, derivative by the start point: by_start[row].{x,y,z}[k], per mm

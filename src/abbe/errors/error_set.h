@@ -23,17 +23,17 @@ struct ErrorMotion {
   std::size_t axis = 0;  ///< index into Machine::axes
   Component component = Component::X;
   Basis basis;
-  std::vector<double> coefficients;         ///< [basis.size()], mm or rad, actual minus nominal
-  std::vector<double> standard_uncertainty; ///< [basis.size()] or empty, mm or rad
+  std::vector<double> coefficients;          ///< [basis.size()], mm or rad, actual minus nominal
+  std::vector<double> standard_uncertainty;  ///< [basis.size()] or empty, mm or rad
   bool operator==(const ErrorMotion&) const = default;
 };
 
-/// One location error E<component>0<axis>, constant: the axis average line is displaced by it, nothing else moves while the
-/// axis is at zero.
+/// One location error E<component>0<axis>, constant: the axis average line is displaced by it, nothing else moves while
+/// the axis is at zero.
 ///
-/// With L = [Rz Ry Rx of (EA0, EB0, EC0) | (EX0, EY0, EZ0)] about Axis::point the nominal motion M(q) becomes L M(q) L^-1.
-/// The component along (about) the axis's own direction is its zero position error instead: M(q + value), for rotary EC0C,
-/// for linear EX0X. Where a component can have no effect it is not valid (see location_error_is_valid).
+/// With L = [Rz Ry Rx of (EA0, EB0, EC0) | (EX0, EY0, EZ0)] about Axis::point the nominal motion M(q) becomes L M(q)
+/// L^-1. The component along (about) the axis's own direction is its zero position error instead: M(q + value), for
+/// rotary EC0C, for linear EX0X. Where a component can have no effect it is not valid (see location_error_is_valid).
 struct LocationError {
   std::size_t axis = 0;
   Component component = Component::A;
@@ -62,8 +62,8 @@ struct ErrorSet {
 
   /// Number of coefficients: those of all motions in order, then locations, then the tool offset error (3).
   std::size_t parameter_count() const;
-  std::vector<double> parameters() const;                 ///< mm or rad, [parameter_count()]
-  void set_parameters(const std::vector<double>& values); ///< [parameter_count()]
+  std::vector<double> parameters() const;                  ///< mm or rad, [parameter_count()]
+  void set_parameters(const std::vector<double>& values);  ///< [parameter_count()]
 
   /// Sum of all terms of the six components of one axis at one of its positions; mm, rad.
   std::array<double, kComponentCount> evaluate(std::size_t axis, double position) const;
@@ -87,8 +87,9 @@ bool parse_error_name(const Machine& machine, const std::string& text, std::size
                       bool& is_location);
 
 /// Roll of a linear axis about its own direction, shift of a linear axis line and shift of a rotary axis line along
-/// itself have no effect and are not location errors. For directions not parallel to X, Y or Z all components are valid for
-/// rotary axes and all rotations for linear ones; the combination without effect is then found by the gauge analysis.
+/// itself have no effect and are not location errors. For directions not parallel to X, Y or Z all components are valid
+/// for rotary axes and all rotations for linear ones; the combination without effect is then found by the gauge
+/// analysis.
 bool location_error_is_valid(const Axis& axis, Component component);
 
 /// True if the component is along (about) the axis's own principal direction: the zero position error.

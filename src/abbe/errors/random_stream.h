@@ -4,7 +4,8 @@
 
 namespace abbe {
 
-/// Reproducible random numbers: xoshiro256++ seeded by splitmix64 (Blackman and Vigna, ACM Trans. Math. Softw. 47 (2021) 36).
+/// Reproducible random numbers: xoshiro256++ seeded by splitmix64 (Blackman and Vigna, ACM Trans. Math. Softw. 47
+/// (2021) 36).
 ///
 /// The same (seed, stream) gives the same numbers with every compiler, which std::normal_distribution does not promise.
 /// Use one stream per independent piece of work, so that results do not depend on the number of threads.

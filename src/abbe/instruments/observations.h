@@ -9,16 +9,17 @@ namespace abbe {
 
 /// An unknown of a set-up: the pose of an instrument, an offset of a target.
 struct SetupUnknown {
-  std::string name;               ///< "tracker1.x", "reflector2.offset_z"
-  bool is_angle = false;          ///< rad if true, mm if false
-  double scale = 1;               ///< typical size, mm or rad: only for scaling and finite steps, never for the result
+  std::string name;       ///< "tracker1.x", "reflector2.offset_z"
+  bool is_angle = false;  ///< rad if true, mm if false
+  double scale = 1;       ///< typical size, mm or rad: only for scaling and finite steps, never for the result
 };
 
-/// All readings of one set-up of one instrument, as weighted residuals of the machine's errors and the set-up's unknowns.
+/// All readings of one set-up of one instrument, as weighted residuals of the machine's errors and the set-up's
+/// unknowns.
 ///
-/// The identification knows instruments only through this. Residual = (measured - modelled) / standard uncertainty, after
-/// whitening if a reading's components are correlated, so that every residual has variance 1 if model and noise are right.
-/// Readings are numbered in the order of the data; `rows()` residuals belong to each.
+/// The identification knows instruments only through this. Residual = (measured - modelled) / standard uncertainty,
+/// after whitening if a reading's components are correlated, so that every residual has variance 1 if model and noise
+/// are right. Readings are numbered in the order of the data; `rows()` residuals belong to each.
 class Observations {
  public:
   virtual ~Observations() = default;
@@ -42,13 +43,14 @@ class Observations {
   /// Largest number of readings per call of evaluate().
   static constexpr std::size_t kBlockSize = 128;
 
-  /// Residuals and, if wanted, the Jacobian of the MODELLED values (so d(residual)/d(parameter) = -jacobian) of readings
-  /// first .. first + count - 1. Thread-safe. Does not allocate per reading.
+  /// Residuals and, if wanted, the Jacobian of the MODELLED values (so d(residual)/d(parameter) = -jacobian) of
+  /// readings first .. first + count - 1. Thread-safe. Does not allocate per reading.
   ///
   /// @param machine_parameters  indices of the machine parameters wanted
   /// @param setup_parameters    indices of the unknowns wanted; their columns follow the machine's
   /// @param residuals  out, residuals[row * count + k]; dimensionless
-  /// @param jacobian   null or out, jacobian[column * stride + row * count + k], per mm or rad; stride >= rows() * count
+  /// @param jacobian   null or out, jacobian[column * stride + row * count + k], per mm or rad; stride >= rows() *
+  /// count
   virtual void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
                         std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                         std::size_t stride) const = 0;

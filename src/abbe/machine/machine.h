@@ -17,15 +17,15 @@ enum class ChainSide { workpiece, tool };
 
 /// One axis of a serial chain, described in the machine frame with every axis at its zero.
 struct Axis {
-  std::string name;                                        ///< ISO 841 letter and optional number: "X", "C", "C2"
+  std::string name;  ///< ISO 841 letter and optional number: "X", "C", "C2"
   AxisKind kind = AxisKind::linear;
   ChainSide side = ChainSide::tool;
-  bool primed = false;                                     ///< positive command moves what it carries the other way
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();    ///< unit vector of positive motion of an unprimed axis
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();         ///< mm; rotary: a point on the axis; linear: reference point
-  double travel_min = 0;                                   ///< mm or rad
-  double travel_max = 0;                                   ///< mm or rad
-  bool endless = false;                                    ///< rotary without travel limits
+  bool primed = false;                                   ///< positive command moves what it carries the other way
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< unit vector of positive motion of an unprimed axis
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();       ///< mm; rotary: a point on the axis; linear: reference point
+  double travel_min = 0;                                 ///< mm or rad
+  double travel_max = 0;                                 ///< mm or rad
+  bool endless = false;                                  ///< rotary without travel limits
 
   /// +1, or -1 for a primed axis: displacement of the carried body = sense() * command.
   double sense() const { return primed ? -1.0 : 1.0; }
@@ -39,11 +39,11 @@ struct Axis {
 struct Machine {
   std::string name;
   std::string description;
-  std::vector<Axis> axes;            ///< in chain order, workpiece to tool; workpiece-side axes come first
-  RigidTransform bed_from_workpiece; ///< workpiece frame with all axes at zero; mm
-  Eigen::Vector3d tool_reference = Eigen::Vector3d::Zero();  ///< spindle gauge point with all axes at zero, mm
-  Eigen::Vector3d tool_offset = Eigen::Vector3d::Zero();     ///< functional point from the gauge point, mm
-  Eigen::Vector3d tool_direction = Eigen::Vector3d::UnitZ(); ///< unit, from the functional point to the spindle
+  std::vector<Axis> axes;             ///< in chain order, workpiece to tool; workpiece-side axes come first
+  RigidTransform bed_from_workpiece;  ///< workpiece frame with all axes at zero; mm
+  Eigen::Vector3d tool_reference = Eigen::Vector3d::Zero();   ///< spindle gauge point with all axes at zero, mm
+  Eigen::Vector3d tool_offset = Eigen::Vector3d::Zero();      ///< functional point from the gauge point, mm
+  Eigen::Vector3d tool_direction = Eigen::Vector3d::UnitZ();  ///< unit, from the functional point to the spindle
 
   std::size_t workpiece_axis_count() const;
 

@@ -1,0 +1,127 @@
+#include "abbe/errors/error_set.h"
+
+#include <cassert>
+#include <cmath>
+
+namespace abbe {
+namespace {
+
+/// 0, 1, 2 if the axis is parallel to X, Y, Z, else -1.
+int principal_direction(const Axis& axis) {
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs(std::abs(axis.direction[k]) - 1.0) < 1e-12) return k;
+  }
+  return -1;
+}
+
+}  // namespace
+
+char component_letter(Component component) { return "XYZABC"[static_cast<int>(component)]; }
+
+std::size_t ErrorSet::parameter_count() const {
+  std::size_t count = locations.size() + 3;
+  for (const ErrorMotion& motion : motions) count += motion.coefficients.size();
+  return count;
+}
+
+std::vector<double> ErrorSet::parameters() const {
+  std::vector<double> values;
+  values.reserve(parameter_count());
+  for (const ErrorMotion& motion : motions) {
+    values.insert(values.end(), motion.coefficients.begin(), motion.coefficients.end());
+  }
+  for (const LocationError& location : locations) values.push_back(location.value);
+  for (int k = 0; k < 3; ++k) values.push_back(tool_offset_error[k]);
+  return values;
+}
+
+void ErrorSet::set_parameters(const std::vector<double>& values) {
+  assert(values.size() == parameter_count());
+  std::size_t next = 0;
+  for (ErrorMotion& motion : motions) {
+    for (double& coefficient : motion.coefficients) coefficient = values[next++];
+  }
+  for (LocationError& location : locations) location.value = values[next++];
+  for (int k = 0; k < 3; ++k) tool_offset_error[k] = values[next++];
+}
+
+std::array<double, kComponentCount> ErrorSet::evaluate(std::size_t axis, double position) const {
+  std::array<double, kComponentCount> sum{};
+  for (const ErrorMotion& motion : motions) {
+    if (motion.axis != axis) continue;
+    sum[static_cast<std::size_t>(motion.component)] += motion.basis.evaluate(position, motion.coefficients);
+  }
+  return sum;
+}
+
+bool ErrorSet::covers(std::size_t axis, double position) const {
+  for (const ErrorMotion& motion : motions) {
+    if (motion.axis == axis && !motion.basis.covers(position)) return false;
+  }
+  return true;
+}
+
+std::string error_motion_name(const Machine& machine, std::size_t axis, Component component) {
+  return std::string("E") + component_letter(component) + machine.axes[axis].name;
+}
+
+std::string location_error_name(const Machine& machine, std::size_t axis, Component component) {
+  return std::string("E") + component_letter(component) + "0" + machine.axes[axis].name;
+}
+
+std::vector<std::string> parameter_names(const Machine& machine, const ErrorSet& errors) {
+  std::vector<std::string> names;
+  names.reserve(errors.parameter_count());
+  for (const ErrorMotion& motion : errors.motions) {
+    const bool rotary = machine.axes[motion.axis].kind == AxisKind::rotary;
+    const std::string name = error_motion_name(machine, motion.axis, motion.component);
+    for (std::size_t k = 0; k < motion.coefficients.size(); ++k) {
+      names.push_back(name + "[" + motion.basis.function_name(k, rotary) + "]");
+    }
+  }
+  for (const LocationError& location : errors.locations) {
+    names.push_back(location_error_name(machine, location.axis, location.component));
+  }
+  for (const char* name : {"tool_X", "tool_Y", "tool_Z"}) names.emplace_back(name);
+  return names;
+}
+
+std::vector<bool> parameters_are_angles(const ErrorSet& errors) {
+  std::vector<bool> angles;
+  angles.reserve(errors.parameter_count());
+  for (const ErrorMotion& motion : errors.motions) {
+    angles.insert(angles.end(), motion.coefficients.size(), is_rotation(motion.component));
+  }
+  // Zero position errors of rotary axes are the rotation component about the axis, so the component decides here too.
+  for (const LocationError& location : errors.locations) angles.push_back(is_rotation(location.component));
+  angles.insert(angles.end(), 3, false);
+  return angles;
+}
+
+bool parse_error_name(const Machine& machine, const std::string& text, std::size_t& axis, Component& component,
+                      bool& is_location) {
+  if (text.size() < 3 || text[0] != 'E') return false;
+  const std::size_t letter = std::string("XYZABC").find(text[1]);
+  if (letter == std::string::npos) return false;
+  component = static_cast<Component>(letter);
+  is_location = text[2] == '0';
+  axis = machine.find_axis(std::string_view(text).substr(is_location ? 3 : 2));
+  return axis != Machine::npos;
+}
+
+bool location_error_is_valid(const Axis& axis, Component component) {
+  const int principal = principal_direction(axis);
+  const int direction = static_cast<int>(component) % 3;
+  if (axis.kind == AxisKind::linear) {
+    if (is_rotation(component)) return direction != principal;
+    return direction == principal;
+  }
+  return is_rotation(component) || direction != principal;
+}
+
+bool is_zero_position_error(const Axis& axis, Component component) {
+  return static_cast<int>(component) % 3 == principal_direction(axis) &&
+         is_rotation(component) == (axis.kind == AxisKind::rotary);
+}
+
+}  // namespace abbe
