@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "abbe/identify/levenberg_marquardt.h"
+#include "abbe/identify/problem.h"
+
+namespace abbe {
+
+/// How directions are treated that the readings cannot see.
+enum class GaugeChoice {
+  iso,           ///< fix them by the conventions of ISO 230, see gauge_convention.h
+  minimum_norm,  ///< smallest change from the start in scaled parameters
+  none           ///< leave them: a rank-deficient problem then ends with that status
+};
+
+/// One equation c'x = value that fixes one unseen direction.
+struct GaugeConstraint {
+  std::string words;                     ///< "mean of EXC over the turn is zero"
+  Eigen::VectorXd functional;            ///< c, [p]
+  double value = 0;                      ///< mm or rad
+  Eigen::VectorXd direction;             ///< [p]: the unseen direction it fixes; functional . direction = 1
+  std::vector<std::size_t> inseparable;  ///< entries of the estimates that this direction mixes, largest first
+  std::string inseparable_words;         ///< "constant of EXZ is not separable from tracker1.x, tool_X"
+};
+
+/// The unseen directions of a problem.
+struct NullSpace {
+  Eigen::VectorXd column_norms;     ///< [p], D; 0 where the readings do not depend on the parameter at all
+  Eigen::VectorXd singular_values;  ///< [p] of J D^-1, decreasing, relative to the largest
+  Eigen::MatrixXd basis;            ///< [p, q], orthonormal in scaled parameters D x; in units of D x
+  std::size_t rank = 0;             ///< p - q
+  bool refined = false;             ///< found by orthogonal factors of J, not from J'J
+};
+
+struct GaugeReport {
+  std::size_t parameter_count = 0;
+  std::size_t rank_at_start = 0;
+  std::size_t rank_at_solution = 0;  ///< without the constraints
+  Eigen::VectorXd singular_values;   ///< at the start, of the column-scaled Jacobian, relative
+  std::vector<GaugeConstraint> constraints;
+  std::vector<std::string> warnings;  ///< in words, for the report
+};
+
+/// Null space of the column-scaled Jacobian at `estimates` (priors included).
+///
+/// From the eigenvalues of the scaled normal matrix where they are clearly apart; else from the singular values of the
+/// factor R of a streaming orthogonal factorisation of J, which tells singular values of 1e-13 (relative) from zero.
+NullSpace find_null_space(const Problem& problem, const Eigen::VectorXd& estimates, int threads = 0);
+
+/// Chooses equations that fix the null space, by convention.
+/// @param start  [p], set-up unknowns that have to be fixed keep this value
+std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& null_space,
+                                       const Eigen::VectorXd& start, GaugeChoice choice);
+
+/// Solutions of all equations, as near to `start` as a move along the unseen directions allows.
+ConstrainedSpace constrained_space(const std::vector<GaugeConstraint>& constraints, const Eigen::VectorXd& start,
+                                   const Eigen::VectorXd& column_norms);
+
+}  // namespace abbe

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "abbe/identify/problem.h"
+#include "abbe/identify/robust_loss.h"
+
+namespace abbe {
+
+enum class IdentifyStatus {
+  not_run,
+  converged,
+  no_convergence,    ///< iteration limit reached, or no step lowers the cost
+  rank_deficient,    ///< parameters that the readings cannot separate and no gauge was stated
+  too_few_readings,  ///< fewer residuals and priors than parameters (after the gauge)
+  not_finite,        ///< a residual or derivative is not a finite number
+};
+
+/// "converged", "no convergence", ... for people.
+const char* status_text(IdentifyStatus status);
+
+struct SolverOptions {
+  int max_iterations = 100;
+  double relative_cost = 1e-12;  ///< converged if actual and predicted relative decrease of the cost are below
+  double gradient = 1e-10;       ///< converged if the residuals are orthogonal to every column: largest cosine below
+  double step = 1e-11;           ///< converged if |D dx| < step |D x|, D: column norms of the Jacobian
+  double start_damping = 1e-4;   ///< relative to the (unit) diagonal of the scaled normal matrix
+  bool chord_iterations = true;  ///< keep the factor while it still lowers the gradient well
+  int threads = 0;               ///< 0: all; the result does not depend on it
+};
+
+/// One iteration, for the convergence history.
+struct IterationRecord {
+  double cost = 0;      ///< half the sum of squares (or of losses)
+  double damping = 0;   ///< Levenberg-Marquardt parameter, relative; 0 for a chord iteration
+  double step = 0;      ///< |D dx| / |D x|
+  double gradient = 0;  ///< largest cosine between residuals and a column
+  bool accepted = false;
+  bool chord = false;  ///< factor kept from an earlier iteration
+};
+
+/// x = particular + directions * y for all y: the solutions of the gauge's equations C x = d.
+struct ConstrainedSpace {
+  Eigen::VectorXd particular;  ///< [p], mm or rad
+  Eigen::MatrixXd directions;  ///< [p, p - q]; no columns and no rows: unconstrained
+};
+
+struct SolverResult {
+  IdentifyStatus status = IdentifyStatus::not_run;
+  Eigen::VectorXd estimates;  ///< [p], mm or rad
+  Eigen::MatrixXd normal;     ///< [p, p] J'WJ and priors at the estimates
+  double cost = 0;
+  std::vector<IterationRecord> history;
+};
+
+/// Minimises the (robust) sum of squares from `start`, inside the constrained space if one is given.
+///
+/// Levenberg-Marquardt with Nielsen's damping in column-scaled variables (IMM-REP-1999-05; More, LNM 630 (1978) 105).
+/// @param start  [p]; its part along the constrained directions is used
+SolverResult solve(const Problem& problem, const Eigen::VectorXd& start, const ConstrainedSpace* space,
+                   const Loss& loss, const SolverOptions& options);
+
+}  // namespace abbe

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "abbe/identify/identify.h"
+
+namespace abbe {
+
+struct MonteCarloOptions {
+  std::size_t samples = 10000;
+  std::uint64_t seed = 1;
+  int chord_iterations = 1;  ///< exact evaluations of the model per sample; 0: linear propagation only
+  std::vector<double> probabilities = {0.025, 0.5, 0.975};
+  int threads = 0;
+  std::size_t memory_limit_bytes = std::size_t{1} << 30;  ///< for the kept Jacobian and the samples
+};
+
+enum class MonteCarloStatus { not_run, done, no_solution, too_large };
+
+struct MonteCarloResult {
+  MonteCarloStatus status = MonteCarloStatus::not_run;
+  std::size_t samples = 0;
+  Eigen::VectorXd mean;                    ///< [p], mm or rad
+  Eigen::MatrixXd covariance;              ///< [p, p]
+  Eigen::MatrixXd percentiles;             ///< [p, probabilities], mm or rad
+  Eigen::VectorXd prediction_mean;         ///< [rows of P]
+  Eigen::VectorXd prediction_uncertainty;  ///< [rows of P], standard
+  Eigen::MatrixXd prediction_percentiles;  ///< [rows of P, probabilities]
+};
+
+/// Propagates the readings' uncertainties through the identification by simulation (JCGM 101).
+///
+/// Every sample adds standard normal numbers to the residuals of the model at the identified values, and is identified
+/// again with the kept factor and exact residuals (chord iterations), in the same gauge. Sample k uses
+/// RandomStream(seed, k), so the result depends neither on the number of threads nor on the other samples.
+/// @param problem     observations stand at the estimates, as identify() leaves them
+/// @param prediction  null, or P: [rows, p], d(quantity)/d(estimate); quantities P (x - estimate) are then returned too
+MonteCarloResult monte_carlo(const Problem& problem, const Identification& identification,
+                             const MonteCarloOptions& options, const Eigen::MatrixXd* prediction = nullptr);
+
+}  // namespace abbe

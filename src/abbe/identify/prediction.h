@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "abbe/identify/identify.h"
+
+namespace abbe {
+
+/// Standard uncertainty of predicted quantities: root of the diagonal of P Cov P'.
+/// @param rows        P, [quantities, p]: d(quantity)/d(estimate)
+/// @param covariance  [p, p]
+Eigen::VectorXd predicted_uncertainty(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& covariance);
+
+/// The part of an identification that belongs to the machine's errors, over all of ErrorSet::parameters().
+/// Parameters that were not estimated have variance 0.
+Eigen::MatrixXd machine_covariance(const Identification& identification, std::size_t machine_parameter_count);
+
+/// One reading that did not take part in the fit.
+struct HeldOutReading {
+  std::size_t observations = 0;
+  std::size_t reading = 0;
+  double norm = 0;               ///< Mahalanobis norm of its residuals against the readings' noise alone
+  double prediction_ratio = 0;   ///< largest ratio of the prediction's standard uncertainty to that of a reading
+  double normalised_square = 0;  ///< r' (I + J Cov J')^-1 r: chi-square of `rows` if model and uncertainties are right
+};
+
+/// Residuals of readings that were left out (use[k] = 0), with the uncertainty of their prediction.
+/// @param problem  observations stand at the estimates
+std::vector<HeldOutReading> held_out_readings(const Problem& problem, const Identification& identification,
+                                              int threads = 0);
+
+}  // namespace abbe
