@@ -26,6 +26,7 @@ struct Axis {
   double travel_min = 0;                                 ///< mm or rad
   double travel_max = 0;                                 ///< mm or rad
   bool endless = false;                                  ///< rotary without travel limits
+  bool setting = false;                                  ///< positioned beforehand and not interpolated with the others
 
   /// +1, or -1 for a primed axis: displacement of the carried body = sense() * command.
   double sense() const { return primed ? -1.0 : 1.0; }

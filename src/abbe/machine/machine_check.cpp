@@ -1,0 +1,123 @@
+#include "abbe/machine/machine_check.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace abbe {
+namespace {
+
+constexpr double kUnitTolerance = 1e-9;
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  return text;
+}
+
+std::string vector_text(const Eigen::Vector3d& v) {
+  return "(" + number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + ")";
+}
+
+class Checker {
+ public:
+  explicit Checker(const Machine& machine) : machine_(machine) {}
+
+  std::vector<MachineProblem> check() {
+    if (machine_.axes.empty()) report("", "axes", "a machine needs at least one axis");
+    bool tool_side = false;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const Axis& axis = machine_.axes[i];
+      check_axis(axis);
+      for (std::size_t k = 0; k < i; ++k) {
+        if (machine_.axes[k].name == axis.name) report(axis.name, "name", "is used twice; number the axes: C1, C2");
+      }
+      if (axis.side == ChainSide::tool) tool_side = true;
+      if (axis.side == ChainSide::workpiece && tool_side) {
+        report(axis.name, "side",
+               "carries the workpiece but follows an axis that carries the tool; "
+               "axes stand in chain order from workpiece to tool");
+      }
+    }
+    check_unit("", "tool_direction", machine_.tool_direction);
+    check_finite("", "tool_reference", machine_.tool_reference);
+    check_finite("", "tool_offset", machine_.tool_offset);
+    check_frame();
+    return problems_;
+  }
+
+ private:
+  void report(const std::string& axis, const std::string& field, const std::string& message) {
+    problems_.push_back({axis, field, message});
+  }
+
+  bool check_finite(const std::string& axis, const std::string& field, const Eigen::Vector3d& v) {
+    if (v.allFinite()) return true;
+    report(axis, field, vector_text(v) + " is not finite");
+    return false;
+  }
+
+  void check_unit(const std::string& axis, const std::string& field, const Eigen::Vector3d& v) {
+    if (!check_finite(axis, field, v)) return;
+    const double length = v.stableNorm();
+    if (std::abs(length - 1) > kUnitTolerance) {
+      report(axis, field, vector_text(v) + " has length " + number(length) + ", must be 1");
+    }
+  }
+
+  void check_name(const Axis& axis) {
+    AxisKind kind;
+    bool sound = !axis.name.empty() && axis.name.size() <= 3 && axis_kind_from_letter(axis.name[0], kind);
+    for (std::size_t i = 1; i < axis.name.size(); ++i) {
+      sound = sound && axis.name[i] >= (i == 1 ? '1' : '0') && axis.name[i] <= '9';
+    }
+    if (!sound) {
+      report(axis.name, "name",
+             "'" + axis.name + "' is no axis name; expected an ISO 841 letter and optional number: X, C2");
+    } else if (kind != axis.kind) {
+      report(axis.name, "kind",
+             std::string("the letter stands for a ") + (kind == AxisKind::linear ? "linear" : "rotary") + " axis");
+    }
+  }
+
+  void check_axis(const Axis& axis) {
+    check_name(axis);
+    check_unit(axis.name, "direction", axis.direction);
+    check_finite(axis.name, "point", axis.point);
+    if (!std::isfinite(axis.travel_min) || !std::isfinite(axis.travel_max)) {
+      report(axis.name, "travel", "limits are not finite; mark a rotary axis without limits as endless");
+    } else if (axis.travel_min > axis.travel_max) {
+      report(axis.name, "travel",
+             "minimum " + number(axis.travel_min) + " exceeds maximum " + number(axis.travel_max) +
+                 (axis.kind == AxisKind::linear ? " (mm)" : " (rad)"));
+    }
+    if (axis.endless && axis.kind == AxisKind::linear)
+      report(axis.name, "endless", "only a rotary axis can be endless");
+    if (axis.primed && axis.side == ChainSide::tool) {
+      report(axis.name, "primed", "a prime marks an axis that carries the workpiece, but this one carries the tool");
+    }
+  }
+
+  void check_frame() {
+    const RigidTransform& frame = machine_.bed_from_workpiece;
+    check_finite("", "bed_from_workpiece", frame.translation);
+    const Eigen::Matrix3d& r = frame.rotation;
+    if (!r.allFinite()) {
+      report("", "bed_from_workpiece", "rotation is not finite");
+    } else if ((r.transpose() * r - Eigen::Matrix3d::Identity()).norm() > kUnitTolerance || r.determinant() < 0) {
+      report("", "bed_from_workpiece", "is no rotation: its axes are not unit vectors at right angles, right-handed");
+    }
+  }
+
+  const Machine& machine_;
+  std::vector<MachineProblem> problems_;
+};
+
+}  // namespace
+
+std::string MachineProblem::text() const {
+  return axis.empty() ? field + ": " + message : "axis " + axis + ": " + field + ": " + message;
+}
+
+std::vector<MachineProblem> find_problems(const Machine& machine) { return Checker(machine).check(); }
+
+}  // namespace abbe
