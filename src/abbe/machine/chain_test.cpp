@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "abbe/machine/machine_check.h"
 
 namespace abbe {
