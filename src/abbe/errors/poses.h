@@ -1,0 +1,54 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "abbe/errors/chain_plan.h"
+
+namespace abbe {
+
+/// Axis commands of many poses, owned, structure of arrays: axis[i][k], chain order, mm or rad.
+struct PoseList {
+  std::vector<std::vector<double>> axis;
+
+  std::size_t count() const { return axis.empty() ? 0 : axis.front().size(); }
+  std::vector<double> pose(std::size_t k) const {
+    std::vector<double> positions;
+    for (const std::vector<double>& values : axis) positions.push_back(values[k]);
+    return positions;
+  }
+  void append(const std::vector<double>& positions) {
+    axis.resize(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) axis[i].push_back(positions[i]);
+  }
+};
+
+/// All combinations of given axis positions; the first axis varies slowest. Nothing but the positions is stored.
+struct PoseGrid {
+  std::vector<std::vector<double>> values;  ///< [axes] positions per axis, mm or rad
+
+  std::size_t count() const {
+    std::size_t product = values.empty() ? 0 : 1;
+    for (const std::vector<double>& axis_values : values) product *= axis_values.size();
+    return product;
+  }
+};
+
+/// Poses that are made when they are needed: millions of them need no memory.
+struct PoseSource {
+  std::size_t axes = 0;
+  std::size_t count = 0;
+  /// Writes poses first .. first + number - 1 to axis[i][0 .. number - 1]; thread-safe.
+  std::function<void(std::size_t first, std::size_t number, double* const* axis)> fill;
+};
+
+/// @param list  must outlive the source
+PoseSource pose_source(const PoseList& list);
+PoseSource pose_source(PoseGrid grid);
+
+/// Evenly spread positions from `from` to `to`, both included; one position: the middle.
+std::vector<double> evenly_spaced(double from, double to, std::size_t count);
+
+}  // namespace abbe
