@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "abbe/errors/error_set.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+/// Contents of a `*.errors.toml` file: errors, their covariance and where they come from.
+struct ErrorsFile {
+  ErrorSet errors;
+  /// Covariance of ErrorSet::parameters(), [p, p], products of mm and rad; 0 x 0: not stated.
+  Eigen::MatrixXd covariance;
+  /// Free text about the origin, in order: {"method", "joint identification"}.
+  std::vector<std::pair<std::string, std::string>> provenance;
+};
+
+/// Reads the errors of a machine and the CSV files that the file names (beside it). Bases without from/to run over the
+/// travel of their axis. @throws InputError
+ErrorsFile read_errors(const std::filesystem::path& path, const Machine& machine);
+/// The same from text. @param path  name for messages; its folder is where other files are looked for
+ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& path, const Machine& machine);
+
+/// Text of an errors file; reading it back gives the same bits.
+/// @param covariance_file  name of the CSV with the covariance, beside the file; empty: none
+std::string errors_text(const Machine& machine, const ErrorsFile& contents, const std::string& covariance_file = "");
+
+/// Covariance as CSV: columns `parameter`, `unit`, then one column per parameter; entry in the product of both units
+/// (um, urad).
+std::string covariance_text(const Machine& machine, const ErrorsFile& contents);
+
+/// Writes `path` and, if there is a covariance, a CSV beside it ("x.errors.toml" -> "x.covariance.csv"), each
+/// atomically.
+void write_errors(const std::filesystem::path& path, const Machine& machine, const ErrorsFile& contents);
+
+}  // namespace abbe

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace abbe {
+
+/// A folder of results that appears whole or not at all.
+///
+/// Everything is written to "<name>.partial-<process>"; commit() flushes it to the disk and exchanges it with an older
+/// result in one step, so that after a full disk or a killed process the older one is intact. Without commit() the
+/// destructor removes what was written. What killed processes left behind is removed by the next writer of that name.
+class ResultsFolder {
+ public:
+  /// @throws InputError if the folder cannot be made
+  explicit ResultsFolder(std::filesystem::path name);
+  ~ResultsFolder();
+  ResultsFolder(const ResultsFolder&) = delete;
+  ResultsFolder& operator=(const ResultsFolder&) = delete;
+
+  const std::filesystem::path& name() const { return name_; }
+  /// Where files are being written until commit().
+  const std::filesystem::path& partial() const { return partial_; }
+
+  /// Writes and flushes one file; makes the folders in `relative`. @throws InputError if it cannot be written whole
+  void write(const std::filesystem::path& relative, std::string_view contents);
+
+  /// Makes the result visible under its name. @throws InputError; the older result is then still there
+  void commit();
+
+ private:
+  std::filesystem::path name_;
+  std::filesystem::path partial_;
+  bool committed_ = false;
+};
+
+/// One file that appears whole or not at all; an older file of that name stays until then. @throws InputError
+void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
+
+}  // namespace abbe

@@ -1,0 +1,185 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "abbe/errors/error_set.h"
+#include "abbe/formats/measurement_file.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+/// Position and attitude of a body: rotation Rz(c) Ry(b) Rx(a). mm, rad.
+struct StudyPose {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angles = Eigen::Vector3d::Zero();  ///< about x, y, z
+};
+
+/// Random smooth errors of stated size, instead of a file with the true errors.
+struct ErrorGenerator {
+  std::uint64_t seed = 1;
+  int linear_order = 4;                      ///< Legendre order of the error motions of linear axes
+  int rotary_order = 4;                      ///< harmonics of the error motions of rotary axes
+  std::optional<double> mean_volumetric;     ///< mm; exactly one of these two is given
+  std::optional<double> maximum_volumetric;  ///< mm
+  bool location_errors = true;               ///< draw squareness, parallelism and axis positions too
+};
+
+/// Gross errors put into simulated readings.
+struct SimulatedOutliers {
+  double fraction = 0;  ///< of the readings, 0 .. 0.5
+  double size = 0;      ///< mm, standard deviation in each direction
+};
+
+struct Simulation {
+  std::optional<std::filesystem::path> errors_file;  ///< true errors; exactly one of file and generator is given
+  std::optional<ErrorGenerator> generator;
+  SimulatedOutliers outliers;
+};
+
+/// One axis of a measurement plan or of a map: `count` equal steps from `from` to `to`, or fixed if count is 1.
+struct AxisSampling {
+  std::size_t axis = 0;  ///< chain order
+  double from = 0;       ///< mm or rad
+  double to = 0;
+  int count = 1;  ///< grid only
+};
+
+enum class PlanKind { grid, line, random, spiral };
+
+/// Axis positions at which simulated readings are taken.
+///
+/// Every axis of the machine has a sampling: those not named in the file stay fixed at the travel's middle (zero if
+/// that is in the travel). Limits like Aguado fig. 5 are fixed axes and restricted ranges: A all axes over their range,
+/// B one fixed C, C one fixed point of X and Z.
+struct MeasurementPlan {
+  PlanKind kind = PlanKind::grid;
+  std::vector<AxisSampling> axes;       ///< [axes], chain order
+  int points = 0;                       ///< line, random, spiral
+  double turns = 1;                     ///< spiral: turns of the ellipse over the two axes of largest range
+  std::vector<std::size_t> reflectors;  ///< indices into Setup::reflectors; each position is measured with each
+  std::size_t station = 0;              ///< index into Setup::stations
+};
+
+enum class MountingBody { bed, workpiece, tool };
+
+struct SetupReflector {
+  std::string name;
+  MountingBody mounted_on = MountingBody::tool;
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< mm: tool: from the gauge point; workpiece, bed: in that frame
+  bool offset_from_data = false;                     ///< the measurement file has the offset
+  bool estimate_offset = false;
+  Eigen::Vector3d offset_standard_uncertainty = Eigen::Vector3d::Zero();  ///< mm, prior of the estimate; 0: none
+  std::optional<Eigen::Vector3d> true_offset;                             ///< mm, simulation; else the offset
+};
+
+struct SetupStation {
+  std::string name;
+  std::optional<StudyPose> pose;  ///< start of the estimate, or fixed; absent: find it from the data
+  bool estimate_pose = true;
+  std::optional<StudyPose> true_pose;  ///< simulation; else `pose`
+};
+
+/// Standard deviations of an instrument's noise; either range and angles or isotropic x y z.
+struct TrackerNoise {
+  bool isotropic = false;
+  double range = 0;             ///< mm (isotropic: of each coordinate)
+  double range_per_length = 0;  ///< mm per mm of distance, added to `range` (isotropic: of each coordinate)
+  double angle = 0;             ///< rad, azimuth and elevation; not isotropic only
+};
+
+struct SetupData {
+  std::filesystem::path file;
+  ColumnMapping mapping;
+};
+
+/// One instrument at one place in one period of time.
+struct Setup {
+  std::string name;
+  std::string instrument;  ///< "tracker"
+  MountingBody mounted_on = MountingBody::workpiece;
+  MeasuredKind measure = MeasuredKind::xyz;
+  TrackerNoise noise;
+  bool noise_from_data = false;            ///< use the uncertainties in the data; `noise` is then unused
+  std::vector<SetupStation> stations;      ///< at least one
+  std::vector<SetupReflector> reflectors;  ///< at least one unless the data define them
+  std::vector<MeasurementPlan> plans;      ///< simulation
+  std::vector<SetupData> data;             ///< measurement; exactly one of plans and data is given
+};
+
+/// One error motion to be identified.
+struct IdentifiedMotion {
+  std::size_t axis = 0;
+  Component component = Component::X;
+  Basis basis;             ///< with the largest order to be tried
+  int smallest_order = 0;  ///< equal to basis.order unless the order is to be selected
+};
+
+struct IdentifiedLocation {
+  std::size_t axis = 0;
+  Component component = Component::A;
+};
+
+/// Prior knowledge of parameters: value with standard uncertainty.
+struct ParameterPrior {
+  std::string
+      parameters;  ///< pattern over parameter names: "EXX[P2]", "E?0C", "tool_*"; `*` any text, `?` one character
+  bool is_angle = false;
+  double value = 0;                 ///< mm or rad
+  double standard_uncertainty = 0;  ///< mm or rad, > 0
+};
+
+enum class Strategy { joint, independent, combined };
+enum class LossKind { none, huber, cauchy, tukey };
+
+struct Identification {
+  std::vector<IdentifiedMotion> motions;
+  std::vector<IdentifiedLocation> locations;
+  bool tool_offset = false;
+  std::optional<std::filesystem::path> initial_errors;  ///< start values; else zero
+  std::vector<ParameterPrior> priors;
+  Strategy strategy = Strategy::joint;
+  LossKind loss = LossKind::none;
+  double loss_scale = 0;  ///< in standard uncertainties; 0: the loss's usual value (95 % efficiency)
+  int max_iterations = 50;
+  double tolerance = 1e-10;                            ///< relative change of the cost and of the parameters
+  double held_out_fraction = 0.1;                      ///< of the readings, not used in the fit
+  std::optional<std::filesystem::path> held_out_file;  ///< measurement file for validation instead of a fraction
+  bool select_order = false;                           ///< some motion has smallest_order < basis.order
+  int monte_carlo = 0;                                 ///< simulated identifications; 0: none
+};
+
+/// Where the volumetric error is predicted.
+struct MapPlan {
+  std::vector<AxisSampling> axes;                   ///< [axes], chain order; the grid, first axis varying slowest
+  std::optional<std::filesystem::path> poses_file;  ///< instead of the grid
+};
+
+struct ReportOptions {
+  bool page = true;
+  std::string title;        ///< empty: the study's name
+  double exaggeration = 0;  ///< of the drawn error vectors; 0: chosen from their size
+};
+
+/// A whole job: what is given, what is measured or simulated, what is identified and what is reported. Plain data.
+/// Paths are resolved against the study's folder. Defaults are those written here and in docs/formats.md.
+struct Study {
+  std::string name;
+  std::string description;
+  std::filesystem::path machine_file;
+  Machine machine;
+  std::uint64_t seed = 1;
+  int threads = 0;                       ///< 0: all
+  std::optional<Simulation> simulation;  ///< absent: the readings come from data files
+  std::vector<Setup> setups;
+  std::optional<Identification> identification;
+  std::optional<MapPlan> map;
+  ReportOptions report;
+  std::filesystem::path output;  ///< results folder; default "results/<name of the study file>"
+};
+
+}  // namespace abbe

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace abbe {
+
+/// What a number in a file measures; decides which unit suffixes its name may have.
+enum class Quantity {
+  dimensionless,      ///< no suffix
+  length,             ///< inside mm
+  angle,              ///< inside rad
+  length_per_length,  ///< inside mm per mm; a noise growing with distance
+  time,               ///< inside s
+  length_squared,     ///< inside mm^2
+};
+
+/// A unit as written at the end of a name: inside value = text * 10^decimal_shift * factor.
+struct Unit {
+  std::string_view suffix;  ///< "mm", "um_per_m", ""
+  int decimal_shift = 0;
+  double factor = 1;
+};
+
+/// The units accepted for a quantity, the inside one first.
+std::span<const Unit> units_of(Quantity quantity);
+
+/// "travel" with Quantity::length: "travel_mm, travel_um or travel_m".
+std::string accepted_names(std::string_view base, Quantity quantity);
+
+/// "a length", "an angle", ...
+std::string_view quantity_words(Quantity quantity);
+
+/// Unit of a name "<base>_<suffix>", or null if the name is not the base with a unit of that quantity.
+const Unit* unit_of_name(std::string_view name, std::string_view base, Quantity quantity);
+
+/// True if the text ends in "_" and any unit suffix of any quantity.
+bool ends_in_unit(std::string_view name);
+
+/// The candidate nearest in spelling, or empty if none is near.
+std::string_view nearest_name(std::string_view name, std::span<const std::string> candidates);
+
+}  // namespace abbe
