@@ -1,39 +1,25 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "abbe/errors/poses.h"
+#include "abbe/instruments/tracker.h"
 #include "abbe/machine/machine.h"
 
 namespace abbe {
 
-enum class MeasuredKind { xyz, range_angles };
-enum class StatedUncertainty { none, standard, covariance };
-
-/// Readings of an instrument that sees points, structure of arrays, in the order of the file.
+/// Readings of an instrument that sees points, in the order of the file, and the names in it.
 struct MeasurementTable {
-  MeasuredKind kind = MeasuredKind::xyz;
-  std::size_t count = 0;
-  std::vector<std::vector<double>> positions;   ///< [axes][count] commands in chain order, mm or rad
-  std::array<std::vector<double>, 3> measured;  ///< x y z (mm), or range (mm), azimuth, elevation (rad)
-
-  StatedUncertainty stated = StatedUncertainty::none;
-  std::array<std::vector<double>, 3> standard_uncertainty;  ///< of `measured`, mm or rad
-  std::array<std::vector<double>, 6> covariance;            ///< xx, xy, xz, yy, yz, zz in mm^2; positive definite
-
-  std::vector<std::string> stations;     ///< in order of appearance; one unnamed if the file has no column
-  std::vector<std::uint32_t> station;    ///< [count] index into stations
-  std::vector<std::string> reflectors;   ///< in order of appearance; "offset1", ... where only offsets are given
-  std::vector<std::uint32_t> reflector;  ///< [count] index into reflectors
+  TrackerReadings readings;             ///< station and reflector are indices into the names below
+  std::vector<std::string> stations;    ///< in order of appearance; one unnamed ("") if the file has no column
+  std::vector<std::string> reflectors;  ///< likewise; "offset1", ... where only offsets are given
   std::vector<Eigen::Vector3d>
-      reflector_offset;      ///< [reflectors.size()] mm, or empty if the file has no offset columns
-  std::vector<double> time;  ///< [count] s, or empty
+      reflector_offset;  ///< [reflectors.size()] mm, or empty if the file has no offset columns
 };
 
 /// How the columns of a file that Abbe did not write are called, and which are left unread.
@@ -60,10 +46,9 @@ MeasurementTable parse_measurements(std::string_view text, const std::string& fi
 /// lengths, to one unit in the last place for angles.
 std::string measurements_text(const Machine& machine, const MeasurementTable& table);
 
-/// Poses from a CSV with one column per axis. @returns [axes][count], mm or rad @throws InputError
-std::vector<std::vector<double>> read_poses(const std::filesystem::path& path, const Machine& machine,
-                                            const MeasurementOptions& options = {});
-std::vector<std::vector<double>> parse_poses(std::string_view text, const std::string& file, const Machine& machine,
-                                             const MeasurementOptions& options = {});
+/// Poses from a CSV with one column per axis. @throws InputError
+PoseList read_poses(const std::filesystem::path& path, const Machine& machine, const MeasurementOptions& options = {});
+PoseList parse_poses(std::string_view text, const std::string& file, const Machine& machine,
+                     const MeasurementOptions& options = {});
 
 }  // namespace abbe

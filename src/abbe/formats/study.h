@@ -9,6 +9,10 @@
 
 #include "abbe/errors/error_set.h"
 #include "abbe/formats/measurement_file.h"
+#include "abbe/identify/robust_loss.h"
+#include "abbe/identify/strategies.h"
+#include "abbe/instruments/measurement_plan.h"
+#include "abbe/instruments/tracker.h"
 #include "abbe/machine/machine.h"
 
 namespace abbe {
@@ -41,14 +45,6 @@ struct Simulation {
   SimulatedOutliers outliers;
 };
 
-/// One axis of a measurement plan or of a map: `count` equal steps from `from` to `to`, or fixed if count is 1.
-struct AxisSampling {
-  std::size_t axis = 0;  ///< chain order
-  double from = 0;       ///< mm or rad
-  double to = 0;
-  int count = 1;  ///< grid only
-};
-
 enum class PlanKind { grid, line, random, spiral };
 
 /// Axis positions at which simulated readings are taken.
@@ -58,18 +54,16 @@ enum class PlanKind { grid, line, random, spiral };
 /// B one fixed C, C one fixed point of X and Z.
 struct MeasurementPlan {
   PlanKind kind = PlanKind::grid;
-  std::vector<AxisSampling> axes;       ///< [axes], chain order
+  std::vector<AxisRange> axes;          ///< [axes], chain order; mm or rad
   int points = 0;                       ///< line, random, spiral
   double turns = 1;                     ///< spiral: turns of the ellipse over the two axes of largest range
   std::vector<std::size_t> reflectors;  ///< indices into Setup::reflectors; each position is measured with each
   std::size_t station = 0;              ///< index into Setup::stations
 };
 
-enum class MountingBody { bed, workpiece, tool };
-
 struct SetupReflector {
   std::string name;
-  MountingBody mounted_on = MountingBody::tool;
+  Body mounted_on = Body::tool;
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< mm: tool: from the gauge point; workpiece, bed: in that frame
   bool offset_from_data = false;                     ///< the measurement file has the offset
   bool estimate_offset = false;
@@ -84,14 +78,6 @@ struct SetupStation {
   std::optional<StudyPose> true_pose;  ///< simulation; else `pose`
 };
 
-/// Standard deviations of an instrument's noise; either range and angles or isotropic x y z.
-struct TrackerNoise {
-  bool isotropic = false;
-  double range = 0;             ///< mm (isotropic: of each coordinate)
-  double range_per_length = 0;  ///< mm per mm of distance, added to `range` (isotropic: of each coordinate)
-  double angle = 0;             ///< rad, azimuth and elevation; not isotropic only
-};
-
 struct SetupData {
   std::filesystem::path file;
   ColumnMapping mapping;
@@ -101,8 +87,8 @@ struct SetupData {
 struct Setup {
   std::string name;
   std::string instrument;  ///< "tracker"
-  MountingBody mounted_on = MountingBody::workpiece;
-  MeasuredKind measure = MeasuredKind::xyz;
+  Body mounted_on = Body::workpiece;
+  TrackerMeasure measure = TrackerMeasure::cartesian;
   TrackerNoise noise;
   bool noise_from_data = false;            ///< use the uncertainties in the data; `noise` is then unused
   std::vector<SetupStation> stations;      ///< at least one
@@ -133,10 +119,8 @@ struct ParameterPrior {
   double standard_uncertainty = 0;  ///< mm or rad, > 0
 };
 
-enum class Strategy { joint, independent, combined };
-enum class LossKind { none, huber, cauchy, tukey };
-
-struct Identification {
+/// What is identified and how.
+struct IdentificationPlan {
   std::vector<IdentifiedMotion> motions;
   std::vector<IdentifiedLocation> locations;
   bool tool_offset = false;
@@ -155,7 +139,7 @@ struct Identification {
 
 /// Where the volumetric error is predicted.
 struct MapPlan {
-  std::vector<AxisSampling> axes;                   ///< [axes], chain order; the grid, first axis varying slowest
+  std::vector<AxisRange> axes;                      ///< [axes], chain order; the grid, first axis varying slowest
   std::optional<std::filesystem::path> poses_file;  ///< instead of the grid
 };
 
@@ -176,7 +160,7 @@ struct Study {
   int threads = 0;                       ///< 0: all
   std::optional<Simulation> simulation;  ///< absent: the readings come from data files
   std::vector<Setup> setups;
-  std::optional<Identification> identification;
+  std::optional<IdentificationPlan> identification;
   std::optional<MapPlan> map;
   ReportOptions report;
   std::filesystem::path output;  ///< results folder; default "results/<name of the study file>"
