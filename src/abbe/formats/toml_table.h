@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -75,13 +74,15 @@ class TomlTable {
                                   const std::string& expected = "") const;
 
  private:
-  struct Document;
   struct State;
   explicit TomlTable(std::shared_ptr<State> state) : state_(std::move(state)) {}
   std::shared_ptr<State> state_;
 };
 
-/// Whole contents of a regular file. @throws InputError if it cannot be read, is no regular file or is empty
-std::string read_text_file(const std::filesystem::path& path);
+/// Text in quotes with the escapes of TOML.
+std::string toml_string(std::string_view text);
+
+/// "key_deg = [...]" if degrees read back to the same bits, else in rad. One value: without brackets if `scalar`.
+std::string toml_angles(std::string_view base, const std::vector<double>& values, bool scalar = false);
 
 }  // namespace abbe

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "abbe/formats/number_text.h"
+
 namespace abbe {
 
 /// What a number in a file measures; decides which unit suffixes its name may have.
@@ -34,6 +36,15 @@ std::string_view quantity_words(Quantity quantity);
 
 /// Unit of a name "<base>_<suffix>", or null if the name is not the base with a unit of that quantity.
 const Unit* unit_of_name(std::string_view name, std::string_view base, Quantity quantity);
+
+/// Value of text in a unit, in the inside unit; see parse_number(). Magnitudes over kLargestInput are too_large.
+NumberProblem parse_quantity(std::string_view text, const Unit& unit, double& value);
+
+/// Shortest text of a value in a unit: exact for decimal units (factor 1), else to one unit in the last place.
+std::string quantity_text(double value, const Unit& unit);
+
+/// The unit of that suffix; asserts that there is one.
+const Unit& unit_named(Quantity quantity, std::string_view suffix);
 
 /// True if the text ends in "_" and any unit suffix of any quantity.
 bool ends_in_unit(std::string_view name);

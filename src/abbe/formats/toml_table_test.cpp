@@ -1,0 +1,94 @@
+#include "abbe/formats/toml_table.h"
+
+#include <gtest/gtest.h>
+
+#include "abbe/formats/message_of.h"
+
+namespace abbe {
+namespace {
+
+std::string wrong(const std::string& text, void (*read)(TomlTable&)) {
+  return message_of([&] {
+    TomlTable table = TomlTable::parse(text, "a.toml");
+    read(table);
+    table.finish();
+  });
+}
+
+void read_travel(TomlTable& table) { table.numbers("travel", Quantity::length, 2); }
+void read_range(TomlTable& table) { table.number("range", Quantity::length); }
+
+TEST(TomlTable, ReadsUnitsIntoMillimetreAndRadianExactly) {
+  TomlTable table = TomlTable::parse(
+      "a_um = 2.5\nb_m = 1.5\nc_mm = 1_000\nd_deg = 180\ne_urad = -0.3\n\"ü\" = 1\nf_um=[ 0.3 ,-1e-3]\n", "a.toml");
+  EXPECT_EQ(table.number("a", Quantity::length), 0.0025);
+  EXPECT_EQ(table.number("b", Quantity::length), 1500);
+  EXPECT_EQ(table.number("c", Quantity::length), 1000);
+  EXPECT_DOUBLE_EQ(table.number("d", Quantity::angle), 3.14159265358979323846);
+  EXPECT_EQ(table.number("e", Quantity::angle), -0.3e-6);
+  EXPECT_EQ(table.numbers("f", Quantity::length, 2), (std::vector<double>{0.0003, -1e-6}));
+  EXPECT_EQ(table.number("ü", Quantity::dimensionless), 1);
+  table.finish();
+}
+
+TEST(TomlTable, AcceptsByteOrderMarkAndCarriageReturns) {
+  TomlTable table = TomlTable::parse("\xEF\xBB\xBF# comment\r\nname = \"x\"\r\nrange_um = 5\r\n", "a.toml");
+  EXPECT_EQ(table.text("name"), "x");
+  EXPECT_EQ(table.number("range", Quantity::length), 0.005);
+  table.finish();
+}
+
+TEST(TomlTable, NamesTheUnitsThatWouldHaveBeenRight) {
+  EXPECT_EQ(wrong("\ntravel_kg = [0, 1]\n", read_travel),
+            "a.toml:2:1: travel_kg: 'kg' is not a unit of a length; expected travel_mm, travel_um or travel_m");
+  EXPECT_EQ(wrong("travel = [0, 1]\n", read_travel),
+            "a.toml:1:1: travel: the unit is missing from the name; expected travel_mm, travel_um or travel_m");
+  EXPECT_EQ(wrong("travel_deg = [0, 1]\n", read_travel),
+            "a.toml:1:1: travel_deg: 'deg' is not a unit of a length; expected travel_mm, travel_um or travel_m");
+  EXPECT_EQ(wrong("range_mm = 1\nrange_um = 1\n", read_range),
+            "a.toml:2:1: range_um: stands beside range_mm; expected only one of them");
+}
+
+TEST(TomlTable, RefusesNumbersThatAreNone) {
+  EXPECT_EQ(wrong("travel_mm = [0, nan]", read_travel),
+            "a.toml:1:17: travel_mm[2]: nan is not a finite number; expected a length in mm");
+  EXPECT_EQ(wrong("range_um = -inf", read_range),
+            "a.toml:1:12: range_um: -inf is not a finite number; expected a length in um");
+  EXPECT_EQ(wrong("range_um = 1e308", read_range),
+            "a.toml:1:12: range_um: 1e308 is too large; expected a length in um, at most 1e9 mm");
+  EXPECT_EQ(wrong("range_mm = \"5\"", read_range), "a.toml:1:12: range_mm: is not a number; expected a length in mm");
+  EXPECT_EQ(wrong("range_mm = true", read_range), "a.toml:1:12: range_mm: is not a number; expected a length in mm");
+  EXPECT_EQ(wrong("travel_mm = 5", read_travel),
+            "a.toml:1:13: travel_mm: is not an array; expected an array of 2 numbers in mm");
+  EXPECT_EQ(wrong("travel_mm = [1, 2, 3]", read_travel),
+            "a.toml:1:13: travel_mm: has 3 elements; expected an array of 2 numbers in mm");
+}
+
+TEST(TomlTable, RefusesUnknownKeysWithTheNearestSpelling) {
+  EXPECT_EQ(wrong("range_mm = 1\nnmae = \"x\"\n",
+                  [](TomlTable& table) {
+                    read_range(table);
+                    table.text_or("name", "");
+                  }),
+            "a.toml:2:1: nmae: unknown key, did you mean name?");
+  EXPECT_EQ(wrong("range_mm = 1\nzebra = 1\n", read_range), "a.toml:2:1: zebra: unknown key");
+}
+
+TEST(TomlTable, SaysWhatIsMissing) {
+  EXPECT_EQ(wrong("name = \"x\"", read_range),
+            "a.toml:1:1: range_mm: missing; expected a length (range_mm, range_um or range_m)");
+  EXPECT_EQ(wrong("[t]\n", [](TomlTable& table) { table.table("t").text("name"); }),
+            "a.toml:1:1: t.name: missing; expected a text in quotes");
+}
+
+TEST(TomlTable, ReportsTheParsersPlace) {
+  EXPECT_EQ(wrong("", read_range), "a.toml: the file is empty");
+  EXPECT_EQ(wrong("\xEF\xBB\xBF \r\n", read_range), "a.toml: the file is empty");
+  const std::string twice = wrong("a = 1\na = 2\n", read_range);
+  EXPECT_TRUE(twice.starts_with("a.toml:2:")) << twice;
+  const std::string comma = wrong("a = 1\nrange_mm = 1,5\n", read_range);
+  EXPECT_TRUE(comma.starts_with("a.toml:2:")) << comma;
+}
+
+}  // namespace
+}  // namespace abbe
