@@ -94,6 +94,9 @@ class ChainReader {
     if (result_.machine.find_axis(axis.name) != Machine::npos) {
       return fail_at(start, position_ - start, "another name: number axes of the same letter, such as C1 and C2").ok;
     }
+    if (result_.machine.axes.size() == kMaxAxes) {
+      return fail_at(start, position_ - start, "no more than " + std::to_string(kMaxAxes) + " axes").ok;
+    }
     const bool about_z = direction_from_letter(letter).z() > 0;
     axis.endless = axis.kind == AxisKind::rotary && about_z;
     axis.travel_max = axis.kind == AxisKind::linear ? 250 : axis.endless ? 360 * kDegree : 120 * kDegree;

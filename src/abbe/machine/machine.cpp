@@ -53,26 +53,42 @@ RigidTransform nominal_motion(const Axis& axis, double position) {
   return {rotation, axis.point - rotation * axis.point};
 }
 
-RigidTransform nominal_bed_from_tool(const Machine& machine, const std::vector<double>& positions) {
+namespace {
+
+RigidTransform bed_from_tool(const Machine& machine, std::span<const double> positions) {
   assert(positions.size() == machine.axes.size());
-  RigidTransform bed_from_tool;
+  RigidTransform from_tool;
   for (std::size_t i = machine.workpiece_axis_count(); i < machine.axes.size(); ++i) {
-    bed_from_tool = bed_from_tool * nominal_motion(machine.axes[i], positions[i]);
+    from_tool = from_tool * nominal_motion(machine.axes[i], positions[i]);
   }
-  return bed_from_tool * RigidTransform::translate(machine.tool_reference + machine.tool_offset);
+  return from_tool * RigidTransform::translate(machine.tool_reference + machine.tool_offset);
+}
+
+RigidTransform bed_from_workpiece(const Machine& machine, std::span<const double> positions) {
+  assert(positions.size() == machine.axes.size());
+  RigidTransform from_workpiece;
+  for (std::size_t i = machine.workpiece_axis_count(); i-- > 0;) {
+    from_workpiece = from_workpiece * nominal_motion(machine.axes[i], positions[i]);
+  }
+  return from_workpiece * machine.bed_from_workpiece;
+}
+
+}  // namespace
+
+RigidTransform nominal_bed_from_tool(const Machine& machine, const std::vector<double>& positions) {
+  return bed_from_tool(machine, positions);
 }
 
 RigidTransform nominal_bed_from_workpiece(const Machine& machine, const std::vector<double>& positions) {
-  assert(positions.size() == machine.axes.size());
-  RigidTransform bed_from_workpiece;
-  for (std::size_t i = machine.workpiece_axis_count(); i-- > 0;) {
-    bed_from_workpiece = bed_from_workpiece * nominal_motion(machine.axes[i], positions[i]);
-  }
-  return bed_from_workpiece * machine.bed_from_workpiece;
+  return bed_from_workpiece(machine, positions);
+}
+
+RigidTransform nominal_workpiece_from_tool(const Machine& machine, std::span<const double> positions) {
+  return bed_from_workpiece(machine, positions).inverse() * bed_from_tool(machine, positions);
 }
 
 RigidTransform nominal_workpiece_from_tool(const Machine& machine, const std::vector<double>& positions) {
-  return nominal_bed_from_workpiece(machine, positions).inverse() * nominal_bed_from_tool(machine, positions);
+  return nominal_workpiece_from_tool(machine, std::span<const double>(positions));
 }
 
 }  // namespace abbe

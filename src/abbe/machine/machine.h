@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,9 @@
 namespace abbe {
 
 enum class AxisKind { linear, rotary };
+
+/// No machine has more axes than this: room for working arrays without allocation.
+inline constexpr std::size_t kMaxAxes = 16;
 
 /// Which side of the bed an axis carries.
 enum class ChainSide { workpiece, tool };
@@ -78,5 +82,6 @@ RigidTransform nominal_bed_from_workpiece(const Machine& machine, const std::vec
 
 /// workpiece_from_tool without errors: (workpiece-side axes, bed to workpiece)^-1 (tool-side axes, bed to tool) tool.
 RigidTransform nominal_workpiece_from_tool(const Machine& machine, const std::vector<double>& positions);
+RigidTransform nominal_workpiece_from_tool(const Machine& machine, std::span<const double> positions);
 
 }  // namespace abbe

@@ -25,6 +25,7 @@ class Checker {
   std::vector<MachineProblem> check() {
     if (machine_.axes.empty()) report("", "axes", "a machine needs at least one axis");
     bool tool_side = false;
+    if (machine_.axes.size() > kMaxAxes) report("", "axes", "more than " + std::to_string(kMaxAxes) + " axes");
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
       const Axis& axis = machine_.axes[i];
       check_axis(axis);

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "abbe/machine/machine.h"
+
+namespace abbe::test {
+
+/// Machines of the examples folder and some that only tests need, built in code. See examples/machines for what the
+/// dimensions mean.
+Machine aguado_table();
+Machine wang_grinder();
+/// Yin's laser engraver; convention 'U': X and Y carry the table (text and Tables 2-3), 'P': printed equation (5).
+Machine yin_engraver(char convention);
+Machine liu_scanner();
+Machine trunnion_mill();
+Machine swivel_head_mill();
+Machine head_table_mill();
+Machine gantry_fork_head();
+Machine lathe();
+Machine three_axis_mill();
+Machine moving_table_cmm();
+Machine nutating_head_mill();
+/// Eight axes: turntable, two parallel linear axes, fork head.
+Machine redundant_gantry();
+/// Three rotary axes in the head: full orientation.
+Machine three_axis_head();
+Machine single_axis(const std::string& chain);
+
+struct NamedMachine {
+  std::string name;
+  Machine machine;
+};
+std::vector<NamedMachine> all_machines();
+
+/// Commands evenly distributed over the travel (endless axes: two turns).
+std::vector<double> random_commands(const Machine& machine, std::mt19937_64& generator);
+
+}  // namespace abbe::test
