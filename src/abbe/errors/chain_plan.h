@@ -74,11 +74,15 @@ class ChainPlan {
   /// Rows of the Jacobian of scalar quantities with respect to selected parameters.
   ///
   /// @param positions   count <= kBlockSize
-  /// @param start       [count] points in the frame of `from`, mm
+  /// @param start       [count] points in the frame of `from`, mm; not read at present (the sweep starts where the
+  /// points
+  ///                    are seen), may be null
   /// @param seen        [count] as transform() gave them
   /// @param rows        quantities, each with arrays of [count]
-  /// @param parameters  indices into ErrorSet::parameters(); the tool offset error is accepted where from or to is the
-  /// tool
+  /// @param parameters  indices into ErrorSet::parameters(); fastest in increasing order. The tool offset error: from
+  /// the
+  ///                    tool, the derivative by a shift of the start point; to the tool, that of a quantity from whose
+  ///                    seen point the offset is subtracted; else 0.
   /// @param jacobian    out: jacobian[parameter * stride + row * count + k], parameter and row counted in the
   ///                    arguments' order; stride >= rows * count. Parameters without influence give 0.
   /// @param by_start    if not null: out, derivative by the start point: by_start[row].{x,y,z}[k], per mm

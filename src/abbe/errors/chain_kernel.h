@@ -1,0 +1,126 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "abbe/errors/basis.h"
+#include "abbe/errors/chain_plan.h"
+
+/// Inside of ChainPlan: the compiled chain as plain data, and the vectorised functions that interpret it. Not an
+/// interface.
+namespace abbe::chain {
+
+/// How the sum of all terms of one component is evaluated.
+enum class Form { power, chebyshev, fourier, pieces };
+
+/// One component of an error motion as a function of the scaled argument of its group.
+struct Series {
+  int component = 0;     ///< 0 .. 5: EX .. EC
+  std::size_t size = 0;  ///< power, chebyshev: coefficients; fourier: harmonics; pieces: intervals
+  std::size_t first =
+      0;  ///< index into CompiledChain::numbers; power, chebyshev: c0, c1, ...; fourier: mean, cos1, sin1,
+          ///< ...; pieces: four powers of the local position per interval
+};
+
+/// Series of one axis that share their argument, so that it (or its sine, or its interval) is computed once.
+struct FunctionGroup {
+  Form form = Form::power;
+  double centre = 0;  ///< argument = (q - centre) * scale
+  double scale = 1;
+  bool shares_turn = false;  ///< fourier: the argument is the axis's own angle, whose sine the motion needs anyway
+  // pieces only:
+  double start = 0;         ///< position of the first break
+  double period = 0;        ///< 0: not periodic
+  double inverse_step = 0;  ///< 1 / length of equal intervals; 0: the interval is searched
+  std::size_t breaks = 0;   ///< index into numbers: [pieces] starts, then [pieces] inverse lengths
+  std::size_t pieces = 0;
+  std::vector<Series> series;
+};
+
+/// Terms with the same basis on one axis: their basis functions are computed once for the Jacobian.
+struct BasisUse {
+  struct Term {
+    int component = 0;
+    std::size_t first_parameter = 0;
+  };
+  BasisKind kind = BasisKind::legendre;
+  std::size_t size = 0;
+  double centre = 0;
+  double scale = 1;
+  bool shares_turn = false;
+  std::size_t group = 0;    ///< pieces: the group that finds the interval
+  std::size_t weights = 0;  ///< pieces: index into numbers, per interval 4 functions of 4 powers of the local position
+  int first_function = 0;   ///< pieces: function 0 of interval i is number i + first_function, modulo size
+  std::vector<Term> terms;
+};
+
+/// One axis on the way from one body to the other: its motion and its error motion.
+struct AxisStep {
+  struct Location {
+    int channel = 0;  ///< 0 .. 2 shifts, 3 .. 5 tilts, 6 zero position
+    std::size_t parameter = 0;
+  };
+  std::size_t axis = 0;
+  bool rotary = false;
+  bool inverted = false;     ///< traversed from the bed towards the carried body
+  bool error_first = false;  ///< the error is applied to the point before the motion
+  bool has_errors = false;
+  bool has_angles = false;  ///< any of EA, EB, EC
+  bool first_order = false;
+  double sign = 1;  ///< displacement = sign * (q + zero_position); sense of the axis, negative if inverted
+  double zero_position = 0;
+  double zero_sine = 0, zero_cosine = 1;
+  double direction[3] = {};        ///< of the displaced axis line
+  double centre[3] = {};           ///< a point on it
+  double reference[3] = {};        ///< Axis::point
+  double tilt_axes[3][3] = {};     ///< [k]: axis about which EA0, EB0, EC0 turns the line
+  double lowest = 0, highest = 0;  ///< positions covered by all terms
+  std::vector<FunctionGroup> groups;
+  std::vector<BasisUse> bases;
+  std::vector<Location> locations;
+};
+
+struct ConstantTransform {
+  bool turns = false;
+  double rotation[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row-major
+  double offset[3] = {};
+};
+
+struct CompiledChain {
+  ConstantTransform start;  ///< from the frame of `from` to the machine frame with all axes at zero
+  ConstantTransform end;    ///< from there to the frame of `to`
+  std::vector<AxisStep> steps;
+  std::vector<double> numbers;
+  std::vector<std::uint8_t> influences;  ///< [parameter_count] 1 where a step or a tool offset uses it
+  std::size_t tool_parameter = 0;        ///< first of three
+  bool starts_at_tool = false, ends_at_tool = false;
+  bool first_order = false;
+};
+
+/// Rows of the Jacobian treated in one sweep.
+inline constexpr std::size_t kRowsAtOnce = 6;
+
+/// Arguments of ChainPlan::differentiate().
+struct DifferentiateCall {
+  PositionArrays positions;
+  ConstPointArrays seen;
+  std::span<const RowArrays> rows;
+  std::span<const std::size_t> parameters;
+  double* jacobian = nullptr;
+  std::size_t stride = 0;
+  const PointArrays* by_start = nullptr;
+  double* by_position = nullptr;
+};
+
+/// Poses first .. first + count - 1, count <= ChainPlan::kBlockSize.
+void transform_block(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
+                     const ConstPointArrays& start, const PointArrays& seen, const RotationArrays& rotation,
+                     std::uint8_t* covered);
+
+/// Rows first_row .. first_row + row_count - 1, row_count <= kRowsAtOnce.
+void differentiate_rows(const CompiledChain& chain, const DifferentiateCall& call, std::size_t first_row,
+                        std::size_t row_count);
+
+}  // namespace abbe::chain

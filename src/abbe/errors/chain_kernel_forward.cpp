@@ -1,0 +1,189 @@
+#include "abbe/errors/chain_kernel_targets.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "abbe/errors/chain_kernel_forward.cpp"
+#include "hwy/foreach_target.h"
+// After foreach_target.h:
+#include "abbe/errors/chain_kernel_inline.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace abbe::chain {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// Points and, in columns, the axes of the carried body, over the block. Of a rotation two columns suffice.
+struct State {
+  Lane point[3];
+  Lane column[3][3];
+};
+
+/// The state at one vector of poses.
+template <int kColumns>
+struct Moving {
+  Vector3 point;
+  Vector3 column[kColumns + 1];  // one too many: an array must not be empty
+};
+
+template <int kColumns>
+HWY_INLINE void apply_error(const AxisStep& step, const AxisLanes& lanes, std::size_t k, Moving<kColumns>& m) {
+  const Vector3 reference = set3(step.reference), shift = load(lanes.error, k);
+  if (!step.has_angles) {
+    m.point = step.inverted ? m.point - shift : m.point + shift;
+    return;
+  }
+  const Vector3 angles = load(lanes.error + 3, k);
+  if (step.first_order) {
+    if (step.inverted) {
+      m.point = reference + first_order_inverse(angles, m.point - reference - shift);
+      for (int i = 0; i < kColumns; ++i) m.column[i] = first_order_inverse(angles, m.column[i]);
+    } else {
+      m.point = m.point + shift + cross(angles, m.point - reference);
+      for (int i = 0; i < kColumns; ++i) m.column[i] = m.column[i] + cross(angles, m.column[i]);
+    }
+    return;
+  }
+  const ErrorRotation e = error_rotation(angles);
+  if (step.inverted) {
+    Vector3 r = m.point - reference - shift;
+    turn_back(e, r);
+    m.point = r + reference;
+    for (int i = 0; i < kColumns; ++i) turn_back(e, m.column[i]);
+  } else {
+    Vector3 r = m.point - reference;
+    turn(e, r);
+    m.point = r + reference + shift;
+    for (int i = 0; i < kColumns; ++i) turn(e, m.column[i]);
+  }
+}
+
+template <int kColumns>
+HWY_INLINE void apply_motion(const AxisStep& step, const AxisLanes& lanes, std::size_t k, Moving<kColumns>& m) {
+  if (!step.rotary) {
+    const Vector way = hn::Mul(hn::Add(load(lanes.position.v + k), set(step.zero_position)), set(step.sign));
+    m.point = {hn::MulAdd(way, set(step.direction[0]), m.point.x), hn::MulAdd(way, set(step.direction[1]), m.point.y),
+               hn::MulAdd(way, set(step.direction[2]), m.point.z)};
+    return;
+  }
+  const SineCosine angle = motion_angle(step, {load(lanes.sine.v + k), load(lanes.cosine.v + k)});
+  const Matrix3 r = rotation(step.direction, angle);
+  const Vector3 centre = set3(step.centre);
+  m.point = times(r, m.point - centre) + centre;
+  for (int i = 0; i < kColumns; ++i) m.column[i] = times(r, m.column[i]);
+}
+
+template <int kColumns>
+HWY_INLINE void pass_axis(const AxisStep& step, const AxisLanes& lanes, std::size_t end, State& state) {
+  for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
+    Moving<kColumns> m;
+    m.point = load(state.point, k);
+    for (int i = 0; i < kColumns; ++i) m.column[i] = load(state.column[i], k);
+    if (step.has_errors && step.error_first) apply_error(step, lanes, k, m);
+    apply_motion(step, lanes, k, m);
+    if (step.has_errors && !step.error_first) apply_error(step, lanes, k, m);
+    store(m.point, state.point, k);
+    for (int i = 0; i < kColumns; ++i) store(m.column[i], state.column[i], k);
+  }
+}
+
+template <int kColumns>
+HWY_INLINE void begin(const ConstantTransform& start, std::size_t end, State& state) {
+  const Matrix3 turn = set_matrix(start.rotation);
+  const Vector3 offset = set3(start.offset);
+  for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
+    Vector3 p = load(state.point, k);
+    if (start.turns) p = times(turn, p);
+    store(p + offset, state.point, k);
+    for (int i = 0; i < kColumns; ++i) {
+      store({set(start.rotation[i]), set(start.rotation[3 + i]), set(start.rotation[6 + i])}, state.column[i], k);
+    }
+  }
+}
+
+template <int kColumns>
+HWY_INLINE void finish(const ConstantTransform& last, std::size_t end, State& state) {
+  const Matrix3 turn = set_matrix(last.rotation);
+  const Vector3 offset = set3(last.offset);
+  for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
+    Vector3 p = load(state.point, k);
+    if (last.turns) p = times(turn, p);
+    store(p + offset, state.point, k);
+    if constexpr (kColumns > 0) {
+      Vector3 column[kColumns];
+      for (int i = 0; i < kColumns; ++i) {
+        column[i] = load(state.column[i], k);
+        if (last.turns) column[i] = times(turn, column[i]);
+        store(column[i], state.column[i], k);
+      }
+      if constexpr (kColumns == 2) store(cross(column[0], column[1]), state.column[2], k);
+    }
+  }
+}
+
+template <int kColumns>
+void run(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
+         State& state, AxisLanes& lanes) {
+  const std::size_t end = whole_vectors(count);
+  begin<kColumns>(chain.start, end, state);
+  for (const AxisStep& step : chain.steps) {
+    evaluate_axis(chain, step, positions.axis[step.axis] + first, count, lanes);
+    pass_axis<kColumns>(step, lanes, end, state);
+  }
+  finish<kColumns>(chain.end, end, state);
+}
+
+void TransformBlock(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
+                    const ConstPointArrays& start, const PointArrays& seen, const RotationArrays& rotation,
+                    std::uint8_t* covered) {
+  State state;
+  AxisLanes lanes;
+  read_lane(start.x + first, count, state.point[0]);
+  read_lane(start.y + first, count, state.point[1]);
+  read_lane(start.z + first, count, state.point[2]);
+  if (rotation.r[0] == nullptr) {
+    run<0>(chain, positions, first, count, state, lanes);
+  } else if (chain.first_order) {
+    run<3>(chain, positions, first, count, state, lanes);
+  } else {
+    run<2>(chain, positions, first, count, state, lanes);
+  }
+  const std::size_t bytes = count * sizeof(double);
+  std::memcpy(seen.x + first, state.point[0].v, bytes);
+  std::memcpy(seen.y + first, state.point[1].v, bytes);
+  std::memcpy(seen.z + first, state.point[2].v, bytes);
+  if (rotation.r[0] != nullptr) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        std::memcpy(rotation.r[3 * row + column] + first, state.column[column][row].v, bytes);
+      }
+    }
+  }
+  if (covered == nullptr) return;
+  std::memset(covered + first, 1, count);
+  for (const AxisStep& step : chain.steps) {
+    const double* q = positions.axis[step.axis] + first;
+    for (std::size_t k = 0; k < count; ++k) {
+      // Not covered if the command is no number.
+      covered[first + k] =
+          static_cast<std::uint8_t>(covered[first + k] & (q[k] >= step.lowest && q[k] <= step.highest));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace abbe::chain
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace abbe::chain {
+
+HWY_EXPORT(TransformBlock);
+
+void transform_block(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
+                     const ConstPointArrays& start, const PointArrays& seen, const RotationArrays& rotation,
+                     std::uint8_t* covered) {
+  HWY_DYNAMIC_DISPATCH(TransformBlock)(chain, positions, first, count, start, seen, rotation, covered);
+}
+
+}  // namespace abbe::chain
+#endif

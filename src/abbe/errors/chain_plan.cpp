@@ -1,0 +1,189 @@
+#include "abbe/errors/chain_plan.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "abbe/errors/chain_kernel.h"
+#include "abbe/errors/chain_kernel_functions.h"
+#include "abbe/geometry/rotation.h"
+
+namespace abbe {
+namespace {
+
+using chain::AxisStep;
+using chain::CompiledChain;
+using chain::ConstantTransform;
+
+/// Beyond this the sine of a command has lost too many digits to be called covered.
+constexpr double kLargestTurn = 1e6;  // rad
+
+bool is_endless(const Basis& basis) {
+  const double range = basis.to - basis.from;
+  return basis.periodic || (basis.kind == BasisKind::fourier && range >= basis.period - 1e-9 * range);
+}
+
+void set_range(AxisStep& step, const ErrorSet& errors) {
+  step.highest = step.rotary ? kLargestTurn : std::numeric_limits<double>::max();
+  step.lowest = -step.highest;
+  for (const ErrorMotion& motion : errors.motions) {
+    if (motion.axis != step.axis || is_endless(motion.basis)) continue;
+    const double spare = 1e-9 * (motion.basis.to - motion.basis.from);
+    step.lowest = std::max(step.lowest, motion.basis.from - spare);
+    step.highest = std::min(step.highest, motion.basis.to + spare);
+  }
+}
+
+void set_transform(ConstantTransform& out, const RigidTransform& transform) {
+  out.turns = transform.rotation != Eigen::Matrix3d::Identity();
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) out.rotation[3 * i + k] = transform.rotation(i, k);
+    out.offset[i] = transform.translation[i];
+  }
+}
+
+RigidTransform machine_from_body(const Machine& machine, Body body) {
+  if (body == Body::tool) return RigidTransform::translate(machine.tool_reference);
+  if (body == Body::workpiece) return machine.bed_from_workpiece;
+  return {};
+}
+
+/// Axes between the bed and a body, nearest to the bed first.
+std::vector<std::size_t> axes_of(const Machine& machine, Body body) {
+  std::vector<std::size_t> axes;
+  const std::size_t workpiece_side = machine.workpiece_axis_count();
+  if (body == Body::tool) {
+    for (std::size_t i = workpiece_side; i < machine.axes.size(); ++i) axes.push_back(i);
+  } else if (body == Body::workpiece) {
+    for (std::size_t i = workpiece_side; i-- > 0;) axes.push_back(i);
+  }
+  return axes;
+}
+
+}  // namespace
+
+struct ChainPlan::Implementation {
+  struct Line {
+    Eigen::Vector3d direction, point;
+  };
+  CompiledChain chain;
+  chain::FunctionCompiler functions;
+  std::vector<Line> lines;  ///< nominal, per step
+  std::size_t parameter_count = 0;
+
+  void add_step(const Machine& machine, const ErrorSet& errors, std::size_t index, bool inverted) {
+    const Axis& axis = machine.axes[index];
+    AxisStep step;
+    step.axis = index;
+    step.rotary = axis.kind == AxisKind::rotary;
+    step.inverted = inverted;
+    const bool error_left = errors.composition.order == ErrorOrder::iso
+                                ? step.rotary
+                                : errors.composition.order == ErrorOrder::before_motion;
+    step.error_first = error_left == inverted;
+    step.first_order = errors.composition.first_order;
+    step.sign = inverted ? -axis.sense() : axis.sense();
+    for (int k = 0; k < 3; ++k) step.reference[k] = axis.point[k];
+    set_range(step, errors);
+    std::size_t parameter = errors.parameter_count() - 3 - errors.locations.size();
+    for (const LocationError& location : errors.locations) {
+      if (location.axis == index) {
+        const int channel = is_zero_position_error(axis, location.component) ? 6 : static_cast<int>(location.component);
+        step.locations.push_back({channel, parameter});
+        chain.influences[parameter] = 1;
+      }
+      ++parameter;
+    }
+    chain.steps.push_back(std::move(step));
+    lines.push_back({axis.direction, axis.point});
+    functions.add_terms(chain, chain.steps.size() - 1, errors);
+    parameter = 0;
+    for (const ErrorMotion& motion : errors.motions) {
+      if (motion.axis == index) std::fill_n(&chain.influences[parameter], motion.coefficients.size(), std::uint8_t{1});
+      parameter += motion.coefficients.size();
+    }
+  }
+
+  void displace_line(AxisStep& step, const Line& line, std::span<const double> values) const {
+    Eigen::Vector3d tilt = Eigen::Vector3d::Zero(), centre = line.point;
+    step.zero_position = 0;
+    for (const AxisStep::Location& location : step.locations) {
+      const double value = values[location.parameter];
+      if (location.channel == 6) {
+        step.zero_position += value;
+      } else if (location.channel >= 3) {
+        tilt[location.channel - 3] += value;
+      } else {
+        centre[location.channel] += value;
+      }
+    }
+    const Eigen::Vector3d direction = rotation_from_error_angles(tilt) * line.direction;
+    const Eigen::Matrix3d axes = error_angle_axes(tilt);
+    step.zero_sine = std::sin(step.zero_position);
+    step.zero_cosine = std::cos(step.zero_position);
+    for (int i = 0; i < 3; ++i) {
+      step.direction[i] = direction[i];
+      step.centre[i] = centre[i];
+      for (int k = 0; k < 3; ++k) step.tilt_axes[k][i] = axes(i, k);
+    }
+  }
+};
+
+ChainPlan::ChainPlan(const Machine& machine, const ErrorSet& errors, Body from, Body to)
+    : implementation_(std::make_unique<Implementation>()) {
+  CompiledChain& chain = implementation_->chain;
+  implementation_->parameter_count = errors.parameter_count();
+  chain.influences.assign(errors.parameter_count(), 0);
+  chain.tool_parameter = errors.parameter_count() - 3;
+  chain.first_order = errors.composition.first_order;
+  chain.starts_at_tool = from == Body::tool && to != Body::tool;
+  chain.ends_at_tool = to == Body::tool && from != Body::tool;
+  if (chain.starts_at_tool || chain.ends_at_tool)
+    std::fill_n(&chain.influences[chain.tool_parameter], 3, std::uint8_t{1});
+  if (from == to) return;
+
+  set_transform(chain.start, machine_from_body(machine, from));
+  set_transform(chain.end, machine_from_body(machine, to).inverse());
+  std::vector<std::size_t> towards_bed = axes_of(machine, from);
+  std::reverse(towards_bed.begin(), towards_bed.end());
+  for (const std::size_t axis : towards_bed) implementation_->add_step(machine, errors, axis, false);
+  for (const std::size_t axis : axes_of(machine, to)) implementation_->add_step(machine, errors, axis, true);
+  set_parameters(errors.parameters());
+}
+
+ChainPlan::~ChainPlan() = default;
+ChainPlan::ChainPlan(ChainPlan&&) noexcept = default;
+ChainPlan& ChainPlan::operator=(ChainPlan&&) noexcept = default;
+
+void ChainPlan::set_parameters(std::span<const double> values) {
+  assert(values.size() == implementation_->parameter_count);
+  CompiledChain& chain = implementation_->chain;
+  implementation_->functions.set_values(chain, values);
+  for (std::size_t i = 0; i < chain.steps.size(); ++i) {
+    implementation_->displace_line(chain.steps[i], implementation_->lines[i], values);
+  }
+}
+
+void ChainPlan::transform(PositionArrays positions, ConstPointArrays start, PointArrays seen, RotationArrays rotation,
+                          std::uint8_t* covered) const {
+  for (std::size_t first = 0; first < positions.count; first += kBlockSize) {
+    chain::transform_block(implementation_->chain, positions, first, std::min(kBlockSize, positions.count - first),
+                           start, seen, rotation, covered);
+  }
+}
+
+void ChainPlan::differentiate(PositionArrays positions, ConstPointArrays /*start*/, ConstPointArrays seen,
+                              std::span<const RowArrays> rows, std::span<const std::size_t> parameters,
+                              double* jacobian, std::size_t stride, const PointArrays* by_start,
+                              double* by_position) const {
+  assert(positions.count <= kBlockSize);
+  assert(parameters.empty() || stride >= rows.size() * positions.count);
+  const chain::DifferentiateCall call{positions, seen, rows, parameters, jacobian, stride, by_start, by_position};
+  for (std::size_t first = 0; first < rows.size(); first += chain::kRowsAtOnce) {
+    chain::differentiate_rows(implementation_->chain, call, first, std::min(chain::kRowsAtOnce, rows.size() - first));
+  }
+}
+
+}  // namespace abbe
