@@ -1,0 +1,82 @@
+#pragma once
+
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "abbe/errors/chain_plan.h"
+#include "abbe/errors/random_stream.h"
+
+namespace abbe::benchmarks {
+
+/// Trunnion mill w C' A' b X Y Z t with 30 error motions (Legendre degree 4; Fourier 4 harmonics) and 11 location
+/// errors.
+struct FiveAxisCase {
+  Machine machine;
+  ErrorSet errors;
+
+  FiveAxisCase() {
+    const Eigen::Vector3d table(0, 0, -200);
+    machine.name = "trunnion mill";
+    for (const char letter : std::string("CAXYZ")) {
+      Axis axis;
+      axis.name = std::string(1, letter);
+      axis_kind_from_letter(letter, axis.kind);
+      axis.direction = direction_from_letter(letter);
+      const bool rotary = axis.kind == AxisKind::rotary;
+      axis.side = rotary ? ChainSide::workpiece : ChainSide::tool;
+      axis.primed = rotary;
+      if (rotary) axis.point = table;
+      axis.travel_min = letter == 'C' ? -std::numbers::pi : rotary ? -1.5 : -300;
+      axis.travel_max = -axis.travel_min;
+      machine.axes.push_back(axis);
+    }
+    machine.tool_reference = {0, 0, 100};
+    machine.tool_offset = {0, 0, -80};
+    machine.bed_from_workpiece = RigidTransform::translate(table);
+
+    RandomStream random(2026);
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      const Axis& axis = machine.axes[i];
+      for (int k = 0; k < kComponentCount; ++k) {
+        Basis basis{.kind = BasisKind::legendre, .order = 4, .from = axis.travel_min, .to = axis.travel_max};
+        if (axis.kind == AxisKind::rotary) {
+          basis.kind = BasisKind::fourier;
+          basis.from = -std::numbers::pi;
+          basis.to = std::numbers::pi;
+          basis.period = 2 * std::numbers::pi;
+        }
+        ErrorMotion motion{i, static_cast<Component>(k), basis, std::vector<double>(basis.size()), {}};
+        for (double& value : motion.coefficients) value = random.uniform(-1, 1) * (k < 3 ? 0.005 : 2e-5);
+        errors.motions.push_back(motion);
+      }
+    }
+    const auto add = [&](const char* name) {
+      LocationError location;
+      bool is_location = false;
+      parse_error_name(machine, name, location.axis, location.component, is_location);
+      location.value = random.uniform(-1, 1) * (is_rotation(location.component) ? 5e-5 : 0.02);
+      errors.locations.push_back(location);
+    };
+    for (const char* name : {"EC0Y", "EA0Z", "EB0Z", "EY0A", "EZ0A", "EB0A", "EC0A", "EX0C", "EY0C", "EA0C", "EB0C"}) {
+      add(name);
+    }
+  }
+};
+
+/// Random commands within the travel, structure of arrays.
+struct Commands {
+  std::vector<std::vector<double>> values;
+  std::vector<const double*> pointers;
+
+  Commands(const Machine& machine, std::size_t count) {
+    RandomStream random(7);
+    for (const Axis& axis : machine.axes) {
+      std::vector<double>& v = values.emplace_back(count);
+      for (double& q : v) q = random.uniform(axis.travel_min, axis.travel_max);
+    }
+    for (const std::vector<double>& v : values) pointers.push_back(v.data());
+  }
+};
+
+}  // namespace abbe::benchmarks
