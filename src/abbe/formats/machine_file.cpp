@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "abbe/formats/error_fields.h"
 #include "abbe/formats/text_file.h"
 #include "abbe/formats/toml_table.h"
 #include "abbe/geometry/rotation.h"
@@ -71,12 +72,6 @@ void read_tool(TomlTable table, Machine& machine) {
   if (const auto values = table.optional_numbers("offset", Quantity::length, 3)) machine.tool_offset = vector(*values);
   machine.tool_direction = direction(table, machine.tool_direction);
   table.finish();
-}
-
-std::string axis_names(const Machine& machine) {
-  std::string names;
-  for (const Axis& axis : machine.axes) names += (names.empty() ? "" : ", ") + axis.name;
-  return names;
 }
 
 std::string vector_text(const Eigen::Vector3d& v) {

@@ -2,12 +2,12 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "abbe/errors/poses.h"
+#include "abbe/formats/csv_reader.h"
 #include "abbe/instruments/tracker.h"
 #include "abbe/machine/machine.h"
 
@@ -20,12 +20,6 @@ struct MeasurementTable {
   std::vector<std::string> reflectors;  ///< likewise; "offset1", ... where only offsets are given
   std::vector<Eigen::Vector3d>
       reflector_offset;  ///< [reflectors.size()] mm, or empty if the file has no offset columns
-};
-
-/// How the columns of a file that Abbe did not write are called, and which are left unread.
-struct ColumnMapping {
-  std::map<std::string, std::string> columns;  ///< our name with unit -> name in the file: {"C_deg", "c_deg"}
-  std::vector<std::string> ignore;             ///< names in the file
 };
 
 struct MeasurementOptions {

@@ -1,5 +1,6 @@
 #include "abbe/formats/number_text.h"
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <charconv>
@@ -10,7 +11,7 @@
 namespace abbe {
 namespace {
 
-// Exact in double: 10^22 < 2^53 * 2^22 ... and 5^22 < 2^53.
+// All exact in double: 5^22 < 2^53.
 constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                                  1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 constexpr std::uint64_t kLargestExactInteger = std::uint64_t{1} << 53;
@@ -61,6 +62,20 @@ bool split(std::string_view text, Decimal& decimal) {
   return at == end;
 }
 
+/// Any number of digits, by the standard library; the shift goes into the exponent as text.
+std::from_chars_result parse_long_way(const Decimal& decimal, int decimal_shift, double& value) {
+  std::array<char, 64> buffer;
+  const std::string exponent = "e" + std::to_string(decimal.written_exponent + decimal_shift);
+  const std::size_t length = decimal.mantissa.size() + exponent.size();
+  if (length <= buffer.size()) {
+    const auto behind = std::copy(decimal.mantissa.begin(), decimal.mantissa.end(), buffer.begin());
+    std::copy(exponent.begin(), exponent.end(), behind);
+    return std::from_chars(buffer.data(), buffer.data() + length, value);
+  }
+  const std::string plain = std::string(decimal.mantissa) + exponent;
+  return std::from_chars(plain.data(), plain.data() + plain.size(), value);
+}
+
 bool is_not_finite_word(std::string_view text) {
   if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
   const auto equals = [&](std::string_view word) {
@@ -87,10 +102,7 @@ NumberProblem parse_number(std::string_view text, int decimal_shift, double& val
     value = exponent < 0 ? digits / kPowersOfTen[static_cast<std::size_t>(-exponent)]
                          : digits * kPowersOfTen[static_cast<std::size_t>(exponent)];
   } else {
-    std::string plain(decimal.mantissa);
-    plain += 'e';
-    plain += std::to_string(decimal.written_exponent + decimal_shift);
-    const auto result = std::from_chars(plain.data(), plain.data() + plain.size(), value);
+    const auto result = parse_long_way(decimal, decimal_shift, value);
     if (result.ec == std::errc::result_out_of_range) {
       if (decimal.written_exponent + decimal_shift > 0) return NumberProblem::too_large;
       value = 0;

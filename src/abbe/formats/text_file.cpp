@@ -1,27 +1,47 @@
 #include "abbe/formats/text_file.h"
 
-#include <fstream>
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <system_error>
 
 #include "abbe/formats/input_error.h"
 
 namespace abbe {
 
-std::string read_text_file(const std::filesystem::path& path) {
+MappedFile::MappedFile(const std::filesystem::path& path) {
   const InputError::Place place{path.string(), 0, 0, ""};
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw InputError(place, "there is no such file");
-  if (!std::filesystem::is_regular_file(status)) throw InputError(place, "is not a regular file");
-  const auto size = std::filesystem::file_size(path, error);
-  if (error) throw InputError(place, "cannot be read: " + error.message());
-  if (size == 0) throw InputError(place, "the file is empty");
-  std::string text(size, '\0');
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream.read(text.data(), static_cast<std::streamsize>(size))) {
-    throw InputError(place, "cannot be read: " + std::generic_category().message(errno));
+  const auto fail = [&](int error) {
+    throw InputError(
+        place, error == ENOENT ? "there is no such file" : "cannot be read: " + std::generic_category().message(error));
+  };
+  // Not to wait for the other end of a pipe before it is known to be one.
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) fail(errno);
+  struct stat status {};
+  const int problem = ::fstat(file, &status) == 0 ? 0 : errno;
+  if (problem == 0 && S_ISREG(status.st_mode) && status.st_size > 0) {
+    size_ = static_cast<std::size_t>(status.st_size);
+    void* memory = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file, 0);
+    const int error = errno;
+    ::close(file);
+    if (memory == MAP_FAILED) fail(error);
+    ::madvise(memory, size_, MADV_WILLNEED);
+    data_ = static_cast<const char*>(memory);
+    return;
   }
-  return text;
+  ::close(file);
+  if (problem != 0) fail(problem);
+  throw InputError(place, S_ISREG(status.st_mode) ? "the file is empty" : "is not a regular file");
 }
+
+MappedFile::~MappedFile() {
+  if (data_ != nullptr) ::munmap(const_cast<char*>(data_), size_);
+}
+
+std::string read_text_file(const std::filesystem::path& path) { return std::string(MappedFile(path).text()); }
 
 }  // namespace abbe

@@ -1,12 +1,29 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace abbe {
 
 /// Whole contents of a regular file. @throws InputError if it is missing, cannot be read, is no regular file or is
 /// empty
 std::string read_text_file(const std::filesystem::path& path);
+
+/// A regular file in memory for reading once, without a copy. @throws InputError as read_text_file()
+class MappedFile {
+ public:
+  explicit MappedFile(const std::filesystem::path& path);
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  std::string_view text() const { return {data_, size_}; }
+
+ private:
+  const char* data_ = nullptr;
+  std::size_t size_ = 0;
+};
 
 }  // namespace abbe

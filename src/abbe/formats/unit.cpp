@@ -127,14 +127,17 @@ const Unit& unit_named(Quantity quantity, std::string_view suffix) {
   return units_of(quantity)[0];
 }
 
-bool ends_in_unit(std::string_view name) {
+std::string_view without_unit(std::string_view name) {
+  std::string_view shortest = name;
   for (const Quantity quantity : kQuantities) {
     for (const Unit& unit : units_of(quantity)) {
-      if (unit.suffix.empty() || name.size() <= unit.suffix.size() + 1 || !name.ends_with(unit.suffix)) continue;
-      if (name[name.size() - unit.suffix.size() - 1] == '_') return true;
+      const std::size_t length = unit.suffix.size() + 1;
+      if (unit.suffix.empty() || name.size() <= length || !name.ends_with(unit.suffix)) continue;
+      if (name[name.size() - length] != '_' || name.size() - length >= shortest.size()) continue;
+      shortest = name.substr(0, name.size() - length);
     }
   }
-  return false;
+  return shortest;
 }
 
 std::string_view nearest_name(std::string_view name, std::span<const std::string> candidates) {
@@ -143,7 +146,8 @@ std::string_view nearest_name(std::string_view name, std::span<const std::string
   if (name.size() > 100) return nearest;
   for (const std::string& candidate : candidates) {
     const double distance = spelling_distance(name, candidate);
-    const double allowed = std::max(1.0, static_cast<double>(std::min(name.size(), candidate.size())) / 3);
+    const auto shorter = static_cast<double>(std::min(name.size(), candidate.size()));
+    const double allowed = shorter <= 2 ? 0.5 : std::max(1.0, shorter / 3);
     if (distance <= allowed && distance < smallest) {
       smallest = distance;
       nearest = candidate;

@@ -46,8 +46,8 @@ std::string quantity_text(double value, const Unit& unit);
 /// The unit of that suffix; asserts that there is one.
 const Unit& unit_named(Quantity quantity, std::string_view suffix);
 
-/// True if the text ends in "_" and any unit suffix of any quantity.
-bool ends_in_unit(std::string_view name);
+/// "range" of "range_um_per_m"; the name itself if it does not end in "_" and a unit of any quantity.
+std::string_view without_unit(std::string_view name);
 
 /// The candidate nearest in spelling, or empty if none is near.
 std::string_view nearest_name(std::string_view name, std::span<const std::string> candidates);

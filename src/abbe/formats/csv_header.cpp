@@ -1,0 +1,157 @@
+#include "abbe/formats/csv_header.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "abbe/formats/input_error.h"
+
+namespace abbe {
+namespace {
+
+std::string first_name(const CsvColumn& column) {
+  if (column.is_text || column.quantity == Quantity::dimensionless) return column.base;
+  return fmt::format("{}_{}", column.base, units_of(column.quantity)[0].suffix);
+}
+
+std::string names(const CsvColumn& column) {
+  return column.is_text ? column.base : accepted_names(column.base, column.quantity);
+}
+
+/// Index of the wanted column of our name, or kUnreadColumn.
+std::size_t find_wanted(std::string_view name, const std::vector<CsvColumn>& wanted, const Unit*& unit) {
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    unit = nullptr;
+    if (wanted[i].is_text) {
+      if (name == wanted[i].base) return i;
+      continue;
+    }
+    unit = unit_of_name(name, wanted[i].base, wanted[i].quantity);
+    if (unit != nullptr) return i;
+  }
+  return kUnreadColumn;
+}
+
+[[noreturn]] void refuse_unknown(const InputError::Place& place, const std::string& name,
+                                 const std::vector<CsvColumn>& wanted) {
+  std::vector<std::string> known;
+  const CsvColumn* longest = nullptr;
+  for (const CsvColumn& column : wanted) {
+    known.push_back(column.base);
+    if (column.is_text || (name != column.base && !name.starts_with(column.base + "_"))) continue;
+    if (longest == nullptr || column.base.size() > longest->base.size()) longest = &column;
+  }
+  if (longest != nullptr && name == longest->base) {
+    throw InputError(place, "the unit is missing from the name of this column", names(*longest));
+  }
+  if (longest != nullptr) {
+    throw InputError(place,
+                     fmt::format("'{}' is not a unit of {}", name.substr(longest->base.size() + 1),
+                                 quantity_words(longest->quantity)),
+                     names(*longest));
+  }
+  const std::string_view base = without_unit(name);
+  const std::string_view near = nearest_name(base, known);
+  throw InputError(place,
+                   near.empty() ? "unknown column"
+                                : fmt::format("unknown column, did you mean {}{}?", near, name.substr(base.size())),
+                   "a known column, or its name under `ignore`");
+}
+
+}  // namespace
+
+std::string_view csv_next_line(std::string_view text, std::size_t& at) {
+  const std::size_t end = std::min(text.find('\n', at), text.size());
+  std::string_view line = text.substr(at, end - at);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  at = std::min(end + 1, text.size());
+  return line;
+}
+
+std::string_view csv_trimmed(std::string_view field) {
+  while (!field.empty() && (field.front() == ' ' || field.front() == '\t')) field.remove_prefix(1);
+  while (!field.empty() && (field.back() == ' ' || field.back() == '\t')) field.remove_suffix(1);
+  return field;
+}
+
+bool csv_is_passed_over(std::string_view line) {
+  line = csv_trimmed(line);
+  return line.empty() || line.front() == '#';
+}
+
+bool csv_take_field(std::string_view& line, std::string_view& field, std::string& unquoted, bool& more) {
+  std::size_t start = 0;
+  while (start < line.size() && (line[start] == ' ' || line[start] == '\t')) ++start;
+  std::size_t end;
+  if (start < line.size() && line[start] == '"') {
+    unquoted.clear();
+    std::size_t at = start + 1;
+    for (;; ++at) {
+      if (at >= line.size()) return false;
+      if (line[at] == '"') {
+        if (at + 1 >= line.size() || line[at + 1] != '"') break;
+        ++at;
+      }
+      unquoted += line[at];
+    }
+    field = unquoted;
+    end = std::min(line.find(',', at), line.size());
+    if (!csv_trimmed(line.substr(at + 1, end - at - 1)).empty()) return false;
+  } else {
+    end = std::min(line.find(','), line.size());
+    field = csv_trimmed(line.substr(0, end));
+  }
+  more = end < line.size();
+  line.remove_prefix(more ? end + 1 : end);
+  return true;
+}
+
+std::vector<CsvFileColumn> csv_match_header(std::string_view header, const std::string& file, std::size_t line,
+                                            const std::vector<CsvColumn>& wanted, const ColumnMapping& mapping) {
+  std::vector<CsvFileColumn> columns;
+  std::vector<std::string> found_as(wanted.size());
+  const std::size_t length = header.size();
+  std::string unquoted;
+  std::string_view field, rest = header;
+  for (bool more = true; more;) {
+    const std::size_t position = length - rest.size() + 1;
+    if (!csv_take_field(rest, field, unquoted, more)) {
+      throw InputError({file, line, position, ""}, "a quote in the header is not closed before the comma");
+    }
+    CsvFileColumn column;
+    column.name = std::string(field);
+    const InputError::Place place{file, line, position, column.name};
+    if (field.empty()) throw InputError(place, fmt::format("column {} has no name", columns.size() + 1));
+    if (field.find(';') != std::string_view::npos || field.find('\t') != std::string_view::npos) {
+      throw InputError(place, "the columns are not separated by commas", "commas between columns and a decimal point");
+    }
+    for (const CsvFileColumn& other : columns) {
+      if (other.name == column.name) throw InputError(place, "this column stands twice");
+    }
+    const auto mapped = std::find_if(mapping.columns.begin(), mapping.columns.end(),
+                                     [&](const auto& entry) { return entry.second == column.name; });
+    const bool ignored = std::find(mapping.ignore.begin(), mapping.ignore.end(), column.name) != mapping.ignore.end();
+    if (!ignored) {
+      const std::string& ours = mapped == mapping.columns.end() ? column.name : mapped->first;
+      column.wanted = find_wanted(ours, wanted, column.unit);
+      if (column.wanted == kUnreadColumn) refuse_unknown(place, ours, wanted);
+      std::string& earlier = found_as[column.wanted];
+      if (!earlier.empty()) throw InputError(place, fmt::format("says the same as column {}", earlier));
+      earlier = column.name;
+    }
+    columns.push_back(std::move(column));
+  }
+  for (const auto& [ours, theirs] : mapping.columns) {
+    const auto is_it = [&, name = theirs](const CsvFileColumn& column) { return column.name == name; };
+    if (std::none_of(columns.begin(), columns.end(), is_it)) {
+      throw InputError({file, line, 0, theirs}, fmt::format("there is no such column to be read as {}", ours));
+    }
+  }
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (!wanted[i].required || !found_as[i].empty()) continue;
+    throw InputError({file, line, 0, first_name(wanted[i])}, "missing column", names(wanted[i]));
+  }
+  return columns;
+}
+
+}  // namespace abbe

@@ -1,0 +1,347 @@
+#include "abbe/formats/csv_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "abbe/errors/parallel_blocks.h"
+#include "abbe/formats/csv_header.h"
+#include "abbe/formats/input_error.h"
+
+namespace abbe {
+namespace {
+
+constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
+constexpr std::uint32_t kLargestNameCount = 1000;
+constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                                 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
+
+/// Where and why a row was refused.
+struct Refusal {
+  std::size_t offset = 0;  // byte in the text
+  std::string field;
+  std::string problem;
+  std::string expected;
+};
+
+/// A run of whole lines and where its rows belong.
+struct Block {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::size_t rows = 0;
+  std::size_t first_row = 0;
+  std::vector<std::vector<std::string>> names;  // per wanted text column, in order of appearance here
+  std::optional<Refusal> refusal;
+};
+
+/// What to do with one column of the file, in the form the inner loop needs.
+struct Target {
+  const CsvFileColumn* column = nullptr;
+  const CsvColumn* wanted = nullptr;
+  double* numbers = nullptr;
+  std::uint32_t* words = nullptr;
+  int decimal_shift = 0;
+  double factor = 1;
+};
+
+std::size_t count_rows(std::string_view text, std::size_t begin, std::size_t end) {
+  std::size_t rows = 0;
+  for (std::size_t at = begin; at < end;) {
+    const char first = text[at];
+    if ((first >= '-' && first <= '9') || first == '"') {
+      const void* line_end = std::memchr(text.data() + at, '\n', end - at);
+      at = line_end == nullptr ? end : static_cast<std::size_t>(static_cast<const char*>(line_end) - text.data()) + 1;
+      ++rows;
+    } else if (!csv_is_passed_over(csv_next_line(text, at))) {
+      ++rows;
+    }
+  }
+  return rows;
+}
+
+/// Plain decimals of at most 19 digits that end at a comma or the end of the line: one exact operation, see
+/// number_text.cpp.
+/// @returns the place behind the number, or null if it has to be read the long way
+const char* fast_number(const char* at, const char* end, int decimal_shift, double& value) {
+  bool negative = false;
+  while (at != end && *at == ' ') ++at;
+  if (at != end && *at == '-') {
+    negative = true;
+    ++at;
+  }
+  const char* const start = at;
+  std::uint64_t digits = 0;
+  for (; at != end && static_cast<unsigned char>(*at - '0') < 10; ++at) {
+    digits = digits * 10 + static_cast<std::uint64_t>(*at - '0');
+  }
+  std::ptrdiff_t count = at - start;
+  int exponent = decimal_shift;
+  if (at != end && *at == '.') {
+    const char* const fraction = ++at;
+    for (; at != end && static_cast<unsigned char>(*at - '0') < 10; ++at) {
+      digits = digits * 10 + static_cast<std::uint64_t>(*at - '0');
+    }
+    count += at - fraction;
+    if (count > 19) return nullptr;
+    exponent -= static_cast<int>(at - fraction);
+  }
+  if (count == 0 || count > 19 || digits > (std::uint64_t{1} << 53) || exponent < -22) return nullptr;
+  if (at != end && *at != ',') return nullptr;
+  const double exact = static_cast<double>(digits);
+  const double result = exponent < 0 ? exact / kPowersOfTen[static_cast<std::size_t>(-exponent)]
+                                     : exact * kPowersOfTen[static_cast<std::size_t>(exponent)];
+  value = negative ? -result : result;
+  return at;
+}
+
+std::string expected_number(const Target& target) {
+  std::string words(quantity_words(target.wanted->quantity));
+  if (!target.column->unit->suffix.empty()) words += fmt::format(" in {}", target.column->unit->suffix);
+  if (target.wanted->range == CsvColumn::Range::positive) words += " above zero";
+  if (target.wanted->range == CsvColumn::Range::not_negative) words += " not below zero";
+  return words;
+}
+
+/// Says what is wrong with a field, or reads it.
+std::string read_number(std::string_view field, const Target& target, double& value) {
+  if (field.empty()) return "is empty";
+  const std::string shown = field.size() > 40 ? std::string(field.substr(0, 40)) + "..." : std::string(field);
+  switch (parse_quantity(field, *target.column->unit, value)) {
+    case NumberProblem::none:
+      return "";
+    case NumberProblem::not_a_number:
+      return fmt::format("'{}' is not a number", shown);
+    case NumberProblem::not_finite:
+      return fmt::format("'{}' is not a finite number", shown);
+    case NumberProblem::too_large:
+      return fmt::format("'{}' is too large", shown);
+  }
+  return "";
+}
+
+bool in_range(double value, CsvColumn::Range range) {
+  return range == CsvColumn::Range::any || value > 0 || (value == 0 && range == CsvColumn::Range::not_negative);
+}
+
+class BlockReader {
+ public:
+  BlockReader(std::string_view text, const std::vector<Target>& targets, std::size_t wanted, Block& block)
+      : text_(text), targets_(targets), block_(block) {
+    block_.names.resize(wanted);
+  }
+
+  void read() {
+    std::size_t row = block_.first_row;
+    for (std::size_t at = block_.begin; at < block_.end;) {
+      const std::string_view line = csv_next_line(text_, at);
+      if (csv_is_passed_over(line)) continue;
+      if (!read_row(line, row)) return;
+      ++row;
+    }
+  }
+
+ private:
+  bool refuse(const char* at, const std::string& field, std::string problem, std::string expected) {
+    block_.refusal =
+        Refusal{static_cast<std::size_t>(at - text_.data()), field, std::move(problem), std::move(expected)};
+    return false;
+  }
+
+  bool read_row(std::string_view line, std::size_t row) {
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    bool more = true;
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+      const Target& target = targets_[i];
+      if (!more) return refuse_length(line, i);
+      const char* const start = at;
+      double value = 0;
+      if (target.numbers != nullptr) {
+        const char* const behind = fast_number(at, end, target.decimal_shift, value);
+        value *= target.factor;
+        if (behind != nullptr && std::abs(value) <= kLargestInput && in_range(value, target.wanted->range)) {
+          target.numbers[row] = value;
+          more = behind != end;
+          at = more ? behind + 1 : behind;
+          continue;
+        }
+      }
+      std::string_view rest(at, static_cast<std::size_t>(end - at)), field;
+      if (!csv_take_field(rest, field, unquoted_, more)) {
+        return refuse(start, target.column->name, "the quote is not closed before the comma or the end of the line",
+                      "");
+      }
+      at = rest.data();
+      if (!read_field(field, start, target, row)) return false;
+    }
+    return more ? refuse_length(line, targets_.size() + 1) : true;
+  }
+
+  bool read_field(std::string_view field, const char* start, const Target& target, std::size_t row) {
+    if (target.wanted == nullptr) return true;
+    if (target.words != nullptr) {
+      if (field.empty()) return refuse(start, target.column->name, "is empty", "a name");
+      const std::uint32_t word = word_index(field, target.column->wanted);
+      if (word >= kLargestNameCount)
+        return refuse(start, target.column->name, "too many different names", "at most 1000");
+      target.words[row] = word;
+      return true;
+    }
+    double value = 0;
+    std::string problem = read_number(field, target, value);
+    if (problem.empty() && !in_range(value, target.wanted->range)) problem = fmt::format("is {}", field);
+    if (!problem.empty()) return refuse(start, target.column->name, std::move(problem), expected_number(target));
+    target.numbers[row] = value;
+    return true;
+  }
+
+  std::uint32_t word_index(std::string_view word, std::size_t wanted) {
+    std::vector<std::string>& names = block_.names[wanted];
+    // Few names in long runs: the last ones first.
+    for (std::size_t i = names.size(); i-- > 0;) {
+      if (names[i] == word) return static_cast<std::uint32_t>(i);
+    }
+    names.emplace_back(word);
+    return static_cast<std::uint32_t>(names.size() - 1);
+  }
+
+  bool refuse_length(std::string_view line, std::size_t at_least) {
+    const std::size_t fields =
+        at_least > targets_.size() ? 1 + static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) : at_least;
+    return refuse(line.data(), "", fmt::format("the row has {} fields", fields),
+                  fmt::format("{} as in the header", targets_.size()));
+  }
+
+  std::string_view text_;
+  const std::vector<Target>& targets_;
+  Block& block_;
+  std::string unquoted_;
+};
+
+std::size_t line_number(std::string_view text, std::size_t offset) {
+  return 1 +
+         static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
+}
+
+std::vector<Block> split_into_blocks(std::string_view text, std::size_t begin) {
+  std::vector<Block> blocks;
+  while (begin < text.size()) {
+    Block block;
+    block.begin = begin;
+    std::size_t end = std::min(begin + kBlockBytes, text.size());
+    if (end < text.size()) end = std::min(text.find('\n', end), text.size() - 1) + 1;
+    block.end = begin = end;
+    blocks.push_back(std::move(block));
+  }
+  return blocks;
+}
+
+/// Names of all blocks in order of appearance; renumbers the words of the blocks.
+void join_names(const std::vector<Block>& blocks, std::size_t wanted, CsvValues& values) {
+  std::map<std::string, std::uint32_t, std::less<>> index;
+  std::vector<std::uint32_t> renumbered;
+  for (const Block& block : blocks) {
+    renumbered.clear();
+    for (const std::string& name : block.names[wanted]) {
+      const auto [entry, is_new] = index.emplace(name, static_cast<std::uint32_t>(values.names.size()));
+      if (is_new) values.names.push_back(name);
+      renumbered.push_back(entry->second);
+    }
+    for (std::size_t row = block.first_row; row < block.first_row + block.rows; ++row) {
+      values.words[row] = renumbered[values.words[row]];
+    }
+  }
+}
+
+}  // namespace
+
+CsvTable read_csv(std::string_view text, const std::string& file, const std::vector<CsvColumn>& wanted,
+                  const ColumnMapping& mapping, int threads) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  std::size_t at = 0, header_at = 0;
+  std::string_view header;
+  while (at < text.size() && csv_is_passed_over(header)) {
+    header_at = at;
+    header = csv_next_line(text, at);
+  }
+  if (csv_is_passed_over(header))
+    throw InputError({file, 0, 0, ""}, "the file is empty", "a header line with column names");
+  const std::vector<CsvFileColumn> columns =
+      csv_match_header(header, file, line_number(text, header_at), wanted, mapping);
+
+  std::vector<Block> blocks = split_into_blocks(text, at);
+  for_each_block(blocks.size(), threads,
+                 [&](std::size_t i) { blocks[i].rows = count_rows(text, blocks[i].begin, blocks[i].end); });
+  CsvTable table;
+  for (Block& block : blocks) {
+    block.first_row = table.rows;
+    table.rows += block.rows;
+  }
+  if (table.rows == 0) throw InputError({file, 0, 0, ""}, "there are no rows below the header", "at least one row");
+
+  table.columns.resize(wanted.size());
+  std::vector<Target> targets;
+  for (const CsvFileColumn& column : columns) {
+    Target target;
+    target.column = &column;
+    if (column.wanted != kUnreadColumn) {
+      CsvValues& values = table.columns[column.wanted];
+      values.present = true;
+      values.header = column.name;
+      target.wanted = &wanted[column.wanted];
+      if (target.wanted->is_text) {
+        values.words.resize(table.rows);
+        target.words = values.words.data();
+      } else {
+        values.numbers.resize(table.rows);
+        target.numbers = values.numbers.data();
+        target.decimal_shift = column.unit->decimal_shift;
+        target.factor = column.unit->factor;
+      }
+    }
+    targets.push_back(target);
+  }
+  for_each_block(blocks.size(), threads,
+                 [&](std::size_t i) { BlockReader(text, targets, wanted.size(), blocks[i]).read(); });
+
+  for (const Block& block : blocks) {
+    if (!block.refusal) continue;
+    const Refusal& refusal = *block.refusal;
+    const std::size_t line_start = text.rfind('\n', refusal.offset == 0 ? 0 : refusal.offset - 1);
+    const std::size_t column = refusal.offset - (line_start == std::string_view::npos ? 0 : line_start + 1) + 1;
+    throw InputError({file, line_number(text, refusal.offset), column, refusal.field}, refusal.problem,
+                     refusal.expected);
+  }
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (!table.columns[i].words.empty()) join_names(blocks, i, table.columns[i]);
+  }
+  return table;
+}
+
+std::size_t csv_line(std::string_view text, std::size_t row) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  std::size_t line = 0;
+  bool header_seen = false;
+  for (std::size_t at = 0; at < text.size();) {
+    ++line;
+    if (csv_is_passed_over(csv_next_line(text, at))) continue;
+    if (header_seen && row-- == 0) return line;
+    header_seen = true;
+  }
+  return line;
+}
+
+std::string csv_field(std::string_view text) {
+  const bool plain = !text.empty() && text.find_first_of(",\"#\r\n") == std::string_view::npos &&
+                     csv_trimmed(text).size() == text.size();
+  if (plain) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace abbe

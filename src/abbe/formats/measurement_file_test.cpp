@@ -1,0 +1,174 @@
+#include "abbe/formats/measurement_file.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "abbe/formats/machine_file.h"
+#include "abbe/formats/message_of.h"
+
+namespace abbe {
+namespace {
+
+Machine machine() {
+  return parse_machine(
+      "name = \"m\"\nchain = \"w C' X' b Z t\"\n[axis.C]\ntravel_deg = [0, 360]\n[axis.X]\ntravel_mm = [0, 1400]\n"
+      "[axis.Z]\ntravel_mm = [0, 600]\n",
+      "m.toml");
+}
+
+MeasurementTable parse(const std::string& text, const ColumnMapping& mapping = {}) {
+  MeasurementOptions options;
+  options.mapping = mapping;
+  return parse_measurements(text, "r.csv", machine(), options);
+}
+
+std::string wrong(const std::string& text, const ColumnMapping& mapping = {}) {
+  return message_of([&] { parse(text, mapping); });
+}
+
+TEST(MeasurementFile, ReadsForeignFilesByMapping) {
+  // First rows of the synthetic readings after Aguado et al. and their header.
+  const MeasurementTable table = parse(
+      "x_mm,z_mm,c_deg,Tx_mm,Ty_mm,Tz_mm,XLT_x_mm,XLT_y_mm,XLT_z_mm\n"
+      "179.998283877,148.866651183,310.0,0.0,80.0,-250.0,-188.365369188,848.639082374,127.123782272\n"
+      "698.989007416,286.214466042,300.0,-70.0,-30.0,-100.0,-190.294671161,402.387784930,428.292218361\n"
+      "1,2,3,0,80,-250,4,5,6\n",
+      {{{"X_mm", "x_mm"},
+        {"Z_mm", "z_mm"},
+        {"C_deg", "c_deg"},
+        {"offset_x_mm", "Tx_mm"},
+        {"offset_y_mm", "Ty_mm"},
+        {"offset_z_mm", "Tz_mm"},
+        {"measured_x_mm", "XLT_x_mm"},
+        {"measured_y_mm", "XLT_y_mm"},
+        {"measured_z_mm", "XLT_z_mm"}},
+       {}});
+  ASSERT_EQ(table.readings.count(), 3U);
+  EXPECT_DOUBLE_EQ(table.readings.poses.axis[0][0], 310 * 3.14159265358979323846 / 180);
+  EXPECT_EQ(table.readings.poses.axis[1][0], 179.998283877);
+  EXPECT_EQ(table.readings.poses.axis[2][1], 286.214466042);
+  EXPECT_EQ(table.reflectors, (std::vector<std::string>{"offset1", "offset2"}));
+  EXPECT_EQ(table.reflector_offset[1], Eigen::Vector3d(-70, -30, -100));
+  EXPECT_EQ(table.readings.reflector, (std::vector<std::uint16_t>{0, 1, 0}));
+  EXPECT_EQ(table.readings.measured[2][1], 428.292218361);
+  EXPECT_EQ(table.readings.measure, TrackerMeasure::cartesian);
+  EXPECT_EQ(table.readings.stated, StatedUncertainty::none);
+}
+
+TEST(MeasurementFile, ReadsRangeAnglesNamesUncertaintiesAndTime) {
+  const MeasurementTable table = parse(
+      "time_s,station,reflector,X_mm,Z_mm,C_deg,range_m,azimuth_deg,elevation_rad,u_range_um,u_azimuth_arcsec,"
+      "u_elevation_urad\n0,S2,T1,0,0,0,1.5,90,0.1,5,1,5\n2.5,S1,T1,1,1,1,1.5,90,0.1,5,1,5\n");
+  EXPECT_EQ(table.readings.measure, TrackerMeasure::range_and_angles);
+  EXPECT_EQ(table.readings.measured[0][0], 1500);
+  EXPECT_DOUBLE_EQ(table.readings.measured[1][0], 3.14159265358979323846 / 2);
+  EXPECT_EQ(table.readings.stated, StatedUncertainty::standard);
+  EXPECT_EQ(table.readings.uncertainty[0][0], 0.005);
+  EXPECT_EQ(table.readings.uncertainty[2][0], 5e-6);
+  EXPECT_EQ(table.stations, (std::vector<std::string>{"S2", "S1"}));
+  EXPECT_EQ(table.readings.station, (std::vector<std::uint16_t>{0, 1}));
+  EXPECT_EQ(table.readings.time_s, (std::vector<double>{0, 2.5}));
+}
+
+TEST(MeasurementFile, ReadsBackWhatItWrites) {
+  std::mt19937_64 generator(6);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const bool cartesian : {true, false}) {
+    for (const StatedUncertainty stated :
+         {StatedUncertainty::none, StatedUncertainty::standard, StatedUncertainty::covariance}) {
+      if (!cartesian && stated == StatedUncertainty::covariance) continue;
+      MeasurementTable table;
+      TrackerReadings& readings = table.readings;
+      readings.measure = cartesian ? TrackerMeasure::cartesian : TrackerMeasure::range_and_angles;
+      readings.stated = stated;
+      table.stations = {"A", "b, c"};
+      table.reflectors = {"T \"1\"", "#2"};
+      table.reflector_offset = {{1 / 3.0, 2, 3}, {0, -0.1, 1e-7}};
+      readings.poses.axis.resize(3);
+      for (int i = 0; i < 100; ++i) {
+        const double travel[3] = {6.28, 1400, 600};
+        for (std::size_t k = 0; k < 3; ++k) readings.poses.axis[k].push_back(travel[k] * uniform(generator));
+        for (std::size_t k = 0; k < 3; ++k) readings.measured[k].push_back(0.1 + uniform(generator));
+        for (std::size_t k = 0; k < 6; ++k)
+          readings.uncertainty[k].push_back((k < 3 ? 1e-3 : 1e-4) * (1 + uniform(generator)));
+        readings.station.push_back(i % 3 == 1);
+        readings.reflector.push_back(i % 2 == 1);
+        readings.time_s.push_back(uniform(generator));
+      }
+      if (stated == StatedUncertainty::none) readings.uncertainty = {};
+      if (stated == StatedUncertainty::standard) {
+        for (std::size_t k = 3; k < 6; ++k) readings.uncertainty[k].clear();
+      }
+      const std::string text = measurements_text(machine(), table);
+      const MeasurementTable back = parse(text);
+      EXPECT_EQ(back.readings.poses.axis[1], readings.poses.axis[1]);
+      EXPECT_EQ(back.readings.poses.axis[2], readings.poses.axis[2]);
+      for (std::size_t i = 0; i < 100; ++i) {
+        ASSERT_DOUBLE_EQ(back.readings.poses.axis[0][i], readings.poses.axis[0][i]);
+        for (std::size_t k = 0; k < 3; ++k) ASSERT_DOUBLE_EQ(back.readings.measured[k][i], readings.measured[k][i]);
+        for (std::size_t k = 0; k < 6; ++k) {
+          ASSERT_EQ(back.readings.uncertainty[k].size(), readings.uncertainty[k].size());
+          if (!readings.uncertainty[k].empty()) {
+            ASSERT_DOUBLE_EQ(back.readings.uncertainty[k][i], readings.uncertainty[k][i]);
+          }
+        }
+      }
+      if (cartesian) {
+        EXPECT_EQ(back.readings.measured, readings.measured);
+      }
+      EXPECT_EQ(back.readings.measured[0], readings.measured[0]);
+      EXPECT_EQ(back.stations, table.stations);
+      EXPECT_EQ(back.reflectors, table.reflectors);
+      EXPECT_EQ(back.reflector_offset, table.reflector_offset);
+      EXPECT_EQ(back.readings.station, readings.station);
+      EXPECT_EQ(back.readings.reflector, readings.reflector);
+      EXPECT_EQ(back.readings.time_s, readings.time_s);
+    }
+  }
+}
+
+TEST(MeasurementFile, RefusesPosesOutsideTheTravel) {
+  const std::string text =
+      "X_mm,Z_mm,C_deg,measured_x_mm,measured_y_mm,measured_z_mm\n# c\n1,2,3,4,5,6\n1,601,3,4,5,6\n";
+  EXPECT_EQ(wrong(text), "r.csv:4: Z_mm: 601 mm is outside the travel of axis Z; expected 0 to 600 mm");
+  MeasurementOptions options;
+  options.check_travel = false;
+  EXPECT_EQ(parse_measurements(text, "r.csv", machine(), options).readings.count(), 2U);
+  EXPECT_EQ(message_of([] { parse_poses("X_mm,Z_mm,C_deg\n1,2,361\n", "p.csv", machine()); }),
+            "p.csv:2: C_deg: 361 deg is outside the travel of axis C; expected 0 to 360 deg");
+}
+
+TEST(MeasurementFile, RefusesMissingAndContradictoryColumns) {
+  EXPECT_EQ(wrong("X_mm,C_deg,measured_x_mm,measured_y_mm,measured_z_mm\n1,2,3,4,5\n"),
+            "r.csv:1: Z_mm: missing column; expected Z_mm, Z_um or Z_m");
+  EXPECT_EQ(wrong("X_mm,Y_mm,Z_mm,C_deg,measured_x_mm,measured_y_mm,measured_z_mm\n1,2,3,4,5,6,7\n"),
+            "r.csv:1:6: Y_mm: unknown column; expected a known column, or its name under `ignore`");
+  EXPECT_EQ(wrong("X_mm,Z_mm,C_deg,measured_x_mm,measured_y_mm\n1,2,3,4,5\n"),
+            "r.csv: measured_z: missing column; expected measured_z_mm, measured_z_um or measured_z_m");
+  EXPECT_EQ(wrong("X_mm,Z_mm,C_deg\n1,2,3\n"),
+            "r.csv: measured_x: missing column; expected measured_x_mm, measured_y_mm, measured_z_mm or range_mm, "
+            "azimuth_deg, elevation_deg");
+  EXPECT_EQ(wrong("X_mm,Z_mm,C_deg,measured_x_mm,measured_y_mm,measured_z_mm,u_range_um,u_azimuth_deg,u_elevation_deg\n"
+                  "1,2,3,4,5,6,7,8,9\n"),
+            "r.csv: u_range_um: does not belong to what was measured; expected u_x_um, u_y_um, u_z_um");
+}
+
+TEST(MeasurementFile, RefusesCovariancesThatAreNoneAndReflectorsThatMove) {
+  const std::string start = "X_mm,Z_mm,C_deg,measured_x_mm,measured_y_mm,measured_z_mm,";
+  EXPECT_EQ(
+      wrong(start + "cov_xx_um2,cov_xy_um2,cov_xz_um2,cov_yy_um2,cov_yz_um2,cov_zz_um2\n1,2,3,4,5,6,1,2,0,1,0,1\n"),
+      "r.csv:2: cov_xx_um2: the covariance of this reading is not positive definite; expected variances above "
+      "zero and correlations between -1 and 1");
+  EXPECT_EQ(
+      wrong(start + "reflector,offset_x_mm,offset_y_mm,offset_z_mm\n1,2,3,4,5,6,T1,0,0,0\n1,2,3,4,5,6,T1,0,0,1\n"),
+      "r.csv:3: offset_x_mm: reflector T1 had another offset in an earlier row; expected (0, 0, 0) mm");
+}
+
+TEST(MeasurementFile, SaysWhichFileIsMissing) {
+  EXPECT_EQ(message_of([] { read_measurements("no/such.csv", machine()); }), "no/such.csv: there is no such file");
+  EXPECT_EQ(message_of([] { read_measurements("/dev/zero", machine()); }), "/dev/zero: is not a regular file");
+}
+
+}  // namespace
+}  // namespace abbe

@@ -1,0 +1,178 @@
+#include "abbe/formats/results_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <string>
+#include <system_error>
+
+#include "abbe/formats/input_error.h"
+
+namespace abbe {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kPartial = ".partial-";
+constexpr std::string_view kOld = ".old-";
+
+[[noreturn]] void fail(const fs::path& path, int error) {
+  throw InputError({path.string(), 0, 0, ""}, "cannot be written: " + std::generic_category().message(error),
+                   "a writable folder with enough space");
+}
+
+/// File descriptor that is closed on every path.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+  int close() {
+    const int result = ::close(number_);
+    number_ = -1;
+    return result;
+  }
+
+ private:
+  int number_;
+};
+
+void flush_folder(const fs::path& path) {
+  Descriptor folder(::open(path.empty() ? "." : path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  // Some file systems cannot flush a folder and say EINVAL.
+  if (folder.number() < 0 || (::fsync(folder.number()) != 0 && errno != EINVAL)) fail(path, errno);
+}
+
+void write_and_flush(const fs::path& path, std::string_view contents) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  if (file.number() < 0) fail(path, errno);
+  while (!contents.empty()) {
+    const ssize_t written = ::write(file.number(), contents.data(), contents.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(path, errno);
+    contents.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (::fsync(file.number()) != 0 || file.close() != 0) fail(path, errno);
+}
+
+fs::path with_suffix(const fs::path& path, std::string_view suffix) {
+  return path.parent_path() / fmt::format("{}{}{}", path.filename().string(), suffix, ::getpid());
+}
+
+/// Process number at the end of a name left by a writer of `name`, or 0.
+pid_t writer_of(const std::string& found, const std::string& name, std::string_view suffix) {
+  const std::string start = name + std::string(suffix);
+  pid_t process = 0;
+  if (!found.starts_with(start)) return 0;
+  const char* const end = found.data() + found.size();
+  const auto result = std::from_chars(found.data() + start.size(), end, process);
+  return result.ec == std::errc() && result.ptr == end ? process : 0;
+}
+
+/// Removes what killed writers of this name left behind; puts an older result back that one of them had moved aside.
+void clean_up_after_killed_writers(const fs::path& path) {
+  std::error_code error;
+  const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
+  const std::string name = path.filename().string();
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string found = entry->path().filename().string();
+    const pid_t old_writer = writer_of(found, name, kOld), partial_writer = writer_of(found, name, kPartial);
+    const pid_t process = old_writer > 0 ? old_writer : partial_writer;
+    if (process <= 0 || process == ::getpid() || ::kill(process, 0) == 0 || errno != ESRCH) continue;
+    std::error_code ignored;
+    if (old_writer > 0 && !fs::exists(path, ignored)) {
+      fs::rename(entry->path(), path, ignored);
+    } else {
+      fs::remove_all(entry->path(), ignored);
+    }
+  }
+}
+
+/// Exchanges two names in one step where the file system can. @returns errno, 0 if done
+int exchange(const fs::path& a, const fs::path& b) {
+  return ::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0 ? 0 : errno;
+}
+
+}  // namespace
+
+ResultsFolder::ResultsFolder(fs::path name) : name_(std::move(name)) {
+  if (name_.filename().empty()) name_ = name_.parent_path();
+  partial_ = with_suffix(name_, kPartial);
+  std::error_code error;
+  const auto status = fs::status(name_, error);
+  if (fs::exists(status) && !fs::is_directory(status)) {
+    throw InputError({name_.string(), 0, 0, ""}, "is a file", "a folder for results");
+  }
+  error.clear();
+  if (!name_.parent_path().empty()) fs::create_directories(name_.parent_path(), error);
+  if (error) fail(name_, error.value());
+  clean_up_after_killed_writers(name_);
+  fs::remove_all(partial_, error);
+  fs::create_directory(partial_, error);
+  if (error) fail(partial_, error.value());
+}
+
+ResultsFolder::~ResultsFolder() {
+  std::error_code ignored;
+  if (!committed_) fs::remove_all(partial_, ignored);
+}
+
+void ResultsFolder::write(const fs::path& relative, std::string_view contents) {
+  const fs::path path = partial_ / relative;
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error) fail(path.parent_path(), error.value());
+  write_and_flush(path, contents);
+}
+
+void ResultsFolder::commit() {
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(partial_, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->is_directory()) flush_folder(entry->path());
+  }
+  if (error) fail(partial_, error.value());
+  flush_folder(partial_);
+
+  fs::path aside;
+  if (!fs::exists(name_, error)) {
+    if (::rename(partial_.c_str(), name_.c_str()) != 0) fail(name_, errno);
+  } else if (exchange(partial_, name_) == 0) {
+    aside = partial_;
+  } else {
+    aside = with_suffix(name_, kOld);
+    if (::rename(name_.c_str(), aside.c_str()) != 0) fail(name_, errno);
+    if (::rename(partial_.c_str(), name_.c_str()) != 0) {
+      const int problem = errno;
+      fs::rename(aside, name_, error);
+      fail(name_, problem);
+    }
+  }
+  committed_ = true;
+  flush_folder(name_.parent_path());
+  if (!aside.empty()) fs::remove_all(aside, error);
+}
+
+void write_file_atomically(const fs::path& path, std::string_view contents) {
+  const fs::path partial = with_suffix(path, kPartial);
+  clean_up_after_killed_writers(path);
+  try {
+    write_and_flush(partial, contents);
+    if (::rename(partial.c_str(), path.c_str()) != 0) fail(path, errno);
+  } catch (...) {
+    ::unlink(partial.c_str());
+    throw;
+  }
+  flush_folder(path.parent_path());
+}
+
+}  // namespace abbe
