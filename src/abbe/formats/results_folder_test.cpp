@@ -1,0 +1,181 @@
+#include "abbe/formats/results_folder.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/message_of.h"
+
+namespace abbe {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path test_folder(const char* name) {
+  const fs::path folder = fs::path(testing::TempDir()) / name;
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+
+std::string contents(const fs::path& path) {
+  std::ifstream stream(path);
+  std::stringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+std::size_t entries(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+void write_result(const fs::path& name, const std::string& text) {
+  ResultsFolder results(name);
+  results.write("summary.json", text);
+  results.write("maps/a.csv", text + text);
+  results.commit();
+}
+
+/// Status of a child process that runs the action and ends.
+template <typename Action>
+int status_of_child(Action&& action) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    action();
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return status;
+}
+
+TEST(ResultsFolder, AppearsWholeAndReplacesTheOldOne) {
+  const fs::path folder = test_folder("abbe_results");
+  write_result(folder / "r", "one");
+  EXPECT_EQ(contents(folder / "r/summary.json"), "one");
+  write_result(folder / "r/", "two");
+  EXPECT_EQ(contents(folder / "r/summary.json"), "two");
+  EXPECT_EQ(contents(folder / "r/maps/a.csv"), "twotwo");
+  EXPECT_EQ(entries(folder), 1U);
+}
+
+TEST(ResultsFolder, LeavesNothingWithoutCommit) {
+  const fs::path folder = test_folder("abbe_uncommitted");
+  write_result(folder / "r", "one");
+  {
+    ResultsFolder results(folder / "r");
+    results.write("summary.json", "two");
+    EXPECT_EQ(contents(folder / "r/summary.json"), "one");
+  }
+  EXPECT_EQ(contents(folder / "r/summary.json"), "one");
+  EXPECT_EQ(entries(folder), 1U);
+}
+
+TEST(ResultsFolder, KilledWriterLeavesTheOldResultAndTheNextOneCleansUp) {
+  const fs::path folder = test_folder("abbe_killed");
+  write_result(folder / "r", "one");
+  const int status = status_of_child([&] {
+    ResultsFolder results(folder / "r");
+    results.write("summary.json", "half");
+    ::raise(SIGKILL);
+  });
+  ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+  EXPECT_EQ(contents(folder / "r/summary.json"), "one");
+  EXPECT_EQ(entries(folder), 2U);  // the old result and what the killed one left
+  write_result(folder / "r", "three");
+  EXPECT_EQ(contents(folder / "r/summary.json"), "three");
+  EXPECT_EQ(entries(folder), 1U);
+}
+
+TEST(ResultsFolder, WriterKilledAtAnyMomentLeavesAWholeResult) {
+  const fs::path folder = test_folder("abbe_killed_anywhere");
+  write_result(folder / "r", "0");
+  int killed = 0;
+  for (int i = 0; i < 40; ++i) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      for (int k = 0;; ++k) write_result(folder / "r", std::to_string(k));
+    }
+    ::usleep(static_cast<useconds_t>(200 * (i + 1)));
+    ::kill(child, SIGKILL);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    killed += WIFSIGNALED(status);
+    const std::string text = contents(folder / "r/summary.json");
+    ASSERT_FALSE(text.empty());
+    ASSERT_EQ(contents(folder / "r/maps/a.csv"), text + text);
+  }
+  EXPECT_EQ(killed, 40);
+}
+
+TEST(ResultsFolder, FullDiskLeavesTheOldResult) {
+  const fs::path folder = test_folder("abbe_full");
+  write_result(folder / "r", "one");
+  write_result(folder / "s", "one");
+  // A limit on the size of files stands for the full disk: with the signal ignored write() fails, else the process
+  // dies.
+  for (const bool ignored : {true, false}) {
+    const fs::path name = folder / (ignored ? "r" : "s");
+    const int status = status_of_child([&] {
+      ::signal(SIGXFSZ, ignored ? SIG_IGN : SIG_DFL);
+      const rlimit limit{10000, 10000};
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      try {
+        write_result(name, std::string(20000, 'x'));
+      } catch (const InputError& error) {
+        ::_exit(std::string(error.what())
+                            .find("summary.json: cannot be written: File too large; expected a writable "
+                                  "folder with enough space") != std::string::npos
+                    ? 7
+                    : 8);
+      }
+    });
+    if (ignored) {
+      ASSERT_TRUE(WIFEXITED(status));
+      EXPECT_EQ(WEXITSTATUS(status), 7);
+    } else {
+      EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ);
+    }
+    EXPECT_EQ(contents(name / "summary.json"), "one");
+    EXPECT_EQ(contents(name / "maps/a.csv"), "oneone");
+  }
+}
+
+TEST(ResultsFolder, SaysWhyItCannotBeMade) {
+  const fs::path folder = test_folder("abbe_no_folder");
+  std::ofstream(folder / "file") << "x";
+  EXPECT_EQ(message_of([&] { ResultsFolder results(folder / "file"); }),
+            (folder / "file").string() + ": is a file; expected a folder for results");
+  const std::string message = message_of([&] { ResultsFolder results(folder / "file/r"); });
+  EXPECT_NE(message.find("cannot be written: "), std::string::npos) << message;
+}
+
+TEST(AtomicFile, ReplacesOrLeavesTheOldOne) {
+  const fs::path folder = test_folder("abbe_atomic");
+  write_file_atomically(folder / "a.txt", "one");
+  write_file_atomically(folder / "a.txt", "two");
+  EXPECT_EQ(contents(folder / "a.txt"), "two");
+  const int status = status_of_child([&] {
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{10000, 10000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      write_file_atomically(folder / "a.txt", std::string(20000, 'x'));
+    } catch (const InputError&) {
+      ::_exit(7);
+    }
+  });
+  EXPECT_EQ(WEXITSTATUS(status), 7);
+  EXPECT_EQ(contents(folder / "a.txt"), "two");
+  EXPECT_EQ(entries(folder), 1U);
+}
+
+}  // namespace
+}  // namespace abbe
