@@ -43,15 +43,15 @@ struct Simulation {
   std::optional<std::filesystem::path> errors_file;  ///< true errors; exactly one of file and generator is given
   std::optional<ErrorGenerator> generator;
   SimulatedOutliers outliers;
+  bool noise = true;  ///< false: exact readings; the set-ups' noise then only weights them
 };
 
 enum class PlanKind { grid, line, random, spiral };
 
 /// Axis positions at which simulated readings are taken.
 ///
-/// Every axis of the machine has a sampling: those not named in the file stay fixed at the travel's middle (zero if
-/// that is in the travel). Limits like Aguado fig. 5 are fixed axes and restricted ranges: A all axes over their range,
-/// B one fixed C, C one fixed point of X and Z.
+/// Axes not named in the file stay fixed at zero, or at the middle of a travel without zero. Limits as in Aguado et
+/// al., fig. 5, are fixed axes and restricted ranges: A all axes over their range, B one fixed C, C one fixed X and Z.
 struct MeasurementPlan {
   PlanKind kind = PlanKind::grid;
   std::vector<AxisRange> axes;          ///< [axes], chain order; mm or rad

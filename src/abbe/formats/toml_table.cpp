@@ -184,6 +184,11 @@ const std::string& TomlTable::file() const { return state_->document->file(); }
 std::string TomlTable::full_name(std::string_view key) const { return state_->name(key); }
 bool TomlTable::has(std::string_view key) const { return state_->table->contains(key); }
 
+bool TomlTable::is_text(std::string_view key) const {
+  const toml::node* node = state_->table->get(key);
+  return node != nullptr && node->is_string();
+}
+
 bool TomlTable::has(std::string_view base, Quantity quantity) const {
   for (const auto& [key, node] : *state_->table) {
     if (unit_of_name(key.str(), base, quantity) != nullptr) return true;

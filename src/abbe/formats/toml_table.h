@@ -30,6 +30,7 @@ class TomlTable {
   bool has(std::string_view key) const;
   /// True if the base stands here with any suffix of the quantity.
   bool has(std::string_view base, Quantity quantity) const;
+  bool is_text(std::string_view key) const;
   /// Keys in the order of the file.
   std::vector<std::string> keys() const;
 

@@ -1,0 +1,214 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "abbe/formats/study_parts.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kMicrometresPerMillimetre = 1e3;
+constexpr double kMicrometresPerMetre = 1e6;  // of mm per mm
+constexpr int kLargestPointCount = 10'000'000;
+
+Eigen::Vector3d vector(const std::vector<double>& values) { return {values[0], values[1], values[2]}; }
+
+Body read_body(TomlTable& table, Body otherwise) {
+  return static_cast<Body>(
+      table.word_or("mounted_on", static_cast<std::size_t>(otherwise), {"bed", "workpiece", "tool"}));
+}
+
+StudyPose read_pose(TomlTable table) {
+  StudyPose pose;
+  pose.position = vector(table.numbers("position", Quantity::length, 3));
+  if (const auto angles = table.optional_numbers("angles", Quantity::angle, 3)) pose.angles = vector(*angles);
+  table.finish();
+  return pose;
+}
+
+SetupStation read_station(TomlTable& table, bool simulated) {
+  SetupStation station;
+  station.name = table.text("name");
+  bool find = !table.has("pose");
+  if (table.has("pose") && table.is_text("pose")) {
+    find = true;
+    if (table.text("pose") != "find") table.fail("pose", "unknown word", "\"find\" or { position_mm, angles_deg }");
+  } else if (auto pose = table.optional_table("pose")) {
+    station.pose = read_pose(*pose);
+  }
+  station.estimate_pose = table.boolean_or("estimate_pose", true);
+  if (!station.estimate_pose && find) {
+    table.fail("estimate_pose", "a pose that is not estimated has to be given", "pose = { position_mm, angles_deg }");
+  }
+  if (auto pose = table.optional_table("true_pose")) {
+    if (!simulated) table.fail("true_pose", "belongs to a simulation only", "[simulate]");
+    station.true_pose = read_pose(*pose);
+  }
+  if (simulated && !station.pose && !station.true_pose) {
+    table.fail("", "a simulation needs the true pose",
+               "true_pose = { position_mm = [x, y, z], angles_deg = [a, b, c] }");
+  }
+  table.finish();
+  return station;
+}
+
+SetupReflector read_reflector(TomlTable& table, bool simulated) {
+  SetupReflector reflector;
+  reflector.name = table.text("name");
+  reflector.mounted_on = read_body(table, Body::tool);
+  if (table.has("offset")) {
+    if (!table.is_text("offset") || table.text("offset") != "from-data") {
+      table.fail("offset", "is not \"from-data\"", "offset = \"from-data\", or a vector offset_mm = [x, y, z]");
+    }
+    if (simulated) table.fail("offset", "a simulation has no data", "offset_mm = [x, y, z]");
+    reflector.offset_from_data = true;
+  } else {
+    reflector.offset = vector(table.numbers("offset", Quantity::length, 3));
+  }
+  reflector.estimate_offset = table.boolean_or("estimate_offset", false);
+  if (const auto u = table.optional_numbers("offset_standard_uncertainty", Quantity::length, 3)) {
+    reflector.offset_standard_uncertainty = vector(*u);
+    if (reflector.offset_standard_uncertainty.minCoeff() < 0) {
+      table.fail_quantity("offset_standard_uncertainty", Quantity::length, "is negative", "lengths not below zero");
+    }
+  }
+  if (const auto offset = table.optional_numbers("true_offset", Quantity::length, 3)) {
+    if (!simulated) table.fail_quantity("true_offset", Quantity::length, "belongs to a simulation only", "[simulate]");
+    reflector.true_offset = vector(*offset);
+  }
+  table.finish();
+  return reflector;
+}
+
+TrackerNoise read_noise(TomlTable table) {
+  const bool isotropic = table.has("xyz", Quantity::length);
+  const double xyz = table.size_or("xyz", Quantity::length, 0);
+  const double xyz_slope = table.size_or("xyz", Quantity::length_per_length, 0);
+  const double range = table.size_or("range", Quantity::length, 0);
+  const double range_slope = table.size_or("range", Quantity::length_per_length, 0);
+  const double angle = table.size_or("angle", Quantity::angle, 0);
+  table.finish();
+  const std::string expected = "xyz_um with xyz_um_per_m, or range_um with range_um_per_m and angle_arcsec";
+  if (isotropic) {
+    if (range > 0 || range_slope > 0 || angle > 0) table.fail("", "xyz stands beside range or angle", expected);
+    if (xyz <= 0) table.fail_quantity("xyz", Quantity::length, "is not above zero", "a standard deviation");
+    return TrackerNoise::isotropic(xyz * kMicrometresPerMillimetre, xyz_slope * kMicrometresPerMetre);
+  }
+  if (range <= 0 || angle <= 0) table.fail("", "the noise is missing or zero", expected);
+  return {range * kMicrometresPerMillimetre, range_slope * kMicrometresPerMetre, 0, angle * kMicrometresPerMetre};
+}
+
+template <typename Named>
+std::size_t find_name(const std::vector<Named>& items, const std::string& name) {
+  const auto at = std::find_if(items.begin(), items.end(), [&](const Named& item) { return item.name == name; });
+  return static_cast<std::size_t>(at - items.begin());
+}
+
+template <typename Named>
+std::string all_names(const std::vector<Named>& items) {
+  std::string names;
+  for (const Named& item : items) names += (names.empty() ? "" : ", ") + item.name;
+  return names;
+}
+
+MeasurementPlan read_plan(TomlTable& table, const Machine& machine, const Setup& setup) {
+  MeasurementPlan plan;
+  plan.kind = static_cast<PlanKind>(table.word("kind", {"grid", "line", "random", "spiral"}));
+  plan.axes = read_axis_ranges(table, machine, plan.kind == PlanKind::grid);
+  if (plan.kind != PlanKind::grid) plan.points = static_cast<int>(table.integer("points", 1, kLargestPointCount));
+  if (plan.kind == PlanKind::spiral) plan.turns = table.size_or("turns", Quantity::dimensionless, 5);
+  const auto moving =
+      std::count_if(plan.axes.begin(), plan.axes.end(), [](const AxisRange& r) { return !r.is_fixed(); });
+  if (moving < (plan.kind == PlanKind::spiral ? 2 : 1)) {
+    table.fail("", "too few axes move", plan.kind == PlanKind::spiral ? "ranges of two axes" : "the range of an axis");
+  }
+  if (plan.kind == PlanKind::grid) {
+    double poses = 1;
+    for (const AxisRange& range : plan.axes) poses *= range.is_fixed() ? 1 : static_cast<double>(range.count);
+    if (poses > kLargestPointCount) table.fail("", fmt::format("the grid has {:.3g} poses", poses), "at most 1e7");
+  }
+  for (const std::string& name : table.texts_or_none("reflectors")) {
+    plan.reflectors.push_back(find_name(setup.reflectors, name));
+    if (plan.reflectors.back() < setup.reflectors.size()) continue;
+    table.fail("reflectors", fmt::format("there is no reflector \"{}\"", name),
+               "one of " + all_names(setup.reflectors));
+  }
+  if (plan.reflectors.empty()) {
+    for (std::size_t i = 0; i < setup.reflectors.size(); ++i) plan.reflectors.push_back(i);
+  }
+  const std::string station = table.text_or("station", setup.stations.front().name);
+  plan.station = find_name(setup.stations, station);
+  if (plan.station == setup.stations.size()) {
+    table.fail("station", fmt::format("there is no station \"{}\"", station), "one of " + all_names(setup.stations));
+  }
+  table.finish();
+  return plan;
+}
+
+SetupData read_data(TomlTable& table, const std::filesystem::path& folder) {
+  SetupData data;
+  data.file = folder / table.text("file");
+  data.mapping.ignore = table.texts_or_none("ignore");
+  if (auto columns = table.optional_table("columns")) {
+    for (const std::string& ours : columns->keys()) data.mapping.columns.emplace(ours, columns->text(ours));
+  }
+  table.finish();
+  return data;
+}
+
+template <typename Named>
+void refuse_same_name(const TomlTable& table, const std::vector<Named>& items) {
+  if (find_name(items, items.back().name) + 1 < items.size()) {
+    table.fail("name", fmt::format("another one is called \"{}\"", items.back().name), "different names");
+  }
+}
+
+}  // namespace
+
+Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated) {
+  Setup setup;
+  setup.name = table.text("name");
+  table.word("instrument", {"tracker"});
+  setup.instrument = "tracker";
+  setup.mounted_on = read_body(table, Body::workpiece);
+  setup.measure = static_cast<TrackerMeasure>(table.word_or("measure", 0, {"xyz", "range-angles"}));
+  setup.noise_from_data = table.boolean_or("noise_from_data", false);
+  if (setup.noise_from_data) {
+    if (simulated) table.fail("noise_from_data", "a simulation has no data", "[setup.noise]");
+    if (table.has("noise")) table.fail("noise", "stands beside noise_from_data = true", "only one of them");
+  } else {
+    setup.noise = read_noise(table.table("noise"));
+  }
+  for (TomlTable& station : table.tables("station")) {
+    setup.stations.push_back(read_station(station, simulated));
+    refuse_same_name(station, setup.stations);
+  }
+  if (setup.stations.empty()) {
+    if (simulated) table.fail("", "the stations are missing", "[[setup.station]] with its true_pose");
+    setup.stations.push_back({setup.name, std::nullopt, true, std::nullopt});
+  }
+  for (TomlTable& reflector : table.tables("reflector")) {
+    setup.reflectors.push_back(read_reflector(reflector, simulated));
+    refuse_same_name(reflector, setup.reflectors);
+    if (setup.reflectors.back().mounted_on == setup.mounted_on) {
+      reflector.fail("", "the reflector and the instrument are on the same body, so that no axis moves between them",
+                     "another mounted_on for one of them");
+    }
+  }
+  for (TomlTable& plan : table.tables("plan")) {
+    if (!simulated) table.fail("plan", "belongs to a simulation only", "[simulate], or [[setup.data]]");
+    if (setup.reflectors.empty()) table.fail("", "the reflectors are missing", "[[setup.reflector]]");
+    setup.plans.push_back(read_plan(plan, machine, setup));
+  }
+  for (TomlTable& data : table.tables("data")) {
+    if (simulated) table.fail("data", "stands beside [simulate]", "only one of them");
+    setup.data.push_back(read_data(data, folder));
+  }
+  if (setup.plans.empty() && setup.data.empty()) {
+    table.fail("", "the readings are missing", simulated ? "[[setup.plan]]" : "[[setup.data]] with a file");
+  }
+  table.finish();
+  return setup;
+}
+
+}  // namespace abbe
