@@ -34,6 +34,10 @@ struct FitStatistics {
 /// @returns false if Z'HZ is not positive definite; covariance is then empty
 bool covariance_of_estimates(const Eigen::MatrixXd& normal, const ConstrainedSpace* space, Eigen::MatrixXd& covariance);
 
+/// The same from a factor R with R'R = H (ReadingStream::orthogonal_factor): keeps twice the digits where columns of J
+/// are nearly dependent.
+bool covariance_from_factor(const Eigen::MatrixXd& factor, const ConstrainedSpace* space, Eigen::MatrixXd& covariance);
+
 /// Observability indices of the parameters left free by the gauge.
 Observability observability_of(const Eigen::MatrixXd& normal, const ConstrainedSpace* space, std::size_t reading_count);
 
@@ -43,14 +47,5 @@ struct Correlation {
 };
 /// Largest correlations of every parameter, by magnitude, at most `count` each; fixed parameters have none.
 std::vector<std::vector<Correlation>> largest_correlations(const Eigen::MatrixXd& covariance, std::size_t count);
-
-/// Probability that a chi-square variable of `degrees_of_freedom` exceeds `value`.
-double chi_square_exceedance(double value, double degrees_of_freedom);
-
-/// Value that a chi-square variable exceeds with this probability.
-double chi_square_quantile(double exceedance, double degrees_of_freedom);
-
-/// Two-sided exceedance and quantile of Student's t; degrees_of_freedom > 0.
-double student_exceedance(double t, double degrees_of_freedom);
 
 }  // namespace abbe

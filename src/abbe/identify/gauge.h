@@ -23,15 +23,17 @@ struct GaugeConstraint {
   double value = 0;                      ///< mm or rad
   Eigen::VectorXd direction;             ///< [p]: the unseen direction it fixes; functional . direction = 1
   std::vector<std::size_t> inseparable;  ///< entries of the estimates that this direction mixes, largest first
+  bool by_convention = true;             ///< false: no convention fits, smallest change from the start (a lack of data)
   std::string inseparable_words;         ///< "constant of EXZ is not separable from tracker1.x, tool_X"
 };
 
-/// The unseen directions of a problem.
+/// The unseen directions of a problem; `basis` holds the truly unseen and the weak ones.
 struct NullSpace {
   Eigen::VectorXd column_norms;     ///< [p], D; 0 where the readings do not depend on the parameter at all
   Eigen::VectorXd singular_values;  ///< [p] of J D^-1, decreasing, relative to the largest
   Eigen::MatrixXd basis;            ///< [p, q], orthonormal in scaled parameters D x; in units of D x
-  std::size_t rank = 0;             ///< p - q
+  std::size_t rank = 0;             ///< of the Jacobian: singular values above 5e-14
+  std::size_t weak = 0;             ///< directions of `basis` that are seen, but below 3e-8: as good as unseen in J'J
   bool refined = false;             ///< found by orthogonal factors of J, not from J'J
 };
 
@@ -49,8 +51,13 @@ struct GaugeReport {
 /// From the eigenvalues of the scaled normal matrix where they are clearly apart; else from the singular values of the
 /// factor R of a streaming orthogonal factorisation of J, which tells singular values of 1e-13 (relative) from zero.
 NullSpace find_null_space(const Problem& problem, const Eigen::VectorXd& estimates, int threads = 0);
+/// The same over an existing stream, with the sums at `estimates` already known.
+NullSpace find_null_space(const ReadingStream& stream, const Eigen::VectorXd& estimates, const NormalEquations& sums);
 
-/// Chooses equations that fix the null space, by convention.
+/// Chooses equations that fix the null space, by convention, in the order of gauge_convention.h.
+///
+/// Each is taken if it fixes a direction that the ones before it leave open; what no convention reaches is fixed by the
+/// smallest change from the start and marked (by_convention = false).
 /// @param start  [p], set-up unknowns that have to be fixed keep this value
 std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& null_space,
                                        const Eigen::VectorXd& start, GaugeChoice choice);

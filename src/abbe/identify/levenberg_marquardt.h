@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/identify/normal_equations.h"
 #include "abbe/identify/problem.h"
 #include "abbe/identify/robust_loss.h"
 
@@ -26,7 +27,7 @@ struct SolverOptions {
   double relative_cost = 1e-12;  ///< converged if actual and predicted relative decrease of the cost are below
   double gradient = 1e-10;       ///< converged if the residuals are orthogonal to every column: largest cosine below
   double step = 1e-11;           ///< converged if |D dx| < step |D x|, D: column norms of the Jacobian
-  double start_damping = 1e-4;   ///< relative to the (unit) diagonal of the scaled normal matrix
+  double start_damping = 1e-6;   ///< relative to the (unit) diagonal of the scaled normal matrix
   bool chord_iterations = true;  ///< keep the factor while it still lowers the gradient well
   int threads = 0;               ///< 0: all; the result does not depend on it
 };
@@ -61,5 +62,10 @@ struct SolverResult {
 /// @param start  [p]; its part along the constrained directions is used
 SolverResult solve(const Problem& problem, const Eigen::VectorXd& start, const ConstrainedSpace* space,
                    const Loss& loss, const SolverOptions& options);
+
+/// The same over a stream that exists already.
+/// @param at_start  null, or the sums with normal matrix at `start` (without loss, or with the same one)
+SolverResult solve(const ReadingStream& stream, const Eigen::VectorXd& start, const ConstrainedSpace* space,
+                   const Loss& loss, const SolverOptions& options, const NormalEquations* at_start);
 
 }  // namespace abbe

@@ -90,6 +90,7 @@ void keep_estimates(Problem& problem, const Eigen::VectorXd& estimates);
 std::size_t find_estimated(const Problem& problem, const ParameterId& id);
 
 /// Readings used, and residuals used (readings times rows), priors not counted.
+std::size_t used_reading_count(const SelectedObservations& selected);
 std::size_t used_reading_count(const Problem& problem);
 std::size_t used_residual_count(const Problem& problem);
 

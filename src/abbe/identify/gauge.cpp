@@ -1,0 +1,147 @@
+#include "abbe/identify/gauge.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "abbe/identify/gauge_convention.h"
+
+namespace abbe {
+namespace {
+
+using Index = Eigen::Index;
+// A candidate is taken if at least this part of it (as a cosine) lies in what is still open.
+constexpr double kOpenPart = 1e-3;
+// Entries of a direction that are named, relative to its largest scaled entry.
+constexpr double kNamedEntry = 0.02;
+constexpr std::size_t kMostNamed = 8;
+
+Eigen::VectorXd usable_scale(const Eigen::VectorXd& column_norms) {
+  return column_norms.unaryExpr([](double norm) { return norm > 0 ? norm : 1.0; });
+}
+
+void describe(const std::vector<EstimatedParameter>& parameters, const Eigen::VectorXd& scale,
+              const std::string& quantity, GaugeConstraint& constraint) {
+  const Eigen::VectorXd scaled = constraint.direction.cwiseProduct(scale).cwiseAbs();
+  std::vector<std::size_t> order(static_cast<std::size_t>(scaled.size()));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return scaled[static_cast<Index>(a)] > scaled[static_cast<Index>(b)];
+  });
+  const double largest = scaled.size() > 0 ? scaled.maxCoeff() : 0;
+  const double own = constraint.functional.cwiseAbs().maxCoeff();
+  std::string others;
+  std::size_t named = 0;
+  for (const std::size_t i : order) {
+    if (scaled[static_cast<Index>(i)] < kNamedEntry * largest) break;
+    constraint.inseparable.push_back(i);
+    if (std::abs(constraint.functional[static_cast<Index>(i)]) > 1e-9 * own) continue;
+    if (named++ < kMostNamed) others += (others.empty() ? "" : ", ") + parameters[i].name;
+  }
+  if (named > kMostNamed) others += fmt::format(" and {} more", named - kMostNamed);
+  constraint.inseparable_words = others.empty() ? fmt::format("{} is not seen by the readings", quantity)
+                                                : fmt::format("{} is not separable from {}", quantity, others);
+}
+
+}  // namespace
+
+std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& null_space,
+                                       const Eigen::VectorXd& start, GaugeChoice choice) {
+  std::vector<GaugeConstraint> constraints;
+  std::vector<std::string> quantities;
+  const Index p = start.size(), q = null_space.basis.cols();
+  if (q == 0 || choice == GaugeChoice::none) return constraints;
+  const Eigen::VectorXd scale = usable_scale(null_space.column_norms);
+  const Eigen::MatrixXd open = scale.asDiagonal() * null_space.basis;  // orthonormal
+  Eigen::MatrixXd taken(q, 0);  // orthonormal, the part of the null space that is fixed
+
+  if (choice == GaugeChoice::iso) {
+    for (const GaugeCandidate& candidate : gauge_candidates(problem, start)) {
+      if (taken.cols() == q) break;
+      const Eigen::VectorXd scaled = candidate.functional.cwiseQuotient(scale);
+      Eigen::VectorXd part = open.transpose() * scaled / scaled.norm();
+      for (int pass = 0; pass < 2; ++pass) part -= taken * (taken.transpose() * part);
+      if (part.norm() < kOpenPart) continue;
+      taken.conservativeResize(q, taken.cols() + 1);
+      taken.rightCols(1) = part.normalized();
+      GaugeConstraint constraint;
+      constraint.words = candidate.words;
+      constraint.functional = candidate.functional;
+      constraint.value = candidate.value;
+      constraints.push_back(std::move(constraint));
+      quantities.push_back(candidate.quantity);
+    }
+  }
+  if (taken.cols() < q) {
+    const Index rest = q - taken.cols();
+    Eigen::MatrixXd left = Eigen::MatrixXd::Identity(q, q);
+    if (taken.cols() > 0) {
+      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(taken);
+      left = qr.householderQ() * left;
+    }
+    for (Index i = 0; i < rest; ++i) {
+      const Eigen::VectorXd scaled = open * left.col(q - rest + i);
+      GaugeConstraint constraint;
+      constraint.functional = scaled.cwiseProduct(scale);
+      constraint.value = constraint.functional.dot(start);
+      constraint.words = fmt::format("unseen direction {}: smallest change from the start", i + 1);
+      constraint.by_convention = choice == GaugeChoice::minimum_norm;
+      constraints.push_back(std::move(constraint));
+      quantities.push_back(fmt::format("a combination of parameters ({})", i + 1));
+    }
+  }
+
+  Eigen::MatrixXd functionals(q, p);
+  for (Index i = 0; i < q; ++i) functionals.row(i) = constraints[static_cast<std::size_t>(i)].functional;
+  const Eigen::MatrixXd directions = null_space.basis * (functionals * null_space.basis).fullPivLu().inverse();
+  const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
+  for (Index i = 0; i < q; ++i) {
+    GaugeConstraint& constraint = constraints[static_cast<std::size_t>(i)];
+    constraint.direction = directions.col(i);
+    describe(parameters, scale, quantities[static_cast<std::size_t>(i)], constraint);
+  }
+  return constraints;
+}
+
+ConstrainedSpace constrained_space(const std::vector<GaugeConstraint>& constraints, const Eigen::VectorXd& start,
+                                   const Eigen::VectorXd& column_norms) {
+  ConstrainedSpace space;
+  space.particular = start;
+  const Index q = static_cast<Index>(constraints.size()), p = start.size();
+  if (q == 0) return space;
+  const Eigen::VectorXd scale = usable_scale(column_norms);
+  Eigen::MatrixXd functionals(q, p);  // in scaled parameters, rows of unit length
+  Eigen::VectorXd values(q);
+  for (Index i = 0; i < q; ++i) {
+    const GaugeConstraint& constraint = constraints[static_cast<std::size_t>(i)];
+    const Eigen::VectorXd scaled = constraint.functional.cwiseQuotient(scale);
+    functionals.row(i) = scaled / scaled.norm();
+    values[i] = constraint.value / scaled.norm();
+    space.particular += constraint.direction * (constraint.value - constraint.functional.dot(start));
+  }
+  // Elimination instead of an orthogonal basis: a parameter that one equation sets alone comes out exactly.
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(functionals);
+  const Eigen::VectorXi columns = lu.permutationQ().indices();
+  Eigen::MatrixXd pivot(q, q), free(q, p - q);
+  for (Index i = 0; i < q; ++i) pivot.col(i) = functionals.col(columns[i]);
+  for (Index i = q; i < p; ++i) free.col(i - q) = functionals.col(columns[i]);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> solver(pivot);
+  const Eigen::MatrixXd eliminated = p > q ? Eigen::MatrixXd(-solver.solve(free)) : Eigen::MatrixXd(q, 0);
+  space.directions = Eigen::MatrixXd::Zero(p, p - q);
+  for (Index j = 0; j < p - q; ++j) {
+    space.directions(columns[q + j], j) = 1 / scale[columns[q + j]];
+    for (Index i = 0; i < q; ++i)
+      space.directions(columns[i], j) = std::abs(eliminated(i, j)) > 1e-14 ? eliminated(i, j) / scale[columns[i]] : 0.0;
+  }
+  // Rounding of the move along the unseen directions.
+  Eigen::VectorXd scaled = space.particular.cwiseProduct(scale);
+  const Eigen::VectorXd correction = solver.solve(values - functionals * scaled);
+  for (Index i = 0; i < q; ++i) space.particular[columns[i]] += correction[i] / scale[columns[i]];
+  return space;
+}
+
+}  // namespace abbe

@@ -1,0 +1,239 @@
+#include "abbe/identify/gauge_convention.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace abbe {
+namespace {
+
+using Index = Eigen::Index;
+using Weights = std::array<double, kComponentCount>;
+constexpr double kPi = std::numbers::pi;
+constexpr int kPoints = 720;
+
+/// Builds functionals of the error motions of one axis.
+class AxisFunctionals {
+ public:
+  AxisFunctionals(const Problem& problem, std::size_t axis) : problem_(problem), axis_(axis) {
+    const ErrorSet& errors = problem.errors;
+    count_ = static_cast<Index>(estimated_count(problem));
+    std::size_t next = 0;
+    bool any = false;
+    for (const ErrorMotion& motion : errors.motions) {
+      if (motion.axis == axis) {
+        terms_.push_back({&motion, next});
+        const bool turn = motion.basis.kind == BasisKind::fourier || motion.basis.periodic;
+        whole_turn_ = whole_turn_ && turn;
+        from_ = any ? std::max(from_, motion.basis.from) : motion.basis.from;
+        to_ = any ? std::min(to_, motion.basis.to) : motion.basis.to;
+        any = true;
+      }
+      next += motion.coefficients.size();
+    }
+    if (whole_turn_ && any && problem.machine.axes[axis].kind == AxisKind::rotary) {
+      from_ = 0;
+      to_ = 2 * kPi;
+    }
+  }
+
+  bool empty() const { return terms_.empty() || !(to_ > from_); }
+  double from() const { return from_; }
+  double to() const { return to_; }
+  double reference() const { return std::clamp(0.0, from_, to_); }
+
+  /// sum over components of weights times E(position).
+  Eigen::VectorXd at(double position, const Weights& weights) const {
+    Eigen::VectorXd functional = Eigen::VectorXd::Zero(count_);
+    add(position, weights, 1, functional);
+    return functional;
+  }
+
+  /// Integral of weight(position) * (weights . E(position)) over the range, midpoint or Gauss rule.
+  Eigen::VectorXd integral(const std::function<Weights(double)>& weight) const {
+    Eigen::VectorXd functional = Eigen::VectorXd::Zero(count_);
+    // Over a whole turn equal steps are exact for harmonics; else Gauss-Legendre in pieces is exact for polynomials.
+    static constexpr std::array<double, 4> kNodes = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                                     0.9602898564975363};
+    static constexpr std::array<double, 4> kWeights = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                                       0.1012285362903763};
+    const double range = to_ - from_;
+    if (whole_turn_) {
+      for (int i = 0; i < kPoints; ++i) {
+        const double position = from_ + range * i / kPoints;
+        add(position, weight(position), range / kPoints, functional);
+      }
+    } else {
+      constexpr int kPieces = 32;
+      for (int piece = 0; piece < kPieces; ++piece)
+        for (std::size_t n = 0; n < kNodes.size(); ++n)
+          for (const double side : {-1.0, 1.0}) {
+            const double position = from_ + range * (piece + (1 + side * kNodes[n]) / 2) / kPieces;
+            add(position, weight(position), kWeights[n] / 2 * range / kPieces, functional);
+          }
+    }
+    const double largest = functional.cwiseAbs().maxCoeff();
+    // Sums that cancel leave rounding; it would tie parameters together that have nothing to do with each other.
+    for (Index i = 0; i < count_; ++i)
+      if (std::abs(functional[i]) < 1e-13 * largest) functional[i] = 0;
+    return functional;
+  }
+
+ private:
+  struct Term {
+    const ErrorMotion* motion;
+    std::size_t first;
+  };
+
+  void add(double position, const Weights& weights, double factor, Eigen::VectorXd& functional) const {
+    std::vector<double> values;
+    for (const Term& term : terms_) {
+      const double weight = weights[static_cast<std::size_t>(term.motion->component)] * factor;
+      if (weight == 0) continue;
+      values.assign(term.motion->basis.size(), 0.0);
+      term.motion->basis.values(position, term.motion->coefficients, values);
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const auto found =
+            std::lower_bound(problem_.machine_parameters.begin(), problem_.machine_parameters.end(), term.first + k);
+        if (found != problem_.machine_parameters.end() && *found == term.first + k)
+          functional[found - problem_.machine_parameters.begin()] += weight * values[k];
+      }
+    }
+  }
+
+  const Problem& problem_;
+  std::size_t axis_;
+  std::vector<Term> terms_;
+  Index count_ = 0;
+  double from_ = 0, to_ = 0;
+  bool whole_turn_ = true;
+};
+
+std::string position_text(double position, bool rotary) {
+  return rotary ? fmt::format("{:.6g} deg", position * 180 / kPi) : fmt::format("{:.6g} mm", position);
+}
+
+void add_candidate(std::vector<GaugeCandidate>& list, std::string words, std::string quantity,
+                   const Eigen::VectorXd& functional, double value = 0) {
+  if (functional.cwiseAbs().maxCoeff() > 0) list.push_back({std::move(words), std::move(quantity), functional, value});
+}
+
+Weights single(int component) {
+  Weights weights{};
+  weights[static_cast<std::size_t>(component)] = 1;
+  return weights;
+}
+
+void constants(const Problem& problem, std::size_t axis, std::vector<GaugeCandidate>& list) {
+  const AxisFunctionals functionals(problem, axis);
+  if (functionals.empty()) return;
+  const Axis& moving = problem.machine.axes[axis];
+  const bool rotary = moving.kind == AxisKind::rotary;
+  for (int component = 0; component < kComponentCount; ++component) {
+    const std::string name = error_motion_name(problem.machine, axis, static_cast<Component>(component));
+    const bool about_itself = component >= 3 && std::abs(moving.direction[component - 3]) > 0.9;
+    if (rotary && !about_itself)
+      add_candidate(
+          list, fmt::format("the mean of {} over the range is zero", name), fmt::format("constant of {}", name),
+          functionals.integral([&](double) { return single(component); }) / (functionals.to() - functionals.from()));
+    else
+      add_candidate(
+          list,
+          fmt::format("{} is zero at its reference position {}", name, position_text(functionals.reference(), rotary)),
+          fmt::format("constant of {}", name), functionals.at(functionals.reference(), single(component)));
+  }
+}
+
+void once_per_turn(const Problem& problem, std::size_t axis, std::vector<GaugeCandidate>& list) {
+  const AxisFunctionals functionals(problem, axis);
+  if (functionals.empty()) return;
+  const Axis& moving = problem.machine.axes[axis];
+  Index own = 0;
+  moving.direction.cwiseAbs().maxCoeff(&own);
+  const Eigen::Vector3d first =
+      (Eigen::Vector3d::Unit((own + 1) % 3) - moving.direction * moving.direction[(own + 1) % 3]).normalized();
+  const Eigen::Vector3d second = moving.direction.cross(first);
+  const double norm = 1 / (functionals.to() - functionals.from());
+  for (const int offset : {0, 3}) {
+    const std::string u = error_motion_name(problem.machine, axis, static_cast<Component>((own + 1) % 3 + offset));
+    const std::string v = error_motion_name(problem.machine, axis, static_cast<Component>((own + 2) % 3 + offset));
+    for (const double sense : {1.0, -1.0})
+      for (const bool quadrature : {false, true}) {
+        // (u, v) = rho (cos, sense sin) turns with (sense = 1) or against the axis; the quadrature part a quarter turn
+        // later.
+        const auto weight = [&](double q) {
+          const double along_u = quadrature ? -sense * std::sin(q) : std::cos(q);
+          const double along_v = quadrature ? std::cos(q) : sense * std::sin(q);
+          const Eigen::Vector3d direction = along_u * first + along_v * second;
+          Weights weights{};
+          for (int i = 0; i < 3; ++i) weights[static_cast<std::size_t>(i + offset)] = direction[i];
+          return weights;
+        };
+        add_candidate(list,
+                      fmt::format("the once-per-turn part of {} and {} turning {} {} ({}) is zero (axis average line)",
+                                  u, v, sense > 0 ? "with" : "against", moving.name, quadrature ? "sine" : "cosine"),
+                      fmt::format("first harmonic of {} and {} ({}, {})", u, v, sense > 0 ? "forward" : "backward",
+                                  quadrature ? "sine" : "cosine"),
+                      functionals.integral(weight) * norm);
+      }
+  }
+}
+
+void slopes(const Problem& problem, std::size_t axis, std::vector<GaugeCandidate>& list) {
+  const AxisFunctionals functionals(problem, axis);
+  if (functionals.empty()) return;
+  const Axis& moving = problem.machine.axes[axis];
+  const bool rotary = moving.kind == AxisKind::rotary;
+  const double middle = (functionals.from() + functionals.to()) / 2;
+  const double range = functionals.to() - functionals.from();
+  // Straightness first: its reference line is a convention; a slope of positioning or of an angle is a real error.
+  std::vector<int> order = {0, 1, 2, 3, 4, 5};
+  std::stable_partition(order.begin(), order.end(),
+                        [&](int c) { return c < 3 && std::abs(moving.direction[c]) < 0.9; });
+  if (rotary) order = {};
+  for (const int component : order) {
+    const std::string name = error_motion_name(problem.machine, axis, static_cast<Component>(component));
+    add_candidate(list, fmt::format("the slope of the reference straight line of {} is zero", name),
+                  fmt::format("slope of {}", name), functionals.integral([&](double q) {
+                    Weights weights{};
+                    weights[static_cast<std::size_t>(component)] = 12 * (q - middle) / (range * range);
+                    return weights;
+                  }));
+  }
+}
+
+}  // namespace
+
+std::vector<GaugeCandidate> gauge_candidates(const Problem& problem, const Eigen::VectorXd& start) {
+  std::vector<GaugeCandidate> list;
+  const std::vector<Axis>& axes = problem.machine.axes;
+  const auto each = [&](AxisKind kind, const auto& add) {
+    for (std::size_t axis = 0; axis < axes.size(); ++axis)
+      if (axes[axis].kind == kind) add(problem, axis, list);
+  };
+  each(AxisKind::linear, constants);
+  each(AxisKind::rotary, constants);
+  each(AxisKind::rotary, once_per_turn);
+  each(AxisKind::linear, slopes);
+
+  std::size_t motion_parameters = 0;
+  for (const ErrorMotion& motion : problem.errors.motions) motion_parameters += motion.coefficients.size();
+  const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const EstimatedParameter& parameter = parameters[i];
+    if (parameter.id.is_machine() && parameter.id.index < motion_parameters) continue;
+    const Eigen::VectorXd functional = Eigen::VectorXd::Unit(start.size(), static_cast<Index>(i));
+    if (parameter.id.is_machine())
+      add_candidate(list, fmt::format("{} is zero", parameter.name), parameter.name, functional);
+    else
+      add_candidate(list, fmt::format("{} keeps its start value", parameter.name), parameter.name, functional,
+                    start[static_cast<Index>(i)]);
+  }
+  return list;
+}
+
+}  // namespace abbe

@@ -1,0 +1,280 @@
+#include "abbe/identify/identify.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "abbe/errors/parallel_blocks.h"
+#include "abbe/identify/distributions.h"
+#include "abbe/identify/normal_equations.h"
+
+namespace abbe {
+namespace {
+
+using Index = Eigen::Index;
+constexpr int kMostScaleRounds = 12;
+// Below this relative singular value the covariance is taken from an orthogonal factor instead of J'J.
+constexpr double kIllConditioned = 1e-4;
+
+std::vector<double> scaled_norms(const Problem& problem, const std::vector<std::vector<double>>& norms) {
+  std::vector<double> result;
+  for (std::size_t o = 0; o < norms.size(); ++o)
+    for (const double norm : norms[o])
+      if (norm >= 0) result.push_back(norm / median_norm(problem.observations[o].observations->rows()));
+  return result;
+}
+
+/// Values of the loss's functions over all readings that enter the covariance of a robust estimate.
+///
+/// Cov = (B / A^2) (J'J)^-1 with A = mean of w + u w'(u) / m, B = mean of w^2 d^2 / m over the readings (Huber
+/// 1981, 7.6).
+double robust_factor(const Problem& problem, const std::vector<std::vector<double>>& norms, const Loss& loss) {
+  double a = 0, b = 0, count = 0;
+  for (std::size_t o = 0; o < norms.size(); ++o) {
+    const int rows = problem.observations[o].observations->rows();
+    for (const double norm : norms[o]) {
+      if (norm < 0) continue;
+      const double weight = loss.weight(norm, rows);
+      const double small = 1e-6 * loss.scale;
+      const double slope = (loss.weight(norm + small, rows) - weight) / small;
+      a += weight + norm * slope / rows;
+      b += weight * weight * norm * norm / rows;
+      count += 1;
+    }
+  }
+  if (!(count > 0) || !(a > 0)) return 1;
+  // Huber's correction takes the residuals' own size; the stated uncertainties set the unit, so divide it out.
+  return (b / count) / ((a / count) * (a / count));
+}
+
+class Run {
+ public:
+  Run(Problem& problem, const IdentifyOptions& options)
+      : problem_(problem),
+        options_(options),
+        stream_(problem, options.solver.threads),
+        start_(present_values(problem)) {}
+
+  Identification run() {
+    result_.parameters = estimated_parameters(problem_);
+    result_.gauge.parameter_count = result_.parameters.size();
+    const double available = static_cast<double>(used_residual_count(problem_)) + prior_residual_count(problem_);
+    if (used_reading_count(problem_) == 0 || available < static_cast<double>(start_.size()))
+      return fail(IdentifyStatus::too_few_readings,
+                  fmt::format("{} residuals for {} parameters", available, start_.size()));
+    at_start_ = stream_.sums(start_, Loss{}, Wanted::normal);
+    if (!at_start_.finite)
+      return fail(IdentifyStatus::not_finite, "a residual or derivative at the start is not a finite number");
+    if (!fix()) return fail(IdentifyStatus::rank_deficient, rank_message());
+    const ConstrainedSpace* space = result_.gauge.constraints.empty() ? nullptr : &result_.space;
+    const SolverResult solved = options_.loss == LossKind::none ? least_squares(space) : robust(space);
+    result_.history.insert(result_.history.end(), solved.history.begin(), solved.history.end());
+    result_.status = solved.status;
+    if (solved.status == IdentifyStatus::not_finite || solved.status == IdentifyStatus::rank_deficient)
+      return fail(solved.status, solved.status == IdentifyStatus::not_finite
+                                     ? "a residual or derivative is not a finite number"
+                                     : "the readings do not determine all parameters at the solution");
+    finish(solved, space);
+    return result_;
+  }
+
+ private:
+  Identification fail(IdentifyStatus status, std::string message) {
+    set_observations(problem_, start_);
+    result_.status = status;
+    result_.message = std::move(message);
+    return result_;
+  }
+
+  std::string rank_message() const {
+    return fmt::format("rank {} of {} parameters and no gauge stated", result_.gauge.rank_at_start, start_.size());
+  }
+
+  bool fix() {
+    NullSpace null_space = find_null_space(stream_, start_, at_start_);
+    Eigen::VectorXd nominal = start_;
+    nominal.head(static_cast<Index>(problem_.machine_parameters.size())).setZero();
+    if (nominal != start_) {
+      // Large start values couple unseen directions to others at second order; they are no better known for that.
+      const NormalEquations sums = stream_.sums(nominal, Loss{}, Wanted::normal);
+      if (sums.finite) {
+        NullSpace at_nominal = find_null_space(stream_, nominal, sums);
+        if (at_nominal.basis.cols() > null_space.basis.cols()) null_space = std::move(at_nominal);
+      }
+    }
+    result_.gauge.rank_at_start = null_space.rank;
+    result_.gauge.weak_at_start = null_space.weak;
+    result_.gauge.singular_values = null_space.singular_values;
+    if (null_space.basis.cols() > 0 && options_.gauge == GaugeChoice::none) return false;
+    result_.gauge.constraints = fix_gauge(problem_, null_space, start_, options_.gauge);
+    result_.space = constrained_space(result_.gauge.constraints, start_, null_space.column_norms);
+    for (const GaugeConstraint& constraint : result_.gauge.constraints) {
+      lack_of_data_ = lack_of_data_ || !constraint.by_convention;
+      result_.gauge.warnings.push_back(fmt::format("{}; fixed by: {}", constraint.inseparable_words, constraint.words));
+    }
+    if (null_space.weak > 0)
+      result_.gauge.warnings.push_back(fmt::format(
+          "{} directions are seen by less than 3e-8 of the best one and were fixed as if unseen", null_space.weak));
+    return true;
+  }
+
+  SolverResult least_squares(const ConstrainedSpace* space) {
+    return solve(stream_, start_, space, Loss{}, options_.solver, space ? nullptr : &at_start_);
+  }
+
+  double stated_or_robust_scale(const Eigen::VectorXd& at) const {
+    return median_scale(scaled_norms(problem_, stream_.norms(at)));
+  }
+
+  // Cauchy with a scale that shrinks from the size of the start's residuals to that of the noise: gross outliers lose
+  // their weight before the loss is asked to tell them from good readings. Then the wanted loss at the final scale.
+  SolverResult robust(const ConstrainedSpace* space) {
+    Eigen::VectorXd x = start_;
+    double scale = std::max(1.0, stated_or_robust_scale(x));
+    SolverOptions rough = options_.solver;
+    rough.relative_cost = 1e-4;
+    rough.step = 1e-6;
+    rough.max_iterations = std::min(rough.max_iterations, 20);
+    for (int round = 0; round < kMostScaleRounds; ++round) {
+      const Loss cauchy{LossKind::cauchy, 0, scale};
+      const SolverResult step = solve(stream_, x, space, cauchy, rough, nullptr);
+      result_.history.insert(result_.history.end(), step.history.begin(), step.history.end());
+      if (step.status == IdentifyStatus::not_finite || step.status == IdentifyStatus::rank_deficient) return step;
+      x = step.estimates;
+      const double measured = stated_or_robust_scale(x);
+      const double next = options_.scale_from_residuals ? measured : std::max(1.0, measured);
+      const bool settled = next > 0.9 * scale;
+      scale = std::min(scale, std::max(next, 1e-12));
+      if (settled) break;
+    }
+    // Outliers raise the median a little; the stated uncertainties are better known than that.
+    if (!options_.scale_from_residuals) scale = 1;
+    loss_ = Loss{options_.loss, 0, scale};
+    result_.robust_scale = scale;
+    return solve(stream_, x, space, loss_, options_.solver, nullptr);
+  }
+
+  void finish(const SolverResult& solved, const ConstrainedSpace* space) {
+    result_.estimates = solved.estimates;
+    const std::vector<std::vector<double>> norms = stream_.norms(solved.estimates);
+    NormalEquations unweighted;
+    if (loss_.kind == LossKind::none) {
+      unweighted.normal = solved.normal;
+      unweighted.cost = solved.cost;
+    } else {
+      unweighted = stream_.sums(solved.estimates, Loss{}, Wanted::normal);
+      result_.statistics.robust_factor = robust_factor(problem_, norms, loss_);
+    }
+    statistics(unweighted, space);
+    const bool ill_conditioned = result_.statistics.observability.o2 < kIllConditioned;
+    const bool known = ill_conditioned ? covariance_from_factor(stream_.orthogonal_factor(solved.estimates, Loss{}),
+                                                                space, result_.covariance)
+                                       : covariance_of_estimates(unweighted.normal, space, result_.covariance);
+    list_outliers(norms);
+    keep_estimates(problem_, solved.estimates);
+    result_.gauge.rank_at_solution = rank_at_solution(unweighted);
+    if (!known) {
+      result_.covariance.resize(0, 0);
+      result_.status = IdentifyStatus::rank_deficient;
+      result_.message = "the readings do not determine all parameters at the solution";
+      return;
+    }
+    result_.covariance *= result_.statistics.robust_factor;
+    if (options_.apply_variance_factor && result_.statistics.variance_factor > 0 && loss_.kind == LossKind::none)
+      result_.covariance *= result_.statistics.variance_factor;
+    result_.standard_uncertainties = result_.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    write_errors();
+    result_.message = status_text(result_.status);
+    if (lack_of_data_ && result_.status == IdentifyStatus::converged) {
+      result_.status = IdentifyStatus::rank_deficient;
+      result_.message =
+          "the readings leave combinations of parameters open that no convention fixes; they keep their start values "
+          "and "
+          "predictions at other poses may be wrong";
+      result_.gauge.warnings.push_back(result_.message);
+    }
+  }
+
+  std::size_t rank_at_solution(const NormalEquations& sums) const {
+    if (result_.gauge.constraints.empty()) return static_cast<std::size_t>(start_.size());
+    // From the normal matrix alone: a count for the report, the gauge itself stands since the start.
+    const Eigen::VectorXd inverse =
+        sums.normal.diagonal().unaryExpr([](double square) { return square > 0 ? 1 / std::sqrt(square) : 0.0; });
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+        inverse.asDiagonal() * sums.normal * inverse.asDiagonal(), Eigen::EigenvaluesOnly);
+    const Eigen::VectorXd& values = eigen.eigenvalues();
+    return static_cast<std::size_t>((values.array() > 1e-14 * values[values.size() - 1]).count());
+  }
+
+  void statistics(const NormalEquations& sums, const ConstrainedSpace* space) {
+    FitStatistics& s = result_.statistics;
+    s.chi_square = 2 * sums.cost;
+    s.residual_count = used_residual_count(problem_) + static_cast<std::size_t>(prior_residual_count(problem_));
+    s.parameter_count = static_cast<std::size_t>(start_.size()) - result_.gauge.constraints.size();
+    s.degrees_of_freedom = static_cast<double>(s.residual_count) - static_cast<double>(s.parameter_count);
+    if (s.degrees_of_freedom > 0) {
+      s.p_value = chi_square_exceedance(s.chi_square, s.degrees_of_freedom);
+      s.variance_factor = s.chi_square / s.degrees_of_freedom;
+    }
+    s.observability = observability_of(sums.normal, space, used_reading_count(problem_));
+  }
+
+  void list_outliers(const std::vector<std::vector<double>>& norms) {
+    for (std::size_t o = 0; o < norms.size(); ++o) {
+      const int rows = problem_.observations[o].observations->rows();
+      const double limit = std::sqrt(chi_square_quantile(options_.outlier_norm_quantile, rows)) * result_.robust_scale;
+      for (std::size_t k = 0; k < norms[o].size(); ++k)
+        if (norms[o][k] > limit) result_.outliers.push_back({o, k, norms[o][k], loss_.weight(norms[o][k], rows)});
+    }
+    std::stable_sort(result_.outliers.begin(), result_.outliers.end(),
+                     [](const Outlier& a, const Outlier& b) { return a.norm > b.norm; });
+  }
+
+  void write_errors() {
+    result_.errors = problem_.errors;
+    ErrorSet& errors = result_.errors;
+    std::vector<double> uncertainties(errors.parameter_count(), 0.0);
+    for (std::size_t i = 0; i < problem_.machine_parameters.size(); ++i)
+      uncertainties[problem_.machine_parameters[i]] = result_.standard_uncertainties[static_cast<Index>(i)];
+    std::size_t next = 0;
+    for (ErrorMotion& motion : errors.motions) {
+      const auto first = uncertainties.begin() + static_cast<std::ptrdiff_t>(next);
+      motion.standard_uncertainty.assign(first, first + static_cast<std::ptrdiff_t>(motion.coefficients.size()));
+      next += motion.coefficients.size();
+    }
+    for (LocationError& location : errors.locations) location.standard_uncertainty = uncertainties[next++];
+    for (const SelectedObservations& selected : problem_.observations)
+      result_.setup.push_back(selected.observations->unknown_values());
+  }
+
+  Problem& problem_;
+  const IdentifyOptions& options_;
+  ReadingStream stream_;
+  Eigen::VectorXd start_;
+  NormalEquations at_start_;
+  Loss loss_;
+  bool lack_of_data_ = false;
+  Identification result_;
+};
+
+}  // namespace
+
+Identification identify(Problem& problem, const IdentifyOptions& options) { return Run(problem, options).run(); }
+
+std::vector<double> residuals_by_reading(const Observations& observations, int threads) {
+  const std::size_t rows = static_cast<std::size_t>(observations.rows()), count = observations.reading_count();
+  std::vector<double> result(rows * count);
+  constexpr std::size_t kBlock = Observations::kBlockSize;
+  for_each_block((count + kBlock - 1) / kBlock, threads, [&](std::size_t block) {
+    const std::size_t first = block * kBlock, size = std::min(kBlock, count - first);
+    std::vector<double> residuals(rows * size);
+    observations.evaluate(first, size, {}, {}, residuals.data(), nullptr, rows * size);
+    for (std::size_t k = 0; k < size; ++k)
+      for (std::size_t r = 0; r < rows; ++r) result[(first + k) * rows + r] = residuals[r * size + k];
+  });
+  return result;
+}
+
+}  // namespace abbe
