@@ -40,6 +40,7 @@ struct NullSpace {
 struct GaugeReport {
   std::size_t parameter_count = 0;
   std::size_t rank_at_start = 0;
+  std::size_t weak_at_start = 0;     ///< seen directions that are fixed too, because they are hardly seen
   std::size_t rank_at_solution = 0;  ///< without the constraints
   Eigen::VectorXd singular_values;   ///< at the start, of the column-scaled Jacobian, relative
   std::vector<GaugeConstraint> constraints;
