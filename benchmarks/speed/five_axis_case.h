@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -64,18 +65,36 @@ struct FiveAxisCase {
   }
 };
 
+/// Several arrays of the same length that start on cache lines, not a power of two apart: then neither split stores nor
+/// conflicts in the cache hide what the computation costs.
+class Arrays {
+ public:
+  Arrays(std::size_t arrays, std::size_t count) : stride_((count + 7) / 8 * 8 + 8 * 5), values_(arrays * stride_ + 8) {
+    first_ = values_.data();
+    while (reinterpret_cast<std::uintptr_t>(first_) % 64 != 0) ++first_;
+  }
+  Arrays(const Arrays&) = delete;
+  Arrays& operator=(const Arrays&) = delete;
+  double* operator[](std::size_t i) { return first_ + i * stride_; }
+
+ private:
+  std::size_t stride_;
+  std::vector<double> values_;
+  double* first_;
+};
+
 /// Random commands within the travel, structure of arrays.
 struct Commands {
-  std::vector<std::vector<double>> values;
+  Arrays values;
   std::vector<const double*> pointers;
 
-  Commands(const Machine& machine, std::size_t count) {
+  Commands(const Machine& machine, std::size_t count) : values(machine.axes.size(), count) {
     RandomStream random(7);
-    for (const Axis& axis : machine.axes) {
-      std::vector<double>& v = values.emplace_back(count);
-      for (double& q : v) q = random.uniform(axis.travel_min, axis.travel_max);
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      const Axis& axis = machine.axes[i];
+      for (std::size_t k = 0; k < count; ++k) values[i][k] = random.uniform(axis.travel_min, axis.travel_max);
+      pointers.push_back(values[i]);
     }
-    for (const std::vector<double>& v : values) pointers.push_back(v.data());
   }
 };
 

@@ -16,7 +16,7 @@
 namespace abbe::benchmarks {
 namespace {
 
-constexpr std::size_t kPoses = 1 << 16;
+constexpr std::size_t kPoses = 1 << 18;
 constexpr std::size_t kPosesPerTask = 4096;
 
 struct Setting {
@@ -24,20 +24,15 @@ struct Setting {
   ChainPlan plan{five_axis.machine, five_axis.errors, Body::tool, Body::workpiece};
   EigenChain baseline{five_axis.machine, five_axis.errors};
   Commands commands{five_axis.machine, kPoses};
-  std::vector<double> start[3], seen[3], rotation[9];
+  Arrays start{3, kPoses}, seen{3, kPoses}, rotation{9, kPoses};
 
-  Setting() {
-    for (std::vector<double>& v : start) v.assign(kPoses, 0.0);
-    for (std::vector<double>& v : seen) v.assign(kPoses, 0.0);
-    for (std::vector<double>& v : rotation) v.assign(kPoses, 0.0);
-    std::fill(start[2].begin(), start[2].end(), five_axis.machine.tool_offset.z());
-  }
+  Setting() { std::fill_n(start[2], kPoses, five_axis.machine.tool_offset.z()); }
 
   void transform(std::size_t first, std::size_t count, bool with_rotation) {
     std::array<const double*, 5> axis{};
     for (std::size_t i = 0; i < 5; ++i) axis[i] = commands.pointers[i] + first;
     RotationArrays arrays;
-    for (int i = 0; with_rotation && i < 9; ++i) arrays.r[i] = rotation[i].data() + first;
+    for (int i = 0; with_rotation && i < 9; ++i) arrays.r[i] = rotation[static_cast<std::size_t>(i)] + first;
     plan.transform({axis, count}, {&start[0][first], &start[1][first], &start[2][first]},
                    {&seen[0][first], &seen[1][first], &seen[2][first]}, arrays);
   }
@@ -52,9 +47,10 @@ struct Setting {
       const Eigen::Matrix4d expected = baseline.workpiece_from_tool(q);
       const Eigen::Vector4d point = expected * Eigen::Vector4d(start[0][k], start[1][k], start[2][k], 1);
       for (int i = 0; i < 3; ++i) {
-        largest = std::max(largest, std::abs(point[i] - seen[i][k]));
+        largest = std::max(largest, std::abs(point[i] - seen[static_cast<std::size_t>(i)][k]));
         for (int j = 0; j < 3; ++j)
-          largest = std::max(largest, 100 * std::abs(expected(i, j) - rotation[3 * i + j][k]));
+          largest =
+              std::max(largest, 100 * std::abs(expected(i, j) - rotation[static_cast<std::size_t>(3 * i + j)][k]));
       }
     }
     return largest;
@@ -124,8 +120,8 @@ void jacobian_one_core(benchmark::State& state) {
   std::vector<double> jacobian(parameters.size() * 3 * n);
   s.transform(0, n, true);
   for (auto _ : state) {
-    s.plan.differentiate({s.commands.pointers, n}, {}, {s.seen[0].data(), s.seen[1].data(), s.seen[2].data()}, rows,
-                         parameters, jacobian.data(), 3 * n);
+    s.plan.differentiate({s.commands.pointers, n}, {}, {s.seen[0], s.seen[1], s.seen[2]}, rows, parameters,
+                         jacobian.data(), 3 * n);
     benchmark::DoNotOptimize(jacobian.data());
     benchmark::ClobberMemory();
   }

@@ -15,6 +15,9 @@ namespace abbe::chain {
 /// How the sum of all terms of one component is evaluated.
 enum class Form { power, chebyshev, fourier, pieces };
 
+/// Polynomials with more coefficients are kept as Chebyshev series: their power form would lose digits.
+inline constexpr std::size_t kLargestPowerSize = 9;
+
 /// One component of an error motion as a function of the scaled argument of its group.
 struct Series {
   int component = 0;     ///< 0 .. 5: EX .. EC
@@ -69,14 +72,16 @@ struct AxisStep {
   bool has_errors = false;
   bool has_angles = false;  ///< any of EA, EB, EC
   bool first_order = false;
-  double sign = 1;  ///< displacement = sign * (q + zero_position); sense of the axis, negative if inverted
+  bool has_reference = false;  ///< reference is not the origin
+  double sign = 1;             ///< displacement = sign * (q + zero_position); sense of the axis, negative if inverted
   double zero_position = 0;
   double zero_sine = 0, zero_cosine = 1;
-  double direction[3] = {};        ///< of the displaced axis line
-  double centre[3] = {};           ///< a point on it
-  double reference[3] = {};        ///< Axis::point
-  double tilt_axes[3][3] = {};     ///< [k]: axis about which EA0, EB0, EC0 turns the line
-  double lowest = 0, highest = 0;  ///< positions covered by all terms
+  double direction[3] = {};           ///< of the displaced axis line
+  double direction_products[6] = {};  ///< xx, yy, zz, xy, xz, yz of it
+  double centre[3] = {};              ///< a point on it
+  double reference[3] = {};           ///< Axis::point
+  double tilt_axes[3][3] = {};        ///< [k]: axis about which EA0, EB0, EC0 turns the line
+  double lowest = 0, highest = 0;     ///< positions covered by all terms
   std::vector<FunctionGroup> groups;
   std::vector<BasisUse> bases;
   std::vector<Location> locations;

@@ -17,6 +17,12 @@ struct State {
   Lane column[3][3];
 };
 
+/// The caller's arrays from the block's first pose on.
+struct Results {
+  double* point[3];
+  double* column[3][3];
+};
+
 /// The state at one vector of poses.
 template <int kColumns>
 struct Moving {
@@ -43,17 +49,17 @@ HWY_INLINE void apply_error(const AxisStep& step, const AxisLanes& lanes, std::s
     return;
   }
   const ErrorRotation e = error_rotation(angles);
+  if (step.has_reference) m.point = m.point - reference;
   if (step.inverted) {
-    Vector3 r = m.point - reference - shift;
-    turn_back(e, r);
-    m.point = r + reference;
+    m.point = m.point - shift;
+    turn_back(e, m.point);
     for (int i = 0; i < kColumns; ++i) turn_back(e, m.column[i]);
   } else {
-    Vector3 r = m.point - reference;
-    turn(e, r);
-    m.point = r + reference + shift;
+    turn(e, m.point);
+    m.point = m.point + shift;
     for (int i = 0; i < kColumns; ++i) turn(e, m.column[i]);
   }
+  if (step.has_reference) m.point = m.point + reference;
 }
 
 template <int kColumns>
@@ -65,7 +71,7 @@ HWY_INLINE void apply_motion(const AxisStep& step, const AxisLanes& lanes, std::
     return;
   }
   const SineCosine angle = motion_angle(step, {load(lanes.sine.v + k), load(lanes.cosine.v + k)});
-  const Matrix3 r = rotation(step.direction, angle);
+  const Matrix3 r = rotation(step, angle);
   const Vector3 centre = set3(step.centre);
   m.point = times(r, m.point - centre) + centre;
   for (int i = 0; i < kColumns; ++i) m.column[i] = times(r, m.column[i]);
@@ -99,36 +105,50 @@ HWY_INLINE void begin(const ConstantTransform& start, std::size_t end, State& st
   }
 }
 
+/// Where the results of a block go; whole vectors directly, what is left over one by one.
+HWY_INLINE void write(Vector v, double* out, std::size_t k, std::size_t count) {
+  if (HWY_LIKELY(k + hn::Lanes(Tag()) <= count)) {
+    hn::StoreU(v, Tag(), out + k);
+  } else {
+    store_some(v, count - k, out + k);
+  }
+}
+HWY_INLINE void write(const Vector3& v, double* const* out, std::size_t k, std::size_t count) {
+  write(v.x, out[0], k, count);
+  write(v.y, out[1], k, count);
+  write(v.z, out[2], k, count);
+}
+
 template <int kColumns>
-HWY_INLINE void finish(const ConstantTransform& last, std::size_t end, State& state) {
+HWY_INLINE void finish(const ConstantTransform& last, const Results& results, std::size_t count, const State& state) {
   const Matrix3 turn = set_matrix(last.rotation);
   const Vector3 offset = set3(last.offset);
-  for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
+  for (std::size_t k = 0; k < count; k += hn::Lanes(Tag())) {
     Vector3 p = load(state.point, k);
     if (last.turns) p = times(turn, p);
-    store(p + offset, state.point, k);
+    write(p + offset, results.point, k, count);
     if constexpr (kColumns > 0) {
-      Vector3 column[kColumns];
+      Vector3 column[3];
       for (int i = 0; i < kColumns; ++i) {
         column[i] = load(state.column[i], k);
         if (last.turns) column[i] = times(turn, column[i]);
-        store(column[i], state.column[i], k);
       }
-      if constexpr (kColumns == 2) store(cross(column[0], column[1]), state.column[2], k);
+      if constexpr (kColumns == 2) column[2] = cross(column[0], column[1]);
+      for (int i = 0; i < 3; ++i) write(column[i], results.column[i], k, count);
     }
   }
 }
 
 template <int kColumns>
 void run(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
-         State& state, AxisLanes& lanes) {
+         const Results& results, State& state, AxisLanes& lanes) {
   const std::size_t end = whole_vectors(count);
   begin<kColumns>(chain.start, end, state);
   for (const AxisStep& step : chain.steps) {
     evaluate_axis(chain, step, positions.axis[step.axis] + first, count, lanes);
     pass_axis<kColumns>(step, lanes, end, state);
   }
-  finish<kColumns>(chain.end, end, state);
+  finish<kColumns>(chain.end, results, count, state);
 }
 
 void TransformBlock(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
@@ -136,26 +156,17 @@ void TransformBlock(const CompiledChain& chain, const PositionArrays& positions,
                     std::uint8_t* covered) {
   State state;
   AxisLanes lanes;
+  Results results{{seen.x + first, seen.y + first, seen.z + first}, {}};
+  for (int i = 0; rotation.r[0] != nullptr && i < 9; ++i) results.column[i % 3][i / 3] = rotation.r[i] + first;
   read_lane(start.x + first, count, state.point[0]);
   read_lane(start.y + first, count, state.point[1]);
   read_lane(start.z + first, count, state.point[2]);
   if (rotation.r[0] == nullptr) {
-    run<0>(chain, positions, first, count, state, lanes);
+    run<0>(chain, positions, first, count, results, state, lanes);
   } else if (chain.first_order) {
-    run<3>(chain, positions, first, count, state, lanes);
+    run<3>(chain, positions, first, count, results, state, lanes);
   } else {
-    run<2>(chain, positions, first, count, state, lanes);
-  }
-  const std::size_t bytes = count * sizeof(double);
-  std::memcpy(seen.x + first, state.point[0].v, bytes);
-  std::memcpy(seen.y + first, state.point[1].v, bytes);
-  std::memcpy(seen.z + first, state.point[2].v, bytes);
-  if (rotation.r[0] != nullptr) {
-    for (int row = 0; row < 3; ++row) {
-      for (int column = 0; column < 3; ++column) {
-        std::memcpy(rotation.r[3 * row + column] + first, state.column[column][row].v, bytes);
-      }
-    }
+    run<2>(chain, positions, first, count, results, state, lanes);
   }
   if (covered == nullptr) return;
   std::memset(covered + first, 1, count);

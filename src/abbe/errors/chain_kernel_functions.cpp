@@ -7,9 +7,6 @@
 namespace abbe::chain {
 namespace {
 
-/// Above this degree the power form would lose digits; the Chebyshev form does not.
-constexpr std::size_t kLargestPowerDegree = 8;
-
 bool is_polynomial(BasisKind kind) {
   return kind == BasisKind::monomial || kind == BasisKind::legendre || kind == BasisKind::chebyshev;
 }
@@ -205,7 +202,7 @@ void FunctionCompiler::add_terms(CompiledChain& chain, std::size_t step_index, c
         use.centre = 0.5 * (basis.from + basis.to);
         use.scale = 2.0 / (basis.to - basis.from);
         size = numbers = polynomial_size(basis);
-        const Form form = numbers > kLargestPowerDegree + 1 ? Form::chebyshev : Form::power;
+        const Form form = numbers > kLargestPowerSize ? Form::chebyshev : Form::power;
         group = &polynomial_group(step, form, use.centre, use.scale);
         term.conversion = polynomial_conversion(basis.kind, basis.size(), form, numbers);
       }

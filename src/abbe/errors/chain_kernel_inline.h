@@ -87,7 +87,11 @@ HWY_INLINE void turn_back(const SineCosine& a, Vector& u, Vector& v) {
 /// degree 13 and 14 on |r| <= pi/4. Source: the argument reduction of Cody and Waite (1980); coefficients of fdlibm.
 HWY_INLINE SineCosine sine_cosine(Vector x) {
   const Tag d;
-  const Vector n = hn::Round(hn::Mul(x, set(6.36619772367581382433e-01)));
+  const IndexTag di;
+  // Adding 1.5 * 2^52 rounds to a whole number and leaves it in the low bits; cheap on every processor.
+  const Vector rounder = set(6755399441055744.0);
+  const Vector rounded = hn::MulAdd(x, set(6.36619772367581382433e-01), rounder);
+  const Vector n = hn::Sub(rounded, rounder);
   Vector r = hn::NegMulAdd(n, set(1.57079632673412561417e+00), x);
   r = hn::NegMulAdd(n, set(6.07710050630396597660e-11), r);
   r = hn::NegMulAdd(n, set(2.02226624879595063154e-21), r);
@@ -105,25 +109,20 @@ HWY_INLINE SineCosine sine_cosine(Vector x) {
   c = hn::MulAdd(z, c, set(4.16666666666666019037e-02));
   const Vector one = set(1.0), half = hn::Mul(z, set(0.5)), w = hn::Sub(one, half);
   c = hn::Add(w, hn::MulAdd(hn::Mul(z, z), c, hn::Sub(hn::Sub(one, w), half)));
-  // Quadrant n mod 4 in floating point: exact, and without conversions that older processors lack.
-  const Vector quadrant = hn::NegMulAdd(set(4.0), hn::Floor(hn::Mul(n, set(0.25))), n);
-  const auto odd = hn::Or(hn::Eq(quadrant, one), hn::Eq(quadrant, set(3.0)));
-  const auto sine_negative = hn::Ge(quadrant, set(2.0));
-  const auto cosine_negative = hn::Or(hn::Eq(quadrant, one), hn::Eq(quadrant, set(2.0)));
+  const auto quadrant = hn::BitCast(di, rounded);
+  const auto odd = hn::MaskFromVec(hn::BitCast(d, hn::Neg(hn::And(quadrant, hn::Set(di, 1)))));
   const Vector sign = hn::SignBit(d);
-  const Vector sine = hn::IfThenElse(odd, c, s), cosine = hn::IfThenElse(odd, s, c);
-  return {hn::Xor(sine, hn::IfThenElseZero(sine_negative, sign)),
-          hn::Xor(cosine, hn::IfThenElseZero(cosine_negative, sign))};
+  const Vector sine_sign = hn::And(hn::BitCast(d, hn::ShiftLeft<62>(quadrant)), sign);
+  const Vector cosine_sign = hn::And(hn::BitCast(d, hn::ShiftLeft<62>(hn::Add(quadrant, hn::Set(di, 1)))), sign);
+  return {hn::Xor(hn::IfThenElse(odd, c, s), sine_sign), hn::Xor(hn::IfThenElse(odd, s, c), cosine_sign)};
 }
 
 struct ErrorRotation {
   SineCosine a, b, c;  ///< of EA, EB, EC
 };
 
-/// Short series where all three angles are below 1/256 rad (next terms below 5e-18), else the full range; decided per
-/// pose, so that a result does not depend on its neighbours.
-HWY_INLINE SineCosine short_sine_cosine(Vector x) {
-  const Vector z = hn::Mul(x, x);
+/// Series for angles below 1/256 rad (next terms below 5e-18), from the angle and its square.
+HWY_INLINE SineCosine short_sine_cosine(Vector x, Vector z) {
   const Vector s = hn::MulAdd(z, set(1.0 / 120), set(-1.0 / 6));
   const Vector c = hn::MulAdd(z, set(1.0 / 24), set(-0.5));
   return {hn::MulAdd(hn::Mul(x, z), s, x), hn::MulAdd(z, c, set(1.0))};
@@ -132,16 +131,22 @@ template <class Mask>
 HWY_INLINE SineCosine choose(Mask large, const SineCosine& yes, const SineCosine& no) {
   return {hn::IfThenElse(large, yes.sine, no.sine), hn::IfThenElse(large, yes.cosine, no.cosine)};
 }
+/// Full range where the three angles are not small together; decided per pose, so that a result does not depend on its
+/// neighbours.
+inline HWY_NOINLINE ErrorRotation with_large_angles(const Vector3& angles, const Vector3& squares, ErrorRotation e) {
+  const Vector sum = hn::Add(hn::Add(squares.x, squares.y), squares.z);
+  const auto large = hn::Ge(sum, set(0x1p-16));
+  e.a = choose(large, sine_cosine(angles.x), e.a);
+  e.b = choose(large, sine_cosine(angles.y), e.b);
+  e.c = choose(large, sine_cosine(angles.z), e.c);
+  return e;
+}
 HWY_INLINE ErrorRotation error_rotation(const Vector3& angles) {
-  const Tag d;
-  ErrorRotation e{short_sine_cosine(angles.x), short_sine_cosine(angles.y), short_sine_cosine(angles.z)};
-  const Vector largest = hn::Max(hn::Max(hn::Abs(angles.x), hn::Abs(angles.y)), hn::Abs(angles.z));
-  const auto large = hn::Ge(largest, set(1.0 / 256));
-  if (HWY_UNLIKELY(!hn::AllFalse(d, large))) {
-    e.a = choose(large, sine_cosine(angles.x), e.a);
-    e.b = choose(large, sine_cosine(angles.y), e.b);
-    e.c = choose(large, sine_cosine(angles.z), e.c);
-  }
+  const Vector3 z = {hn::Mul(angles.x, angles.x), hn::Mul(angles.y, angles.y), hn::Mul(angles.z, angles.z)};
+  const ErrorRotation e{short_sine_cosine(angles.x, z.x), short_sine_cosine(angles.y, z.y),
+                        short_sine_cosine(angles.z, z.z)};
+  const auto large = hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-16));
+  if (HWY_UNLIKELY(!hn::AllFalse(Tag(), large))) return with_large_angles(angles, z, e);
   return e;
 }
 /// Rz(EC) Ry(EB) Rx(EA) r
@@ -176,14 +181,19 @@ HWY_INLINE Vector3 transposed_times(const Matrix3& m, const Vector3& a) {
 }
 HWY_INLINE Matrix3 set_matrix(const double* m) { return {set3(m), set3(m + 3), set3(m + 6)}; }
 
-/// Rotation about a unit direction u.
-HWY_INLINE Matrix3 rotation(const double* u, const SineCosine& a) {
+/// Rotation of a rotary axis about its displaced line.
+HWY_INLINE Matrix3 rotation(const AxisStep& step, const SineCosine& a) {
   const Vector rest = hn::Sub(set(1.0), a.cosine);
-  const Vector xs = hn::Mul(set(u[0]), a.sine), ys = hn::Mul(set(u[1]), a.sine), zs = hn::Mul(set(u[2]), a.sine);
-  const Vector xy = set(u[0] * u[1]), xz = set(u[0] * u[2]), yz = set(u[1] * u[2]);
-  return {{hn::MulAdd(rest, set(u[0] * u[0]), a.cosine), hn::MulSub(rest, xy, zs), hn::MulAdd(rest, xz, ys)},
-          {hn::MulAdd(rest, xy, zs), hn::MulAdd(rest, set(u[1] * u[1]), a.cosine), hn::MulSub(rest, yz, xs)},
-          {hn::MulSub(rest, xz, ys), hn::MulAdd(rest, yz, xs), hn::MulAdd(rest, set(u[2] * u[2]), a.cosine)}};
+  const Vector xs = hn::Mul(set(step.direction[0]), a.sine);
+  const Vector ys = hn::Mul(set(step.direction[1]), a.sine);
+  const Vector zs = hn::Mul(set(step.direction[2]), a.sine);
+  const Vector xy = set(step.direction_products[3]), xz = set(step.direction_products[4]);
+  const Vector yz = set(step.direction_products[5]);
+  return {
+      {hn::MulAdd(rest, set(step.direction_products[0]), a.cosine), hn::MulSub(rest, xy, zs), hn::MulAdd(rest, xz, ys)},
+      {hn::MulAdd(rest, xy, zs), hn::MulAdd(rest, set(step.direction_products[1]), a.cosine), hn::MulSub(rest, yz, xs)},
+      {hn::MulSub(rest, xz, ys), hn::MulAdd(rest, yz, xs),
+       hn::MulAdd(rest, set(step.direction_products[2]), a.cosine)}};
 }
 
 /// Sine and cosine of sign * (q + zero position) from those of q.
@@ -209,6 +219,13 @@ HWY_INLINE std::size_t whole_vectors(std::size_t count) {
 HWY_INLINE void read_lane(const double* from, std::size_t count, Lane& to) {
   std::memcpy(to.v, from, count * sizeof(double));
   for (std::size_t k = count; k < whole_vectors(count); ++k) to.v[k] = from[count - 1];
+}
+
+/// The first values of a vector only.
+HWY_INLINE void store_some(Vector v, std::size_t number, double* out) {
+  Lane tail;
+  store(v, tail.v);
+  std::memcpy(out, tail.v, number * sizeof(double));
 }
 
 /// Interval and local position (0 to 1) of pieces.
@@ -261,6 +278,32 @@ HWY_INLINE void add_to(double* out, bool add, const Vector* value) {
   }
 }
 
+/// Horner with the number of coefficients known, so that nothing but multiply-adds is left.
+template <std::size_t kVectors, std::size_t kSize>
+HWY_INLINE void horner(const double* c, const Vector* s, Vector* value) {
+  for (std::size_t i = 0; i < kVectors; ++i) value[i] = set(c[kSize - 1]);
+  for (std::size_t n = kSize - 1; n-- > 0;) {
+    for (std::size_t i = 0; i < kVectors; ++i) value[i] = hn::MulAdd(value[i], s[i], set(c[n]));
+  }
+}
+
+template <std::size_t kVectors>
+HWY_INLINE void clenshaw(const Series& series, const double* c, const Vector* s, Vector* value) {
+  Vector before[kVectors];
+  for (std::size_t i = 0; i < kVectors; ++i) {
+    before[i] = hn::Zero(Tag());
+    value[i] = set(c[series.size - 1]);
+  }
+  for (std::size_t n = series.size - 1; n-- > 0;) {
+    for (std::size_t i = 0; i < kVectors; ++i) {
+      const Vector twice = n > 0 ? hn::Add(s[i], s[i]) : s[i];
+      const Vector next = hn::MulAdd(twice, value[i], hn::Sub(set(c[n]), before[i]));
+      before[i] = value[i];
+      value[i] = next;
+    }
+  }
+}
+
 /// kVectors vectors of poses from k on, all series of one group.
 template <std::size_t kVectors>
 HWY_INLINE void evaluate_polynomials(const FunctionGroup& group, const double* numbers, const AxisLanes& lanes,
@@ -271,21 +314,38 @@ HWY_INLINE void evaluate_polynomials(const FunctionGroup& group, const double* n
   }
   for (const Series& series : group.series) {
     const double* c = numbers + series.first;
-    for (std::size_t i = 0; i < kVectors; ++i) value[i] = set(c[series.size - 1]);
-    if (group.form == Form::power) {
-      for (std::size_t n = series.size - 1; n-- > 0;) {
-        for (std::size_t i = 0; i < kVectors; ++i) value[i] = hn::MulAdd(value[i], s[i], set(c[n]));
-      }
-    } else {  // Clenshaw
-      Vector before[kVectors];
-      for (std::size_t i = 0; i < kVectors; ++i) before[i] = hn::Zero(Tag());
-      for (std::size_t n = series.size - 1; n-- > 0;) {
-        for (std::size_t i = 0; i < kVectors; ++i) {
-          const Vector twice = n > 0 ? hn::Add(s[i], s[i]) : s[i];
-          const Vector next = hn::MulAdd(twice, value[i], hn::Sub(set(c[n]), before[i]));
-          before[i] = value[i];
-          value[i] = next;
-        }
+    if (group.form == Form::chebyshev) {
+      clenshaw<kVectors>(series, c, s, value);
+    } else {
+      static_assert(kLargestPowerSize == 9);
+      switch (series.size) {
+        case 1:
+          horner<kVectors, 1>(c, s, value);
+          break;
+        case 2:
+          horner<kVectors, 2>(c, s, value);
+          break;
+        case 3:
+          horner<kVectors, 3>(c, s, value);
+          break;
+        case 4:
+          horner<kVectors, 4>(c, s, value);
+          break;
+        case 5:
+          horner<kVectors, 5>(c, s, value);
+          break;
+        case 6:
+          horner<kVectors, 6>(c, s, value);
+          break;
+        case 7:
+          horner<kVectors, 7>(c, s, value);
+          break;
+        case 8:
+          horner<kVectors, 8>(c, s, value);
+          break;
+        default:
+          horner<kVectors, 9>(c, s, value);
+          break;
       }
     }
     add_to<kVectors>(out[series.component].v + k, (written >> series.component & 1) != 0, value);
@@ -350,16 +410,6 @@ HWY_INLINE void evaluate_pieces(const FunctionGroup& group, const double* number
   }
 }
 
-template <std::size_t kVectors>
-HWY_INLINE void evaluate_group(const FunctionGroup& group, const double* numbers, const AxisLanes& lanes, std::size_t k,
-                               unsigned written, Lane* out) {
-  if (group.form == Form::fourier) {
-    evaluate_fourier<kVectors>(group, numbers, lanes, k, written, out);
-  } else {
-    evaluate_polynomials<kVectors>(group, numbers, lanes, k, written, out);
-  }
-}
-
 /// Reads the commands of a step's axis and evaluates its error motions into lanes.error.
 HWY_INLINE void evaluate_axis(const CompiledChain& chain, const AxisStep& step, const double* commands,
                               std::size_t count, AxisLanes& lanes) {
@@ -376,16 +426,19 @@ HWY_INLINE void evaluate_axis(const CompiledChain& chain, const AxisStep& step, 
   unsigned written = 0;
   const double* numbers = chain.numbers.data();
   for (const FunctionGroup& group : step.groups) {
+    // Several vectors at a time hide the latency of the recurrences and share the coefficients, as many as registers
+    // hold; the last ones go singly, with the same operations.
     std::size_t k = 0;
     if (group.form == Form::pieces) {
       for (; k < end; k += width) evaluate_pieces(group, numbers, lanes, k, written, lanes.error);
+    } else if (group.form == Form::fourier) {
+      for (; k + 2 * width <= end; k += 2 * width) evaluate_fourier<2>(group, numbers, lanes, k, written, lanes.error);
+      for (; k < end; k += width) evaluate_fourier<1>(group, numbers, lanes, k, written, lanes.error);
     } else {
-      // Four vectors at a time hide the latency of the recurrences; the last ones go singly, with the same operations.
-      constexpr std::size_t kAtOnce = 4;
-      for (; k + kAtOnce * width <= end; k += kAtOnce * width) {
-        evaluate_group<kAtOnce>(group, numbers, lanes, k, written, lanes.error);
+      for (; k + 8 * width <= end; k += 8 * width) {
+        evaluate_polynomials<8>(group, numbers, lanes, k, written, lanes.error);
       }
-      for (; k < end; k += width) evaluate_group<1>(group, numbers, lanes, k, written, lanes.error);
+      for (; k < end; k += width) evaluate_polynomials<1>(group, numbers, lanes, k, written, lanes.error);
     }
     for (const Series& series : group.series) written |= 1u << series.component;
   }

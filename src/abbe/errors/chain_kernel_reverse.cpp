@@ -131,8 +131,7 @@ HWY_INLINE void take_back_motion(const AxisStep& step, std::size_t rows, std::si
       }
       continue;
     }
-    const Matrix3 r =
-        rotation(step.direction, motion_angle(step, {load(s.lanes.sine.v + k), load(s.lanes.cosine.v + k)}));
+    const Matrix3 r = rotation(step, motion_angle(step, {load(s.lanes.sine.v + k), load(s.lanes.cosine.v + k)}));
     const Vector3 r_out = out - centre, r_in = transposed_times(r, r_out);
     store(r_in + centre, s.point, k);
     for (std::size_t row = 0; row < rows; ++row) {
@@ -166,12 +165,6 @@ struct Target {
   double* jacobian;
   std::size_t stride, count, first_row, rows;
 };
-
-HWY_INLINE void store_some(Vector v, std::size_t number, double* out) {
-  Lane tail;
-  store(v, tail.v);
-  std::memcpy(out, tail.v, number * sizeof(double));
-}
 
 /// Writes channel times factor (null: 1) as the column of one parameter.
 HWY_INLINE void write_column(const Target& target, const Sweep& s, int channel, const Lane* factor,

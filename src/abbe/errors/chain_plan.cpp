@@ -86,6 +86,7 @@ struct ChainPlan::Implementation {
     step.first_order = errors.composition.first_order;
     step.sign = inverted ? -axis.sense() : axis.sense();
     for (int k = 0; k < 3; ++k) step.reference[k] = axis.point[k];
+    step.has_reference = !axis.point.isZero(0);
     set_range(step, errors);
     std::size_t parameter = errors.parameter_count() - 3 - errors.locations.size();
     for (const LocationError& location : errors.locations) {
@@ -124,6 +125,8 @@ struct ChainPlan::Implementation {
     step.zero_sine = std::sin(step.zero_position);
     step.zero_cosine = std::cos(step.zero_position);
     for (int i = 0; i < 3; ++i) {
+      step.direction_products[i] = direction[i] * direction[i];
+      step.direction_products[3 + i] = direction[i == 2 ? 1 : 0] * direction[i == 0 ? 1 : 2];
       step.direction[i] = direction[i];
       step.centre[i] = centre[i];
       for (int k = 0; k < 3; ++k) step.tilt_axes[k][i] = axes(i, k);
