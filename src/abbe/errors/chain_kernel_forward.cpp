@@ -30,6 +30,27 @@ struct Moving {
   Vector3 column[kColumns + 1];  // one too many: an array must not be empty
 };
 
+/// Error rotation of the point and the columns; angle by angle for all, so that independent operations follow each
+/// other.
+template <int kColumns>
+HWY_INLINE void turn_all(const ErrorRotation& e, Moving<kColumns>& m) {
+  turn(e.a, m.point.y, m.point.z);
+  for (int i = 0; i < kColumns; ++i) turn(e.a, m.column[i].y, m.column[i].z);
+  turn(e.b, m.point.z, m.point.x);
+  for (int i = 0; i < kColumns; ++i) turn(e.b, m.column[i].z, m.column[i].x);
+  turn(e.c, m.point.x, m.point.y);
+  for (int i = 0; i < kColumns; ++i) turn(e.c, m.column[i].x, m.column[i].y);
+}
+template <int kColumns>
+HWY_INLINE void turn_all_back(const ErrorRotation& e, Moving<kColumns>& m) {
+  turn_back(e.c, m.point.x, m.point.y);
+  for (int i = 0; i < kColumns; ++i) turn_back(e.c, m.column[i].x, m.column[i].y);
+  turn_back(e.b, m.point.z, m.point.x);
+  for (int i = 0; i < kColumns; ++i) turn_back(e.b, m.column[i].z, m.column[i].x);
+  turn_back(e.a, m.point.y, m.point.z);
+  for (int i = 0; i < kColumns; ++i) turn_back(e.a, m.column[i].y, m.column[i].z);
+}
+
 template <int kColumns>
 HWY_INLINE void apply_error(const AxisStep& step, const AxisLanes& lanes, std::size_t k, Moving<kColumns>& m) {
   const Vector3 reference = set3(step.reference), shift = load(lanes.error, k);
@@ -52,12 +73,10 @@ HWY_INLINE void apply_error(const AxisStep& step, const AxisLanes& lanes, std::s
   if (step.has_reference) m.point = m.point - reference;
   if (step.inverted) {
     m.point = m.point - shift;
-    turn_back(e, m.point);
-    for (int i = 0; i < kColumns; ++i) turn_back(e, m.column[i]);
+    turn_all_back(e, m);
   } else {
-    turn(e, m.point);
+    turn_all(e, m);
     m.point = m.point + shift;
-    for (int i = 0; i < kColumns; ++i) turn(e, m.column[i]);
   }
   if (step.has_reference) m.point = m.point + reference;
 }

@@ -117,6 +117,7 @@ HWY_INLINE SineCosine sine_cosine(Vector x) {
   return {hn::Xor(hn::IfThenElse(odd, c, s), sine_sign), hn::Xor(hn::IfThenElse(odd, s, c), cosine_sign)};
 }
 
+/// Of E = Rz(EC) Ry(EB) Rx(EA).
 struct ErrorRotation {
   SineCosine a, b, c;  ///< of EA, EB, EC
 };
@@ -148,17 +149,6 @@ HWY_INLINE ErrorRotation error_rotation(const Vector3& angles) {
   const auto large = hn::Ge(hn::Add(hn::Add(z.x, z.y), z.z), set(0x1p-16));
   if (HWY_UNLIKELY(!hn::AllFalse(Tag(), large))) return with_large_angles(angles, z, e);
   return e;
-}
-/// Rz(EC) Ry(EB) Rx(EA) r
-HWY_INLINE void turn(const ErrorRotation& e, Vector3& r) {
-  turn(e.a, r.y, r.z);
-  turn(e.b, r.z, r.x);
-  turn(e.c, r.x, r.y);
-}
-HWY_INLINE void turn_back(const ErrorRotation& e, Vector3& r) {
-  turn_back(e.c, r.x, r.y);
-  turn_back(e.b, r.z, r.x);
-  turn_back(e.a, r.y, r.z);
 }
 /// (I + skew(e))^-1 r, for the first-order composition of published models.
 HWY_INLINE Vector3 first_order_inverse(const Vector3& e, const Vector3& r) {
