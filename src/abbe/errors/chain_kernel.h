@@ -39,6 +39,7 @@ struct FunctionGroup {
   double inverse_step = 0;  ///< 1 / length of equal intervals; 0: the interval is searched
   std::size_t breaks = 0;   ///< index into numbers: [pieces] starts, then [pieces] inverse lengths
   std::size_t pieces = 0;
+  bool straight = false;  ///< all pieces are straight lines
   std::vector<Series> series;
 };
 

@@ -76,6 +76,7 @@ FunctionGroup make_pieces(const Basis& basis, std::vector<double>& numbers) {
     group.pieces = breaks.size() - 1;
   }
   const double range = breaks.back() - breaks.front();
+  group.straight = basis.kind == BasisKind::table_linear;
   group.start = breaks.front();
   group.period = basis.periodic ? range : 0;
   const double step = range / static_cast<double>(group.pieces);

@@ -391,9 +391,12 @@ HWY_INLINE void evaluate_pieces(const FunctionGroup& group, const double* number
   const auto at = hn::ShiftLeft<2>(whole_index(piece.index));
   for (const Series& series : group.series) {
     const double* c = numbers + series.first;
-    Vector value = hn::GatherIndex(d, c, hn::Add(at, hn::Set(di, 3)));
-    value = hn::MulAdd(value, piece.local, hn::GatherIndex(d, c, hn::Add(at, hn::Set(di, 2))));
-    value = hn::MulAdd(value, piece.local, hn::GatherIndex(d, c, hn::Add(at, hn::Set(di, 1))));
+    Vector value = hn::GatherIndex(d, c, hn::Add(at, hn::Set(di, 1)));
+    if (!group.straight) {
+      value = hn::MulAdd(hn::GatherIndex(d, c, hn::Add(at, hn::Set(di, 2))), piece.local, value);
+      const Vector cube = hn::Mul(hn::GatherIndex(d, c, hn::Add(at, hn::Set(di, 3))), piece.local);
+      value = hn::MulAdd(cube, piece.local, value);
+    }
     value = hn::MulAdd(value, piece.local, hn::GatherIndex(d, c, at));
     add_to<1>(out[series.component].v + k, (written >> series.component & 1) != 0, &value);
     written |= 1u << series.component;
