@@ -98,6 +98,9 @@ BestFitTransform best_fit_transform(std::span<const Vector3d> source, std::span<
   } else if (fit.extent.y() <= std::max({rounding, 1e-9 * fit.extent.x(), collinear_extent})) {
     fit.status = BestFitStatus::collinear;
     fit.undetermined_direction = fit.target_from_source.rotation * principal.eigenvectors().col(2);
+    int largest = 0;
+    fit.undetermined_direction.cwiseAbs().maxCoeff(&largest);
+    if (fit.undetermined_direction[largest] < 0) fit.undetermined_direction *= -1;
   } else {
     fit.status = BestFitStatus::ok;
   }

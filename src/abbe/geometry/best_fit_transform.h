@@ -28,7 +28,8 @@ struct BestFitTransform {
   double rms = 0;                     ///< weighted root mean square distance target - transform * source, mm
   /// Root mean square extent of the source points along their principal directions, largest first, mm.
   Eigen::Vector3d extent = Eigen::Vector3d::Zero();
-  /// Collinear: unit direction, in the target frame, about which the rotation is not determined.
+  /// Collinear: unit direction, in the target frame, about which the rotation is not determined; its largest
+  /// component is positive.
   Eigen::Vector3d undetermined_direction = Eigen::Vector3d::Zero();
   double scale = 0;                   ///< robust fit: robust standard deviation of one coordinate, mm
   std::vector<std::uint8_t> inliers;  ///< robust fit: [points], 1 where the point took part in the last step
