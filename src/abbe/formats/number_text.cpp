@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
+#include <stdexcept>
 
 namespace abbe {
 namespace {
@@ -115,7 +114,7 @@ NumberProblem parse_number(std::string_view text, int decimal_shift, double& val
 }
 
 std::string shortest_text(double value, int decimal_shift) {
-  assert(std::isfinite(value));
+  if (!std::isfinite(value)) throw std::logic_error("a number to be written is not finite");
   std::array<char, 32> buffer;
   const auto result =
       std::to_chars(buffer.data(), buffer.data() + buffer.size(), std::abs(value), std::chars_format::scientific);

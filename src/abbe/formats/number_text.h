@@ -8,7 +8,7 @@ namespace abbe {
 /// Largest magnitude accepted from a file, in mm, rad, s or without unit: beyond it a number is a mistake.
 inline constexpr double kLargestInput = 1e9;
 
-/// Shortest decimal text that reads back as the same double; independent of the locale. Finite values only.
+/// Shortest decimal text that reads back as the same double; independent of the locale.
 ///
 /// With a decimal shift the text is that of value * 10^shift, exact in decimal: 0.0025 mm shifted by 3 is "2.5" um.
 /// Reading it back with the opposite shift gives the same bits, which multiplying by 1000 and 0.001 would not.

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <stdexcept>
 
 #include "abbe/formats/unit.h"
 
@@ -78,6 +79,11 @@ TEST(NumberText, RefusesWhatIsNoDecimalNumber) {
   EXPECT_EQ(value, 0);
   EXPECT_EQ(parse_number("+.5", 0, value), NumberProblem::none);
   EXPECT_EQ(value, 0.5);
+}
+
+TEST(NumberText, NeverWritesNanAsANumber) {
+  EXPECT_THROW(shortest_text(std::numeric_limits<double>::quiet_NaN()), std::logic_error);
+  EXPECT_THROW(shortest_text(-std::numeric_limits<double>::infinity()), std::logic_error);
 }
 
 TEST(Unit, ConvertsToMillimetreAndRadian) {

@@ -199,7 +199,7 @@ TEST(StudyFile, RefusesContradictionsInASetUp) {
             file + ":16:11: setup[1].noise.xyz: the unit is missing from the name; expected xyz_mm, xyz_um or xyz_m");
   EXPECT_EQ(wrong("noise = { xyz_um = 10, xyz_um_per_m = 5 }", "noise = { range_um = 10 }"),
             file +
-                ":15:9: setup[1].noise: the noise is missing or zero; expected xyz_um with xyz_um_per_m, or range_um "
+                ":16:9: setup[1].noise: the noise is missing or zero; expected xyz_um with xyz_um_per_m, or range_um "
                 "with range_um_per_m and angle_arcsec");
   EXPECT_EQ(wrong("instrument = \"tracker\"", "instrument = \"ballbar\""),
             file + ":15:1: setup[1].instrument: unknown word \"ballbar\"; expected \"tracker\"");
@@ -213,7 +213,7 @@ TEST(StudyFile, RefusesContradictionsInASetUp) {
                 "moves between them; expected another mounted_on for one of them");
   EXPECT_EQ(wrong("true_pose = { position_mm = [300, -200, 150], angles_deg = [1, 2, 30] }", ""),
             file +
-                ":16:1: setup[1].station[1]: a simulation needs the true pose; expected true_pose = { position_mm = "
+                ":17:1: setup[1].station[1]: a simulation needs the true pose; expected true_pose = { position_mm = "
                 "[x, y, z], angles_deg = [a, b, c] }");
   EXPECT_EQ(wrong("points = 500", ""), file +
                                            ":34:1: setup[1].plan[2].points: missing; expected a whole number from 1 "

@@ -1,0 +1,18 @@
+// Study files of a fixed machine: any bytes give a study or an InputError.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/study_file.h"
+#include "fuzz_machine_data.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const abbe::Machine machine = fuzz_machine();
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  try {
+    abbe::parse_study(text, "no-folder/fuzz.study.toml", machine);
+  } catch (const abbe::InputError&) {
+  }
+  return 0;
+}

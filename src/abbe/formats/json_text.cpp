@@ -1,0 +1,57 @@
+#include "abbe/formats/json_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "abbe/formats/number_text.h"
+
+namespace abbe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_flat(const Json& array) {
+  return std::all_of(array.begin(), array.end(), [](const Json& element) { return element.is_primitive(); });
+}
+
+void append(const Json& value, const std::string& path, std::size_t depth, std::string& text) {
+  const std::string inner(2 * depth + 2, ' '), outer(2 * depth, ' ');
+  if (value.is_number_float()) {
+    const double number = value.get<double>();
+    if (!std::isfinite(number)) throw std::logic_error("number that is not finite in JSON at " + path);
+    text += shortest_text(number);
+  } else if (value.is_object() && !value.empty()) {
+    text += "{\n";
+    bool first = true;
+    for (const auto& [key, element] : value.items()) {
+      text += (first ? "" : ",\n") + inner + Json(key).dump() + ": ";
+      append(element, path + "/" + key, depth + 1, text);
+      first = false;
+    }
+    text += "\n" + outer + "}";
+  } else if (value.is_array() && !value.empty()) {
+    const bool flat = is_flat(value);
+    text += flat ? "[" : "[\n";
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      text += i == 0 ? "" : flat ? ", " : ",\n";
+      if (!flat) text += inner;
+      append(value[i], path + "/" + std::to_string(i), depth + 1, text);
+    }
+    text += flat ? "]" : "\n" + outer + "]";
+  } else {
+    // Texts that are no UTF-8 (file names may be any bytes) get the replacement character.
+    text += value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+}
+
+}  // namespace
+
+std::string json_text(const nlohmann::ordered_json& value) {
+  std::string text;
+  append(value, "", 0, text);
+  text += '\n';
+  return text;
+}
+
+}  // namespace abbe

@@ -1,0 +1,41 @@
+#include "abbe/formats/json_text.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+namespace abbe {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+TEST(JsonText, IsStableAndReadable) {
+  Json value;
+  value["zebra"] = 0.1;
+  value["apple"] = {1, 2.5, nullptr, true};
+  value["empty"] = Json::object();
+  value["none"] = Json::array();
+  value["tables"] = {{{"name", "a \"b\"\n"}}, {{"name", "c"}}};
+  EXPECT_EQ(json_text(value),
+            "{\n  \"zebra\": 0.1,\n  \"apple\": [1, 2.5, null, true],\n  \"empty\": {},\n  \"none\": [],\n"
+            "  \"tables\": [\n    {\n      \"name\": \"a \\\"b\\\"\\n\"\n    },\n    {\n      \"name\": \"c\"\n    }\n "
+            " ]\n}\n");
+}
+
+TEST(JsonText, NumbersReadBackToTheSameBits) {
+  std::mt19937_64 generator(9);
+  std::normal_distribution<double> normal;
+  std::vector<double> numbers;
+  for (int i = 0; i < 1000; ++i)
+    numbers.push_back(std::ldexp(normal(generator), static_cast<int>(generator() % 200) - 100));
+  EXPECT_EQ(Json::parse(json_text(numbers)).get<std::vector<double>>(), numbers);
+}
+
+TEST(JsonText, NeverWritesNanAsANumber) {
+  EXPECT_THROW(json_text({{"a", std::numeric_limits<double>::quiet_NaN()}}), std::logic_error);
+  EXPECT_THROW(json_text({{"a", {1.0, std::numeric_limits<double>::infinity()}}}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace abbe
