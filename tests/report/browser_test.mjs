@@ -1,0 +1,202 @@
+// Opens reports in headless Chromium from file:// and checks what a reader sees.
+//   node browser_test.mjs --web WEB_DIR --out FOLDER REPORT.html ...
+// Exit code 77: Chromium is not installed, nothing was tested.
+import {existsSync, mkdirSync, readFileSync, statSync, writeFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {basename, join, resolve} from 'node:path';
+import {pathToFileURL} from 'node:url';
+
+const reports = [];
+const options = {web: '', out: ''};
+for (let i = 2; i < process.argv.length; ++i) {
+  const name = process.argv[i];
+  if (name.startsWith('--')) options[name.slice(2)] = process.argv[++i];
+  else reports.push(resolve(name));
+}
+const chromiumPath = process.env.ABBE_CHROMIUM ?? '/usr/bin/chromium';
+if (!existsSync(chromiumPath)) {
+  console.log(`SKIPPED: no Chromium at ${chromiumPath} (set ABBE_CHROMIUM)`);
+  process.exit(77);
+}
+const {chromium} = createRequire(join(resolve(options.web), 'package.json'))('playwright-core');
+mkdirSync(options.out, {recursive: true});
+
+const failures = [];
+const check = (good, text) => {
+  if (!good) failures.push(text);
+};
+
+/// Number as the page writes it.
+const parse = (text) => {
+  const plain = text.replace(/[\u2009\u202f ]/g, '').replace(/\u2212/g, '-');
+  const power = plain.match(/^(.*)·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)$/);
+  if (!power) return Number(plain);
+  const exponent = power[2].replace('⁻', '-').replace(/[⁰¹²³⁴⁵⁶⁷⁸⁹]/g, (d) => '⁰¹²³⁴⁵⁶⁷⁸⁹'.indexOf(d));
+  return Number(power[1]) * 10 ** Number(exponent);
+};
+
+async function inspect(browser, file) {
+  const name = basename(file, '.html');
+  const problems = (text) => `${name}: ${text}`;
+  const size = statSync(file).size;
+  check(size < 3e6, problems(`${size} bytes, 3 MB allowed`));
+  const data = JSON.parse(readFileSync(file, 'utf8').match(/id="abbe-data">([\s\S]*?)<\/script>/)[1]);
+
+  const context = await browser.newContext({viewport: {width: 1280, height: 900}, colorScheme: 'light', offline: true});
+  const page = await context.newPage();
+  const url = pathToFileURL(file).href;
+  page.on('console', (message) => {
+    // The software renderer comments on its own speed; that is not the page's doing.
+    if (['error', 'warning'].includes(message.type()) && !/GPU stall due to ReadPixels|software WebGL|swiftshader/i.test(message.text()))
+      check(false, problems(`console: ${message.text()}`));
+  });
+  page.on('pageerror', (error) => check(false, problems(`exception: ${error.message}`)));
+  page.on('request', (request) => {
+    if (request.url() !== url && !/^(data|blob):/.test(request.url())) check(false, problems(`request of ${request.url()}`));
+  });
+  await page.goto(url);
+  await page.waitForTimeout(1500);
+
+  check((await page.textContent('h1')) === data.title, problems('the heading is not the title'));
+  check((await page.evaluate(() => window.broken)) === undefined, problems('data were executed as a script'));
+
+  // Figures on the page against summary: equal to the digits printed.
+  const figures = await page.$$eval('[data-key]', (all) => all.map((e) => [e.dataset.key, e.textContent]));
+  let compared = 0;
+  for (const [key, text] of figures) {
+    if (key === 'verdict') continue;
+    const expected = key.split('.').reduce((object, part) => object?.[part], data.summary);
+    const shown = parse(text);
+    check(typeof expected === 'number' && Math.abs(shown - expected) <= 0.0051 * Math.abs(expected), problems(`${key}: page says ${text}, summary ${expected}`));
+    ++compared;
+  }
+  if (data.summary?.held_out?.position_before_um || data.summary?.map?.position_before_um) {
+    check(compared >= 3, problems(`only ${compared} figures of the summary are on the page`));
+    check((await page.textContent('.verdict')).length > 20, problems('no verdict'));
+  }
+
+  const sections = await page.$$eval('main > section', (all) => all.map((e) => e.id));
+  const wanted = {map: data.map, machine: data.machine?.axes?.length, motions: data.error_motions?.length, parameters: data.parameters,
+    residuals: data.residuals?.setups?.length, assumptions: data.assumptions?.length};
+  for (const [id, present] of Object.entries(wanted))
+    check(sections.includes(id) === Boolean(present), problems(`section ${id} is ${present ? 'missing' : 'there without data'}`));
+  if (data.error_motions) {
+    const plots = await page.$$eval('#motions .plot .line.value', (all) => all.map((e) => e.getAttribute('d')));
+    check(plots.length === data.error_motions.length, problems(`${plots.length} curves for ${data.error_motions.length} error motions`));
+    check(plots.every((d) => d.length > 20 && !d.includes('NaN')), problems('an error motion is drawn empty'));
+  }
+  if (data.parameters) {
+    const rows = await page.$$eval('.parameters tbody tr', (all) => all.length);
+    check(rows === data.parameters.name.length, problems(`${rows} rows for ${data.parameters.name.length} parameters`));
+    await page.fill('#parameter-filter', data.parameters.name[0]);
+    const kept = await page.$$eval('.parameters tbody tr', (all) => all.length);
+    check(kept >= 1 && (kept < rows || rows === 1), problems('the filter of the parameters does nothing'));
+    await page.fill('#parameter-filter', '');
+  }
+  const drawing = await page.evaluate(() => [...document.querySelectorAll('svg path')].filter((p) => (p.getAttribute('d') ?? '').includes('NaN')).length);
+  check(drawing === 0, problems(`${drawing} paths hold NaN`));
+
+  // The three-dimensional views: coloured pixels, different between before and after unless the data are equal.
+  if (data.map) {
+    const ink = () => page.$$eval('.stage canvas', (all) => all.map((canvas) => {
+      const flat = document.createElement('canvas');
+      flat.width = canvas.width;
+      flat.height = canvas.height;
+      const context2d = flat.getContext('2d');
+      context2d.drawImage(canvas, 0, 0);
+      const pixels = context2d.getImageData(0, 0, flat.width, flat.height).data;
+      let coloured = 0;
+      for (let i = 0; i < pixels.length; i += 4)
+        if (pixels[i + 3] > 40 && Math.max(pixels[i], pixels[i + 1], pixels[i + 2]) - Math.min(pixels[i], pixels[i + 1], pixels[i + 2]) > 40) ++coloured;
+      return coloured;
+    }));
+    const first = await ink();
+    check(first.length === (data.map.after_um ? 2 : 1), problems(`${first.length} views of the map`));
+    check(first[0] > 500 && first.every((n) => n > 50), problems(`the map is drawn empty: ${first} coloured pixels`));
+    await page.focus('.stage canvas');
+    await page.keyboard.press('ArrowLeft');
+    await page.keyboard.press('ArrowUp');
+    await page.waitForTimeout(700);
+    check(String(await ink()) !== String(first), problems('the arrow keys do not turn the map'));
+    await page.getByRole('button', {name: 'Reset view'}).click();
+    await page.waitForTimeout(700);
+    const stills = await page.$$eval('.still', (all) => all.map((e) => e.src.length));
+    check(stills.every((n) => n > 2000), problems('no still image of the map for printing'));
+  }
+
+  const overflow = async (width) => {
+    await page.setViewportSize({width, height: 900});
+    await page.waitForTimeout(400);
+    const [inner, outer] = await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.clientWidth]);
+    check(inner <= outer, problems(`${inner} px wide in a window of ${outer} px`));
+  };
+  await overflow(390);
+  await page.screenshot({path: join(options.out, `${name}-narrow.png`), fullPage: true});
+  await overflow(1280);
+  await page.screenshot({path: join(options.out, `${name}-light.png`), fullPage: true});
+
+  // Contrast of running text against what lies behind it, WCAG 2.1: 4.5.
+  const contrast = () => page.evaluate(() => {
+    const numbers = (c) => c.match(/[\d.]+/g).map(Number);
+    const light = (c) => {
+      const [r, g, b] = numbers(c).map((v) => { const s = v / 255; return s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4; });
+      return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    };
+    const bad = [];
+    for (const e of document.querySelectorAll('h1,h2,h3,p,td,th,dt,dd,li,figcaption,button,label,.note,.state,.bar a,svg text')) {
+      if (!e.textContent.trim()) continue;
+      let behind = e;
+      while (behind && /rgba\(0, 0, 0, 0\)|transparent/.test(getComputedStyle(behind).backgroundColor)) behind = behind.parentElement;
+      const style = getComputedStyle(e);
+      const front = e instanceof SVGElement ? style.fill : style.color;
+      if (!front.startsWith('rgb(')) continue;
+      const a = light(front), b = light(behind ? getComputedStyle(behind).backgroundColor : 'rgb(255,255,255)');
+      const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+      if (ratio < 4.5) bad.push(`${e.tagName}.${e.getAttribute('class') ?? ''} "${e.textContent.slice(0, 20)}" ${ratio.toFixed(1)}`);
+    }
+    return [...new Set(bad)].slice(0, 5);
+  });
+  for (const text of await contrast()) check(false, problems(`low contrast in the light theme: ${text}`));
+
+  const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+  const lightPaper = await paper();
+  await page.click('button.theme');
+  await page.waitForTimeout(700);
+  const darkPaper = await paper();
+  check(lightPaper !== darkPaper && numbersOf(darkPaper).every((v) => v < 60), problems(`dark theme: background ${darkPaper}`));
+  for (const text of await contrast()) check(false, problems(`low contrast in the dark theme: ${text}`));
+  await page.screenshot({path: join(options.out, `${name}-dark.png`), fullPage: true});
+  await page.pdf({path: join(options.out, `${name}-print.pdf`), format: 'A4', printBackground: true});
+
+  const unlabelled = await page.evaluate(() =>
+    [...document.querySelectorAll('input,select,button,canvas,svg[role=img]')].filter((e) =>
+      !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim())).map((e) => e.outerHTML.slice(0, 80)));
+  check(unlabelled.length === 0, problems(`without a label: ${unlabelled[0]}`));
+
+  // The system's preference is followed when nothing was chosen.
+  const second = await browser.newContext({colorScheme: 'dark', offline: true});
+  const other = await second.newPage();
+  await other.goto(url);
+  check((await other.evaluate(() => document.documentElement.dataset.theme)) === 'dark', problems('does not follow the system to dark'));
+  await second.close();
+  await context.close();
+  return {name, size, figures: compared, sections: sections.length};
+}
+
+const numbersOf = (colour) => colour.match(/[\d.]+/g).slice(0, 3).map(Number);
+const browser = await chromium.launch({
+  executablePath: chromiumPath,
+  args: ['--headless', '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking',
+    '--no-first-run', '--disable-component-update', '--disable-sync'],
+});
+const results = [];
+try {
+  for (const file of reports) results.push(await inspect(browser, file));
+} finally {
+  await browser.close();
+}
+for (const result of results) console.log(`${result.name}: ${result.size} bytes, ${result.sections} sections, ${result.figures} figures equal to the summary`);
+for (const failure of failures) console.error(`FAILED ${failure}`);
+if (!reports.length) failures.push('no report given');
+writeFileSync(join(options.out, 'browser_test.json'), JSON.stringify({results, failures}, null, 1));
+process.exit(failures.length ? 1 : 0);

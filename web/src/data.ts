@@ -1,0 +1,202 @@
+// Data of a report, as docs/report-data.md describes it. Everything but format and title is optional.
+
+export type Column = (number | null)[];
+
+export interface Statistics {
+  mean?: number;
+  rms?: number;
+  median?: number;
+  p90?: number;
+  p95?: number;
+  p99?: number;
+  max?: number;
+}
+
+export interface PoseErrors {
+  poses?: number;
+  description?: string;
+  reference?: string;
+  position_before_um?: Statistics;
+  position_after_um?: Statistics;
+  orientation_before_urad?: Statistics;
+  orientation_after_urad?: Statistics;
+  predicted_expanded_uncertainty_um?: Statistics;
+  coverage_percent?: number;
+  remaining_percent?: number;
+}
+
+export interface Summary {
+  study?: string;
+  machine?: string;
+  chain?: string;
+  verdict?: string;
+  status?: string;
+  converged?: boolean;
+  iterations?: number;
+  readings?: number;
+  outliers?: number;
+  residuals?: number;
+  parameters?: number;
+  machine_parameters?: number;
+  setup_parameters?: number;
+  rank?: number;
+  null_space?: number;
+  degrees_of_freedom?: number;
+  chi_square?: number;
+  chi_square_probability?: number;
+  observability_index?: number;
+  observability_index_kind?: string;
+  condition_number?: number;
+  normalised_residual_rms?: number;
+  fit_residual_um?: Statistics;
+  held_out?: PoseErrors;
+  map?: PoseErrors;
+  seed?: number;
+}
+
+export interface Axis {
+  name: string;
+  kind: 'linear' | 'rotary';
+  side: 'workpiece' | 'tool';
+  primed?: boolean;
+  direction?: number[];
+  point_mm?: number[];
+  travel_min_mm?: number;
+  travel_max_mm?: number;
+  travel_min_deg?: number;
+  travel_max_deg?: number;
+  endless?: boolean;
+}
+
+export interface Machine {
+  name?: string;
+  description?: string;
+  chain?: string;
+  axes?: Axis[];
+  tool_offset_mm?: number[];
+  tool_reference_mm?: number[];
+  tool_direction?: number[];
+  workpiece_origin_mm?: number[];
+}
+
+export interface Vectors {
+  x: number[];
+  y: number[];
+  z: number[];
+}
+
+export interface ErrorMap {
+  frame?: string;
+  poses?: number;
+  description?: string;
+  positions?: Record<string, number[]>;
+  point_mm: Vectors;
+  before_um: Vectors;
+  after_um?: Vectors;
+  expanded_uncertainty_um?: number[];
+}
+
+export type Histogram = {title?: string} & Record<string, unknown>;
+
+/// Keys carry units: position_mm or position_deg, value_um or value_urad, ...
+export type ErrorMotion = {name: string; axis: string; component?: string; basis?: string; note?: string} & Record<
+  string,
+  unknown
+>;
+export type LocationError = {name: string; axis?: string; note?: string} & Record<string, unknown>;
+
+export interface Parameters {
+  name: string[];
+  group?: string[];
+  unit?: string[];
+  value: Column;
+  standard_uncertainty?: Column;
+  largest_correlation?: Column;
+  correlated_with?: string[];
+  gauge?: string[];
+  truth?: Column;
+}
+
+export interface SetupResiduals {
+  name: string;
+  readings?: number;
+  reading: number[];
+  time_s?: number[];
+  positions?: Record<string, number[]>;
+  normalised: Record<string, Column>;
+  residual_um?: Record<string, Column>;
+  outlier?: (number | boolean)[];
+}
+
+export interface Identification {
+  strategy?: string;
+  loss?: string;
+  rank_threshold?: number;
+  singular_values?: number[];
+  gauge?: {parameters?: string[]; text?: string; convention?: string}[];
+  history?: {iteration?: number[]; chi_square?: number[]; largest_step?: Column; damping?: Column};
+  order_selection?: {label?: string[]; held_out_rms_um?: Column; fit_rms_um?: Column; chosen?: number};
+  strategies?: {
+    name: string;
+    mean_before_um?: number;
+    mean_after_um?: number;
+    max_after_um?: number;
+    published_percent?: number;
+    note?: string;
+  }[];
+}
+
+export interface DataTable {
+  title: string;
+  columns: string[];
+  rows: (string | number | boolean | null)[][];
+  note?: string;
+}
+
+export interface Report {
+  format: string;
+  title: string;
+  subtitle?: string;
+  generator?: string;
+  created?: string;
+  study?: {name?: string; description?: string; file?: string; seed?: number};
+  simulated?: boolean;
+  machine?: Machine;
+  summary?: Summary;
+  warnings?: (string | {level?: string; text: string})[];
+  assumptions?: string[];
+  map?: ErrorMap;
+  histograms?: Histogram[];
+  error_motions?: ErrorMotion[];
+  location_errors?: LocationError[];
+  parameters?: Parameters;
+  residuals?: {outlier_limit?: number; setups?: SetupResiduals[]};
+  identification?: Identification;
+  tables?: DataTable[];
+  references?: string[];
+}
+
+const kUnits: [string, string][] = [
+  ['_um', 'µm'],
+  ['_urad', 'µrad'],
+  ['_mm', 'mm'],
+  ['_deg', '°'],
+  ['_s', 's'],
+  ['_percent', '%'],
+];
+
+/// Unit written in a key: "X_mm" gives {name: "X", unit: "mm"}; without a unit the unit is empty.
+export function splitUnit(key: string): {name: string; unit: string} {
+  for (const [suffix, unit] of kUnits)
+    if (key.endsWith(suffix)) return {name: key.slice(0, -suffix.length), unit};
+  return {name: key, unit: ''};
+}
+
+/// The quantity `name` of an object whose key carries one of the units: find(motion, "value") finds value_um or value_urad.
+export function findQuantity<T>(object: Record<string, unknown>, name: string): {value: T; unit: string} | undefined {
+  for (const [suffix, unit] of kUnits) {
+    const value = object[name + suffix];
+    if (value !== undefined && value !== null) return {value: value as T, unit};
+  }
+  return undefined;
+}

@@ -1,0 +1,58 @@
+// Elements of the page and of drawings.
+
+type Attributes = Record<string, string | number | boolean | undefined>;
+type Child = Node | string | undefined | null | false;
+
+function fill(element: Element, attributes: Attributes, children: Child[]): void {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === undefined || value === false) continue;
+    element.setAttribute(name, value === true ? '' : String(value));
+  }
+  for (const child of children) if (child) element.append(child);
+}
+
+export function html<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Attributes = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const element = document.createElement(tag);
+  fill(element, attributes, children);
+  return element;
+}
+
+export function svg<K extends keyof SVGElementTagNameMap>(
+  tag: K,
+  attributes: Attributes = {},
+  ...children: Child[]
+): SVGElementTagNameMap[K] {
+  const element = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  fill(element, attributes, children);
+  return element;
+}
+
+/// Draws into a box now and again whenever its width changes, so that letters keep their size.
+export function responsive(box: HTMLElement, draw: (width: number) => Element): () => void {
+  let drawn = 0;
+  const redraw = (force: boolean) => {
+    const width = Math.round(box.clientWidth);
+    if (width < 40 || (!force && Math.abs(width - drawn) < 2)) return;
+    drawn = width;
+    box.replaceChildren(draw(width));
+  };
+  new ResizeObserver(() => redraw(false)).observe(box);
+  return () => redraw(true);
+}
+
+export function section(id: string, title: string, lead?: string): HTMLElement {
+  return html(
+    'section',
+    {id, 'aria-labelledby': `${id}-title`},
+    html('h2', {id: `${id}-title`}, title),
+    lead && html('p', {class: 'lead'}, lead),
+  );
+}
+
+export function figure(caption: string, ...children: Child[]): HTMLElement {
+  return html('figure', {}, ...children, html('figcaption', {}, caption));
+}

@@ -1,0 +1,51 @@
+// Numbers as a metrologist writes them.
+
+const kThin = '\u2009';
+const kMinus = '\u2212';
+
+/// `digits` significant digits, thousands apart, a real minus sign; powers of ten outside 1e-3 .. 1e6.
+export function number(value: number | null | undefined, digits = 3): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return '\u2013';
+  if (value === 0) return '0';
+  const size = Math.abs(value);
+  let text: string;
+  if (size < 1e-3 || size >= 1e6) {
+    const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
+    return `${mantissa.replace('-', kMinus)}${kThin}·${kThin}10${superscript(Number(exponent))}`;
+  }
+  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(Number(size.toPrecision(digits)))));
+  text = size.toFixed(decimals);
+  return (value < 0 ? kMinus : '') + thousands(text);
+}
+
+export function count(value: number | null | undefined): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return '\u2013';
+  return (value < 0 ? kMinus : '') + thousands(String(Math.round(Math.abs(value))));
+}
+
+function thousands(text: string): string {
+  const [whole, fraction] = text.split('.');
+  const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, '\u202f') : whole;
+  return fraction === undefined ? grouped : `${grouped}.${fraction}`;
+}
+
+export function superscript(exponent: number): string {
+  const digits = '⁰¹²³⁴⁵⁶⁷⁸⁹';
+  return (exponent < 0 ? '⁻' : '') + [...String(Math.abs(exponent))].map((d) => digits[Number(d)]).join('');
+}
+
+/// Value and standard uncertainty with matching decimals, two digits of the uncertainty (GUM 7.2.6).
+export function withUncertainty(value: number | null, uncertainty: number | null | undefined): [string, string] {
+  if (value === null || value === undefined) return ['\u2013', number(uncertainty, 2)];
+  if (!uncertainty) return [number(value, 4), '\u2013'];
+  const decimals = 1 - Math.floor(Math.log10(uncertainty));
+  if (decimals > 6 || decimals < -4) return [number(value, 4), number(uncertainty, 2)];
+  const places = Math.max(0, decimals);
+  const text = Math.abs(value).toFixed(places);
+  return [(value < 0 && Number(text) !== 0 ? kMinus : '') + thousands(text), thousands(uncertainty.toFixed(places))];
+}
+
+/// Value with unit; the degree sign stands close.
+export function quantity(value: number | null | undefined, unit: string, digits = 3): string {
+  return number(value, digits) + (unit === '°' || !unit ? unit : `${kThin}${unit}`);
+}

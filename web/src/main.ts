@@ -1,0 +1,67 @@
+// Puts the page together: a section per part of the data that is there.
+
+import {machineSection} from './chain';
+import {Report} from './data';
+import {html, section} from './dom';
+import {histogramSection} from './histogram';
+import {identificationSection} from './identification';
+import {mapSection} from './map';
+import {locationSection, motionSection} from './motions';
+import {overview} from './overview';
+import {residualSection} from './residuals';
+import {parameterSection, tablesSection} from './table';
+import {themeButton} from './theme';
+
+function listSection(id: string, title: string, lines: string[]): HTMLElement {
+  const part = section(id, title);
+  part.append(html('ul', {class: 'plain'}, ...lines.map((text) => html('li', {}, text))));
+  return part;
+}
+
+function build(report: Report): void {
+  document.title = report.title;
+  const page = document.getElementById('page')!;
+  const toggle = html('button', {type: 'button', class: 'theme'});
+  themeButton(toggle);
+  const print = html('button', {type: 'button'}, 'Print');
+  print.addEventListener('click', () => window.print());
+
+  const sections = [
+    report.map && mapSection(report.map),
+    histogramSection(report.histograms, report.map),
+    report.machine && machineSection(report.machine),
+    report.error_motions?.length ? motionSection(report.error_motions, report.machine) : undefined,
+    report.location_errors?.length ? locationSection(report.location_errors) : undefined,
+    report.tables?.length ? tablesSection(report.tables) : undefined,
+    report.identification && identificationSection(report.identification, report.summary ?? {}),
+    report.residuals && residualSection(report.residuals),
+    report.parameters?.name?.length ? parameterSection(report.parameters) : undefined,
+    report.assumptions?.length ? listSection('assumptions', 'What was assumed', report.assumptions) : undefined,
+    report.references?.length ? listSection('references', 'References', report.references) : undefined,
+  ].filter((part): part is HTMLElement => Boolean(part));
+
+  const links = html('nav', {'aria-label': 'Sections'}, ...sections.map((part) =>
+    html('a', {href: `#${part.id}`}, part.querySelector('h2')?.textContent ?? '')));
+  page.append(
+    html('div', {class: 'bar'}, html('span', {class: 'brand'}, 'Abbe'), links, html('div', {class: 'actions'}, print, toggle)),
+    html('main', {}, overview(report), ...sections),
+    html('footer', {}, report.generator ?? 'Abbe', report.study?.file && ` · ${report.study.file}`,
+      report.study?.seed !== undefined && ` · seed ${report.study.seed}`),
+  );
+}
+
+function fail(message: string): void {
+  document.getElementById('page')!.append(html('main', {}, html('h1', {}, 'This report cannot be shown'), html('p', {}, message)));
+}
+
+const text = document.getElementById('abbe-data')?.textContent ?? '';
+let report: Report | undefined;
+try {
+  report = JSON.parse(text) as Report;
+} catch {
+  fail('The page holds no readable data.');
+}
+if (report) {
+  if (report.format !== 'abbe-report/1') fail(`The data have the format ${report.format ?? '(none)'}; this page reads abbe-report/1.`);
+  else build(report);
+}

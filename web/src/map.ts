@@ -1,0 +1,151 @@
+// The map of error vectors: before and after side by side, one camera, one colour scale.
+
+import {isDark, cssColour, rampColour} from './colour';
+import {ErrorMap, splitUnit} from './data';
+import {html, responsive, section, svg} from './dom';
+import {count, number, quantity} from './format';
+import {lengths} from './histogram';
+import {Camera, View} from './map_view';
+import {linearScale, logScale} from './scale';
+import {onThemeChange} from './theme';
+
+interface Scaling {
+  low: number;
+  high: number;
+  log: boolean;
+}
+
+export function fraction(value: number, scaling: Scaling): number {
+  if (scaling.log) return Math.log(Math.max(value, scaling.low) / scaling.low) / Math.log(scaling.high / scaling.low);
+  return value / scaling.high;
+}
+
+function colourBar(scaling: () => Scaling): {box: HTMLElement; redraw: () => void} {
+  const box = html('div', {class: 'colour-bar'});
+  const redraw = responsive(box, (width) => {
+    const {low, high, log} = scaling();
+    const inner: [number, number] = [10, width - 10];
+    const scale = log ? logScale([low, high], inner, 6) : linearScale([0, high], inner, 6);
+    const root = svg('svg', {viewBox: `0 0 ${width} 44`, width, height: 44, role: 'img',
+      'aria-label': `Colour scale of the length of the error from ${number(log ? low : 0)} to ${number(high)} micrometres`});
+    const stops = svg('linearGradient', {id: 'ramp'});
+    for (let i = 0; i <= 24; ++i) stops.append(svg('stop', {offset: `${(100 * i) / 24}%`, 'stop-color': cssColour(rampColour(i / 24, isDark()))}));
+    root.append(svg('defs', {}, stops), svg('rect', {x: inner[0], y: 4, width: Math.max(1, inner[1] - inner[0]), height: 10, rx: 2, fill: 'url(#ramp)'}));
+    for (const tick of scale.ticks) {
+      const x = scale(tick);
+      root.append(svg('line', {x1: x, x2: x, y1: 14, y2: 18, class: 'mark'}), svg('text', {x, y: 29, class: 'tick middle'}, scale.label(tick)));
+    }
+    root.append(svg('text', {x: inner[1], y: 42, class: 'axis-label end'}, 'length of the error / µm'));
+    return root;
+  });
+  return {box, redraw};
+}
+
+/// 1, 2, 5, 10, ... nearest below.
+function roundFactor(value: number): number {
+  const power = Math.pow(10, Math.floor(Math.log10(value)));
+  return (value / power >= 5 ? 5 : value / power >= 2 ? 2 : 1) * power;
+}
+
+interface Slice {
+  label: string;
+  unit: string;
+  values: number[];
+  stops: number[];
+  half: number;
+}
+
+function slices(map: ErrorMap): Slice[] {
+  return Object.entries(map.positions ?? {}).flatMap(([key, values]) => {
+    const {name, unit} = splitUnit(key);
+    const unique = [...new Set(values.map((v) => Number(v.toPrecision(9))))].sort((a, b) => a - b);
+    if (unique.length < 2) return [];
+    const span = unique[unique.length - 1] - unique[0];
+    if (unique.length <= 40) return [{label: name, unit, values, stops: unique, half: span * 1e-6}];
+    // Scattered poses: slabs of a tenth of the travel.
+    const stops = Array.from({length: 19}, (_, i) => unique[0] + (span * (i + 1)) / 20);
+    return [{label: name, unit, values, stops, half: span / 20}];
+  });
+}
+
+export function mapSection(map: ErrorMap): HTMLElement {
+  const shown = map.point_mm.x.length;
+  const total = map.poses ?? shown;
+  const frame = map.frame ? `${map.frame} frame` : 'workpiece frame';
+  const part = section('map', 'Map of the volumetric error',
+    `Each arrow stands at its nominal point (${frame}) and shows where the tool really is, exaggerated. ` +
+    `${shown < total ? `${count(shown)} of ${count(total)} poses drawn` : `${count(total)} poses`}${map.description ? `: ${map.description}` : ''}.`);
+  const before = lengths(map.before_um);
+  const after = map.after_um && lengths(map.after_um);
+  const all = [...before, ...(after ?? [])];
+  const high = Math.max(...all, 1e-6);
+  const small = [...all].sort((a, b) => a - b)[Math.floor(all.length * 0.02)];
+  const scaling: Scaling = {low: Math.max(small, high * 1e-4), high, log: false};
+
+  const camera = new Camera(map.point_mm);
+  const views: View[] = [new View(after ? 'Before' : 'Errors', map.point_mm, map.before_um, before, camera)];
+  if (map.after_um && after) views.push(new View('After', map.point_mm, map.after_um, after, camera));
+  camera.onChange(() => views.forEach((view) => view.render()));
+
+  const typical = (values: number[]) => [...values].sort((a, b) => a - b)[Math.floor(values.length * 0.95)] || 1e-6;
+  const automatic = (values: number[]) => roundFactor((camera.size * 0.11) / (typical(values) * 1e-3));
+  const common = automatic(before);
+  const slider = html('input', {type: 'range', min: -2, max: 2, step: 0.05, value: 0, id: 'map-exaggeration'});
+  const sliderValue = html('output', {for: 'map-exaggeration'});
+  const own = html('input', {type: 'checkbox'});
+  const log = html('input', {type: 'checkbox'});
+  const choices = slices(map);
+  const axis = html('select', {id: 'map-slice'}, html('option', {value: ''}, 'all poses'),
+    ...choices.map((slice, i) => html('option', {value: i}, `slice by ${slice.label}`)));
+  const position = html('input', {type: 'range', min: 0, max: 1, step: 1, value: 0, 'aria-label': 'Position of the slice', disabled: true});
+  const positionValue = html('output', {});
+  const bar = colourBar(() => scaling);
+
+  const update = () => {
+    const factor = Math.pow(10, Number(slider.value));
+    scaling.log = log.checked;
+    const slice = axis.value === '' ? undefined : choices[Number(axis.value)];
+    position.disabled = !slice;
+    let visible: boolean[] | undefined;
+    if (slice) {
+      position.max = String(slice.stops.length - 1);
+      const at = slice.stops[Number(position.value)];
+      visible = slice.values.map((v) => Math.abs(v - at) <= slice.half * 1.0001);
+      positionValue.textContent = `${slice.label} = ${quantity(at, slice.unit, 4)}${slice.half > 1e-3 ? ` ± ${quantity(slice.half, slice.unit, 2)}` : ''}, ${count(visible.filter(Boolean).length)} poses`;
+    } else positionValue.textContent = '';
+    views.forEach((view, i) => {
+      const scale = factor * (own.checked && i > 0 && after ? automatic(after) : common);
+      view.caption.textContent = `arrows × ${number(scale, 2)}`;
+      view.update(scale, visible, (value) => rampColour(fraction(value, scaling), isDark()), (value) => rampColour(fraction(value, scaling), false));
+    });
+    sliderValue.textContent = `× ${number(common * factor, 2)}`;
+    bar.redraw();
+  };
+  for (const input of [slider, own, log, position]) input.addEventListener('input', update);
+  axis.addEventListener('change', () => {
+    const slice = axis.value === '' ? undefined : choices[Number(axis.value)];
+    if (slice) {
+      position.max = String(slice.stops.length - 1);
+      position.value = String(Math.floor((slice.stops.length - 1) / 2));
+    }
+    update();
+  });
+  onThemeChange(update);
+  const reset = html('button', {type: 'button'}, 'Reset view');
+  reset.addEventListener('click', () => camera.reset());
+
+  part.append(
+    html('div', {class: `views ${views.length > 1 ? 'two' : 'one'}`}, ...views.map((view) => view.box)),
+    bar.box,
+    html('div', {class: 'controls'},
+      html('label', {for: 'map-exaggeration'}, 'Exaggeration'), slider, sliderValue,
+      choices.length > 0 && html('label', {for: 'map-slice'}, 'Show'), choices.length > 0 && axis,
+      choices.length > 0 && position, choices.length > 0 && positionValue,
+      html('label', {class: 'check'}, log, 'logarithmic colours'),
+      after && html('label', {class: 'check'}, own, 'arrows after at their own length'),
+      reset),
+    html('p', {class: 'note screen-only'}, 'Drag to rotate, wheel or + and − to zoom, arrow keys to turn. Both views move together.'),
+  );
+  update();
+  return part;
+}

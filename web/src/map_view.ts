@@ -1,0 +1,292 @@
+// Three-dimensional views of the map: arrows, a box with its scales, one camera for all views.
+
+import {
+  BoxGeometry, BufferGeometry, CanvasTexture, Color, ConeGeometry, CylinderGeometry, DynamicDrawUsage, EdgesGeometry, Float32BufferAttribute,
+  InstancedMesh, LineBasicMaterial, LineSegments, Matrix4, MeshBasicMaterial, PerspectiveCamera, Points, PointsMaterial, Quaternion, Scene,
+  Sprite, SpriteMaterial, SRGBColorSpace, Vector3, WebGLRenderer,
+} from 'three';
+import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import {mergeGeometries} from 'three/examples/jsm/utils/BufferGeometryUtils.js';
+
+import {isDark} from './colour';
+import {Vectors} from './data';
+import {html} from './dom';
+import {extent, niceTicks} from './scale';
+
+type Rgb = [number, number, number];
+
+/// One camera, turned from any of the views.
+export class Camera {
+  readonly camera = new PerspectiveCamera(32, 1, 1, 10);
+  readonly target = new Vector3();
+  readonly low: Vector3;
+  readonly high: Vector3;
+  readonly size: number;
+  private listeners: (() => void)[] = [];
+
+  constructor(points: Vectors) {
+    const [x0, x1] = extent(points.x);
+    const [y0, y1] = extent(points.y);
+    const [z0, z1] = extent(points.z);
+    this.low = new Vector3(x0, y0, z0);
+    this.high = new Vector3(x1, y1, z1);
+    this.size = Math.max(this.low.distanceTo(this.high), 1e-3);
+    // A flat cloud still gets a box.
+    const thin = this.size * 0.01;
+    for (const k of ['x', 'y', 'z'] as const)
+      if (this.high[k] - this.low[k] < thin) {
+        this.low[k] -= thin / 2;
+        this.high[k] += thin / 2;
+      }
+    this.camera.up.set(0, 0, 1);
+    this.camera.near = this.size * 0.01;
+    this.camera.far = this.size * 20;
+    this.reset();
+  }
+
+  reset(): void {
+    this.target.copy(this.low).add(this.high).multiplyScalar(0.5);
+    this.camera.position.copy(this.target).add(new Vector3(-0.95, -1.35, 0.85).normalize().multiplyScalar(this.size * 1.95));
+    this.camera.lookAt(this.target);
+    this.changed();
+  }
+
+  turn(azimuth: number, elevation: number, zoom: number): void {
+    const arm = this.camera.position.clone().sub(this.target);
+    const length = arm.length() * zoom;
+    const polar = Math.min(Math.PI - 0.02, Math.max(0.02, Math.acos(arm.z / arm.length()) - elevation));
+    const around = Math.atan2(arm.y, arm.x) + azimuth;
+    arm.set(Math.sin(polar) * Math.cos(around), Math.sin(polar) * Math.sin(around), Math.cos(polar)).multiplyScalar(length);
+    this.camera.position.copy(this.target).add(arm);
+    this.camera.lookAt(this.target);
+    this.changed();
+  }
+
+  onChange(listener: () => void): void {
+    this.listeners.push(listener);
+  }
+
+  changed(): void {
+    for (const listener of this.listeners) listener();
+  }
+}
+
+function arrowGeometry(): BufferGeometry {
+  const shaft = new CylinderGeometry(0.16, 0.16, 0.7, 8, 1).translate(0, 0.35, 0);
+  const head = new ConeGeometry(0.5, 0.3, 12).translate(0, 0.85, 0);
+  return mergeGeometries([shaft, head]);
+}
+
+/// Words in the scene, always facing the reader and of the same size on the screen.
+function label(text: string, colour: string, pixels: number): Sprite {
+  const canvas = document.createElement('canvas');
+  const context = canvas.getContext('2d')!;
+  const font = '500 40px system-ui, sans-serif';
+  context.font = font;
+  canvas.width = Math.ceil(context.measureText(text).width) + 12;
+  canvas.height = 52;
+  context.font = font;
+  context.fillStyle = colour;
+  context.textBaseline = 'middle';
+  context.fillText(text, 6, 27);
+  const texture = new CanvasTexture(canvas);
+  texture.colorSpace = SRGBColorSpace;
+  const sprite = new Sprite(new SpriteMaterial({map: texture, transparent: true, depthTest: false, sizeAttenuation: false}));
+  sprite.scale.set((pixels * canvas.width) / canvas.height, pixels, 1);
+  return sprite;
+}
+
+export class View {
+  readonly box: HTMLElement;
+  readonly caption = html('span', {class: 'note'});
+  private readonly still = html('img', {class: 'still', alt: ''});
+  private readonly canvas: HTMLCanvasElement;
+  private readonly renderer?: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly arrows: InstancedMesh;
+  private readonly feet: Points;
+  private frame: {dark: boolean; parts: (LineSegments | Sprite)[]} | undefined;
+  private screenColour: (value: number) => Rgb = () => [0, 0, 0];
+  private printColour: (value: number) => Rgb = () => [0, 0, 0];
+  private timer = 0;
+  private pending = false;
+
+  constructor(
+    title: string,
+    private readonly points: Vectors,
+    private readonly vectors: Vectors,
+    private readonly size: number[],
+    private readonly shared: Camera,
+  ) {
+    this.canvas = html('canvas', {tabindex: 0, role: 'img', 'aria-label': `${title}: error vectors in three dimensions. Arrow keys turn the view.`});
+    this.still.alt = `${title}: error vectors`;
+    this.box = html('figure', {class: 'view'}, html('figcaption', {}, html('b', {}, title), this.caption), html('div', {class: 'stage'}, this.canvas, this.still));
+    const count = size.length;
+    this.arrows = new InstancedMesh(arrowGeometry(), new MeshBasicMaterial(), count);
+    this.arrows.instanceMatrix.setUsage(DynamicDrawUsage);
+    this.arrows.frustumCulled = false;
+    this.scene.add(this.arrows);
+    const feet = new BufferGeometry();
+    feet.setAttribute('position', new Float32BufferAttribute(new Float32Array(3 * count), 3));
+    feet.setAttribute('color', new Float32BufferAttribute(new Float32Array(3 * count), 3));
+    this.feet = new Points(feet, new PointsMaterial({size: 2.4, sizeAttenuation: false, vertexColors: true}));
+    this.feet.frustumCulled = false;
+    this.scene.add(this.feet);
+    try {
+      this.renderer = new WebGLRenderer({canvas: this.canvas, antialias: true, alpha: true, preserveDrawingBuffer: true});
+    } catch {
+      this.box.append(html('p', {class: 'note'}, 'The three-dimensional view needs WebGL, which this browser does not offer.'));
+      return;
+    }
+    this.renderer.setPixelRatio(Math.min(2, Math.max(1, window.devicePixelRatio)));
+    this.renderer.setClearColor(0, 0);
+    const controls = new OrbitControls(shared.camera, this.canvas);
+    controls.target = shared.target;
+    controls.enableDamping = false;
+    controls.addEventListener('change', () => shared.changed());
+    this.canvas.addEventListener('keydown', (event) => this.key(event));
+    new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement!);
+    window.addEventListener('beforeprint', () => this.photograph());
+  }
+
+  private key(event: KeyboardEvent): void {
+    const turns: Record<string, [number, number, number]> = {
+      ArrowLeft: [-0.1, 0, 1], ArrowRight: [0.1, 0, 1], ArrowUp: [0, 0.1, 1], ArrowDown: [0, -0.1, 1],
+      '+': [0, 0, 0.9], '=': [0, 0, 0.9], '-': [0, 0, 1.1],
+    };
+    const turn = turns[event.key];
+    if (!turn) return;
+    event.preventDefault();
+    this.shared.turn(...turn);
+  }
+
+  /// @param scale    exaggeration, length drawn over length of the error
+  /// @param visible  which points are drawn; all if undefined
+  update(scale: number, visible: boolean[] | undefined, screen: (value: number) => Rgb, print: (value: number) => Rgb): void {
+    this.screenColour = screen;
+    this.printColour = print;
+    const width = this.shared.size * 0.013;
+    const matrix = new Matrix4();
+    const up = new Vector3(0, 1, 0);
+    const direction = new Vector3();
+    const place = new Vector3();
+    const turn = new Quaternion();
+    const feet = this.feet.geometry.getAttribute('position');
+    for (let i = 0; i < this.size.length; ++i) {
+      const length = this.size[i] * 1e-3 * scale;
+      place.set(this.points.x[i], this.points.y[i], this.points.z[i]);
+      const drawn = !visible || visible[i];
+      if (drawn && length > 0) {
+        direction.set(this.vectors.x[i], this.vectors.y[i], this.vectors.z[i]).normalize();
+        turn.setFromUnitVectors(up, direction);
+        const thick = Math.min(width, length * 0.35);
+        matrix.compose(place, turn, new Vector3(thick, length, thick));
+      } else matrix.makeScale(0, 0, 0);
+      this.arrows.setMatrixAt(i, matrix);
+      feet.setXYZ(i, place.x, place.y, drawn ? place.z : NaN);
+    }
+    this.arrows.instanceMatrix.needsUpdate = true;
+    feet.needsUpdate = true;
+    this.paint(screen);
+    this.render();
+  }
+
+  private paint(colour: (value: number) => Rgb): void {
+    const shade = new Color();
+    const feet = this.feet.geometry.getAttribute('color');
+    for (let i = 0; i < this.size.length; ++i) {
+      shade.setRGB(...colour(this.size[i]), SRGBColorSpace);
+      this.arrows.setColorAt(i, shade);
+      feet.setXYZ(i, shade.r, shade.g, shade.b);
+    }
+    this.arrows.instanceColor!.needsUpdate = true;
+    feet.needsUpdate = true;
+  }
+
+  /// The box around the points with scales along three of its edges.
+  private drawFrame(dark: boolean): void {
+    if (this.frame?.dark === dark) return;
+    for (const part of this.frame?.parts ?? []) {
+      this.scene.remove(part);
+      if (part instanceof Sprite) part.material.map?.dispose(), part.material.dispose();
+      else (part.material as LineBasicMaterial).dispose();
+    }
+    const {low, high, size} = this.shared;
+    const line = new LineBasicMaterial({color: dark ? 0x4a555f : 0xc3cad1});
+    const extentOf = high.clone().sub(low);
+    const edges = new LineSegments(new EdgesGeometry(new BoxGeometry(extentOf.x, extentOf.y, extentOf.z)), line);
+    edges.position.copy(low).add(high).multiplyScalar(0.5);
+    const parts: (LineSegments | Sprite)[] = [edges];
+    const ink = dark ? '#aab4bd' : '#5b6670';
+    const ticks: number[] = [];
+    const out = size * 0.025;
+    for (const k of ['x', 'y', 'z'] as const) {
+      const wanted = Math.max(1, Math.round((5 * extentOf[k]) / Math.max(extentOf.x, extentOf.y, extentOf.z)));
+      const values = niceTicks(low[k], high[k], wanted);
+      const edge = k === 'x' ? new Vector3(0, low.y, low.z) : k === 'y' ? new Vector3(low.x, 0, low.z) : new Vector3(low.x, high.y, 0);
+      const outward = k === 'x' ? new Vector3(0, -1, 0) : k === 'y' ? new Vector3(-1, 0, 0) : new Vector3(-0.7, 0.7, 0);
+      for (const value of values) {
+        const at = edge.clone();
+        at[k] = value;
+        ticks.push(...at.toArray(), ...at.clone().addScaledVector(outward, out * 0.5).toArray());
+        const words = label(String(Number(value.toPrecision(6))).replace('-', '\u2212'), ink, 0.026);
+        words.position.copy(at).addScaledVector(outward, out * 2.2);
+        parts.push(words);
+      }
+      const name = label(`${k.toUpperCase()} / mm`, ink, 0.031);
+      const middle = edge.clone();
+      middle[k] = (low[k] + high[k]) / 2;
+      name.position.copy(middle).addScaledVector(outward, out * 5.2);
+      parts.push(name);
+    }
+    const marks = new BufferGeometry();
+    marks.setAttribute('position', new Float32BufferAttribute(ticks, 3));
+    parts.push(new LineSegments(marks, line));
+    this.scene.add(...parts);
+    this.frame = {dark, parts};
+  }
+
+  private resize(): void {
+    const stage = this.canvas.parentElement!;
+    const width = stage.clientWidth;
+    const height = stage.clientHeight;
+    if (!this.renderer || width < 10 || height < 10) return;
+    this.renderer.setSize(width, height, false);
+    this.render();
+  }
+
+  /// Draws at the next frame; many changes in one frame cost one drawing.
+  render(): void {
+    if (!this.renderer || this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => {
+      this.pending = false;
+      this.draw(isDark());
+      window.clearTimeout(this.timer);
+      this.timer = window.setTimeout(() => this.photograph(), 300);
+    });
+  }
+
+  private draw(dark: boolean): void {
+    const stage = this.canvas.parentElement!;
+    if (!this.renderer || stage.clientWidth < 10) return;
+    this.drawFrame(dark);
+    const camera = this.shared.camera;
+    camera.aspect = stage.clientWidth / stage.clientHeight;
+    camera.updateProjectionMatrix();
+    this.renderer.render(this.scene, camera);
+  }
+
+  /// A still for paper, in the colours of the light theme.
+  private photograph(): void {
+    if (!this.renderer || this.canvas.width < 10) return;
+    const dark = isDark();
+    if (dark) this.paint(this.printColour);
+    this.draw(false);
+    this.still.src = this.canvas.toDataURL('image/png');
+    if (dark) {
+      this.paint(this.screenColour);
+      this.draw(true);
+    }
+  }
+}

@@ -1,0 +1,128 @@
+// Tables: plain ones, and the parameter table that sorts and filters.
+
+import {DataTable, Parameters} from './data';
+import {html, section} from './dom';
+import {number, withUncertainty} from './format';
+
+export function dataTable(caption: string, columns: string[], rows: (string | number | boolean | null)[][]): HTMLElement {
+  const isNumber = columns.map((_, i) => rows.some((row) => typeof row[i] === 'number'));
+  return html(
+    'div',
+    {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption},
+    html(
+      'table',
+      {},
+      html('caption', {}, caption),
+      html('thead', {}, html('tr', {}, ...columns.map((name, i) => html('th', {scope: 'col', class: isNumber[i] ? 'number' : ''}, name)))),
+      html(
+        'tbody',
+        {},
+        ...rows.map((row) =>
+          html('tr', {}, ...row.map((cell, i) =>
+            html('td', {class: isNumber[i] ? 'number' : ''}, typeof cell === 'number' ? number(cell, 5) : cell === null ? '\u2013' : String(cell)))),
+        ),
+      ),
+    ),
+  );
+}
+
+export function tablesSection(tables: DataTable[]): HTMLElement {
+  const part = section('tables', 'Comparison');
+  for (const table of tables) {
+    part.append(dataTable(table.title, table.columns, table.rows));
+    if (table.note) part.append(html('p', {class: 'note'}, table.note));
+  }
+  return part;
+}
+
+const kUnitText: Record<string, string> = {um: 'µm', urad: 'µrad', deg: '°'};
+
+interface Row {
+  cells: HTMLElement[];
+  sort: (string | number)[];
+  text: string;
+  fixed: boolean;
+}
+
+function parameterRows(p: Parameters): Row[] {
+  return p.name.map((name, i) => {
+    const uncertainty = p.standard_uncertainty?.[i];
+    const [value, spread] = withUncertainty(p.value[i], uncertainty);
+    const unit = p.unit?.[i] ?? '';
+    const correlation = p.largest_correlation?.[i];
+    const partner = p.correlated_with?.[i] ?? '';
+    const gauge = p.gauge?.[i] ?? '';
+    const truth = p.truth?.[i];
+    const cells = [
+      html('th', {scope: 'row'}, name),
+      html('td', {}, p.group?.[i] ?? ''),
+      html('td', {class: 'number'}, value),
+      html('td', {class: 'number'}, spread),
+      html('td', {}, kUnitText[unit] ?? unit),
+      html('td', {class: 'number'}, number(correlation, 2)),
+      html('td', {}, partner),
+      html('td', {class: 'gauge'}, gauge),
+    ];
+    if (p.truth) cells.splice(4, 0, html('td', {class: 'number'}, number(truth, 4)));
+    const low = -Infinity;
+    const sort: (string | number)[] = [name, p.group?.[i] ?? '', p.value[i] ?? low, uncertainty ?? low, unit,
+      correlation === null || correlation === undefined ? low : Math.abs(correlation), partner, gauge];
+    if (p.truth) sort.splice(4, 0, truth ?? low);
+    return {cells, sort, text: `${name} ${p.group?.[i] ?? ''} ${partner} ${gauge}`.toLowerCase(), fixed: gauge !== ''};
+  });
+}
+
+export function parameterSection(p: Parameters): HTMLElement {
+  const part = section('parameters', 'Parameters',
+    'Every estimated parameter with its standard uncertainty and the parameter it is most correlated with. Where the readings cannot separate parameters, the gauge column says which convention fixes them.');
+  const columns = ['Parameter', 'Group', 'Value', 'Standard uncertainty', 'Unit', 'Largest correlation', 'with', 'Gauge'];
+  if (p.truth) columns.splice(4, 0, 'Truth');
+  const numeric = new Set(['Value', 'Standard uncertainty', 'Truth', 'Largest correlation']);
+  const rows = parameterRows(p);
+  const order = rows.map((_, i) => i);
+  const body = html('tbody');
+  const status = html('span', {class: 'note', 'aria-live': 'polite'});
+  const filter = html('input', {type: 'search', placeholder: 'EXX, tracker, C …', id: 'parameter-filter'});
+  const onlyFixed = html('input', {type: 'checkbox', id: 'parameter-fixed'});
+  const elements = rows.map((row) => html('tr', row.fixed ? {class: 'fixed'} : {}, ...row.cells));
+  const show = () => {
+    const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
+    const kept = order.filter((i) => (!onlyFixed.checked || rows[i].fixed) && words.every((word) => rows[i].text.includes(word)));
+    body.replaceChildren(...kept.map((i) => elements[i]));
+    status.textContent = `${kept.length} of ${rows.length}`;
+  };
+  filter.addEventListener('input', show);
+  onlyFixed.addEventListener('change', show);
+
+  const heads = columns.map((name, column) => {
+    const button = html('button', {type: 'button', title: `Sort by ${name.toLowerCase()}`}, name);
+    const head = html('th', {scope: 'col', class: numeric.has(name) ? 'number' : '', 'aria-sort': 'none'}, button);
+    button.addEventListener('click', () => {
+      const down = head.getAttribute('aria-sort') === 'ascending';
+      for (const other of heads) other.setAttribute('aria-sort', 'none');
+      head.setAttribute('aria-sort', down ? 'descending' : 'ascending');
+      order.sort((a, b) => {
+        const x = rows[a].sort[column];
+        const y = rows[b].sort[column];
+        const less = typeof x === 'number' && typeof y === 'number' ? x - y : String(x).localeCompare(String(y), 'en', {numeric: true});
+        return (down ? -less : less) || a - b;
+      });
+      show();
+    });
+    return head;
+  });
+  part.append(
+    html(
+      'div',
+      {class: 'controls'},
+      html('label', {for: 'parameter-filter'}, 'Filter'),
+      filter,
+      rows.some((row) => row.fixed) && html('label', {class: 'check'}, onlyFixed, 'only those fixed by the gauge'),
+      status,
+    ),
+    html('div', {class: 'scroll tall', tabindex: 0, role: 'region', 'aria-label': 'Parameters'},
+      html('table', {class: 'parameters'}, html('thead', {}, html('tr', {}, ...heads)), body)),
+  );
+  show();
+  return part;
+}
