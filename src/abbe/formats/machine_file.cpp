@@ -54,6 +54,7 @@ void read_axis(TomlTable table, Axis& axis) {
   axis.direction = direction(table, axis.direction);
   if (const auto point = table.optional_numbers("point", Quantity::length, 3)) axis.point = vector(*point);
   read_travel(table, axis);
+  axis.setting = table.boolean_or("setting", false);
   table.finish();
 }
 
@@ -129,6 +130,7 @@ std::string machine_text(const Machine& machine) {
     } else {
       text += toml_angles("travel", {axis.travel_min, axis.travel_max});
     }
+    if (axis.setting) text += "setting = true\n";
   }
   const Eigen::Vector3d angles = error_angles_from_rotation(machine.bed_from_workpiece.rotation);
   text += fmt::format("\n[workpiece]\norigin_mm = {}\n", vector_text(machine.bed_from_workpiece.translation));
@@ -177,6 +179,7 @@ chain = {}
                   : fmt::format("travel_deg = [{:g}, {:g}]  # or endless = true\n",
                                 axis.travel_min * 180 / std::numbers::pi, axis.travel_max * 180 / std::numbers::pi);
       text += "point_mm = [0, 0, 0]    # any point on the axis\n";
+      text += "# setting = true         # set beforehand, not interpolated with the others\n";
     }
   }
   text += R"(
