@@ -41,6 +41,13 @@ const char* best_fit_status_name(BestFitStatus status) {
   return "not run";
 }
 
+Matrix3d rotation_from_correlation(const Matrix3d& correlation) {
+  const Eigen::JacobiSVD<Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Vector3d signs = Vector3d::Ones();
+  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
 BestFitTransform best_fit_transform(std::span<const Vector3d> source, std::span<const Vector3d> target,
                                     std::span<const double> weights, double collinear_extent) {
   assert(source.size() == target.size());
@@ -69,10 +76,7 @@ BestFitTransform best_fit_transform(std::span<const Vector3d> source, std::span<
     const double weight = weights.empty() ? 1.0 : weights[i];
     if (weight > 0) correlation += weight * (target[i] - target_centre) * (source[i] - source_centre).transpose();
   }
-  const Eigen::JacobiSVD<Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3d signs = Vector3d::Ones();
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
-  fit.target_from_source.rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  fit.target_from_source.rotation = rotation_from_correlation(correlation);
   fit.target_from_source.translation = target_centre - fit.target_from_source.rotation * source_centre;
 
   double squares = 0;

@@ -35,6 +35,9 @@ struct BestFitTransform {
   std::vector<std::uint8_t> inliers;  ///< robust fit: [points], 1 where the point took part in the last step
 };
 
+/// Rotation R that makes the trace of R^T * correlation largest, correlation = sum of target * source^T (centred).
+Eigen::Matrix3d rotation_from_correlation(const Eigen::Matrix3d& correlation);
+
 /// Weighted least-squares rigid transform between paired points, no reflection, no scale.
 ///
 /// @param source            [n] points, mm

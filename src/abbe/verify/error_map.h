@@ -73,8 +73,7 @@ struct ErrorMapBlock {
 
 /// As error_map() for any number of poses: `visit` is called for every block, from several threads, in any order; block
 /// i covers poses i * 4096 and following. options.remove_rigid_motion costs a second pass.
-/// @returns statistics of the norm, exact except that percentiles come from 10,000 classes between 0 and the maximum
-///          bound found in a first coarse pass when there are more than 20,000,000 poses
+/// @returns statistics of the norm, exact; 8 bytes per pose are kept for the percentiles, nothing else
 SampleStatistics stream_error_map(const Machine& machine, const ErrorSet& actual, const ErrorSet* reference,
                                   const PoseSource& poses, const ErrorMapOptions& options,
                                   const std::function<void(const ErrorMapBlock&)>& visit);
