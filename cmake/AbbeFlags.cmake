@@ -2,6 +2,8 @@
 add_library(abbe_flags INTERFACE)
 target_compile_options(abbe_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -Woverloaded-virtual
+  # clang counts changes of sign as conversions, GCC does not; Eigen's signed indices make them noise.
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>
   # The same bits on every machine and at every optimisation level.
   -ffp-contract=off
   $<$<BOOL:${ABBE_WERROR}>:-Werror>)
@@ -12,6 +14,10 @@ endif()
 if(ABBE_FUZZ)
   target_compile_options(abbe_flags INTERFACE -fsanitize=fuzzer-no-link)
   target_link_options(abbe_flags INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+if(ABBE_SANITIZE OR ABBE_FUZZ OR CMAKE_CXX_CLANG_TIDY)
+  # One processor generation is enough to find mistakes, and instrumented kernels for all of them take minutes to compile.
+  target_compile_definitions(abbe_flags INTERFACE HWY_COMPILE_ONLY_STATIC)
 endif()
 if(ABBE_COVERAGE)
   target_compile_options(abbe_flags INTERFACE --coverage)

@@ -17,7 +17,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const abbe::InputError&) {
     return 0;
   }
-  const abbe::ErrorsFile back = abbe::parse_errors(abbe::errors_text(machine, contents), "written.errors.toml", machine);
-  if (back.errors.motions != contents.errors.motions || back.errors.locations != contents.errors.locations) std::abort();
+  const abbe::ErrorsFile back =
+      abbe::parse_errors(abbe::errors_text(machine, contents), "written.errors.toml", machine);
+  if (back.errors.motions != contents.errors.motions || back.errors.locations != contents.errors.locations)
+    std::abort();
   return 0;
 }

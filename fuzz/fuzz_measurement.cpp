@@ -27,8 +27,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     plain.threads = 1;
     const abbe::MeasurementTable back =
         abbe::parse_measurements(abbe::measurements_text(machine, table), "written.csv", machine, plain);
-    if (back.readings.count() != table.readings.count() || back.readings.poses.axis[1] != table.readings.poses.axis[1] ||
-        back.reflectors != table.reflectors || back.stations != table.stations) {
+    if (back.readings.count() != table.readings.count() ||
+        back.readings.poses.axis[1] != table.readings.poses.axis[1] || back.reflectors != table.reflectors ||
+        back.stations != table.stations) {
       std::abort();
     }
   }

@@ -1,9 +1,10 @@
 #include "abbe/machine/drawing.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <vector>
 
@@ -15,10 +16,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 /// Number for reading: to the micrometre, no trailing zeros, no "-0".
 std::string number(double value) {
-  char text[40];
   const double rounded = std::abs(value) < 1e9 ? std::round(value * 1000) / 1000 : value;
-  std::snprintf(text, sizeof text, "%.9g", rounded == 0 ? 0.0 : rounded);
-  return text;
+  return fmt::format("{:.9g}", rounded == 0 ? 0.0 : rounded);
 }
 
 std::string vector_text(const Eigen::Vector3d& v) {

@@ -1,5 +1,6 @@
+#include <fmt/core.h>
+
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 #include "abbe/machine/inverse_kinematics.h"
@@ -7,11 +8,7 @@
 namespace abbe {
 namespace {
 
-std::string number(double value, const char* unit) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.6g %s", value, unit);
-  return text;
-}
+std::string number(double value, const char* unit) { return fmt::format("{:.6g} {}", value, unit); }
 
 std::string angle(double radians) { return number(radians * 180 / std::numbers::pi, "deg"); }
 

@@ -1,18 +1,15 @@
 #include "abbe/machine/machine_check.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
-#include <cstdio>
 
 namespace abbe {
 namespace {
 
 constexpr double kUnitTolerance = 1e-9;
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
-}
+std::string number(double value) { return fmt::format("{:.10g}", value); }
 
 std::string vector_text(const Eigen::Vector3d& v) {
   return "(" + number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + ")";

@@ -1,8 +1,9 @@
 #include "abbe/machine/path.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "abbe/geometry/rotation.h"
@@ -226,11 +227,7 @@ class PathSearch {
   std::vector<Pending> pending_;  ///< nodes of singular poses, exchanged when all have been looked at
 };
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string number(double value) { return fmt::format("{:.4g}", value); }
 
 }  // namespace
 

@@ -52,8 +52,9 @@ struct PathResult {
 ///
 /// Of all branches and turns within travel at all poses the sequence with the fewest jumps is taken; among these
 /// the one with most of them in singular poses, where the tool keeps its direction; then the one with the shortest
-/// moves. Dynamic programming over the whole path, so an axis starts on the turn that lets it go through. In a singular pose the free axis keeps its command of the poses before, or takes that of the poses
-/// after. Endless rotary axes are followed over any number of turns. Time: poses times branches squared.
+/// moves. Dynamic programming over the whole path, so an axis starts on the turn that lets it go through. In a singular
+/// pose the free axis keeps its command of the poses before, or takes that of the poses after. Endless rotary axes are
+/// followed over any number of turns. Time: poses times branches squared.
 /// @param path  poses close enough that neighbours differ by a small turn of the tool
 PathResult follow_path(const Machine& machine, std::span<const PoseTarget> path, const PathOptions& options = {});
 

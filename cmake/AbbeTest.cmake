@@ -1,0 +1,26 @@
+# Tests that need more than one folder; unit tests stand beside their source and are named in abbe_library().
+#
+# abbe_cross_test(NAME SOURCES a_test.cpp ... LINK abbe::identify ... [LABEL quick|long] [TIMEOUT seconds] [USES_COMMAND])
+#
+# Quick tests run on every build and under the sanitizers; long ones only in `make test`. USES_COMMAND: the test runs the
+# `abbe` command and is given its path as ABBE_COMMAND. Every test gets ABBE_SOURCE_DIR, to find examples/ and tests/golden/.
+function(abbe_cross_test name)
+  cmake_parse_arguments(ARG "USES_COMMAND" "LABEL;TIMEOUT" "SOURCES;LINK" ${ARGN})
+  if(NOT ARG_LABEL)
+    set(ARG_LABEL quick)
+  endif()
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_compile_features(${name} PRIVATE cxx_std_20)
+  target_compile_definitions(${name} PRIVATE ABBE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} abbe_flags GTest::gtest_main GTest::gmock)
+  if(ARG_USES_COMMAND)
+    target_compile_definitions(${name} PRIVATE ABBE_COMMAND="$<TARGET_FILE:abbe>")
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+    add_dependencies(${name} abbe)
+  endif()
+  gtest_discover_tests(${name} TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST
+    PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})
+endfunction()

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace abbe {
+
+/// What a finished program left behind.
+struct CommandResult {
+  int exit_code = -1;  ///< 128 + signal number if a signal ended it
+  std::string out;     ///< standard output
+  std::string err;     ///< standard error
+};
+
+/// Runs a program without a shell, with empty standard input, and waits for it.
+///
+/// @param program            path of the program
+/// @param arguments          without the program's own name
+/// @param working_directory  an existing folder; the program's current folder
+/// @param environment        "NAME=value", added to or replacing the caller's environment
+/// @throws std::system_error if the program cannot be started
+CommandResult run_program(const std::string& program, const std::vector<std::string>& arguments,
+                          const std::filesystem::path& working_directory,
+                          const std::vector<std::string>& environment = {});
+
+/// An empty folder of its own for one test, removed at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Writes a file, with the folders above it, and returns its path.
+  std::filesystem::path write(const std::string& name, std::string_view text) const;
+
+  /// The bytes of a file; fails the test if there is none.
+  std::string read(const std::string& name) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace abbe

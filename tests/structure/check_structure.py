@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Check that the source tree keeps to the order in which data flows. Usage: check_structure.py ROOT
+
+A folder of src/abbe includes only itself and folders above it in ORDER; `identify` and `compensate` do not see each
+other; only `formats`, `report` and `apps` touch files; headers have `#pragma once`; nothing is included twice; no file
+is longer than MAX_LINES; no folder has a name that says nothing. Every violation is one line: file:line: message.
+"""
+import os
+import re
+import sys
+
+ORDER = ["geometry", "machine", "errors", "instruments", "identify", "compensate", "verify", "formats", "report",
+         "runtime"]
+STRANGERS = {("identify", "compensate"), ("compensate", "identify")}
+TOUCH_FILES = {"formats", "report"}
+FILE_HEADERS = {"fstream", "cstdio", "stdio.h", "filesystem", "fcntl.h", "unistd.h", "sys/stat.h", "sys/mman.h"}
+MEANINGLESS = {"util", "utils", "common", "core", "helper", "helpers", "misc", "manager", "managers"}
+MAX_LINES = 500
+PLACES = ["src", "apps", "tests", "fuzz", "benchmarks", "python", "web", "cmake", ".ci"]
+SOURCES = (".h", ".cpp", ".py", ".ts", ".js", ".mjs", ".css", ".cmake")
+SKIP = {"node_modules", "build", "dist", "__pycache__"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def files_below(root, place):
+    for folder, names, files in os.walk(os.path.join(root, place)):
+        names[:] = sorted(n for n in names if n not in SKIP and not n.startswith("build"))
+        yield os.path.relpath(folder, root).replace(os.sep, "/"), sorted(files)
+
+
+def check_library_include(folder, target, is_test):
+    """What is wrong with a file of src/abbe/<folder> including `target`, or nothing."""
+    if target.startswith("abbe/"):
+        other = target.split("/")[1]
+        if other not in ORDER:
+            return f"'{target}' is in no folder of the order {' '.join(ORDER)}"
+        if (folder, other) in STRANGERS:
+            return f"'{folder}' and '{other}' do not see each other"
+        if ORDER.index(other) > ORDER.index(folder):
+            return f"'{folder}' includes '{target}', which is below it"
+    elif target in FILE_HEADERS and folder not in TOUCH_FILES and not is_test:
+        return f"<{target}>: only {' and '.join(sorted(TOUCH_FILES))} touch files"
+    return None
+
+
+def check_cpp(root, path, text):
+    parts = path.split("/")
+    folder = parts[2] if parts[:2] == ["src", "abbe"] and len(parts) > 3 else None
+    is_test = path.endswith(("_test.cpp", "_for_test.h", "_for_test.cpp"))
+    seen = {}
+    guarded = False
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.strip() == "#pragma once":
+            guarded = True
+        match = INCLUDE.match(line)
+        if not match:
+            # The same file may be included again in the other branch of a condition.
+            if line.lstrip().startswith("#") and not line.startswith("#pragma"):
+                seen.clear()
+            continue
+        quote, target = match.groups()
+        if target in seen:
+            yield number, f"'{target}' is included twice (line {seen[target]})"
+        seen[target] = number
+        if target.startswith("abbe/") and not os.path.exists(os.path.join(root, "src", target)):
+            yield number, f"'{target}' does not exist"
+        if folder is None:
+            continue
+        if quote == '"' and os.path.exists(os.path.join(root, os.path.dirname(path), target)):
+            yield number, f"'{target}': write the path from abbe/"
+        problem = check_library_include(folder, target, is_test)
+        if problem:
+            yield number, problem
+    # Highway compiles some headers once per processor; those have its own guard.
+    if path.endswith(".h") and not guarded and "HWY_TARGET_TOGGLE" not in text:
+        yield 1, "header without #pragma once"
+
+
+def violations(root):
+    """All violations as (path, line, message)."""
+    library = os.path.join(root, "src", "abbe")
+    for name in sorted(os.listdir(library)):
+        if os.path.isdir(os.path.join(library, name)) and name not in ORDER:
+            yield f"src/abbe/{name}", 1, f"folder is not in the order {' '.join(ORDER)}"
+    for place in PLACES:
+        for folder, files in files_below(root, place):
+            if os.path.basename(folder).lower() in MEANINGLESS:
+                yield folder, 1, "a folder's name says what is in it"
+            for name in files:
+                if not name.endswith(SOURCES) and name != "CMakeLists.txt":
+                    continue
+                path = f"{folder}/{name}"
+                with open(os.path.join(root, path), encoding="utf-8") as stream:
+                    text = stream.read()
+                lines = text.count("\n")
+                if lines > MAX_LINES:
+                    yield path, MAX_LINES, f"{lines} lines; at most {MAX_LINES}"
+                if name.endswith((".h", ".cpp")):
+                    for number, message in check_cpp(root, path, text):
+                        yield path, number, message
+
+
+def main():
+    if len(sys.argv) != 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    found = list(violations(sys.argv[1]))
+    for path, number, message in found:
+        print(f"{path}:{number}: {message}")
+    print(f"structure: {len(found)} violations")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
