@@ -2,7 +2,7 @@
 
 import {Axis, Machine} from './data';
 import {figure, html, responsive, section, svg} from './dom';
-import {number} from './format';
+import {number, plain} from './format';
 import {dataTable} from './table';
 
 const kBodyHeight = 46;
@@ -34,7 +34,7 @@ export function travelText(axis: Axis): string {
   const from = angle ? axis.travel_min_deg : axis.travel_min_mm;
   const to = angle ? axis.travel_max_deg : axis.travel_max_mm;
   if (from === undefined || to === undefined) return '';
-  return `${number(from, 5)} … ${number(to, 5)}${angle ? '°' : '\u2009mm'}`;
+  return `${plain(from)} … ${plain(to)}${angle ? '°' : '\u2009mm'}`;
 }
 
 function bodies(machine: Machine): string[] {
@@ -114,7 +114,7 @@ export function machineSection(machine: Machine): HTMLElement | undefined {
   part.append(
     figure('Chain from the workpiece to the tool. A prime marks an axis that carries the workpiece: its positive command moves the table the other way.', box),
   );
-  const vector = (v?: number[]) => (v ? v.map((c) => number(c, 6)).join(', ') : '');
+  const vector = (v?: number[]) => (v ? v.map((c) => plain(c)).join(', ') : '');
   part.append(
     dataTable(
       'Axes, all at zero, machine frame',

@@ -15,15 +15,16 @@ export function number(value: number | null | undefined, digits = 3): string {
   }
   const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(Number(size.toPrecision(digits)))));
   text = size.toFixed(decimals);
-  return (value < 0 ? kMinus : '') + thousands(text);
+  return (value < 0 ? kMinus : '') + grouped(text);
 }
 
 export function count(value: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return '\u2013';
-  return (value < 0 ? kMinus : '') + thousands(String(Math.round(Math.abs(value))));
+  return (value < 0 ? kMinus : '') + grouped(String(Math.round(Math.abs(value))));
 }
 
-function thousands(text: string): string {
+/// Thousands apart from five digits on.
+export function grouped(text: string): string {
   const [whole, fraction] = text.split('.');
   const grouped = whole.length > 4 ? whole.replace(/\B(?=(\d{3})+$)/g, '\u202f') : whole;
   return fraction === undefined ? grouped : `${grouped}.${fraction}`;
@@ -42,10 +43,24 @@ export function withUncertainty(value: number | null, uncertainty: number | null
   if (decimals > 6 || decimals < -4) return [number(value, 4), number(uncertainty, 2)];
   const places = Math.max(0, decimals);
   const text = Math.abs(value).toFixed(places);
-  return [(value < 0 && Number(text) !== 0 ? kMinus : '') + thousands(text), thousands(uncertainty.toFixed(places))];
+  return [(value < 0 && Number(text) !== 0 ? kMinus : '') + grouped(text), grouped(uncertainty.toFixed(places))];
 }
 
 /// Value with unit; the degree sign stands close.
 export function quantity(value: number | null | undefined, unit: string, digits = 3): string {
   return number(value, digits) + (unit === '°' || !unit ? unit : `${kThin}${unit}`);
+}
+
+/// A number as it was given: up to six digits, no trailing zeros.
+export function plain(value: number): string {
+  return (value < 0 ? kMinus : '') + grouped(String(Number(Math.abs(value).toPrecision(6))));
+}
+
+/// With the decimals of another number as it was printed.
+export function alike(value: number | null | undefined, printed: string): string {
+  if (value === null || value === undefined) return '\u2013';
+  const decimals = printed.includes('·') || !/\d/.test(printed) ? -1 : (printed.split('.')[1] ?? '').length;
+  if (decimals < 0) return number(value, 4);
+  const text = Math.abs(value).toFixed(decimals);
+  return (value < 0 && Number(text) !== 0 ? kMinus : '') + grouped(text);
 }

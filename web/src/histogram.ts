@@ -67,13 +67,13 @@ function drawing(unit: string, sets: {style: string; name: string; data: Distrib
       width,
       height: 250,
       x: {label: `length of the error / ${unit}`, range: [from, to], log},
-      y: {label: 'share of the poses / %', range: [0, highest * 1.12], nice: false},
+      y: {label: 'share of the poses / %', range: [0, highest * 1.22], nice: false},
       description: sets.map((set) => `${set.name}: median ${quantity(set.data.median, unit)}, 95 percent below ${quantity(set.data.p95, unit)}`).join('; '),
     });
-    for (const set of sets) {
+    sets.forEach((set, i) => {
       bars(target, set.data, set.style);
-      rule(target, set.data.median, 'x', set.style, `${set.name}, median ${quantity(set.data.median, unit)}`);
-    }
+      rule(target, set.data.median, 'x', set.style, `${set.name}, median ${quantity(set.data.median, unit)}`, i);
+    });
     return target.root;
   });
   return box;

@@ -27,7 +27,7 @@ function singularValues(values: number[], rank: number | undefined, threshold: n
   responsive(drawing, (width) => {
     const target = plot({
       width, height: 250,
-      x: {label: 'number', range: [0, values.length + 1]},
+      x: {label: 'index', range: [0, values.length + 1]},
       y: {label: 'singular value of the scaled Jacobian', range: decades(drawn), log: true},
       description: `Singular values from ${number(largest)} to ${number(values[values.length - 1])}; rank ${cut}`,
     });
@@ -101,7 +101,7 @@ export function identificationSection(data: Identification, summary: Summary): H
     data.history && convergence(data.history),
     data.order_selection && orders(data.order_selection),
   ].filter((f): f is HTMLElement => Boolean(f));
-  if (figures.length) part.append(html('div', {class: 'columns'}, ...figures));
+  if (figures.length) part.append(html('div', {class: `columns ${figures.length > 2 ? 'three' : ''}`}, ...figures));
   if (data.gauge?.length) {
     part.append(html('h3', {}, 'Gauge'), html('p', {class: 'note'}, 'What the readings cannot separate, and the convention that settles it.'),
       html('ol', {class: 'gauge-list'}, ...data.gauge.map((entry) => html('li', {},

@@ -12,6 +12,11 @@ import {residualSection} from './residuals';
 import {parameterSection, tablesSection} from './table';
 import {themeButton} from './theme';
 
+const kShort: Record<string, string> = {
+  map: 'Map', distribution: 'Distribution', machine: 'Machine', motions: 'Error motions', locations: 'Location errors', tables: 'Comparison',
+  identification: 'Observability', residuals: 'Residuals', parameters: 'Parameters', assumptions: 'Assumptions', references: 'References',
+};
+
 function listSection(id: string, title: string, lines: string[]): HTMLElement {
   const part = section(id, title);
   part.append(html('ul', {class: 'plain'}, ...lines.map((text) => html('li', {}, text))));
@@ -41,7 +46,7 @@ function build(report: Report): void {
   ].filter((part): part is HTMLElement => Boolean(part));
 
   const links = html('nav', {'aria-label': 'Sections'}, ...sections.map((part) =>
-    html('a', {href: `#${part.id}`}, part.querySelector('h2')?.textContent ?? '')));
+    html('a', {href: `#${part.id}`}, kShort[part.id] ?? part.id)));
   page.append(
     html('div', {class: 'bar'}, html('span', {class: 'brand'}, 'Abbe'), links, html('div', {class: 'actions'}, print, toggle)),
     html('main', {}, overview(report), ...sections),

@@ -28,9 +28,13 @@ function colourBar(scaling: () => Scaling): {box: HTMLElement; redraw: () => voi
     const scale = log ? logScale([low, high], inner, 6) : linearScale([0, high], inner, 6);
     const root = svg('svg', {viewBox: `0 0 ${width} 44`, width, height: 44, role: 'img',
       'aria-label': `Colour scale of the length of the error from ${number(log ? low : 0)} to ${number(high)} micrometres`});
-    const stops = svg('linearGradient', {id: 'ramp'});
-    for (let i = 0; i <= 24; ++i) stops.append(svg('stop', {offset: `${(100 * i) / 24}%`, 'stop-color': cssColour(rampColour(i / 24, isDark()))}));
-    root.append(svg('defs', {}, stops), svg('rect', {x: inner[0], y: 4, width: Math.max(1, inner[1] - inner[0]), height: 10, rx: 2, fill: 'url(#ramp)'}));
+    // Both are there, the style sheet shows one: paper always gets the light one, as the stills do.
+    for (const name of ['light', 'dark']) {
+      const stops = svg('linearGradient', {id: `ramp-${name}`});
+      for (let i = 0; i <= 24; ++i) stops.append(svg('stop', {offset: `${(100 * i) / 24}%`, 'stop-color': cssColour(rampColour(i / 24, name === 'dark'))}));
+      root.append(svg('defs', {}, stops),
+        svg('rect', {x: inner[0], y: 4, width: Math.max(1, inner[1] - inner[0]), height: 10, rx: 2, fill: `url(#ramp-${name})`, class: `ramp-${name}`}));
+    }
     for (const tick of scale.ticks) {
       const x = scale(tick);
       root.append(svg('line', {x1: x, x2: x, y1: 14, y2: 18, class: 'mark'}), svg('text', {x, y: 29, class: 'tick middle'}, scale.label(tick)));
@@ -97,7 +101,7 @@ export function mapSection(map: ErrorMap): HTMLElement {
   const choices = slices(map);
   const axis = html('select', {id: 'map-slice'}, html('option', {value: ''}, 'all poses'),
     ...choices.map((slice, i) => html('option', {value: i}, `slice by ${slice.label}`)));
-  const position = html('input', {type: 'range', min: 0, max: 1, step: 1, value: 0, 'aria-label': 'Position of the slice', disabled: true});
+  const position = html('input', {type: 'range', min: 0, max: 1, step: 1, value: 0, 'aria-label': 'Position of the slice', hidden: true});
   const positionValue = html('output', {});
   const bar = colourBar(() => scaling);
 
@@ -105,7 +109,7 @@ export function mapSection(map: ErrorMap): HTMLElement {
     const factor = Math.pow(10, Number(slider.value));
     scaling.log = log.checked;
     const slice = axis.value === '' ? undefined : choices[Number(axis.value)];
-    position.disabled = !slice;
+    position.hidden = !slice;
     let visible: boolean[] | undefined;
     if (slice) {
       position.max = String(slice.stops.length - 1);
@@ -115,10 +119,10 @@ export function mapSection(map: ErrorMap): HTMLElement {
     } else positionValue.textContent = '';
     views.forEach((view, i) => {
       const scale = factor * (own.checked && i > 0 && after ? automatic(after) : common);
-      view.caption.textContent = `arrows × ${number(scale, 2)}`;
+      view.caption.textContent = `${slice ? `${positionValue.textContent}; ` : ''}arrows × ${count(scale)}`;
       view.update(scale, visible, (value) => rampColour(fraction(value, scaling), isDark()), (value) => rampColour(fraction(value, scaling), false));
     });
-    sliderValue.textContent = `× ${number(common * factor, 2)}`;
+    sliderValue.textContent = `× ${count(common * factor)}`;
     bar.redraw();
   };
   for (const input of [slider, own, log, position]) input.addEventListener('input', update);
@@ -144,7 +148,7 @@ export function mapSection(map: ErrorMap): HTMLElement {
       html('label', {class: 'check'}, log, 'logarithmic colours'),
       after && html('label', {class: 'check'}, own, 'arrows after at their own length'),
       reset),
-    html('p', {class: 'note screen-only'}, 'Drag to rotate, wheel or + and − to zoom, arrow keys to turn. Both views move together.'),
+    html('p', {class: 'note screen-only'}, 'Drag to rotate, wheel or + and − to zoom, arrow keys to turn.' + (after ? ' Both views move together.' : '')),
   );
   update();
   return part;

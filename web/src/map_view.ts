@@ -77,7 +77,7 @@ function arrowGeometry(): BufferGeometry {
   return mergeGeometries([shaft, head]);
 }
 
-/// Words in the scene, always facing the reader and of the same size on the screen.
+/// Words in the scene, always facing the reader; letters of `pixels` on the screen, see View.draw.
 function label(text: string, colour: string, pixels: number): Sprite {
   const canvas = document.createElement('canvas');
   const context = canvas.getContext('2d')!;
@@ -92,7 +92,7 @@ function label(text: string, colour: string, pixels: number): Sprite {
   const texture = new CanvasTexture(canvas);
   texture.colorSpace = SRGBColorSpace;
   const sprite = new Sprite(new SpriteMaterial({map: texture, transparent: true, depthTest: false, sizeAttenuation: false}));
-  sprite.scale.set((pixels * canvas.width) / canvas.height, pixels, 1);
+  sprite.userData = {height: (pixels * canvas.height) / 40, shape: canvas.width / canvas.height};
   return sprite;
 }
 
@@ -129,7 +129,7 @@ export class View {
     const feet = new BufferGeometry();
     feet.setAttribute('position', new Float32BufferAttribute(new Float32Array(3 * count), 3));
     feet.setAttribute('color', new Float32BufferAttribute(new Float32Array(3 * count), 3));
-    this.feet = new Points(feet, new PointsMaterial({size: 2.4, sizeAttenuation: false, vertexColors: true}));
+    this.feet = new Points(feet, new PointsMaterial({size: 3, sizeAttenuation: false, vertexColors: true}));
     this.feet.frustumCulled = false;
     this.scene.add(this.feet);
     try {
@@ -143,6 +143,8 @@ export class View {
     const controls = new OrbitControls(shared.camera, this.canvas);
     controls.target = shared.target;
     controls.enableDamping = false;
+    // The controls aimed the camera at their own first target.
+    shared.reset();
     controls.addEventListener('change', () => shared.changed());
     this.canvas.addEventListener('keydown', (event) => this.key(event));
     new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement!);
@@ -229,14 +231,14 @@ export class View {
         const at = edge.clone();
         at[k] = value;
         ticks.push(...at.toArray(), ...at.clone().addScaledVector(outward, out * 0.5).toArray());
-        const words = label(String(Number(value.toPrecision(6))).replace('-', '\u2212'), ink, 0.026);
+        const words = label(String(Number(value.toPrecision(6))).replace('-', '\u2212'), ink, 11);
         words.position.copy(at).addScaledVector(outward, out * 2.2);
         parts.push(words);
       }
-      const name = label(`${k.toUpperCase()} / mm`, ink, 0.031);
+      const name = label(`${k.toUpperCase()} / mm`, ink, 12);
       const middle = edge.clone();
       middle[k] = (low[k] + high[k]) / 2;
-      name.position.copy(middle).addScaledVector(outward, out * 5.2);
+      name.position.copy(middle).addScaledVector(outward, out * (k === 'z' ? 4.4 : 5));
       parts.push(name);
     }
     const marks = new BufferGeometry();
@@ -274,6 +276,9 @@ export class View {
     const camera = this.shared.camera;
     camera.aspect = stage.clientWidth / stage.clientHeight;
     camera.updateProjectionMatrix();
+    const unit = (2 * Math.tan((camera.fov * Math.PI) / 360)) / stage.clientHeight;
+    for (const part of this.frame?.parts ?? [])
+      if (part instanceof Sprite) part.scale.set(unit * part.userData.height * part.userData.shape, unit * part.userData.height, 1);
     this.renderer.render(this.scene, camera);
   }
 

@@ -39,7 +39,9 @@ function rangeOf(curve: Curve): [number, number] {
     ...curve.value.map((v, i) => v + (half?.[i] ?? 0)),
     ...(curve.truth ?? []),
   ]);
-  return low === high ? [-1, 1] : [low, high];
+  if (low === high) return [-1, 1];
+  const margin = (high - low) * 0.06;
+  return [low < 0 ? low - margin : low, high > 0 ? high + margin : high];
 }
 
 /// What the six letters mean on this axis (ISO 230-1).
@@ -65,7 +67,7 @@ function small(curve: Curve, range: () => [number, number], title: string): {box
       compact: true,
       zeroLine: true,
       x: {label: `${motion.axis} / ${curve.positionUnit}`, range: extent(position), angle: curve.positionUnit === '°'},
-      y: {label: `${unit}`, range: range(), nice: true},
+      y: {label: `${unit}`, range: range()},
       description: `${motion.name}, ${title}: from ${quantity(extent(value)[0], unit)} to ${quantity(extent(value)[1], unit)}`,
     });
     if (half) band(target, position, value.map((v, i) => v - half[i]), value.map((v, i) => v + half[i]), 'value');
@@ -140,7 +142,7 @@ export function locationSection(errors: LocationError[]): HTMLElement | undefine
     if (!rows.length) continue;
     const drawing = html('div', {class: 'drawing'});
     responsive(drawing, (width) => {
-      const height = 46 + rows.length * 26;
+      const height = 64 + rows.length * 28;
       const [low, high] = extent(rows.flatMap((r) => [0, r.value - 2 * (r.spread ?? 0), r.value + 2 * (r.spread ?? 0), r.truth]));
       const margin = (high - low) * 0.06;
       const target = plot({

@@ -27,7 +27,7 @@ export function verdict(summary: Summary): string {
   if (before === undefined) return '';
   if (after === undefined) return `Mean volumetric error ${quantity(before, 'µm')} ${where}.`;
   const predicted = errors.predicted_expanded_uncertainty_um?.mean;
-  const interval = predicted === undefined ? '' : ` (k = 2: predicted within ${quantity(predicted, 'µm')})`;
+  const interval = predicted === undefined ? '' : ` (predicted expanded uncertainty ${quantity(predicted, 'µm')}, k\u00a0=\u00a02)`;
   return `Mean volumetric error ${quantity(before, 'µm')} before, ${quantity(after, 'µm')} after correction ${where}${interval}.`;
 }
 
@@ -127,7 +127,7 @@ export function warnings(report: Report): HTMLElement | undefined {
   for (const entry of report.warnings) {
     const {level, text} = typeof entry === 'string' ? {level: 'warning', text: entry} : {level: entry.level ?? 'warning', text: entry.text};
     const known = ['error', 'warning', 'note'].includes(level) ? level : 'warning';
-    list.append(html('li', {class: known}, html('strong', {}, known[0].toUpperCase() + known.slice(1)), html('span', {}, text)));
+    list.append(html('li', {class: `level-${known}`}, html('strong', {}, known[0].toUpperCase() + known.slice(1)), html('span', {}, text)));
   }
   return list;
 }
@@ -160,10 +160,10 @@ export function overview(report: Report): HTMLElement {
     );
   if (tiles.children.length) box.append(tiles);
   if (head?.errors.description) {
-    const against: Record<string, string> = {truth: 'the known truth', readings: 'readings not used in the fit', model: 'the identified model'};
+    const against: Record<string, string> = {truth: 'compared with the known truth', readings: 'compared with readings not used in the fit', model: 'predicted by the model'};
     const reference = head.errors.reference;
     box.append(html('p', {class: 'note under'}, `Evaluated at ${head.errors.poses ? `${count(head.errors.poses)} poses: ` : ''}${head.errors.description}` +
-      (reference ? `; compared with ${against[reference] ?? reference}.` : '.')));
+      (reference ? `; ${against[reference] ?? `compared with ${reference}`}.` : '.')));
   }
   if (small.children.length) box.append(small);
   return box;

@@ -43,11 +43,11 @@ export function plot(options: PlotOptions): Plot {
   const {width, height} = options;
   const bottom = height - (options.compact ? 34 : 40);
   const top = 18;
-  const y = axisScale(options.y, [bottom, top], Math.max(2, (bottom - top) / (options.compact ? 34 : 44)));
+  const y = axisScale(options.y, [bottom, top], Math.max(2, (bottom - top) / 30));
   const yTicks = options.y.ticks ?? y.ticks.map((at) => ({at, label: y.label(at)}));
   const widest = Math.max(1, ...yTicks.map((tick) => tick.label.length));
   const left = 14 + widest * 6.4;
-  const right = width - 12;
+  const right = width - 18;
   const x = axisScale(options.x, [left, right], Math.max(2, (right - left) / 74));
   const xTicks = options.x.ticks ?? x.ticks.map((at) => ({at, label: x.label(at)}));
 
@@ -127,15 +127,15 @@ export function dots(target: Plot, xs: Values, ys: Values, style: string): void 
   target.layer.append(svg('path', {d: path, class: `dots ${style}`}));
 }
 
-export function rule(target: Plot, at: number, direction: 'x' | 'y', style: string, label?: string): void {
+export function rule(target: Plot, at: number, direction: 'x' | 'y', style: string, label?: string, row = 0): void {
   const {left, right, top, bottom} = target.area;
   if (direction === 'x') {
     const x = target.x(at);
-    target.root.append(svg('line', {x1: x, x2: x, y1: top, y2: bottom, class: `rule ${style}`}));
+    target.root.append(svg('line', {x1: x, x2: x, y1: top + 14 * row, y2: bottom, class: `rule ${style}`}));
     if (label) {
       const atEnd = x > (left + right) / 2 + (right - left) / 4;
       target.root.append(
-        svg('text', {x: x + (atEnd ? -5 : 5), y: top + 9, class: `rule-label ${style} ${atEnd ? 'end' : ''}`}, label),
+        svg('text', {x: x + (atEnd ? -5 : 5), y: top + 9 + 14 * row, class: `rule-label ${style} ${atEnd ? 'end' : ''}`}, label),
       );
     }
   } else {

@@ -38,10 +38,10 @@ function setupBlock(setup: SetupResiduals, limit: number | undefined, index: num
     for (const [name, values] of Object.entries(columns)) {
       const clean = values.filter((_, i) => !marked[i]);
       const [low, high] = extent(clean);
-      const reach = Math.max(Math.abs(low), Math.abs(high), raw ? 0 : (limit ?? 3) * 1.15) * 1.08;
+      const reach = Math.max(Math.abs(low), Math.abs(high), raw ? 0 : (limit ?? 3) * 1.1) * 1.15;
       const beyond = values.filter((v) => v !== null && Math.abs(v) > reach).length;
       // Outliers beyond the drawing sit on its edge: they are counted, not lost, and do not flatten the rest.
-      const clamped = values.map((v) => (v === null ? null : Math.max(-reach, Math.min(reach, v))));
+      const clamped = values.map((v) => (v === null ? null : Math.max(-0.96 * reach, Math.min(0.96 * reach, v))));
       const drawing = html('div', {class: 'drawing'});
       responsive(drawing, (width) => {
         const target = plot({

@@ -1,5 +1,7 @@
 // Axes of drawings: from numbers to pixels, and the numbers worth writing.
 
+import {grouped, superscript} from './format';
+
 export interface Scale {
   (value: number): number;
   ticks: number[];
@@ -49,8 +51,7 @@ function angleTicks(from: number, to: number, wanted: number): number[] {
 function plain(step: number): (value: number) => string {
   const decimals = Math.min(8, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
   return (value) => {
-    const text = Math.abs(value).toFixed(decimals);
-    return (value < 0 && Number(text) !== 0 ? '\u2212' : '') + text.replace(/\B(?=(\d{3})+(?!\d))(?<!\.\d*)/g, '\u202f');
+    return (value < 0 && Number(value.toFixed(decimals)) !== 0 ? '\u2212' : '') + grouped(Math.abs(value).toFixed(decimals));
   };
 }
 
@@ -74,8 +75,6 @@ export function linearScale(
   return scale;
 }
 
-const kSuperscript = '⁰¹²³⁴⁵⁶⁷⁸⁹';
-
 export function logScale([from, to]: [number, number], [start, end]: [number, number], wanted: number): Scale {
   const low = Math.log10(from);
   const high = Math.log10(to > from ? to : from * 10);
@@ -93,11 +92,10 @@ export function logScale([from, to]: [number, number], [start, end]: [number, nu
   }
   const small = low >= -3.01 && high <= 5;
   scale.label = (value) => {
-    if (small) return value >= 1 ? String(Math.round(value)).replace(/\B(?=(\d{3})+$)/g, '\u202f') : String(Number(value.toPrecision(3)));
+    if (small) return grouped(String(Number(value.toPrecision(3))));
     const exponent = Math.round(Math.log10(value));
     const mantissa = Math.round(value / Math.pow(10, exponent));
-    const power = (exponent < 0 ? '⁻' : '') + [...String(Math.abs(exponent))].map((d) => kSuperscript[Number(d)]).join('');
-    return mantissa === 1 ? `10${power}` : '';
+    return mantissa === 1 ? `10${superscript(exponent)}` : '';
   };
   scale.from = from;
   scale.to = to;

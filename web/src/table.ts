@@ -2,7 +2,7 @@
 
 import {DataTable, Parameters} from './data';
 import {html, section} from './dom';
-import {number, withUncertainty} from './format';
+import {alike, number, withUncertainty} from './format';
 
 export function dataTable(caption: string, columns: string[], rows: (string | number | boolean | null)[][]): HTMLElement {
   const isNumber = columns.map((_, i) => rows.some((row) => typeof row[i] === 'number'));
@@ -59,11 +59,11 @@ function parameterRows(p: Parameters): Row[] {
       html('td', {class: 'number'}, value),
       html('td', {class: 'number'}, spread),
       html('td', {}, kUnitText[unit] ?? unit),
-      html('td', {class: 'number'}, number(correlation, 2)),
+      html('td', {class: 'number'}, correlation === null || correlation === undefined ? '\u2013' : alike(correlation, '0.00')),
       html('td', {}, partner),
       html('td', {class: 'gauge'}, gauge),
     ];
-    if (p.truth) cells.splice(4, 0, html('td', {class: 'number'}, number(truth, 4)));
+    if (p.truth) cells.splice(4, 0, html('td', {class: 'number'}, alike(truth, uncertainty ? value : '')));
     const low = -Infinity;
     const sort: (string | number)[] = [name, p.group?.[i] ?? '', p.value[i] ?? low, uncertainty ?? low, unit,
       correlation === null || correlation === undefined ? low : Math.abs(correlation), partner, gauge];
