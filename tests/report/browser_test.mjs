@@ -195,7 +195,7 @@ try {
 } finally {
   await browser.close();
 }
-for (const result of results) console.log(`${result.name}: ${result.size} bytes, ${result.sections} sections, ${result.figures} figures equal to the summary`);
+for (const result of results) console.log(`${result.name}: ${result.size} bytes, ${result.sections} sections, ${result.figures} figures compared with the summary`);
 for (const failure of failures) console.error(`FAILED ${failure}`);
 if (!reports.length) failures.push('no report given');
 writeFileSync(join(options.out, 'browser_test.json'), JSON.stringify({results, failures}, null, 1));

@@ -17,8 +17,8 @@ const fourier = (t) => [1, Math.cos(t), Math.sin(t), Math.cos(2 * t), Math.sin(2
 
 const axes = [
   {name: 'C', kind: 'rotary', side: 'workpiece', primed: true, direction: [0, 0, 1], point_mm: [0, 0, 0], travel_min_deg: 0, travel_max_deg: 360, endless: true},
-  {name: 'X', kind: 'linear', side: 'workpiece', primed: true, direction: [1, 0, 0], point_mm: [0, 0, 0], travel_min_mm: 0, travel_max_mm: 1400},
-  {name: 'Z', kind: 'linear', side: 'tool', primed: false, direction: [0, 0, 1], point_mm: [0, 0, 0], travel_min_mm: 0, travel_max_mm: 600},
+  {name: 'X', kind: 'linear', side: 'workpiece', primed: true, direction: [1, 0, 0], point_mm: [0, 0, -120], travel_min_mm: 0, travel_max_mm: 1400},
+  {name: 'Z', kind: 'linear', side: 'tool', primed: false, direction: [0, 0, 1], point_mm: [700, 520, 0], travel_min_mm: 0, travel_max_mm: 600},
 ];
 const basis = {C: (q) => fourier((q * Math.PI) / 180), X: (q) => legendre(q / 700 - 1), Z: (q) => legendre(q / 300 - 1)};
 const functionNames = {C: ['1', 'cos1', 'sin1', 'cos2', 'sin2', 'cos3', 'sin3'], X: ['P0', 'P1', 'P2', 'P3', 'P4'], Z: ['P0', 'P1', 'P2', 'P3', 'P4']};
@@ -138,7 +138,7 @@ const data = {
   subtitle: 'Laser-tracker campaign with 2,000 readings, joint identification of error motions and axis average lines',
   generator: 'abbe 0.1.0', simulated: true,
   study: {name: 'sample', file: 'sample.study.toml', seed: 20210517},
-  machine: {name: 'Table-and-column machine', chain: "w C' X' b Z t", description: 'Rotary table on a slide, vertical column. Reflectors on the spindle, tracker on the table.', axes, tool_offset_mm: [180, 250, 120]},
+  machine: {name: 'Table-and-column machine', chain: "w C' X' b Z t", description: 'Rotary table on a slide, vertical column. Reflectors on the spindle, tracker on the table.', axes, tool_reference_mm: [0, 0, 250], tool_offset_mm: [180, 250, -120], tool_direction: [0, 0, 1]},
   summary: {
     format: 'abbe-summary/1', study: 'sample', machine: 'Table-and-column machine', chain: "w C' X' b Z t", status: 'converged', converged: true, iterations: 6,
     readings, outliers: outliers.size, residuals: readings * 3, parameters: count, machine_parameters: count - 6, setup_parameters: 6, rank, null_space: nullSpace,
@@ -173,9 +173,16 @@ data.summary.held_out.remaining_percent = (100 * data.summary.held_out.position_
 // A map of published tables: no identification, no correction, counted histogram, curves without bands, one dead axis.
 const counts = new Array(40).fill(0);
 for (const p of before) counts[Math.min(39, Math.floor(length(p.e) / 12.5))] += 885.78;
+const grinder = {name: 'Five-axis grinder', chain: 'w C b X Z A Y B t', tool_reference_mm: [0, 0, 0], tool_offset_mm: [200, 0, 0], tool_direction: [1, 0, 0], workpiece_origin_mm: [0, 0, 400],
+  axes: [{name: 'C', kind: 'rotary', side: 'workpiece', direction: [0, 0, 1], point_mm: [0, 0, 0], endless: true},
+    {name: 'X', kind: 'linear', side: 'tool', direction: [1, 0, 0], point_mm: [0, 0, 0], travel_min_mm: 0, travel_max_mm: 400},
+    {name: 'Z', kind: 'linear', side: 'tool', direction: [0, 0, 1], point_mm: [0, 0, 0], travel_min_mm: 0, travel_max_mm: 500},
+    {name: 'A', kind: 'rotary', side: 'tool', direction: [1, 0, 0], point_mm: [0, 0, 0], travel_min_deg: -30, travel_max_deg: 30},
+    {name: 'Y', kind: 'linear', side: 'tool', direction: [0, 1, 0], point_mm: [0, 0, 0], travel_min_mm: 0, travel_max_mm: 200},
+    {name: 'B', kind: 'rotary', side: 'tool', direction: [0, Math.SQRT1_2, Math.SQRT1_2], point_mm: [0, 0, 0], travel_min_deg: -45, travel_max_deg: 45}]};
 const mapOnly = {
-  format: 'abbe-report/1', title: 'Integrated error of a published machine', simulated: false, machine: data.machine,
-  summary: {machine: data.summary.machine, chain: data.summary.chain,
+  format: 'abbe-report/1', title: 'Integrated error of a published machine', simulated: false, machine: grinder,
+  summary: {machine: grinder.name, chain: grinder.chain,
     map: {poses: 1771561, description: 'full travel, 11 steps per axis', reference: 'model', position_before_um: data.summary.held_out.position_before_um}},
   warnings: ['The unit of the angles is inferred, not stated in the source.'],
   map: {...map, after_um: undefined, poses: 1771561},

@@ -1,5 +1,6 @@
 // The machine drawn as its chain: bodies from the workpiece to the tool, joined by its axes.
 
+import {axesDrawing} from './axes_drawing';
 import {Axis, Machine} from './data';
 import {figure, html, responsive, section, svg} from './dom';
 import {number, plain} from './format';
@@ -112,10 +113,12 @@ export function machineSection(machine: Machine): HTMLElement | undefined {
   const box = html('div', {class: 'drawing'});
   responsive(box, (width) => draw(machine, width));
   part.append(
-    figure('Chain from the workpiece to the tool. A prime marks an axis that carries the workpiece: its positive command moves the table the other way.', box),
+    figure('Chain from the workpiece to the tool.' + (axes.some((axis) => axis.primed) ? ' A prime marks an axis that carries the workpiece: its positive command moves the table the other way.' : ''), box),
   );
   const vector = (v?: number[]) => (v ? v.map((c) => plain(c)).join(', ') : '');
-  part.append(
+  const space = html('div', {class: 'drawing'});
+  responsive(space, (width) => axesDrawing(machine, width));
+  const details = html('div', {},
     dataTable(
       'Axes, all at zero, machine frame',
       ['Axis', 'Kind', 'Carries', 'Direction', 'Point / mm', 'Travel'],
@@ -124,12 +127,13 @@ export function machineSection(machine: Machine): HTMLElement | undefined {
       ]),
     ),
   );
+  part.append(html('div', {class: 'columns machine'}, figure('Travels (arrows) and axis lines (dash-dotted) where they are, all axes at zero, parallel projection.', space), details));
   const places: [string, string][] = [
     ['Tool offset', vector(machine.tool_offset_mm)],
     ['Spindle gauge point', vector(machine.tool_reference_mm)],
     ['Workpiece origin', vector(machine.workpiece_origin_mm)],
   ];
   const stated = places.filter(([, text]) => text);
-  if (stated.length) part.append(html('p', {class: 'note'}, stated.map(([name, text]) => `${name} (${text})\u2009mm`).join(' · ')));
+  if (stated.length) details.append(html('p', {class: 'note'}, stated.map(([name, text]) => `${name} (${text})\u2009mm`).join(' · ')));
   return part;
 }
