@@ -1,6 +1,9 @@
 #include "abbe/formats/toml_document.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "abbe/formats/toml_scan.h"
 
 namespace abbe {
 
@@ -11,6 +14,7 @@ TomlDocument::TomlDocument(std::string text, std::string file) : file_(std::move
   for (std::size_t at = text_.find('\n'); at != std::string::npos; at = text_.find('\n', at + 1)) {
     line_starts_.push_back(at + 1);
   }
+  refuse_what_the_parser_cannot_take(text_, file_);
   try {
     root_ = toml::parse(text_, file_);
   } catch (const toml::parse_error& error) {

@@ -90,5 +90,29 @@ TEST(TomlTable, ReportsTheParsersPlace) {
   EXPECT_TRUE(comma.starts_with("a.toml:2:")) << comma;
 }
 
+// Found by fuzzing: toml++ 3.3 asserts on these.
+TEST(TomlTable, RefusesHeadersWithoutNameAndStrayCharacters) {
+  const std::string expected = "; expected a name of letters, digits, _ and -, or a text in quotes";
+  EXPECT_EQ(wrong("a = 1\n[= \"t\"\n", read_range), "a.toml:2:2: a table header without a name" + expected);
+  EXPECT_EQ(wrong("[[\t\x01x]]\n", read_range), "a.toml:1:4: a table header without a name" + expected);
+  EXPECT_EQ(wrong("a = \"ü\" \xC3\xBC", read_range),
+            "a.toml:1:9: a character that may stand in texts and comments only" + expected);
+  EXPECT_EQ(wrong("\xC3\xBC = 1", read_range),
+            "a.toml:1:1: a character that may stand in texts and comments only" + expected);
+}
+
+TEST(TomlTable, AcceptsAnyCharacterInTextsAndCommentsAndNestedArrays) {
+  TomlTable table = TomlTable::parse(
+      "a = \"\"\"ü\" \\\"\"\" x\"\"\"\"\" # ü\nb = '''ü''' # \"\nc = 'ü\\' # ü\nd = \"ü\\\"ü\" # ü\n"
+      "e_mm = [\n  # ü [\n  1,\n  2]\n\"ü\" = [\n[\"ü\"]\n]\n",
+      "a.toml");
+  EXPECT_EQ(table.text("a"), "ü\" \"\"\" x\"\"");
+  EXPECT_EQ(table.text("b"), "ü");
+  EXPECT_EQ(table.text("c"), "ü\\");
+  EXPECT_EQ(table.text("d"), "ü\"ü");
+  EXPECT_EQ(table.numbers("e", Quantity::length, 2), (std::vector<double>{1, 2}));
+  EXPECT_TRUE(table.has("ü"));
+}
+
 }  // namespace
 }  // namespace abbe

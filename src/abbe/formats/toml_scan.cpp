@@ -1,0 +1,91 @@
+#include "abbe/formats/toml_scan.h"
+
+#include <algorithm>
+
+#include "abbe/formats/input_error.h"
+
+namespace abbe {
+namespace {
+
+class Scanner {
+ public:
+  Scanner(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+
+  void scan() {
+    bool line_start = true;
+    int depth = 0;  // of brackets and braces in values
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size());
+      } else if (c == '"' || c == '\'') {
+        skip_string(c);
+        line_start = false;
+      } else if (c == '[' && line_start && depth == 0) {
+        check_header();
+        line_start = false;
+      } else {
+        if ((static_cast<unsigned char>(c) & 0x80U) != 0) fail("a character that may stand in texts and comments only");
+        if (c == '[' || c == '{') ++depth;
+        if ((c == ']' || c == '}') && depth > 0) --depth;
+        line_start = c == '\n' || (line_start && (c == ' ' || c == '\t' || c == '\r'));
+        ++at_;
+      }
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& problem) const {
+    const std::string_view before = text_.substr(0, at_);
+    const std::size_t line_end = before.rfind('\n');
+    const std::string_view line = line_end == std::string_view::npos ? before : before.substr(line_end + 1);
+    const auto characters = std::count_if(line.begin(), line.end(),
+                                          [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+    throw InputError({file_, 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')),
+                      1 + static_cast<std::size_t>(characters), ""},
+                     problem, "a name of letters, digits, _ and -, or a text in quotes");
+  }
+
+  bool next_is(std::string_view what) const { return text_.substr(at_).starts_with(what); }
+
+  void skip_string(char quote) {
+    const std::string three(3, quote);
+    if (next_is(three)) {
+      at_ += 3;
+      while (at_ < text_.size() && !next_is(three)) skip_character(quote);
+      // Up to two quotes before the closing ones belong to the text.
+      while (at_ < text_.size() && text_[at_] == quote) ++at_;
+      return;
+    }
+    ++at_;
+    while (at_ < text_.size() && text_[at_] != quote && text_[at_] != '\n') skip_character(quote);
+    if (at_ < text_.size() && text_[at_] == quote) ++at_;
+  }
+
+  void skip_character(char quote) {
+    const bool escaped = quote == '"' && text_[at_] == '\\' && at_ + 1 < text_.size() && text_[at_ + 1] != '\n';
+    at_ += escaped ? 2 : 1;
+  }
+
+  void check_header() {
+    ++at_;
+    if (at_ < text_.size() && text_[at_] == '[') ++at_;
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t')) ++at_;
+    if (at_ == text_.size()) return;
+    const char c = text_[at_];
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!letter && std::string_view("_-\"']").find(c) == std::string_view::npos) {
+      fail("a table header without a name");
+    }
+  }
+
+  std::string_view text_;
+  const std::string& file_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+void refuse_what_the_parser_cannot_take(std::string_view text, const std::string& file) { Scanner(text, file).scan(); }
+
+}  // namespace abbe
