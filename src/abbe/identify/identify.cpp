@@ -17,6 +17,10 @@ using Index = Eigen::Index;
 constexpr int kMostScaleRounds = 12;
 // Below this relative singular value the covariance is taken from an orthogonal factor instead of J'J.
 constexpr double kIllConditioned = 1e-4;
+// A gauge that costs this part of the cost along one clearly seen direction is none.
+constexpr int kMostGaugeRounds = 2;
+constexpr double kClearlySeen = 1e-9;
+constexpr double kRestriction = 0.1;
 
 std::vector<double> scaled_norms(const Problem& problem, const std::vector<std::vector<double>>& norms) {
   std::vector<double> result;
@@ -68,9 +72,21 @@ class Run {
     if (!at_start_.finite)
       return fail(IdentifyStatus::not_finite, "a residual or derivative at the start is not a finite number");
     if (!fix()) return fail(IdentifyStatus::rank_deficient, rank_message());
-    const ConstrainedSpace* space = result_.gauge.constraints.empty() ? nullptr : &result_.space;
-    const SolverResult solved = options_.loss == LossKind::none ? least_squares(space) : robust(space);
-    result_.history.insert(result_.history.end(), solved.history.begin(), solved.history.end());
+    const Eigen::VectorXd given = start_;
+    SolverResult solved;
+    const ConstrainedSpace* space = nullptr;
+    for (int round = 0;; ++round) {
+      space = result_.gauge.constraints.empty() ? nullptr : &result_.space;
+      solved = options_.loss == LossKind::none ? least_squares(space) : robust(space);
+      result_.history.insert(result_.history.end(), solved.history.begin(), solved.history.end());
+      if (round == kMostGaugeRounds || solved.status != IdentifyStatus::converged || !space || !restricts(solved))
+        break;
+      // What was unseen at the start is seen here: a property of that point, not of the problem.
+      start_ = solved.estimates;
+      at_start_ = stream_.sums(start_, Loss{}, Wanted::normal);
+      take_gauge(find_null_space(stream_, start_, at_start_));
+    }
+    if (solved.status == IdentifyStatus::not_finite || solved.status == IdentifyStatus::rank_deficient) start_ = given;
     result_.status = solved.status;
     if (solved.status == IdentifyStatus::not_finite || solved.status == IdentifyStatus::rank_deficient)
       return fail(solved.status, solved.status == IdentifyStatus::not_finite
@@ -104,10 +120,21 @@ class Run {
         if (at_nominal.basis.cols() > null_space.basis.cols()) null_space = std::move(at_nominal);
       }
     }
+    if (null_space.basis.cols() > 0 && options_.gauge == GaugeChoice::none) {
+      result_.gauge.rank_at_start = null_space.rank;
+      result_.gauge.singular_values = null_space.singular_values;
+      return false;
+    }
+    take_gauge(null_space);
+    return true;
+  }
+
+  void take_gauge(const NullSpace& null_space) {
+    lack_of_data_ = false;
+    result_.gauge.warnings.clear();
     result_.gauge.rank_at_start = null_space.rank;
     result_.gauge.weak_at_start = null_space.weak;
     result_.gauge.singular_values = null_space.singular_values;
-    if (null_space.basis.cols() > 0 && options_.gauge == GaugeChoice::none) return false;
     result_.gauge.constraints = fix_gauge(problem_, null_space, start_, options_.gauge);
     result_.space = constrained_space(result_.gauge.constraints, start_, null_space.column_norms);
     for (const GaugeConstraint& constraint : result_.gauge.constraints) {
@@ -117,7 +144,19 @@ class Run {
     if (null_space.weak > 0)
       result_.gauge.warnings.push_back(fmt::format(
           "{} directions are seen by less than 3e-8 of the best one and were fixed as if unseen", null_space.weak));
-    return true;
+  }
+
+  // True if the equations of the gauge hold the cost up: at the solution a direction is clearly seen and has a slope.
+  bool restricts(const SolverResult& solved) const {
+    const NormalEquations sums = stream_.sums(solved.estimates, loss_, Wanted::gradient);
+    for (const GaugeConstraint& constraint : result_.gauge.constraints) {
+      const Eigen::VectorXd& n = constraint.direction;
+      const double seen = n.dot(solved.normal * n);
+      if (!(seen > kClearlySeen * n.cwiseAbs2().dot(solved.normal.diagonal()))) continue;
+      const double slope = sums.gradient.dot(n);
+      if (slope * slope / (2 * seen) > kRestriction * std::max(solved.cost, 1e-300)) return true;
+    }
+    return false;
   }
 
   SolverResult least_squares(const ConstrainedSpace* space) {

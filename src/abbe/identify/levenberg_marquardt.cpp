@@ -14,6 +14,9 @@ using Index = Eigen::Index;
 // A kept factor stays while the gradient falls by this factor (in the metric of the factor, squared) per iteration.
 constexpr double kChordReduction = 0.04;
 constexpr double kLargestDamping = 1e16;
+// Below this predicted relative decrease the difference of two costs is rounding.
+constexpr double kCostResolution = 1e-11;
+constexpr double kStillFalling = 0.98;
 
 /// The iteration's state in the free variables y of x = particular + directions y.
 class Minimiser {
@@ -153,12 +156,26 @@ class Minimiser {
       const double ratio = next.finite && predicted > 0 ? (sums_.cost - next.cost) / predicted : -1;
       record.accepted = ratio > 0;
       result.history.push_back(record);
-      if (!record.accepted) {
-        if (predicted <= 1e-11 * sums_.cost) {
-          // The decrease is below what the cost resolves in double precision.
+      if (next.finite && predicted <= kCostResolution * sums_.cost) {
+        // The cost no longer resolves the step; the gradient does. Go on while it falls.
+        const Eigen::VectorXd free =
+            space_ ? Eigen::VectorXd(space_->directions.transpose() * next.gradient) : next.gradient;
+        const Eigen::VectorXd scaled = free.cwiseQuotient(scale_);
+        const bool falls = factor_.solve(scaled).dot(scaled) < kStillFalling * decrement;
+        if (!falls) {
           result.status = IdentifyStatus::converged;
           return;
         }
+        x_ = trial;
+        sums_ = std::move(next);
+        normal_is_current_ = false;
+        chord = expect_chord;
+        last_decrement = expect_chord ? decrement : -1;
+        if (!expect_chord) take_normal(sums_.normal);
+        damping = std::max(damping * 0.1, 1e-16);
+        continue;
+      }
+      if (!record.accepted) {
         if (chord) {
           sums_ = stream_.sums(x_, loss_, Wanted::normal);
           take_normal(sums_.normal);

@@ -24,17 +24,17 @@ std::vector<ReadingClass> classify_readings(const Machine& machine, const Observ
 enum class Strategy {
   joint,        ///< everything from all readings
   independent,  ///< linear axes from linear_moves, then rotary axes from rotary_moves with the linear ones fixed
-  combined      ///< linear axes from linear_moves, then everything of the rotary axes from all other readings, with the
-                ///< linear axes' result and its covariance as prior
+  combined  ///< linear axes from linear_moves, then everything from all other readings, with the first result and its
+            ///< full information as joint prior
 };
 
 /// One step: which readings, which of the problem's estimated parameters.
 struct Stage {
   std::string name;
-  std::vector<std::vector<std::uint8_t>> use;   ///< per observations, per reading
-  std::vector<std::size_t> machine_parameters;  ///< subset of Problem::machine_parameters
-  bool estimate_setup = true;                   ///< set-up unknowns as in the problem
-  bool carry_covariance = false;                ///< results of earlier stages enter as correlated prior
+  std::vector<std::vector<std::uint8_t>> use;      ///< per observations, per reading
+  std::vector<std::size_t> machine_parameters;     ///< subset of Problem::machine_parameters
+  std::vector<std::vector<std::size_t>> unknowns;  ///< per observations, subset of its selected unknowns
+  bool with_joint_prior = false;                   ///< the stage before enters with its information
 };
 
 /// Stages of a strategy. Source: Aguado et al., section 4, with the automatic classification above.
@@ -47,8 +47,10 @@ struct StagedIdentification {
 
 /// Runs the stages one after the other. For joint this is identify().
 ///
-/// A parameter fixed in a later stage at an earlier stage's estimate passes its uncertainty on:
-/// Cov = (later | earlier fixed) + S Cov_earlier S', with S the sensitivity of the later estimates (GUM 5.2).
+/// independent: the second stage takes the first stage's estimates (errors of the linear axes, set-up) as fixed and
+/// passes their uncertainty on: Cov = Cov(later | earlier) + S Cov_earlier S', S = -Z (Z'HZ)^-1 Z'H_le the sensitivity
+/// of the later estimates to the earlier ones (GUM 5.2). Set-up unknowns of observations without linear_moves readings
+/// are estimated in the second stage. Status and message of `total` are those of the first stage that did not converge.
 StagedIdentification identify_in_stages(Problem& problem, Strategy strategy, const IdentifyOptions& options = {});
 
 }  // namespace abbe

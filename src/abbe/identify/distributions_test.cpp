@@ -1,0 +1,48 @@
+#include "abbe/identify/distributions.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace abbe {
+namespace {
+
+TEST(Distributions, chi_square_agrees_with_closed_forms) {
+  // Two degrees of freedom: exp(-x/2); one: erfc(sqrt(x/2)); four: exp(-x/2)(1 + x/2).
+  for (const double x : {0.01, 0.5, 1.0, 3.0, 10.0, 60.0}) {
+    EXPECT_NEAR(chi_square_exceedance(x, 2) / std::exp(-x / 2), 1, 1e-13);
+    EXPECT_NEAR(chi_square_exceedance(x, 1) / std::erfc(std::sqrt(x / 2)), 1, 1e-12);
+    EXPECT_NEAR(chi_square_exceedance(x, 4) / (std::exp(-x / 2) * (1 + x / 2)), 1, 1e-13);
+  }
+  EXPECT_EQ(chi_square_exceedance(0, 5), 1);
+}
+
+TEST(Distributions, quantiles_agree_with_the_printed_table) {
+  // Abramowitz and Stegun, Table 26.8.
+  EXPECT_NEAR(chi_square_quantile(0.05, 3), 7.81473, 5e-6);
+  EXPECT_NEAR(chi_square_quantile(0.01, 10), 23.2093, 5e-5);
+  EXPECT_NEAR(chi_square_quantile(0.95, 30), 18.4927, 5e-5);
+}
+
+TEST(Distributions, large_degrees_of_freedom_approach_the_normal_distribution) {
+  const double n = 3e5;
+  // Wilson and Hilferty.
+  const double z = (std::cbrt(1.002) - (1 - 2 / (9 * n))) / std::sqrt(2 / (9 * n));
+  EXPECT_NEAR(chi_square_exceedance(1.002 * n, n), std::erfc(z / std::sqrt(2.0)) / 2, 1e-6);
+}
+
+TEST(Distributions, student_agrees_with_closed_forms) {
+  for (const double t : {-3.0, -0.5, 0.0, 0.7, 2.0, 12.0}) {
+    EXPECT_NEAR(student_exceedance(t, 1), 0.5 - std::atan(t) / std::acos(-1.0), 1e-13);
+    EXPECT_NEAR(student_exceedance(t, 2), 0.5 - t / (2 * std::sqrt(2 + t * t)), 1e-13);
+  }
+  EXPECT_NEAR(student_exceedance(2.228, 10), 0.025, 1e-5);
+}
+
+TEST(Distributions, incomplete_beta_is_symmetric_and_matches_powers) {
+  EXPECT_NEAR(incomplete_beta(3, 1, 0.4), 0.064, 1e-15);
+  EXPECT_NEAR(incomplete_beta(2.5, 4.5, 0.3) + incomplete_beta(4.5, 2.5, 0.7), 1, 1e-14);
+}
+
+}  // namespace
+}  // namespace abbe
