@@ -191,6 +191,23 @@ const mapOnly = {
   tables: [{title: 'Published figures beside ours', columns: ['Pose', 'Published / mm', 'Here / mm', 'Why'], rows: [['i = 1', -5.39, -5.400842, 'sign of one column'], ['i = 7', null, 0.001, 'sum is wrong in print']], note: 'The published sum does not add up.'}],
 };
 
+// Everything that can be empty, single, zero or missing.
+const edge = {
+  format: 'abbe-report/1', title: 'An unfortunate day: nothing moved & <b>nothing</b> converged', subtitle: 'Averyveryveryverylongstudynamewithoutanyplacetobreakthelineinanarrowwindow',
+  machine: {name: 'One axis', chain: 'w b X t', axes: [{name: 'X', kind: 'linear', side: 'tool'}]},
+  summary: {status: 'rank deficient', converged: false, readings: 1, outliers: 1, parameters: 5, rank: 0, null_space: 5, degrees_of_freedom: 0, chi_square: null,
+    held_out: {position_before_um: {mean: 0, max: 0}}},
+  warnings: ['All readings are at one pose.'],
+  map: {positions: {X_mm: [0]}, point_mm: {x: [0], y: [0], z: [0]}, before_um: {x: [0], y: [0], z: [0]}, after_um: {x: [0], y: [0], z: [0]}},
+  histograms: [{before_um: [], after_um: []}, {edges_um: [0, 1], before_counts: [0]}],
+  error_motions: [{name: 'EXX', axis: 'X', position_mm: [0], value_um: [0]}, {name: 'EYX', axis: 'X', position_mm: [0, 1], value_um: [1e-9, -1e9], expanded_uncertainty_um: [0, 1e10]}],
+  location_errors: [{name: 'EC0X', value_urad: 0, standard_uncertainty_urad: null}],
+  parameters: {name: ['EXX[P0]', 'EXX[P1]'], value: [0, null]},
+  residuals: {setups: [{name: 'empty', reading: [], normalised: {x: []}}, {name: 'null', reading: [0], normalised: {x: [null]}}]},
+  identification: {singular_values: [0, 0], history: {iteration: [0], chi_square: [0]}, order_selection: {label: ['1'], held_out_rms_um: [null]}, gauge: [{parameters: ['EXX[P0]']}]},
+  tables: [{title: 'Nothing', columns: [], rows: []}],
+};
+
 const [, , dataFile, pageFile, templateFile] = process.argv;
 if (dataFile) writeFileSync(dataFile, JSON.stringify(data));
 if (pageFile) {
@@ -199,5 +216,6 @@ if (pageFile) {
     template.replace('@@ABBE_DATA@@', () => JSON.stringify(content).replace(/</g, '\\u003c')));
   write('', data);
   write('-map', mapOnly);
+  write('-edge', edge);
   write('-smallest', {format: 'abbe-report/1', title: 'Nothing but a title'});
 }

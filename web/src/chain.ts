@@ -127,7 +127,8 @@ export function machineSection(machine: Machine): HTMLElement | undefined {
       ]),
     ),
   );
-  part.append(html('div', {class: 'columns machine'}, figure('Travels (arrows) and axis lines (dash-dotted) where they are, all axes at zero, parallel projection.', space), details));
+  const isPlaced = axes.every((axis) => axis.direction?.length === 3);
+  part.append(html('div', {class: 'columns machine'}, isPlaced && figure('Travels (arrows) and axis lines (dash-dotted) where they are, all axes at zero, parallel projection.', space), details));
   const places: [string, string][] = [
     ['Tool offset', vector(machine.tool_offset_mm)],
     ['Spindle gauge point', vector(machine.tool_reference_mm)],

@@ -106,7 +106,7 @@ function one(entry: Histogram): HTMLElement | undefined {
       if (beforeCounts) sets.push({style: 'before', name: afterCounts ? 'before' : 'as it is', data: fromCounts(edges, beforeCounts)});
       if (afterCounts) sets.push({style: 'after', name: 'after', data: fromCounts(edges, afterCounts)});
     }
-    if (!sets.length) continue;
+    if (!sets.length || sets.some((set) => set.data.total === 0)) continue;
     const caption = `${entry.title ?? 'Distribution'}. ${sets
       .map((set) => `${set.name[0].toUpperCase()}${set.name.slice(1)}: 95\u2009% of ${count(set.data.total)} poses below ${quantity(set.data.p95, unit)}`)
       .join('. ')}.${log ? ' Logarithmic axis.' : ''}`;

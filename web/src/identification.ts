@@ -12,6 +12,7 @@ function positive(values: (number | null | undefined)[]): number[] {
 }
 
 function decades(values: number[], margin = 0.25): [number, number] {
+  if (!values.length) return [0.1, 10];
   const [low, high] = extent(values);
   return [Math.pow(10, Math.floor((Math.log10(low) - margin) * 2) / 2), Math.pow(10, Math.ceil((Math.log10(high) + margin) * 2) / 2)];
 }
@@ -19,6 +20,7 @@ function decades(values: number[], margin = 0.25): [number, number] {
 function singularValues(values: number[], rank: number | undefined, threshold: number | undefined): HTMLElement {
   const drawing = html('div', {class: 'drawing'});
   const largest = Math.max(...values);
+  if (!(largest > 0)) return html('p', {class: 'note'}, 'All singular values are zero: the readings determine no parameter.');
   // A null space is rounding noise: everything below 1e-18 of the largest is drawn there.
   const floor = largest * 1e-18;
   const drawn = values.map((v) => Math.max(v, floor));

@@ -78,11 +78,11 @@ export function mapSection(map: ErrorMap): HTMLElement {
   const frame = map.frame ? `${map.frame} frame` : 'workpiece frame';
   const part = section('map', 'Map of the volumetric error',
     `Each arrow stands at its nominal point (${frame}) and shows where the tool really is, exaggerated. ` +
-    `${shown < total ? `${count(shown)} of ${count(total)} poses drawn` : `${count(total)} poses`}${map.description ? `: ${map.description}` : ''}.`);
+    `${shown < total ? `${count(shown)} of ${count(total)} poses drawn` : `${count(total)} ${total === 1 ? 'pose' : 'poses'}`}${map.description ? `: ${map.description}` : ''}.`);
   const before = lengths(map.before_um);
   const after = map.after_um && lengths(map.after_um);
   const all = [...before, ...(after ?? [])];
-  const high = Math.max(...all, 1e-6);
+  const high = Math.max(...all) || 1;
   const small = [...all].sort((a, b) => a - b)[Math.floor(all.length * 0.02)];
   const scaling: Scaling = {low: Math.max(small, high * 1e-4), high, log: false};
 
@@ -91,7 +91,7 @@ export function mapSection(map: ErrorMap): HTMLElement {
   if (map.after_um && after) views.push(new View('After', map.point_mm, map.after_um, after, camera));
   camera.onChange(() => views.forEach((view) => view.render()));
 
-  const typical = (values: number[]) => [...values].sort((a, b) => a - b)[Math.floor(values.length * 0.95)] || 1e-6;
+  const typical = (values: number[]) => [...values].sort((a, b) => a - b)[Math.floor(values.length * 0.95)] || 1;
   const automatic = (values: number[]) => roundFactor((camera.size * 0.11) / (typical(values) * 1e-3));
   const common = automatic(before);
   const slider = html('input', {type: 'range', min: -2, max: 2, step: 0.05, value: 0, id: 'map-exaggeration'});

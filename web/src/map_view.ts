@@ -30,7 +30,7 @@ export class Camera {
     const [z0, z1] = extent(points.z);
     this.low = new Vector3(x0, y0, z0);
     this.high = new Vector3(x1, y1, z1);
-    this.size = Math.max(this.low.distanceTo(this.high), 1e-3);
+    this.size = Math.max(this.low.distanceTo(this.high), 1);
     // A flat cloud still gets a box.
     const thin = this.size * 0.01;
     for (const k of ['x', 'y', 'z'] as const)

@@ -3,7 +3,7 @@
 import {ErrorMotion, findQuantity, LocationError, Machine} from './data';
 import {figure, html, responsive, section, svg} from './dom';
 import {number, quantity} from './format';
-import {band, line, plot, readout} from './plot';
+import {band, dots, line, plot, readout} from './plot';
 import {extent} from './scale';
 
 interface Curve {
@@ -72,6 +72,7 @@ function small(curve: Curve, range: () => [number, number], title: string): {box
     });
     if (half) band(target, position, value.map((v, i) => v - half[i]), value.map((v, i) => v + half[i]), 'value');
     line(target, position, value, 'value');
+    if (position.length === 1) dots(target, position, value, 'determined');
     if (truth) line(target, position, truth, 'truth');
     readout(target, position, (i) =>
       `${number(position[i], 4)}${curve.positionUnit === '°' ? '°' : '\u2009' + curve.positionUnit}: ${number(value[i])}${half ? ` ± ${number(half[i], 2)}` : ''}\u2009${unit}`);

@@ -19,6 +19,7 @@ function headline(summary: Summary): {errors: PoseErrors; key: 'held_out' | 'map
 
 export function verdict(summary: Summary): string {
   if (summary.verdict) return summary.verdict;
+  if (summary.converged === false) return 'The identification did not converge; the figures below are no result.';
   const head = headline(summary);
   if (!head) return '';
   const {errors, where} = head;
@@ -97,7 +98,7 @@ function smallTiles(summary: Summary, errors: PoseErrors | undefined, key: strin
   add('Parameters', 'parameters', summary.parameters, 0, '',
       summary.rank === undefined ? '' : `rank ${count(summary.rank)}, ${count(summary.null_space)} fixed by convention`);
   add('Degrees of freedom', 'degrees_of_freedom', summary.degrees_of_freedom, 0, '',
-      summary.chi_square === undefined ? '' : `χ² = ${number(summary.chi_square, 4)}` +
+      summary.chi_square === undefined || summary.chi_square === null ? '' : `χ² = ${number(summary.chi_square, 4)}` +
           (summary.chi_square_probability === undefined ? '' : `, p = ${number(summary.chi_square_probability, 2)}`));
   add('Residual, normalised', 'normalised_residual_rms', summary.normalised_residual_rms, 3, '', '1 if model and noise are right');
   add('Observability index', 'observability_index', summary.observability_index, 3, '', summary.observability_index_kind ?? '');
@@ -122,9 +123,13 @@ function facts(report: Report): HTMLElement {
 }
 
 export function warnings(report: Report): HTMLElement | undefined {
-  if (!report.warnings?.length) return undefined;
+  const entries = [...(report.warnings ?? [])];
+  // A result that is none must not look like one, whether or not the producer warns.
+  if (report.summary?.converged === false)
+    entries.unshift({level: 'error', text: `The identification did not converge${report.summary.status ? ` (${report.summary.status})` : ''}: its figures are not a result.`});
+  if (!entries.length) return undefined;
   const list = html('ul', {class: 'warnings', 'aria-label': 'Warnings'});
-  for (const entry of report.warnings) {
+  for (const entry of entries) {
     const {level, text} = typeof entry === 'string' ? {level: 'warning', text: entry} : {level: entry.level ?? 'warning', text: entry.text};
     const known = ['error', 'warning', 'note'].includes(level) ? level : 'warning';
     list.append(html('li', {class: `level-${known}`}, html('strong', {}, known[0].toUpperCase() + known.slice(1)), html('span', {}, text)));

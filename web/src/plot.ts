@@ -95,7 +95,7 @@ export function linePath(target: Plot, xs: Values, ys: Values): string {
   for (let i = 0; i < xs.length; ++i) {
     const x = xs[i];
     const y = ys[i];
-    if (x === null || x === undefined || y === null || y === undefined) {
+    if (x === null || x === undefined || y === null || y === undefined || !Number.isFinite(target.y(y))) {
       pen = false;
       continue;
     }
@@ -121,7 +121,7 @@ export function dots(target: Plot, xs: Values, ys: Values, style: string): void 
   for (let i = 0; i < xs.length; ++i) {
     const x = xs[i];
     const y = ys[i];
-    if (x === null || x === undefined || y === null || y === undefined) continue;
+    if (x === null || x === undefined || y === null || y === undefined || !Number.isFinite(target.y(y))) continue;
     path += `M${round(target.x(x))} ${round(target.y(y))}h0`;
   }
   target.layer.append(svg('path', {d: path, class: `dots ${style}`}));

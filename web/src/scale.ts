@@ -29,8 +29,9 @@ function niceStep(span: number, wanted: number): number {
 }
 
 export function niceTicks(from: number, to: number, wanted: number): number[] {
-  if (!(to > from)) return [from];
   const step = niceStep(to - from, wanted);
+  // Too close to tell apart in double precision, or not numbers at all.
+  if (!(to > from) || !(step > 0) || from + step / 4 === from || to + step / 4 === to) return [from];
   const ticks: number[] = [];
   for (let k = Math.ceil(from / step - 1e-9); k * step <= to + step * 1e-9; ++k) ticks.push(k * step);
   return ticks;
@@ -76,6 +77,8 @@ export function linearScale(
 }
 
 export function logScale([from, to]: [number, number], [start, end]: [number, number], wanted: number): Scale {
+  if (!(to > 0) || !Number.isFinite(to)) to = 1;
+  if (!(from > 0)) from = to / 10;
   const low = Math.log10(from);
   const high = Math.log10(to > from ? to : from * 10);
   const scale = ((value: number) => start + ((Math.log10(value) - low) / (high - low)) * (end - start)) as Scale;
