@@ -97,7 +97,7 @@ BestFitTransform robust_best_fit_transform(std::span<const Vector3d> source, std
     const RigidTransform change = fit.target_from_source.inverse() * transform;
     transform = fit.target_from_source;
     const double turn = (change.rotation - Eigen::Matrix3d::Identity()).norm() * best.extent.x();
-    if (turn + (fit.target_from_source.rotation * change.translation).norm() < 1e-12 * best.extent.x()) break;
+    if (turn + (fit.target_from_source.rotation * change.translation).norm() < 1e-11 * best.extent.x()) break;
   }
   fit.scale = scale;
   fit.inliers.resize(n);
