@@ -128,6 +128,22 @@ async function inspect(browser, file) {
     await page.keyboard.press('ArrowLeft');
     await page.keyboard.press('ArrowUp');
     check(!moved || (await until(async () => String(await ink()) !== String(first))), problems('the arrow keys do not turn the map'));
+    // Slice, colours and lengths act on the drawing and can be undone.
+    if (moved && (await page.locator('#map-slice').count())) {
+      const turned = String(await ink());
+      await page.selectOption('#map-slice', '0');
+      check(await until(async () => String(await ink()) !== turned), problems('the slice does not change the map'));
+      await page.selectOption('#map-slice', '');
+      check(await until(async () => String(await ink()) === turned), problems('the map is not whole again after a slice'));
+    }
+    if (moved && data.map.after_um) {
+      const same = (await ink())[1];
+      const own = page.getByLabel('arrows after at their own length');
+      await own.check();
+      check(await until(async () => (await ink())[1] > same), problems('arrows after do not grow at their own length'));
+      await page.locator('.views').screenshot({path: join(options.out, `${name}-own-length.png`)});
+      await own.uncheck();
+    }
     await page.getByRole('button', {name: 'Reset view'}).click();
     await page.waitForTimeout(700);
     const stills = () => page.$$eval('.still', (all) => all.map((e) => e.src.length));
