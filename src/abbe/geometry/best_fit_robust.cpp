@@ -68,7 +68,7 @@ BestFitTransform robust_best_fit_transform(std::span<const Vector3d> source, std
     // A thin triangle fixes the rotation badly: below 3 % of the extent it is not worth scoring.
     const BestFitTransform fit = best_fit_transform(a, b, {}, 0.03 * best.extent.y());
     if (fit.status != BestFitStatus::ok) continue;
-    // Sides of different length cannot be three good points; half the best score is no proof, so be generous.
+    // Triangles of different shape cannot be three good points: no need to score them.
     if (fit.rms > 3 * lowest) continue;
     const double value = score(fit.target_from_source);
     if (value < lowest) {

@@ -40,7 +40,7 @@ TEST(TrackerStart, WithTheTrueErrorsThePoseIsExact) {
 TEST(TrackerStart, NamesRunsOfReadingsTakenOnAnotherReflector) {
   AguadoCase aguado = test::aguado_case();
   TrackerReadings readings = test::aguado_readings(aguado, "aguado_500_noiseLT.csv");
-  // Readings 17 to 23 were taken on what is really reflector 2, and are booked as reflector 1; the same for number 100.
+  // The first thirty readings of reflector 2 are booked as reflector 1.
   std::size_t changed = 0;
   std::vector<std::size_t> expected;
   for (std::size_t k = 0; k < readings.count() && changed < 30; ++k) {
