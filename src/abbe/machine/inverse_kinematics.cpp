@@ -140,6 +140,10 @@ InverseKinematics::InverseKinematics(const Machine& machine, const InverseOption
       return;
     }
   }
+  for (double command : options.reference) {
+    if (!std::isfinite(command)) problem_ = "a command of the reference position is not finite";
+  }
+  if (!problem_.empty()) return;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const Axis& axis = machine.axes[i];
     const double nearest_zero = axis.endless ? 0 : std::clamp(0.0, axis.travel_min, axis.travel_max);
@@ -171,7 +175,10 @@ void InverseKinematics::solve(const PoseTarget& target, const double* start, Inv
   result.solutions.clear();
   result.closest = {};
   result.closest.orientation_residual = result.closest.position_residual = std::numeric_limits<double>::infinity();
-  if (!problem_.empty() || !is_sound(target)) {
+  const std::size_t axes = machine_.axes.size();
+  const bool start_is_finite =
+      start == nullptr || std::all_of(start, start + axes, [](double command) { return std::isfinite(command); });
+  if (!problem_.empty() || !is_sound(target) || !start_is_finite) {
     result.status = problem_.empty() ? InverseStatus::invalid_target : InverseStatus::invalid_machine;
     return;
   }

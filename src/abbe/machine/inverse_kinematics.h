@@ -44,7 +44,7 @@ enum class InverseStatus {
   unreachable_orientation,  ///< the rotary axes cannot turn the tool so
   unreachable_position,     ///< the linear axes cannot reach the point in that orientation
   too_few_axes,             ///< not reached, and the machine has fewer axes than such a target needs
-  invalid_target,           ///< not finite, or a direction of length zero, or no rotation
+  invalid_target,           ///< target or start not finite, direction of length zero, no rotation
   invalid_machine           ///< find_problems() is not empty, or the options name an axis that does not exist
 };
 

@@ -283,6 +283,10 @@ TEST(InverseKinematics, RefusesBadTargetsMachinesAndOptions) {
   EXPECT_EQ(inverse.solve(PoseTarget::at({0, 0, 0}, {0, 0, 0})).status, InverseStatus::invalid_target);
   EXPECT_EQ(inverse.solve(PoseTarget::at(RigidTransform{2 * Eigen::Matrix3d::Identity(), {0, 0, 0}})).status,
             InverseStatus::invalid_target);
+  EXPECT_EQ(inverse.solve(PoseTarget::at({0, 0, 0}), {0, 0, nan, 0, 0}).status, InverseStatus::invalid_target);
+  InverseOptions not_finite;
+  not_finite.reference = {0, nan, 0, 0, 0};
+  EXPECT_EQ(InverseKinematics(machine, not_finite).problem(), "a command of the reference position is not finite");
   Machine broken = machine;
   broken.axes[0].direction = {0, 0, 2};
   EXPECT_EQ(InverseKinematics(broken).solve(PoseTarget::at({0, 0, 0})).status, InverseStatus::invalid_machine);

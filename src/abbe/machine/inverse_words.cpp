@@ -74,7 +74,8 @@ std::string describe(const Machine& machine, const InverseResult& result) {
       return "too few axes for this target: missed by " + number(closest.position_residual, "mm") + " and " +
              angle(closest.orientation_residual);
     case InverseStatus::invalid_target:
-      return "the target is not finite, has a direction of length zero or an orientation that is no rotation";
+      return "the target or the start is not finite, or the target has a direction of length zero or an orientation "
+             "that is no rotation";
     case InverseStatus::invalid_machine:
       return "the machine or the options are not usable";
   }
