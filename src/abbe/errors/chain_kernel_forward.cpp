@@ -97,7 +97,7 @@ HWY_INLINE void apply_motion(const AxisStep& step, const AxisLanes& lanes, std::
 }
 
 template <int kColumns>
-HWY_INLINE void pass_axis(const AxisStep& step, const AxisLanes& lanes, std::size_t end, State& state) {
+HWY_NOINLINE void pass_axis(const AxisStep& step, const AxisLanes& lanes, std::size_t end, State& state) {
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
     Moving<kColumns> m;
     m.point = load(state.point, k);
@@ -111,7 +111,7 @@ HWY_INLINE void pass_axis(const AxisStep& step, const AxisLanes& lanes, std::siz
 }
 
 template <int kColumns>
-HWY_INLINE void begin(const ConstantTransform& start, std::size_t end, State& state) {
+HWY_NOINLINE void begin(const ConstantTransform& start, std::size_t end, State& state) {
   const Matrix3 turn = set_matrix(start.rotation);
   const Vector3 offset = set3(start.offset);
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
@@ -139,7 +139,7 @@ HWY_INLINE void write(const Vector3& v, double* const* out, std::size_t k, std::
 }
 
 template <int kColumns>
-HWY_INLINE void finish(const ConstantTransform& last, const Results& results, std::size_t count, const State& state) {
+HWY_NOINLINE void finish(const ConstantTransform& last, const Results& results, std::size_t count, const State& state) {
   const Matrix3 turn = set_matrix(last.rotation);
   const Vector3 offset = set3(last.offset);
   for (std::size_t k = 0; k < count; k += hn::Lanes(Tag())) {

@@ -206,7 +206,7 @@ HWY_INLINE std::size_t whole_vectors(std::size_t count) {
 }
 
 /// Copies count values and fills up to whole vectors with the last one.
-HWY_INLINE void read_lane(const double* from, std::size_t count, Lane& to) {
+inline HWY_NOINLINE void read_lane(const double* from, std::size_t count, Lane& to) {
   std::memcpy(to.v, from, count * sizeof(double));
   for (std::size_t k = count; k < whole_vectors(count); ++k) to.v[k] = from[count - 1];
 }
@@ -296,8 +296,8 @@ HWY_INLINE void clenshaw(const Series& series, const double* c, const Vector* s,
 
 /// kVectors vectors of poses from k on, all series of one group.
 template <std::size_t kVectors>
-HWY_INLINE void evaluate_polynomials(const FunctionGroup& group, const double* numbers, const AxisLanes& lanes,
-                                     std::size_t k, unsigned written, Lane* out) {
+inline HWY_NOINLINE void evaluate_polynomials(const FunctionGroup& group, const double* numbers, const AxisLanes& lanes,
+                                              std::size_t k, unsigned written, Lane* out) {
   Vector s[kVectors], value[kVectors];
   for (std::size_t i = 0; i < kVectors; ++i) {
     s[i] = hn::Mul(hn::Sub(load(lanes.position.v + k + i * hn::Lanes(Tag())), set(group.centre)), set(group.scale));
@@ -349,8 +349,8 @@ HWY_INLINE SineCosine fourier_argument(double scale, bool shares_turn, const Axi
 }
 
 template <std::size_t kVectors>
-HWY_INLINE void evaluate_fourier(const FunctionGroup& group, const double* numbers, const AxisLanes& lanes,
-                                 std::size_t k, unsigned written, Lane* out) {
+inline HWY_NOINLINE void evaluate_fourier(const FunctionGroup& group, const double* numbers, const AxisLanes& lanes,
+                                          std::size_t k, unsigned written, Lane* out) {
   constexpr std::size_t kHarmonics = 4;
   std::size_t most = 0;
   for (const Series& series : group.series) most = std::max(most, series.size);
@@ -383,8 +383,8 @@ HWY_INLINE void evaluate_fourier(const FunctionGroup& group, const double* numbe
   }
 }
 
-HWY_INLINE void evaluate_pieces(const FunctionGroup& group, const double* numbers, const AxisLanes& lanes,
-                                std::size_t k, unsigned written, Lane* out) {
+inline HWY_NOINLINE void evaluate_pieces(const FunctionGroup& group, const double* numbers, const AxisLanes& lanes,
+                                         std::size_t k, unsigned written, Lane* out) {
   const Tag d;
   const IndexTag di;
   const Piece piece = find_piece(group, numbers, load(lanes.position.v + k));
@@ -404,8 +404,8 @@ HWY_INLINE void evaluate_pieces(const FunctionGroup& group, const double* number
 }
 
 /// Reads the commands of a step's axis and evaluates its error motions into lanes.error.
-HWY_INLINE void evaluate_axis(const CompiledChain& chain, const AxisStep& step, const double* commands,
-                              std::size_t count, AxisLanes& lanes) {
+inline HWY_NOINLINE void evaluate_axis(const CompiledChain& chain, const AxisStep& step, const double* commands,
+                                       std::size_t count, AxisLanes& lanes) {
   const std::size_t width = hn::Lanes(Tag()), end = whole_vectors(count);
   read_lane(commands, count, lanes.position);
   if (step.rotary) {

@@ -27,7 +27,7 @@ struct Sweep {
 ///
 /// A point r from the reference, r3 = R r: a change of EC moves it by ez x r3, of EB by Rz (ey x r2), of EA by
 /// Rz Ry (ex x r1), so force and moment are turned back with the point, one angle at a time.
-HWY_INLINE void take_back_error(const AxisStep& step, std::size_t rows, std::size_t end, Sweep& s) {
+HWY_NOINLINE void take_back_error(const AxisStep& step, std::size_t rows, std::size_t end, Sweep& s) {
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
     const Vector3 reference = set3(step.reference), shift = load(s.lanes.error, k);
     const Vector3 angles = load(s.lanes.error + 3, k);
@@ -113,7 +113,7 @@ HWY_INLINE void take_back_error(const AxisStep& step, std::size_t rows, std::siz
 }
 
 /// Takes the motion of a step back; channels: 0 .. 2 shifts and 3 .. 5 tilts of the axis line, 6 zero position.
-HWY_INLINE void take_back_motion(const AxisStep& step, std::size_t rows, std::size_t end, Sweep& s) {
+HWY_NOINLINE void take_back_motion(const AxisStep& step, std::size_t rows, std::size_t end, Sweep& s) {
   const Vector3 direction = set3(step.direction), centre = set3(step.centre);
   const Vector3 tilt[3] = {set3(step.tilt_axes[0]), set3(step.tilt_axes[1]), set3(step.tilt_axes[2])};
   const Vector sign = set(step.sign);
@@ -167,8 +167,8 @@ struct Target {
 };
 
 /// Writes channel times factor (null: 1) as the column of one parameter.
-HWY_INLINE void write_column(const Target& target, const Sweep& s, int channel, const Lane* factor,
-                             std::size_t column) {
+HWY_NOINLINE void write_column(const Target& target, const Sweep& s, int channel, const Lane* factor,
+                               std::size_t column) {
   const std::size_t width = hn::Lanes(Tag());
   for (std::size_t row = 0; row < target.rows; ++row) {
     const double* values = s.channel[row][channel].v;
@@ -188,8 +188,8 @@ HWY_INLINE void write_column(const Target& target, const Sweep& s, int channel, 
 }
 
 /// Columns of all selected coefficients of one basis, a few functions at a time.
-HWY_INLINE void write_basis(const CompiledChain& chain, const AxisStep& step, const BasisUse& use,
-                            const Selection& selection, const Target& target, std::size_t end, const Sweep& s) {
+HWY_NOINLINE void write_basis(const CompiledChain& chain, const AxisStep& step, const BasisUse& use,
+                              const Selection& selection, const Target& target, std::size_t end, const Sweep& s) {
   const bool pieces =
       use.kind == BasisKind::bspline || use.kind == BasisKind::table_linear || use.kind == BasisKind::table_monotone;
   if (pieces) {
@@ -223,8 +223,8 @@ HWY_INLINE void write_basis(const CompiledChain& chain, const AxisStep& step, co
   }
 }
 
-HWY_INLINE void write_errors(const CompiledChain& chain, const AxisStep& step, const Selection& selection,
-                             const Target& target, std::size_t end, bool commands, Sweep& s) {
+HWY_NOINLINE void write_errors(const CompiledChain& chain, const AxisStep& step, const Selection& selection,
+                               const Target& target, std::size_t end, bool commands, Sweep& s) {
   for (const BasisUse& use : step.bases) write_basis(chain, step, use, selection, target, end, s);
   if (!commands) return;
   evaluate_slopes(chain, step, s.lanes, end, s.slope);
@@ -237,8 +237,8 @@ HWY_INLINE void write_errors(const CompiledChain& chain, const AxisStep& step, c
   }
 }
 
-HWY_INLINE void write_motion(const AxisStep& step, const Selection& selection, const Target& target, std::size_t end,
-                             Sweep& s) {
+HWY_NOINLINE void write_motion(const AxisStep& step, const Selection& selection, const Target& target, std::size_t end,
+                               Sweep& s) {
   for (const AxisStep::Location& location : step.locations) {
     for (std::size_t j = selection.begin(location.parameter); j < selection.end(location.parameter + 1); ++j) {
       if (selection.parameters[j] == location.parameter) write_column(target, s, location.channel, nullptr, j);
@@ -252,8 +252,8 @@ HWY_INLINE void write_motion(const AxisStep& step, const Selection& selection, c
 }
 
 /// Columns of the tool offset error: the force there, times sign.
-HWY_INLINE void write_tool(const CompiledChain& chain, const Selection& selection, const Target& target, double sign,
-                           std::size_t end, Sweep& s) {
+HWY_NOINLINE void write_tool(const CompiledChain& chain, const Selection& selection, const Target& target, double sign,
+                             std::size_t end, Sweep& s) {
   for (std::size_t row = 0; row < target.rows; ++row) {
     for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
       for (int i = 0; i < 3; ++i) store(hn::Mul(set(sign), load(s.force[row][i].v + k)), s.channel[row][i].v + k);
@@ -267,7 +267,7 @@ HWY_INLINE void write_tool(const CompiledChain& chain, const Selection& selectio
 }
 
 /// Force, moment and (unless null) point before a constant transform that was applied to them.
-HWY_INLINE void take_back_constant(const ConstantTransform& transform, std::size_t rows, std::size_t end, Sweep& s) {
+HWY_NOINLINE void take_back_constant(const ConstantTransform& transform, std::size_t rows, std::size_t end, Sweep& s) {
   const Matrix3 turn = set_matrix(transform.rotation);
   const Vector3 offset = set3(transform.offset);
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
@@ -281,7 +281,7 @@ HWY_INLINE void take_back_constant(const ConstantTransform& transform, std::size
   }
 }
 
-HWY_INLINE void read_rows(const DifferentiateCall& call, std::size_t first_row, std::size_t rows, Sweep& s) {
+HWY_NOINLINE void read_rows(const DifferentiateCall& call, std::size_t first_row, std::size_t rows, Sweep& s) {
   const std::size_t count = call.positions.count;
   read_lane(call.seen.x, count, s.point[0]);
   read_lane(call.seen.y, count, s.point[1]);

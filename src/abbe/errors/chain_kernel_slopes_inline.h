@@ -55,8 +55,8 @@ HWY_INLINE Vector piece_slope(const double* c, const Piece& piece) {
 }
 
 /// d(EX .. EC)/d(command) of a step's axis, per mm or rad.
-HWY_INLINE void evaluate_slopes(const CompiledChain& chain, const AxisStep& step, const AxisLanes& lanes,
-                                std::size_t end, Lane* slope) {
+inline HWY_NOINLINE void evaluate_slopes(const CompiledChain& chain, const AxisStep& step, const AxisLanes& lanes,
+                                         std::size_t end, Lane* slope) {
   const double* numbers = chain.numbers.data();
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
     for (int c = 0; c < 6; ++c) store(hn::Zero(Tag()), slope[c].v + k);
@@ -93,8 +93,8 @@ struct FunctionSequence {
 
 /// Computes the functions from `first` on, which must be where the last call ended (0: begins).
 /// @returns how many
-HWY_INLINE std::size_t next_functions(const BasisUse& use, const AxisLanes& lanes, std::size_t end, std::size_t first,
-                                      FunctionSequence& sequence) {
+inline HWY_NOINLINE std::size_t next_functions(const BasisUse& use, const AxisLanes& lanes, std::size_t end,
+                                               std::size_t first, FunctionSequence& sequence) {
   const bool fourier = use.kind == BasisKind::fourier;
   const std::size_t most = first == 0 ? FunctionSequence::kNumber : FunctionSequence::kNumber - 1;
   const std::size_t number = std::min(most, use.size - first);
@@ -152,8 +152,8 @@ struct LocalFunctions {
   Lane value[4];
 };
 
-HWY_INLINE void find_local_functions(const FunctionGroup& group, const BasisUse& use, const double* numbers,
-                                     const AxisLanes& lanes, std::size_t end, LocalFunctions& local) {
+inline HWY_NOINLINE void find_local_functions(const FunctionGroup& group, const BasisUse& use, const double* numbers,
+                                              const AxisLanes& lanes, std::size_t end, LocalFunctions& local) {
   const Tag d;
   const IndexTag di;
   const Vector size = set(static_cast<double>(use.size));
@@ -173,7 +173,7 @@ HWY_INLINE void find_local_functions(const FunctionGroup& group, const BasisUse&
   }
 }
 
-HWY_INLINE void local_function(const LocalFunctions& local, double number, std::size_t end, Lane& out) {
+inline HWY_NOINLINE void local_function(const LocalFunctions& local, double number, std::size_t end, Lane& out) {
   for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
     Vector sum = hn::Zero(Tag());
     for (int j = 0; j < 4; ++j) {
