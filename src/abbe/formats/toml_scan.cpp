@@ -7,27 +7,27 @@
 namespace abbe {
 namespace {
 
+constexpr const char* kName = "a name of letters, digits, _ and -, or a text in quotes";
+
 class Scanner {
  public:
   Scanner(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
   void scan() {
     bool line_start = true;
-    int depth = 0;  // of brackets and braces in values
     while (at_ < text_.size()) {
       const char c = text_[at_];
       if (c == '#') {
         at_ = std::min(text_.find('\n', at_), text_.size());
       } else if (c == '"' || c == '\'') {
+        check_before_quote();
         skip_string(c);
         line_start = false;
-      } else if (c == '[' && line_start && depth == 0) {
+      } else if (c == '[' && line_start && open_.empty()) {
         check_header();
         line_start = false;
       } else {
-        if ((static_cast<unsigned char>(c) & 0x80U) != 0) fail("a character that may stand in texts and comments only");
-        if (c == '[' || c == '{') ++depth;
-        if ((c == ']' || c == '}') && depth > 0) --depth;
+        step(c);
         line_start = c == '\n' || (line_start && (c == ' ' || c == '\t' || c == '\r'));
         ++at_;
       }
@@ -35,7 +35,38 @@ class Scanner {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& problem) const {
+  /// One character outside texts, comments and the beginning of headers.
+  void step(char c) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code >= 0x7F || (code < 0x20 && c != '\t' && c != '\r' && c != '\n')) {
+      fail("a character that may stand in texts and comments only", kName);
+    }
+    if (c == '=') in_value_ = true;
+    if (c == '[' || c == '{') {
+      open_ += c;
+      in_value_ = c == '[';
+    } else if ((c == ']' || c == '}') && !open_.empty()) {
+      if ((open_.back() == '[') != (c == ']')) {
+        fail("a bracket that closes another kind", open_.back() == '[' ? "]" : "}");
+      }
+      open_.pop_back();
+      in_value_ = true;
+    } else if ((c == '\n' && open_.empty()) || (c == ',' && !open_.empty() && open_.back() == '{')) {
+      in_value_ = false;
+    }
+  }
+
+  /// A text begins a value or a part of a key; anywhere else the parser does not take the quote for the beginning of
+  /// one.
+  void check_before_quote() const {
+    if (!in_value_ && (next_is("\"\"\"") || next_is("\'\'\'"))) fail("a text of several lines as a name", kName);
+    const std::string_view allowed = in_value_ ? " \t\r\n=[{," : " \t\r\n[{,.";
+    if (at_ > 0 && allowed.find(text_[at_ - 1]) == std::string_view::npos) {
+      fail("a quote in the middle of a word", "=, a comma or a blank before it");
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& problem, const std::string& expected) const {
     const std::string_view before = text_.substr(0, at_);
     const std::size_t line_end = before.rfind('\n');
     const std::string_view line = line_end == std::string_view::npos ? before : before.substr(line_end + 1);
@@ -43,7 +74,7 @@ class Scanner {
                                           [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
     throw InputError({file_, 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')),
                       1 + static_cast<std::size_t>(characters), ""},
-                     problem, "a name of letters, digits, _ and -, or a text in quotes");
+                     problem, expected);
   }
 
   bool next_is(std::string_view what) const { return text_.substr(at_).starts_with(what); }
@@ -75,13 +106,15 @@ class Scanner {
     const char c = text_[at_];
     const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     if (!letter && std::string_view("_-\"']").find(c) == std::string_view::npos) {
-      fail("a table header without a name");
+      fail("a table header without a name", kName);
     }
   }
 
   std::string_view text_;
   const std::string& file_;
   std::size_t at_ = 0;
+  std::string open_;       // brackets and braces of values that are not closed yet
+  bool in_value_ = false;  // behind =, not in a key
 };
 
 }  // namespace

@@ -99,12 +99,21 @@ TEST(TomlTable, RefusesHeadersWithoutNameAndStrayCharacters) {
             "a.toml:1:9: a character that may stand in texts and comments only" + expected);
   EXPECT_EQ(wrong("\xC3\xBC = 1", read_range),
             "a.toml:1:1: a character that may stand in texts and comments only" + expected);
+  EXPECT_EQ(wrong("a = 0\"\xC3\xBC\"", read_range),
+            "a.toml:1:6: a quote in the middle of a word; expected =, a comma or a blank before it");
+  EXPECT_EQ(wrong("a = 0.\"\xC3\xBC\"", read_range),
+            "a.toml:1:7: a quote in the middle of a word; expected =, a comma or a blank before it");
+  EXPECT_EQ(wrong("\"\"\"\xC3\xBC", read_range), "a.toml:1:1: a text of several lines as a name" + expected);
+  EXPECT_EQ(wrong("a = 0\x01", read_range),
+            "a.toml:1:6: a character that may stand in texts and comments only" + expected);
+  EXPECT_EQ(wrong("a = { b = [} }", read_range), "a.toml:1:12: a bracket that closes another kind; expected ]");
 }
 
 TEST(TomlTable, AcceptsAnyCharacterInTextsAndCommentsAndNestedArrays) {
   TomlTable table = TomlTable::parse(
       "a = \"\"\"ü\" \\\"\"\" x\"\"\"\"\" # ü\nb = '''ü''' # \"\nc = 'ü\\' # ü\nd = \"ü\\\"ü\" # ü\n"
-      "e_mm = [\n  # ü [\n  1,\n  2]\n\"ü\" = [\n[\"ü\"]\n]\n",
+      "f = { g.\"ü\" = [\"ü\"], \"h\" = 'ü' }\ni.\"ü\".'j'=\"ü\"\ne_mm = [\n  # ü [\n  1,\n  2]\n\"ü\" = "
+      "[\n[\"ü\"]\n]\n",
       "a.toml");
   EXPECT_EQ(table.text("a"), "ü\" \"\"\" x\"\"");
   EXPECT_EQ(table.text("b"), "ü");
@@ -112,6 +121,8 @@ TEST(TomlTable, AcceptsAnyCharacterInTextsAndCommentsAndNestedArrays) {
   EXPECT_EQ(table.text("d"), "ü\"ü");
   EXPECT_EQ(table.numbers("e", Quantity::length, 2), (std::vector<double>{1, 2}));
   EXPECT_TRUE(table.has("ü"));
+  EXPECT_EQ(table.table("f").text("h"), "ü");
+  EXPECT_EQ(table.table("i").table("ü").text("j"), "ü");
 }
 
 }  // namespace
