@@ -1,7 +1,32 @@
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "abbe/formats/input_error.h"
+#include "command.h"
 
 int main(int argc, char** argv) {
-  CLI::App app{"abbe: geometric accuracy of multi-axis machines"};
-  CLI11_PARSE(app, argc, argv);
-  return 0;
+  using namespace abbe;
+  CommandLine line;
+  add_run_command(line);
+  add_new_command(line);
+  add_check_command(line);
+  add_simulate_command(line);
+  add_identify_command(line);
+  add_map_command(line);
+  add_reproduce_command(line);
+  try {
+    line.app.parse(argc, argv);
+    return line.run ? line.run() : static_cast<int>(kInternalError);
+  } catch (const CLI::ParseError& error) {
+    // Help and version come this way too, with code 0.
+    return line.app.exit(error) == 0 ? kDone : kBadInput;
+  } catch (const InputError& error) {
+    fmt::print(stderr, "abbe: {}\n", error.what());
+    return kBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "abbe: internal error: {}\n", error.what());
+    return kInternalError;
+  }
 }

@@ -12,10 +12,10 @@ namespace abbe {
 class InputError : public std::runtime_error {
  public:
   struct Place {
-    std::string file;
+    std::string file{};
     std::size_t line = 0;    ///< from 1; 0: the whole file
     std::size_t column = 0;  ///< character in the line, from 1; 0: the whole line
-    std::string field;       ///< key or column name as written: "axis.X.travel_mm", "measured_x_mm"
+    std::string field{};     ///< key or column name as written: "axis.X.travel_mm", "measured_x_mm"
   };
 
   /// @param problem   what was found: "unknown unit 'kg'"

@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "abbe/errors/error_set.h"
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/json_text.h"
+#include "abbe/formats/machine_file.h"
+#include "abbe/machine/drawing.h"
+#include "command.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+std::vector<std::string> motion_names(const Machine& machine, std::size_t axis) {
+  std::vector<std::string> names;
+  for (int k = 0; k < kComponentCount; ++k) {
+    names.push_back(error_motion_name(machine, axis, static_cast<Component>(k)));
+  }
+  return names;
+}
+
+std::vector<std::string> location_names(const Machine& machine, std::size_t axis) {
+  std::vector<std::string> names;
+  for (int k = 0; k < kComponentCount; ++k) {
+    const Component component = static_cast<Component>(k);
+    if (location_error_is_valid(machine.axes[axis], component)) {
+      names.push_back(location_error_name(machine, axis, component));
+    }
+  }
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+std::string travel_text(const Axis& axis) {
+  if (axis.endless) return "endless";
+  const bool rotary = axis.kind == AxisKind::rotary;
+  const double unit = rotary ? kDegree : 1;
+  return fmt::format("{:g} .. {:g} {}", axis.travel_min / unit, axis.travel_max / unit, rotary ? "deg" : "mm");
+}
+
+nlohmann::ordered_json machine_json(const Machine& machine) {
+  nlohmann::ordered_json json;
+  json["name"] = machine.name;
+  json["chain"] = machine.chain();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const Axis& axis = machine.axes[i];
+    const bool rotary = axis.kind == AxisKind::rotary;
+    nlohmann::ordered_json entry;
+    entry["name"] = axis.name;
+    entry["kind"] = rotary ? "rotary" : "linear";
+    entry["side"] = axis.side == ChainSide::workpiece ? "workpiece" : "tool";
+    entry["primed"] = axis.primed;
+    entry["direction"] = {axis.direction.x(), axis.direction.y(), axis.direction.z()};
+    entry["point_mm"] = {axis.point.x(), axis.point.y(), axis.point.z()};
+    entry["endless"] = axis.endless;
+    if (!axis.endless) {
+      const double unit = rotary ? kDegree : 1;
+      entry[rotary ? "travel_deg" : "travel_mm"] = {axis.travel_min / unit, axis.travel_max / unit};
+    }
+    entry["error_motions"] = motion_names(machine, i);
+    entry["location_errors"] = location_names(machine, i);
+    json["axes"].push_back(entry);
+  }
+  return json;
+}
+
+void print_machine(const Machine& machine) {
+  fmt::print("{}\n", machine.name);
+  if (!machine.description.empty()) fmt::print("{}\n", machine.description);
+  fmt::print("\n{}\n", draw_machine(machine));
+  fmt::print("{:<5} {:<7} {:<10} {:<24} {:<26} {}\n", "axis", "kind", "carries", "direction", "point / mm", "travel");
+  for (const Axis& axis : machine.axes) {
+    const auto triple = [](const Eigen::Vector3d& v) { return fmt::format("({:g}, {:g}, {:g})", v.x(), v.y(), v.z()); };
+    fmt::print("{:<5} {:<7} {:<10} {:<24} {:<26} {}\n", axis.name + (axis.primed ? "'" : ""),
+               axis.kind == AxisKind::rotary ? "rotary" : "linear",
+               axis.side == ChainSide::workpiece ? "workpiece" : "tool", triple(axis.direction), triple(axis.point),
+               travel_text(axis));
+  }
+  std::size_t motions = 0, locations = 0;
+  fmt::print("\nerror motions (ISO 230-1, ISO 230-7) and location errors\n");
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const std::vector<std::string> names = location_names(machine, i);
+    fmt::print("{:<5} {}   {}\n", machine.axes[i].name, joined(motion_names(machine, i)), joined(names));
+    motions += kComponentCount;
+    locations += names.size();
+  }
+  fmt::print("{} error motions, {} location errors\n", motions, locations);
+}
+
+}  // namespace
+
+void add_check_command(CommandLine& line) {
+  struct Options {
+    std::string machine, errors;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = line.add("check", "Validate a machine file and show its chain, axes and error names",
+                               "  abbe check examples/machines/trunnion_mill.machine.toml\n"
+                               "  abbe check my.machine.toml --errors my.errors.toml");
+  command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
+  command->add_option("--errors", options->errors, "Errors file of this machine to validate too (*.errors.toml)");
+  command->add_flag("--json", options->json, "Print JSON for programs");
+  command->callback([&line, options] {
+    line.run = [options]() -> int {
+      const Machine machine = read_machine(options->machine);
+      nlohmann::ordered_json json = machine_json(machine);
+      std::size_t coefficients = 0, terms = 0;
+      if (!options->errors.empty()) {
+        const ErrorsFile errors = read_errors(options->errors, machine);
+        terms = errors.errors.motions.size();
+        coefficients = errors.errors.parameter_count();
+        json["errors"] = {{"motion_terms", terms},
+                          {"location_errors", errors.errors.locations.size()},
+                          {"parameters", coefficients},
+                          {"covariance", errors.covariance.size() > 0}};
+      }
+      if (options->json) {
+        fmt::print("{}\n", json_text(json));
+        return kDone;
+      }
+      print_machine(machine);
+      if (!options->errors.empty()) {
+        fmt::print("\n{}: {} terms of error motions, {} parameters\n", options->errors, terms, coefficients);
+      }
+      return kDone;
+    };
+  });
+}
+
+}  // namespace abbe

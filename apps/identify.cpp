@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/json_text.h"
+#include "abbe/formats/study_file.h"
+#include "abbe/identify/prediction.h"
+#include "command.h"
+#include "study/job.h"
+#include "study/print.h"
+#include "study/report_parameters.h"
+#include "study/summary.h"
+
+namespace abbe {
+
+void add_identify_command(CommandLine& line) {
+  struct Options {
+    std::string study, output;
+    bool json = false, parameters = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = line.add("identify", "Identify the errors of a study's machine, without maps and report",
+                               "  abbe identify my.study.toml -o my.errors.toml\n"
+                               "  abbe identify my.study.toml --parameters");
+  command->add_option("study", options->study, "Study file (*.study.toml) with an [identify] table")->required();
+  command->add_option("-o,--output", options->output, "Errors file to write (*.errors.toml), covariance beside it");
+  command->add_flag("--parameters", options->parameters, "List every parameter with its standard uncertainty");
+  command->add_flag("--json", options->json, "Print JSON for programs");
+  command->callback([&line, options] {
+    line.run = [options]() -> int {
+      const Study study = read_study(options->study);
+      if (!study.identification)
+        throw InputError({.file = options->study}, "nothing to identify", "an [identify] table");
+      StudyResult result;
+      {
+        Progress progress(study.simulation ? "simulating readings" : "reading measurements");
+        result.campaign = gather_readings(study, progress.callback());
+      }
+      Progress progress("identifying");
+      identify_study(study, result, progress.callback());
+      if (result.usable()) {
+        result.unseen = evaluate_unseen(study, result);
+        if (!options->output.empty()) {
+          ErrorsFile file;
+          file.errors = result.identification.errors;
+          file.covariance = machine_covariance(result.identification, file.errors.parameter_count());
+          file.provenance = {{"study", study.name}, {"method", "abbe identify"}};
+          write_errors(options->output, study.machine, file);
+        }
+      }
+      if (options->json) {
+        nlohmann::ordered_json json = study_summary(study, result);
+        if (result.usable()) json["parameter_table"] = report_parameters(study.machine, result, nullptr);
+        fmt::print("{}\n", json_text(json));
+        return result.usable() ? kDone : kNegative;
+      }
+      print_study(study, result);
+      if (options->parameters && result.usable()) {
+        const Identification& identified = result.identification;
+        fmt::print("\n{:<24} {:>16} {:>16}\n", "parameter", "value", "u");
+        for (std::size_t p = 0; p < identified.parameters.size(); ++p) {
+          const bool angle = identified.parameters[p].is_angle;
+          const double unit = angle ? 1e6 : 1e3;
+          fmt::print("{:<24} {:>16.4f} {:>16.4f} {}\n", identified.parameters[p].name,
+                     unit * identified.estimates[static_cast<Eigen::Index>(p)],
+                     unit * identified.standard_uncertainties[static_cast<Eigen::Index>(p)], angle ? "urad" : "um");
+        }
+      }
+      if (!options->output.empty() && result.usable()) fmt::print("\n{} written\n", options->output);
+      return result.usable() ? kDone : kNegative;
+    };
+  });
+}
+
+}  // namespace abbe

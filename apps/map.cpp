@@ -1,0 +1,178 @@
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/json_text.h"
+#include "abbe/formats/machine_file.h"
+#include "abbe/formats/map_file.h"
+#include "abbe/formats/measurement_file.h"
+#include "abbe/formats/number_text.h"
+#include "abbe/formats/results_folder.h"
+#include "abbe/verify/error_map.h"
+#include "command.h"
+#include "study/job.h"
+#include "study/results.h"
+#include "study/summary.h"
+
+namespace abbe {
+namespace {
+
+struct MapOptions {
+  std::string machine, errors, reference, poses;
+  std::vector<std::string> grid, outputs;
+  bool fit_datum = false, json = false;
+};
+
+/// "X_mm=0:1400:9" or "C_deg=30": from:to:count, or a fixed position.
+void apply_grid_option(const Machine& machine, const std::string& text, std::vector<AxisRange>& ranges) {
+  const auto fail = [&](const std::string& problem) {
+    throw InputError({.field = "--grid " + text}, problem,
+                     "AXIS_unit=from:to:count or AXIS_unit=position, such as X_mm=0:1400:9");
+  };
+  const std::size_t equals = text.find('='), underscore = text.rfind('_', equals);
+  if (equals == std::string::npos || underscore == std::string::npos) fail("not understood");
+  const std::size_t axis = machine.find_axis(text.substr(0, underscore));
+  if (axis == Machine::npos) fail("the machine has no axis '" + text.substr(0, underscore) + "'");
+  const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
+  const std::string unit = text.substr(underscore + 1, equals - underscore - 1);
+  if (unit != (rotary ? "deg" : "mm")) fail(fmt::format("unit '{}' for a {} axis", unit, rotary ? "rotary" : "linear"));
+  std::vector<double> numbers;
+  std::size_t start = equals + 1;
+  while (start <= text.size()) {
+    const std::size_t end = std::min(text.find(':', start), text.size());
+    double value = 0;
+    if (parse_number(std::string_view(text).substr(start, end - start), 0, value) != NumberProblem::none)
+      fail("not a number");
+    numbers.push_back(value);
+    start = end + 1;
+  }
+  const double scale = rotary ? std::numbers::pi / 180 : 1;
+  if (numbers.size() == 1) {
+    ranges[axis] = AxisRange::fixed(numbers[0] * scale);
+  } else if (numbers.size() == 3 && numbers[2] >= 2 && numbers[2] <= 1e6 && numbers[2] == std::floor(numbers[2])) {
+    ranges[axis] = {numbers[0] * scale, numbers[1] * scale, static_cast<std::size_t>(numbers[2]), 0};
+  } else {
+    fail("one or three numbers are needed, the count a whole number from 2");
+  }
+}
+
+int run_map(const MapOptions& options) {
+  const Machine machine = read_machine(options.machine);
+  const ErrorsFile errors = read_errors(options.errors, machine);
+  std::optional<ErrorsFile> reference;
+  if (!options.reference.empty()) reference = read_errors(options.reference, machine);
+
+  PoseList poses;
+  std::vector<std::size_t> grid;
+  if (!options.poses.empty()) {
+    poses = read_poses(options.poses, machine);
+  } else {
+    std::vector<AxisRange> ranges;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      ranges.push_back(known_range(machine, errors.errors, i, machine.axes.size() > 3 ? 5 : 9));
+    }
+    for (const std::string& text : options.grid) apply_grid_option(machine, text, ranges);
+    PoseGrid positions;
+    for (const AxisRange& range : ranges) {
+      grid.push_back(range.is_fixed() ? 1 : range.count);
+      positions.values.push_back(evenly_spaced(range.from, range.to, grid.back()));
+    }
+    const PoseSource source = pose_source(positions);
+    if (source.count > 20'000'000) {
+      throw InputError({.field = "--grid"}, fmt::format("{} poses", source.count),
+                       "at most 20,000,000 poses in a file");
+    }
+    poses.axis.assign(machine.axes.size(), std::vector<double>(source.count));
+    std::vector<double*> pointers;
+    for (std::vector<double>& values : poses.axis) pointers.push_back(values.data());
+    source.fill(0, source.count, pointers.data());
+  }
+
+  Progress progress("mapping the volumetric error");
+  ErrorMapOptions map_options;
+  map_options.remove_rigid_motion = options.fit_datum;
+  map_options.progress = progress.callback();
+  ParameterCovariance covariance;
+  if (errors.covariance.size() > 0) {
+    covariance.covariance = errors.covariance;
+    for (std::size_t p = 0; p < errors.errors.parameter_count(); ++p) covariance.parameters.push_back(p);
+    map_options.covariance = &covariance;
+  }
+  const ErrorMap before = error_map(machine, errors.errors, nullptr, pose_source(poses), map_options);
+  std::optional<ErrorMap> after;
+  if (reference) after = error_map(machine, errors.errors, &reference->errors, pose_source(poses), map_options);
+
+  const MapData data = map_data(machine, poses, grid, before, after ? &*after : nullptr, &before);
+  for (const std::string& output : options.outputs) {
+    const std::string extension = std::filesystem::path(output).extension().string();
+    const std::string vtk = map_is_structured(data) ? ".vts" : ".vtu";
+    if (extension == ".csv") {
+      write_file_atomically(output, map_csv(data));
+    } else if (extension == vtk) {
+      write_file_atomically(output, map_vtk(data));
+    } else {
+      throw InputError({.file = output}, "unknown kind of map file",
+                       "a name ending in .csv, or in " + vtk + " for these poses");
+    }
+  }
+  const std::size_t outside = before.statistics.excluded;
+  if (options.json) {
+    nlohmann::ordered_json json;
+    json["machine"] = machine.name;
+    json["poses"] = poses.count();
+    json["outside_range"] = outside;
+    json["position_before_um"] = statistics_um(before.statistics);
+    if (after) json["position_after_um"] = statistics_um(after->statistics);
+    if (!before.norm_uncertainty.empty()) {
+      json["standard_uncertainty_um"] = statistics_um(sample_statistics(before.norm_uncertainty, before.covered));
+    }
+    fmt::print("{}\n", json_text(json));
+  } else {
+    fmt::print("{} poses of {}\n", poses.count(), machine.name);
+    const auto print = [](const char* name, const SampleStatistics& s) {
+      fmt::print("{:<22} mean {:.3f}  rms {:.3f}  95 % {:.3f}  99 % {:.3f}  max {:.3f} um\n", name, 1e3 * s.mean,
+                 1e3 * s.rms, 1e3 * s.p95, 1e3 * s.p99, 1e3 * s.maximum);
+    };
+    print(after ? "before" : "volumetric error", before.statistics);
+    if (after) print("after", after->statistics);
+    if (!before.norm_uncertainty.empty()) {
+      print("standard uncertainty", sample_statistics(before.norm_uncertainty, before.covered));
+    }
+    for (const std::string& output : options.outputs) fmt::print("{} written\n", output);
+  }
+  if (outside > 0) {
+    fmt::print(stderr,
+               "abbe: {} of {} poses lie outside the range in which the errors are known; they are marked in_range = 0 "
+               "and not counted\n",
+               outside, poses.count());
+    return kNegative;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_map_command(CommandLine& line) {
+  auto options = std::make_shared<MapOptions>();
+  CLI::App* command =
+      line.add("map", "Volumetric error over a grid or at given poses, with uncertainty",
+               "  abbe map examples/machines/aguado.machine.toml results/aguado/errors.toml --grid C_deg=0:315:8 -o "
+               "map.csv -o map.vts\n"
+               "  abbe map my.machine.toml truth.errors.toml --minus identified.errors.toml --fit-datum\n\n"
+               "Without --grid every axis runs over the range in which its errors are known.");
+  command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
+  command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
+  command->add_option("--minus", options->reference,
+                      "Errors corrected for (*.errors.toml): adds the error after correction");
+  command->add_option("--grid", options->grid, "AXIS_unit=from:to:count or AXIS_unit=position; repeat per axis");
+  command->add_option("--poses", options->poses, "CSV with one column per axis (X_mm, C_deg, ...) instead of a grid");
+  command->add_flag("--fit-datum", options->fit_datum,
+                    "Remove the best-fit rigid motion (choice of the workpiece datum)");
+  command->add_option("-o,--output", options->outputs, "File to write: .csv, .vts or .vtu (ParaView); repeatable");
+  command->add_flag("--json", options->json, "Print JSON for programs");
+  command->callback([&line, options] { line.run = [options]() -> int { return run_map(*options); }; });
+}
+
+}  // namespace abbe

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+
+namespace abbe {
+
+struct ReproduceOptions {
+  std::filesystem::path output;  ///< results folder; empty: print only
+  bool json = false;
+  int threads = 0;
+};
+
+/// Wang et al. (2020): integrated error of the measured grinder. @returns an ExitCode
+int reproduce_wang(const ReproduceOptions& options);
+/// Aguado et al. (2014): laser tracker on an XCFZ machine. @returns an ExitCode
+int reproduce_aguado(const ReproduceOptions& options);
+
+}  // namespace abbe

@@ -1,0 +1,171 @@
+#include "reproduce/wang_study.h"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "abbe/errors/actual_pose.h"
+#include "abbe/errors/chain_plan.h"
+#include "abbe/errors/parallel_blocks.h"
+#include "abbe/errors/poses.h"
+#include "reproduce/wang_tables.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::size_t kAxes = 6;
+constexpr std::size_t kX = 0, kY = 1, kZ = 2, kA = 3, kB = 4, kC = 5;  // order of the tables
+constexpr std::array<std::size_t, kAxes> kChainToTable = {kC, kX, kZ, kA, kY, kB};
+constexpr const char* kNames[kAxes] = {"X", "Y", "Z", "A", "B", "C"};
+
+double position_of(std::size_t table, std::size_t row) {
+  return wang_row(table, row).position * (table >= kA ? kDegree : 1.0);
+}
+
+}  // namespace
+
+Machine wang_machine() {
+  Machine machine;
+  machine.name = "Gear grinder of Wang et al. (2020)";
+  machine.description = "six axes; Tables A1 to A6 are measured on it";
+  for (std::size_t table : kChainToTable) {
+    Axis axis;
+    axis.name = kNames[table];
+    axis_kind_from_letter(axis.name[0], axis.kind);
+    axis.direction = direction_from_letter(axis.name[0]);
+    axis.side = table == kC ? ChainSide::workpiece : ChainSide::tool;
+    axis.travel_min = position_of(table, 0);
+    axis.travel_max = position_of(table, 11);
+    machine.axes.push_back(axis);
+  }
+  machine.tool_offset = {200, 0, 0};
+  return machine;
+}
+
+ErrorSet wang_errors(const WangReading& reading) {
+  double angle_unit = 0;
+  if (reading.angles == WangAngleUnit::degrees) angle_unit = kDegree;
+  if (reading.angles == WangAngleUnit::millidegrees) angle_unit = 1e-3 * kDegree;
+  ErrorSet errors;
+  errors.composition = reading.composition;
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    const std::size_t table = kChainToTable[axis];
+    Basis basis{.kind = BasisKind::table_linear};
+    for (std::size_t i = 0; i < reading.rows; ++i) basis.nodes.push_back(position_of(table, i));
+    basis.from = basis.nodes.front();
+    basis.to = basis.nodes.back();
+    for (int k = 0; k < kComponentCount; ++k) {
+      ErrorMotion motion{axis, static_cast<Component>(k), basis, {}, {}};
+      for (std::size_t i = 0; i < reading.rows; ++i) {
+        const WangRow& row = wang_row(table, i);
+        const std::array<double, kComponentCount> values = {row.dx, row.dy, row.dz, row.ex, row.ey, row.ez};
+        const double unit = k < 3 ? (reading.displacements ? 1e-3 : 0.0) : angle_unit;
+        motion.coefficients.push_back(values[static_cast<std::size_t>(k)] * unit);
+      }
+      errors.motions.push_back(motion);
+    }
+  }
+  return errors;
+}
+
+WangError wang_integrated_error(const Machine& machine, const ErrorSet& errors, const std::vector<double>& positions) {
+  WangError result;
+  result.tool_actual = actual_bed_from_tool(machine, errors, positions).translation;
+  result.workpiece_actual = actual_bed_from_workpiece(machine, errors, positions) * wang_workpiece_point();
+  const Eigen::Vector3d tool = nominal_bed_from_tool(machine, positions).translation;
+  const Eigen::Vector3d workpiece = nominal_bed_from_workpiece(machine, positions) * wang_workpiece_point();
+  result.machine = (result.workpiece_actual - result.tool_actual) - (workpiece - tool);
+  return result;
+}
+
+std::vector<double> wang_positions(const std::vector<std::size_t>& rows_xyzabc) {
+  std::vector<double> positions;
+  for (std::size_t table : kChainToTable) positions.push_back(position_of(table, rows_xyzabc[table]));
+  return positions;
+}
+
+namespace {
+
+/// Points of both bodies in the machine frame over a block of poses.
+struct BlockPoints {
+  std::array<std::vector<double>, 3> xyz;
+  explicit BlockPoints(std::size_t count) { xyz.fill(std::vector<double>(count)); }
+  PointArrays arrays() { return {xyz[0].data(), xyz[1].data(), xyz[2].data()}; }
+  void fill(const Eigen::Vector3d& point, std::size_t count) {
+    for (int k = 0; k < 3; ++k) std::fill_n(xyz[static_cast<std::size_t>(k)].begin(), count, point[k]);
+  }
+  ConstPointArrays constant() const { return {xyz[0].data(), xyz[1].data(), xyz[2].data()}; }
+};
+
+}  // namespace
+
+WangPopulation wang_all_poses(const WangReading& reading, int threads) {
+  const auto start_time = std::chrono::steady_clock::now();
+  const Machine machine = wang_machine();
+  const ErrorSet errors = wang_errors(reading);
+  const ErrorSet none;
+  const ChainPlan tool_actual(machine, errors, Body::tool, Body::bed),
+      tool_nominal(machine, none, Body::tool, Body::bed);
+  const ChainPlan work_actual(machine, errors, Body::workpiece, Body::bed);
+  const ChainPlan work_nominal(machine, none, Body::workpiece, Body::bed);
+
+  PoseGrid grid;
+  for (std::size_t table : kChainToTable) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < reading.rows; ++i) values.push_back(position_of(table, i));
+    grid.values.push_back(values);
+  }
+  const PoseSource poses = pose_source(grid);
+  std::vector<double> norm(poses.count);
+  constexpr std::size_t kBlock = 4096;
+  const std::size_t blocks = (poses.count + kBlock - 1) / kBlock;
+  std::vector<Eigen::Vector3d> sums(blocks, Eigen::Vector3d::Zero()), largest(blocks, Eigen::Vector3d::Zero());
+
+  for_each_block(blocks, threads, [&](std::size_t block) {
+    const std::size_t first = block * kBlock;
+    const std::size_t count = std::min(kBlock, poses.count - first);
+    std::array<std::vector<double>, kAxes> axis;
+    axis.fill(std::vector<double>(kBlock));
+    std::array<double*, kAxes> writable;
+    std::array<const double*, kAxes> readable;
+    for (std::size_t i = 0; i < kAxes; ++i) readable[i] = writable[i] = axis[i].data();
+    poses.fill(first, count, writable.data());
+    const PositionArrays positions{readable, count};
+
+    BlockPoints start(count), tool(count), tool_without(count), work(count), work_without(count);
+    start.fill(machine.tool_offset, count);
+    tool_actual.transform(positions, start.constant(), tool.arrays());
+    tool_nominal.transform(positions, start.constant(), tool_without.arrays());
+    start.fill(wang_workpiece_point(), count);
+    work_actual.transform(positions, start.constant(), work.arrays());
+    work_nominal.transform(positions, start.constant(), work_without.arrays());
+    for (std::size_t k = 0; k < count; ++k) {
+      Eigen::Vector3d error;
+      for (std::size_t d = 0; d < 3; ++d) {
+        error[static_cast<int>(d)] =
+            (work.xyz[d][k] - tool.xyz[d][k]) - (work_without.xyz[d][k] - tool_without.xyz[d][k]);
+      }
+      norm[first + k] = error.norm();
+      sums[block] += error;
+      largest[block] = largest[block].cwiseMax(error.cwiseAbs());
+    }
+  });
+
+  WangPopulation population;
+  population.norm = sample_statistics(norm);
+  for (std::size_t block = 0; block < blocks; ++block) {
+    population.mean_components += sums[block] / static_cast<double>(poses.count);
+    population.largest_components = population.largest_components.cwiseMax(largest[block]);
+  }
+  population.histogram = histogram(norm, 0, population.norm.maximum, 60);
+  population.worst_pose.resize(kAxes);
+  std::array<double*, kAxes> worst;
+  for (std::size_t i = 0; i < kAxes; ++i) worst[i] = &population.worst_pose[i];
+  poses.fill(population.norm.maximum_at, 1, worst.data());
+  population.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time).count();
+  return population;
+}
+
+}  // namespace abbe

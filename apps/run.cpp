@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include "abbe/formats/json_text.h"
+#include "abbe/formats/study_file.h"
+#include "command.h"
+#include "study/job.h"
+#include "study/print.h"
+#include "study/results.h"
+#include "study/summary.h"
+
+namespace abbe {
+
+void add_run_command(CommandLine& line) {
+  struct Options {
+    std::string study, output;
+    bool json = false;
+  };
+  auto options = std::make_shared<Options>();
+  CLI::App* command = line.add("run", "Do a whole study: simulate or read, identify, verify, map, report",
+                               "  abbe run examples/aguado/aguado.study.toml\n"
+                               "  abbe run my.study.toml -o results/monday --json");
+  command->add_option("study", options->study, "Study file (*.study.toml)")->required();
+  command->add_option("-o,--output", options->output, "Results folder (default: as in the study)");
+  command->add_flag("--json", options->json, "Print the summary as JSON for programs");
+  command->callback([&line, options] {
+    line.run = [options]() -> int {
+      Study study = read_study(options->study);
+      if (!options->output.empty()) study.output = options->output;
+      StudyResult result;
+      {
+        Progress progress(study.simulation ? "simulating readings" : "reading measurements");
+        result.campaign = gather_readings(study, progress.callback());
+      }
+      if (study.identification) {
+        {
+          Progress progress("identifying");
+          identify_study(study, result, progress.callback());
+        }
+        if (result.usable()) {
+          result.unseen = evaluate_unseen(study, result);
+          Progress progress("mapping the volumetric error");
+          result.map = map_study(study, result, progress.callback());
+        }
+      }
+      const nlohmann::ordered_json summary = write_results(study, result);
+      if (options->json) {
+        fmt::print("{}\n", json_text(summary));
+      } else {
+        print_study(study, result);
+        fmt::print("\nresults in {}\n", study.output.string());
+        if (study.report.page) fmt::print("report:    {}\n", (study.output / "report.html").string());
+      }
+      return study.identification && !result.usable() ? kNegative : kDone;
+    };
+  });
+}
+
+}  // namespace abbe

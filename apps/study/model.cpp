@@ -1,0 +1,207 @@
+#include "study/model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "abbe/errors/random_stream.h"
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/input_error.h"
+
+namespace abbe {
+namespace {
+
+/// Positions of one axis in all readings, sorted, each once.
+std::vector<double> measured_positions(const Campaign& campaign, std::size_t axis) {
+  std::vector<double> positions;
+  for (const CampaignSetup& setup : campaign.setups) {
+    const std::vector<double>& values = setup.readings.poses.axis[axis];
+    positions.insert(positions.end(), values.begin(), values.end());
+  }
+  std::sort(positions.begin(), positions.end());
+  positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+  return positions;
+}
+
+/// True if positions stand all around a turn, without a gap in which the highest harmonic could hide.
+bool covers_turn(const std::vector<double>& sorted, const Basis& basis) {
+  std::vector<double> around;
+  for (double position : sorted) around.push_back(position - basis.period * std::floor(position / basis.period));
+  std::sort(around.begin(), around.end());
+  double gap = around.front() + basis.period - around.back();
+  for (std::size_t i = 1; i < around.size(); ++i) gap = std::max(gap, around[i] - around[i - 1]);
+  return gap <= basis.period / (2.0 * basis.order + 1.0) + 1e-9 * basis.period;
+}
+
+std::string range_text(const Axis& axis, double from, double to) {
+  const bool rotary = axis.kind == AxisKind::rotary;
+  const double unit = rotary ? std::numbers::pi / 180 : 1;
+  return fmt::format("{} = {:.6g} .. {:.6g} {}", axis.name, from / unit, to / unit, rotary ? "deg" : "mm");
+}
+
+void mark_held_out(const Study& study, Problem& problem) {
+  const double fraction = study.identification->held_out_fraction;
+  if (fraction <= 0) return;
+  for (std::size_t s = 0; s < problem.observations.size(); ++s) {
+    SelectedObservations& selected = problem.observations[s];
+    const std::size_t count = selected.observations->reading_count();
+    selected.use.assign(count, 1);
+    // All readings of one pose are held out together: another reflector at the same pose is no unseen pose.
+    std::vector<double> previous;
+    RandomStream random(study.seed, 7000 + s);
+    bool out = false;
+    for (std::size_t k = 0; k < count; ++k) {
+      std::vector<double> positions = selected.observations->positions(k);
+      if (k == 0 || positions != previous) out = random.uniform() < fraction;
+      previous = std::move(positions);
+      if (out) selected.use[k] = 0;
+    }
+  }
+}
+
+void add_priors(const Study& study, Problem& problem) {
+  const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
+  for (const ParameterPrior& prior : study.identification->priors) {
+    std::size_t found = 0;
+    for (const EstimatedParameter& parameter : parameters) {
+      if (!matches(prior.parameters, parameter.name)) continue;
+      ++found;
+      if (parameter.is_angle != prior.is_angle) {
+        throw InputError(
+            {.field = "identify.prior"},
+            fmt::format("'{}' matches {}, which is {}", prior.parameters, parameter.name,
+                        parameter.is_angle ? "an angle" : "a length"),
+            parameter.is_angle ? "value_urad and standard_uncertainty_urad" : "value_um and standard_uncertainty_um");
+      }
+      problem.priors.push_back({parameter.id, prior.value, prior.standard_uncertainty});
+    }
+    if (found == 0) {
+      throw InputError({.field = "identify.prior"},
+                       fmt::format("no estimated parameter matches '{}'", prior.parameters),
+                       "a name such as " + (parameters.empty() ? std::string("EXX[P1]") : parameters.front().name));
+    }
+  }
+  for (std::size_t s = 0; s < study.setups.size(); ++s) {
+    for (const SetupReflector& reflector : study.setups[s].reflectors) {
+      if (!reflector.estimate_offset) continue;
+      for (int k = 0; k < 3; ++k) {
+        const double uncertainty = reflector.offset_standard_uncertainty[k];
+        if (uncertainty <= 0) continue;
+        const std::string name = fmt::format("{}.offset_{}", reflector.name, "xyz"[k]);
+        for (const EstimatedParameter& parameter : parameters) {
+          if (parameter.name == name && parameter.id.observations == s) {
+            problem.priors.push_back({parameter.id, reflector.offset[k], uncertainty});
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool matches(const std::string& pattern, const std::string& text) {
+  std::size_t p = 0, t = 0, star = std::string::npos, mark = 0;
+  while (t < text.size()) {
+    if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
+      ++p, ++t;
+    } else if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      mark = t;
+    } else if (star != std::string::npos) {
+      p = star + 1;
+      t = ++mark;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& model) {
+  const IdentificationPlan& plan = *study.identification;
+  ErrorSet errors;
+  std::optional<ErrorSet> initial;
+  if (plan.initial_errors) initial = read_errors(*plan.initial_errors, study.machine).errors;
+  std::set<std::size_t> said;
+  for (const IdentifiedMotion& identified : plan.motions) {
+    const Axis& axis = study.machine.axes[identified.axis];
+    const std::vector<double> positions = measured_positions(campaign, identified.axis);
+    ErrorMotion motion{identified.axis, identified.component, identified.basis, {}, {}};
+    Basis& basis = motion.basis;
+    if (positions.size() < 2) {
+      model.impossible =
+          fmt::format("axis {} stands still in all readings: its error motions cannot be identified", axis.name);
+    } else if (basis.kind == BasisKind::fourier ? !covers_turn(positions, basis)
+                                                : basis.nodes.empty() && !basis.periodic) {
+      const double from = std::max(basis.from, positions.front()), to = std::min(basis.to, positions.back());
+      if (from < to && (from > basis.from || to < basis.to)) {
+        basis.from = from;
+        basis.to = to;
+        if (said.insert(identified.axis).second) {
+          model.notes.push_back(fmt::format("Error motions of {} are known over the measured range {} only.", axis.name,
+                                            range_text(axis, from, to)));
+        }
+      }
+    }
+    motion.coefficients.assign(basis.size(), 0.0);
+    if (initial) {
+      for (const ErrorMotion& start : initial->motions) {
+        if (start.axis == motion.axis && start.component == motion.component && start.basis == motion.basis) {
+          motion.coefficients = start.coefficients;
+        }
+      }
+    }
+    errors.motions.push_back(motion);
+  }
+  for (const IdentifiedLocation& identified : plan.locations) {
+    LocationError location{identified.axis, identified.component, 0, 0};
+    if (initial) {
+      for (const LocationError& start : initial->locations) {
+        if (start.axis == location.axis && start.component == location.component) location.value = start.value;
+      }
+    }
+    errors.locations.push_back(location);
+  }
+  if (initial) errors.tool_offset_error = initial->tool_offset_error;
+  return errors;
+}
+
+StudyModel build_model(const Study& study, const Campaign& campaign) {
+  StudyModel model;
+  const IdentificationPlan& plan = *study.identification;
+  const ErrorSet errors = model_errors(study, campaign, model);
+  if (!model.impossible.empty()) return model;
+  std::vector<Observations*> pointers;
+  for (const CampaignSetup& setup : campaign.setups) {
+    model.observations.push_back(
+        std::make_unique<TrackerObservations>(study.machine, errors, setup.start, setup.readings));
+    pointers.push_back(model.observations.back().get());
+  }
+  model.problem = estimate_everything(study.machine, errors, pointers);
+  if (!plan.tool_offset) {
+    std::vector<std::size_t>& parameters = model.problem.machine_parameters;
+    const std::size_t first_tool = errors.parameter_count() - 3;
+    parameters.erase(
+        std::remove_if(parameters.begin(), parameters.end(), [&](std::size_t p) { return p >= first_tool; }),
+        parameters.end());
+  }
+  mark_held_out(study, model.problem);
+  add_priors(study, model.problem);
+
+  if (plan.select_order) {
+    for (OrderGroup group : order_groups_by_axis(study.machine, errors)) {
+      int smallest = 1 << 20;
+      for (std::size_t motion : group.motions) smallest = std::min(smallest, plan.motions[motion].smallest_order);
+      group.start_order = smallest;
+      model.order_groups.push_back(group);
+    }
+  }
+  return model;
+}
+
+}  // namespace abbe

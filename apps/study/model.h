@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "abbe/identify/order_selection.h"
+#include "abbe/identify/problem.h"
+#include "study/campaign.h"
+
+namespace abbe {
+
+/// The identification problem of a study: the model's errors, the observations and what is estimated.
+struct StudyModel {
+  std::vector<std::unique_ptr<TrackerObservations>> observations;  ///< one per set-up
+  Problem problem;
+  std::vector<OrderGroup> order_groups;  ///< for the automatic choice of orders, if the study asks for it
+  std::vector<std::string> notes;        ///< assumptions, in words
+  std::string impossible;                ///< not empty: why nothing can be identified, in words
+};
+
+/// Error motions and location errors to be identified, at their start values. The range of every error motion is
+/// narrowed to the positions that were measured, because an error motion is not known where nothing was measured.
+ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& model);
+
+/// Builds observations and problem; readings that are held out are marked in problem.observations[].use.
+StudyModel build_model(const Study& study, const Campaign& campaign);
+
+/// `*` any text, `?` one character.
+bool matches(const std::string& pattern, const std::string& text);
+
+}  // namespace abbe

@@ -1,0 +1,59 @@
+#include "study/print.h"
+
+#include <fmt/format.h>
+
+#include "study/summary.h"
+
+namespace abbe {
+namespace {
+
+void print_statistics(const char* name, const SampleStatistics& s) {
+  fmt::print("  {:<34} mean {:>9.3f}   95 % {:>9.3f}   max {:>9.3f} um\n", name, 1e3 * s.mean, 1e3 * s.p95,
+             1e3 * s.maximum);
+}
+
+}  // namespace
+
+void print_study(const Study& study, const StudyResult& result) {
+  fmt::print("{}: {}   ({})\n", study.name, study.machine.name, study.machine.chain());
+  if (result.campaign.truth) fmt::print("simulated: the true errors are known\n");
+  fmt::print("{} readings\n", result.campaign.reading_count());
+  for (const std::string& warning : result.warnings) fmt::print("warning: {}\n", warning);
+  if (!study.identification) return;
+  const Identification& identified = result.identification;
+  fmt::print("\n{}\n", study_verdict(study, result));
+  if (!result.usable()) return;
+  const FitStatistics& fit = identified.statistics;
+  fmt::print("\nidentification: {} after {} iterations, {} outliers\n", status_text(identified.status),
+             identified.history.size(), identified.outliers.size());
+  fmt::print("  {} parameters, rank {}; {} directions fixed by convention\n", identified.parameters.size(),
+             identified.parameters.size() - identified.gauge.constraints.size(), identified.gauge.constraints.size());
+  fmt::print("  chi-square {:.1f} with {:.0f} degrees of freedom (probability {:.3f}); observability O1 {:.4g}\n",
+             fit.chi_square, fit.degrees_of_freedom, fit.p_value, fit.observability.o1);
+  if (result.order_selection) {
+    fmt::print("  orders chosen at held-out poses:");
+    for (std::size_t g = 0; g < result.order_selection->orders.size(); ++g) {
+      fmt::print(" {} {}", result.model.order_groups[g].name, result.order_selection->orders[g]);
+    }
+    fmt::print("\n");
+  }
+  if (result.unseen && !result.unseen->after.empty()) {
+    const UnseenPoses& unseen = *result.unseen;
+    fmt::print("\nvolumetric error at {}\n", unseen.description);
+    print_statistics("before", unseen.before_statistics);
+    print_statistics("after", unseen.after_statistics);
+    print_statistics("predicted expanded uncertainty", unseen.uncertainty_statistics);
+    if (unseen.against_truth) {
+      fmt::print("  {:.1f} % of the coordinates within two standard uncertainties of the prediction\n",
+                 100 * unseen.coverage);
+    }
+  }
+  if (!identified.gauge.constraints.empty()) {
+    fmt::print("\nwhat the readings cannot see, and what was assumed instead\n");
+    for (const GaugeConstraint& constraint : identified.gauge.constraints) {
+      fmt::print("  {}: {}\n", constraint.words, constraint.inseparable_words);
+    }
+  }
+}
+
+}  // namespace abbe

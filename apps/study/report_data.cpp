@@ -1,0 +1,292 @@
+#include "study/report_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "study/report_parameters.h"
+#include "study/summary.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+nlohmann::ordered_json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+/// Columns of axis positions for chosen entries: {"X_mm": [...], "C_deg": [...]}.
+nlohmann::ordered_json position_columns(const Machine& machine, const PoseList& poses,
+                                        const std::vector<std::size_t>& entries) {
+  nlohmann::ordered_json columns;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    std::vector<double> values;
+    for (std::size_t k : entries) values.push_back(for_drawing(poses.axis[i][k] / (rotary ? kDegree : 1)));
+    columns[machine.axes[i].name + (rotary ? "_deg" : "_mm")] = values;
+  }
+  return columns;
+}
+
+nlohmann::ordered_json columns(const std::array<std::vector<double>, 3>& source,
+                               const std::vector<std::size_t>& entries, double unit, const char* names) {
+  nlohmann::ordered_json json;
+  for (std::size_t d = 0; d < 3; ++d) {
+    std::vector<double> values;
+    for (std::size_t k : entries) values.push_back(for_drawing(source[d][k] * unit));
+    json[std::string(1, names[d])] = values;
+  }
+  return json;
+}
+
+/// Evenly thinned indices of the poses inside the measured range.
+std::vector<std::size_t> thinned(const std::vector<std::uint8_t>& covered, std::size_t limit) {
+  std::vector<std::size_t> all;
+  for (std::size_t k = 0; k < covered.size(); ++k) {
+    if (covered[k] != 0) all.push_back(k);
+  }
+  if (all.size() <= limit) return all;
+  std::vector<std::size_t> part;
+  for (std::size_t i = 0; i < limit; ++i) part.push_back(all[i * all.size() / limit]);
+  return part;
+}
+
+nlohmann::ordered_json residuals_json(const Machine& machine, const StudyResult& result) {
+  constexpr std::size_t kLimit = 5000;
+  nlohmann::ordered_json setups = nlohmann::ordered_json::array();
+  double limit = 0;
+  for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
+    const TrackerObservations& observations = *result.model.observations[s];
+    const std::vector<double> residuals = residuals_by_reading(observations);
+    std::set<std::size_t> outliers;
+    for (const Outlier& outlier : result.identification.outliers) {
+      if (outlier.observations != s) continue;
+      outliers.insert(outlier.reading);
+      limit = limit == 0 ? outlier.norm : std::min(limit, outlier.norm);
+    }
+    const std::size_t count = observations.reading_count();
+    std::vector<std::size_t> shown;
+    const std::size_t step = std::max<std::size_t>(1, (count + kLimit - 1) / kLimit);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (k % step == 0 || outliers.count(k) != 0) shown.push_back(k);
+    }
+    nlohmann::ordered_json setup;
+    setup["name"] = result.campaign.setups[s].name;
+    setup["readings"] = count;
+    setup["reading"] = shown;
+    const TrackerReadings& readings = observations.readings();
+    if (!readings.time_s.empty()) {
+      std::vector<double> times;
+      for (std::size_t k : shown) times.push_back(readings.time_s[k]);
+      setup["time_s"] = times;
+    }
+    setup["positions"] = position_columns(machine, readings.poses, shown);
+    std::vector<int> marked;
+    std::array<std::vector<double>, 3> normalised, distance;
+    for (std::size_t k : shown) {
+      marked.push_back(outliers.count(k) != 0 ? 1 : 0);
+      const Eigen::Vector3d d = observations.distance(k);
+      for (std::size_t row = 0; row < 3; ++row) {
+        normalised[row].push_back(for_drawing(residuals[3 * k + row]));
+        distance[row].push_back(for_drawing(1e3 * d[static_cast<int>(row)]));
+      }
+    }
+    setup["normalised"] = {{"x", normalised[0]}, {"y", normalised[1]}, {"z", normalised[2]}};
+    setup["residual_um"] = {{"x", distance[0]}, {"y", distance[1]}, {"z", distance[2]}};
+    setup["outlier"] = marked;
+    setups.push_back(setup);
+  }
+  nlohmann::ordered_json json;
+  if (limit > 0) json["outlier_limit"] = limit;
+  json["setups"] = setups;
+  return json;
+}
+
+nlohmann::ordered_json identification_json(const Study& study, const StudyResult& result) {
+  const Identification& identified = result.identification;
+  nlohmann::ordered_json json;
+  constexpr const char* kStrategies[] = {"joint", "independent", "combined"};
+  constexpr const char* kLosses[] = {"least squares", "Huber", "Cauchy", "Tukey"};
+  json["strategy"] = kStrategies[static_cast<int>(study.identification->strategy)];
+  json["loss"] = kLosses[static_cast<int>(study.identification->loss)];
+  std::vector<double> singular;
+  for (double value : identified.gauge.singular_values) singular.push_back(for_drawing(value));
+  json["singular_values"] = singular;
+  nlohmann::ordered_json gauge = nlohmann::ordered_json::array();
+  for (const GaugeConstraint& constraint : identified.gauge.constraints) {
+    std::vector<std::string> names;
+    for (std::size_t p : constraint.inseparable) names.push_back(identified.parameters[p].name);
+    gauge.push_back({{"parameters", names}, {"text", constraint.inseparable_words}, {"convention", constraint.words}});
+  }
+  json["gauge"] = gauge;
+  nlohmann::ordered_json history;
+  std::vector<double> cost, step, damping;
+  std::vector<int> iteration;
+  for (const IterationRecord& record : identified.history) {
+    iteration.push_back(static_cast<int>(iteration.size()));
+    cost.push_back(for_drawing(2 * record.cost));
+    step.push_back(for_drawing(record.step));
+    damping.push_back(for_drawing(record.damping));
+  }
+  json["history"] = {{"iteration", iteration}, {"chi_square", cost}, {"largest_step", step}, {"damping", damping}};
+  if (result.order_selection) {
+    const OrderSelection& selection = *result.order_selection;
+    nlohmann::ordered_json orders;
+    std::vector<std::string> labels;
+    std::vector<double> held_out;
+    int chosen = -1;
+    for (std::size_t t = 0; t < selection.trials.size(); ++t) {
+      const OrderTrial& trial = selection.trials[t];
+      std::string label;
+      for (std::size_t g = 0; g < trial.orders.size() && g < result.model.order_groups.size(); ++g) {
+        label += fmt::format("{}{} {}", g == 0 ? "" : ", ", result.model.order_groups[g].name, trial.orders[g]);
+      }
+      labels.push_back(label);
+      held_out.push_back(for_drawing(trial.held_out_rms));
+      if (trial.orders == selection.orders) chosen = static_cast<int>(t);
+    }
+    orders["label"] = labels;
+    orders["held_out_normalised_rms"] = held_out;
+    if (chosen >= 0) orders["chosen"] = chosen;
+    json["order_selection"] = orders;
+  }
+  return json;
+}
+
+std::vector<std::string> assumptions(const Study& study, const StudyResult& result) {
+  std::vector<std::string> list;
+  list.push_back(
+      "Error = actual - nominal; error motions composed exactly as Rz(EC) Ry(EB) Rx(EA) in axes parallel to the "
+      "machine's.");
+  list.push_back(
+      "Residual = (measured - modelled) / standard uncertainty; uncertainties are those stated in the study or the "
+      "data.");
+  if (study.identification) {
+    for (const std::string& note : result.model.notes) list.push_back(note);
+    if (!result.identification.gauge.constraints.empty()) {
+      list.push_back(
+          fmt::format("{} directions that the readings cannot see are fixed by convention (ISO 230); predictions at "
+                      "the readings do not depend on them.",
+                      result.identification.gauge.constraints.size()));
+    }
+    if (result.campaign.truth)
+      list.push_back("Readings are simulated: the true errors are known and shown dashed, in the gauge of the result.");
+  }
+  if (result.map)
+    list.push_back(
+        "Maps show the deviation of the functional point after the best fit of the workpiece datum (six numbers).");
+  for (const std::string& note : result.campaign.notes) list.push_back(note);
+  return list;
+}
+
+}  // namespace
+
+double for_drawing(double value) {
+  if (value == 0 || !std::isfinite(value)) return 0;
+  const double digits = std::pow(10.0, 3 - std::floor(std::log10(std::abs(value))));
+  return std::isfinite(digits) && digits > 0 ? std::round(value * digits) / digits : value;
+}
+
+nlohmann::ordered_json report_machine(const Machine& machine) {
+  nlohmann::ordered_json json;
+  json["name"] = machine.name;
+  json["description"] = machine.description;
+  json["chain"] = machine.chain();
+  json["tool_offset_mm"] = vector_json(machine.tool_offset);
+  json["tool_reference_mm"] = vector_json(machine.tool_reference);
+  json["tool_direction"] = vector_json(machine.tool_direction);
+  json["workpiece_origin_mm"] = vector_json(machine.bed_from_workpiece.translation);
+  json["axes"] = nlohmann::ordered_json::array();
+  for (const Axis& axis : machine.axes) {
+    const bool rotary = axis.kind == AxisKind::rotary;
+    nlohmann::ordered_json entry;
+    entry["name"] = axis.name;
+    entry["kind"] = rotary ? "rotary" : "linear";
+    entry["side"] = axis.side == ChainSide::workpiece ? "workpiece" : "tool";
+    entry["primed"] = axis.primed;
+    entry["direction"] = vector_json(axis.direction);
+    entry["point_mm"] = vector_json(axis.point);
+    const double unit = rotary ? kDegree : 1;
+    entry[rotary ? "travel_min_deg" : "travel_min_mm"] = axis.travel_min / unit;
+    entry[rotary ? "travel_max_deg" : "travel_max_mm"] = axis.travel_max / unit;
+    if (rotary) entry["endless"] = axis.endless;
+    json["axes"].push_back(entry);
+  }
+  return json;
+}
+
+nlohmann::ordered_json report_map(const Machine& machine, const PoseList& poses, const ErrorMap& before,
+                                  const ErrorMap* after, const ErrorMap* uncertainty, const std::string& description,
+                                  std::size_t limit) {
+  const std::vector<std::size_t> shown = thinned(before.covered, limit);
+  nlohmann::ordered_json json;
+  json["frame"] = "workpiece";
+  json["poses"] = before.count();
+  json["description"] = description;
+  json["positions"] = position_columns(machine, poses, shown);
+  json["point_mm"] = columns(before.point, shown, 1, "xyz");
+  json["before_um"] = columns(before.displacement, shown, 1e3, "xyz");
+  if (!before.rotation[0].empty()) json["before_urad"] = columns(before.rotation, shown, 1e6, "abc");
+  if (after != nullptr) {
+    json["after_um"] = columns(after->displacement, shown, 1e3, "xyz");
+    if (!after->rotation[0].empty()) json["after_urad"] = columns(after->rotation, shown, 1e6, "abc");
+  }
+  if (uncertainty != nullptr && !uncertainty->norm_uncertainty.empty()) {
+    std::vector<double> values;
+    for (std::size_t k : shown) values.push_back(for_drawing(2e3 * uncertainty->norm_uncertainty[k]));
+    json["expanded_uncertainty_um"] = values;
+  }
+  return json;
+}
+
+nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& result,
+                                         const nlohmann::ordered_json& summary) {
+  nlohmann::ordered_json json;
+  json["format"] = "abbe-report/1";
+  json["title"] = study.report.title.empty() ? study.name : study.report.title;
+  if (!study.description.empty()) json["subtitle"] = study.description;
+  json["generator"] = "abbe " ABBE_VERSION;
+  json["study"] = {{"name", study.name}, {"seed", study.seed}};
+  json["simulated"] = result.campaign.truth.has_value();
+  json["machine"] = report_machine(study.machine);
+  json["summary"] = summary;
+  json["warnings"] = nlohmann::ordered_json::array();
+  for (const std::string& warning : result.warnings)
+    json["warnings"].push_back({{"level", "warning"}, {"text", warning}});
+  if (study.identification && !result.usable()) {
+    json["warnings"].push_back({{"level", "error"}, {"text", study_verdict(study, result)}});
+  }
+  json["assumptions"] = assumptions(study, result);
+  if (result.map) {
+    json["map"] =
+        report_map(study.machine, result.map->poses, result.map->before,
+                   result.map->after ? &*result.map->after : nullptr, &result.map->predicted, result.map->description);
+  }
+  if (result.unseen && !result.unseen->after.empty()) {
+    const UnseenPoses& unseen = *result.unseen;
+    std::vector<double> before, after;
+    const std::size_t step = std::max<std::size_t>(1, unseen.after.size() / 5000);
+    for (std::size_t k = 0; k < unseen.after.size(); k += step) {
+      before.push_back(for_drawing(1e3 * unseen.before[k]));
+      after.push_back(for_drawing(1e3 * unseen.after[k]));
+    }
+    json["histograms"] = {
+        {{"title", "Volumetric error: " + unseen.description}, {"before_um", before}, {"after_um", after}}};
+  }
+  if (result.usable()) {
+    const std::optional<ErrorSet> truth = truth_in_gauge(study, result);
+    json["error_motions"] = report_error_motions(study.machine, result.identification, truth ? &*truth : nullptr);
+    json["location_errors"] = report_location_errors(study.machine, result.identification, truth ? &*truth : nullptr);
+    json["parameters"] = report_parameters(study.machine, result, truth ? &*truth : nullptr);
+    json["residuals"] = residuals_json(study.machine, result);
+    json["identification"] = identification_json(study, result);
+  }
+  json["references"] = {"ISO 230-1:2012 (geometric accuracy)", "ISO 230-7:2015 (axes of rotation)",
+                        "JCGM 100:2008 (GUM)",
+                        "Aguado et al. (2014), laser tracker verification of multi-axis machines"};
+  return json;
+}
+
+}  // namespace abbe

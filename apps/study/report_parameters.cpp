@@ -1,0 +1,201 @@
+#include "study/report_parameters.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "abbe/identify/covariance.h"
+#include "abbe/identify/prediction.h"
+#include "study/report_data.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+std::string basis_words(const Basis& basis) {
+  switch (basis.kind) {
+    case BasisKind::fourier:
+      return fmt::format("Fourier, {} harmonics", basis.order);
+    case BasisKind::bspline:
+      return fmt::format("cubic B-spline, {} intervals", basis.order);
+    case BasisKind::table_linear:
+    case BasisKind::table_monotone:
+      return fmt::format("{}, {} nodes", basis_kind_name(basis.kind), basis.nodes.size());
+    default:
+      return fmt::format("{}, order {}", basis_kind_name(basis.kind), basis.order);
+  }
+}
+
+/// Constraints that name this error, in words.
+std::string gauge_note(const Identification& identification, const std::string& name) {
+  std::string note;
+  for (const GaugeConstraint& constraint : identification.gauge.constraints) {
+    if (constraint.words.find(name) == std::string::npos) continue;
+    note += (note.empty() ? "" : "; ") + constraint.words;
+  }
+  return note;
+}
+
+double unit_of(bool angle) { return angle ? 1e6 : 1e3; }
+
+}  // namespace
+
+nlohmann::ordered_json report_error_motions(const Machine& machine, const Identification& identification,
+                                            const ErrorSet* truth) {
+  constexpr std::size_t kPoints = 121;
+  const ErrorSet& errors = identification.errors;
+  const Eigen::MatrixXd covariance = machine_covariance(identification, errors.parameter_count());
+  nlohmann::ordered_json curves = nlohmann::ordered_json::array();
+  Eigen::Index first = 0;
+  for (std::size_t m = 0; m < errors.motions.size(); ++m) {
+    const ErrorMotion& motion = errors.motions[m];
+    const Basis& basis = motion.basis;
+    const Eigen::Index size = static_cast<Eigen::Index>(basis.size());
+    const Axis& axis = machine.axes[motion.axis];
+    const bool rotary = axis.kind == AxisKind::rotary;
+    const bool angle = is_rotation(motion.component);
+    std::vector<double> position, value, band, true_value;
+    Eigen::VectorXd functions(size);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const double q = basis.from + (basis.to - basis.from) * static_cast<double>(i) / (kPoints - 1);
+      basis.values(q, motion.coefficients, {functions.data(), basis.size()});
+      const double variance = functions.dot(covariance.block(first, first, size, size) * functions);
+      position.push_back(for_drawing(q / (rotary ? kDegree : 1)));
+      value.push_back(for_drawing(unit_of(angle) * basis.evaluate(q, motion.coefficients)));
+      band.push_back(for_drawing(2 * unit_of(angle) * std::sqrt(std::max(variance, 0.0))));
+      if (truth != nullptr) {
+        true_value.push_back(for_drawing(unit_of(angle) * basis.evaluate(q, truth->motions[m].coefficients)));
+      }
+    }
+    const std::string name = error_motion_name(machine, motion.axis, motion.component);
+    const std::string suffix = angle ? "_urad" : "_um";
+    nlohmann::ordered_json curve;
+    curve["name"] = name;
+    curve["axis"] = axis.name;
+    curve["component"] = std::string(1, component_letter(motion.component));
+    curve["basis"] = basis_words(basis);
+    curve[rotary ? "position_deg" : "position_mm"] = position;
+    curve["value" + suffix] = value;
+    curve["expanded_uncertainty" + suffix] = band;
+    if (truth != nullptr) curve["truth" + suffix] = true_value;
+    const std::string note = gauge_note(identification, name);
+    if (!note.empty()) curve["note"] = note;
+    curves.push_back(curve);
+    first += size;
+  }
+  return curves;
+}
+
+nlohmann::ordered_json report_location_errors(const Machine& machine, const Identification& identification,
+                                              const ErrorSet* truth) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t l = 0; l < identification.errors.locations.size(); ++l) {
+    const LocationError& location = identification.errors.locations[l];
+    const bool angle = is_rotation(location.component);
+    const std::string suffix = angle ? "_urad" : "_um";
+    const std::string name = location_error_name(machine, location.axis, location.component);
+    nlohmann::ordered_json entry;
+    entry["name"] = name;
+    entry["axis"] = machine.axes[location.axis].name;
+    entry["component"] = std::string(1, component_letter(location.component));
+    entry["value" + suffix] = unit_of(angle) * location.value;
+    entry["standard_uncertainty" + suffix] = unit_of(angle) * location.standard_uncertainty;
+    if (truth != nullptr) entry["truth" + suffix] = unit_of(angle) * truth->locations[l].value;
+    const std::string note = gauge_note(identification, name);
+    if (!note.empty()) entry["note"] = note;
+    list.push_back(entry);
+  }
+  return list;
+}
+
+nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResult& result, const ErrorSet* truth) {
+  const Identification& identified = result.identification;
+  const std::vector<std::vector<Correlation>> correlations = largest_correlations(identified.covariance, 1);
+  const std::vector<double> true_values = truth != nullptr ? truth->parameters() : std::vector<double>();
+  std::vector<std::string> names, groups, units, partners, gauge;
+  nlohmann::ordered_json values = nlohmann::ordered_json::array(), uncertainties = nlohmann::ordered_json::array(),
+                         largest = nlohmann::ordered_json::array(), truths = nlohmann::ordered_json::array();
+  // Which axis a machine parameter belongs to: motions first, then locations, then the tool.
+  std::vector<std::string> machine_groups;
+  for (const ErrorMotion& motion : identified.errors.motions) {
+    machine_groups.insert(machine_groups.end(), motion.coefficients.size(), machine.axes[motion.axis].name);
+  }
+  machine_groups.insert(machine_groups.end(), identified.errors.locations.size(), "location");
+  machine_groups.insert(machine_groups.end(), 3, "tool");
+
+  for (std::size_t p = 0; p < identified.parameters.size(); ++p) {
+    const EstimatedParameter& parameter = identified.parameters[p];
+    const Eigen::Index i = static_cast<Eigen::Index>(p);
+    const bool is_machine = parameter.id.is_machine();
+    // Set-up unknowns are large: mm and mrad read better than um and urad.
+    const double unit = is_machine ? unit_of(parameter.is_angle) : (parameter.is_angle ? 1e3 : 1);
+    names.push_back(parameter.name);
+    groups.push_back(is_machine ? machine_groups[parameter.id.index]
+                                : result.campaign.setups[parameter.id.observations].name);
+    units.emplace_back(is_machine ? (parameter.is_angle ? "urad" : "um") : (parameter.is_angle ? "mrad" : "mm"));
+    values.push_back(unit * identified.estimates[i]);
+    const double u = identified.standard_uncertainties[i];
+    if (u > 0) {
+      uncertainties.push_back(unit * u);
+    } else {
+      uncertainties.push_back(nullptr);
+    }
+    if (correlations[p].empty()) {
+      largest.push_back(nullptr);
+      partners.emplace_back();
+    } else {
+      largest.push_back(for_drawing(correlations[p][0].value));
+      partners.push_back(identified.parameters[correlations[p][0].other].name);
+    }
+    std::string note;
+    for (const GaugeConstraint& constraint : identified.gauge.constraints) {
+      if (std::abs(constraint.functional[i]) > 0 &&
+          constraint.functional.cwiseAbs().maxCoeff() == std::abs(constraint.functional[i])) {
+        note += (note.empty() ? "" : "; ") + constraint.words;
+      }
+    }
+    gauge.push_back(note);
+    if (truth != nullptr && is_machine) {
+      truths.push_back(unit * true_values[parameter.id.index]);
+    } else {
+      truths.push_back(nullptr);
+    }
+  }
+  nlohmann::ordered_json json;
+  json["name"] = names;
+  json["group"] = groups;
+  json["unit"] = units;
+  json["value"] = values;
+  json["standard_uncertainty"] = uncertainties;
+  json["largest_correlation"] = largest;
+  json["correlated_with"] = partners;
+  json["gauge"] = gauge;
+  if (truth != nullptr) json["truth"] = truths;
+  return json;
+}
+
+std::optional<ErrorSet> truth_in_gauge(const Study& study, const StudyResult& result) {
+  if (!result.campaign.truth) return std::nullopt;
+  Problem problem = result.model.problem;
+  problem.priors.clear();
+  std::vector<std::unique_ptr<TrackerObservations>> observations;
+  for (std::size_t s = 0; s < result.campaign.setups.size(); ++s) {
+    const CampaignSetup& setup = result.campaign.setups[s];
+    observations.push_back(
+        std::make_unique<TrackerObservations>(study.machine, problem.errors, setup.start, setup.exact));
+    observations.back()->set_parameters(problem.errors.parameters(), result.identification.setup[s]);
+    problem.observations[s].observations = observations.back().get();
+  }
+  SolverOptions options;
+  options.threads = study.threads;
+  const ConstrainedSpace& space = result.identification.space;
+  const SolverResult solved =
+      solve(problem, result.identification.estimates, space.directions.size() > 0 ? &space : nullptr, Loss{}, options);
+  if (solved.status != IdentifyStatus::converged) return std::nullopt;
+  keep_estimates(problem, solved.estimates);
+  return problem.errors;
+}
+
+}  // namespace abbe

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "study/job.h"
+
+namespace abbe {
+
+/// Curves of the identified error motions with their 95 % band, and the truth in the same gauge where it is known.
+/// @param truth  may be null
+nlohmann::ordered_json report_error_motions(const Machine& machine, const Identification& identification,
+                                            const ErrorSet* truth);
+
+/// Identified location errors.
+nlohmann::ordered_json report_location_errors(const Machine& machine, const Identification& identification,
+                                              const ErrorSet* truth);
+
+/// Columns of the table of all estimated parameters.
+nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResult& result, const ErrorSet* truth);
+
+/// The errors that the identification would find from readings without noise and without outliers: the truth in the
+/// model's basis functions and in the result's gauge, so that both may be compared coefficient by coefficient.
+/// @returns nothing for measured studies, or if that fit does not converge
+std::optional<ErrorSet> truth_in_gauge(const Study& study, const StudyResult& result);
+
+}  // namespace abbe

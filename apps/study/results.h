@@ -1,0 +1,27 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "abbe/formats/map_file.h"
+#include "study/job.h"
+
+namespace abbe {
+
+/// Writes everything a study has computed into its results folder, whole or not at all. @returns the summary
+///
+/// errors.toml with errors.covariance.csv, summary.json, residuals.csv, readings (simulated studies), maps/,
+/// report.html.
+nlohmann::ordered_json write_results(const Study& study, const StudyResult& result);
+
+/// Map as the files hold it.
+/// @param after, uncertainty  may be null
+MapData map_data(const Machine& machine, const PoseList& poses, const std::vector<std::size_t>& grid,
+                 const ErrorMap& before, const ErrorMap* after, const ErrorMap* uncertainty);
+
+/// Readings of one set-up as a measurement file.
+std::string readings_text(const Machine& machine, const CampaignSetup& setup);
+
+/// Residuals as CSV: set-up, reading, axis positions, normalised residuals, distances in um, weight.
+std::string residuals_csv(const Study& study, const StudyResult& result);
+
+}  // namespace abbe

@@ -1,0 +1,134 @@
+#include "study/summary.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "abbe/geometry/rotation.h"
+
+namespace abbe {
+namespace {
+
+/// Lengths of the fit's residuals at the measured poses, not weighted, mm.
+SampleStatistics fit_residuals(const StudyResult& result) {
+  std::vector<double> lengths;
+  for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
+    const TrackerObservations& observations = *result.model.observations[s];
+    const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
+    for (std::size_t k = 0; k < observations.reading_count(); ++k) {
+      if (use.empty() || use[k] != 0) lengths.push_back(observations.distance(k).norm());
+    }
+  }
+  return sample_statistics(lengths);
+}
+
+SampleStatistics rotation_lengths(const ErrorMap& map) {
+  std::vector<double> lengths(map.rotation[0].size());
+  for (std::size_t k = 0; k < lengths.size(); ++k) {
+    lengths[k] = std::hypot(map.rotation[0][k], map.rotation[1][k], map.rotation[2][k]);
+  }
+  return sample_statistics(lengths, map.covered);
+}
+
+/// A difference of two orientations by ErrorMap is in rad; the report wants urad.
+nlohmann::ordered_json statistics_urad(const SampleStatistics& s) {
+  const double unit = 1e6;
+  return {{"mean", s.mean * unit},
+          {"rms", s.rms * unit},
+          {"median", s.median * unit},
+          {"p95", s.p95 * unit},
+          {"max", s.maximum * unit}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json statistics_um(const SampleStatistics& s) {
+  const double unit = 1e3;
+  return {{"mean", s.mean * unit}, {"rms", s.rms * unit}, {"median", s.median * unit}, {"p90", s.p90 * unit},
+          {"p95", s.p95 * unit},   {"p99", s.p99 * unit}, {"max", s.maximum * unit}};
+}
+
+std::string study_verdict(const Study& study, const StudyResult& result) {
+  if (!study.identification) return "";
+  if (!result.usable()) {
+    return fmt::format("No result: {}.", result.identification.message.empty()
+                                             ? status_text(result.identification.status)
+                                             : result.identification.message);
+  }
+  if (!result.unseen || result.unseen->after.empty()) return "Identified; not validated at unseen poses.";
+  const UnseenPoses& unseen = *result.unseen;
+  return fmt::format(
+      "Mean volumetric error {:.4g} um before, {:.3g} um after, at {}; largest {:.4g} um before, {:.3g} um after.",
+      1e3 * unseen.before_statistics.mean, 1e3 * unseen.after_statistics.mean, unseen.description,
+      1e3 * unseen.before_statistics.maximum, 1e3 * unseen.after_statistics.maximum);
+}
+
+nlohmann::ordered_json study_summary(const Study& study, const StudyResult& result) {
+  nlohmann::ordered_json json;
+  json["format"] = "abbe-summary/1";
+  json["study"] = study.name;
+  json["machine"] = study.machine.name;
+  json["chain"] = study.machine.chain();
+  json["seed"] = study.seed;
+  if (study.identification) {
+    const Identification& identified = result.identification;
+    json["verdict"] = study_verdict(study, result);
+    json["status"] = status_text(identified.status);
+    json["converged"] = result.usable();
+    json["readings"] = result.campaign.reading_count();
+    if (result.usable()) {
+      std::size_t machine_parameters = 0;
+      for (const EstimatedParameter& parameter : identified.parameters)
+        machine_parameters += parameter.id.is_machine() ? 1U : 0U;
+      json["iterations"] = identified.history.size();
+      json["outliers"] = identified.outliers.size();
+      json["residuals"] = used_residual_count(result.model.problem);
+      json["parameters"] = identified.parameters.size();
+      json["machine_parameters"] = machine_parameters;
+      json["setup_parameters"] = identified.parameters.size() - machine_parameters;
+      json["rank"] = identified.parameters.size() - identified.gauge.constraints.size();
+      json["null_space"] = identified.gauge.constraints.size();
+      json["degrees_of_freedom"] = identified.statistics.degrees_of_freedom;
+      json["chi_square"] = identified.statistics.chi_square;
+      json["chi_square_probability"] = identified.statistics.p_value;
+      json["observability_index"] = identified.statistics.observability.o1;
+      json["observability_index_kind"] = "O1";
+      json["condition_number"] = identified.statistics.observability.condition;
+      json["normalised_residual_rms"] = std::sqrt(identified.statistics.variance_factor);
+      json["fit_residual_um"] = statistics_um(fit_residuals(result));
+    }
+  }
+  if (result.unseen && !result.unseen->after.empty()) {
+    const UnseenPoses& unseen = *result.unseen;
+    nlohmann::ordered_json held_out;
+    held_out["poses"] = unseen.after.size();
+    held_out["description"] = unseen.description;
+    held_out["reference"] = unseen.against_truth ? "truth" : "readings";
+    held_out["position_before_um"] = statistics_um(unseen.before_statistics);
+    held_out["position_after_um"] = statistics_um(unseen.after_statistics);
+    held_out["predicted_expanded_uncertainty_um"] = statistics_um(unseen.uncertainty_statistics);
+    if (unseen.against_truth) held_out["coverage_percent"] = 100 * unseen.coverage;
+    if (unseen.before_statistics.mean > 0) {
+      held_out["remaining_percent"] = 100 * unseen.after_statistics.mean / unseen.before_statistics.mean;
+    }
+    json["held_out"] = held_out;
+  }
+  if (result.map) {
+    const StudyMap& map = *result.map;
+    nlohmann::ordered_json entry;
+    entry["poses"] = map.poses.count();
+    entry["description"] = map.description + ", after the best fit of the workpiece datum";
+    entry["reference"] = map.against_truth ? "truth" : "model";
+    entry["position_before_um"] = statistics_um(map.before.statistics);
+    entry["orientation_before_urad"] = statistics_urad(rotation_lengths(map.before));
+    if (map.after) {
+      entry["position_after_um"] = statistics_um(map.after->statistics);
+      entry["orientation_after_urad"] = statistics_urad(rotation_lengths(*map.after));
+    }
+    if (map.before.statistics.excluded > 0) entry["outside_range"] = map.before.statistics.excluded;
+    json["map"] = entry;
+  }
+  return json;
+}
+
+}  // namespace abbe
