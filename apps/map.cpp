@@ -144,8 +144,7 @@ int run_map(const MapOptions& options) {
   }
   if (outside > 0) {
     fmt::print(stderr,
-               "abbe: {} of {} poses lie outside the range in which the errors are known; they are marked in_range = 0 "
-               "and not counted\n",
+               "abbe: {} of {} poses lie outside the range in which the errors are known; they are left out\n",
                outside, poses.count());
     return kNegative;
   }

@@ -1,0 +1,68 @@
+#include <gmock/gmock.h>
+
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+const char* const kMachine =
+    "name = \"m\"\nchain = \"w C' X' b Z t\"\n[axis.C]\nendless = true\n[axis.X]\ntravel_mm = [0, 1400]\n"
+    "[axis.Z]\ntravel_mm = [0, 600]\n";
+
+/// Bad input: exit code 2, nothing on standard output, one line on standard error that says where and what.
+class BadInput : public CommandTest {
+ protected:
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& message) const {
+    const CommandResult result = abbe(arguments);
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(result.err, "abbe: " + message + "\n");
+  }
+
+  /// Checks the machine with one passage replaced.
+  void expect_machine_refused(const std::string& from, const std::string& to, const std::string& message) const {
+    std::string text = kMachine;
+    ASSERT_NE(text.find(from), std::string::npos);
+    folder.write("m.toml", text.replace(text.find(from), from.size(), to));
+    expect_refused({"check", "m.toml"}, message);
+  }
+};
+
+TEST_F(BadInput, NamesFileLineFieldAndUnit) {
+  expect_machine_refused(
+      "travel_mm = [0, 1400]", "travel_deg = [0, 1400]",
+      "m.toml:6:1: axis.X.travel_deg: 'deg' is not a unit of a length; expected travel_mm, travel_um "
+      "or travel_m");
+  expect_machine_refused("[0, 1400]", "[0, nan]",
+                         "m.toml:6:17: axis.X.travel_mm[2]: nan is not a finite number; expected a length in mm");
+  expect_machine_refused(
+      "[0, 1400]", "[0, 1e308]",
+      "m.toml:6:17: axis.X.travel_mm[2]: 1e308 is too large; expected a length in mm, at most 1e9 mm");
+  expect_machine_refused("[axis.X]", "[axis.Y]",
+                         "m.toml:5:7: axis.Y: the chain has no axis Y; expected one of C, X, Z");
+}
+
+TEST_F(BadInput, EmptyAndMissingFiles) {
+  folder.write("empty.toml", "");
+  expect_refused({"check", "empty.toml"}, "empty.toml: the file is empty");
+  expect_refused({"check", "none.toml"}, "none.toml: there is no such file");
+  expect_refused({"check", "."}, ".: is not a regular file");
+}
+
+TEST_F(BadInput, ErrorsOfAnotherMachine) {
+  folder.write("m.toml", kMachine);
+  folder.write("e.toml", "chain = \"w b X Y Z t\"\n");
+  expect_refused({"check", "m.toml", "--errors", "e.toml"},
+                 "e.toml:1:1: chain: the errors belong to \"w b X Y Z t\"; expected \"w C' X' b Z t\"");
+}
+
+TEST_F(BadInput, ByteOrderMarkAndCarriageReturnsAreGoodInput) {
+  std::string text = "\xEF\xBB\xBF";
+  for (const char* at = kMachine; *at != 0; ++at) text += *at == '\n' ? std::string("\r\n") : std::string(1, *at);
+  folder.write("m.toml", text);
+  const CommandResult result = abbe({"check", "m.toml"});
+  EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
+}
+
+}  // namespace
+}  // namespace abbe
