@@ -143,8 +143,7 @@ int run_map(const MapOptions& options) {
     for (const std::string& output : options.outputs) fmt::print("{} written\n", output);
   }
   if (outside > 0) {
-    fmt::print(stderr,
-               "abbe: {} of {} poses lie outside the range in which the errors are known; they are left out\n",
+    fmt::print(stderr, "abbe: {} of {} poses lie outside the range in which the errors are known; they are left out\n",
                outside, poses.count());
     return kNegative;
   }
