@@ -91,6 +91,7 @@ ReadingStream::ReadingStream(const Problem& problem, int threads)
 ReadingStream::~ReadingStream() = default;
 std::size_t ReadingStream::piece_count() const { return implementation_->pieces.size(); }
 std::size_t ReadingStream::parameter_count() const { return implementation_->parameters; }
+std::size_t ReadingStream::residual_count() const { return used_residual_count(implementation_->problem); }
 
 void ReadingStream::for_each(bool jacobian, const Loss& loss,
                              const std::function<void(std::size_t, const ResidualBlock&, double)>& work) const {

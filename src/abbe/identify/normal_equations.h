@@ -57,6 +57,7 @@ class ReadingStream {
                 const std::function<void(std::size_t piece, const ResidualBlock& block, double cost)>& work) const;
   std::size_t piece_count() const;
   std::size_t parameter_count() const;
+  std::size_t residual_count() const;  ///< used ones, priors not counted
 
  private:
   struct Implementation;

@@ -15,6 +15,9 @@ constexpr double kWeak = 3e-8;
 // Eigenvalues of J'J relative to the largest: clear of rounding above, nothing but rounding below.
 constexpr double kClearlySeen = 1e-9;
 constexpr double kRounding = 1e-14;
+// Column norms relative to the largest: below is rounding of a column that is zero.
+constexpr double kNoColumn = 1e-14;
+constexpr double kQuickFactor = 5e8;  // products
 
 }  // namespace
 
@@ -29,6 +32,9 @@ NullSpace find_null_space(const ReadingStream& stream, const Eigen::VectorXd& es
   result.column_norms = sums.normal.diagonal().cwiseMax(0.0).cwiseSqrt();
   result.singular_values = Eigen::VectorXd::Zero(p);
   if (p == 0) return result;
+  const double no_column = kNoColumn * result.column_norms.maxCoeff();
+  for (Index i = 0; i < p; ++i)
+    if (result.column_norms[i] <= no_column) result.column_norms[i] = 0;
   const Eigen::VectorXd inverse = result.column_norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0.0; });
   const Eigen::MatrixXd scaled = inverse.asDiagonal() * sums.normal * inverse.asDiagonal();
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled, Eigen::EigenvaluesOnly);
@@ -48,7 +54,10 @@ NullSpace find_null_space(const ReadingStream& stream, const Eigen::VectorXd& es
   Eigen::MatrixXd vectors;  // of the unseen directions, scaled
   bool ambiguous = false;
   for (Index i = 0; i < p; ++i) ambiguous = ambiguous || (relative(i) > kRounding && relative(i) < kClearlySeen);
-  if (ambiguous) {
+  // Rounding hides what lies below 1e-7 in J'J. The orthogonal factor shows it; with very many readings it takes seconds,
+  // and then only an open question is worth them.
+  const double work = static_cast<double>(stream.residual_count()) * static_cast<double>(p * p);
+  if (ambiguous || work < kQuickFactor) {
     const Eigen::MatrixXd factor = stream.orthogonal_factor(estimates, Loss{}) * inverse.asDiagonal();
     const Eigen::BDCSVD<Eigen::MatrixXd> svd(factor, Eigen::ComputeFullV);
     result.refined = true;

@@ -1,0 +1,166 @@
+#include "abbe/identify/gauge.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <memory>
+
+#include "abbe/errors/random_stream.h"
+#include "abbe/identify/function_observations_test.h"
+#include "abbe/identify/identify.h"
+#include "abbe/instruments/aguado_for_test.h"
+#include "abbe/instruments/tracker_observations.h"
+
+namespace abbe {
+namespace {
+
+constexpr std::size_t kOrder = 4;  // of X, of Z and harmonics of C
+
+/// The machine w C' X' b Z t with all 18 error motions, the place of the C axis and the pose of the tracker.
+///
+/// Aguado counts 6(nX+1) + 6(nZ+1) + 6(2H+1) + 12, the twelve being the points C0 and Z0 and the pose of the tracker. A
+/// shift of a linear axis (Z0) and of a rotary axis along itself (C0.z) have no effect that the constants of EXZ, EYZ,
+/// EZZ, EZC do not have, so they are no location errors here: four parameters and four unseen directions fewer. The
+/// rank is the same.
+struct Aguado {
+  std::unique_ptr<TrackerObservations> observations;
+  Problem problem;
+
+  Aguado(const std::vector<Eigen::Vector3d>& offsets, const std::string& file, bool zero_start = true) {
+    const test::AguadoCase given = test::aguado_case();
+    TrackerReadings readings = test::aguado_readings(given, file);
+    TrackerSetup setup = given.setup;
+    if (!offsets.empty()) {
+      setup.reflectors.resize(offsets.size());
+      for (std::size_t i = 0; i < offsets.size(); ++i) {
+        setup.reflectors[i] = given.setup.reflectors[0];
+        setup.reflectors[i].offset = offsets[i];
+      }
+      for (std::size_t i = 0; i < readings.count(); ++i)
+        readings.reflector[i] = static_cast<std::uint16_t>(i % offsets.size());
+    }
+    ErrorSet errors = given.truth;
+    if (zero_start)
+      for (ErrorMotion& motion : errors.motions) std::fill(motion.coefficients.begin(), motion.coefficients.end(), 0.0);
+    errors.locations = {{0, Component::X, 0, 0}, {0, Component::Y, 0, 0}};
+    observations = std::make_unique<TrackerObservations>(given.machine, errors, setup, readings);
+    problem = estimate_everything(given.machine, errors, {observations.get()});
+    for (int i = 0; i < 3; ++i) problem.machine_parameters.pop_back();  // the tool offset error
+  }
+  NullSpace null_space() { return find_null_space(problem, present_values(problem)); }
+};
+
+std::size_t unseen(const NullSpace& space) {
+  return static_cast<std::size_t>(space.singular_values.size()) - space.rank;
+}
+
+const Eigen::Vector3d kFirst(60, 0, -150), kSecond(0, 80, -250);
+const std::string kFile = "aguado_5000_noise0.csv";
+
+TEST(Gauge, three_offsets_give_the_rank_of_the_theory) {
+  Aguado aguado({}, kFile);
+  const NullSpace space = aguado.null_space();
+  EXPECT_EQ(space.singular_values.size(), 122);
+  EXPECT_EQ(space.rank, 6 * (kOrder + kOrder + 2 * kOrder) + 6);
+  EXPECT_EQ(unseen(space), 24u - 4u);
+  EXPECT_EQ(space.weak, 0u);
+}
+
+TEST(Gauge, two_offsets_in_general_position_lose_the_roll_of_the_tool) {
+  Aguado aguado({kFirst, kSecond}, kFile);
+  EXPECT_EQ(unseen(aguado.null_space()), 20u + kOrder + 1);
+}
+
+TEST(Gauge, two_offsets_on_the_spindle_line_lose_more) {
+  Aguado aguado({{0, 0, -150}, {0, 0, -250}}, kFile);
+  EXPECT_EQ(unseen(aguado.null_space()), 20u + kOrder + kOrder);
+}
+
+TEST(Gauge, one_offset_loses_the_angles_of_the_tool_axis) {
+  Aguado aguado({kFirst}, kFile);
+  EXPECT_EQ(unseen(aguado.null_space()), 20u + 3 * kOrder + kOrder + 2);
+}
+
+TEST(Gauge, the_conventions_fix_everything_and_the_equations_hold_exactly) {
+  Aguado aguado({}, "aguado_500_noiseLT.csv");
+  const Identification result = identify(aguado.problem);
+  ASSERT_EQ(result.status, IdentifyStatus::converged) << result.message;
+  ASSERT_EQ(result.gauge.constraints.size(), 20u);
+  for (const GaugeConstraint& constraint : result.gauge.constraints) {
+    EXPECT_TRUE(constraint.by_convention) << constraint.words;
+    const double size = constraint.functional.cwiseAbs().dot(result.estimates.cwiseAbs());
+    EXPECT_LE(std::abs(constraint.functional.dot(result.estimates) - constraint.value), 1e-13 * (size + 1e-6))
+        << constraint.words;
+    EXPECT_LE(std::abs(constraint.functional.dot(result.covariance * constraint.functional)),
+              1e-9 * constraint.functional.cwiseAbs2().dot(result.covariance.diagonal()) + 1e-30);
+  }
+  EXPECT_THAT(result.gauge.warnings,
+              testing::Contains(testing::AllOf(testing::HasSubstr("constant of EXZ"), testing::HasSubstr("tracker1"))));
+  EXPECT_NEAR(result.statistics.chi_square / result.statistics.degrees_of_freedom, 1, 0.15);
+  EXPECT_GT(result.statistics.observability.o1, 0);
+  EXPECT_LE(result.statistics.observability.o3, 1);
+}
+
+TEST(Gauge, one_offset_is_an_answer_with_a_warning) {
+  Aguado aguado({kFirst}, kFile);
+  // Consistent data for the one offset: the readings of the first reflector only.
+  const test::AguadoCase given = test::aguado_case();
+  const TrackerReadings all = test::aguado_readings(given, kFile);
+  Aguado whole({}, kFile);
+  whole.problem.observations[0].use.assign(all.count(), 0);
+  for (std::size_t i = 0; i < all.count(); ++i) whole.problem.observations[0].use[i] = all.reflector[i] == 0;
+  const Identification result = identify(whole.problem);
+  EXPECT_EQ(result.status, IdentifyStatus::rank_deficient);
+  EXPECT_GT(result.estimates.size(), 0);
+  EXPECT_THAT(result.gauge.warnings, testing::Contains(testing::HasSubstr("no convention fixes")));
+}
+
+TEST(Gauge, noise_free_readings_give_the_machine_back_at_unseen_poses) {
+  Aguado aguado({}, kFile);
+  const std::size_t count = aguado.observations->reading_count();
+  aguado.problem.observations[0].use.assign(count, 1);
+  for (std::size_t i = 0; i < count; i += 2) aguado.problem.observations[0].use[i] = 0;
+  const Identification result = identify(aguado.problem);
+  ASSERT_EQ(result.status, IdentifyStatus::converged) << result.message;
+  double mean = 0;
+  for (std::size_t i = 0; i < count; i += 2)
+    mean += aguado.observations->distance(i).norm() / static_cast<double>((count + 1) / 2);
+  EXPECT_LT(mean, 1e-6);  // mm; 0.001 um
+}
+
+TEST(Gauge, the_choice_of_the_gauge_does_not_change_the_model) {
+  Aguado iso({}, "aguado_500_noiseLT.csv"), shortest({}, "aguado_500_noiseLT.csv");
+  IdentifyOptions options;
+  const Identification a = identify(iso.problem, options);
+  options.gauge = GaugeChoice::minimum_norm;
+  const Identification b = identify(shortest.problem, options);
+  ASSERT_EQ(a.status, IdentifyStatus::converged);
+  ASSERT_EQ(b.status, IdentifyStatus::converged);
+  // Equal to first order in the errors (0.1 mrad): the unseen directions are those of the nominal machine.
+  EXPECT_NEAR(a.statistics.chi_square, b.statistics.chi_square, 1e-2 * a.statistics.chi_square);
+  EXPECT_GT((a.estimates - b.estimates).norm(), 1e-3);
+}
+
+TEST(Gauge, a_singular_value_of_1e_minus_13_is_told_from_zero) {
+  // Columns 0 and 1 differ by a relative 1e-12 (seen), columns 2 and 3 are equal (unseen).
+  const auto make = [](double difference) {
+    return [difference](std::size_t k, std::size_t, const std::vector<FunctionObservations::Complex>& b) {
+      const double t = static_cast<double>(k) / 100;
+      return (b[0] + b[1]) * std::cos(t) + difference * b[1] * std::sin(3 * t) + (b[2] + b[3]) * t;
+    };
+  };
+  for (const double difference : {1e-3, 1e-6, 1e-9, 4e-13}) {
+    FunctionObservations observations(4, 1, std::vector<double>(400, 0.0), 1, make(difference));
+    observations.start({1, 1, 1, 1});
+    Problem problem = function_problem({&observations});
+    const NullSpace space = find_null_space(problem, present_values(problem));
+    EXPECT_EQ(space.rank, 3u) << difference;
+    EXPECT_EQ(space.weak, difference < 1e-8 ? 1u : 0u) << difference;
+    const double seen = space.singular_values[2];
+    EXPECT_NEAR(seen / difference, 0.5, 0.3) << difference;
+  }
+}
+
+}  // namespace
+}  // namespace abbe
