@@ -1,4 +1,4 @@
-// Identification of 60-odd parameters of a machine w C' X' b Z t from laser tracker readings: this project against
+// Identification of 60 parameters of a machine w C' X' b Z t from laser tracker readings: this project against
 // Ceres with automatic differentiation and Ceres with this project's analytic Jacobian. Same readings, start, tolerance
 // and threads; dense normal Cholesky; covariance included. Then memory at 1,000,000 readings, and a Monte Carlo run.
 //
@@ -207,7 +207,7 @@ abbe::IdentifyOptions our_options() {
 }
 
 bool check(const char* what, double value, bool good) {
-  std::printf("  %-58s %10.2f  %s\n", what, value, good ? "reached" : "MISSED");
+  std::printf("  %-58s %10.3g  %s\n", what, value, good ? "reached" : "MISSED");
   return good;
 }
 
@@ -221,7 +221,7 @@ bool compare(std::size_t count, bool with_ceres) {
   }
   abbe::Identification ours;
   double best = 1e9;
-  for (int repetition = 0; repetition < 5; ++repetition) {
+  for (int repetition = 0; repetition < 15; ++repetition) {
     observed = data.observations();
     abbe::Problem problem = data.problem(*observed);
     const double start = seconds();
@@ -239,7 +239,7 @@ bool compare(std::size_t count, bool with_ceres) {
     const abbe::Problem problem = data.problem(*observed);
     CeresResult theirs;
     double ceres_best = 1e9;
-    for (int repetition = 0; repetition < (count > 50000 ? 1 : 2); ++repetition) {
+    for (int repetition = 0; repetition < (count > 50000 ? 1 : 4); ++repetition) {
       observed = data.observations();
       abbe::Problem fresh = data.problem(*observed);
       theirs = solve_with_ceres<kParameters>(data, fresh, *observed, analytic);

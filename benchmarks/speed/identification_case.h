@@ -11,7 +11,7 @@
 
 namespace abbe::benchmark_case {
 
-inline constexpr int kLinearOrder = 2;  // Legendre degree of X and Z
+inline constexpr int kLinearOrder = 3;  // Legendre degree of X and Z
 inline constexpr int kHarmonics = 2;    // of C
 
 /// Machine w C' X' b Z t, one tracker on the table, three reflectors on the tool, isotropic noise of 10 um.
