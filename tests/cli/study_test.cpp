@@ -1,0 +1,248 @@
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+using testing::HasSubstr;
+
+const char* const kMachine = R"(name = "table and column"
+chain = "w C' X' b Z t"
+[axis.C]
+point_mm = [700, 0, -100]
+travel_deg = [0, 360]
+[axis.X]
+travel_mm = [0, 1400]
+[axis.Z]
+point_mm = [0, 0, 300]
+travel_mm = [0, 600]
+[workpiece]
+origin_mm = [700, 0, -100]
+[tool]
+reference_mm = [0, 0, 300]
+)";
+
+const char* const kStudy = R"(name = "small"
+machine = "m.machine.toml"
+seed = 3
+output = "out"
+[simulate.generator]
+seed = 5
+mean_volumetric_um = 300
+linear_order = 3
+rotary_order = 2
+location_errors = false
+[[setup]]
+name = "tracker"
+instrument = "tracker"
+noise = { xyz_um = 10, xyz_um_per_m = 5 }
+[[setup.station]]
+name = "S"
+true_pose = { position_mm = [300, -200, 150], angles_deg = [5, -3, 130] }
+[[setup.reflector]]
+name = "R1"
+offset_mm = [60, 0, -150]
+[[setup.reflector]]
+name = "R2"
+offset_mm = [0, 80, -250]
+[[setup.reflector]]
+name = "R3"
+offset_mm = [-70, -30, -100]
+[[setup.plan]]
+kind = "random"
+points = 150
+axis.C = {}
+axis.X = {}
+axis.Z = {}
+[identify]
+[[identify.motion]]
+errors = ["E?X", "E?Z"]
+basis = "legendre"
+order = 3
+[[identify.motion]]
+errors = "E?C"
+basis = "fourier"
+order = 2
+[map]
+axis.C = { count = 4 }
+axis.X = { count = 3 }
+axis.Z = { count = 3 }
+)";
+
+class Studies : public CommandTest {
+ protected:
+  Studies() { folder.write("m.machine.toml", kMachine); }
+
+  /// The study with passages replaced, pairwise: from, to.
+  void write_study(const std::vector<std::pair<std::string, std::string>>& changes = {}) const {
+    std::string text = kStudy;
+    for (const auto& [from, to] : changes) {
+      const std::size_t at = text.find(from);
+      ASSERT_NE(at, std::string::npos) << from;
+      text.replace(at, from.size(), to);
+    }
+    folder.write("s.study.toml", text);
+  }
+
+  nlohmann::json run_json(int expected_exit = ExitCode::done) const {
+    const CommandResult result = abbe({"run", "s.study.toml", "--json"});
+    EXPECT_EQ(result.exit_code, expected_exit) << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false);
+  }
+};
+
+TEST_F(Studies, FindTheErrorsFromNothingButReadings) {
+  write_study();
+  const nlohmann::json summary = run_json();
+  EXPECT_EQ(summary["status"], "converged");
+  EXPECT_EQ(summary["parameters"], 6 * 4 + 6 * 4 + 6 * 5 + 6);
+  EXPECT_EQ(summary["null_space"], 18);  // the 24 of the published model without C0 and Z0, which are no parameters here
+  EXPECT_GT(summary["held_out"]["position_before_um"]["mean"], 100);
+  EXPECT_LT(summary["held_out"]["position_after_um"]["mean"], 12);
+  EXPECT_NEAR(summary["held_out"]["coverage_percent"].get<double>(), 95, 5);
+  EXPECT_NEAR(summary["normalised_residual_rms"].get<double>(), 1, 0.06);
+  EXPECT_EQ(nlohmann::json::parse(folder.read("out/summary.json")), summary);
+}
+
+TEST_F(Studies, SameInputAndSeedGiveTheSameBytes) {
+  write_study();
+  ASSERT_EQ(abbe({"run", "s.study.toml"}).exit_code, ExitCode::done);
+  write_study({{"seed = 3", "seed = 3\nthreads = 1"}});
+  ASSERT_EQ(abbe({"run", "s.study.toml", "-o", "again"}).exit_code, ExitCode::done);
+  for (const char* file : {"errors.toml", "errors.covariance.csv", "summary.json", "residuals.csv", "report.html",
+                           "readings/tracker.csv", "maps/volumetric_error.csv", "maps/volumetric_error.vts"}) {
+    EXPECT_EQ(folder.read(std::string("out/") + file), folder.read(std::string("again/") + file)) << file;
+  }
+}
+
+TEST_F(Studies, ReadingsWrittenByASimulationGiveTheSameResultAsData) {
+  write_study();
+  ASSERT_EQ(abbe({"simulate", "s.study.toml", "-o", "readings"}).exit_code, ExitCode::done);
+  const nlohmann::json simulated = run_json();
+  std::string text = kStudy;
+  const std::size_t plan = text.find("[[setup.plan]]"), identify = text.find("[identify]");
+  text.replace(plan, identify - plan, "[[setup.data]]\nfile = \"readings/tracker.csv\"\n");
+  const std::size_t simulate = text.find("[simulate.generator]"), setup = text.find("[[setup]]");
+  text.erase(simulate, setup - simulate);
+  const std::size_t pose = text.find("true_pose");
+  text.erase(pose, text.find('\n', pose) + 1 - pose);
+  folder.write("s.study.toml", text);
+  const nlohmann::json read = run_json();
+  EXPECT_NEAR(read["chi_square"].get<double>(), simulated["chi_square"].get<double>(), 1e-3);
+  EXPECT_EQ(read["held_out"]["reference"], "readings");
+  EXPECT_FALSE(read["held_out"].contains("coverage_percent"));
+}
+
+TEST_F(Studies, ThirtyPercentGrossOutliersCostNoMoreThanTwiceTheCleanError) {
+  write_study();
+  const double clean = run_json()["held_out"]["position_after_um"]["mean"];
+  for (const char* loss : {"tukey", "cauchy"}) {
+    write_study({{"[[setup]]", "[simulate.outliers]\nfraction = 0.3\nsize_um = 3000\n[[setup]]"},
+                 {"[identify]", "[identify]\nloss = \"" + std::string(loss) + "\""}});
+    const nlohmann::json summary = run_json();
+    EXPECT_EQ(summary["status"], "converged");
+    EXPECT_LT(summary["held_out"]["position_after_um"]["mean"], 2 * clean) << loss;
+    EXPECT_GT(summary["outliers"], 90) << loss;
+  }
+  // Least squares must fail here, else the test shows nothing.
+  write_study({{"[[setup]]", "[simulate.outliers]\nfraction = 0.3\nsize_um = 3000\n[[setup]]"}});
+  EXPECT_GT(run_json()["held_out"]["position_after_um"]["mean"], 5 * clean);
+}
+
+TEST_F(Studies, FewerReadingsThanParametersAreSaid) {
+  write_study({{"points = 150", "points = 7"}});
+  const CommandResult result = abbe({"run", "s.study.toml"});
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.out, HasSubstr("No result"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out" / "errors.toml"));
+}
+
+TEST_F(Studies, AllReadingsAtOnePoseAreSaid) {
+  write_study({{"kind = \"random\"\npoints = 150\naxis.C = {}\naxis.X = {}\naxis.Z = {}",
+                "kind = \"line\"\npoints = 200\naxis.C = { at_deg = 10 }\naxis.X = { at_mm = 100 }\naxis.Z = { at_mm = 5 }"}});
+  const CommandResult result = abbe({"run", "s.study.toml"});
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.out, HasSubstr("stands still in all readings"));
+}
+
+TEST_F(Studies, ASwappedReflectorIsNamed) {
+  write_study();
+  ASSERT_EQ(abbe({"simulate", "s.study.toml", "-o", "readings"}).exit_code, ExitCode::done);
+  // Readings 12 to 20 of reflector R1 are entered as R2 and the other way round.
+  std::string csv = folder.read("readings/tracker.csv"), swapped;
+  std::size_t line = 0, start = 0;
+  while (start < csv.size()) {
+    const std::size_t end = csv.find('\n', start);
+    std::string row = csv.substr(start, end - start);
+    if (row.empty() || row[0] == '#') {
+    } else if (line++ >= 13 && line <= 22) {
+      if (row.find("R1") != std::string::npos) {
+        row = std::regex_replace(row, std::regex("R1"), "R2");
+      } else {
+        row = std::regex_replace(row, std::regex("R2"), "R1");
+      }
+    }
+    swapped += row + "\n";
+    start = end + 1;
+  }
+  folder.write("readings/swapped.csv", swapped);
+  std::string text = kStudy;
+  const std::size_t plan = text.find("[[setup.plan]]"), identify = text.find("[identify]");
+  text.replace(plan, identify - plan, "[[setup.data]]\nfile = \"readings/swapped.csv\"\nignore = [\"offset_x_mm\", \"offset_y_mm\", \"offset_z_mm\"]\n");
+  const std::size_t simulate = text.find("[simulate.generator]"), setup = text.find("[[setup]]");
+  text.erase(simulate, setup - simulate);
+  const std::size_t pose = text.find("true_pose");
+  text.erase(pose, text.find('\n', pose) + 1 - pose);
+  folder.write("s.study.toml", text);
+  const CommandResult result = abbe({"run", "s.study.toml"});
+  EXPECT_THAT(result.out, HasSubstr("fits better than")) << result.err;
+}
+
+TEST_F(Studies, MapOfAnErrorsFileSaysWhatLiesOutsideItsRange) {
+  write_study();
+  ASSERT_EQ(abbe({"run", "s.study.toml"}).exit_code, ExitCode::done);
+  const CommandResult inside =
+      abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=100:1300:5", "-o", "map.csv", "-o", "map.vts"});
+  EXPECT_EQ(inside.exit_code, ExitCode::done) << inside.err;
+  EXPECT_THAT(inside.out, HasSubstr("standard uncertainty"));
+  const CommandResult outside = abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=0:2000:5"});
+  EXPECT_EQ(outside.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(outside.err, HasSubstr("outside the range"));
+  const CommandResult wrong = abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_deg=0:2000:5"});
+  EXPECT_EQ(wrong.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(wrong.err, HasSubstr("unit 'deg' for a linear axis"));
+}
+
+TEST_F(Studies, NewMachinesAreValidAndExistingFilesAreKept) {
+  ASSERT_EQ(abbe({"new", "w C' A' Y' b X Z t", "-o", "mill.machine.toml"}).exit_code, ExitCode::done);
+  const CommandResult check = abbe({"check", "mill.machine.toml"});
+  EXPECT_EQ(check.exit_code, ExitCode::done) << check.err;
+  EXPECT_THAT(check.out, HasSubstr("EXC"));
+  const CommandResult again = abbe({"new", "w X' b t", "-o", "mill.machine.toml"});
+  EXPECT_EQ(again.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(again.err, HasSubstr("exists"));
+}
+
+TEST_F(Studies, PublishedStudiesAgreeWithTheReference) {
+  const CommandResult aguado = abbe({"reproduce", "aguado", "--json"});
+  ASSERT_EQ(aguado.exit_code, ExitCode::done) << aguado.err;
+  const nlohmann::json json = nlohmann::json::parse(aguado.out);
+  EXPECT_TRUE(json["agrees_with_reference"]);
+  // Three offsets: 24 directions of the published model are unseen; C0 and Z0 (6) are not parameters here.
+  EXPECT_EQ(json["reference"]["5000_noiseLT"]["parameters"], 120);
+  EXPECT_EQ(json["reference"]["5000_noiseLT"]["rank"], 102);
+  const CommandResult wang = abbe({"reproduce", "wang", "--json"});
+  ASSERT_EQ(wang.exit_code, ExitCode::done) << wang.err;
+  const nlohmann::json figures = nlohmann::json::parse(wang.out);
+  EXPECT_EQ(figures["mean_columns"]["equal_to_cut_off_mean"], 20);
+  EXPECT_NEAR(figures["zero_pose_error_mm"]["degrees"][0].get<double>(), -5.400842140, 1e-8);
+  EXPECT_EQ(figures["populations_um"]["12^6, degrees as printed"]["poses"], 2985984);
+}
+
+}  // namespace
+}  // namespace abbe
