@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "abbe/identify/distributions.h"
 #include "study/report_parameters.h"
 #include "study/summary.h"
 
@@ -67,6 +68,13 @@ nlohmann::ordered_json residuals_json(const Machine& machine, const StudyResult&
       limit = limit == 0 ? outlier.norm : std::min(limit, outlier.norm);
     }
     const std::size_t count = observations.reading_count();
+    // Held-out readings take no part in the fit, but a gross error among them is marked like the others.
+    const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
+    const double norm_limit = std::sqrt(chi_square_quantile(IdentifyOptions{}.outlier_norm_quantile, 3));
+    for (std::size_t k = 0; k < count && !use.empty(); ++k) {
+      const double norm = std::hypot(residuals[3 * k], residuals[3 * k + 1], residuals[3 * k + 2]);
+      if (use[k] == 0 && norm > norm_limit) outliers.insert(k);
+    }
     std::vector<std::size_t> shown;
     const std::size_t step = std::max<std::size_t>(1, (count + kLimit - 1) / kLimit);
     for (std::size_t k = 0; k < count; ++k) {

@@ -101,7 +101,8 @@ TEST_F(Studies, FindTheErrorsFromNothingButReadings) {
   const nlohmann::json summary = run_json();
   EXPECT_EQ(summary["status"], "converged");
   EXPECT_EQ(summary["parameters"], 6 * 4 + 6 * 4 + 6 * 5 + 6);
-  EXPECT_EQ(summary["null_space"], 18);  // the 24 of the published model without C0 and Z0, which are no parameters here
+  EXPECT_EQ(summary["null_space"],
+            18);  // the 24 of the published model without C0 and Z0, which are no parameters here
   EXPECT_GT(summary["held_out"]["position_before_um"]["mean"], 100);
   EXPECT_LT(summary["held_out"]["position_after_um"]["mean"], 12);
   EXPECT_NEAR(summary["held_out"]["coverage_percent"].get<double>(), 95, 5);
@@ -163,8 +164,9 @@ TEST_F(Studies, FewerReadingsThanParametersAreSaid) {
 }
 
 TEST_F(Studies, AllReadingsAtOnePoseAreSaid) {
-  write_study({{"kind = \"random\"\npoints = 150\naxis.C = {}\naxis.X = {}\naxis.Z = {}",
-                "kind = \"line\"\npoints = 200\naxis.C = { at_deg = 10 }\naxis.X = { at_mm = 100 }\naxis.Z = { at_mm = 5 }"}});
+  write_study(
+      {{"kind = \"random\"\npoints = 150\naxis.C = {}\naxis.X = {}\naxis.Z = {}",
+        "kind = \"line\"\npoints = 200\naxis.C = { at_deg = 10 }\naxis.X = { at_mm = 100 }\naxis.Z = { at_mm = 5 }"}});
   const CommandResult result = abbe({"run", "s.study.toml"});
   EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
   EXPECT_THAT(result.out, HasSubstr("stands still in all readings"));
@@ -193,7 +195,9 @@ TEST_F(Studies, ASwappedReflectorIsNamed) {
   folder.write("readings/swapped.csv", swapped);
   std::string text = kStudy;
   const std::size_t plan = text.find("[[setup.plan]]"), identify = text.find("[identify]");
-  text.replace(plan, identify - plan, "[[setup.data]]\nfile = \"readings/swapped.csv\"\nignore = [\"offset_x_mm\", \"offset_y_mm\", \"offset_z_mm\"]\n");
+  text.replace(plan, identify - plan,
+               "[[setup.data]]\nfile = \"readings/swapped.csv\"\nignore = [\"offset_x_mm\", \"offset_y_mm\", "
+               "\"offset_z_mm\"]\n");
   const std::size_t simulate = text.find("[simulate.generator]"), setup = text.find("[[setup]]");
   text.erase(simulate, setup - simulate);
   const std::size_t pose = text.find("true_pose");

@@ -18,8 +18,8 @@ struct Observability {
 };
 
 struct FitStatistics {
-  double chi_square = 0;            ///< sum of squared residuals, priors included
-  std::size_t residual_count = 0;   ///< priors included
+  double chi_square = 0;  ///< sum of squared residuals, priors included; with a robust loss without the outliers
+  std::size_t residual_count = 0;   ///< priors included; with a robust loss without the outliers
   std::size_t parameter_count = 0;  ///< free ones, after the gauge
   double degrees_of_freedom = 0;
   double p_value = 0;          ///< probability of a larger chi-square if model and uncertainties are right

@@ -206,12 +206,12 @@ class Run {
       unweighted = stream_.sums(solved.estimates, Loss{}, Wanted::normal);
       result_.statistics.robust_factor = robust_factor(problem_, norms, loss_);
     }
+    list_outliers(norms);
     statistics(unweighted, space);
     const bool ill_conditioned = result_.statistics.observability.o2 < kIllConditioned;
     const bool known = ill_conditioned ? covariance_from_factor(stream_.orthogonal_factor(solved.estimates, Loss{}),
                                                                 space, result_.covariance)
                                        : covariance_of_estimates(unweighted.normal, space, result_.covariance);
-    list_outliers(norms);
     keep_estimates(problem_, solved.estimates);
     result_.gauge.rank_at_solution = rank_at_solution(unweighted);
     if (!known) {
@@ -251,6 +251,13 @@ class Run {
     FitStatistics& s = result_.statistics;
     s.chi_square = 2 * sums.cost;
     s.residual_count = used_residual_count(problem_) + static_cast<std::size_t>(prior_residual_count(problem_));
+    if (loss_.kind != LossKind::none) {
+      // A gross error says nothing about whether model and uncertainties are right for the others.
+      for (const Outlier& outlier : result_.outliers) {
+        s.chi_square -= outlier.norm * outlier.norm;
+        s.residual_count -= static_cast<std::size_t>(problem_.observations[outlier.observations].observations->rows());
+      }
+    }
     s.parameter_count = static_cast<std::size_t>(start_.size()) - result_.gauge.constraints.size();
     s.degrees_of_freedom = static_cast<double>(s.residual_count) - static_cast<double>(s.parameter_count);
     if (s.degrees_of_freedom > 0) {

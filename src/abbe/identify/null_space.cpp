@@ -54,8 +54,8 @@ NullSpace find_null_space(const ReadingStream& stream, const Eigen::VectorXd& es
   Eigen::MatrixXd vectors;  // of the unseen directions, scaled
   bool ambiguous = false;
   for (Index i = 0; i < p; ++i) ambiguous = ambiguous || (relative(i) > kRounding && relative(i) < kClearlySeen);
-  // Rounding hides what lies below 1e-7 in J'J. The orthogonal factor shows it; with very many readings it takes seconds,
-  // and then only an open question is worth them.
+  // Rounding hides what lies below 1e-7 in J'J. The orthogonal factor shows it; with very many readings it takes
+  // seconds, and then only an open question is worth them.
   const double work = static_cast<double>(stream.residual_count()) * static_cast<double>(p * p);
   if (ambiguous || work < kQuickFactor) {
     const Eigen::MatrixXd factor = stream.orthogonal_factor(estimates, Loss{}) * inverse.asDiagonal();
