@@ -20,7 +20,7 @@ constexpr int kPoints = 720;
 /// Builds functionals of the error motions of one axis.
 class AxisFunctionals {
  public:
-  AxisFunctionals(const Problem& problem, std::size_t axis) : problem_(problem), axis_(axis) {
+  AxisFunctionals(const Problem& problem, std::size_t axis) : problem_(problem) {
     const ErrorSet& errors = problem.errors;
     count_ = static_cast<Index>(estimated_count(problem));
     std::size_t next = 0;
@@ -107,7 +107,6 @@ class AxisFunctionals {
   }
 
   const Problem& problem_;
-  std::size_t axis_;
   std::vector<Term> terms_;
   Index count_ = 0;
   double from_ = 0, to_ = 0;

@@ -9,6 +9,7 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/identify/function_observations_test.h"
 #include "abbe/identify/identify.h"
+#include "abbe/identify/monte_carlo.h"
 #include "abbe/instruments/aguado_for_test.h"
 #include "abbe/instruments/tracker_observations.h"
 
@@ -27,7 +28,10 @@ struct Aguado {
   std::unique_ptr<TrackerObservations> observations;
   Problem problem;
 
-  Aguado(const std::vector<Eigen::Vector3d>& offsets, const std::string& file, bool zero_start = true) {
+  /// @param shift_mm, turn_rad  error of the tracker's start pose
+  /// @param outlier_share  of the readings get gross errors of up to 50 mm
+  Aguado(const std::vector<Eigen::Vector3d>& offsets, const std::string& file, double shift_mm = 0, double turn_rad = 0,
+         double outlier_share = 0) {
     const test::AguadoCase given = test::aguado_case();
     TrackerReadings readings = test::aguado_readings(given, file);
     TrackerSetup setup = given.setup;
@@ -40,9 +44,15 @@ struct Aguado {
       for (std::size_t i = 0; i < readings.count(); ++i)
         readings.reflector[i] = static_cast<std::uint16_t>(i % offsets.size());
     }
+    RigidTransform& pose = setup.stations[0].body_from_tracker;
+    pose.rotation = rotation_from_error_angles({turn_rad, -turn_rad, turn_rad}) * pose.rotation;
+    pose.translation += Eigen::Vector3d(shift_mm, -shift_mm, shift_mm);
+    RandomStream random(11);
+    for (std::size_t i = 0; i < readings.count(); ++i)
+      if (random.uniform() < outlier_share)
+        for (std::vector<double>& measured : readings.measured) measured[i] += random.uniform(1, 50);
     ErrorSet errors = given.truth;
-    if (zero_start)
-      for (ErrorMotion& motion : errors.motions) std::fill(motion.coefficients.begin(), motion.coefficients.end(), 0.0);
+    for (ErrorMotion& motion : errors.motions) std::fill(motion.coefficients.begin(), motion.coefficients.end(), 0.0);
     errors.locations = {{0, Component::X, 0, 0}, {0, Component::Y, 0, 0}};
     observations = std::make_unique<TrackerObservations>(given.machine, errors, setup, readings);
     problem = estimate_everything(given.machine, errors, {observations.get()});
@@ -102,8 +112,56 @@ TEST(Gauge, the_conventions_fix_everything_and_the_equations_hold_exactly) {
   EXPECT_LE(result.statistics.observability.o3, 1);
 }
 
+TEST(Gauge, a_roughly_known_tracker_pose_is_enough) {
+  Aguado aguado({}, "aguado_5000_noiseLT.csv", 100 / std::sqrt(3.0), 0.1);  // 10 degrees, 100 mm
+  const Identification result = identify(aguado.problem);
+  ASSERT_EQ(result.status, IdentifyStatus::converged) << result.message;
+  EXPECT_NEAR(result.statistics.variance_factor, 1, 0.05);
+}
+
+TEST(Gauge, thirty_percent_gross_outliers_leave_the_machine_at_unseen_poses_within_twice_the_clean_error) {
+  Aguado clean({}, "aguado_500_noiseLT.csv"), dirty({}, "aguado_500_noiseLT.csv", 20, 0.02, 0.3);
+  IdentifyOptions options;
+  const Identification good = identify(clean.problem, options);
+  options.loss = LossKind::tukey;
+  const Identification robust = identify(dirty.problem, options);
+  ASSERT_EQ(robust.status, IdentifyStatus::converged) << robust.message;
+  EXPECT_NEAR(static_cast<double>(robust.outliers.size()), 150, 35);
+  // Unseen: readings without noise at other poses.
+  Aguado unseen({}, kFile);
+  const auto error = [&](const Aguado& from) {
+    double sum = 0;
+    Problem problem = unseen.problem;
+    problem.errors = from.problem.errors;
+    problem.machine_parameters.clear();  // only the station's pose is fitted at the unseen poses
+    const Identification pose = identify(problem);
+    EXPECT_EQ(pose.status, IdentifyStatus::converged);
+    for (std::size_t i = 0; i < unseen.observations->reading_count(); ++i)
+      sum += unseen.observations->distance(i).norm();
+    return sum / static_cast<double>(unseen.observations->reading_count());
+  };
+  const double clean_error = error(clean), dirty_error = error(dirty);
+  EXPECT_LT(clean_error, 0.010);
+  EXPECT_LT(dirty_error, 2 * clean_error);
+}
+
+TEST(Gauge, monte_carlo_stays_in_the_gauge_and_confirms_the_covariance) {
+  Aguado aguado({}, "aguado_500_noiseLT.csv");
+  const Identification result = identify(aguado.problem);
+  MonteCarloOptions options;
+  options.samples = 2000;
+  const MonteCarloResult simulated = monte_carlo(aguado.problem, result, options);
+  ASSERT_EQ(simulated.status, MonteCarloStatus::done);
+  for (const GaugeConstraint& constraint : result.gauge.constraints)
+    EXPECT_LE(std::abs(constraint.functional.dot(simulated.covariance * constraint.functional)),
+              1e-9 * constraint.functional.cwiseAbs2().dot(simulated.covariance.diagonal()) + 1e-30);
+  for (Eigen::Index i = 0; i < result.estimates.size(); ++i) {
+    if (result.standard_uncertainties[i] < 1e-12) continue;
+    EXPECT_NEAR(std::sqrt(simulated.covariance(i, i)) / result.standard_uncertainties[i], 1, 0.08) << i;
+  }
+}
+
 TEST(Gauge, one_offset_is_an_answer_with_a_warning) {
-  Aguado aguado({kFirst}, kFile);
   // Consistent data for the one offset: the readings of the first reflector only.
   const test::AguadoCase given = test::aguado_case();
   const TrackerReadings all = test::aguado_readings(given, kFile);
