@@ -14,3 +14,5 @@ configure_package_config_file(cmake/abbe-config.cmake.in ${CMAKE_CURRENT_BINARY_
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/abbe-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/abbe-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/abbe-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/abbe)
+# The published readings that `abbe reproduce` recomputes.
+install(DIRECTORY tests/golden/aguado DESTINATION ${CMAKE_INSTALL_DATADIR}/abbe/golden)

@@ -108,6 +108,12 @@ TEST_F(Studies, FindTheErrorsFromNothingButReadings) {
   EXPECT_NEAR(summary["held_out"]["coverage_percent"].get<double>(), 95, 5);
   EXPECT_NEAR(summary["normalised_residual_rms"].get<double>(), 1, 0.06);
   EXPECT_EQ(nlohmann::json::parse(folder.read("out/summary.json")), summary);
+  // The report shows the same figures.
+  const std::string page = folder.read("out/report.html"), mark = "id=\"abbe-data\">";
+  const std::size_t start = page.find(mark) + mark.size();
+  const nlohmann::json data = nlohmann::json::parse(page.substr(start, page.find("</script>", start) - start));
+  EXPECT_EQ(data["summary"], summary);
+  EXPECT_LT(page.size(), 3'000'000U);
 }
 
 TEST_F(Studies, SameInputAndSeedGiveTheSameBytes) {
