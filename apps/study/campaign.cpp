@@ -229,6 +229,24 @@ Campaign gather_readings(const Study& study, const ProgressCallback& progress) {
   return campaign;
 }
 
+TrackerReadings read_held_out(const Study& study, const Campaign& campaign) {
+  const Setup& setup = study.setups.front();
+  const std::filesystem::path& file = *study.identification->held_out_file;
+  MeasurementOptions options;
+  if (!setup.data.empty()) options.mapping = setup.data.front().mapping;
+  options.threads = study.threads;
+  TrackerSetup tracker = campaign.setups.front().start;
+  const std::size_t reflectors = tracker.reflectors.size();
+  TrackerReadings readings =
+      readings_from_table(read_measurements(file, study.machine, options), setup, file.string(), tracker);
+  if (tracker.reflectors.size() != reflectors) {
+    throw InputError({.file = file.string(), .field = "reflector"},
+                     fmt::format("reflector '{}' was not measured", tracker.reflectors.back().name),
+                     "reflectors of set-up '" + setup.name + "'");
+  }
+  return readings;
+}
+
 void find_start_poses(const Machine& machine, Campaign& campaign) {
   for (CampaignSetup& setup : campaign.setups) {
     const TrackerStart found = find_station_poses(machine, ErrorSet{}, setup.start, setup.readings);

@@ -41,6 +41,10 @@ ErrorSet true_errors(const Study& study);
 /// Reads or simulates all readings. Station poses are not yet looked for. @throws InputError
 Campaign gather_readings(const Study& study, const ProgressCallback& progress = {});
 
+/// Readings of the first set-up's instrument that are for validation only, from the study's held-out file. @throws
+/// InputError
+TrackerReadings read_held_out(const Study& study, const Campaign& campaign);
+
 /// Finds the pose of every estimated station from the data and puts it into `start`; appends what it has to say.
 void find_start_poses(const Machine& machine, Campaign& campaign);
 

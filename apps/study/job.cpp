@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "abbe/formats/input_error.h"
 #include "abbe/formats/measurement_file.h"
 #include "abbe/identify/prediction.h"
 #include "abbe/instruments/tracker_start.h"
@@ -128,6 +127,7 @@ IdentifyOptions identify_options(const Study& study) {
   options.solver.relative_cost = plan.tolerance;
   options.solver.threads = study.threads;
   options.loss = plan.loss;
+  options.loss_tuning = plan.loss_scale;
   return options;
 }
 
@@ -200,6 +200,9 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
       options.threads = study.threads;
       const PoseList list = random_plan(machine, ranges, poses, study.seed * 7919 + s);
       readings = simulate_tracker(machine, *result.campaign.truth, setup.truth, list, options).readings;
+    } else if (study.identification->held_out_file) {
+      if (s > 0) continue;
+      readings = read_held_out(study, result.campaign);
     } else {
       readings = select(setup.readings, result.model.problem.observations[s].use, false);
       if (readings.count() == 0) continue;

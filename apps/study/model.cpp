@@ -44,7 +44,7 @@ std::string range_text(const Axis& axis, double from, double to) {
 
 void mark_held_out(const Study& study, Problem& problem) {
   const double fraction = study.identification->held_out_fraction;
-  if (fraction <= 0) return;
+  if (fraction <= 0 || study.identification->held_out_file) return;
   for (std::size_t s = 0; s < problem.observations.size(); ++s) {
     SelectedObservations& selected = problem.observations[s];
     const std::size_t count = selected.observations->reading_count();

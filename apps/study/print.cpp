@@ -30,6 +30,12 @@ void print_study(const Study& study, const StudyResult& result) {
              identified.parameters.size() - identified.gauge.constraints.size(), identified.gauge.constraints.size());
   fmt::print("  chi-square {:.1f} with {:.0f} degrees of freedom (probability {:.3f}); observability O1 {:.4g}\n",
              fit.chi_square, fit.degrees_of_freedom, fit.p_value, fit.observability.o1);
+  if (result.monte_carlo && result.monte_carlo->status == MonteCarloStatus::done) {
+    const nlohmann::ordered_json figures = study_summary(study, result)["monte_carlo"];
+    fmt::print("  Monte Carlo, {} samples: uncertainties {:.3f} to {:.3f} times those of the covariance\n",
+               result.monte_carlo->samples, figures["smallest_uncertainty_ratio"].get<double>(),
+               figures["largest_uncertainty_ratio"].get<double>());
+  }
   if (result.order_selection) {
     fmt::print("  orders chosen at held-out poses:");
     for (std::size_t g = 0; g < result.order_selection->orders.size(); ++g) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "abbe/geometry/rotation.h"
@@ -96,6 +97,19 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
       json["condition_number"] = identified.statistics.observability.condition;
       json["normalised_residual_rms"] = std::sqrt(identified.statistics.variance_factor);
       json["fit_residual_um"] = statistics_um(fit_residuals(result));
+      if (result.monte_carlo && result.monte_carlo->status == MonteCarloStatus::done) {
+        double smallest = 1e300, largest = 0;
+        for (Eigen::Index p = 0; p < identified.standard_uncertainties.size(); ++p) {
+          const double u = identified.standard_uncertainties[p];
+          if (u <= 0) continue;
+          const double ratio = std::sqrt(result.monte_carlo->covariance(p, p)) / u;
+          smallest = std::min(smallest, ratio);
+          largest = std::max(largest, ratio);
+        }
+        json["monte_carlo"] = {{"samples", result.monte_carlo->samples},
+                               {"smallest_uncertainty_ratio", smallest},
+                               {"largest_uncertainty_ratio", largest}};
+      }
     }
   }
   if (result.unseen && !result.unseen->after.empty()) {

@@ -146,7 +146,6 @@ struct MapPlan {
 struct ReportOptions {
   bool page = true;
   std::string title;        ///< empty: the study's name
-  double exaggeration = 0;  ///< of the drawn error vectors; 0: chosen from their size
 };
 
 /// A whole job: what is given, what is measured or simulated, what is identified and what is reported. Plain data.

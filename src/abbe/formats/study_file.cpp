@@ -97,7 +97,6 @@ ReportOptions read_report(TomlTable& table) {
   ReportOptions report;
   report.page = table.boolean_or("page", true);
   report.title = table.text_or("title", "");
-  report.exaggeration = table.size_or("exaggeration", Quantity::dimensionless, 0);
   table.finish();
   return report;
 }

@@ -76,7 +76,7 @@ standard_uncertainty_um = 50
 axis.X = { count = 11 }
 
 [report]
-exaggeration = 1000
+title = "Tracker"
 )";
 
 Study parse(const std::string& text) {
@@ -137,7 +137,7 @@ TEST(StudyFile, ReadsASimulation) {
   EXPECT_EQ(identify.priors[0].standard_uncertainty, 0.05);
   EXPECT_FALSE(identify.priors[0].is_angle);
   EXPECT_EQ(study.map->axes[1].count, 11U);
-  EXPECT_EQ(study.report.exaggeration, 1000);
+  EXPECT_EQ(study.report.title, "Tracker");
 }
 
 TEST(StudyFile, ReadsMeasuredDataAndTheMachineBesideIt) {

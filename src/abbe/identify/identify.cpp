@@ -190,7 +190,7 @@ class Run {
     }
     // Outliers raise the median a little; the stated uncertainties are better known than that.
     if (!options_.scale_from_residuals) scale = 1;
-    loss_ = Loss{options_.loss, 0, scale};
+    loss_ = Loss{options_.loss, options_.loss_tuning, scale};
     result_.robust_scale = scale;
     return solve(stream_, x, space, loss_, options_.solver, nullptr);
   }
