@@ -145,7 +145,7 @@ struct MapPlan {
 
 struct ReportOptions {
   bool page = true;
-  std::string title;        ///< empty: the study's name
+  std::string title;  ///< empty: the study's name
 };
 
 /// A whole job: what is given, what is measured or simulated, what is identified and what is reported. Plain data.

@@ -111,8 +111,14 @@ class Selection {
         for (std::size_t o = 0; o < norms.size(); ++o)
           for (std::size_t i = 0; i < norms[o].size(); ++i) {
             if (norms[o][i] < 0) continue;
-            sums[partition_.pose[o][i]] += norms[o][i] * norms[o][i];
-            counts[partition_.pose[o][i]] += problem_.observations[o].observations->rows();
+            const int rows = problem_.observations[o].observations->rows();
+            double square = norms[o][i] * norms[o][i];
+            // With a robust loss a gross error counts as an outlier just does: it must not hide what the others say.
+            if (options_.identify.loss != LossKind::none) {
+              square = std::min(square, chi_square_quantile(options_.identify.outlier_norm_quantile, rows));
+            }
+            sums[partition_.pose[o][i]] += square;
+            counts[partition_.pose[o][i]] += rows;
           }
       }
       set_observations(problem_, start);

@@ -19,10 +19,10 @@ struct OrderGroup {
 std::vector<OrderGroup> order_groups_by_axis(const Machine& machine, const ErrorSet& errors);
 
 struct OrderSelectionOptions {
-  int folds = 5;               ///< held-out parts; poses with the same axis positions stay together
-  double significance = 0.05;  ///< a higher order stays if the held-out error falls with this significance
-  double minimum_gain = 0.01;  ///< ... and by at least this relative amount
-  std::uint64_t seed = 1;      ///< of the partition
+  int folds = 5;                ///< held-out parts; poses with the same axis positions stay together
+  double significance = 0.05;   ///< a higher order stays if the held-out error falls with this significance
+  double minimum_gain = 0.001;  ///< ... and by at least this relative amount
+  std::uint64_t seed = 1;       ///< of the partition
   IdentifyOptions identify;
 };
 
