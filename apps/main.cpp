@@ -2,6 +2,8 @@
 
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "abbe/formats/input_error.h"
 #include "command.h"
@@ -16,6 +18,15 @@ int main(int argc, char** argv) {
   add_identify_command(line);
   add_map_command(line);
   add_reproduce_command(line);
+  if (argc > 1 && argv[1][0] != '-') {
+    const std::string name = argv[1];
+    const std::vector<CLI::App*> known =
+        line.app.get_subcommands([&](const CLI::App* subcommand) { return subcommand->get_name() == name; });
+    if (known.empty()) {
+      fmt::print(stderr, "abbe: there is no subcommand '{}'; abbe --help lists them\n", name);
+      return kBadInput;
+    }
+  }
   try {
     line.app.parse(argc, argv);
     return line.run ? line.run() : static_cast<int>(kInternalError);

@@ -42,7 +42,7 @@ if (cpp) {
 
 namespace abbe {
 namespace {
-constexpr std::string_view kPieces[] = {
+const std::string_view kPieces[] = {
 ${literals}};
 }  // namespace
 std::span<const std::string_view> page_template() { return kPieces; }

@@ -76,6 +76,7 @@ NullSpace find_null_space(const ReadingStream& stream, const Eigen::VectorXd& es
   result.rank = static_cast<std::size_t>(seen);
   result.weak = static_cast<std::size_t>(seen - clearly_seen);
   result.basis = vectors.rightCols(p - clearly_seen);
+  if (result.basis.cols() == 0) return result;
   // Parameters without any influence have no scale; their direction is the parameter itself.
   for (Index i = 0; i < p; ++i) result.basis.row(i) *= result.column_norms[i] > 0 ? inverse[i] : 1.0;
   return result;

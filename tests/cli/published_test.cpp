@@ -1,0 +1,27 @@
+#include <nlohmann/json.hpp>
+
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+class Published : public CommandTest {};
+
+TEST_F(Published, StudiesAgreeWithTheReference) {
+  const CommandResult aguado = abbe({"reproduce", "aguado", "--json"});
+  ASSERT_EQ(aguado.exit_code, ExitCode::done) << aguado.err;
+  const nlohmann::json json = nlohmann::json::parse(aguado.out);
+  EXPECT_TRUE(json["agrees_with_reference"]);
+  // Three offsets: 24 directions of the published model are unseen; C0 and Z0 (6) are not parameters here.
+  EXPECT_EQ(json["reference"]["5000_noiseLT"]["parameters"], 120);
+  EXPECT_EQ(json["reference"]["5000_noiseLT"]["rank"], 102);
+  const CommandResult wang = abbe({"reproduce", "wang", "--json"});
+  ASSERT_EQ(wang.exit_code, ExitCode::done) << wang.err;
+  const nlohmann::json figures = nlohmann::json::parse(wang.out);
+  EXPECT_EQ(figures["mean_columns"]["equal_to_cut_off_mean"], 20);
+  EXPECT_NEAR(figures["zero_pose_error_mm"]["degrees"][0].get<double>(), -5.400842140, 1e-8);
+  EXPECT_EQ(figures["populations_um"]["12^6, degrees as printed"]["poses"], 2985984);
+}
+
+}  // namespace
+}  // namespace abbe
