@@ -76,7 +76,8 @@ format:
 bench:
 	@.ci/set-up bench
 	$(call build_preset,bench)
-	@for program in build/bench/bin/*_benchmark; do echo "== $$program"; "$$program"; done
+	@for program in forward_pose identification identification_memory read_csv; do \
+	  echo "== $$program"; build/bench/bin/$$program; done
 
 fuzz:
 	@.ci/set-up fuzz
