@@ -1,6 +1,6 @@
 # abbe_fuzz(READER LINK abbe::formats ...): a libFuzzer program from fuzz/fuzz_READER.cpp, starting at fuzz/corpus/READER.
 #
-# New inputs are kept in the build folder, findings too; the corpus in the source tree is never written.
+# The seed is fixed so that a finding can be repeated; run the program itself for others. New inputs are kept in the build folder, findings too; the corpus in the source tree is never written.
 set(ABBE_FUZZ_SECONDS 60 CACHE STRING "How long each reader is fuzzed by ctest")
 
 function(abbe_fuzz reader)
@@ -12,7 +12,7 @@ function(abbe_fuzz reader)
   file(MAKE_DIRECTORY ${found})
   math(EXPR timeout "${ABBE_FUZZ_SECONDS} + 120")
   add_test(NAME fuzz.${reader}
-    COMMAND fuzz_${reader} -max_total_time=${ABBE_FUZZ_SECONDS} -timeout=10 -rss_limit_mb=2048 -print_final_stats=1
+    COMMAND fuzz_${reader} -seed=1 -max_total_time=${ABBE_FUZZ_SECONDS} -timeout=10 -rss_limit_mb=2048 -print_final_stats=1
             -artifact_prefix=${found}/finding- ${found} ${CMAKE_CURRENT_SOURCE_DIR}/corpus/${reader})
   set_tests_properties(fuzz.${reader} PROPERTIES LABELS fuzz TIMEOUT ${timeout})
 endfunction()

@@ -43,6 +43,10 @@ class Scanner {
     }
     if (c == '=') in_value_ = true;
     if (c == '[' || c == '{') {
+      // Behind a wrong value the parser reads on over brackets and quotes, and then takes no character beyond ASCII.
+      if (in_value_ && at_ > 0 && std::string_view(" \t\r\n=[{,").find(text_[at_ - 1]) == std::string_view::npos) {
+        fail("a bracket in the middle of a value", "a comma or a blank before it");
+      }
       open_ += c;
       in_value_ = c == '[';
     } else if ((c == ']' || c == '}') && !open_.empty()) {
@@ -95,6 +99,9 @@ class Scanner {
 
   void skip_character(char quote) {
     const bool escaped = quote == '"' && text_[at_] == '\\' && at_ + 1 < text_.size() && text_[at_ + 1] != '\n';
+    if (escaped && static_cast<unsigned char>(text_[at_ + 1]) >= 0x7F) {
+      fail("a backslash before a character that needs none", "\\\\ for a backslash");
+    }
     at_ += escaped ? 2 : 1;
   }
 

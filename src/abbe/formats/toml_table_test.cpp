@@ -125,5 +125,13 @@ TEST(TomlTable, AcceptsAnyCharacterInTextsAndCommentsAndNestedArrays) {
   EXPECT_EQ(table.table("i").table("ü").text("j"), "ü");
 }
 
+TEST(TomlTable, TextThatTheParserWouldMisreadIsRefused) {
+  // Found by fuzzing: behind a wrong value or escape the parser meets a character that it cannot take.
+  for (const char* text :
+       {"a = +D[[[\"\xef\xbb\x9f\"", "a = [1$[['\xef\xbb\x9a']]", "a = \"\"\"x\\\xef\xbb\xb7\"\"\""}) {
+    EXPECT_THROW(TomlTable::parse(text, "t.toml"), InputError) << text;
+  }
+}
+
 }  // namespace
 }  // namespace abbe
