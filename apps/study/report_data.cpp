@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 
-#include "abbe/identify/distributions.h"
 #include "study/report_parameters.h"
+#include "study/report_residuals.h"
 #include "study/summary.h"
 
 namespace abbe {
@@ -52,64 +51,6 @@ std::vector<std::size_t> thinned(const std::vector<std::uint8_t>& covered, std::
   std::vector<std::size_t> part;
   for (std::size_t i = 0; i < limit; ++i) part.push_back(all[i * all.size() / limit]);
   return part;
-}
-
-nlohmann::ordered_json residuals_json(const Machine& machine, const StudyResult& result) {
-  constexpr std::size_t kLimit = 5000;
-  nlohmann::ordered_json setups = nlohmann::ordered_json::array();
-  double limit = 0;
-  for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
-    const TrackerObservations& observations = *result.model.observations[s];
-    const std::vector<double> residuals = residuals_by_reading(observations);
-    std::set<std::size_t> outliers;
-    for (const Outlier& outlier : result.identification.outliers) {
-      if (outlier.observations != s) continue;
-      outliers.insert(outlier.reading);
-      limit = limit == 0 ? outlier.norm : std::min(limit, outlier.norm);
-    }
-    const std::size_t count = observations.reading_count();
-    // Held-out readings take no part in the fit, but a gross error among them is marked like the others.
-    const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
-    const double norm_limit = std::sqrt(chi_square_quantile(IdentifyOptions{}.outlier_norm_quantile, 3));
-    for (std::size_t k = 0; k < count && !use.empty(); ++k) {
-      const double norm = std::hypot(residuals[3 * k], residuals[3 * k + 1], residuals[3 * k + 2]);
-      if (use[k] == 0 && norm > norm_limit) outliers.insert(k);
-    }
-    std::vector<std::size_t> shown;
-    const std::size_t step = std::max<std::size_t>(1, (count + kLimit - 1) / kLimit);
-    for (std::size_t k = 0; k < count; ++k) {
-      if (k % step == 0 || outliers.count(k) != 0) shown.push_back(k);
-    }
-    nlohmann::ordered_json setup;
-    setup["name"] = result.campaign.setups[s].name;
-    setup["readings"] = count;
-    setup["reading"] = shown;
-    const TrackerReadings& readings = observations.readings();
-    if (!readings.time_s.empty()) {
-      std::vector<double> times;
-      for (std::size_t k : shown) times.push_back(readings.time_s[k]);
-      setup["time_s"] = times;
-    }
-    setup["positions"] = position_columns(machine, readings.poses, shown);
-    std::vector<int> marked;
-    std::array<std::vector<double>, 3> normalised, distance;
-    for (std::size_t k : shown) {
-      marked.push_back(outliers.count(k) != 0 ? 1 : 0);
-      const Eigen::Vector3d d = observations.distance(k);
-      for (std::size_t row = 0; row < 3; ++row) {
-        normalised[row].push_back(for_drawing(residuals[3 * k + row]));
-        distance[row].push_back(for_drawing(1e3 * d[static_cast<int>(row)]));
-      }
-    }
-    setup["normalised"] = {{"x", normalised[0]}, {"y", normalised[1]}, {"z", normalised[2]}};
-    setup["residual_um"] = {{"x", distance[0]}, {"y", distance[1]}, {"z", distance[2]}};
-    setup["outlier"] = marked;
-    setups.push_back(setup);
-  }
-  nlohmann::ordered_json json;
-  if (limit > 0) json["outlier_limit"] = limit;
-  json["setups"] = setups;
-  return json;
 }
 
 nlohmann::ordered_json identification_json(const Study& study, const StudyResult& result) {
@@ -288,7 +229,7 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
     json["error_motions"] = report_error_motions(study.machine, result.identification, truth ? &*truth : nullptr);
     json["location_errors"] = report_location_errors(study.machine, result.identification, truth ? &*truth : nullptr);
     json["parameters"] = report_parameters(study.machine, result, truth ? &*truth : nullptr);
-    json["residuals"] = residuals_json(study.machine, result);
+    json["residuals"] = report_residuals(study.machine, result);
     json["identification"] = identification_json(study, result);
   }
   json["references"] = {"ISO 230-1:2012 (geometric accuracy)", "ISO 230-7:2015 (axes of rotation)",

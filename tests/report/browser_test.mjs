@@ -44,6 +44,39 @@ const parse = (text) => {
   return Number(power[1]) * 10 ** Number(exponent);
 };
 
+/// Every set-up with every component of its instrument: as many dots as values, every outlier marked, in both kinds of residual.
+async function residualsOf(page, data, problems) {
+  const blocks = await page.$$('#residuals .setup');
+  const setups = data.residuals?.setups ?? [];
+  check(blocks.length === setups.length, problems(`${blocks.length} blocks of residuals for ${setups.length} set-ups`));
+  for (const [i, setup] of setups.entries()) {
+    const components = setup.components ?? [];
+    const drawn = () => blocks[i].$$eval('.plot', (all) => all.map((e) => ({
+      label: [...e.querySelectorAll('.axis-label')].pop().textContent,
+      dots: [...e.querySelectorAll('.dots')].reduce((n, d) => n + (d.getAttribute('d') ?? '').split('M').length - 1, 0),
+      outliers: (e.querySelector('.dots.outlier').getAttribute('d') ?? '').split('M').length - 1,
+    })));
+    const wanted = (key, kept) => kept.map((c) => ({name: c.name, dots: c[key].filter((v) => v !== null).length,
+      outliers: c[key].filter((v, k) => v !== null && setup.outlier?.[k]).length}));
+    const compare = async (list, what) => {
+      await until(async () => (await drawn()).length >= list.length);
+      const plots = await drawn();
+      for (const [k, row] of list.entries())
+        check(plots[k]?.label.startsWith(row.name) && plots[k].dots === row.dots && plots[k].outliers === row.outliers,
+            problems(`${what} of ${setup.name}: ${JSON.stringify(plots[k])} for ${JSON.stringify(row)}`));
+      return plots;
+    };
+    const plots = await compare(wanted('normalised', components), 'residuals');
+    check(plots.length === components.length + (components.length > 1 ? 1 : 0), problems(`${plots.length} plots of residuals for ${components.length} components of ${setup.name}`));
+    const raw = components.filter((c) => c.residual);
+    if (!raw.length) continue;
+    await page.selectOption(`#residual-y-${i}`, 'raw');
+    await compare(wanted('residual', raw), 'residuals in a unit');
+    check((await drawn()).length === raw.length, problems(`${setup.name}: residuals in a unit are not those stated`));
+    await page.selectOption(`#residual-y-${i}`, 'normalised');
+  }
+}
+
 async function inspect(browser, file) {
   const name = basename(file, '.html');
   const problems = (text) => `${name}: ${text}`;
@@ -102,6 +135,7 @@ async function inspect(browser, file) {
     check(kept >= 1 && (kept < rows || rows === 1), problems('the filter of the parameters does nothing'));
     await page.fill('#parameter-filter', '');
   }
+  await residualsOf(page, data, problems);
   const drawing = await page.evaluate(() => [...document.querySelectorAll('svg path')].filter((p) => (p.getAttribute('d') ?? '').includes('NaN')).length);
   check(drawing === 0, problems(`${drawing} paths hold NaN`));
 

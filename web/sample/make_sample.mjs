@@ -115,19 +115,37 @@ for (const l of locations) {
 ['a', 'b', 'c'].forEach((k, i) => add(`tracker1.${k}`, 'tracker1', 'deg', digits([0.4182, -1.20311, 14.88193][i], 8), 0.00012, digits(0.3 + 0.1 * i, 3), 'EC0X', '', null));
 
 const readings = 2000, outliers = new Set([41, 377, 905, 906, 1333, 1704]);
-const setup = {name: 'tracker1', readings, reading: [], positions: {C_deg: [], X_mm: [], Z_mm: []}, normalised: {x: [], y: [], z: []}, residual_um: {x: [], y: [], z: []}, outlier: []};
+const setup = {name: 'tracker1', readings, reading: [], positions: {C_deg: [], X_mm: [], Z_mm: []}, outlier_limit: 4.59,
+  components: [...'xyz'].map((name) => ({name, unit: 'um', normalised: [], residual: []})), outlier: [], held_out: []};
 let squares = 0;
 for (let i = 0; i < readings; ++i) {
   setup.reading.push(i);
   const pose = [digits(360 * uniform()), digits(1400 * uniform()), digits(600 * uniform())];
   ['C_deg', 'X_mm', 'Z_mm'].forEach((k, j) => setup.positions[k].push(pose[j]));
-  for (const k of 'xyz') {
-    const n = outliers.has(i) ? normal() * 2 + (k === 'y' ? -9 : 7) : normal() * 0.985;
+  for (const component of setup.components) {
+    const n = outliers.has(i) ? normal() * 2 + (component.name === 'y' ? -9 : 7) : normal() * 0.985;
     if (!outliers.has(i)) squares += n * n;
-    setup.normalised[k].push(digits(n, 3));
-    setup.residual_um[k].push(digits(n * 16.4, 3));
+    component.normalised.push(digits(n, 3));
+    component.residual.push(digits(n * 16.4, 3));
   }
   setup.outlier.push(outliers.has(i) ? 1 : 0);
+  setup.held_out.push(i % 10 === 9 && !outliers.has(i) ? 1 : 0);
+}
+
+// Two instruments with other components: a ball bar over time, and levels with two angles of which one has no unit stated.
+const clock = Array.from({length: 720}, (_, i) => i);
+const ballBar = {name: 'ballbar1', readings: 7200, reading: clock.map((i) => 10 * i), time_s: clock.map((i) => digits(0.25 * i)), outlier_limit: 3.89,
+  positions: {X_mm: clock.map((i) => digits(700 + 150 * Math.cos((i * Math.PI) / 360))), Z_mm: clock.map((i) => digits(300 + 150 * Math.sin((i * Math.PI) / 360)))},
+  components: [{name: 'radius', unit: 'um', normalised: clock.map((i) => digits(normal() + 0.4 * Math.sin(i / 110), 3))}], outlier: clock.map((i) => (i === 400 ? 1 : 0))};
+ballBar.components[0].normalised[400] = 6.2;
+ballBar.components[0].residual = ballBar.components[0].normalised.map((n) => digits(0.6 * n, 3));
+const level = {name: 'level1', reading: clock.slice(0, 40), positions: {X_mm: clock.slice(0, 40).map((i) => 36 * i)},
+  components: [{name: 'rotation about Y', unit: 'urad', normalised: [], residual: []}, {name: 'rotation about X', normalised: []}]};
+for (let i = 0; i < 40; ++i) {
+  const n = normal();
+  level.components[0].normalised.push(digits(n, 3));
+  level.components[0].residual.push(digits(n * 2.5, 3));
+  level.components[1].normalised.push(digits(normal(), 3));
 }
 
 const count = parameters.name.length, nullSpace = 18, rank = count - nullSpace;
@@ -159,7 +177,7 @@ const data = {
   histograms: [{title: 'Volumetric error at unseen poses', before_um: before.map((p) => digits(length(p.e))), after_um: after.map((p) => digits(length(p.e)))},
     {title: 'Orientation error at unseen poses', before_urad: before.map((p) => digits(length(p.w))), after_urad: after.map((p) => digits(length(p.w)))}],
   error_motions: motions, location_errors: locations, parameters,
-  residuals: {outlier_limit: 4, setups: [setup]},
+  residuals: {setups: [setup, ballBar, level]},
   identification: {strategy: 'joint', loss: 'Tukey, 4.7 sigma', rank_threshold: 1e-10, singular_values: singular,
     gauge: [{parameters: ['EXX[P0]', 'EYX[P0]', 'EZX[P0]', 'tracker1.x'], text: 'The constants of the X slide are not separable from the place of the tracker.', convention: 'The errors of X are zero at X = 0.'},
       {parameters: ['EXZ[P0]', 'EYZ[P0]', 'EZZ[P0]'], text: 'The constants of the Z slide are not separable from the tool offset.', convention: 'The errors of Z are zero at Z = 0.'},
@@ -203,7 +221,7 @@ const edge = {
   error_motions: [{name: 'EXX', axis: 'X', position_mm: [0], value_um: [0]}, {name: 'EYX', axis: 'X', position_mm: [0, 1], value_um: [1e-9, -1e9], expanded_uncertainty_um: [0, 1e10]}],
   location_errors: [{name: 'EC0X', value_urad: 0, standard_uncertainty_urad: null}],
   parameters: {name: ['EXX[P0]', 'EXX[P1]'], value: [0, null]},
-  residuals: {setups: [{name: 'empty', reading: [], normalised: {x: []}}, {name: 'null', reading: [0], normalised: {x: [null]}}]},
+  residuals: {setups: [{name: 'empty', reading: [], components: [{name: 'x', normalised: []}]}, {name: 'null', reading: [0], components: [{name: 'x', unit: 'um', normalised: [null], residual: [null]}, {name: 'y', normalised: [0]}]}, {name: 'none', reading: []}]},
   identification: {singular_values: [0, 0], history: {iteration: [0], chi_square: [0]}, order_selection: {label: ['1'], held_out_rms_um: [null]}, gauge: [{parameters: ['EXX[P0]']}]},
   tables: [{title: 'Nothing', columns: [], rows: []}],
 };

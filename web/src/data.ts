@@ -117,15 +117,24 @@ export interface Parameters {
   truth?: Column;
 }
 
+/// One component of the readings of a set-up; `unit` is that of `residual`, as in the keys: um, urad, mm, deg, ...
+export interface ResidualComponent {
+  name: string;
+  unit?: string;
+  normalised: Column;
+  residual?: Column;
+}
+
 export interface SetupResiduals {
   name: string;
   readings?: number;
   reading: number[];
   time_s?: number[];
   positions?: Record<string, number[]>;
-  normalised: Record<string, Column>;
-  residual_um?: Record<string, Column>;
+  components: ResidualComponent[];
+  outlier_limit?: number;
   outlier?: (number | boolean)[];
+  held_out?: (number | boolean)[];
 }
 
 export interface Identification {
@@ -170,7 +179,7 @@ export interface Report {
   error_motions?: ErrorMotion[];
   location_errors?: LocationError[];
   parameters?: Parameters;
-  residuals?: {outlier_limit?: number; setups?: SetupResiduals[]};
+  residuals?: {setups?: SetupResiduals[]};
   identification?: Identification;
   tables?: DataTable[];
   references?: string[];
@@ -179,11 +188,18 @@ export interface Report {
 const kUnits: [string, string][] = [
   ['_um', 'µm'],
   ['_urad', 'µrad'],
+  ['_mrad', 'mrad'],
   ['_mm', 'mm'],
   ['_deg', '°'],
+  ['_arcsec', '″'],
   ['_s', 's'],
   ['_percent', '%'],
 ];
+
+/// A unit as it is written in data, as it is written for people.
+export function unitText(unit: string | undefined): string {
+  return kUnits.find(([suffix]) => suffix === `_${unit}`)?.[1] ?? unit ?? '';
+}
 
 /// Unit written in a key: "X_mm" gives {name: "X", unit: "mm"}; without a unit the unit is empty.
 export function splitUnit(key: string): {name: string; unit: string} {

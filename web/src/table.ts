@@ -1,6 +1,6 @@
 // Tables: plain ones, and the parameter table that sorts and filters.
 
-import {DataTable, Parameters} from './data';
+import {DataTable, Parameters, unitText} from './data';
 import {html, section} from './dom';
 import {alike, number, withUncertainty} from './format';
 
@@ -35,8 +35,6 @@ export function tablesSection(tables: DataTable[]): HTMLElement {
   return part;
 }
 
-const kUnitText: Record<string, string> = {um: 'µm', urad: 'µrad', deg: '°'};
-
 interface Row {
   cells: HTMLElement[];
   sort: (string | number)[];
@@ -58,7 +56,7 @@ function parameterRows(p: Parameters): Row[] {
       html('td', {}, p.group?.[i] ?? ''),
       html('td', {class: 'number'}, value),
       html('td', {class: 'number'}, spread),
-      html('td', {}, kUnitText[unit] ?? unit),
+      html('td', {}, unitText(unit)),
       html('td', {class: 'number'}, correlation === null || correlation === undefined ? '\u2013' : alike(correlation, '0.00')),
       html('td', {}, partner),
       html('td', {class: 'gauge'}, gauge),
