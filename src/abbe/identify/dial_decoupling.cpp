@@ -37,7 +37,10 @@ void check(const AxisIndications& r) {
   }
   for (const DisplacementProbe& probe : r.probes) {
     if (!(std::abs(probe.direction.norm() - 1) < 1e-9)) throw std::invalid_argument("direction is not of unit length");
-    if (!(probe.standard_uncertainty > 0)) throw std::invalid_argument("standard uncertainty is not positive");
+    // Its inverse square is a weight.
+    if (!(probe.standard_uncertainty > 1e-100 && probe.standard_uncertainty < 1e100)) {
+      throw std::invalid_argument("standard uncertainty is not positive");
+    }
     if (!probe.place.allFinite()) throw std::invalid_argument("place that is not finite");
   }
 }
