@@ -1,0 +1,35 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "abbe/report/evaluation_report.h"
+#include "command.h"
+
+namespace abbe {
+
+/// What every kind of evaluation is asked.
+struct EvaluationOptions {
+  std::string file;                     ///< readings
+  std::string output;                   ///< results folder; empty: print only
+  std::vector<std::string> tolerances;  ///< "A_um=10"
+  bool json = false;
+};
+
+/// `abbe evaluate KIND`: adds the subcommand with the options of every kind; its own options come behind it.
+/// @param evaluate  the command `evaluate`
+/// @param columns   of the file, shown by --help
+CLI::App* add_evaluation(CLI::App& evaluate, const std::string& kind, const std::string& description,
+                         const std::string& columns, const std::string& example, EvaluationOptions& options);
+
+/// Enters the tolerances into the figures. @throws InputError for an unknown figure, a unit that is missing or is not
+/// one of the figure, a value that is no number above zero
+void apply_tolerances(const std::vector<std::string>& tolerances, EvaluationReport& report);
+
+/// Prints the report for people or programs and writes the results folder: evaluation.json, one SVG file per plot,
+/// report.html. @returns kNegative if a tolerance is exceeded or a figure with one could not be evaluated, else kDone
+int finish_evaluation(EvaluationReport& report, const EvaluationOptions& options);
+
+}  // namespace abbe
