@@ -1,0 +1,211 @@
+#include "abbe/verify/rotation_error_motion.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+namespace abbe {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// Where the grid angles lie among the readings: reading `below` and the share of the next one.
+struct Place {
+  std::size_t below = 0;
+  double share = 0;
+};
+
+struct Grid {
+  RotationResult result;
+  std::vector<Place> places;  // [turns * positions]
+};
+
+double spread_of(std::span<const double> values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high - *low;
+}
+
+/// Whole turns and positions of the readings, or why there are none.
+Grid grid_of(const std::vector<double>& angle) {
+  Grid grid;
+  RotationResult& result = grid.result;
+  result.status = RotationStatus::too_few_turns;
+  const std::size_t n = angle.size();
+  if (n < 2) return grid;
+  const double span = angle.back() - angle.front(), sense = span < 0 ? -1 : 1;
+  const double step = std::abs(span) / static_cast<double>(n - 1);
+  if (std::abs(span) < (static_cast<double>(kLeastTurns) - 1) * kTurn) return grid;
+  if (kTurn / step < static_cast<double>(kLeastPositions) - 0.5) {
+    result.status = RotationStatus::too_few_positions;
+    return grid;
+  }
+  for (std::size_t i = 1; i < n; ++i) {
+    const double advance = sense * (angle[i] - angle[i - 1]);
+    if (!(advance > 0) || advance > kLargestStepRatio * step) {
+      result.status = RotationStatus::uneven_coverage;
+      return grid;
+    }
+  }
+  const double positions = std::round(kTurn / step);
+  // The last turn is whole one step before its end; readings at nominal angles may end a rounding short of that.
+  const double turns = std::floor(std::abs(span) / kTurn + (1 + 1e-6) / positions);
+  if (turns < static_cast<double>(kLeastTurns)) return grid;
+  result.status = RotationStatus::done;
+  result.positions = static_cast<std::size_t>(positions);
+  result.turns = static_cast<std::size_t>(turns);
+  for (std::size_t k = 0; k < result.positions; ++k) {
+    result.angle.push_back(angle.front() + sense * kTurn * static_cast<double>(k) / positions);
+  }
+  std::size_t below = 0;
+  for (std::size_t i = 0; i < result.turns * result.positions; ++i) {
+    const double advance = kTurn * static_cast<double>(i) / positions;
+    while (below + 2 < n && sense * (angle[below + 1] - angle.front()) <= advance) ++below;
+    const double first = sense * (angle[below] - angle.front()), second = sense * (angle[below + 1] - angle.front());
+    const double share = std::clamp((advance - first) / (second - first), 0.0, 1.0);
+    if (std::min(share, 1 - share) > 1e-3) result.interpolated = true;
+    grid.places.push_back({below, share});
+  }
+  return grid;
+}
+
+std::vector<double> on_grid(const Grid& grid, const std::vector<double>& readings) {
+  std::vector<double> values;
+  values.reserve(grid.places.size());
+  for (const Place& place : grid.places) {
+    values.push_back((1 - place.share) * readings[place.below] + place.share * readings[place.below + 1]);
+  }
+  return values;
+}
+
+/// First harmonic of values that stand at equal angles over whole turns.
+struct Fundamental {
+  double mean = 0, cosine = 0, sine = 0;
+};
+
+Fundamental fundamental_of(const std::vector<double>& values, const std::vector<double>& angle) {
+  Fundamental part;
+  const double n = static_cast<double>(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double at = angle[i % angle.size()];
+    part.mean += values[i] / n;
+    part.cosine += 2 * values[i] * std::cos(at) / n;
+    part.sine += 2 * values[i] * std::sin(at) / n;
+  }
+  return part;
+}
+
+double drift_of(const std::vector<double>& values, std::size_t turns, std::size_t positions) {
+  const double middle = static_cast<double>(turns - 1) / 2;
+  double product = 0, spread = 0;
+  for (std::size_t m = 0; m < turns; ++m) {
+    double mean = 0;
+    for (std::size_t k = 0; k < positions; ++k) mean += values[m * positions + k] / static_cast<double>(positions);
+    const double at = static_cast<double>(m) - middle;
+    product += at * mean;
+    spread += at * at;
+  }
+  return product / spread * static_cast<double>(turns - 1);
+}
+
+ErrorMotion evaluate(ErrorMotionKind kind, std::vector<double> values, const RotationResult& grid, double uncertainty) {
+  ErrorMotion motion;
+  motion.kind = kind;
+  const std::size_t turns = grid.turns, positions = grid.positions;
+  const Fundamental part = fundamental_of(values, grid.angle);
+  const auto once = [&](std::size_t k) {
+    return part.cosine * std::cos(grid.angle[k]) + part.sine * std::sin(grid.angle[k]);
+  };
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] -= part.mean;
+    if (fundamental_is_removed(kind)) values[i] -= once(i % positions);
+  }
+  std::vector<double> residual;
+  for (std::size_t k = 0; k < positions; ++k) {
+    double mean = 0, low = values[k], high = low;
+    for (std::size_t m = 0; m < turns; ++m) {
+      const double value = values[m * positions + k];
+      mean += value / static_cast<double>(turns);
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    motion.synchronous.push_back(mean);
+    residual.push_back(fundamental_is_removed(kind) ? mean : mean - once(k));
+    if (high - low > motion.asynchronous_value) {
+      motion.asynchronous_value = high - low;
+      motion.asynchronous_at = k;
+    }
+  }
+  motion.total_value = spread_of(values);
+  motion.synchronous_value = spread_of(motion.synchronous);
+  motion.residual_value = spread_of(residual);
+  motion.fundamental_value = 2 * std::hypot(part.cosine, part.sine);
+  motion.drift = drift_of(values, turns, positions);
+  motion.total = std::move(values);
+  // Differences of two readings, and of two means over the turns.
+  motion.total_uncertainty = motion.asynchronous_uncertainty = std::sqrt(2.0) * uncertainty;
+  motion.synchronous_uncertainty = std::sqrt(2.0 / static_cast<double>(turns)) * uncertainty;
+  return motion;
+}
+
+std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b, double factor) {
+  std::vector<double> result(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) result[i] = factor * (a[i] - b[i]);
+  return result;
+}
+
+}  // namespace
+
+bool is_tilt(ErrorMotionKind kind) {
+  return kind == ErrorMotionKind::tilt_fixed_x || kind == ErrorMotionKind::tilt_fixed_y ||
+         kind == ErrorMotionKind::tilt_rotating;
+}
+
+bool fundamental_is_removed(ErrorMotionKind kind) {
+  return kind != ErrorMotionKind::axial && kind != ErrorMotionKind::face;
+}
+
+RotationResult rotation_error_motions(const RotationReadings& readings, const RotationOptions& options) {
+  const Grid grid = grid_of(readings.angle);
+  RotationResult result = grid.result;
+  if (result.status != RotationStatus::done) return result;
+  const auto signal = [&](const std::vector<double>& probe) {
+    assert(probe.empty() || probe.size() == readings.angle.size());
+    return probe.empty() ? probe : on_grid(grid, probe);
+  };
+  const auto add = [&](ErrorMotionKind kind, std::vector<double> values, double uncertainty) {
+    if (!values.empty()) result.motions.push_back(evaluate(kind, std::move(values), result, uncertainty));
+  };
+  const auto rotating = [&](const std::vector<double>& x, const std::vector<double>& y) {
+    std::vector<double> values(x.empty() || y.empty() ? 0 : x.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double at = result.angle[i % result.positions] + options.sensitive_angle;
+      values[i] = x[i] * std::cos(at) + y[i] * std::sin(at);
+    }
+    return values;
+  };
+  const double u = options.reading_uncertainty;
+  const std::vector<double> x1 = signal(readings.x1), y1 = signal(readings.y1), x2 = signal(readings.x2),
+                            y2 = signal(readings.y2);
+  add(ErrorMotionKind::radial_fixed_x1, x1, u);
+  add(ErrorMotionKind::radial_fixed_y1, y1, u);
+  add(ErrorMotionKind::radial_rotating_1, rotating(x1, y1), u);
+  add(ErrorMotionKind::radial_fixed_x2, x2, u);
+  add(ErrorMotionKind::radial_fixed_y2, y2, u);
+  add(ErrorMotionKind::radial_rotating_2, rotating(x2, y2), u);
+  if (options.plane_distance > 0) {
+    const double factor = 1 / options.plane_distance, of_tilt = std::sqrt(2.0) * u * factor;
+    std::vector<double> x, y;
+    if (!x1.empty() && !x2.empty()) x = difference(x2, x1, factor);
+    if (!y1.empty() && !y2.empty()) y = difference(y2, y1, factor);
+    add(ErrorMotionKind::tilt_fixed_x, x, of_tilt);
+    add(ErrorMotionKind::tilt_fixed_y, y, of_tilt);
+    add(ErrorMotionKind::tilt_rotating, rotating(x, y), of_tilt);
+  }
+  add(ErrorMotionKind::axial, signal(readings.axial), u);
+  add(ErrorMotionKind::face, signal(readings.face), u);
+  return result;
+}
+
+}  // namespace abbe
