@@ -21,13 +21,23 @@ class FunctionObservations : public Observations {
   FunctionObservations(std::size_t parameters, int rows, std::vector<double> data, double uncertainty, Model model)
       : rows_(rows), data_(std::move(data)), uncertainty_(uncertainty), model_(std::move(model)), values_(parameters) {
     for (std::size_t i = 0; i < parameters; ++i) unknowns_.push_back({"b" + std::to_string(i + 1), false, 1});
+    for (int row = 0; row < rows; ++row) components_.push_back({"y" + std::to_string(row + 1), false});
   }
   std::string name() const override { return "function"; }
   std::size_t reading_count() const override { return data_.size() / static_cast<std::size_t>(rows_); }
   int rows() const override { return rows_; }
+  const std::vector<ReadingComponent>& components() const override { return components_; }
   const std::vector<SetupUnknown>& unknowns() const override { return unknowns_; }
   std::vector<double> unknown_values() const override { return values_; }
   std::vector<double> positions(std::size_t reading) const override { return {static_cast<double>(reading)}; }
+  std::vector<double> deviation(std::size_t reading) const override {
+    const std::vector<Complex> at(values_.begin(), values_.end());
+    std::vector<double> result;
+    for (std::size_t r = 0; r < components_.size(); ++r) {
+      result.push_back(data_[reading * components_.size() + r] - model_(reading, r, at).real());
+    }
+    return result;
+  }
   void set_parameters(std::span<const double>, std::span<const double> setup) override {
     values_.assign(setup.begin(), setup.end());
   }
@@ -61,6 +71,7 @@ class FunctionObservations : public Observations {
   Model model_;
   std::vector<double> values_;
   std::vector<SetupUnknown> unknowns_;
+  std::vector<ReadingComponent> components_;
 };
 
 /// A problem with the function's parameters as only unknowns.

@@ -14,6 +14,12 @@ struct SetupUnknown {
   double scale = 1;       ///< typical size, mm or rad: only for scaling and finite steps, never for the result
 };
 
+/// One number of a reading: "length", "x", "pitch".
+struct ReadingComponent {
+  std::string name;       ///< as in files: "length" of length_mm
+  bool is_angle = false;  ///< rad if true, mm if false
+};
+
 /// All readings of one set-up of one instrument, as weighted residuals of the machine's errors and the set-up's
 /// unknowns.
 ///
@@ -27,6 +33,8 @@ class Observations {
   virtual std::string name() const = 0;
   virtual std::size_t reading_count() const = 0;
   virtual int rows() const = 0;
+  /// What the components of measured - modelled are, [rows()].
+  virtual const std::vector<ReadingComponent>& components() const = 0;
 
   virtual const std::vector<SetupUnknown>& unknowns() const = 0;
   /// Present values of the unknowns, [unknowns().size()], mm or rad.
@@ -34,6 +42,9 @@ class Observations {
 
   /// Axis commands of one reading, chain order, mm or rad: to say where a residual is.
   virtual std::vector<double> positions(std::size_t reading) const = 0;
+
+  /// Measured - modelled of one reading at the present point, not weighted, [rows()], mm or rad as components() say.
+  virtual std::vector<double> deviation(std::size_t reading) const = 0;
 
   /// Sets the point at which evaluate() works. Not thread-safe against evaluate().
   /// @param machine  values of ErrorSet::parameters() of the model the observations were built with

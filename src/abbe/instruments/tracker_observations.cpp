@@ -343,6 +343,14 @@ std::vector<double> TrackerObservations::unknown_values() const { return impleme
 std::vector<double> TrackerObservations::positions(std::size_t reading) const {
   return implementation_->readings.poses.pose(reading);
 }
+const std::vector<ReadingComponent>& TrackerObservations::components() const {
+  static const std::vector<ReadingComponent> kPoint = {{"x", false}, {"y", false}, {"z", false}};
+  return kPoint;
+}
+std::vector<double> TrackerObservations::deviation(std::size_t reading) const {
+  const Eigen::Vector3d d = distance(reading);
+  return {d.x(), d.y(), d.z()};
+}
 const TrackerReadings& TrackerObservations::readings() const { return implementation_->readings; }
 
 void TrackerObservations::set_parameters(std::span<const double> machine, std::span<const double> setup) {

@@ -29,9 +29,11 @@ class TrackerObservations : public Observations {
   std::string name() const override;
   std::size_t reading_count() const override;
   int rows() const override { return 3; }
+  const std::vector<ReadingComponent>& components() const override;
   const std::vector<SetupUnknown>& unknowns() const override;
   std::vector<double> unknown_values() const override;
   std::vector<double> positions(std::size_t reading) const override;
+  std::vector<double> deviation(std::size_t reading) const override;
   void set_parameters(std::span<const double> machine, std::span<const double> setup) override;
   void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
                 std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,

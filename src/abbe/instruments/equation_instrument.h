@@ -1,0 +1,128 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cassert>
+#include <type_traits>
+
+#include "abbe/geometry/dual.h"
+#include "abbe/instruments/instrument.h"
+
+namespace abbe {
+
+/// Where the body `from` is seen at one pose, in the frame of `to`; S is double or Dual.
+template <typename S>
+struct SeenBody {
+  Eigen::Matrix<S, 3, 3> rotation;
+  Eigen::Matrix<S, 3, 1> origin;
+
+  /// A point of the body (its own frame, mm) in the frame of `to`.
+  template <typename Vector>
+  Eigen::Matrix<S, 3, 1> point(const Vector& own) const {
+    return rotation * own.template cast<S>() + origin;
+  }
+  /// A direction of the body in the frame of `to`.
+  template <typename Vector>
+  Eigen::Matrix<S, 3, 1> direction(const Vector& own) const {
+    return rotation * own.template cast<S>();
+  }
+};
+
+/// An instrument whose measurement equation is written once, for any scalar; derivatives follow by themselves.
+///
+/// Derived has a const member function template
+///
+///     template <typename S>
+///     void equation(std::size_t item, const SeenBody<S>& seen, const S* quantities, const double* inputs,
+///                   S* reading) const;
+///
+/// @tparam kQuantities  largest number of quantities of an item; `quantities` are the item's, in its order
+/// @tparam kRows        numbers per reading
+template <typename Derived, int kQuantities, int kRows>
+class EquationInstrument : public Instrument {
+ public:
+  void model(const ItemBlock& block, const ModelledBlock& out) const final {
+    if (out.by_motion == nullptr && out.by_quantity == nullptr) {
+      evaluate<double>(block, out);
+    } else {
+      evaluate<Dual<kVariables>>(block, out);
+    }
+  }
+
+ protected:
+  using Instrument::Instrument;
+
+ private:
+  static constexpr int kVariables = 6 + kQuantities;
+  static constexpr std::size_t kMaxInputs = 16;
+
+  /// Value with the derivatives by shift and turn of the body.
+  static Dual<kVariables> moved(double value, const Eigen::Vector3d& by_shift, const Eigen::Vector3d& by_turn) {
+    Dual<kVariables> result(value);
+    for (std::size_t i = 0; i < 3; ++i) {
+      result.slope[i] = by_shift[static_cast<Eigen::Index>(i)];
+      result.slope[3 + i] = by_turn[static_cast<Eigen::Index>(i)];
+    }
+    return result;
+  }
+
+  template <typename S>
+  static SeenBody<S> seen_body(const ItemBlock& block, std::size_t k) {
+    SeenBody<S> seen;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        if constexpr (std::is_same_v<S, double>) {
+          seen.rotation(i, j) = block.rotation[3 * i + j][k];
+        } else {
+          // d(R e_j) = w x R e_j.
+          const Eigen::Vector3d column(block.rotation[j][k], block.rotation[3 + j][k], block.rotation[6 + j][k]);
+          Eigen::Vector3d by_turn = Eigen::Vector3d::Zero();
+          by_turn[(i + 1) % 3] = column[(i + 2) % 3];
+          by_turn[(i + 2) % 3] = -column[(i + 1) % 3];
+          seen.rotation(i, j) = moved(column[i], Eigen::Vector3d::Zero(), by_turn);
+        }
+      }
+      if constexpr (std::is_same_v<S, double>) {
+        seen.origin[i] = block.origin[i][k];
+      } else {
+        seen.origin[i] = S::variable(block.origin[i][k], i);
+      }
+    }
+    return seen;
+  }
+
+  template <typename S>
+  void evaluate(const ItemBlock& block, const ModelledBlock& out) const {
+    const std::vector<std::size_t>& used = items_[block.item].quantities;
+    assert(used.size() <= static_cast<std::size_t>(kQuantities) && block.inputs.size() <= kMaxInputs);
+    std::array<S, static_cast<std::size_t>(kQuantities > 0 ? kQuantities : 1)> quantities{};
+    for (std::size_t q = 0; q < used.size(); ++q) {
+      const double value = block.quantities[used[q]];
+      if constexpr (std::is_same_v<S, double>) {
+        quantities[q] = value;
+      } else {
+        quantities[q] = S::variable(value, 6 + static_cast<int>(q));
+      }
+    }
+    std::array<double, kMaxInputs> inputs{};
+    std::array<S, static_cast<std::size_t>(kRows)> reading;
+    for (std::size_t k = 0; k < block.count; ++k) {
+      for (std::size_t i = 0; i < block.inputs.size(); ++i) inputs[i] = block.inputs[i][k];
+      static_cast<const Derived*>(this)->equation(block.item, seen_body<S>(block, k), quantities.data(), inputs.data(),
+                                                  reading.data());
+      for (std::size_t row = 0; row < reading.size(); ++row) {
+        out.value[row * block.count + k] = value_of(reading[row]);
+        if constexpr (!std::is_same_v<S, double>) {
+          for (std::size_t j = 0; j < 6 && out.by_motion != nullptr; ++j) {
+            out.by_motion[(row * 6 + j) * block.count + k] = reading[row].slope[j];
+          }
+          for (std::size_t q = 0; q < used.size() && out.by_quantity != nullptr; ++q) {
+            out.by_quantity[(row * used.size() + q) * block.count + k] = reading[row].slope[6 + q];
+          }
+        }
+      }
+    }
+  }
+};
+
+}  // namespace abbe

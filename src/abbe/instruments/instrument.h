@@ -1,0 +1,129 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "abbe/errors/chain_plan.h"
+#include "abbe/errors/poses.h"
+#include "abbe/instruments/observations.h"
+#include "abbe/instruments/setup_quantity.h"
+
+namespace abbe {
+
+/// What a reading is taken on: a ball, a line, a run, a face. Several items share one instrument.
+struct InstrumentItem {
+  std::string name;
+  Body from = Body::tool;               ///< body that is seen
+  Body to = Body::workpiece;            ///< body from which it is seen
+  std::vector<std::size_t> quantities;  ///< indices into Instrument::quantities() on which its readings depend
+};
+
+/// Readings of one instrument, structure of arrays.
+struct InstrumentReadings {
+  PoseList poses;                                ///< axis commands, [axes][count], mm or rad
+  std::vector<std::uint16_t> item;               ///< [count] index into Instrument::items()
+  std::vector<std::vector<double>> inputs;       ///< [Instrument::inputs()][count]: known numbers of each reading
+  std::vector<std::vector<double>> measured;     ///< [components][count], mm or rad; a plan has none
+  std::vector<std::vector<double>> uncertainty;  ///< [components][count] standard uncertainties, or empty: noise model
+  std::vector<double> time_s;                    ///< [count] or empty
+
+  std::size_t count() const { return item.size(); }
+  /// Adds one reading to a plan (nothing measured yet).
+  void append(const std::vector<double>& positions, std::size_t on_item, const std::vector<double>& known = {});
+  void append(const InstrumentReadings& more);
+  /// The readings of those indices, in that order.
+  InstrumentReadings subset(const std::vector<std::size_t>& readings) const;
+};
+
+/// Two points that come together (a ball in its nest, a probe at its sphere) or stay at a given distance when an item
+/// is measured.
+struct MeetingPoints {
+  Eigen::Vector3d on_from = Eigen::Vector3d::Zero();  ///< mm, frame of the item's `from` body
+  Eigen::Vector3d on_to = Eigen::Vector3d::Zero();    ///< mm, frame of its `to` body
+};
+
+/// Poses at which readings of one item are modelled, and where its body is seen there.
+struct ItemBlock {
+  std::size_t item = 0;
+  std::size_t count = 0;
+  const double* rotation[9];           ///< [count] each, row-major: axes of the body `from` in the frame of `to`
+  const double* origin[3];             ///< [count] each: origin of the frame of `from` in the frame of `to`, mm
+  std::vector<const double*> inputs;   ///< [Instrument::inputs()] of [count]
+  const double* quantities = nullptr;  ///< [Instrument::quantities()] present values
+};
+
+/// Modelled readings of a block and their derivatives.
+struct ModelledBlock {
+  double* value;  ///< value[row * count + k], mm or rad
+  /// Null or out, by_motion[(row * 6 + j) * count + k]: derivative by a displacement of the body `from`, frame of `to`:
+  /// j = 0..2 shift along x, y, z (per mm); 3..5 turn about x, y, z through the origin of its frame (per rad).
+  double* by_motion = nullptr;
+  /// Null or out, by_quantity[(row * n + q) * count + k], q < n = number of the item's quantities.
+  double* by_quantity = nullptr;
+};
+
+/// A measuring instrument with its set-up: everything of it that the identification has to know.
+///
+/// An instrument is its measurement equation: what it reads if one body of the machine is seen from another at some
+/// pose. Frames: the tool's frame has its origin at the gauge point (with the tool offset error, which belongs to
+/// whatever is clamped there) and is parallel to the machine's with all axes at zero; the workpiece's and the bed's as
+/// docs/conventions.md says. Write one by deriving from EquationInstrument.
+class Instrument {
+ public:
+  virtual ~Instrument() = default;
+
+  const std::string& name() const { return name_; }
+  /// What a reading consists of, at most six numbers.
+  const std::vector<ReadingComponent>& components() const { return components_; }
+  /// Known numbers that every reading carries besides the axis commands, as the columns of its file say.
+  const std::vector<ReadingComponent>& inputs() const { return inputs_; }
+  const std::vector<InstrumentItem>& items() const { return items_; }
+  const std::vector<SetupQuantity>& quantities() const { return quantities_; }
+
+  /// Thread-safe; does not allocate.
+  virtual void model(const ItemBlock& block, const ModelledBlock& out) const = 0;
+
+  /// Standard uncertainty of one component of a reading where the data state none, mm or rad, > 0.
+  virtual double standard_uncertainty(const InstrumentReadings& readings, std::size_t reading,
+                                      std::size_t component) const = 0;
+
+  /// Start values of the quantities where a rough guess will not do: found from the readings and the nominal machine.
+  /// @param notes  what there is to say, appended
+  /// @return [quantities()]; as given where nothing needs to be found
+  virtual std::vector<double> start_values(const Machine& machine, const InstrumentReadings& readings,
+                                           std::vector<std::string>& notes) const;
+
+  /// Nominal points of an item that plans bring together; none where the instrument has no such points.
+  virtual std::optional<MeetingPoints> meeting_points(std::size_t item) const;
+
+  /// Puts values into the quantities, [quantities()]; knowledge and uncertainties stay.
+  void set_values(const std::vector<double>& values);
+
+ protected:
+  explicit Instrument(std::string name) : name_(std::move(name)) {}
+  /// @return its index
+  std::size_t add(SetupQuantity quantity);
+  /// Three coordinates, named NAME.x, NAME.y, NAME.z, mm. @return their indices
+  std::array<std::size_t, 3> add(const std::string& name, const SetupPoint& point);
+  std::size_t add(InstrumentItem item);
+
+  std::string name_;
+  std::vector<ReadingComponent> components_;
+  std::vector<ReadingComponent> inputs_;
+  std::vector<InstrumentItem> items_;
+  std::vector<SetupQuantity> quantities_;
+};
+
+/// Checks that readings belong to the instrument: sizes, item indices, finite numbers, positive uncertainties, and that
+/// an item's bodies differ.
+/// @param measured  false: a plan, nothing measured yet
+/// @throws std::invalid_argument naming the reading (counted from 0) and what was expected
+void check_readings(const Machine& machine, const Instrument& instrument, const InstrumentReadings& readings,
+                    bool measured = true);
+
+}  // namespace abbe

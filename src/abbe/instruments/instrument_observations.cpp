@@ -1,0 +1,310 @@
+#include "abbe/instruments/instrument_observations.h"
+
+#include <algorithm>
+#include <cassert>
+#include <stdexcept>
+
+namespace abbe {
+namespace {
+
+constexpr std::size_t kBlock = Observations::kBlockSize;
+constexpr std::size_t kMaxRows = 6;
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+static_assert(Observations::kBlockSize <= ChainPlan::kBlockSize);
+
+/// Working memory of one thread, grown once and kept.
+struct Scratch {
+  std::vector<double> positions, inputs, by_quantity, jacobian;
+  std::vector<const double*> axis;
+  ItemBlock block;
+  double rotation[9][kBlock], start[3][kBlock], seen[3][kBlock], origin[3][kBlock];
+  double value[kMaxRows * kBlock], by_motion[kMaxRows * 6 * kBlock];
+  double force[kMaxRows][6][kBlock];
+  std::uint16_t at[kBlock];  ///< place of the readings of one pair in the block, those of one item together
+};
+
+Scratch& scratch() {
+  thread_local Scratch memory;
+  return memory;
+}
+
+}  // namespace
+
+struct InstrumentObservations::Implementation {
+  struct BodyPair {
+    Body from, to;
+    ChainPlan plan;
+  };
+
+  std::shared_ptr<const Instrument> instrument;
+  InstrumentReadings readings;
+  std::vector<std::vector<double>> weight;  ///< [rows][count] 1 / standard uncertainty
+  std::vector<BodyPair> pairs;
+  std::vector<std::size_t> pair_of;  ///< [items]
+  std::vector<SetupUnknown> unknowns;
+  std::vector<std::size_t> quantity_of;  ///< [unknowns]
+  std::vector<double> values;            ///< [quantities]
+  std::vector<double> unknown_values;
+  std::size_t tool_parameter = 0;
+  Eigen::Vector3d tool_offset_error = Eigen::Vector3d::Zero();
+
+  std::size_t rows() const { return instrument->components().size(); }
+  std::size_t find_members(std::size_t first, std::size_t count, std::size_t pair, Scratch& s) const;
+  void load(const BodyPair& pair, std::size_t first, std::size_t members, Scratch& s) const;
+  void see(const BodyPair& pair, std::size_t members, Scratch& s) const;
+  void evaluate_pair(const BodyPair& pair, std::size_t members, std::size_t first, std::size_t count,
+                     std::span<const std::size_t> machine_parameters, std::span<const std::size_t> setup_parameters,
+                     double* residuals, double* jacobian, std::size_t stride) const;
+  void model_item(std::size_t begin, std::size_t end, std::size_t first, std::size_t count,
+                  std::span<const std::size_t> setup_parameters, std::size_t setup_column, double* residuals,
+                  double* jacobian, std::size_t stride) const;
+};
+
+std::size_t InstrumentObservations::Implementation::find_members(std::size_t first, std::size_t count, std::size_t pair,
+                                                                 Scratch& s) const {
+  std::size_t members = 0;
+  bool in_order = true;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t item = readings.item[first + k];
+    if (pair_of[item] != pair) continue;
+    in_order = in_order && (members == 0 || readings.item[first + s.at[members - 1]] <= item);
+    s.at[members++] = static_cast<std::uint16_t>(k);
+  }
+  if (!in_order) {
+    std::sort(s.at, s.at + members, [&](std::uint16_t a, std::uint16_t b) {
+      const std::uint16_t item_a = readings.item[first + a], item_b = readings.item[first + b];
+      return item_a != item_b ? item_a < item_b : a < b;
+    });
+  }
+  return members;
+}
+
+void InstrumentObservations::Implementation::load(const BodyPair& pair, std::size_t first, std::size_t members,
+                                                  Scratch& s) const {
+  const auto gather = [&](const std::vector<std::vector<double>>& columns, std::vector<double>& memory,
+                          std::vector<const double*>& pointers) {
+    memory.resize(columns.size() * kBlock);
+    pointers.resize(columns.size());
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      double* gathered = &memory[i * kBlock];
+      for (std::size_t k = 0; k < members; ++k) gathered[k] = columns[i][first + s.at[k]];
+      pointers[i] = gathered;
+    }
+  };
+  gather(readings.poses.axis, s.positions, s.axis);
+  gather(readings.inputs, s.inputs, s.block.inputs);
+  const bool on_tool = pair.from == Body::tool;
+  for (int c = 0; c < 3; ++c) std::fill_n(s.start[c], members, on_tool ? tool_offset_error[c] : 0.0);
+}
+
+void InstrumentObservations::Implementation::see(const BodyPair& pair, std::size_t members, Scratch& s) const {
+  RotationArrays rotation;
+  for (int i = 0; i < 9; ++i) rotation.r[i] = s.rotation[i];
+  pair.plan.transform({s.axis, members}, {s.start[0], s.start[1], s.start[2]}, {s.seen[0], s.seen[1], s.seen[2]},
+                      rotation);
+  const bool from_tool = pair.to == Body::tool;
+  for (int c = 0; c < 3; ++c) {
+    for (std::size_t k = 0; k < members; ++k) {
+      s.origin[c][k] = s.seen[c][k] - (from_tool ? tool_offset_error[c] : 0.0);
+    }
+  }
+}
+
+void InstrumentObservations::Implementation::model_item(std::size_t begin, std::size_t end, std::size_t first,
+                                                        std::size_t count,
+                                                        std::span<const std::size_t> setup_parameters,
+                                                        std::size_t setup_column, double* residuals, double* jacobian,
+                                                        std::size_t stride) const {
+  Scratch& s = scratch();
+  const std::size_t n = end - begin;
+  ItemBlock& block = s.block;
+  block.item = readings.item[first + s.at[begin]];
+  block.count = n;
+  for (int i = 0; i < 9; ++i) block.rotation[i] = s.rotation[i] + begin;
+  for (int i = 0; i < 3; ++i) block.origin[i] = s.origin[i] + begin;
+  for (const double*& input : block.inputs) input += begin;
+  block.quantities = values.data();
+  const std::vector<std::size_t>& used = instrument->items()[block.item].quantities;
+  ModelledBlock out;
+  out.value = s.value;
+  if (jacobian != nullptr) {
+    s.by_quantity.resize(std::max<std::size_t>(1, rows() * used.size() * n));
+    out.by_motion = s.by_motion;
+    out.by_quantity = s.by_quantity.data();
+  }
+  instrument->model(block, out);
+  for (const double*& input : block.inputs) input -= begin;
+
+  for (std::size_t row = 0; row < rows(); ++row) {
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t at = s.at[begin + k];
+      const double w = weight[row][first + at];
+      residuals[row * count + at] = w * (readings.measured[row][first + at] - s.value[row * n + k]);
+      if (jacobian == nullptr) continue;
+      for (std::size_t j = 0; j < 6; ++j) s.force[row][j][begin + k] = w * s.by_motion[(row * 6 + j) * n + k];
+    }
+  }
+  if (jacobian == nullptr) return;
+  for (std::size_t i = 0; i < setup_parameters.size(); ++i) {
+    const std::size_t quantity = quantity_of[setup_parameters[i]];
+    const std::size_t q = static_cast<std::size_t>(std::find(used.begin(), used.end(), quantity) - used.begin());
+    for (std::size_t row = 0; row < rows(); ++row) {
+      double* column = jacobian + (setup_column + i) * stride + row * count;
+      for (std::size_t k = 0; k < n; ++k) {
+        const std::size_t at = s.at[begin + k];
+        column[at] = q < used.size() ? weight[row][first + at] * s.by_quantity[(row * used.size() + q) * n + k] : 0.0;
+      }
+    }
+  }
+}
+
+void InstrumentObservations::Implementation::evaluate_pair(const BodyPair& pair, std::size_t members, std::size_t first,
+                                                           std::size_t count,
+                                                           std::span<const std::size_t> machine_parameters,
+                                                           std::span<const std::size_t> setup_parameters,
+                                                           double* residuals, double* jacobian,
+                                                           std::size_t stride) const {
+  Scratch& s = scratch();
+  load(pair, first, members, s);
+  see(pair, members, s);
+  for (std::size_t begin = 0; begin < members;) {
+    std::size_t end = begin + 1;
+    while (end < members && readings.item[first + s.at[end]] == readings.item[first + s.at[begin]]) ++end;
+    model_item(begin, end, first, count, setup_parameters, machine_parameters.size(), residuals, jacobian, stride);
+    begin = end;
+  }
+  if (jacobian == nullptr || machine_parameters.empty()) return;
+
+  RowArrays row_arrays[kMaxRows];
+  for (std::size_t row = 0; row < rows(); ++row) {
+    row_arrays[row].force = {s.force[row][0], s.force[row][1], s.force[row][2]};
+    row_arrays[row].moment = {s.force[row][3], s.force[row][4], s.force[row][5]};
+  }
+  const std::size_t compact_stride = rows() * members;
+  s.jacobian.resize(machine_parameters.size() * compact_stride);
+  pair.plan.differentiate({s.axis, members}, {s.start[0], s.start[1], s.start[2]}, {s.seen[0], s.seen[1], s.seen[2]},
+                          {row_arrays, rows()}, machine_parameters, s.jacobian.data(), compact_stride);
+  for (std::size_t column = 0; column < machine_parameters.size(); ++column) {
+    for (std::size_t row = 0; row < rows(); ++row) {
+      const double* compact = &s.jacobian[column * compact_stride + row * members];
+      double* wide = jacobian + column * stride + row * count;
+      for (std::size_t k = 0; k < members; ++k) wide[s.at[k]] = compact[k];
+    }
+  }
+}
+
+InstrumentObservations::InstrumentObservations(const Machine& machine, const ErrorSet& errors,
+                                               std::shared_ptr<const Instrument> instrument,
+                                               InstrumentReadings readings)
+    : implementation_(std::make_unique<Implementation>()) {
+  check_readings(machine, *instrument, readings);
+  Implementation& own = *implementation_;
+  own.instrument = std::move(instrument);
+  own.readings = std::move(readings);
+  const std::size_t count = own.readings.count();
+  assert(own.rows() >= 1 && own.rows() <= kMaxRows);
+  own.tool_parameter = errors.parameter_count() - 3;
+  own.tool_offset_error = errors.tool_offset_error;
+  own.weight.assign(own.rows(), std::vector<double>(count));
+  for (std::size_t row = 0; row < own.rows(); ++row) {
+    for (std::size_t k = 0; k < count; ++k) {
+      const double u = own.readings.uncertainty.empty() ? own.instrument->standard_uncertainty(own.readings, k, row)
+                                                        : own.readings.uncertainty[row][k];
+      if (!(u > 0)) throw std::invalid_argument(own.instrument->name() + ": standard uncertainty not above 0");
+      own.weight[row][k] = 1 / u;
+    }
+  }
+  // Only pairs of bodies that occur get a plan.
+  std::vector<std::uint8_t> occurs(own.instrument->items().size(), 0);
+  for (const std::uint16_t item : own.readings.item) occurs[item] = 1;
+  own.pair_of.assign(occurs.size(), kNone);
+  for (std::size_t i = 0; i < occurs.size(); ++i) {
+    if (occurs[i] == 0) continue;
+    const InstrumentItem& item = own.instrument->items()[i];
+    std::size_t pair = 0;
+    while (pair < own.pairs.size() && (own.pairs[pair].from != item.from || own.pairs[pair].to != item.to)) ++pair;
+    if (pair == own.pairs.size()) {
+      own.pairs.push_back({item.from, item.to, ChainPlan(machine, errors, item.from, item.to)});
+    }
+    own.pair_of[i] = pair;
+  }
+  for (std::size_t q = 0; q < own.instrument->quantities().size(); ++q) {
+    const SetupQuantity& quantity = own.instrument->quantities()[q];
+    own.values.push_back(quantity.value);
+    if (quantity.knowledge == Knowledge::exact) continue;
+    own.unknowns.push_back({quantity.name, quantity.is_angle, quantity.scale});
+    own.quantity_of.push_back(q);
+    own.unknown_values.push_back(quantity.value);
+  }
+}
+
+InstrumentObservations::~InstrumentObservations() = default;
+
+std::string InstrumentObservations::name() const { return implementation_->instrument->name(); }
+std::size_t InstrumentObservations::reading_count() const { return implementation_->readings.count(); }
+int InstrumentObservations::rows() const { return static_cast<int>(implementation_->rows()); }
+const std::vector<ReadingComponent>& InstrumentObservations::components() const {
+  return implementation_->instrument->components();
+}
+const std::vector<SetupUnknown>& InstrumentObservations::unknowns() const { return implementation_->unknowns; }
+std::vector<double> InstrumentObservations::unknown_values() const { return implementation_->unknown_values; }
+std::vector<double> InstrumentObservations::positions(std::size_t reading) const {
+  return implementation_->readings.poses.pose(reading);
+}
+const Instrument& InstrumentObservations::instrument() const { return *implementation_->instrument; }
+const InstrumentReadings& InstrumentObservations::readings() const { return implementation_->readings; }
+std::size_t InstrumentObservations::quantity_of(std::size_t unknown) const {
+  return implementation_->quantity_of.at(unknown);
+}
+std::vector<double> InstrumentObservations::quantity_values() const { return implementation_->values; }
+
+void InstrumentObservations::set_parameters(std::span<const double> machine, std::span<const double> setup) {
+  Implementation& own = *implementation_;
+  assert(machine.size() == own.tool_parameter + 3);
+  assert(setup.size() == own.unknowns.size());
+  for (Implementation::BodyPair& pair : own.pairs) pair.plan.set_parameters(machine);
+  for (int k = 0; k < 3; ++k) own.tool_offset_error[k] = machine[own.tool_parameter + static_cast<std::size_t>(k)];
+  for (std::size_t i = 0; i < setup.size(); ++i) {
+    own.unknown_values[i] = setup[i];
+    own.values[own.quantity_of[i]] = setup[i];
+  }
+}
+
+void InstrumentObservations::evaluate(std::size_t first, std::size_t count,
+                                      std::span<const std::size_t> machine_parameters,
+                                      std::span<const std::size_t> setup_parameters, double* residuals,
+                                      double* jacobian, std::size_t stride) const {
+  const Implementation& own = *implementation_;
+  assert(count <= kBlock && first + count <= own.readings.count());
+  for (std::size_t pair = 0; pair < own.pairs.size(); ++pair) {
+    const std::size_t members = own.find_members(first, count, pair, scratch());
+    if (members == 0) continue;
+    own.evaluate_pair(own.pairs[pair], members, first, count, machine_parameters, setup_parameters, residuals, jacobian,
+                      stride);
+  }
+}
+
+std::vector<double> InstrumentObservations::deviation(std::size_t reading) const {
+  std::vector<double> result(implementation_->rows());
+  evaluate(reading, 1, {}, {}, result.data(), nullptr, 0);
+  for (std::size_t row = 0; row < result.size(); ++row) result[row] /= implementation_->weight[row][reading];
+  return result;
+}
+
+std::vector<std::vector<double>> InstrumentObservations::modelled() const {
+  const Implementation& own = *implementation_;
+  std::vector<std::vector<double>> result = own.readings.measured;
+  std::vector<double> residuals(own.rows() * kBlock);
+  for (std::size_t first = 0; first < own.readings.count(); first += kBlock) {
+    const std::size_t n = std::min(kBlock, own.readings.count() - first);
+    evaluate(first, n, {}, {}, residuals.data(), nullptr, 0);
+    for (std::size_t row = 0; row < own.rows(); ++row) {
+      for (std::size_t k = 0; k < n; ++k) {
+        result[row][first + k] -= residuals[row * n + k] / own.weight[row][first + k];
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace abbe
