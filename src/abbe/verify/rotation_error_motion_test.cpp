@@ -97,7 +97,7 @@ TEST(RotationErrorMotion, TiltComesFromTwoPlanesAndHasNoEccentricity) {
   EXPECT_NEAR(tilt.total_uncertainty, 2e-4 / 80, 1e-15);
   EXPECT_NEAR(motion(result, ErrorMotionKind::tilt_fixed_y).synchronous_value, 0, 1e-12);
   // cos 3a cos a = (cos 2a + cos 4a)/2: from 1 at 0 to -0.5625 where cos 2a = -1/4.
-  EXPECT_NEAR(motion(result, ErrorMotionKind::tilt_rotating).synchronous_value, (1 + 0.5625) * 20e-6, 1e-9);
+  EXPECT_NEAR(motion(result, ErrorMotionKind::tilt_rotating).synchronous_value, (1 + 0.5625) * 20e-6, 2e-9);
   // Without the distance there is no tilt.
   EXPECT_EQ(rotation_error_motions(readings).motions.size(), 6U);
 }
