@@ -37,7 +37,7 @@ struct SeenBody {
 ///                   S* reading) const;
 ///
 /// @tparam kQuantities  largest number of quantities of an item; `quantities` are the item's, in its order
-/// @tparam kRows        numbers per reading
+/// @tparam kRows        largest number of components; `reading` is filled for those of components(), in their order
 template <typename Derived, int kQuantities, int kRows>
 class EquationInstrument : public Instrument {
  public:
@@ -95,6 +95,7 @@ class EquationInstrument : public Instrument {
   void evaluate(const ItemBlock& block, const ModelledBlock& out) const {
     const std::vector<std::size_t>& used = items_[block.item].quantities;
     assert(used.size() <= static_cast<std::size_t>(kQuantities) && block.inputs.size() <= kMaxInputs);
+    assert(components_.size() <= static_cast<std::size_t>(kRows));
     std::array<S, static_cast<std::size_t>(kQuantities > 0 ? kQuantities : 1)> quantities{};
     for (std::size_t q = 0; q < used.size(); ++q) {
       const double value = block.quantities[used[q]];
@@ -110,7 +111,7 @@ class EquationInstrument : public Instrument {
       for (std::size_t i = 0; i < block.inputs.size(); ++i) inputs[i] = block.inputs[i][k];
       static_cast<const Derived*>(this)->equation(block.item, seen_body<S>(block, k), quantities.data(), inputs.data(),
                                                   reading.data());
-      for (std::size_t row = 0; row < reading.size(); ++row) {
+      for (std::size_t row = 0; row < components_.size(); ++row) {
         out.value[row * block.count + k] = value_of(reading[row]);
         if constexpr (!std::is_same_v<S, double>) {
           for (std::size_t j = 0; j < 6 && out.by_motion != nullptr; ++j) {
