@@ -1,0 +1,132 @@
+#include "abbe/formats/evaluation_circular_file.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "abbe/formats/csv_reader.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/text_file.h"
+
+namespace abbe {
+namespace {
+
+enum Column : std::size_t { kDirection, kAngle, kDeviation, kRadius, kX, kY, kZ };
+// A point this near to the centre has no direction, mm.
+constexpr double kSmallestRadius = 1e-6;
+
+const std::vector<CsvColumn>& columns() {
+  static const std::vector<CsvColumn> all = {
+      {"direction", Quantity::dimensionless, true, true},
+      {"angle", Quantity::angle, false, false},
+      {"deviation", Quantity::length, false, false},
+      {"radius", Quantity::length, false, false, CsvColumn::Range::positive},
+      {"X", Quantity::length, false, false},
+      {"Y", Quantity::length, false, false},
+      {"Z", Quantity::length, false, false},
+  };
+  return all;
+}
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& file, double nominal_radius)
+      : text_(text), file_(file), nominal_radius_(nominal_radius), csv_(read_csv(text, file, columns())) {}
+
+  CircularFile read() {
+    const std::size_t coordinates = (has(kX) ? 1U : 0U) + (has(kY) ? 1U : 0U) + (has(kZ) ? 1U : 0U);
+    const bool lengths = has(kAngle) || has(kDeviation) || has(kRadius);
+    if (lengths && coordinates > 0) {
+      refuse_columns(has(kX) ? kX : has(kY) ? kY : kZ, "stands beside columns of a ball bar");
+    }
+    if (coordinates > 0) {
+      read_points(coordinates);
+    } else {
+      read_lengths();
+    }
+    return std::move(result_);
+  }
+
+ private:
+  bool has(std::size_t column) const { return csv_.columns[column].present; }
+
+  [[noreturn]] void refuse_columns(std::size_t column, const std::string& problem) const {
+    throw InputError({file_, 0, 0, csv_.columns[column].header}, problem,
+                     "angle_deg with deviation_um or radius_mm, or two of X_mm, Y_mm, Z_mm");
+  }
+  [[noreturn]] void refuse_row(std::size_t row, const std::string& field, const std::string& problem,
+                               const std::string& expected) const {
+    throw InputError({file_, csv_line(text_, row), 0, field}, problem, expected);
+  }
+
+  /// The path to which a row belongs.
+  CircularReadings& path_of(std::size_t row) {
+    const CsvValues& direction = csv_.columns[kDirection];
+    const std::string& name = direction.names[direction.words[row]];
+    if (name == "cw") return result_.paths[static_cast<std::size_t>(CircularDirection::clockwise)];
+    if (name == "ccw") return result_.paths[static_cast<std::size_t>(CircularDirection::counterclockwise)];
+    refuse_row(row, direction.header, fmt::format("'{}' is no direction", name.substr(0, 40)),
+               "cw (clockwise) or ccw (counter-clockwise)");
+  }
+
+  void read_lengths() {
+    if (!has(kAngle))
+      throw InputError({file_, 0, 0, "angle"}, "missing column", accepted_names("angle", Quantity::angle));
+    if (has(kDeviation) && has(kRadius)) refuse_columns(kRadius, "stands beside the deviation");
+    if (!has(kDeviation) && !has(kRadius)) {
+      throw InputError({file_, 0, 0, "deviation"}, "missing column", "deviation_um or radius_mm");
+    }
+    for (std::size_t row = 0; row < csv_.rows; ++row) {
+      const double radius =
+          has(kRadius) ? csv_.columns[kRadius].numbers[row] : nominal_radius_ + csv_.columns[kDeviation].numbers[row];
+      if (radius < kSmallestRadius) {
+        const std::size_t column = has(kRadius) ? kRadius : kDeviation;
+        refuse_row(row, csv_.columns[column].header, fmt::format("the radius is {:.9g} mm", radius),
+                   fmt::format("a radius near the nominal {:.9g} mm", nominal_radius_));
+      }
+      CircularReadings& path = path_of(row);
+      path.angle.push_back(csv_.columns[kAngle].numbers[row]);
+      path.radius.push_back(radius);
+    }
+  }
+
+  void read_points(std::size_t coordinates) {
+    if (coordinates != 2) {
+      refuse_columns(has(kX) ? kX : has(kY) ? kY : kZ, coordinates == 1 ? "is the only coordinate" : "is one of three");
+    }
+    const std::size_t first = !has(kX) ? kY : !has(kY) ? kZ : kX;
+    const std::size_t second = !has(kX) ? kZ : !has(kY) ? kX : kY;
+    result_.plane = columns()[first].base + columns()[second].base;
+    for (CircularReadings& path : result_.paths) path.kind = CircularAngle::measured;
+    for (std::size_t row = 0; row < csv_.rows; ++row) {
+      const double a = csv_.columns[first].numbers[row], b = csv_.columns[second].numbers[row];
+      const double radius = std::hypot(a, b);
+      if (radius < kSmallestRadius) {
+        refuse_row(row, csv_.columns[first].header, "the point is the centre",
+                   "coordinates from the centre of the nominal circle");
+      }
+      CircularReadings& path = path_of(row);
+      path.angle.push_back(std::atan2(b, a));
+      path.radius.push_back(radius);
+    }
+  }
+
+  std::string_view text_;
+  const std::string& file_;
+  double nominal_radius_;
+  CsvTable csv_;
+  CircularFile result_;
+};
+
+}  // namespace
+
+CircularFile read_circular(const std::filesystem::path& path, double nominal_radius) {
+  const MappedFile file(path);
+  return parse_circular(file.text(), path.string(), nominal_radius);
+}
+
+CircularFile parse_circular(std::string_view text, const std::string& file, double nominal_radius) {
+  return Reader(text, file, nominal_radius).read();
+}
+
+}  // namespace abbe
