@@ -17,14 +17,18 @@ void add_reproduce_command(CommandLine& line) {
                "  abbe reproduce aguado -o results/aguado_paper\n\n"
                "Papers:\n"
                "  aguado  laser tracker on a machine w C' X' b Z t, strategies of identification (2014)\n"
+               "  ma      six motions of a rotary table by a polygon prism (2021)\n"
                "  wang    36 measured errors of a grinder w C b X Z A Y B t, integrated error (2020)");
-  command->add_option("paper", options->paper, "aguado or wang")->required()->check(CLI::IsMember({"aguado", "wang"}));
+  command->add_option("paper", options->paper, "aguado, ma or wang")
+      ->required()
+      ->check(CLI::IsMember({"aguado", "ma", "wang"}));
   command->add_option("-o,--output", options->output, "Results folder to write (maps, report); default: print only");
   command->add_option("--threads", options->reproduce.threads, "Threads (0: all)")->check(CLI::Range(0, 64));
   command->add_flag("--json", options->reproduce.json, "Print JSON for programs");
   command->callback([&line, options] {
     line.run = [options]() -> int {
       options->reproduce.output = options->output;
+      if (options->paper == "ma") return reproduce_ma(options->reproduce);
       return options->paper == "wang" ? reproduce_wang(options->reproduce) : reproduce_aguado(options->reproduce);
     };
   });

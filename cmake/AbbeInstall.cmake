@@ -15,4 +15,4 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/abbe-config-version
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/abbe-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/abbe-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/abbe)
 # The published readings that `abbe reproduce` recomputes.
-install(DIRECTORY tests/golden/aguado DESTINATION ${CMAKE_INSTALL_DATADIR}/abbe/golden)
+install(DIRECTORY tests/golden/aguado tests/golden/ma DESTINATION ${CMAKE_INSTALL_DATADIR}/abbe/golden)

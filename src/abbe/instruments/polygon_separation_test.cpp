@@ -1,0 +1,138 @@
+#include "abbe/instruments/polygon_separation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "abbe/instruments/polygon_for_test.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kArcsec = std::numbers::pi / (180 * 3600);
+
+PolygonCampaign random_campaign(const std::vector<std::size_t>& shifts, double angle, double length,
+                                std::uint64_t seed) {
+  const PolygonCampaign nominal = regular_campaign(12, 48.3, 17, shifts);
+  const std::vector<PolygonUnknown> unknowns = polygon_unknowns(nominal);
+  RandomStream random(seed);
+  Eigen::VectorXd values(static_cast<Eigen::Index>(unknowns.size()));
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    values[i] = random.uniform(-1, 1) * (unknowns[static_cast<std::size_t>(i)].is_angle ? angle : length);
+  }
+  return with_values(nominal, values);
+}
+
+TEST(PolygonCampaign, JacobianEqualsCentralDifferences) {
+  PolygonCampaign campaign = random_campaign({0, 1}, 0.01, 0.5, 3);
+  campaign.measured.push_back(PolygonReading::autocollimator_y_about_z);
+  campaign.bench.displacement_z.position.x() = 4;
+  Eigen::MatrixXd jacobian;
+  campaign_readings(campaign, &jacobian);
+  const Eigen::VectorXd values = unknown_values(campaign);
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    Eigen::VectorXd more = values, less = values;
+    more[i] += 1e-5;
+    less[i] -= 1e-5;
+    const Eigen::VectorXd central =
+        (campaign_readings(with_values(campaign, more)) - campaign_readings(with_values(campaign, less))) / 2e-5;
+    EXPECT_LT((central - jacobian.col(i)).lpNorm<Eigen::Infinity>(), 2e-7) << i;
+  }
+}
+
+TEST(PolygonCampaign, ValuesGoInAndOut) {
+  const PolygonCampaign campaign = random_campaign({0, 1, 2}, 1e-3, 0.1, 5);
+  const Eigen::VectorXd values = unknown_values(campaign);
+  EXPECT_LT((unknown_values(with_values(regular_campaign(12, 48.3, 17, {0, 1, 2}), values)) - values).norm(), 1e-13);
+  EXPECT_EQ(polygon_unknowns(campaign).size(), static_cast<std::size_t>(values.size()));
+}
+
+TEST(PolygonObservability, RankOfOneMountAndOfTwo) {
+  // One mount: every reading is explained by the motion of its position. Two mounts: the faces come apart.
+  const PolygonObservability one = polygon_observability(regular_campaign(12, 48.3, 17, {0}));
+  EXPECT_EQ(one.unknowns, 122U);
+  EXPECT_EQ(one.rank, 72U);
+  const PolygonObservability two = polygon_observability(regular_campaign(12, 48.3, 17, {0, 1}));
+  EXPECT_EQ(two.unknowns, 128U);
+  EXPECT_EQ(two.rank, 107U);
+  // The gap between seen and unseen is wide: the rank is no matter of the threshold.
+  EXPECT_GT(two.singular_values[106], 1e-6);
+  EXPECT_LT(two.singular_values[107], 1e-13);
+}
+
+TEST(PolygonObservability, UnseenDirectionsChangeNoReading) {
+  const PolygonCampaign nominal = regular_campaign(12, 48.3, 17, {0, 1});
+  const PolygonObservability two = polygon_observability(nominal);
+  const Eigen::VectorXd readings = campaign_readings(nominal);
+  for (Eigen::Index i = 0; i < two.unseen.cols(); ++i) {
+    const Eigen::VectorXd direction = two.unseen.col(i) * (1e-7 / two.unseen.col(i).lpNorm<Eigen::Infinity>());
+    const Eigen::VectorXd moved = campaign_readings(with_values(nominal, direction));
+    EXPECT_LT((moved - readings).lpNorm<Eigen::Infinity>(), 1e-12) << i;
+  }
+}
+
+TEST(PolygonSeparation, TwoMountsSeparateTheFacesFromTheTable) {
+  const PolygonCampaign nominal = regular_campaign(12, 48.3, 17, {0, 1});
+  const PolygonObservability observability = polygon_observability(nominal);
+  const std::vector<PolygonGaugeEquation> gauge = polygon_gauge(nominal, observability);
+  ASSERT_EQ(gauge.size(), 21U);
+  const PolygonCampaign truth = random_campaign({0, 1}, 1 * kArcsec, 0.3e-3, 8);
+  const Eigen::VectorXd expected = in_gauge(unknown_values(truth), observability, gauge);
+  const PolygonSeparation found = separate_polygon(nominal, campaign_readings(truth), {}, gauge);
+  ASSERT_EQ(found.status, PolygonSeparationStatus::converged);
+  EXPECT_EQ(found.degrees_of_freedom, 37U);
+  const PolygonColumns columns = polygon_columns(nominal);
+  for (Eigen::Index i = 0; i < columns.count; ++i) {
+    const bool angle = polygon_unknowns(nominal)[static_cast<std::size_t>(i)].is_angle;
+    EXPECT_NEAR(found.values[i], expected[i], angle ? 1e-3 * kArcsec : 1e-6)
+        << polygon_unknowns(nominal)[static_cast<std::size_t>(i)].name;
+  }
+  for (const PolygonGaugeEquation& equation : gauge) {
+    EXPECT_NEAR(equation.functional.dot(found.values), 0, 1e-13) << equation.words;
+  }
+}
+
+TEST(PolygonSeparation, StatedUncertaintiesAreThoseOfRepeatedSimulations) {
+  const PolygonCampaign nominal = regular_campaign(12, 48.3, 17, {0, 1});
+  const std::vector<PolygonGaugeEquation> gauge = polygon_gauge(nominal, polygon_observability(nominal));
+  const PolygonNoise noise;
+  const int runs = 12;
+  double sum = 0;
+  std::size_t count = 0;
+  double chi_square = 0;
+  for (int run = 0; run < runs; ++run) {
+    const PolygonSeparation found = separate_polygon(
+        nominal, simulate_campaign(nominal, noise, 100 + static_cast<std::uint64_t>(run)), noise, gauge);
+    ASSERT_EQ(found.status, PolygonSeparationStatus::converged);
+    chi_square += found.chi_square / static_cast<double>(found.degrees_of_freedom) / runs;
+    for (Eigen::Index i = 0; i < 72; ++i) {
+      sum += std::pow(found.values[i] / found.standard_uncertainties[i], 2);
+      ++count;
+    }
+  }
+  EXPECT_NEAR(std::sqrt(sum / static_cast<double>(count)), 1, 0.1);
+  EXPECT_NEAR(chi_square, 1, 0.2);
+}
+
+TEST(PolygonSeparation, WithoutAGaugeTheAnswerIsRankDeficient) {
+  const PolygonCampaign nominal = regular_campaign(12, 48.3, 17, {0, 1});
+  const PolygonSeparation found = separate_polygon(nominal, campaign_readings(nominal), {}, {});
+  EXPECT_EQ(found.status, PolygonSeparationStatus::rank_deficient);
+}
+
+TEST(PolygonCampaign, StepwiseReadingsOfATableThatRepeatsAreThoseTakenAtOnce) {
+  PolygonCampaign campaign = random_campaign({0}, 1e-4, 0.05, 12);
+  const std::vector<PolygonReadings> stepwise =
+      stepwise_readings(campaign, {campaign.motions, campaign.motions, campaign.motions});
+  const Eigen::VectorXd at_once = campaign_readings(campaign);
+  for (std::size_t k = 0; k < 12; ++k)
+    for (std::size_t i = 0; i < campaign.measured.size(); ++i) {
+      EXPECT_EQ(stepwise[k][static_cast<std::size_t>(campaign.measured[i])],
+                at_once[static_cast<Eigen::Index>(6 * k + i)]);
+    }
+  EXPECT_TRUE(std::isnan(stepwise[3][3]));
+}
+
+}  // namespace
+}  // namespace abbe

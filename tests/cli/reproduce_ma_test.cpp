@@ -1,0 +1,49 @@
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+class ReproduceMa : public CommandTest {};
+
+TEST_F(ReproduceMa, JsonHasReadingsInversionsRanksAndTheGauge) {
+  const CommandResult result = abbe({"reproduce", "ma", "--json"});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_TRUE(json["agrees_with_reference"]);
+  for (const char* order : {"paperorder", "faceorder"}) {
+    EXPECT_LT(json["reference_difference"][order]["angle_arcsec"].get<double>(), 1e-9);
+    EXPECT_LT(json["reference_difference"][order]["length_mm"].get<double>(), 1e-9);
+    const nlohmann::json& section = json["section_3_3"][order];
+    for (const auto& [name, value] : section["exact_stepwise"].items()) {
+      EXPECT_LT(value.get<double>(), name.ends_with("arcsec") ? 1e-11 : 1e-10) << name;
+    }
+  }
+  EXPECT_NEAR(json["section_3_3"]["paperorder"]["corrected"]["eps_z_arcsec"].get<double>(), 0.0351, 6e-5);
+  EXPECT_EQ(json["rank"][0]["rank"], 72);
+  EXPECT_EQ(json["rank"][1]["rank"], 107);
+  EXPECT_EQ(json["rank"][1]["unknowns"], 128);
+  EXPECT_EQ(json["two_mounts"]["gauge"].size(), 21U);
+  EXPECT_EQ(json["table_3"]["paper_after"]["eps_z_arcsec"], 27.38);
+}
+
+TEST_F(ReproduceMa, TextStatesTheGaugeAndWhatIsWrongInPrint) {
+  const CommandResult result = abbe({"reproduce", "ma"});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  for (const char* words : {"Wrong in print", "mean of EXC over the turn is zero", "axis average line",
+                            "two mounts, turned by one face", "agrees with the reference"}) {
+    EXPECT_NE(result.out.find(words), std::string::npos) << words;
+  }
+}
+
+TEST_F(ReproduceMa, AFolderIsRefused) {
+  const CommandResult result = abbe({"reproduce", "ma", "-o", "results"});
+  EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+  EXPECT_NE(result.err.find("--output"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace abbe
