@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <map>
 #include <numeric>
-#include <string>
+#include <tuple>
 
 #include "abbe/errors/parallel_blocks.h"
 #include "eigen_chain.h"
+#include "fastest.h"
 #include "grinding_poses.h"
 #include "trunnion_kernel.h"
 
@@ -167,26 +167,6 @@ void jacobian_one_core(benchmark::State& state) {
   }
   state.counters["parameters"] = static_cast<double>(parameters.size());
   count_poses(state, n);
-}
-
-/// Keeps the shortest time per item of all repetitions: what the machine can do when others leave it alone.
-class FastestReporter : public benchmark::ConsoleReporter {
- public:
-  void ReportRuns(const std::vector<Run>& runs) override {
-    ConsoleReporter::ReportRuns(runs);
-    for (const Run& run : runs) {
-      if (run.run_type != Run::RT_Iteration) continue;
-      const double seconds = 1.0 / run.counters.at("items_per_second").value;
-      const auto [place, inserted] = fastest.emplace(run.run_name.function_name, seconds);
-      if (!inserted) place->second = std::min(place->second, seconds);
-    }
-  }
-  std::map<std::string, double> fastest;
-};
-
-bool report(const char* what, double ratio, double target) {
-  std::printf("%-58s %7.2f   target %5.1f   %s\n", what, ratio, target, ratio >= target ? "met" : "MISSED");
-  return ratio >= target;
 }
 
 }  // namespace

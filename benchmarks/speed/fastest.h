@@ -1,0 +1,34 @@
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace abbe::benchmarks {
+
+/// Keeps the shortest time per item of all repetitions: what the machine can do when others leave it alone.
+class FastestReporter : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      if (run.run_type != Run::RT_Iteration) continue;
+      const double seconds = 1.0 / run.counters.at("items_per_second").value;
+      const auto [place, inserted] = fastest.emplace(run.run_name.function_name, seconds);
+      if (!inserted) place->second = std::min(place->second, seconds);
+    }
+  }
+  std::map<std::string, double> fastest;  ///< s per item
+};
+
+/// One line of the result; says whether the target is met.
+inline bool report(const char* what, double ratio, double target) {
+  std::printf("%-58s %7.2f   target %5.1f   %s\n", what, ratio, target, ratio >= target ? "met" : "MISSED");
+  return ratio >= target;
+}
+
+}  // namespace abbe::benchmarks
