@@ -10,19 +10,9 @@
 #include "abbe/verify/error_map.h"
 #include "study/campaign.h"
 #include "study/model.h"
+#include "study/unseen.h"
 
 namespace abbe {
-
-/// Errors at poses that took no part in the identification.
-struct UnseenPoses {
-  std::string description;
-  bool against_truth = false;                ///< else against held-out readings, which carry their own noise
-  std::vector<double> before;                ///< nominal machine, station poses fitted to these points; mm
-  std::vector<double> after;                 ///< identified machine; mm
-  std::vector<double> expanded_uncertainty;  ///< k = 2 of the prediction, root of the trace of its covariance; mm
-  double coverage = 0;                       ///< share of the coordinates within 2 u of the prediction; 0..1
-  SampleStatistics before_statistics, after_statistics, uncertainty_statistics;
-};
 
 /// Volumetric error over a grid or at given poses, in the workpiece frame after the best fit of the workpiece datum.
 struct StudyMap {
@@ -57,11 +47,11 @@ IdentifyOptions identify_options(const Study& study);
 /// The identification of a study from its readings, with validation; no map.
 void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress = {});
 
-/// Validation at poses that were not used. @param poses  number of random poses compared with the truth
-UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::size_t poses = 1000);
-
 /// Map of the study's plan, or of 7 positions per axis over the known range.
 StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress = {});
+
+/// Adds the length of measured - modelled of a reading (mm), if any of its components is a length.
+void append_length(const Observations& observations, std::size_t reading, std::vector<double>& lengths);
 
 /// Range of an axis over which all its identified error motions are known; the travel where it has none.
 AxisRange known_range(const Machine& machine, const ErrorSet& errors, std::size_t axis, std::size_t count);

@@ -10,6 +10,7 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/study_file.h"
 
 namespace abbe {
 namespace {
@@ -17,8 +18,8 @@ namespace {
 /// Positions of one axis in all readings, sorted, each once.
 std::vector<double> measured_positions(const Campaign& campaign, std::size_t axis) {
   std::vector<double> positions;
-  for (const CampaignSetup& setup : campaign.setups) {
-    const std::vector<double>& values = setup.readings.poses.axis[axis];
+  for (const std::unique_ptr<CampaignSetup>& setup : campaign.setups) {
+    const std::vector<double>& values = setup->poses().axis[axis];
     positions.insert(positions.end(), values.begin(), values.end());
   }
   std::sort(positions.begin(), positions.end());
@@ -62,12 +63,12 @@ void mark_held_out(const Study& study, Problem& problem) {
   }
 }
 
-void add_priors(const Study& study, Problem& problem) {
+void add_priors(const Study& study, const Campaign& campaign, Problem& problem) {
   const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
   for (const ParameterPrior& prior : study.identification->priors) {
     std::size_t found = 0;
     for (const EstimatedParameter& parameter : parameters) {
-      if (!matches(prior.parameters, parameter.name)) continue;
+      if (!matches_pattern(parameter.name, prior.parameters)) continue;
       ++found;
       if (parameter.is_angle != prior.is_angle) {
         throw InputError(
@@ -84,43 +85,14 @@ void add_priors(const Study& study, Problem& problem) {
                        "a name such as " + (parameters.empty() ? std::string("EXX[P1]") : parameters.front().name));
     }
   }
-  for (std::size_t s = 0; s < study.setups.size(); ++s) {
-    for (const SetupReflector& reflector : study.setups[s].reflectors) {
-      if (!reflector.estimate_offset) continue;
-      for (int k = 0; k < 3; ++k) {
-        const double uncertainty = reflector.offset_standard_uncertainty[k];
-        if (uncertainty <= 0) continue;
-        const std::string name = fmt::format("{}.offset_{}", reflector.name, "xyz"[k]);
-        for (const EstimatedParameter& parameter : parameters) {
-          if (parameter.name == name && parameter.id.observations == s) {
-            problem.priors.push_back({parameter.id, reflector.offset[k], uncertainty});
-          }
-        }
-      }
+  for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
+    for (const KnownUnknown& known : campaign.setups[s]->known_unknowns()) {
+      problem.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
     }
   }
 }
 
 }  // namespace
-
-bool matches(const std::string& pattern, const std::string& text) {
-  std::size_t p = 0, t = 0, star = std::string::npos, mark = 0;
-  while (t < text.size()) {
-    if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
-      ++p, ++t;
-    } else if (p < pattern.size() && pattern[p] == '*') {
-      star = p++;
-      mark = t;
-    } else if (star != std::string::npos) {
-      p = star + 1;
-      t = ++mark;
-    } else {
-      return false;
-    }
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
-}
 
 ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& model) {
   const IdentificationPlan& plan = *study.identification;
@@ -177,9 +149,8 @@ StudyModel build_model(const Study& study, const Campaign& campaign) {
   const ErrorSet errors = model_errors(study, campaign, model);
   if (!model.impossible.empty()) return model;
   std::vector<Observations*> pointers;
-  for (const CampaignSetup& setup : campaign.setups) {
-    model.observations.push_back(
-        std::make_unique<TrackerObservations>(study.machine, errors, setup.start, setup.readings));
+  for (const std::unique_ptr<CampaignSetup>& setup : campaign.setups) {
+    model.observations.push_back(setup->observations(study.machine, errors));
     pointers.push_back(model.observations.back().get());
   }
   model.problem = estimate_everything(study.machine, errors, pointers);
@@ -191,7 +162,7 @@ StudyModel build_model(const Study& study, const Campaign& campaign) {
         parameters.end());
   }
   mark_held_out(study, model.problem);
-  add_priors(study, model.problem);
+  add_priors(study, campaign, model.problem);
 
   if (plan.select_order) {
     for (OrderGroup group : order_groups_by_axis(study.machine, errors)) {

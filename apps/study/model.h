@@ -12,7 +12,7 @@ namespace abbe {
 
 /// The identification problem of a study: the model's errors, the observations and what is estimated.
 struct StudyModel {
-  std::vector<std::unique_ptr<TrackerObservations>> observations;  ///< one per set-up
+  std::vector<std::unique_ptr<Observations>> observations;  ///< one per set-up
   Problem problem;
   std::vector<OrderGroup> order_groups;  ///< for the automatic choice of orders, if the study asks for it
   std::vector<std::string> notes;        ///< assumptions, in words
@@ -25,8 +25,5 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
 
 /// Builds observations and problem; readings that are held out are marked in problem.observations[].use.
 StudyModel build_model(const Study& study, const Campaign& campaign);
-
-/// `*` any text, `?` one character.
-bool matches(const std::string& pattern, const std::string& text);
 
 }  // namespace abbe

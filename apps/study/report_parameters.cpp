@@ -133,7 +133,7 @@ nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResu
     const double unit = is_machine ? unit_of(parameter.is_angle) : (parameter.is_angle ? 1e3 : 1);
     names.push_back(parameter.name);
     groups.push_back(is_machine ? machine_groups[parameter.id.index]
-                                : result.campaign.setups[parameter.id.observations].name);
+                                : result.campaign.setups[parameter.id.observations]->name);
     units.emplace_back(is_machine ? (parameter.is_angle ? "urad" : "um") : (parameter.is_angle ? "mrad" : "mm"));
     values.push_back(unit * identified.estimates[i]);
     const double u = identified.standard_uncertainties[i];
@@ -180,11 +180,9 @@ std::optional<ErrorSet> truth_in_gauge(const Study& study, const StudyResult& re
   if (!result.campaign.truth) return std::nullopt;
   Problem problem = result.model.problem;
   problem.priors.clear();
-  std::vector<std::unique_ptr<TrackerObservations>> observations;
+  std::vector<std::unique_ptr<Observations>> observations;
   for (std::size_t s = 0; s < result.campaign.setups.size(); ++s) {
-    const CampaignSetup& setup = result.campaign.setups[s];
-    observations.push_back(
-        std::make_unique<TrackerObservations>(study.machine, problem.errors, setup.start, setup.exact));
+    observations.push_back(result.campaign.setups[s]->exact_observations(study.machine, problem.errors));
     observations.back()->set_parameters(problem.errors.parameters(), result.identification.setup[s]);
     problem.observations[s].observations = observations.back().get();
   }

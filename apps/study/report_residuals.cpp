@@ -70,7 +70,7 @@ nlohmann::ordered_json setup_json(const Machine& machine, const StudyResult& res
     if (k % step == 0 || outliers.count(k) != 0) shown.push_back(k);
   }
   nlohmann::ordered_json setup;
-  setup["name"] = result.campaign.setups[s].name;
+  setup["name"] = result.campaign.setups[s]->name;
   setup["readings"] = count;
   setup["outlier_limit"] = for_drawing(norm_limit);
   setup["reading"] = shown;
@@ -101,50 +101,31 @@ nlohmann::ordered_json setup_json(const Machine& machine, const StudyResult& res
 
 }  // namespace
 
-std::vector<ResidualComponent> residual_components(const Observations& observations,
-                                                   const std::vector<std::string>& names) {
-  const std::size_t rows = static_cast<std::size_t>(observations.rows());
+std::vector<ResidualComponent> residual_components(const Observations& observations) {
+  const std::vector<ReadingComponent>& of_reading = observations.components();
+  const std::size_t rows = of_reading.size();
   const std::vector<double> residuals = residuals_by_reading(observations);
   std::vector<ResidualComponent> components(rows);
   for (std::size_t row = 0; row < rows; ++row) {
-    components[row].name = names.at(row);
-    components[row].normalised.reserve(observations.reading_count());
-    for (std::size_t k = 0; k < observations.reading_count(); ++k) {
-      components[row].normalised.push_back(residuals[rows * k + row]);
-    }
+    components[row].name = of_reading[row].name;
+    components[row].unit = of_reading[row].is_angle ? "urad" : "um";
   }
-  return components;
-}
-
-std::vector<ResidualComponent> tracker_components(const TrackerObservations& observations) {
-  const TrackerReadings& readings = observations.readings();
-  const bool polar = readings.measure == TrackerMeasure::range_and_angles;
-  std::vector<ResidualComponent> components =
-      residual_components(observations, polar ? std::vector<std::string>{"range", "azimuth", "elevation"}
-                                              : std::vector<std::string>{"x", "y", "z"});
   for (std::size_t k = 0; k < observations.reading_count(); ++k) {
-    Eigen::Vector3d distance = observations.distance(k);
-    if (polar) {
-      // Along the beam and across it, in the directions in which azimuth and elevation grow.
-      const double azimuth = readings.measured[1][k], elevation = readings.measured[2][k];
-      const double ca = std::cos(azimuth), sa = std::sin(azimuth), ce = std::cos(elevation), se = std::sin(elevation);
-      const Eigen::Vector3d beam(ce * ca, ce * sa, se), across(-sa, ca, 0), up(-se * ca, -se * sa, ce);
-      distance = Eigen::Vector3d(beam.dot(distance), across.dot(distance), up.dot(distance));
-    }
-    for (int row = 0; row < 3; ++row) {
-      components[static_cast<std::size_t>(row)].residual.push_back(1e3 * distance[row]);
+    const std::vector<double> deviation = observations.deviation(k);
+    for (std::size_t row = 0; row < rows; ++row) {
+      components[row].normalised.push_back(residuals[rows * k + row]);
+      components[row].residual.push_back(deviation[row] * (of_reading[row].is_angle ? 1e6 : 1e3));
     }
   }
-  for (ResidualComponent& component : components) component.unit = "um";
   return components;
 }
 
 nlohmann::ordered_json report_residuals(const Machine& machine, const StudyResult& result) {
   nlohmann::ordered_json setups = nlohmann::ordered_json::array();
   for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
-    const TrackerObservations& observations = *result.model.observations[s];
-    setups.push_back(
-        setup_json(machine, result, s, observations, tracker_components(observations), observations.readings().time_s));
+    const Observations& observations = *result.model.observations[s];
+    const CampaignSetup& setup = *result.campaign.setups[s];
+    setups.push_back(setup_json(machine, result, s, observations, residual_components(observations), setup.time_s()));
   }
   return {{"setups", setups}};
 }

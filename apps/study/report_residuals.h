@@ -10,19 +10,14 @@ namespace abbe {
 
 /// One component of the readings of a set-up: what the report draws as one row of residuals.
 struct ResidualComponent {
-  std::string name;                ///< as the instrument's users call it: "x", "range", "radius"
-  std::string unit;                ///< of `residual`: "um", "urad", "mm", "deg"; empty: the normalised ones only
+  std::string name;                ///< as the instrument's users call it: "x", "range", "length"
+  std::string unit;                ///< of `residual`: "um" or "urad"
   std::vector<double> normalised;  ///< [readings] whitened, (measured - modelled) / standard uncertainty
-  std::vector<double> residual;    ///< [readings] measured - modelled in `unit`, or empty
+  std::vector<double> residual;    ///< [readings] measured - modelled in `unit`
 };
 
-/// Components of any instrument from its weighted residuals, without residuals in a unit.
-/// @param names  one per row of the observations
-std::vector<ResidualComponent> residual_components(const Observations& observations,
-                                                   const std::vector<std::string>& names);
-
-/// Components of a laser tracker: x, y, z in its frame, or range and the two directions across the beam; um.
-std::vector<ResidualComponent> tracker_components(const TrackerObservations& observations);
+/// Components of any instrument at the present point of its observations.
+std::vector<ResidualComponent> residual_components(const Observations& observations);
 
 /// The `residuals` section: every set-up with its components, at most about 5000 readings each, all outliers among
 /// them.

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <stdexcept>
-
 #include "abbe/instruments/tracker_observations.h"
 
 namespace abbe {
@@ -36,7 +34,7 @@ TrackerObservations one_reading(TrackerMeasure measure) {
 
 TEST(TrackerComponents, OfCoordinatesAreThoseOfTheTrackerFrame) {
   const TrackerObservations observations = one_reading(TrackerMeasure::cartesian);
-  const std::vector<ResidualComponent> components = tracker_components(observations);
+  const std::vector<ResidualComponent> components = residual_components(observations);
   ASSERT_EQ(components.size(), 3u);
   const char* names[] = {"x", "y", "z"};
   const double off_um[] = {3, -4, 12};
@@ -50,7 +48,7 @@ TEST(TrackerComponents, OfCoordinatesAreThoseOfTheTrackerFrame) {
 
 TEST(TrackerComponents, OfRangeAndAnglesLieAlongAndAcrossTheBeam) {
   const TrackerObservations observations = one_reading(TrackerMeasure::range_and_angles);
-  const std::vector<ResidualComponent> components = tracker_components(observations);
+  const std::vector<ResidualComponent> components = residual_components(observations);
   ASSERT_EQ(components.size(), 3u);
   // Beam along (3, 4, 12) / 13; across it (-4, 3, 0) / 5 and (-36, -48, 25) / 65.
   const double off_um[] = {(3 * 3 - 4 * 4 + 12 * 12) / 13.0, (-4 * 3 - 3 * 4) / 5.0,
@@ -61,15 +59,6 @@ TEST(TrackerComponents, OfRangeAndAnglesLieAlongAndAcrossTheBeam) {
     EXPECT_NEAR(components[k].residual.at(0), off_um[k], 1e-3);
     EXPECT_NEAR(components[k].normalised.at(0), off_um[k] / 10, 1e-4);
   }
-}
-
-TEST(ResidualComponents, OfAnyInstrumentNeedANameForEveryRow) {
-  const TrackerObservations observations = one_reading(TrackerMeasure::cartesian);
-  EXPECT_THROW(residual_components(observations, {"radius"}), std::out_of_range);
-  const std::vector<ResidualComponent> components = residual_components(observations, {"a", "b", "c"});
-  EXPECT_EQ(components[2].name, "c");
-  EXPECT_TRUE(components[2].residual.empty());
-  EXPECT_NEAR(components[2].normalised.at(0), 1.2, 1e-7);
 }
 
 }  // namespace

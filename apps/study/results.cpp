@@ -6,14 +6,15 @@
 #include <map>
 #include <numbers>
 
+#include "abbe/formats/csv_reader.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/map_file.h"
-#include "abbe/formats/measurement_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/identify/prediction.h"
 #include "abbe/report/report.h"
 #include "study/report_data.h"
+#include "study/report_residuals.h"
 #include "study/summary.h"
 
 namespace abbe {
@@ -25,17 +26,6 @@ MapField field(std::string name, const std::array<std::vector<double>, 3>& value
 }
 
 }  // namespace
-
-std::string readings_text(const Machine& machine, const CampaignSetup& setup) {
-  MeasurementTable table;
-  table.readings = setup.readings;
-  for (const TrackerStation& station : setup.start.stations) table.stations.push_back(station.name);
-  for (const Reflector& reflector : setup.start.reflectors) {
-    table.reflectors.push_back(reflector.name);
-    table.reflector_offset.push_back(reflector.offset);
-  }
-  return measurements_text(machine, table);
-}
 
 MapData map_data(const Machine& machine, const PoseList& poses, const std::vector<std::size_t>& grid,
                  const ErrorMap& before, const ErrorMap* after, const ErrorMap* uncertainty) {
@@ -82,27 +72,29 @@ std::string residuals_csv(const Study& study, const StudyResult& result) {
   std::string text = "setup,reading";
   for (const Axis& axis : machine.axes)
     text += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
-  text += ",used,normalised_x,normalised_y,normalised_z,residual_x_um,residual_y_um,residual_z_um,weight\n";
+  text += ",used,weight,component,normalised,residual,unit\n";
   for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
-    const TrackerObservations& observations = *result.model.observations[s];
-    const std::vector<double> residuals = residuals_by_reading(observations, study.threads);
+    const Observations& observations = *result.model.observations[s];
+    const std::vector<ResidualComponent> components = residual_components(observations);
     const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
     std::map<std::size_t, double> weights;
     for (const Outlier& outlier : result.identification.outliers) {
       if (outlier.observations == s) weights[outlier.reading] = outlier.weight;
     }
     for (std::size_t k = 0; k < observations.reading_count(); ++k) {
-      text += fmt::format("{},{}", result.campaign.setups[s].name, k);
+      std::string start = fmt::format("{},{}", csv_field(result.campaign.setups[s]->name), k);
       const std::vector<double> positions = observations.positions(k);
       for (std::size_t i = 0; i < positions.size(); ++i) {
         const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-        text += fmt::format(",{:.9g}", positions[i] * (rotary ? 180 / std::numbers::pi : 1));
+        start += fmt::format(",{:.9g}", positions[i] * (rotary ? 180 / std::numbers::pi : 1));
       }
-      const Eigen::Vector3d d = 1e3 * observations.distance(k);
       const auto outlier = weights.find(k);
-      text += fmt::format(",{},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.5g},{:.4g}\n", use.empty() || use[k] != 0 ? 1 : 0,
-                          residuals[3 * k], residuals[3 * k + 1], residuals[3 * k + 2], d.x(), d.y(), d.z(),
-                          outlier == weights.end() ? 1.0 : outlier->second);
+      start += fmt::format(",{},{:.4g}", use.empty() || use[k] != 0 ? 1 : 0,
+                           outlier == weights.end() ? 1.0 : outlier->second);
+      for (const ResidualComponent& component : components) {
+        text += fmt::format("{},{},{:.5g},{:.5g},{}\n", start, component.name, component.normalised[k],
+                            component.residual[k], component.unit);
+      }
     }
   }
   return text;
@@ -113,8 +105,8 @@ nlohmann::ordered_json write_results(const Study& study, const StudyResult& resu
   ResultsFolder folder(study.output);
   folder.write("summary.json", json_text(summary) + "\n");
   if (result.campaign.truth) {
-    for (const CampaignSetup& setup : result.campaign.setups) {
-      folder.write("readings/" + setup.name + ".csv", readings_text(study.machine, setup));
+    for (const std::unique_ptr<CampaignSetup>& setup : result.campaign.setups) {
+      folder.write("readings/" + setup->name + ".csv", setup->readings_text(study.machine));
     }
     ErrorsFile truth{
         .errors = *result.campaign.truth, .covariance = {}, .provenance = {{"method", "truth of a simulation"}}};

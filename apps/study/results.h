@@ -18,10 +18,8 @@ nlohmann::ordered_json write_results(const Study& study, const StudyResult& resu
 MapData map_data(const Machine& machine, const PoseList& poses, const std::vector<std::size_t>& grid,
                  const ErrorMap& before, const ErrorMap* after, const ErrorMap* uncertainty);
 
-/// Readings of one set-up as a measurement file.
-std::string readings_text(const Machine& machine, const CampaignSetup& setup);
-
-/// Residuals as CSV: set-up, reading, axis positions, normalised residuals, distances in um, weight.
+/// Residuals as CSV, one line per component of a reading: set-up, reading, axis positions, used, weight, component,
+/// normalised residual, residual with its unit.
 std::string residuals_csv(const Study& study, const StudyResult& result);
 
 }  // namespace abbe

@@ -10,14 +10,14 @@
 namespace abbe {
 namespace {
 
-/// Lengths of the fit's residuals at the measured poses, not weighted, mm.
+/// Lengths of the fit's residuals at the measured poses, not weighted, mm; angles take no part.
 SampleStatistics fit_residuals(const StudyResult& result) {
   std::vector<double> lengths;
   for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
-    const TrackerObservations& observations = *result.model.observations[s];
+    const Observations& observations = *result.model.observations[s];
     const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
     for (std::size_t k = 0; k < observations.reading_count(); ++k) {
-      if (use.empty() || use[k] != 0) lengths.push_back(observations.distance(k).norm());
+      if (use.empty() || use[k] != 0) append_length(observations, k, lengths);
     }
   }
   return sample_statistics(lengths);

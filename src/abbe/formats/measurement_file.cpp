@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "abbe/formats/error_fields.h"
+#include "abbe/formats/axis_columns.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/text_file.h"
 
@@ -14,8 +14,6 @@ namespace abbe {
 namespace {
 
 constexpr std::size_t kLargestOffsetCount = 1000;
-// A command written with few digits may end just outside the travel.
-constexpr double kTravelTolerance = 1e-6;
 
 /// Columns of one file and where they stand in the table that was read.
 struct Layout {
@@ -30,19 +28,13 @@ struct Layout {
   }
 };
 
-void add_axes(Layout& layout, const Machine& machine) {
-  for (const Axis& axis : machine.axes) {
-    layout.columns.push_back({axis.name, axis_quantity(axis), false, true, CsvColumn::Range::any});
-  }
-}
-
 class Reader {
  public:
   Reader(std::string_view text, const std::string& file, const Machine& machine, const MeasurementOptions& options)
       : text_(text), file_(file), machine_(machine), options_(options) {}
 
   MeasurementTable measurements() {
-    add_axes(layout_, machine_);
+    layout_.columns = axis_columns(machine_);
     const std::size_t station = layout_.add_name("station");
     const std::size_t reflector = layout_.add_name("reflector");
     const std::size_t offset = add_all({"offset_x", "offset_y", "offset_z"}, Quantity::length);
@@ -71,7 +63,7 @@ class Reader {
   }
 
   PoseList poses_only() {
-    add_axes(layout_, machine_);
+    layout_.columns = axis_columns(machine_);
     csv_ = read_csv(text_, file_, layout_.columns, options_.mapping, options_.threads);
     return poses();
   }
@@ -114,28 +106,7 @@ class Reader {
                      fmt::format("stands beside {}", csv_.columns[other].header), "only one of them");
   }
 
-  PoseList poses() {
-    PoseList list;
-    list.axis.resize(machine_.axes.size());
-    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-      if (options_.check_travel) check_travel(machine_.axes[i], csv_.columns[i]);
-      list.axis[i] = std::move(csv_.columns[i].numbers);
-    }
-    return list;
-  }
-
-  void check_travel(const Axis& axis, const CsvValues& values) const {
-    if (axis.endless) return;
-    for (std::size_t row = 0; row < values.numbers.size(); ++row) {
-      const double command = values.numbers[row];
-      if (command >= axis.travel_min - kTravelTolerance && command <= axis.travel_max + kTravelTolerance) continue;
-      const Unit& unit = unit_named(axis_quantity(axis), axis.kind == AxisKind::linear ? "mm" : "deg");
-      const double scale = 1 / unit.factor;
-      fail_row(row, values.header,
-               fmt::format("{:.9g} {} is outside the travel of axis {}", command * scale, unit.suffix, axis.name),
-               fmt::format("{:.9g} to {:.9g} {}", axis.travel_min * scale, axis.travel_max * scale, unit.suffix));
-    }
-  }
+  PoseList poses() { return take_poses(text_, file_, machine_, csv_, options_.check_travel); }
 
   void read_measured(std::size_t xyz, std::size_t range) {
     const bool cartesian = all_or_none(xyz, 3), polar = all_or_none(range, 3);

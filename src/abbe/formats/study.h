@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +12,9 @@
 #include "abbe/formats/measurement_file.h"
 #include "abbe/identify/robust_loss.h"
 #include "abbe/identify/strategies.h"
+#include "abbe/instruments/instrument.h"
 #include "abbe/instruments/measurement_plan.h"
+#include "abbe/instruments/path_plan.h"
 #include "abbe/instruments/tracker.h"
 #include "abbe/machine/machine.h"
 
@@ -46,7 +49,14 @@ struct Simulation {
   bool noise = true;  ///< false: exact readings; the set-ups' noise then only weights them
 };
 
-enum class PlanKind { grid, line, random, spiral };
+enum class PlanKind {
+  grid,
+  line,
+  random,
+  spiral,
+  circle,  ///< one point of an item goes round the other, the linear axes moving
+  follow   ///< the points of an item stay together while the rotary axes go through their grid
+};
 
 /// Axis positions at which simulated readings are taken.
 ///
@@ -54,11 +64,16 @@ enum class PlanKind { grid, line, random, spiral };
 /// al., fig. 5, are fixed axes and restricted ranges: A all axes over their range, B one fixed C, C one fixed X and Z.
 struct MeasurementPlan {
   PlanKind kind = PlanKind::grid;
-  std::vector<AxisRange> axes;          ///< [axes], chain order; mm or rad
-  int points = 0;                       ///< line, random, spiral
-  double turns = 1;                     ///< spiral: turns of the ellipse over the two axes of largest range
-  std::vector<std::size_t> reflectors;  ///< indices into Setup::reflectors; each position is measured with each
-  std::size_t station = 0;              ///< index into Setup::stations
+  std::vector<AxisRange> axes;  ///< [axes], chain order; mm or rad
+  int points = 0;               ///< line, random, spiral
+  double turns = 1;             ///< spiral: turns of the ellipse over the two axes of largest range
+  /// Indices into Setup::reflectors or the instrument's items; each position is measured with each.
+  std::vector<std::size_t> targets;
+  std::size_t station = 0;                                 ///< index into Setup::stations
+  std::size_t repeats = 1;                                 ///< how often the poses are gone through
+  bool there_and_back = false;                             ///< every second time in reverse order
+  CircleDescription circle;                                ///< of kind circle; its count is `points`
+  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< follow: of the points from each other, mm, machine frame
 };
 
 struct SetupReflector {
@@ -86,7 +101,10 @@ struct SetupData {
 /// One instrument at one place in one period of time.
 struct Setup {
   std::string name;
-  std::string instrument;  ///< "tracker"
+  std::string instrument;  ///< "tracker", "ball-bar", ...
+  /// Any instrument but the tracker, as the identification starts with it; of the fields below only `noise_from_data`,
+  /// `plans` and `data` are then used.
+  std::shared_ptr<const Instrument> device;
   Body mounted_on = Body::workpiece;
   TrackerMeasure measure = TrackerMeasure::cartesian;
   TrackerNoise noise;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "abbe/formats/error_fields.h"
+#include "abbe/formats/study_file.h"
 #include "abbe/formats/study_parts.h"
 
 namespace abbe {

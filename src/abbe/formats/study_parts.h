@@ -13,10 +13,17 @@ namespace abbe {
 Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated);
 IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);
 
+/// What a plan may name: targets ("reflectors" of a tracker, "items" of other instruments) and stations (tracker only).
+struct PlanNames {
+  std::string key;  ///< of the targets in the file
+  std::string one;  ///< a single target in words
+  std::vector<std::string> targets;
+  std::vector<std::string> stations;
+};
+
+MeasurementPlan read_plan(TomlTable& table, const Machine& machine, const PlanNames& names);
+
 /// Table `axis` with one table per axis: `range` and `count`, or `at`. Axes that are not named stay fixed.
 std::vector<AxisRange> read_axis_ranges(TomlTable& parent, const Machine& machine, bool with_counts);
-
-/// `*` stands for any text, `?` for one character.
-bool matches_pattern(std::string_view text, std::string_view pattern);
 
 }  // namespace abbe

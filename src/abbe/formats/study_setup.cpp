@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "abbe/formats/study_instrument.h"
 #include "abbe/formats/study_parts.h"
 
 namespace abbe {
@@ -9,14 +10,8 @@ namespace {
 
 constexpr double kMicrometresPerMillimetre = 1e3;
 constexpr double kMicrometresPerMetre = 1e6;  // of mm per mm
-constexpr int kLargestPointCount = 10'000'000;
 
 Eigen::Vector3d vector(const std::vector<double>& values) { return {values[0], values[1], values[2]}; }
-
-Body read_body(TomlTable& table, Body otherwise) {
-  return static_cast<Body>(
-      table.word_or("mounted_on", static_cast<std::size_t>(otherwise), {"bed", "workpiece", "tool"}));
-}
 
 StudyPose read_pose(TomlTable table) {
   StudyPose pose;
@@ -55,7 +50,7 @@ SetupStation read_station(TomlTable& table, bool simulated) {
 SetupReflector read_reflector(TomlTable& table, bool simulated) {
   SetupReflector reflector;
   reflector.name = table.text("name");
-  reflector.mounted_on = read_body(table, Body::tool);
+  reflector.mounted_on = read_body(table, "mounted_on", Body::tool);
   if (table.has("offset")) {
     if (!table.is_text("offset") || table.text("offset") != "from-data") {
       table.fail("offset", "is not \"from-data\"", "offset = \"from-data\", or a vector offset_mm = [x, y, z]");
@@ -98,53 +93,6 @@ TrackerNoise read_noise(TomlTable table) {
   return {range * kMicrometresPerMillimetre, range_slope * kMicrometresPerMetre, 0, angle * kMicrometresPerMetre};
 }
 
-template <typename Named>
-std::size_t find_name(const std::vector<Named>& items, const std::string& name) {
-  const auto at = std::find_if(items.begin(), items.end(), [&](const Named& item) { return item.name == name; });
-  return static_cast<std::size_t>(at - items.begin());
-}
-
-template <typename Named>
-std::string all_names(const std::vector<Named>& items) {
-  std::string names;
-  for (const Named& item : items) names += (names.empty() ? "" : ", ") + item.name;
-  return names;
-}
-
-MeasurementPlan read_plan(TomlTable& table, const Machine& machine, const Setup& setup) {
-  MeasurementPlan plan;
-  plan.kind = static_cast<PlanKind>(table.word("kind", {"grid", "line", "random", "spiral"}));
-  plan.axes = read_axis_ranges(table, machine, plan.kind == PlanKind::grid);
-  if (plan.kind != PlanKind::grid) plan.points = static_cast<int>(table.integer("points", 1, kLargestPointCount));
-  if (plan.kind == PlanKind::spiral) plan.turns = table.size_or("turns", Quantity::dimensionless, 5);
-  const auto moving =
-      std::count_if(plan.axes.begin(), plan.axes.end(), [](const AxisRange& r) { return !r.is_fixed(); });
-  if (moving < (plan.kind == PlanKind::spiral ? 2 : 1)) {
-    table.fail("", "too few axes move", plan.kind == PlanKind::spiral ? "ranges of two axes" : "the range of an axis");
-  }
-  if (plan.kind == PlanKind::grid) {
-    double poses = 1;
-    for (const AxisRange& range : plan.axes) poses *= range.is_fixed() ? 1 : static_cast<double>(range.count);
-    if (poses > kLargestPointCount) table.fail("", fmt::format("the grid has {:.3g} poses", poses), "at most 1e7");
-  }
-  for (const std::string& name : table.texts_or_none("reflectors")) {
-    plan.reflectors.push_back(find_name(setup.reflectors, name));
-    if (plan.reflectors.back() < setup.reflectors.size()) continue;
-    table.fail("reflectors", fmt::format("there is no reflector \"{}\"", name),
-               "one of " + all_names(setup.reflectors));
-  }
-  if (plan.reflectors.empty()) {
-    for (std::size_t i = 0; i < setup.reflectors.size(); ++i) plan.reflectors.push_back(i);
-  }
-  const std::string station = table.text_or("station", setup.stations.front().name);
-  plan.station = find_name(setup.stations, station);
-  if (plan.station == setup.stations.size()) {
-    table.fail("station", fmt::format("there is no station \"{}\"", station), "one of " + all_names(setup.stations));
-  }
-  table.finish();
-  return plan;
-}
-
 SetupData read_data(TomlTable& table, const std::filesystem::path& folder) {
   SetupData data;
   data.file = folder / table.text("file");
@@ -158,27 +106,17 @@ SetupData read_data(TomlTable& table, const std::filesystem::path& folder) {
 
 template <typename Named>
 void refuse_same_name(const TomlTable& table, const std::vector<Named>& items) {
-  if (find_name(items, items.back().name) + 1 < items.size()) {
-    table.fail("name", fmt::format("another one is called \"{}\"", items.back().name), "different names");
+  for (std::size_t i = 0; i + 1 < items.size(); ++i) {
+    if (items[i].name == items.back().name) {
+      table.fail("name", fmt::format("another one is called \"{}\"", items.back().name), "different names");
+    }
   }
 }
 
-}  // namespace
-
-Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated) {
-  Setup setup;
-  setup.name = table.text("name");
-  table.word("instrument", {"tracker"});
-  setup.instrument = "tracker";
-  setup.mounted_on = read_body(table, Body::workpiece);
+void read_tracker(TomlTable& table, bool simulated, Setup& setup) {
+  setup.mounted_on = read_body(table, "mounted_on", Body::workpiece);
   setup.measure = static_cast<TrackerMeasure>(table.word_or("measure", 0, {"xyz", "range-angles"}));
-  setup.noise_from_data = table.boolean_or("noise_from_data", false);
-  if (setup.noise_from_data) {
-    if (simulated) table.fail("noise_from_data", "a simulation has no data", "[setup.noise]");
-    if (table.has("noise")) table.fail("noise", "stands beside noise_from_data = true", "only one of them");
-  } else {
-    setup.noise = read_noise(table.table("noise"));
-  }
+  if (!setup.noise_from_data) setup.noise = read_noise(table.table("noise"));
   for (TomlTable& station : table.tables("station")) {
     setup.stations.push_back(read_station(station, simulated));
     refuse_same_name(station, setup.stations);
@@ -195,10 +133,47 @@ Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Ma
                      "another mounted_on for one of them");
     }
   }
+}
+
+/// Names of what can be measured at a position, and of where it can be measured from.
+PlanNames plan_names(const Setup& setup) {
+  PlanNames names;
+  names.key = setup.device ? "items" : "reflectors";
+  names.one = setup.device ? "item" : "reflector";
+  if (setup.device) {
+    for (const InstrumentItem& item : setup.device->items()) names.targets.push_back(item.name);
+  }
+  for (const SetupReflector& reflector : setup.reflectors) names.targets.push_back(reflector.name);
+  for (const SetupStation& station : setup.stations) names.stations.push_back(station.name);
+  return names;
+}
+
+}  // namespace
+
+Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated) {
+  Setup setup;
+  setup.name = table.text("name");
+  std::vector<std::string_view> words = instrument_words();
+  words.insert(words.begin(), "tracker");
+  const std::size_t instrument = table.word("instrument", words);
+  setup.instrument = words[instrument];
+  setup.noise_from_data = table.boolean_or("noise_from_data", false);
+  if (setup.noise_from_data) {
+    if (simulated) table.fail("noise_from_data", "a simulation has no data", "[setup.noise]");
+    if (instrument == 0 && table.has("noise")) {
+      table.fail("noise", "stands beside noise_from_data = true", "only one of them");
+    }
+  }
+  if (instrument == 0) {
+    read_tracker(table, simulated, setup);
+  } else {
+    setup.device = read_instrument(instrument - 1, table, {setup.name, machine, simulated});
+  }
+  const PlanNames names = plan_names(setup);
   for (TomlTable& plan : table.tables("plan")) {
     if (!simulated) table.fail("plan", "belongs to a simulation only", "[simulate], or [[setup.data]]");
-    if (setup.reflectors.empty()) table.fail("", "the reflectors are missing", "[[setup.reflector]]");
-    setup.plans.push_back(read_plan(plan, machine, setup));
+    if (names.targets.empty()) table.fail("", "the reflectors are missing", "[[setup.reflector]]");
+    setup.plans.push_back(read_plan(plan, machine, names));
   }
   for (TomlTable& data : table.tables("data")) {
     if (simulated) table.fail("data", "stands beside [simulate]", "only one of them");

@@ -296,6 +296,10 @@ std::optional<std::vector<double>> TomlTable::optional_numbers(std::string_view 
 }
 
 std::size_t TomlTable::word(std::string_view key, std::initializer_list<std::string_view> words) {
+  return word(key, std::vector<std::string_view>(words));
+}
+
+std::size_t TomlTable::word(std::string_view key, const std::vector<std::string_view>& words) {
   const std::string found = text_or(key, "");
   const auto at = std::find(words.begin(), words.end(), found);
   if (at != words.end()) return static_cast<std::size_t>(at - words.begin());

@@ -58,6 +58,7 @@ class TomlTable {
 
   /// One of several words. @returns its index
   std::size_t word(std::string_view key, std::initializer_list<std::string_view> words);
+  std::size_t word(std::string_view key, const std::vector<std::string_view>& words);
   std::size_t word_or(std::string_view key, std::size_t otherwise, std::initializer_list<std::string_view> words);
 
   TomlTable table(std::string_view key);

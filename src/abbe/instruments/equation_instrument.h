@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cassert>
+#include <memory>
 #include <type_traits>
 
 #include "abbe/geometry/dual.h"
@@ -47,6 +48,12 @@ class EquationInstrument : public Instrument {
     } else {
       evaluate<Dual<kVariables>>(block, out);
     }
+  }
+
+  std::shared_ptr<const Instrument> with_values(const std::vector<double>& values) const final {
+    auto copy = std::make_shared<Derived>(*static_cast<const Derived*>(this));
+    copy->set_values(values);
+    return copy;
   }
 
  protected:

@@ -76,6 +76,10 @@ std::vector<double> Instrument::start_values(const Machine&, const InstrumentRea
 
 std::optional<MeetingPoints> Instrument::meeting_points(std::size_t) const { return std::nullopt; }
 
+std::vector<std::vector<double>> Instrument::planned_inputs(std::size_t) const {
+  return {std::vector<double>(inputs_.size(), 0.0)};
+}
+
 void Instrument::set_values(const std::vector<double>& values) {
   for (std::size_t i = 0; i < quantities_.size(); ++i) quantities_[i].value = values.at(i);
 }

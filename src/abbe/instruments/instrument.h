@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -101,8 +102,11 @@ class Instrument {
   /// Nominal points of an item that plans bring together; none where the instrument has no such points.
   virtual std::optional<MeetingPoints> meeting_points(std::size_t item) const;
 
-  /// Puts values into the quantities, [quantities()]; knowledge and uncertainties stay.
-  void set_values(const std::vector<double>& values);
+  /// Known numbers with which a plan measures an item at every pose: one reading per entry, [inputs()] each.
+  virtual std::vector<std::vector<double>> planned_inputs(std::size_t item) const;
+
+  /// The same instrument with other values of its quantities, [quantities()]; knowledge and uncertainties stay.
+  virtual std::shared_ptr<const Instrument> with_values(const std::vector<double>& values) const = 0;
 
  protected:
   explicit Instrument(std::string name) : name_(std::move(name)) {}
@@ -111,6 +115,7 @@ class Instrument {
   /// Three coordinates, named NAME.x, NAME.y, NAME.z, mm. @return their indices
   std::array<std::size_t, 3> add(const std::string& name, const SetupPoint& point);
   std::size_t add(InstrumentItem item);
+  void set_values(const std::vector<double>& values);
 
   std::string name_;
   std::vector<ReadingComponent> components_;

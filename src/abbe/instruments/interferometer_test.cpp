@@ -309,7 +309,7 @@ TEST(Interferometer, BothDirectionsOfABidirectionalRunShareTheirZeroAndDifferByT
   const Machine machine = test::three_axis_mill();
   InterferometerSetup setup = misaligned({length, pitch});
   setup.runs[0].bidirectional = true;
-  auto laser = std::make_shared<Interferometer>(setup);
+  std::shared_ptr<const Instrument> laser = std::make_shared<Interferometer>(setup);
   ASSERT_EQ(laser->items().size(), 2u);
   EXPECT_EQ(laser->items()[0].name, "X+");
   EXPECT_EQ(laser->items()[1].name, "X-");
@@ -319,7 +319,7 @@ TEST(Interferometer, BothDirectionsOfABidirectionalRunShareTheirZeroAndDifferByT
                      : quantity.name == "X.pitch.reversal" ? 3e-6
                                                            : quantity.value);
   }
-  laser->set_values(values);
+  laser = laser->with_values(values);
   InstrumentReadings plan;
   for (const std::size_t item : {std::size_t{0}, std::size_t{1}}) plan.append({300, 100, -50}, item);
   const InstrumentReadings readings = test::exact_readings(machine, test::some_errors(machine), laser, plan);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -14,49 +15,45 @@ enum class Knowledge {
   open     ///< estimated from the readings alone
 };
 
-/// A number of the set-up: the length of a bar, a coordinate of a ball, the zero of an indication.
-struct SetupQuantity {
-  std::string name;       ///< with the set-up's name in front: "bar1.length", "table_ball.x"
-  bool is_angle = false;  ///< rad if true; mm if false (or a pure number, where the docstring says so)
-  double value = 0;       ///< start of the estimate, or the value itself; in a simulation the true one
-  Knowledge knowledge = Knowledge::open;
-  double standard_uncertainty = 0;  ///< of `value` for Knowledge::within, > 0
-  double scale = 1;                 ///< typical size for scaling, > 0
-};
-
-/// A number of a set-up and how well it is known.
+/// A number of a set-up and how well it is known; mm, rad or a pure number.
 struct SetupNumber {
-  double value = 0;  ///< mm, rad or a pure number
+  double value = 0;  ///< start of the estimate, or the value itself; in a simulation the true one
   Knowledge knowledge = Knowledge::exact;
-  double standard_uncertainty = 0;  ///< for Knowledge::within
+  double standard_uncertainty = 0;  ///< of `value` for Knowledge::within, > 0
+  std::optional<double> truth{};    ///< simulation: what it really is, where that was stated
 
-  static SetupNumber exact(double value) { return {value, Knowledge::exact, 0}; }
-  static SetupNumber within(double value, double uncertainty) { return {value, Knowledge::within, uncertainty}; }
-  static SetupNumber open(double start) { return {start, Knowledge::open, 0}; }
+  static SetupNumber exact(double value) { return {value, Knowledge::exact, 0, {}}; }
+  static SetupNumber within(double value, double uncertainty) { return {value, Knowledge::within, uncertainty, {}}; }
+  static SetupNumber open(double start) { return {start, Knowledge::open, 0, {}}; }
 };
 
-/// Three of them: a point, or the angles of a direction.
+/// Three of them: a point, mm.
 struct SetupPoint {
   std::array<SetupNumber, 3> coordinate;
 
-  static SetupPoint exact(const Eigen::Vector3d& point) { return of(point, Knowledge::exact, 0); }
+  static SetupPoint exact(const Eigen::Vector3d& point) {
+    return {{SetupNumber::exact(point[0]), SetupNumber::exact(point[1]), SetupNumber::exact(point[2])}};
+  }
   static SetupPoint within(const Eigen::Vector3d& point, double uncertainty) {
-    return of(point, Knowledge::within, uncertainty);
+    return {{SetupNumber::within(point[0], uncertainty), SetupNumber::within(point[1], uncertainty),
+             SetupNumber::within(point[2], uncertainty)}};
   }
-  static SetupPoint open(const Eigen::Vector3d& start) { return of(start, Knowledge::open, 0); }
+  static SetupPoint open(const Eigen::Vector3d& start) {
+    return {{SetupNumber::open(start[0]), SetupNumber::open(start[1]), SetupNumber::open(start[2])}};
+  }
   Eigen::Vector3d value() const { return {coordinate[0].value, coordinate[1].value, coordinate[2].value}; }
+};
 
- private:
-  static SetupPoint of(const Eigen::Vector3d& point, Knowledge knowledge, double uncertainty) {
-    return {
-        {{{point[0], knowledge, uncertainty}, {point[1], knowledge, uncertainty}, {point[2], knowledge, uncertainty}}}};
-  }
+/// A named number of the set-up: the length of a bar, a coordinate of a ball, the zero of an indication.
+struct SetupQuantity : SetupNumber {
+  std::string name;       ///< with the set-up's name in front: "bar1.length", "table_ball.x"
+  bool is_angle = false;  ///< rad if true; mm if false (or a pure number, where the docstring says so)
+  double scale = 1;       ///< typical size for scaling, > 0
 };
 
 /// @param name  with the set-up's name in front
 inline SetupQuantity quantity(std::string name, bool is_angle, const SetupNumber& number) {
-  return {std::move(name),      is_angle, number.value, number.knowledge, number.standard_uncertainty,
-          is_angle ? 1e-3 : 1.0};
+  return {number, std::move(name), is_angle, is_angle ? 1e-3 : 1.0};
 }
 
 }  // namespace abbe

@@ -345,11 +345,18 @@ std::vector<double> TrackerObservations::positions(std::size_t reading) const {
 }
 const std::vector<ReadingComponent>& TrackerObservations::components() const {
   static const std::vector<ReadingComponent> kPoint = {{"x", false}, {"y", false}, {"z", false}};
-  return kPoint;
+  static const std::vector<ReadingComponent> kBeam = {{"range", false}, {"azimuth", false}, {"elevation", false}};
+  return implementation_->readings.measure == TrackerMeasure::cartesian ? kPoint : kBeam;
 }
 std::vector<double> TrackerObservations::deviation(std::size_t reading) const {
+  const TrackerReadings& readings = implementation_->readings;
   const Eigen::Vector3d d = distance(reading);
-  return {d.x(), d.y(), d.z()};
+  if (readings.measure == TrackerMeasure::cartesian) return {d.x(), d.y(), d.z()};
+  // Along the beam and across it, in the directions in which azimuth and elevation grow.
+  const double azimuth = readings.measured[1][reading], elevation = readings.measured[2][reading];
+  const double ca = std::cos(azimuth), sa = std::sin(azimuth), ce = std::cos(elevation), se = std::sin(elevation);
+  return {Eigen::Vector3d(ce * ca, ce * sa, se).dot(d), Eigen::Vector3d(-sa, ca, 0).dot(d),
+          Eigen::Vector3d(-se * ca, -se * sa, ce).dot(d)};
 }
 const TrackerReadings& TrackerObservations::readings() const { return implementation_->readings; }
 

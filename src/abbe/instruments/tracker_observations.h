@@ -29,6 +29,7 @@ class TrackerObservations : public Observations {
   std::string name() const override;
   std::size_t reading_count() const override;
   int rows() const override { return 3; }
+  /// x, y, z; or along the beam and across it in azimuth and elevation: lengths all three.
   const std::vector<ReadingComponent>& components() const override;
   const std::vector<SetupUnknown>& unknowns() const override;
   std::vector<double> unknown_values() const override;

@@ -1,0 +1,171 @@
+#include "study/instrument_campaign.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "abbe/errors/random_stream.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/instrument_file.h"
+#include "abbe/instruments/instrument_observations.h"
+#include "abbe/instruments/instrument_simulation.h"
+#include "abbe/instruments/path_plan.h"
+
+namespace abbe {
+namespace {
+
+// A stream of its own, apart from those of the readings.
+constexpr std::uint64_t kTruthStream = 1'000'000'007;
+
+/// Poses of a plan for one item.
+PoseList item_poses(const Machine& machine, const Instrument& device, const MeasurementPlan& plan, std::size_t item,
+                    std::uint64_t seed) {
+  if (plan.kind != PlanKind::circle && plan.kind != PlanKind::follow) return plan_poses(machine, plan, seed);
+  const std::optional<MeetingPoints> points = device.meeting_points(item);
+  if (!points) {
+    throw std::invalid_argument(device.name() + " has no points that meet; use a plan of another kind");
+  }
+  const InstrumentItem& ends = device.items()[item];
+  PoseList poses;
+  if (plan.kind == PlanKind::circle) {
+    std::vector<double> positions;
+    for (const AxisRange& range : plan.axes) positions.push_back(range.from);
+    poses = circle_plan(machine, positions, ends.from, ends.to, *points, plan.circle);
+  } else {
+    poses = follow_plan(machine, grid_plan(machine, plan.axes), ends.from, ends.to, *points, plan.displacement);
+  }
+  return repeated(poses, plan.repeats, plan.there_and_back);
+}
+
+/// The instrument as it really is.
+std::shared_ptr<const Instrument> true_device(const Study& study, std::size_t setup) {
+  const Instrument& device = *study.setups[setup].device;
+  RandomStream random(study.seed, kTruthStream + setup);
+  std::vector<double> values;
+  for (const SetupQuantity& quantity : device.quantities()) {
+    const double drawn = quantity.value + quantity.standard_uncertainty * random.normal();
+    values.push_back(quantity.truth.value_or(quantity.knowledge == Knowledge::within ? drawn : quantity.value));
+  }
+  return device.with_values(values);
+}
+
+void simulate(const Study& study, std::size_t setup_index, const ErrorSet& truth, InstrumentCampaign& result) {
+  const Setup& setup = study.setups[setup_index];
+  const std::shared_ptr<const Instrument> device = true_device(study, setup_index);
+  for (std::size_t p = 0; p < setup.plans.size(); ++p) {
+    const std::uint64_t seed = plan_seed(study, setup_index, p);
+    // Poses are planned with what is known of the set-up, not with what it really is.
+    const InstrumentReadings plan = planned_readings(study.machine, *setup.device, setup.plans[p], seed, setup.name);
+    InstrumentSimulationOptions options;
+    options.seed = seed;
+    options.noise_factor = study.simulation->noise ? 1 : 0;
+    options.outlier_fraction = study.simulation->outliers.fraction;
+    options.outlier_mm = study.simulation->outliers.size;
+    const SimulatedInstrument simulated = simulate_instrument(study.machine, truth, device, plan, options);
+    const std::size_t offset = result.readings.count();
+    for (const std::uint32_t outlier : simulated.outliers) {
+      result.outliers.push_back(static_cast<std::uint32_t>(offset) + outlier);
+    }
+    result.readings.append(simulated.readings);
+    options.noise_factor = 0;
+    options.outlier_fraction = 0;
+    result.exact.append(simulate_instrument(study.machine, truth, device, plan, options).readings);
+  }
+}
+
+void read(const Study& study, const Setup& setup, InstrumentCampaign& result) {
+  for (const SetupData& data : setup.data) {
+    MeasurementOptions options;
+    options.mapping = data.mapping;
+    options.threads = study.threads;
+    InstrumentReadings readings = read_instrument_readings(data.file, study.machine, *setup.device, options);
+    if (!setup.noise_from_data) {
+      readings.uncertainty.clear();
+    } else if (readings.uncertainty.empty()) {
+      throw InputError({.file = data.file.string()},
+                       "the study takes the noise from the data, but the file states no uncertainties",
+                       fmt::format("columns such as u_{}_{}", setup.device->components().front().name,
+                                   setup.device->components().front().is_angle ? "arcsec" : "um"));
+    }
+    if (result.readings.count() > 0 && readings.time_s.empty() != result.readings.time_s.empty()) {
+      throw InputError({.file = data.file.string()}, "the files of one set-up differ in their columns",
+                       "time_s in all files of a set-up, or in none");
+    }
+    result.readings.append(readings);
+  }
+}
+
+}  // namespace
+
+std::string InstrumentCampaign::readings_text(const Machine& machine) const {
+  return instrument_readings_text(machine, *device, readings);
+}
+
+void InstrumentCampaign::find_start(const Machine& machine, std::vector<std::string>& warnings,
+                                    std::vector<std::string>&) {
+  std::vector<std::string> said;
+  start = device->start_values(machine, readings, said);
+  for (const std::string& message : said) warnings.push_back(name + ": " + message);
+}
+
+std::unique_ptr<Observations> InstrumentCampaign::observe(const Machine& machine, const ErrorSet& errors,
+                                                          const InstrumentReadings& from) const {
+  return std::make_unique<InstrumentObservations>(machine, errors, start.empty() ? device : device->with_values(start),
+                                                  from);
+}
+
+std::unique_ptr<Observations> InstrumentCampaign::observations(const Machine& machine, const ErrorSet& errors) const {
+  return observe(machine, errors, readings);
+}
+
+std::unique_ptr<Observations> InstrumentCampaign::exact_observations(const Machine& machine,
+                                                                     const ErrorSet& errors) const {
+  return observe(machine, errors, exact);
+}
+
+std::vector<KnownUnknown> InstrumentCampaign::known_unknowns() const {
+  std::vector<KnownUnknown> known;
+  std::size_t unknown = 0;
+  for (const SetupQuantity& quantity : device->quantities()) {
+    if (quantity.knowledge == Knowledge::exact) continue;
+    if (quantity.knowledge == Knowledge::within) {
+      known.push_back({unknown, quantity.value, quantity.standard_uncertainty});
+    }
+    ++unknown;
+  }
+  return known;
+}
+
+InstrumentReadings planned_readings(const Machine& machine, const Instrument& device, const MeasurementPlan& plan,
+                                    std::uint64_t seed, const std::string& setup_name) {
+  InstrumentReadings readings;
+  for (const std::size_t item : plan.targets) {
+    PoseList poses;
+    try {
+      poses = item_poses(machine, device, plan, item, seed);
+    } catch (const std::invalid_argument& error) {
+      throw InputError({.file = setup_name, .field = "plan"},
+                       fmt::format("{}: {}", device.items()[item].name, error.what()),
+                       "poses within the travel of the machine");
+    }
+    for (std::size_t k = 0; k < poses.count(); ++k) {
+      for (const std::vector<double>& inputs : device.planned_inputs(item)) {
+        readings.append(poses.pose(k), item, inputs);
+      }
+    }
+  }
+  return readings;
+}
+
+std::unique_ptr<CampaignSetup> gather_instrument(const Study& study, std::size_t setup, const ErrorSet* truth) {
+  auto result = std::make_unique<InstrumentCampaign>();
+  result->device = study.setups[setup].device;
+  if (truth != nullptr) {
+    simulate(study, setup, *truth, *result);
+  } else {
+    read(study, study.setups[setup], *result);
+  }
+  return result;
+}
+
+}  // namespace abbe

@@ -1,0 +1,236 @@
+#include "study/tracker_campaign.h"
+
+#include <fmt/format.h>
+
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/measurement_file.h"
+#include "abbe/geometry/rotation.h"
+#include "abbe/instruments/tracker_start.h"
+
+namespace abbe {
+namespace {
+
+RigidTransform transform(const StudyPose& pose) { return {rotation_from_error_angles(pose.angles), pose.position}; }
+
+/// Stations and reflectors of a set-up; `truth` chooses the true values of a simulation.
+TrackerSetup tracker_setup(const Setup& setup, bool truth) {
+  TrackerSetup result;
+  for (const SetupStation& given : setup.stations) {
+    TrackerStation station;
+    station.name = given.name;
+    station.body = setup.mounted_on;
+    station.estimate_pose = given.estimate_pose;
+    station.noise = setup.noise;
+    const std::optional<StudyPose>& pose = truth && given.true_pose ? given.true_pose : given.pose;
+    if (pose) station.body_from_tracker = transform(*pose);
+    result.stations.push_back(station);
+  }
+  for (const SetupReflector& given : setup.reflectors) {
+    Reflector reflector;
+    reflector.name = given.name;
+    reflector.body = given.mounted_on;
+    reflector.offset = truth && given.true_offset ? *given.true_offset : given.offset;
+    reflector.estimate_offset = given.estimate_offset;
+    result.reflectors.push_back(reflector);
+  }
+  return result;
+}
+
+void append(TrackerReadings& all, const TrackerReadings& more) {
+  if (all.count() == 0) {
+    all = more;
+    return;
+  }
+  const auto join = [](auto& a, const auto& b) { a.insert(a.end(), b.begin(), b.end()); };
+  const double time_offset = all.time_s.empty() ? 0 : all.time_s.back();
+  for (std::size_t i = 0; i < all.poses.axis.size(); ++i) join(all.poses.axis[i], more.poses.axis[i]);
+  join(all.station, more.station);
+  join(all.reflector, more.reflector);
+  for (std::size_t i = 0; i < 3; ++i) join(all.measured[i], more.measured[i]);
+  for (std::size_t i = 0; i < 6; ++i) join(all.uncertainty[i], more.uncertainty[i]);
+  for (double time : more.time_s) all.time_s.push_back(time_offset + time);
+}
+
+/// Index of a name among things with names; adds nothing.
+template <typename Things>
+std::size_t find_name(const Things& things, const std::string& name) {
+  for (std::size_t i = 0; i < things.size(); ++i) {
+    if (things[i].name == name) return i;
+  }
+  return things.size();
+}
+
+TrackerReadings readings_from_table(const MeasurementTable& table, const Setup& setup, const std::string& file,
+                                    TrackerSetup& tracker) {
+  std::vector<std::uint16_t> station_index, reflector_index;
+  for (const std::string& name : table.stations) {
+    std::size_t index = name.empty() && tracker.stations.size() == 1 ? 0 : find_name(tracker.stations, name);
+    if (index == tracker.stations.size()) {
+      throw InputError({.file = file, .field = "station"}, fmt::format("station '{}' is not in the study", name),
+                       "a station of set-up '" + setup.name + "'");
+    }
+    station_index.push_back(static_cast<std::uint16_t>(index));
+  }
+  for (std::size_t i = 0; i < table.reflectors.size(); ++i) {
+    const std::string& name = table.reflectors[i];
+    std::size_t index = name.empty() && tracker.reflectors.size() == 1 ? 0 : find_name(tracker.reflectors, name);
+    const bool has_offset = !table.reflector_offset.empty();
+    if (index == tracker.reflectors.size()) {
+      if (!has_offset) {
+        throw InputError({.file = file, .field = "reflector"}, fmt::format("reflector '{}' is not in the study", name),
+                         "a reflector of set-up '" + setup.name + "', or offset columns in the file");
+      }
+      Reflector reflector;
+      reflector.name = name;
+      reflector.body = setup.mounted_on == Body::tool ? Body::workpiece : Body::tool;
+      tracker.reflectors.push_back(reflector);
+    }
+    const bool from_data = index >= setup.reflectors.size() || setup.reflectors[index].offset_from_data;
+    if (has_offset && from_data) tracker.reflectors[index].offset = table.reflector_offset[i];
+    reflector_index.push_back(static_cast<std::uint16_t>(index));
+  }
+
+  TrackerReadings readings = table.readings;
+  if (!setup.noise_from_data) {
+    readings.stated = StatedUncertainty::none;
+    readings.uncertainty = {};
+  } else if (readings.stated == StatedUncertainty::none) {
+    throw InputError({.file = file}, "the study takes the noise from the data, but the file states no uncertainties",
+                     "columns u_x_um, u_y_um, u_z_um or cov_xx_um2, ...");
+  }
+  for (std::uint16_t& station : readings.station) station = station_index[station];
+  for (std::uint16_t& reflector : readings.reflector) reflector = reflector_index[reflector];
+  return readings;
+}
+
+void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet& truth, TrackerCampaign& result,
+                    const ProgressCallback& progress) {
+  const Setup& setup = study.setups[setup_index];
+  for (std::size_t p = 0; p < setup.plans.size(); ++p) {
+    const MeasurementPlan& plan = setup.plans[p];
+    const std::uint64_t seed = plan_seed(study, setup_index, p);
+    TrackerSimulationOptions options;
+    options.measure = setup.measure;
+    options.seed = seed;
+    options.noise_factor = study.simulation->noise ? 1 : 0;
+    options.outlier_fraction = study.simulation->outliers.fraction;
+    options.outlier_mm = study.simulation->outliers.size;
+    options.threads = study.threads;
+    options.progress = progress;
+    for (std::size_t reflector : plan.targets) {
+      options.sights.push_back({static_cast<std::uint16_t>(plan.station), static_cast<std::uint16_t>(reflector)});
+    }
+    const PoseList poses = plan_poses(study.machine, plan, seed);
+    const SimulatedTracker simulated = simulate_tracker(study.machine, truth, result.truth, poses, options);
+    const std::uint32_t offset = static_cast<std::uint32_t>(result.readings.count());
+    append(result.readings, simulated.readings);
+    options.noise_factor = 0;
+    options.outlier_fraction = 0;
+    options.progress = nullptr;
+    append(result.exact, simulate_tracker(study.machine, truth, result.truth, poses, options).readings);
+    for (std::uint32_t outlier : simulated.outliers) result.outliers.push_back(offset + outlier);
+    result.hidden += simulated.hidden;
+  }
+}
+
+void read_setup(const Study& study, const Setup& setup, TrackerCampaign& result) {
+  for (const SetupData& data : setup.data) {
+    MeasurementOptions options;
+    options.mapping = data.mapping;
+    options.threads = study.threads;
+    const MeasurementTable table = read_measurements(data.file, study.machine, options);
+    const TrackerReadings readings = readings_from_table(table, setup, data.file.string(), result.start);
+    if (result.readings.count() > 0 &&
+        (readings.measure != result.readings.measure || readings.stated != result.readings.stated)) {
+      throw InputError({.file = data.file.string()}, "the files of one set-up differ in their columns",
+                       "the same kind of reading and of uncertainty in all files of a set-up");
+    }
+    append(result.readings, readings);
+  }
+}
+
+}  // namespace
+
+std::string TrackerCampaign::readings_text(const Machine& machine) const {
+  MeasurementTable table;
+  table.readings = readings;
+  for (const TrackerStation& station : start.stations) table.stations.push_back(station.name);
+  for (const Reflector& reflector : start.reflectors) {
+    table.reflectors.push_back(reflector.name);
+    table.reflector_offset.push_back(reflector.offset);
+  }
+  return measurements_text(machine, table);
+}
+
+void TrackerCampaign::find_start(const Machine& machine, std::vector<std::string>& warnings,
+                                 std::vector<std::string>&) {
+  const TrackerStart found = find_station_poses(machine, ErrorSet{}, start, readings);
+  apply(found, start);
+  for (std::size_t s = 0; s < found.stations.size(); ++s) {
+    if (!found.stations[s].note.empty()) {
+      warnings.push_back(fmt::format("{}: {}", start.stations[s].name, found.stations[s].note));
+    }
+  }
+  for (const std::string& message : found.messages) warnings.push_back(name + ": " + message);
+}
+
+std::unique_ptr<Observations> TrackerCampaign::observations(const Machine& machine, const ErrorSet& errors) const {
+  return std::make_unique<TrackerObservations>(machine, errors, start, readings);
+}
+
+std::unique_ptr<Observations> TrackerCampaign::exact_observations(const Machine& machine,
+                                                                  const ErrorSet& errors) const {
+  return std::make_unique<TrackerObservations>(machine, errors, start, exact);
+}
+
+std::vector<KnownUnknown> TrackerCampaign::known_unknowns() const {
+  // The unknowns are ordered: poses of the estimated stations, then offsets of the estimated reflectors.
+  std::size_t unknown = 0;
+  for (const TrackerStation& station : start.stations) unknown += station.estimate_pose ? 6U : 0U;
+  std::vector<KnownUnknown> known;
+  for (std::size_t r = 0; r < start.reflectors.size(); ++r) {
+    if (!start.reflectors[r].estimate_offset) continue;
+    for (int k = 0; k < 3; ++k, ++unknown) {
+      const double uncertainty = r < offset_uncertainty.size() ? offset_uncertainty[r][k] : 0.0;
+      if (uncertainty > 0) known.push_back({unknown, start.reflectors[r].offset[k], uncertainty});
+    }
+  }
+  return known;
+}
+
+std::unique_ptr<CampaignSetup> gather_tracker(const Study& study, std::size_t setup, const ErrorSet* truth,
+                                              const ProgressCallback& progress) {
+  const Setup& given = study.setups[setup];
+  auto result = std::make_unique<TrackerCampaign>();
+  result->start = tracker_setup(given, false);
+  result->truth = tracker_setup(given, true);
+  for (const SetupReflector& reflector : given.reflectors) {
+    result->offset_uncertainty.push_back(reflector.offset_standard_uncertainty);
+  }
+  if (truth != nullptr) {
+    simulate_setup(study, setup, *truth, *result, progress);
+  } else {
+    read_setup(study, given, *result);
+  }
+  return result;
+}
+
+TrackerReadings read_held_out(const Study& study, const TrackerCampaign& campaign) {
+  const Setup& setup = study.setups.front();
+  const std::filesystem::path& file = *study.identification->held_out_file;
+  MeasurementOptions options;
+  if (!setup.data.empty()) options.mapping = setup.data.front().mapping;
+  options.threads = study.threads;
+  TrackerSetup tracker = campaign.start;
+  const std::size_t reflectors = tracker.reflectors.size();
+  TrackerReadings readings =
+      readings_from_table(read_measurements(file, study.machine, options), setup, file.string(), tracker);
+  if (tracker.reflectors.size() != reflectors) {
+    throw InputError({.file = file.string(), .field = "reflector"},
+                     fmt::format("reflector '{}' was not measured", tracker.reflectors.back().name),
+                     "reflectors of set-up '" + setup.name + "'");
+  }
+  return readings;
+}
+
+}  // namespace abbe

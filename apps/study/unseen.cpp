@@ -1,0 +1,219 @@
+#include "study/unseen.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "abbe/identify/prediction.h"
+#include "abbe/instruments/instrument_observations.h"
+#include "abbe/instruments/tracker_start.h"
+#include "abbe/verify/error_map.h"
+#include "study/instrument_campaign.h"
+#include "study/job.h"
+#include "study/predicted_readings.h"
+#include "study/report_parameters.h"
+#include "study/tracker_campaign.h"
+
+namespace abbe {
+namespace {
+
+/// What is added up over the set-ups.
+struct Tally {
+  UnseenPoses& unseen;
+  std::size_t within = 0, coordinates = 0;
+
+  void add(const PredictedReadings& prediction) {
+    unseen.after.insert(unseen.after.end(), prediction.error.begin(), prediction.error.end());
+    for (const double u : prediction.uncertainty) unseen.expanded_uncertainty.push_back(2 * u);
+    within += prediction.within;
+    coordinates += prediction.coordinates;
+  }
+};
+
+void weigh_in_micrometres(TrackerSetup& setup, TrackerReadings& readings) {
+  for (TrackerStation& station : setup.stations) station.noise = TrackerNoise::isotropic(1, 0);
+  readings.stated = StatedUncertainty::none;
+  readings.uncertainty = {};
+}
+
+/// The readings held out of the fit (or used in it), as a list of their own.
+TrackerReadings select(const TrackerReadings& all, const std::vector<std::uint8_t>& use, bool used) {
+  TrackerReadings part;
+  part.measure = all.measure;
+  part.stated = all.stated;
+  part.poses.axis.resize(all.poses.axis.size());
+  for (std::size_t k = 0; k < all.count(); ++k) {
+    if ((use.empty() || use[k] != 0) != used) continue;
+    for (std::size_t i = 0; i < all.poses.axis.size(); ++i) part.poses.axis[i].push_back(all.poses.axis[i][k]);
+    part.station.push_back(all.station[k]);
+    part.reflector.push_back(all.reflector[k]);
+    for (std::size_t i = 0; i < 3; ++i) part.measured[i].push_back(all.measured[i][k]);
+    if (!all.time_s.empty()) part.time_s.push_back(all.time_s[k]);
+    for (std::size_t i = 0; i < 6; ++i) {
+      if (!all.uncertainty[i].empty()) part.uncertainty[i].push_back(all.uncertainty[i][k]);
+    }
+  }
+  return part;
+}
+
+/// Distances of the nominal machine from points, with station poses fitted to them.
+std::vector<double> nominal_errors(const Machine& machine, TrackerSetup setup, const TrackerReadings& readings) {
+  apply(find_station_poses(machine, ErrorSet{}, setup, readings), setup);
+  const TrackerObservations observations(machine, ErrorSet{}, setup, readings);
+  std::vector<double> errors(readings.count());
+  for (std::size_t k = 0; k < errors.size(); ++k) errors[k] = observations.distance(k).norm();
+  return errors;
+}
+
+std::vector<AxisRange> known_ranges(const Study& study, const StudyResult& result) {
+  std::vector<AxisRange> ranges;
+  for (std::size_t i = 0; i < study.machine.axes.size(); ++i) {
+    ranges.push_back(known_range(study.machine, result.identification.errors, i, 2));
+  }
+  return ranges;
+}
+
+std::uint64_t unseen_seed(const Study& study, std::size_t setup) { return study.seed * 7919 + setup; }
+
+/// @param readings  of a tracker that took no part in the fit
+void add_tracker(const Study& study, const StudyResult& result, std::size_t s, const TrackerCampaign& setup,
+                 TrackerReadings readings, Tally& tally) {
+  const ErrorSet& identified = result.identification.errors;
+  const bool simulated = tally.unseen.against_truth;
+  const std::vector<double> before = nominal_errors(study.machine, simulated ? setup.truth : setup.start, readings);
+  tally.unseen.before.insert(tally.unseen.before.end(), before.begin(), before.end());
+  // The observations carry the identified poses and offsets; build them as the fit did, so that the unknowns
+  // correspond.
+  TrackerSetup weighed = setup.start;
+  weigh_in_micrometres(weighed, readings);
+  TrackerObservations observations(study.machine, identified, weighed, std::move(readings));
+  observations.set_parameters(identified.parameters(), result.identification.setup[s]);
+  tally.add(predict_readings(observations, result.identification, s));
+}
+
+TrackerReadings unseen_tracker_readings(const Study& study, const StudyResult& result, std::size_t s,
+                                        const TrackerCampaign& setup, std::size_t poses) {
+  TrackerSimulationOptions options;
+  options.noise_factor = 0;
+  options.line_of_sight = false;
+  options.choice = SightChoice::cycle;
+  options.threads = study.threads;
+  const PoseList list = random_plan(study.machine, known_ranges(study, result), poses, unseen_seed(study, s));
+  return simulate_tracker(study.machine, *result.campaign.truth, setup.truth, list, options).readings;
+}
+
+/// Distances of the nominal machine from readings, the set-up's unknowns fitted to all readings that were used.
+std::vector<double> nominal_deviations(const Study& study, const StudyResult& result, std::size_t s,
+                                       const InstrumentReadings& held_out) {
+  const InstrumentCampaign& setup = dynamic_cast<const InstrumentCampaign&>(*result.campaign.setups[s]);
+  const std::unique_ptr<Observations> all = setup.observations(study.machine, ErrorSet{});
+  Problem problem = estimate_everything(study.machine, ErrorSet{}, {all.get()});
+  problem.machine_parameters.clear();
+  problem.observations[0].use = result.model.problem.observations[s].use;
+  for (const KnownUnknown& known : setup.known_unknowns()) {
+    problem.priors.push_back({{0, known.unknown}, known.value, known.standard_uncertainty});
+  }
+  if (!all->unknowns().empty()) identify(problem, identify_options(study));
+  InstrumentObservations apart(
+      study.machine, ErrorSet{},
+      setup.device->with_values(dynamic_cast<const InstrumentObservations&>(*all).quantity_values()), held_out);
+  std::vector<double> lengths;
+  for (std::size_t k = 0; k < apart.reading_count(); ++k) append_length(apart, k, lengths);
+  return lengths;
+}
+
+/// Readings of an instrument that were held out of the fit.
+void add_instrument(const Study& study, const StudyResult& result, std::size_t s, const InstrumentCampaign& setup,
+                    Tally& tally) {
+  const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
+  std::vector<std::size_t> held_out;
+  for (std::size_t k = 0; k < use.size(); ++k) {
+    if (use[k] == 0) held_out.push_back(k);
+  }
+  const std::vector<ReadingComponent>& components = setup.device->components();
+  const bool has_length = std::any_of(components.begin(), components.end(),
+                                      [](const ReadingComponent& component) { return !component.is_angle; });
+  if (held_out.empty() || !has_length) return;
+  InstrumentReadings readings = setup.readings.subset(held_out);
+  const std::vector<double> before = nominal_deviations(study, result, s, readings);
+  tally.unseen.before.insert(tally.unseen.before.end(), before.begin(), before.end());
+  readings.uncertainty.assign(components.size(), std::vector<double>(readings.count(), 1e-3));
+  InstrumentObservations observations(study.machine, result.identification.errors, setup.device, std::move(readings));
+  observations.set_parameters(result.identification.errors.parameters(), result.identification.setup[s]);
+  tally.add(predict_readings(observations, result.identification, s));
+}
+
+/// The volumetric error at random poses, against the truth in the gauge of the result.
+void add_volumetric(const Study& study, const StudyResult& result, std::size_t poses, Tally& tally) {
+  // Without a gauge the truth is what it is; with one, the same machine is described in many ways.
+  const std::optional<ErrorSet> truth =
+      result.identification.gauge.constraints.empty() ? result.campaign.truth : truth_in_gauge(study, result);
+  if (!truth) return;
+  const ErrorSet& identified = result.identification.errors;
+  const PoseList list = random_plan(study.machine, known_ranges(study, result), poses, unseen_seed(study, 0));
+  const PoseSource source = pose_source(list);
+  ParameterCovariance covariance;
+  covariance.covariance = machine_covariance(result.identification, identified.parameter_count());
+  for (std::size_t p = 0; p < identified.parameter_count(); ++p) covariance.parameters.push_back(p);
+  ErrorMapOptions options;
+  options.remove_rigid_motion = true;
+  options.threads = study.threads;
+  const ErrorMap before = error_map(study.machine, *truth, nullptr, source, options);
+  const ErrorMap after = error_map(study.machine, *truth, &identified, source, options);
+  options.covariance = &covariance;
+  const ErrorMap predicted = error_map(study.machine, identified, nullptr, source, options);
+  for (std::size_t k = 0; k < after.count(); ++k) {
+    if (after.covered[k] == 0 || before.covered[k] == 0) continue;
+    double variance = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+      const double u = predicted.uncertainty[d][k];
+      variance += u * u;
+      tally.within += std::abs(after.displacement[d][k]) <= 2 * u ? 1U : 0U;
+      ++tally.coordinates;
+    }
+    tally.unseen.before.push_back(before.norm[k]);
+    tally.unseen.after.push_back(after.norm[k]);
+    tally.unseen.expanded_uncertainty.push_back(2 * std::sqrt(variance));
+  }
+}
+
+}  // namespace
+
+UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::size_t poses) {
+  UnseenPoses unseen;
+  unseen.against_truth = result.campaign.truth.has_value();
+  Tally tally{unseen};
+  const std::vector<std::unique_ptr<CampaignSetup>>& setups = result.campaign.setups;
+  const bool trackers_only = std::none_of(study.setups.begin(), study.setups.end(),
+                                          [](const Setup& setup) { return setup.device != nullptr; });
+  if (unseen.against_truth && !trackers_only) add_volumetric(study, result, poses, tally);
+  for (std::size_t s = 0; s < setups.size() && (!unseen.against_truth || trackers_only); ++s) {
+    if (const auto* tracker = dynamic_cast<const TrackerCampaign*>(setups[s].get())) {
+      TrackerReadings readings;
+      if (unseen.against_truth) {
+        readings = unseen_tracker_readings(study, result, s, *tracker, poses);
+      } else if (study.identification->held_out_file) {
+        if (s > 0) continue;
+        readings = read_held_out(study, *tracker);
+      } else {
+        readings = select(tracker->readings, result.model.problem.observations[s].use, false);
+      }
+      if (readings.count() > 0) add_tracker(study, result, s, *tracker, std::move(readings), tally);
+    } else {
+      add_instrument(study, result, s, dynamic_cast<const InstrumentCampaign&>(*setups[s]), tally);
+    }
+  }
+  unseen.coverage =
+      tally.coordinates > 0 ? static_cast<double>(tally.within) / static_cast<double>(tally.coordinates) : 0;
+  unseen.before_statistics = sample_statistics(unseen.before);
+  unseen.after_statistics = sample_statistics(unseen.after);
+  unseen.uncertainty_statistics = sample_statistics(unseen.expanded_uncertainty);
+  unseen.description =
+      unseen.against_truth
+          ? fmt::format("{} random poses that were not measured, against the simulated truth", unseen.after.size())
+          : fmt::format("{} readings held out of the fit", unseen.after.size());
+  return unseen;
+}
+
+}  // namespace abbe

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "abbe/verify/statistics.h"
+
+namespace abbe {
+
+struct Study;
+struct StudyResult;
+
+/// Errors at poses that took no part in the identification.
+struct UnseenPoses {
+  std::string description;
+  bool against_truth = false;                ///< else against held-out readings, which carry their own noise
+  std::vector<double> before;                ///< nominal machine, its set-up fitted to the readings; mm
+  std::vector<double> after;                 ///< identified machine; mm
+  std::vector<double> expanded_uncertainty;  ///< k = 2 of the prediction, root of the trace of its covariance; mm
+  double coverage = 0;                       ///< share of the coordinates within 2 u of the prediction; 0..1
+  SampleStatistics before_statistics, after_statistics, uncertainty_statistics;
+};
+
+/// Validation at poses that were not used.
+///
+/// Simulated, trackers only: what the trackers would read at random poses. Simulated, any instruments: the volumetric
+/// error there, after the best fit of the workpiece datum, against the truth in the gauge of the result. Measured:
+/// readings held out of the fit (their lengths; angles take no part).
+/// @param poses  number of random poses compared with the truth
+UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::size_t poses = 1000);
+
+}  // namespace abbe

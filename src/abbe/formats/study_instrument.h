@@ -1,0 +1,36 @@
+#pragma once
+
+// Internal to formats: instruments of a study file, one reader each.
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "abbe/formats/study.h"
+#include "abbe/formats/toml_table.h"
+
+namespace abbe {
+
+/// What a reader needs to know besides its table.
+struct InstrumentContext {
+  std::string name;  ///< of the set-up
+  const Machine& machine;
+  bool simulated = false;
+};
+
+/// Words for `instrument` in a study file, in the order of instrument_reader(); the tracker is not among them.
+std::vector<std::string_view> instrument_words();
+
+/// Reads the instrument of that index from the table of its set-up: everything but name, instrument, plan and data.
+std::shared_ptr<Instrument> read_instrument(std::size_t index, TomlTable& table, const InstrumentContext& context);
+
+// One per instrument, each in a file of its own. Numbers stated as true are in SetupQuantity::truth.
+std::shared_ptr<Instrument> read_ball_bar(TomlTable& table, const InstrumentContext& context);
+
+/// Body by `key`: "bed", "workpiece" or "tool".
+Body read_body(TomlTable& table, std::string_view key, Body otherwise);
+
+/// Refuses an instrument whose two ends are on one body.
+void refuse_same_body(TomlTable& table, Body a, Body b);
+
+}  // namespace abbe

@@ -1,0 +1,112 @@
+#include "abbe/formats/study_instrument.h"
+
+#include "abbe/formats/machine_file.h"
+#include "abbe/formats/message_of.h"
+#include "abbe/formats/study_file.h"
+
+namespace abbe {
+namespace {
+
+const char* const kMachine =
+    "name = \"m\"\nchain = \"w C' X' b Z t\"\n[axis.C]\nendless = true\n[axis.X]\ntravel_mm = [0, 1400]\n"
+    "[axis.Z]\ntravel_mm = [0, 600]\n";
+
+const char* const kStudy = R"(machine = "m.machine.toml"
+[simulate]
+[simulate.generator]
+mean_volumetric_um = 100
+[[setup]]
+name = "bar"
+instrument = "ball-bar"
+spindle_ball_mm = [0, 0, -100]
+spindle_ball_standard_uncertainty_um = [5, 5, 2]
+length_deviation_um = 1
+length_deviation_standard_uncertainty_um = 0.5
+true_length_deviation_um = 1.4
+noise = { length_um = 0.2, length_um_per_m = 1 }
+[[setup.ball]]
+name = "B1"
+centre_mm = [10, 20, 30]
+[[setup.ball]]
+name = "B2"
+centre_mm = [40, 20, 30]
+estimate_centre = false
+[[setup.plan]]
+kind = "circle"
+plane = ["X", "Z"]
+radius_mm = 150
+to_deg = 180
+points = 20
+repeats = 2
+there_and_back = true
+items = ["B2"]
+[[setup.plan]]
+kind = "follow"
+displacement_mm = [0, 0, 100]
+axis.C = { count = 7 }
+)";
+
+Study parsed(const std::string& text) { return parse_study(text, "s.study.toml", parse_machine(kMachine, "m")); }
+
+std::string wrong(const std::string& from, const std::string& to) {
+  std::string text = kStudy;
+  text.replace(text.find(from), from.size(), to);
+  return message_of([&] { parsed(text); });
+}
+
+TEST(StudyInstrument, ReadsABallBarWithWhatIsKnownOfIt) {
+  const Study study = parsed(kStudy);
+  const struct Setup& setup = study.setups.at(0);
+  ASSERT_NE(setup.device, nullptr);
+  EXPECT_EQ(setup.instrument, "ball-bar");
+  const std::vector<SetupQuantity>& quantities = setup.device->quantities();
+  ASSERT_EQ(quantities.size(), 10U);
+  EXPECT_EQ(quantities[2].name, "bar.spindle_ball.z");
+  EXPECT_EQ(quantities[2].knowledge, Knowledge::within);
+  EXPECT_DOUBLE_EQ(quantities[2].standard_uncertainty, 0.002);
+  EXPECT_DOUBLE_EQ(quantities[3].value, 0.001);
+  EXPECT_DOUBLE_EQ(*quantities[3].truth, 0.0014);
+  EXPECT_EQ(quantities[4].knowledge, Knowledge::open);
+  EXPECT_EQ(quantities[7].knowledge, Knowledge::exact);
+  InstrumentReadings reading;
+  reading.append({0, 0, 0}, 0);
+  reading.measured = {{1000}};
+  EXPECT_DOUBLE_EQ(setup.device->standard_uncertainty(reading, 0, 0), 0.0002 + 0.001);
+}
+
+TEST(StudyInstrument, ReadsPlansThatBringPointsTogether) {
+  const struct Setup setup = parsed(kStudy).setups.at(0);
+  ASSERT_EQ(setup.plans.size(), 2U);
+  const MeasurementPlan& circle = setup.plans[0];
+  EXPECT_EQ(circle.kind, PlanKind::circle);
+  EXPECT_EQ(circle.targets, std::vector<std::size_t>{1});
+  EXPECT_EQ(circle.circle.v, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(circle.circle.count, 20U);
+  EXPECT_EQ(circle.repeats, 2U);
+  EXPECT_TRUE(circle.there_and_back);
+  EXPECT_EQ(setup.plans[1].kind, PlanKind::follow);
+  EXPECT_EQ(setup.plans[1].targets, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(setup.plans[1].displacement, Eigen::Vector3d(0, 0, 100));
+}
+
+TEST(StudyInstrument, SaysWhatIsWrong) {
+  EXPECT_EQ(
+      wrong("\"ball-bar\"", "\"ballbar\"").find("s.study.toml:7:1: setup[1].instrument: unknown word \"ballbar\""), 0U);
+  EXPECT_NE(wrong("length_um = 0.2", "length_um = 0").find("noise.length_um: is not above zero"), std::string::npos);
+  EXPECT_NE(wrong("[5, 5, 2]", "[5, 5, 0]").find("is not above zero"), std::string::npos);
+  EXPECT_NE(wrong("spindle_ball_mm", "spindle_ball_deg").find("spindle_ball_mm"), std::string::npos);
+  EXPECT_NE(wrong("items = [\"B2\"]", "items = [\"B3\"]").find("there is no item \"B3\"; expected one of B1, B2"),
+            std::string::npos);
+  EXPECT_NE(wrong("[\"X\", \"Z\"]", "[\"X\", \"X\"]").find("is no plane"), std::string::npos);
+  EXPECT_NE(wrong("radius_mm = 150", "radius_mm = 0").find("is not above zero"), std::string::npos);
+  EXPECT_NE(wrong("axis.C = { count = 7 }", "axis.X = { count = 7 }").find("X is linear and follows by itself"),
+            std::string::npos);
+  EXPECT_NE(wrong("estimate_centre = false",
+                  "estimate_centre = true\ncentre_standard_uncertainty_um = [1,1,1]\n"
+                  "true_centre_um = [1, 2]")
+                .find("true_centre_um"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace abbe
