@@ -35,27 +35,19 @@ constexpr NamedSensor kSensors[] = {{"autocollimator along x", &PolygonBench::au
                                     {"displacement sensor along y", &PolygonBench::displacement_y},
                                     {"displacement sensor along z", &PolygonBench::displacement_z}};
 
-/// Transverse components of the normal that a reading takes: axis along, axis across, sign.
-struct Across {
-  int along, across;
-  double sign;
-};
-Across across(PolygonReading reading) {
-  switch (reading) {
-    case PolygonReading::autocollimator_x_about_z:
-      return {0, 1, 1};
-    case PolygonReading::autocollimator_x_about_y:
-      return {0, 2, -1};
-    case PolygonReading::autocollimator_y_about_x:
-      return {1, 2, 1};
-    default:
-      return {1, 0, -1};
-  }
-}
-
 Matrix3d sensor_rotation(const PolygonSensor& sensor) { return rotation_from_error_angles(sensor.angles); }
 
+constexpr const char* kReadingNames[] = {"autocollimator_x_about_z",
+                                         "autocollimator_x_about_y",
+                                         "autocollimator_y_about_x",
+                                         "autocollimator_y_about_z",
+                                         "displacement_x",
+                                         "displacement_y",
+                                         "displacement_z"};
+
 }  // namespace
+
+const char* reading_name(PolygonReading reading) { return kReadingNames[static_cast<std::size_t>(reading)]; }
 
 double Polygon::half_face_width() const {
   return faces.empty() ? 0 : faces.front().distance * std::tan(std::numbers::pi / static_cast<double>(faces.size()));
@@ -224,10 +216,11 @@ double read_plane(PolygonReading reading, const PolygonSensor& sensor, const Ref
   if (is_angle(reading)) {
     // The reflected ray d - 2 (d.n) n for d against the sensor's axis; its slope, halved, is tan(2 omega)/2.
     const Vector3d n = world_from_sensor.transpose() * plane.normal;
-    const Across a = across(reading);
-    const double returned = 2 * n[a.along] * n[a.along] - 1;
+    const PolygonAcross a = across_of(reading);
+    const int along = axis_of(sensor.side);
+    const double returned = 2 * n[along] * n[along] - 1;
     if (!(returned > 0)) return std::numeric_limits<double>::quiet_NaN();
-    return a.sign * n[a.along] * n[a.across] / returned;
+    return a.sign * n[along] * n[a.axis] / returned;
   }
   const int axis = axis_of(sensor.side);
   const Vector3d start = sensor.position + world_from_sensor * sensor.exit;
@@ -245,12 +238,13 @@ void differentiate_sensor(PolygonReading reading, const PolygonSensor& sensor, c
   const Matrix3d r = sensor_rotation(sensor);
   const Matrix3d axes = error_angle_axes(sensor.angles);
   if (is_angle(reading)) {
-    const Across a = across(reading);
+    const PolygonAcross a = across_of(reading);
+    const int along = axis_of(sensor.side);
     const Vector3d n = r.transpose() * plane.normal;
-    const double p = n[a.along], q = n[a.across], d = 2 * p * p - 1;
+    const double p = n[along], q = n[a.axis], d = 2 * p * p - 1;
     Vector3d by_n = Vector3d::Zero();
-    by_n[a.along] = a.sign * q * (-2 * p * p - 1) / (d * d);
-    by_n[a.across] = a.sign * p / d;
+    by_n[along] = a.sign * q * (-2 * p * p - 1) / (d * d);
+    by_n[a.axis] = a.sign * p / d;
     const Vector3d force = r * by_n;
     by_plane << force.transpose(), 0;
     // Turning the sensor by w turns the normal by -w as the sensor sees it.

@@ -92,6 +92,27 @@ enum class PolygonReading {
 constexpr std::size_t kPolygonReadings = 7;
 constexpr bool is_angle(PolygonReading reading) { return reading < PolygonReading::displacement_x; }
 
+/// What an autocollimator takes of the normal: the sensor's axis that the reading compares with its own, and the sign
+/// with which a turn about the axis named in the reading is positive.
+struct PolygonAcross {
+  int axis;
+  double sign;
+};
+constexpr PolygonAcross across_of(PolygonReading reading) {
+  switch (reading) {
+    case PolygonReading::autocollimator_x_about_z:
+      return {1, 1};
+    case PolygonReading::autocollimator_x_about_y:
+      return {2, -1};
+    case PolygonReading::autocollimator_y_about_x:
+      return {2, 1};
+    default:
+      return {0, -1};
+  }
+}
+/// "autocollimator_x_about_z", ...
+const char* reading_name(PolygonReading reading);
+
 /// The instruments of one measurement.
 struct PolygonBench {
   PolygonSensor autocollimator_x, autocollimator_y, displacement_x, displacement_y, displacement_z;

@@ -15,13 +15,6 @@ namespace {
 using Eigen::Index;
 using enum PolygonReading;
 
-constexpr const char* kReadingNames[] = {"autocollimator_x_about_z",
-                                         "autocollimator_x_about_y",
-                                         "autocollimator_y_about_x",
-                                         "autocollimator_y_about_z",
-                                         "displacement_x",
-                                         "displacement_y",
-                                         "displacement_z"};
 constexpr const char* kMotionNames[] = {"EAC", "EBC", "ECC", "EXC", "EYC", "EZC"};
 constexpr const char* kMountNames[] = {"tilt_x", "tilt_y", "turn", "x", "y", "z"};
 constexpr const char* kFaceNames[] = {"azimuth_error", "tilt", "distance"};
@@ -95,7 +88,7 @@ std::vector<PolygonUnknown> polygon_unknowns(const PolygonCampaign& campaign) {
   unknowns.push_back({"top.tilt_x", true});
   unknowns.push_back({"top.tilt_y", true});
   for (const PolygonReading reading : campaign.measured) {
-    unknowns.push_back({std::string("zero.") + kReadingNames[static_cast<std::size_t>(reading)], is_angle(reading)});
+    unknowns.push_back({std::string("zero.") + reading_name(reading), is_angle(reading)});
   }
   return unknowns;
 }
