@@ -31,6 +31,7 @@ void add_simulate_command(CommandLine& line);
 void add_identify_command(CommandLine& line);
 void add_map_command(CommandLine& line);
 void add_run_command(CommandLine& line);
+void add_evaluate_command(CommandLine& line);
 void add_reproduce_command(CommandLine& line);
 
 /// Progress of long work: a line on stderr that is redrawn, with the time left; nothing if stderr is no terminal or the

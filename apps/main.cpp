@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   add_simulate_command(line);
   add_identify_command(line);
   add_map_command(line);
+  add_evaluate_command(line);
   add_reproduce_command(line);
   if (argc > 1 && argv[1][0] != '-') {
     const std::string name = argv[1];

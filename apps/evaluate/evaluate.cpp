@@ -59,6 +59,10 @@ void print_report(const EvaluationReport& report) {
     }
     fmt::print("\n");
   }
+  if (std::any_of(report.figures.begin(), report.figures.end(),
+                  [](const EvaluationFigure& figure) { return figure.uncertainty.has_value(); })) {
+    fmt::print("\n  \xC2\xB1: expanded measurement uncertainty, k = 2\n");
+  }
   if (!report.notes.empty()) fmt::print("\n");
   for (const std::string& note : report.notes) fmt::print("note: {}\n", note);
 }

@@ -32,4 +32,8 @@ void apply_tolerances(const std::vector<std::string>& tolerances, EvaluationRepo
 /// report.html. @returns kNegative if a tolerance is exceeded or a figure with one could not be evaluated, else kDone
 int finish_evaluation(EvaluationReport& report, const EvaluationOptions& options);
 
+// One per kind; each leaves its work in line.run.
+void add_evaluate_positioning(CLI::App& evaluate, CommandLine& line);
+void add_evaluate_diagonals(CLI::App& evaluate, CommandLine& line);
+
 }  // namespace abbe

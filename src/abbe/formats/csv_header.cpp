@@ -18,6 +18,23 @@ std::string names(const CsvColumn& column) {
   return column.is_text ? column.base : accepted_names(column.base, column.quantity);
 }
 
+/// Names and quantities of all wanted columns of a base: a target may be a length or an angle.
+std::string names_of_base(const std::string& base, const std::vector<CsvColumn>& wanted) {
+  std::string text;
+  for (const CsvColumn& column : wanted) {
+    if (column.base == base) text += (text.empty() ? "" : ", or ") + names(column);
+  }
+  return text;
+}
+
+std::string quantities_of_base(const std::string& base, const std::vector<CsvColumn>& wanted) {
+  std::string text;
+  for (const CsvColumn& column : wanted) {
+    if (column.base == base) text.append(text.empty() ? "" : " or ").append(quantity_words(column.quantity));
+  }
+  return text;
+}
+
 /// Index of the wanted column of our name, or kUnreadColumn.
 std::size_t find_wanted(std::string_view name, const std::vector<CsvColumn>& wanted, const Unit*& unit) {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -42,13 +59,13 @@ std::size_t find_wanted(std::string_view name, const std::vector<CsvColumn>& wan
     if (longest == nullptr || column.base.size() > longest->base.size()) longest = &column;
   }
   if (longest != nullptr && name == longest->base) {
-    throw InputError(place, "the unit is missing from the name of this column", names(*longest));
+    throw InputError(place, "the unit is missing from the name of this column", names_of_base(longest->base, wanted));
   }
   if (longest != nullptr) {
     throw InputError(place,
                      fmt::format("'{}' is not a unit of {}", name.substr(longest->base.size() + 1),
-                                 quantity_words(longest->quantity)),
-                     names(*longest));
+                                 quantities_of_base(longest->base, wanted)),
+                     names_of_base(longest->base, wanted));
   }
   const std::string_view base = without_unit(name);
   const std::string_view near = nearest_name(base, known);

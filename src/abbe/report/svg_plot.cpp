@@ -80,12 +80,12 @@ void XyPlot::band(std::span<const double> x, std::span<const double> low, std::s
 
 void XyPlot::level(double y, std::string label, PlotStyle style) { levels_.push_back({y, std::move(label), style}); }
 
-void XyPlot::dimension(double x, double low, double high, std::string label, PlotStyle style) {
-  dimensions_.push_back({{x, low}, {x, high}, false, std::move(label), style});
+void XyPlot::dimension(double x, double low, double high, std::string label, PlotStyle style, double shift_px) {
+  dimensions_.push_back({{x, low}, {x, high}, false, std::move(label), style, shift_px});
 }
 
 void XyPlot::outer_dimension(PlotPoint low, PlotPoint high, std::string label, PlotStyle style) {
-  dimensions_.push_back({low, high, true, std::move(label), style});
+  dimensions_.push_back({low, high, true, std::move(label), style, 0});
 }
 
 XyPlot::Frame XyPlot::frame() const {
@@ -160,10 +160,11 @@ void XyPlot::draw_dimensions(SvgDrawing& drawing, const Frame& frame) const {
     const DrawingPoint low = frame.at(dimension.low), high = frame.at(dimension.high);
     const double middle = (low.y + high.y) / 2 + 4;
     if (!dimension.outer) {
-      drawing.dimension(low.x, low.y, high.y, dimension.style);
+      const double x = low.x + dimension.shift_px;
+      drawing.dimension(x, low.y, high.y, dimension.style);
       // Towards the inside of the plot, so that the name is not cut off.
       const bool on_the_left = low.x > (frame.left + frame.right) / 2;
-      drawing.text({low.x + (on_the_left ? -7 : 7), middle}, dimension.label,
+      drawing.text({x + (on_the_left ? -7 : 7), middle}, dimension.label,
                    on_the_left ? TextAnchor::end : TextAnchor::start, 13, dimension.style.colour, true);
       continue;
     }

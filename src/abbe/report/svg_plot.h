@@ -36,7 +36,8 @@ class XyPlot {
   /// A straight line from edge to edge, named at its right end: a tolerance, a mean.
   void level(double y, std::string label, PlotStyle style);
   /// A dimension arrow at x from low to high, named beside it.
-  void dimension(double x, double low, double high, std::string label, PlotStyle style);
+  /// @param shift_px  moves it to the right, so that two at the same x do not cover each other
+  void dimension(double x, double low, double high, std::string label, PlotStyle style, double shift_px = 0);
   /// A dimension arrow to the right of the plot, one column each, with extension lines from the points that it spans.
   void outer_dimension(PlotPoint low, PlotPoint high, std::string label, PlotStyle style);
 
@@ -61,6 +62,7 @@ class XyPlot {
     bool outer = false;
     std::string label;
     PlotStyle style;
+    double shift_px = 0;
   };
   struct Frame;
 

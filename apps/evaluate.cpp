@@ -1,0 +1,17 @@
+#include "evaluate/evaluate.h"
+
+namespace abbe {
+
+void add_evaluate_command(CommandLine& line) {
+  CLI::App* command =
+      line.add("evaluate", "Figures of ISO 230 from readings: table, plot, report, tolerances",
+               "  abbe evaluate positioning examples/evaluate/linear.csv\n"
+               "  abbe evaluate positioning examples/evaluate/linear.csv --tolerance A_um=10 -o results/x\n"
+               "  abbe evaluate diagonals examples/evaluate/diagonals.csv\n\n"
+               "abbe evaluate KIND --help names the columns of the file.");
+  command->require_subcommand(1);
+  add_evaluate_positioning(*command, line);
+  add_evaluate_diagonals(*command, line);
+}
+
+}  // namespace abbe
