@@ -12,6 +12,10 @@ void add_evaluate_command(CommandLine& line) {
   command->require_subcommand(1);
   add_evaluate_positioning(*command, line);
   add_evaluate_diagonals(*command, line);
+  add_evaluate_circular(*command, line);
+  add_evaluate_rotation(*command, line);
+  add_evaluate_straightness(*command, line);
+  add_evaluate_squareness(*command, line);
 }
 
 }  // namespace abbe

@@ -1,13 +1,19 @@
 // Readings for `abbe evaluate`: any bytes give readings or an InputError, for every kind; what was read is finite and
 // can be evaluated.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
 
+#include "abbe/formats/evaluation_circular_file.h"
+#include "abbe/formats/evaluation_line_file.h"
 #include "abbe/formats/evaluation_positioning.h"
+#include "abbe/formats/evaluation_rotation_file.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/verify/circular_diagnosis.h"
+#include "abbe/verify/squareness.h"
 
 namespace {
 
@@ -32,12 +38,58 @@ void diagonals(std::string_view text) {
   if (abbe::evaluate_diagonals(all).diagonals.size() != all.size()) std::abort();
 }
 
+void circular(std::string_view text) {
+  constexpr double kRadius = 150;
+  const abbe::CircularFile file = abbe::parse_circular(text, "fuzz.csv", kRadius);
+  abbe::CircularOptions options;
+  options.nominal_radius = kRadius;
+  // The minimum zone of many readings would make the fuzzer slow.
+  if (file.paths[0].count() + file.paths[1].count() < 12) options.centre = abbe::CircularCentre::minimum_zone;
+  const abbe::CircularResult result = abbe::circular_deviations(file.paths, options);
+  for (const abbe::CircularDeviation& path : result.paths) {
+    if (!std::isfinite(path.circular) || path.circular < 0 || !std::isfinite(path.circular_uncertainty)) std::abort();
+  }
+  const abbe::CircularDiagnosis diagnosis = abbe::circular_diagnosis(file.paths, {.nominal_radius = kRadius});
+  for (const abbe::CircularCauseValue& cause : diagnosis.causes) {
+    if (!std::isfinite(cause.value) || !std::isfinite(cause.uncertainty)) std::abort();
+  }
+}
+
+void rotation(std::string_view text) {
+  const abbe::RotationReadings readings = abbe::parse_rotation(text, "fuzz.csv");
+  const abbe::RotationResult result = abbe::rotation_error_motions(readings, {.plane_distance = 80});
+  for (const abbe::ErrorMotion& motion : result.motions) {
+    if (!std::isfinite(motion.total_value) || !std::isfinite(motion.asynchronous_value)) std::abort();
+  }
+}
+
+void straightness(std::string_view text) {
+  const abbe::LineReadings line = abbe::parse_straightness(text, "fuzz.csv");
+  const auto value = [&](abbe::ReferenceLine reference) {
+    const abbe::Straightness result = abbe::straightness(line.positions, line.deviations, reference, 1e-4);
+    if (!std::isfinite(result.value) || !std::isfinite(result.slope_uncertainty)) std::abort();
+    return result.value;
+  };
+  const double least = value(abbe::ReferenceLine::least_squares);
+  double largest = 0;
+  for (const double deviation : line.deviations) largest = std::max(largest, std::abs(deviation));
+  // Rounding of the readings themselves.
+  if (value(abbe::ReferenceLine::minimum_zone) > least + 1e-9 * largest) std::abort();
+}
+
+void squareness(std::string_view text) {
+  const auto lines = abbe::parse_squareness(text, "fuzz.csv");
+  const abbe::Squareness result =
+      abbe::squareness({lines[0].positions, lines[0].deviations}, {lines[1].positions, lines[1].deviations});
+  if (!std::isfinite(result.value) || !std::isfinite(result.uncertainty)) std::abort();
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   // One line for every kind of evaluation.
-  for (const auto read : {positioning, diagonals}) {
+  for (const auto read : {positioning, diagonals, circular, rotation, straightness, squareness}) {
     try {
       read(text);
     } catch (const abbe::InputError&) {

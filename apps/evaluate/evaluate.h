@@ -35,5 +35,9 @@ int finish_evaluation(EvaluationReport& report, const EvaluationOptions& options
 // One per kind; each leaves its work in line.run.
 void add_evaluate_positioning(CLI::App& evaluate, CommandLine& line);
 void add_evaluate_diagonals(CLI::App& evaluate, CommandLine& line);
+void add_evaluate_circular(CLI::App& evaluate, CommandLine& line);
+void add_evaluate_rotation(CLI::App& evaluate, CommandLine& line);
+void add_evaluate_straightness(CLI::App& evaluate, CommandLine& line);
+void add_evaluate_squareness(CLI::App& evaluate, CommandLine& line);
 
 }  // namespace abbe

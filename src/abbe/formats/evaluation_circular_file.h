@@ -17,7 +17,7 @@ struct CircularFile {
 };
 
 /// Reads a CSV of a circular test: `direction` (cw or ccw) with either `angle` and `deviation` or `radius` of a ball
-/// bar or two of `X`, `Y`, `Z` of a grid encoder, from the centre of the nominal circle; see docs/evaluate.md.
+/// bar or two of `X`, `Y`, `Z` of a grid encoder, from the centre of the nominal circle; see docs/evaluate-geometry.md.
 /// @param nominal_radius  mm; a deviation is added to it
 /// @throws InputError
 CircularFile read_circular(const std::filesystem::path& path, double nominal_radius);

@@ -99,7 +99,7 @@ std::string table_text(const EvaluationTable& table) {
 }  // namespace
 
 bool EvaluationFigure::is_undecided() const {
-  return tolerance && value && uncertainty && std::abs(*value - *tolerance) < *uncertainty;
+  return tolerance && value && uncertainty && std::abs(std::abs(*value) - *tolerance) < *uncertainty;
 }
 
 bool EvaluationReport::exceeds_tolerance() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -18,10 +19,10 @@ struct EvaluationFigure {
   std::optional<double> value;        ///< mm, rad, ...
   std::string missing;                ///< without a value: why, in words
   std::optional<double> uncertainty;  ///< expanded, k = 2; like the value
-  std::optional<double> tolerance;    ///< largest permitted value; like the value
+  std::optional<double> tolerance;    ///< largest permitted magnitude; like the value
 
-  /// The figure is larger than its tolerance; a figure that is not known does not satisfy any.
-  bool exceeds_tolerance() const { return tolerance && (!value || *value > *tolerance); }
+  /// The magnitude is larger than the tolerance; a figure that is not known does not satisfy any.
+  bool exceeds_tolerance() const { return tolerance && (!value || std::abs(*value) > *tolerance); }
   /// Within the uncertainty of its tolerance: neither conformity nor nonconformity is proven (ISO 14253-1).
   bool is_undecided() const;
 };

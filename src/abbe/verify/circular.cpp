@@ -13,7 +13,8 @@ constexpr double kLargestGapOfFullCircle = std::numbers::pi / 6;
 
 Eigen::Vector3d direction_with(double angle, double last) { return {std::cos(angle), std::sin(angle), last}; }
 
-/// Standard uncertainties for readings of standard uncertainty u and a common one of the length; see docs/evaluate.md.
+/// Standard uncertainties for readings of standard uncertainty u and a common one of the length; see
+/// docs/evaluate-geometry.md.
 void add_uncertainties(const CircleCentre& centre, const CircularOptions& options, CircularDeviation& result) {
   const double reading = options.reading_uncertainty, length = options.length_uncertainty;
   const Eigen::Matrix3d& cofactor = centre.cofactor;  // zero unless the centre comes from least squares

@@ -54,8 +54,8 @@ struct CircularResult {
 /// Circular tests of ISO 230-4: G and F of each direction, G(b) and D of both.
 ///
 /// Standard uncertainties follow from those of the readings: of a difference of two readings about a fitted centre for
-/// G, of one reading and of the length for F (docs/evaluate.md). They do not include that the largest of many noisy
-/// readings is too large on average.
+/// G, of one reading and of the length for F (docs/evaluate-geometry.md). They do not include that the largest of many
+/// noisy readings is too large on average.
 /// @param paths  readings by CircularDirection; empty where that direction was not driven
 CircularResult circular_deviations(const std::array<CircularReadings, 2>& paths, const CircularOptions& options);
 

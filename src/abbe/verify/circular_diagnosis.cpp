@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace abbe {
 namespace {
@@ -133,17 +134,29 @@ CircularDiagnosis circular_diagnosis(const std::array<CircularReadings, 2>& path
     rows.row(i) = row_at(angle_about(all, reading, centre), i < clockwise ? -1 : 1, options.nominal_radius);
     right[i] = radius - options.nominal_radius;
   }
-  const Fit solution = fit(rows, right);
-  const Eigen::VectorXd residuals = right - rows * solution.values;
+  // Left out: rows of zeros, which say nothing.
+  Eigen::MatrixXd fitted_rows = rows;
+  Eigen::VectorXd taken = Eigen::VectorXd::Ones(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double angle = angle_about(all, static_cast<std::size_t>(i), centre);
+    if (std::abs(std::remainder(angle, std::numbers::pi / 2)) >= options.reversal_margin) continue;
+    taken[i] = 0;
+    fitted_rows.row(i).setZero();
+  }
+  const double count = taken.sum(), unknowns = static_cast<double>(kUnknowns);
+  if (count <= unknowns) return result;
+  const Fit solution = fit(fitted_rows, right.cwiseProduct(taken));
+  const Eigen::VectorXd all_residuals = right - rows * solution.values, residuals = all_residuals.cwiseProduct(taken);
+  std::array<std::vector<double>, 2> taken_residuals;
   for (Eigen::Index i = 0; i < n; ++i) {
     const std::size_t path = i < clockwise ? 0 : 1;
-    result.residuals[path].push_back(residuals[i]);
+    result.residuals[path].push_back(all_residuals[i]);
+    taken_residuals[path].push_back(residuals[i]);
     result.modelled[path].push_back(rows.row(i).tail<kUnknowns - 2>().dot(solution.values.tail<kUnknowns - 2>()));
   }
-  const double count = static_cast<double>(n), unknowns = static_cast<double>(kUnknowns);
   result.residual_rms = std::sqrt(residuals.squaredNorm() / (count - unknowns));
   result.residual_peak_to_peak = residuals.maxCoeff() - residuals.minCoeff();
-  result.correlation_length = correlation_length(result.residuals);
+  result.correlation_length = correlation_length(taken_residuals);
   // As many readings as are independent; at least one more than unknowns, else nothing could be said at all.
   const double independent = std::max(count / result.correlation_length, unknowns + 1);
   const double variance = residuals.squaredNorm() / (independent - unknowns);

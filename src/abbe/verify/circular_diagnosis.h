@@ -40,7 +40,7 @@ enum class DiagnosisStatus {
   not_run,
   done,              ///< every cause is told from the others
   partly_separable,  ///< some are not: short arc, one direction only, or a length that is not calibrated
-  too_few_readings   ///< not more than unknowns, or a reading without a radius
+  too_few_readings   ///< not more than unknowns take part, or a reading without a radius
 };
 
 struct CircularDiagnosis {
@@ -59,9 +59,11 @@ struct DiagnosisOptions {
   double nominal_radius = 0;      ///< mm
   bool length_calibrated = true;  ///< false: the radius tells nothing of the scales, only of their difference
   double length_uncertainty = 0;  ///< standard uncertainty of the length, mm; goes into the scales
+  /// Readings nearer than this to where an axis turns round take no part in the fit, rad: reversal spikes.
+  double reversal_margin = 0;
 };
 
-/// Fit of the radial deviations of both directions (or one) to their causes; equations in docs/evaluate.md.
+/// Fit of the radial deviations of both directions (or one) to their causes; equations in docs/evaluate-geometry.md.
 ///
 /// Linear about the least-squares centre of all readings (about the instrument's centre where the arc is too short for
 /// one), so errors must be small against the radius. Rank: each cause is compared with the span of all others; one that

@@ -173,6 +173,26 @@ TEST(CircularDiagnosis, WithoutCalibratedLengthOnlyTheDifferenceOfTheScalesIsKno
   EXPECT_LT(of(stated, CircularCause::scale_mismatch).uncertainty, 1e-6);
 }
 
+TEST(CircularDiagnosis, ReadingsNearReversalsCanBeLeftOut) {
+  std::mt19937_64 random(8);
+  std::array<CircularReadings, 2> paths = {path(kKnown, CircularAngle::commanded, -1, 0, 360, 360, 0, random),
+                                           path(kKnown, CircularAngle::commanded, 1, 0, 360, 360, 0, random)};
+  for (CircularReadings& readings : paths) {
+    for (std::size_t i = 0; i < readings.count(); ++i) {
+      if (std::abs(std::remainder(readings.angle[i], kPi / 2)) < 0.05) readings.radius[i] += 0.01;
+    }
+  }
+  const CircularDiagnosis spiked = circular_diagnosis(paths, {.nominal_radius = kRadius});
+  const CircularDiagnosis d = circular_diagnosis(paths, {.nominal_radius = kRadius, .reversal_margin = 0.06});
+  EXPECT_GT(std::abs(of(spiked, CircularCause::radius).value - kRadius * 7.5e-6), 2e-4);
+  EXPECT_NEAR(of(d, CircularCause::radius).value, kRadius * 7.5e-6, 2e-5);
+  EXPECT_NEAR(of(d, CircularCause::reversal_first).value, -0.004, 2e-5);
+  EXPECT_LT(d.residual_rms, 2e-5);
+  EXPECT_EQ(d.residuals[0].size(), 360U);
+  EXPECT_EQ(circular_diagnosis(paths, {.nominal_radius = kRadius, .reversal_margin = 0.8}).status,
+            DiagnosisStatus::too_few_readings);
+}
+
 TEST(CircularDiagnosis, FewReadingsAreSaid) {
   std::mt19937_64 random(7);
   const std::array<CircularReadings, 2> paths = {path({}, CircularAngle::commanded, -1, 0, 360, 4, 0, random),

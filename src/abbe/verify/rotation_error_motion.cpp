@@ -149,12 +149,6 @@ ErrorMotion evaluate(ErrorMotionKind kind, std::vector<double> values, const Rot
   return motion;
 }
 
-std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b, double factor) {
-  std::vector<double> result(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) result[i] = factor * (a[i] - b[i]);
-  return result;
-}
-
 }  // namespace
 
 bool is_tilt(ErrorMotionKind kind) {
@@ -166,6 +160,27 @@ bool fundamental_is_removed(ErrorMotionKind kind) {
   return kind != ErrorMotionKind::axial && kind != ErrorMotionKind::face;
 }
 
+std::vector<ErrorMotionKind> evaluated_kinds(const RotationReadings& readings, const RotationOptions& options) {
+  const bool x1 = !readings.x1.empty(), y1 = !readings.y1.empty(), x2 = !readings.x2.empty(), y2 = !readings.y2.empty();
+  const bool tilt = options.plane_distance > 0;
+  std::vector<ErrorMotionKind> kinds;
+  const auto add = [&](ErrorMotionKind kind, bool allowed) {
+    if (allowed) kinds.push_back(kind);
+  };
+  add(ErrorMotionKind::radial_fixed_x1, x1);
+  add(ErrorMotionKind::radial_fixed_y1, y1);
+  add(ErrorMotionKind::radial_rotating_1, x1 && y1);
+  add(ErrorMotionKind::radial_fixed_x2, x2);
+  add(ErrorMotionKind::radial_fixed_y2, y2);
+  add(ErrorMotionKind::radial_rotating_2, x2 && y2);
+  add(ErrorMotionKind::tilt_fixed_x, tilt && x1 && x2);
+  add(ErrorMotionKind::tilt_fixed_y, tilt && y1 && y2);
+  add(ErrorMotionKind::tilt_rotating, tilt && x1 && x2 && y1 && y2);
+  add(ErrorMotionKind::axial, !readings.axial.empty());
+  add(ErrorMotionKind::face, !readings.face.empty());
+  return kinds;
+}
+
 RotationResult rotation_error_motions(const RotationReadings& readings, const RotationOptions& options) {
   const Grid grid = grid_of(readings.angle);
   RotationResult result = grid.result;
@@ -174,37 +189,53 @@ RotationResult rotation_error_motions(const RotationReadings& readings, const Ro
     assert(probe.empty() || probe.size() == readings.angle.size());
     return probe.empty() ? probe : on_grid(grid, probe);
   };
-  const auto add = [&](ErrorMotionKind kind, std::vector<double> values, double uncertainty) {
-    if (!values.empty()) result.motions.push_back(evaluate(kind, std::move(values), result, uncertainty));
-  };
+  const std::vector<double> x1 = signal(readings.x1), y1 = signal(readings.y1), x2 = signal(readings.x2),
+                            y2 = signal(readings.y2);
   const auto rotating = [&](const std::vector<double>& x, const std::vector<double>& y) {
-    std::vector<double> values(x.empty() || y.empty() ? 0 : x.size());
+    std::vector<double> values(x.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double at = result.angle[i % result.positions] + options.sensitive_angle;
       values[i] = x[i] * std::cos(at) + y[i] * std::sin(at);
     }
     return values;
   };
-  const double u = options.reading_uncertainty;
-  const std::vector<double> x1 = signal(readings.x1), y1 = signal(readings.y1), x2 = signal(readings.x2),
-                            y2 = signal(readings.y2);
-  add(ErrorMotionKind::radial_fixed_x1, x1, u);
-  add(ErrorMotionKind::radial_fixed_y1, y1, u);
-  add(ErrorMotionKind::radial_rotating_1, rotating(x1, y1), u);
-  add(ErrorMotionKind::radial_fixed_x2, x2, u);
-  add(ErrorMotionKind::radial_fixed_y2, y2, u);
-  add(ErrorMotionKind::radial_rotating_2, rotating(x2, y2), u);
-  if (options.plane_distance > 0) {
-    const double factor = 1 / options.plane_distance, of_tilt = std::sqrt(2.0) * u * factor;
-    std::vector<double> x, y;
-    if (!x1.empty() && !x2.empty()) x = difference(x2, x1, factor);
-    if (!y1.empty() && !y2.empty()) y = difference(y2, y1, factor);
-    add(ErrorMotionKind::tilt_fixed_x, x, of_tilt);
-    add(ErrorMotionKind::tilt_fixed_y, y, of_tilt);
-    add(ErrorMotionKind::tilt_rotating, rotating(x, y), of_tilt);
+  const auto tilt = [&](const std::vector<double>& near, const std::vector<double>& far) {
+    std::vector<double> values(near.size());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = (far[i] - near[i]) / options.plane_distance;
+    return values;
+  };
+  const auto values_of = [&](ErrorMotionKind kind) -> std::vector<double> {
+    switch (kind) {
+      case ErrorMotionKind::radial_fixed_x1:
+        return x1;
+      case ErrorMotionKind::radial_fixed_y1:
+        return y1;
+      case ErrorMotionKind::radial_rotating_1:
+        return rotating(x1, y1);
+      case ErrorMotionKind::radial_fixed_x2:
+        return x2;
+      case ErrorMotionKind::radial_fixed_y2:
+        return y2;
+      case ErrorMotionKind::radial_rotating_2:
+        return rotating(x2, y2);
+      case ErrorMotionKind::tilt_fixed_x:
+        return tilt(x1, x2);
+      case ErrorMotionKind::tilt_fixed_y:
+        return tilt(y1, y2);
+      case ErrorMotionKind::tilt_rotating:
+        return rotating(tilt(x1, x2), tilt(y1, y2));
+      case ErrorMotionKind::axial:
+        return signal(readings.axial);
+      case ErrorMotionKind::face:
+        return signal(readings.face);
+    }
+    return {};
+  };
+  for (const ErrorMotionKind kind : evaluated_kinds(readings, options)) {
+    const double uncertainty = is_tilt(kind) ? std::sqrt(2.0) * options.reading_uncertainty / options.plane_distance
+                                             : options.reading_uncertainty;
+    result.motions.push_back(evaluate(kind, values_of(kind), result, uncertainty));
   }
-  add(ErrorMotionKind::axial, signal(readings.axial), u);
-  add(ErrorMotionKind::face, signal(readings.face), u);
   return result;
 }
 

@@ -44,6 +44,9 @@ bool is_tilt(ErrorMotionKind kind);
 /// tilt. Axial and face error motions keep it.
 bool fundamental_is_removed(ErrorMotionKind kind);
 
+/// The error motions that these probes and options allow, in the order of ErrorMotionKind.
+std::vector<ErrorMotionKind> evaluated_kinds(const RotationReadings& readings, const RotationOptions& options);
+
 /// One error motion; values in mm or rad (is_tilt()).
 struct ErrorMotion {
   ErrorMotionKind kind = ErrorMotionKind::axial;
@@ -78,14 +81,14 @@ struct RotationResult {
   std::size_t positions = 0;         ///< angular positions per turn
   bool interpolated = false;         ///< readings do not stand at the same angles in every turn
   std::vector<double> angle;         ///< [positions] rad, spindle angle of the first turn
-  std::vector<ErrorMotion> motions;  ///< those that the probes allow, in the order of ErrorMotionKind
+  std::vector<ErrorMotion> motions;  ///< as evaluated_kinds() lists; empty unless done
 };
 
-/// Error motions of an axis of rotation (ISO 230-7:2015, 3 and 5) from angle-indexed readings.
+/// Error motions of an axis of rotation (ISO 230-7:2015) from angle-indexed readings.
 ///
 /// Each turn is brought to the same angles by linear interpolation between neighbouring readings (nothing changes if
 /// they are the same already). Synchronous: mean over the turns at each angle; asynchronous: what is left. Equations
-/// and uncertainties in docs/evaluate.md.
+/// and uncertainties in docs/evaluate-geometry.md.
 RotationResult rotation_error_motions(const RotationReadings& readings, const RotationOptions& options = {});
 
 }  // namespace abbe

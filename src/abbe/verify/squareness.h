@@ -31,7 +31,7 @@ struct Squareness {
   double uncertainty = 0;  ///< standard uncertainty, rad
 };
 
-/// Squareness error between two lines of motion (ISO 230-1:2012, 3.6 and 10).
+/// Squareness error between two lines of motion (ISO 230-1:2012).
 ///
 /// A positive slope turns the first line towards the second and the second towards the first; both make the angle
 /// smaller: value = -(slope_1 + slope_2) + artefact, with independent contributions to the uncertainty.

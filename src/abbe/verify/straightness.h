@@ -42,7 +42,7 @@ struct Straightness {
   double slope_uncertainty = 0;
 };
 
-/// Straightness error of deviations read at positions along a line (ISO 230-1:2012, 3.4 and 8.2).
+/// Straightness error of deviations read at positions along a line (ISO 230-1:2012).
 ///
 /// Deviations and zone are measured along the direction of the readings, not across the line; for a slope s that is a
 /// factor of 1 + s^2/2. The minimum zone is exact: the width max(y - s x) - min(y - s x) is convex and piecewise linear
@@ -52,7 +52,7 @@ struct Straightness {
 /// @param positions  [n] mm, any order, may repeat
 /// @param deviations [n] mm
 /// @param reading_uncertainty  standard uncertainty of one deviation, mm, independent between readings; 0: not stated
-/// Source: docs/evaluate.md (derivation of the uncertainties).
+/// Source: docs/evaluate-geometry.md (derivation of the uncertainties).
 Straightness straightness(std::span<const double> positions, std::span<const double> deviations,
                           ReferenceLine reference, double reading_uncertainty = 0);
 

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "abbe/report/evaluation_report.h"
+#include "abbe/verify/circular_diagnosis.h"
+
+namespace abbe {
+
+/// What a circular test was asked, beside its readings.
+struct CircularRequest {
+  std::string file;
+  std::string plane = "XY";  ///< first and second axis
+  CircularOptions circular;
+  DiagnosisOptions diagnosis;
+  double feed_mm_s = 0;  ///< along the path; 0: not known
+};
+
+/// Figures, causes, plots and notes of a circular test.
+EvaluationReport circular_report(const CircularRequest& request, const std::array<CircularReadings, 2>& paths);
+
+}  // namespace abbe

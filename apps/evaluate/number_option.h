@@ -1,0 +1,23 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "abbe/formats/unit.h"
+
+namespace abbe {
+
+/// Range of an option's value, in the unit that its name says.
+struct NumberRange {
+  double from = 0, to = 0;
+};
+
+/// An option whose name ends in its unit: "--radius-mm 150".
+///
+/// @param unit   suffix of the quantity as in files: "mm", "um", "deg"
+/// @param value  mm, rad, s; stays as it is if the option is not given
+/// The command line is refused (InputError) for what is no finite number within the range.
+CLI::Option* add_number(CLI::App* command, const std::string& name, Quantity quantity, const std::string& unit,
+                        NumberRange range, double& value, const std::string& description);
+
+}  // namespace abbe
