@@ -1,5 +1,8 @@
 #include "reproduce/reproduce.h"
 
+#include <fmt/format.h>
+
+#include "abbe/formats/input_error.h"
 #include "command.h"
 
 namespace abbe {
@@ -8,12 +11,14 @@ void add_reproduce_command(CommandLine& line) {
   struct Options {
     std::string paper;
     std::string output;
+    std::string grids;
     ReproduceOptions reproduce;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
       line.add("reproduce", "Print a paper's figures beside ours, and where its equations are wrong",
                "  abbe reproduce wang\n"
+               "  abbe reproduce wang --grids examples/wang/grids\n"
                "  abbe reproduce aguado -o results/aguado_paper\n\n"
                "Papers:\n"
                "  aguado  laser tracker on a machine w C' X' b Z t, strategies of identification (2014)\n"
@@ -23,11 +28,18 @@ void add_reproduce_command(CommandLine& line) {
       ->required()
       ->check(CLI::IsMember({"aguado", "ma", "wang"}));
   command->add_option("-o,--output", options->output, "Results folder to write (maps, report); default: print only");
+  command->add_option("--grids", options->grids,
+                      "wang: decouple the indications of this folder (X.csv, A.csv, ...) instead");
   command->add_option("--threads", options->reproduce.threads, "Threads (0: all)")->check(CLI::Range(0, 64));
   command->add_flag("--json", options->reproduce.json, "Print JSON for programs");
   command->callback([&line, options] {
     line.run = [options]() -> int {
       options->reproduce.output = options->output;
+      options->reproduce.grids = options->grids;
+      if (options->paper != "wang" && !options->grids.empty()) {
+        throw InputError({.field = "--grids"}, fmt::format("does not belong to {}", options->paper),
+                         "abbe reproduce wang");
+      }
       if (options->paper == "ma") return reproduce_ma(options->reproduce);
       return options->paper == "wang" ? reproduce_wang(options->reproduce) : reproduce_aguado(options->reproduce);
     };

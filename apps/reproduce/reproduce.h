@@ -6,6 +6,7 @@ namespace abbe {
 
 struct ReproduceOptions {
   std::filesystem::path output;  ///< results folder; empty: print only
+  std::filesystem::path grids;   ///< wang: folder of indications to decouple; empty: the paper's figures
   bool json = false;
   int threads = 0;
 };

@@ -14,6 +14,8 @@
 #include "abbe/verify/error_map.h"
 #include "command.h"
 #include "reproduce/reproduce.h"
+#include "reproduce/wang_grids.h"
+#include "reproduce/wang_print.h"
 #include "reproduce/wang_study.h"
 #include "reproduce/wang_tables.h"
 #include "study/report_data.h"
@@ -131,7 +133,8 @@ std::vector<PopulationRow> all_populations(int threads) {
 }
 
 /// Map, tables, machine, errors and page.
-void write_folder(const std::filesystem::path& output, const std::vector<PopulationRow>& populations, int threads) {
+void write_folder(const std::filesystem::path& output, const std::vector<PopulationRow>& populations,
+                  const WangDialFigures& dials, int threads) {
   const Machine machine = wang_machine();
   const ErrorSet errors = wang_errors({});
   const ErrorSet small = wang_errors({.angles = WangAngleUnit::millidegrees, .composition = {}});
@@ -201,7 +204,7 @@ void write_folder(const std::filesystem::path& output, const std::vector<Populat
       "Order of errors against the motion: iso (the paper leaves it open; the zero pose does not depend on it).",
       "Tables A1 to A6 as printed; the 12th column is the cut-off mean of the others, not a measurement.",
       "Angles in degrees as printed; probably a factor 1000 too large (inferred, not proven)."};
-  data["references"] = {"Wang, Ran, Zhang and Li (2020), Applied Sciences 10, 2080"};
+  data["references"] = {"Wang, Ran, Zhang and Li (2020), Applied Sciences 10, 2164"};
 
   ResultsFolder folder(output);
   folder.write("machine.machine.toml", machine_text(machine));
@@ -217,6 +220,18 @@ void write_folder(const std::filesystem::path& output, const std::vector<Populat
   folder.write("maps/integrated_error_degrees.csv", map_csv(map_file));
   folder.write("maps/integrated_error_degrees.vtu", map_vtk(map_file));
   folder.write("maps/integrated_error_millidegrees.csv", map_csv(small_file));
+  const DecoupledErrors& decoupled = dials.study.with_noise;
+  const ErrorsFile contents{decoupled.errors, decoupled.covariance, {{"source", "simulated dial and laser readings"}}};
+  folder.write("decoupled.errors.toml", errors_text(machine, contents, "decoupled.covariance.csv"));
+  folder.write("decoupled.covariance.csv", covariance_text(machine, contents));
+  for (const auto& [name, text] : wang_indication_files(dials.study)) folder.write("grids/" + name, text);
+  ParameterCovariance covariance;
+  covariance.covariance = decoupled.covariance;
+  for (std::size_t p = 0; p < decoupled.errors.parameter_count(); ++p) covariance.parameters.push_back(p);
+  options.covariance = &covariance;
+  const ErrorMap map_decoupled = error_map(machine, decoupled.errors, nullptr, pose_source(poses), options);
+  folder.write("maps/decoupled_errors.csv",
+               map_csv(map_data(machine, poses, counts, map_decoupled, nullptr, &map_decoupled)));
   folder.write("summary.json", json_text(summary) + "\n");
   folder.write("report.html", report_page(nlohmann::json(data)));
   folder.commit();
@@ -225,6 +240,7 @@ void write_folder(const std::filesystem::path& output, const std::vector<Populat
 }  // namespace
 
 int reproduce_wang(const ReproduceOptions& options) {
+  if (!options.grids.empty()) return decouple_wang_grids(options);
   const Machine machine = wang_machine();
   const std::vector<double> zero = zero_pose();
   const auto error = [&](WangAngleUnit unit, const Composition& composition) {
@@ -235,8 +251,9 @@ int reproduce_wang(const ReproduceOptions& options) {
   const WangError displacement = error(WangAngleUnit::none, {});
   const std::vector<PopulationRow> populations = all_populations(options.threads);
   const MeanColumn mean_column = check_mean_column();
+  const WangDialFigures dials = wang_dial_figures(options.threads);
 
-  if (!options.output.empty()) write_folder(options.output, populations, options.threads);
+  if (!options.output.empty()) write_folder(options.output, populations, dials, options.threads);
 
   if (options.json) {
     nlohmann::ordered_json json;
@@ -246,12 +263,14 @@ int reproduce_wang(const ReproduceOptions& options) {
                                   {"millidegrees", list(small.machine)},
                                   {"displacements", list(displacement.machine)}};
     json["mean_columns"] = {{"rows", mean_column.rows}, {"equal_to_cut_off_mean", mean_column.equal}};
+    json["dials"] = wang_dials_json(dials);
+    json["ball_bar_circular_deviation_um"] = wang_ball_bar_json();
     for (const PopulationRow& row : populations) json["populations_um"][row.name] = population_json(row.population);
     fmt::print("{}\n", json_text(json));
     return kDone;
   }
 
-  fmt::print("Wang, Ran, Zhang, Li (2020), Applied Sciences 10, 2080\n");
+  fmt::print("Wang, Ran, Zhang, Li (2020), Applied Sciences 10, 2164\n");
   fmt::print("grinder {}, tool at (200, 0, 0), workpiece point (0, 0, 400) mm\n\n", machine.chain());
   fmt::print("Zero pose (X = Y = Z = 0, A = B = C = 0): E = (W_actual - T_actual) - (W_nominal - T_nominal)\n");
   fmt::print("  {:<44} {}\n", "paper, equation (44)", triple({0.52234, -3.60976, -4.5264}, "mm", 1, 5));
@@ -295,6 +314,9 @@ int reproduce_wang(const ReproduceOptions& options) {
       "(millidegrees).\n",
       angles / displacements, populations[3].population.norm.mean / displacements);
   fmt::print("  The paper speaks of 'near 3 million (12^6)' points and shows 36 of them.\n\n");
+
+  print_wang_ball_bar(displacement.machine.norm());
+  print_wang_dials(dials);
 
   // A pose away from zero shows what (33) and (35) leave out.
   const double alpha = 20 * kDegree, beta = 25 * kDegree, gamma = 40 * kDegree;

@@ -3,7 +3,7 @@
 namespace abbe {
 namespace {
 
-// Tables A1 to A6 of Wang et al. (2020), Appl. Sci. 10, 2080, as printed: position, dx, dy, dz (um), ex, ey, ez
+// Tables A1 to A6 of Wang et al. (2020), Appl. Sci. 10, 2164, as printed: position, dx, dy, dz (um), ex, ey, ez
 // (degrees). The 12th row of every axis is the mean of the first eleven, cut off after one (um) or two digits, not a
 // measurement.
 constexpr WangRow kRows[6][12] = {

@@ -20,6 +20,10 @@ TEST_F(Published, StudiesAgreeWithTheReference) {
   const nlohmann::json figures = nlohmann::json::parse(wang.out);
   EXPECT_EQ(figures["mean_columns"]["equal_to_cut_off_mean"], 20);
   EXPECT_NEAR(figures["zero_pose_error_mm"]["degrees"][0].get<double>(), -5.400842140, 1e-8);
+  EXPECT_NEAR(figures["dials"]["one_dial_grids"]["X"]["printed_rms_bias_um"][0].get<double>(), 56.751, 1e-3);
+  EXPECT_NEAR(figures["dials"]["one_dial_grids"]["X"]["correct_rms_bias_um"][0].get<double>(), 0, 1e-9);
+  EXPECT_EQ(figures["dials"]["seen_by_the_papers_instruments"], 33);
+  EXPECT_LT(figures["ball_bar_circular_deviation_um"]["displacements only"]["XY"].get<double>(), 25);
   EXPECT_EQ(figures["populations_um"]["12^6, degrees as printed"]["poses"], 2985984);
 }
 

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/message_of.h"
+#include "abbe/formats/text_file.h"
 
 namespace abbe {
 namespace {
@@ -99,6 +101,17 @@ TEST(IndicationFile, RefusesMoreThanItCanDecouple) {
   std::string text = kHeader;
   for (int i = 0; i <= 500; ++i) text += std::to_string(i) + ",Z,0,0,0,1,0.6\n";
   EXPECT_EQ(wrong(text), "x.csv: X_mm: 501 different positions; expected at most 500");
+}
+
+TEST(IndicationFile, TheDocumentedExampleIsAccepted) {
+  const std::string text = read_text_file(std::filesystem::path(ABBE_DOCS) / "dial-grids.md");
+  const std::string begin = "```csv\n";
+  const std::size_t at = text.find(begin);
+  ASSERT_NE(at, std::string::npos);
+  const std::size_t from = at + begin.size();
+  const IndicationTable table = parse(text.substr(from, text.find("```", from) - from));
+  EXPECT_EQ(table.readings.probes.size(), 3U);
+  EXPECT_EQ(table.readings.positions.size(), 2U);
 }
 
 TEST(IndicationFile, RefusesAnInclinedAxis) {

@@ -288,6 +288,13 @@ Decoupling decouple_indications(const AxisIndications& readings, AngleDatum datu
     }
   }
   for (const DatumTerm& term : linear ? linear_datum(readings, result, datum) : rotary_datum(readings, result)) {
+    if (term.functions.rows() <= term.functions.cols()) {
+      result.status = DecouplingStatus::too_few_positions;
+      result.message = fmt::format("{} positions; the datum takes all that is seen of {}", m,
+                                   name_of(readings, term.components.front()));
+      result.seen.fill(false);
+      return result;
+    }
     Eigen::VectorXd stacked(term.pick.cols());
     for (std::size_t s = 0; s < term.components.size(); ++s) {
       stacked.segment(static_cast<Eigen::Index>(s) * m, m) =

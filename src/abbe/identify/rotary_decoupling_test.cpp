@@ -124,5 +124,15 @@ TEST(RotaryDecoupling, OneDialLosesTheWholeFirstHarmonic) {
   EXPECT_THAT(result.notes, Contains(HasSubstr("EXC is that at the probes: it contains 20 mm x EBC")));
 }
 
+TEST(RotaryDecoupling, ThreePositionsOfOneDialAreAllDatum) {
+  AxisIndications readings = mandrel(2, 3, 2 * std::numbers::pi);
+  readings.probes.erase(readings.probes.begin() + 1, readings.probes.end());
+  readings.indications = Eigen::MatrixXd::Constant(3, 1, 0.001);
+  const Decoupling result = decouple_indications(readings);
+  EXPECT_EQ(result.status, DecouplingStatus::too_few_positions);
+  EXPECT_EQ(result.message, "3 positions; the datum takes all that is seen of EXC");
+  EXPECT_EQ(result.errors.size(), 0);
+}
+
 }  // namespace
 }  // namespace abbe

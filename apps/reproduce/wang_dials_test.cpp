@@ -1,0 +1,110 @@
+#include "reproduce/wang_dials.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "abbe/errors/random_stream.h"
+#include "reproduce/wang_ball_bar.h"
+#include "reproduce/wang_print.h"
+#include "reproduce/wang_study.h"
+
+namespace abbe {
+namespace {
+
+TEST(WangDials, SimulatedReadingsGiveTheErrorsWithoutBias) {
+  const WangDialStudy study = wang_dial_study(1);
+  ASSERT_EQ(study.axes.size(), 6U);
+  EXPECT_EQ(study.seen_by_dials, 33U);
+  EXPECT_EQ(study.with_noise.errors.motions.size(), 36U);
+  for (const WangDialAxis& axis : study.axes) {
+    ASSERT_EQ(axis.without_noise.status, DecouplingStatus::ok) << axis.without_noise.message;
+    // Second order in the angles: (2e-5)^2 x 170 mm.
+    EXPECT_LE(axis.bias_mm, 1e-7) << axis.table;
+    EXPECT_LE(axis.bias_rad, 2e-9) << axis.table;
+    EXPECT_GT(axis.truth.cwiseAbs().maxCoeff(), 0.002);
+  }
+}
+
+TEST(WangDials, StatedUncertaintiesHoldOverSeeds) {
+  std::size_t values = 0, inside = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const WangDialStudy study = wang_dial_study(seed);
+    values += study.values;
+    inside += study.inside;
+  }
+  const double share = static_cast<double>(inside) / static_cast<double>(values);
+  EXPECT_GT(values, 2500U);
+  EXPECT_NEAR(share, 0.9545, 0.015);
+}
+
+TEST(WangDials, MapUncertaintyIsThatOfItsScatterOverCampaigns) {
+  const WangDialMap map = wang_dial_map(wang_dial_study(1), 1);
+  EXPECT_EQ(map.poses, 729U);
+  EXPECT_GT(map.inside, 0.8);
+  // E at the zero pose over 150 campaigns against the propagated uncertainty.
+  const Machine machine = wang_machine();
+  const std::vector<double> zero = wang_positions({0, 0, 0, 0, 6, 0});
+  const Eigen::Vector3d centre = wang_integrated_error(machine, wang_dial_study(1).without_noise.errors, zero).machine;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  constexpr int kCampaigns = 150;
+  for (int seed = 1; seed <= kCampaigns; ++seed) {
+    const WangDialStudy study = wang_dial_study(static_cast<std::uint64_t>(seed));
+    const Eigen::Vector3d off = wang_integrated_error(machine, study.with_noise.errors, zero).machine - centre;
+    sum += off.cwiseAbs2() / kCampaigns;
+  }
+  for (int d = 0; d < 3; ++d) {
+    // A standard deviation of 150 scatters by 1 / sqrt(300) = 5.8 %.
+    EXPECT_NEAR(std::sqrt(sum[d]) / map.zero_pose_uncertainty[d], 1, 0.2) << d;
+  }
+}
+
+TEST(WangDials, PrintedFormulasHaveTheirBiasAndTheCorrectFormHasNone) {
+  const std::vector<WangGridComparison> grids = wang_grid_comparison();
+  ASSERT_EQ(grids.size(), 3U);
+  EXPECT_NEAR(1e3 * grids[0].printed_second, 56.751, 1e-3);
+  EXPECT_NEAR(1e3 * grids[0].printed_first, 20.811, 1e-3);
+  for (const WangGridComparison& grid : grids) {
+    EXPECT_LE(grid.correct_second, 1e-15);
+    EXPECT_LE(grid.correct_first, 1e-15);
+    EXPECT_LE(grid.correct_roll, 1e-17);
+    EXPECT_GT(grid.printed_roll, 3e-6);
+  }
+  // arctan of the printed degrees over a face of 120 mm: no lever-type dial reaches that far.
+  EXPECT_NEAR(grids[0].dial_range_mm, 120 * 1.25 * 3.14159265 / 180, 3e-6);
+}
+
+TEST(WangBallBar, StraightnessMovesTheBarAsTheGeometrySays) {
+  // Displacements only: bar length along a direction is the component of the displacement along it.
+  const WangReading reading{.angles = WangAngleUnit::none, .composition = {}};
+  const ErrorSet errors = wang_errors(reading);
+  const std::vector<WangCircle> circles = wang_ball_bar(errors);
+  ASSERT_EQ(circles.size(), 3U);
+  EXPECT_EQ(circles[2].plane, "ZX");
+  const Machine machine = wang_machine();
+  const auto error_at = [&](double x, double y, double z) {
+    std::vector<double> pose(6, 0.0);
+    pose[machine.find_axis("X")] = x;
+    pose[machine.find_axis("Y")] = y;
+    pose[machine.find_axis("Z")] = z;
+    return Eigen::Vector3d(-wang_integrated_error(machine, errors, pose).machine);
+  };
+  // E is taken at other points of both bodies, which without angles is the same; (0.02 mm)^2 / 200 mm of second order.
+  EXPECT_NEAR(circles[0].deviation[0], error_at(300, 100, 200).x(), 3e-6);
+  EXPECT_NEAR(circles[0].deviation[90], error_at(200, 200, 200).y(), 3e-6);
+  EXPECT_NEAR(circles[1].deviation[180], -error_at(200, 0, 200).y(), 3e-6);
+  EXPECT_NEAR(circles[2].deviation[270], -error_at(100, 100, 200).x(), 3e-6);
+  for (const WangCircle& circle : circles) {
+    EXPECT_TRUE(circle.converged);
+    // Figure 15's 0.1 mm is far from what displacements can do.
+    EXPECT_LT(circle.circular, 0.025);
+    EXPECT_GT(circle.circular, 0.002);
+  }
+}
+
+TEST(WangBallBar, NoErrorsGiveACircle) {
+  for (const WangCircle& circle : wang_ball_bar({})) EXPECT_LE(circle.circular, 1e-12);
+}
+
+}  // namespace
+}  // namespace abbe

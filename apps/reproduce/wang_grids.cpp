@@ -1,0 +1,202 @@
+#include "reproduce/wang_grids.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <system_error>
+
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/indication_file.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/json_text.h"
+#include "abbe/formats/machine_file.h"
+#include "abbe/formats/results_folder.h"
+#include "abbe/identify/decoupled_errors.h"
+#include "abbe/identify/distributions.h"
+#include "command.h"
+#include "reproduce/wang_dials.h"
+#include "reproduce/wang_study.h"
+
+namespace abbe {
+namespace {
+
+struct GridFile {
+  std::filesystem::path path;
+  IndicationTable table;
+  Decoupling found;
+};
+
+std::vector<std::filesystem::path> csv_files(const std::filesystem::path& folder) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error)) {
+    throw InputError({.file = folder.string()}, "there is no such folder", "a folder with files X.csv, A.csv, ...");
+  }
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".csv") files.push_back(entry.path());
+  }
+  if (files.empty()) throw InputError({.file = folder.string()}, "no file ends in .csv", "readings of one axis a file");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<GridFile> read_all(const std::filesystem::path& folder, const Machine& machine) {
+  const IndicationOptions defaults{.along_axis = kWangLaserUncertainty, .across_axis = kWangDialUncertainty};
+  std::vector<GridFile> files;
+  for (const std::filesystem::path& path : csv_files(folder)) {
+    GridFile file{path, read_indications(path, machine, defaults), {}};
+    for (const GridFile& other : files) {
+      if (other.table.axis != file.table.axis) continue;
+      throw InputError({.file = path.string()},
+                       fmt::format("axis {} was read from {}", machine.axes[file.table.axis].name, other.path.string()),
+                       "one file per axis");
+    }
+    file.found = decouple_indications(file.table.readings);
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
+double unit_of(std::size_t component) { return component < 3 ? 1e3 : 1e6; }
+const char* unit_name(std::size_t component) { return component < 3 ? "um" : "urad"; }
+
+/// Position, error motions and their uncertainties.
+std::string decoupling_csv(const Machine& machine, const GridFile& file) {
+  const Axis& axis = machine.axes[file.table.axis];
+  const bool linear = axis.kind == AxisKind::linear;
+  std::string text = axis.name + (linear ? "_mm" : "_deg");
+  for (std::size_t c = 0; c < 6; ++c) {
+    if (!file.found.seen[c]) continue;
+    const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
+    text += fmt::format(",{}_{},u_{}_{}", name, unit_name(c), name, unit_name(c));
+  }
+  text += '\n';
+  for (std::size_t i = 0; i < file.found.positions.size(); ++i) {
+    text += fmt::format("{:.9g}", file.found.positions[i] * (linear ? 1 : 180 / std::numbers::pi));
+    for (std::size_t c = 0; c < 6; ++c) {
+      if (!file.found.seen[c]) continue;
+      text += fmt::format(",{:.6f},{:.6f}",
+                          file.found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * unit_of(c),
+                          file.found.standard_uncertainty(static_cast<Component>(c), i) * unit_of(c));
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+void print(const Machine& machine, const GridFile& file) {
+  const Decoupling& found = file.found;
+  const Axis& axis = machine.axes[file.table.axis];
+  const bool linear = axis.kind == AxisKind::linear;
+  fmt::print("{}: axis {}, {} positions, {} probes\n", file.path.string(), axis.name, found.positions.size(),
+             file.table.readings.probes.size());
+  if (found.status != DecouplingStatus::ok) {
+    fmt::print("  not decoupled: {}\n\n", found.message);
+    return;
+  }
+  fmt::print("  {:>10}", fmt::format("{} / {}", axis.name, linear ? "mm" : "deg"));
+  for (std::size_t c = 0; c < 6; ++c) {
+    if (!found.seen[c]) continue;
+    const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
+    fmt::print(" {:>12} {:>8}", fmt::format("{} / {}", name, unit_name(c)), "u");
+  }
+  fmt::print("\n");
+  for (std::size_t i = 0; i < found.positions.size(); ++i) {
+    fmt::print("  {:>10.3f}", found.positions[i] * (linear ? 1 : 180 / std::numbers::pi));
+    for (std::size_t c = 0; c < 6; ++c) {
+      if (!found.seen[c]) continue;
+      fmt::print(" {:>12.3f} {:>8.3f}",
+                 found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * unit_of(c),
+                 found.standard_uncertainty(static_cast<Component>(c), i) * unit_of(c));
+    }
+    fmt::print("\n");
+  }
+  for (std::size_t c = 0; linear && c < 3; ++c) {
+    if (found.removed[c].empty()) continue;
+    fmt::print("  removed from {}: {:.3f} um at {} = 0 and {:.3f} urad of slope (dial zero, setting of the face)\n",
+               error_motion_name(machine, file.table.axis, static_cast<Component>(c)), 1e3 * found.removed[c][0],
+               axis.name, 1e6 * found.removed[c][1]);
+  }
+  if (linear) fmt::print("  angles as indicated: their constants are those of the faces and of the dials' zeros\n");
+  for (const std::string& note : found.notes) fmt::print("  {}\n", note);
+  if (found.degrees_of_freedom > 0) {
+    fmt::print("  misfit: chi-square {:.1f} with {} degrees of freedom, probability {:.3f}\n", found.chi_square,
+               found.degrees_of_freedom,
+               chi_square_exceedance(found.chi_square, static_cast<double>(found.degrees_of_freedom)));
+  }
+  fmt::print("\n");
+}
+
+nlohmann::ordered_json json_of(const Machine& machine, const GridFile& file) {
+  nlohmann::ordered_json json;
+  json["file"] = file.path.string();
+  json["axis"] = machine.axes[file.table.axis].name;
+  json["decoupled"] = file.found.status == DecouplingStatus::ok;
+  if (file.found.status != DecouplingStatus::ok) {
+    json["reason"] = file.found.message;
+    return json;
+  }
+  for (std::size_t c = 0; c < 6; ++c) {
+    if (!file.found.seen[c]) continue;
+    std::vector<double> values, uncertainties;
+    for (std::size_t i = 0; i < file.found.positions.size(); ++i) {
+      values.push_back(file.found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * unit_of(c));
+      uncertainties.push_back(file.found.standard_uncertainty(static_cast<Component>(c), i) * unit_of(c));
+    }
+    const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
+    json[name + "_" + unit_name(c)] = values;
+    json["u_" + name + "_" + unit_name(c)] = uncertainties;
+  }
+  json["notes"] = file.found.notes;
+  json["chi_square"] = file.found.chi_square;
+  json["degrees_of_freedom"] = file.found.degrees_of_freedom;
+  return json;
+}
+
+void write(const std::filesystem::path& output, Machine machine, const std::vector<GridFile>& files) {
+  std::vector<DecoupledAxis> axes;
+  for (const GridFile& file : files) {
+    if (file.found.status != DecouplingStatus::ok) continue;
+    axes.push_back({file.table.axis, file.found});
+    // A map of the written machine must not go beyond what was measured.
+    Axis& axis = machine.axes[file.table.axis];
+    axis.travel_min = file.found.positions.front();
+    axis.travel_max = file.found.positions.back();
+  }
+  const DecoupledErrors errors = decoupled_errors(axes);
+  const ErrorsFile contents{errors.errors, errors.covariance, {{"method", "decoupling of dial and laser indications"}}};
+  ResultsFolder folder(output);
+  folder.write("machine.machine.toml", machine_text(machine));
+  folder.write("decoupled.errors.toml", errors_text(machine, contents, "decoupled.covariance.csv"));
+  folder.write("decoupled.covariance.csv", covariance_text(machine, contents));
+  for (const GridFile& file : files) {
+    if (file.found.status != DecouplingStatus::ok) continue;
+    folder.write(fmt::format("decoupled_{}.csv", machine.axes[file.table.axis].name), decoupling_csv(machine, file));
+  }
+  folder.commit();
+}
+
+}  // namespace
+
+int decouple_wang_grids(const ReproduceOptions& options) {
+  const Machine machine = wang_machine();
+  const std::vector<GridFile> files = read_all(options.grids, machine);
+  const auto is_ok = [](const GridFile& file) { return file.found.status == DecouplingStatus::ok; };
+  const bool any = std::any_of(files.begin(), files.end(), is_ok);
+  if (!options.output.empty() && any) write(options.output, machine, files);
+  if (options.json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const GridFile& file : files) json.push_back(json_of(machine, file));
+    fmt::print("{}\n", json_text(json));
+  } else {
+    fmt::print("Grinder {}; probes without u_um: dials u = {:.3g} um, along the axis u = {:.3g} um\n\n",
+               machine.chain(), 1e3 * kWangDialUncertainty, 1e3 * kWangLaserUncertainty);
+    for (const GridFile& file : files) print(machine, file);
+    if (!options.output.empty() && any) fmt::print("results in {}\n", options.output.string());
+  }
+  return std::all_of(files.begin(), files.end(), is_ok) ? kDone : kNegative;
+}
+
+}  // namespace abbe
