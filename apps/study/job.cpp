@@ -10,6 +10,38 @@
 #include "abbe/identify/prediction.h"
 
 namespace abbe {
+namespace {
+
+/// Narrows a range of an axis to where all its error motions are known; false if that leaves it as it was.
+bool narrow_to_known(const ErrorSet& errors, std::size_t axis, AxisRange& range) {
+  const double from = range.from, to = range.to;
+  for (const ErrorMotion& motion : errors.motions) {
+    if (motion.axis != axis || motion.basis.periodic) continue;
+    const Basis& basis = motion.basis;
+    if (basis.kind == BasisKind::fourier && basis.to - basis.from >= basis.period * (1 - 1e-9)) continue;
+    range.from = std::max(range.from, basis.from);
+    range.to = std::min(range.to, basis.to);
+  }
+  return range.from != from || range.to != to;
+}
+
+/// A pose that one of the maps cannot answer is a result in none of them, so that all statistics are over the same.
+void keep_common_poses(StudyMap& map) {
+  std::vector<std::uint8_t> covered = map.before.covered;
+  for (std::size_t k = 0; k < covered.size(); ++k) {
+    if (map.predicted.covered[k] == 0 || (map.after && map.after->covered[k] == 0)) covered[k] = 0;
+  }
+  const auto keep = [&](ErrorMap& part) {
+    part.covered = covered;
+    part.statistics = sample_statistics(part.norm, covered);
+  };
+  keep(map.before);
+  keep(map.predicted);
+  if (map.after) keep(*map.after);
+}
+
+}  // namespace
+
 IdentifyOptions identify_options(const Study& study) {
   const IdentificationPlan& plan = *study.identification;
   IdentifyOptions options;
@@ -32,13 +64,7 @@ void append_length(const Observations& observations, std::size_t reading, std::v
 
 AxisRange known_range(const Machine& machine, const ErrorSet& errors, std::size_t axis, std::size_t count) {
   AxisRange range = full_ranges(machine, count)[axis];
-  for (const ErrorMotion& motion : errors.motions) {
-    if (motion.axis != axis || motion.basis.periodic) continue;
-    const Basis& basis = motion.basis;
-    if (basis.kind == BasisKind::fourier && basis.to - basis.from >= basis.period * (1 - 1e-9)) continue;
-    range.from = std::max(range.from, basis.from);
-    range.to = std::min(range.to, basis.to);
-  }
+  narrow_to_known(errors, axis, range);
   range.count = range.is_fixed() ? 1 : count;
   return range;
 }
@@ -89,9 +115,20 @@ StudyMap map_study(const Study& study, const StudyResult& result, const Progress
     map.description = fmt::format("{} poses of {}", map.poses.count(), study.map->poses_file->filename().string());
   } else {
     std::vector<AxisRange> ranges;
+    bool narrowed = false;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-      ranges.push_back(study.map ? study.map->axes[i]
-                                 : known_range(machine, identified, i, machine.axes.size() > 3 ? 5 : 9));
+      if (!study.map) {
+        ranges.push_back(known_range(machine, identified, i, machine.axes.size() > 3 ? 5 : 9));
+        continue;
+      }
+      // Outside the measured range there is no result; a range entirely outside stays, and its poses are left out.
+      AxisRange range = study.map->axes[i];
+      if (!range.is_fixed() && narrow_to_known(identified, i, range) && range.from < range.to) {
+        narrowed = true;
+        ranges.push_back(range);
+      } else {
+        ranges.push_back(study.map->axes[i]);
+      }
     }
     PoseGrid grid;
     for (const AxisRange& range : ranges) {
@@ -106,7 +143,7 @@ StudyMap map_study(const Study& study, const StudyResult& result, const Progress
     map.description = "grid of";
     for (std::size_t i = 0; i < map.grid.size(); ++i)
       map.description += fmt::format("{} {}", i == 0 ? "" : " x", map.grid[i]);
-    map.description += " poses";
+    map.description += narrowed ? " poses over the measured range" : " poses";
   }
   const PoseSource poses = pose_source(map.poses);
   ErrorMapOptions options;
@@ -126,6 +163,7 @@ StudyMap map_study(const Study& study, const StudyResult& result, const Progress
   } else {
     map.before = map.predicted;
   }
+  keep_common_poses(map);
   return map;
 }
 

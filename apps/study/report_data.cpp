@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "study/report_identification.h"
 #include "study/report_parameters.h"
 #include "study/report_residuals.h"
 #include "study/summary.h"
@@ -53,83 +54,6 @@ std::vector<std::size_t> thinned(const std::vector<std::uint8_t>& covered, std::
   return part;
 }
 
-nlohmann::ordered_json identification_json(const Study& study, const StudyResult& result) {
-  const Identification& identified = result.identification;
-  nlohmann::ordered_json json;
-  constexpr const char* kStrategies[] = {"joint", "independent", "combined"};
-  constexpr const char* kLosses[] = {"least squares", "Huber", "Cauchy", "Tukey"};
-  json["strategy"] = kStrategies[static_cast<int>(study.identification->strategy)];
-  json["loss"] = kLosses[static_cast<int>(study.identification->loss)];
-  std::vector<double> singular;
-  for (double value : identified.gauge.singular_values) singular.push_back(for_drawing(value));
-  json["singular_values"] = singular;
-  nlohmann::ordered_json gauge = nlohmann::ordered_json::array();
-  for (const GaugeConstraint& constraint : identified.gauge.constraints) {
-    std::vector<std::string> names;
-    for (std::size_t p : constraint.inseparable) names.push_back(identified.parameters[p].name);
-    gauge.push_back({{"parameters", names}, {"text", constraint.inseparable_words}, {"convention", constraint.words}});
-  }
-  json["gauge"] = gauge;
-  nlohmann::ordered_json history;
-  std::vector<double> cost, step, damping;
-  std::vector<int> iteration;
-  for (const IterationRecord& record : identified.history) {
-    iteration.push_back(static_cast<int>(iteration.size()));
-    cost.push_back(for_drawing(2 * record.cost));
-    step.push_back(for_drawing(record.step));
-    damping.push_back(for_drawing(record.damping));
-  }
-  json["history"] = {{"iteration", iteration}, {"chi_square", cost}, {"largest_step", step}, {"damping", damping}};
-  if (result.order_selection) {
-    const OrderSelection& selection = *result.order_selection;
-    nlohmann::ordered_json orders;
-    std::vector<std::string> labels;
-    std::vector<double> held_out;
-    int chosen = -1;
-    for (std::size_t t = 0; t < selection.trials.size(); ++t) {
-      const OrderTrial& trial = selection.trials[t];
-      std::string label;
-      for (std::size_t g = 0; g < trial.orders.size() && g < result.model.order_groups.size(); ++g) {
-        label += fmt::format("{}{} {}", g == 0 ? "" : ", ", result.model.order_groups[g].name, trial.orders[g]);
-      }
-      labels.push_back(label);
-      held_out.push_back(for_drawing(trial.held_out_rms));
-      if (trial.orders == selection.orders) chosen = static_cast<int>(t);
-    }
-    orders["label"] = labels;
-    orders["held_out_normalised_rms"] = held_out;
-    if (chosen >= 0) orders["chosen"] = chosen;
-    json["order_selection"] = orders;
-  }
-  return json;
-}
-
-std::vector<std::string> assumptions(const Study& study, const StudyResult& result) {
-  std::vector<std::string> list;
-  list.push_back(
-      "Error = actual - nominal; error motions composed exactly as Rz(EC) Ry(EB) Rx(EA) in axes parallel to the "
-      "machine's.");
-  list.push_back(
-      "Residual = (measured - modelled) / standard uncertainty; uncertainties are those stated in the study or the "
-      "data.");
-  if (study.identification) {
-    for (const std::string& note : result.model.notes) list.push_back(note);
-    if (!result.identification.gauge.constraints.empty()) {
-      list.push_back(
-          fmt::format("{} directions that the readings cannot see are fixed by convention (ISO 230); predictions at "
-                      "the readings do not depend on them.",
-                      result.identification.gauge.constraints.size()));
-    }
-    if (result.campaign.truth)
-      list.push_back("Readings are simulated: the true errors are known and shown dashed, in the gauge of the result.");
-  }
-  if (result.map)
-    list.push_back(
-        "Maps show the deviation of the functional point after the best fit of the workpiece datum (six numbers).");
-  for (const std::string& note : result.campaign.notes) list.push_back(note);
-  return list;
-}
-
 }  // namespace
 
 double for_drawing(double value) {
@@ -172,7 +96,7 @@ nlohmann::ordered_json report_map(const Machine& machine, const PoseList& poses,
   const std::vector<std::size_t> shown = thinned(before.covered, limit);
   nlohmann::ordered_json json;
   json["frame"] = "workpiece";
-  json["poses"] = before.count();
+  json["poses"] = before.statistics.count;
   json["description"] = description;
   json["positions"] = position_columns(machine, poses, shown);
   json["point_mm"] = columns(before.point, shown, 1, "xyz");
@@ -207,8 +131,8 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
   if (study.identification && !result.usable()) {
     json["warnings"].push_back({{"level", "error"}, {"text", study_verdict(study, result)}});
   }
-  json["assumptions"] = assumptions(study, result);
-  if (result.map) {
+  json["assumptions"] = report_assumptions(study, result);
+  if (result.map && result.map->before.statistics.count > 0) {
     json["map"] =
         report_map(study.machine, result.map->poses, result.map->before,
                    result.map->after ? &*result.map->after : nullptr, &result.map->predicted, result.map->description);
@@ -230,7 +154,7 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
     json["location_errors"] = report_location_errors(study.machine, result.identification, truth ? &*truth : nullptr);
     json["parameters"] = report_parameters(study.machine, result, truth ? &*truth : nullptr);
     json["residuals"] = report_residuals(study.machine, result);
-    json["identification"] = identification_json(study, result);
+    json["identification"] = report_identification(study, result);
   }
   json["references"] = {"ISO 230-1:2012 (geometric accuracy)", "ISO 230-7:2015 (axes of rotation)",
                         "JCGM 100:2008 (GUM)",

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "abbe/identify/covariance.h"
+#include "abbe/identify/monte_carlo_comparison.h"
 #include "abbe/identify/prediction.h"
 #include "study/report_data.h"
 
@@ -36,6 +37,26 @@ std::string gauge_note(const Identification& identification, const std::string& 
     note += (note.empty() ? "" : "; ") + constraint.words;
   }
   return note;
+}
+
+/// Columns of the simulation beside those of the covariance, null where the gauge fixes a parameter.
+/// @param scales  unit of each parameter's column over mm or rad
+void add_monte_carlo(const StudyResult& result, const std::vector<double>& scales, nlohmann::ordered_json& json) {
+  const MonteCarloResult& simulated = *result.monte_carlo;
+  const nlohmann::ordered_json none(scales.size(), nullptr);
+  nlohmann::ordered_json uncertainty = none, ratio = none, low = none, high = none;
+  for (const UncertaintyRatio& entry : compare_with_covariance(result.identification, simulated).parameters) {
+    const std::size_t p = entry.parameter;
+    const Eigen::Index i = static_cast<Eigen::Index>(p);
+    uncertainty[p] = scales[p] * std::sqrt(simulated.covariance(i, i));
+    ratio[p] = entry.ratio;
+    low[p] = scales[p] * simulated.percentiles(i, 0);
+    high[p] = scales[p] * simulated.percentiles(i, simulated.percentiles.cols() - 1);
+  }
+  json["monte_carlo_uncertainty"] = uncertainty;
+  json["monte_carlo_ratio"] = ratio;
+  json["monte_carlo_low"] = low;
+  json["monte_carlo_high"] = high;
 }
 
 double unit_of(bool angle) { return angle ? 1e6 : 1e3; }
@@ -115,6 +136,7 @@ nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResu
   const std::vector<std::vector<Correlation>> correlations = largest_correlations(identified.covariance, 1);
   const std::vector<double> true_values = truth != nullptr ? truth->parameters() : std::vector<double>();
   std::vector<std::string> names, groups, units, partners, gauge;
+  std::vector<double> scales;
   nlohmann::ordered_json values = nlohmann::ordered_json::array(), uncertainties = nlohmann::ordered_json::array(),
                          largest = nlohmann::ordered_json::array(), truths = nlohmann::ordered_json::array();
   // Which axis a machine parameter belongs to: motions first, then locations, then the tool.
@@ -134,6 +156,7 @@ nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResu
     names.push_back(parameter.name);
     groups.push_back(is_machine ? machine_groups[parameter.id.index]
                                 : result.campaign.setups[parameter.id.observations]->name);
+    scales.push_back(unit);
     units.emplace_back(is_machine ? (parameter.is_angle ? "urad" : "um") : (parameter.is_angle ? "mrad" : "mm"));
     values.push_back(unit * identified.estimates[i]);
     const double u = identified.standard_uncertainties[i];
@@ -173,6 +196,7 @@ nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResu
   json["correlated_with"] = partners;
   json["gauge"] = gauge;
   if (truth != nullptr) json["truth"] = truths;
+  if (result.monte_carlo && result.monte_carlo->status == MonteCarloStatus::done) add_monte_carlo(result, scales, json);
   return json;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/geometry/rotation.h"
+#include "abbe/identify/monte_carlo_comparison.h"
 
 namespace abbe {
 namespace {
@@ -39,6 +40,21 @@ nlohmann::ordered_json statistics_urad(const SampleStatistics& s) {
           {"median", s.median * unit},
           {"p95", s.p95 * unit},
           {"max", s.maximum * unit}};
+}
+
+/// Statistics over the poses of a map that have a result.
+void add_map_statistics(const StudyMap& map, nlohmann::ordered_json& entry) {
+  entry["position_before_um"] = statistics_um(map.before.statistics);
+  entry["orientation_before_urad"] = statistics_urad(rotation_lengths(map.before));
+  if (map.after) {
+    entry["position_after_um"] = statistics_um(map.after->statistics);
+    entry["orientation_after_urad"] = statistics_urad(rotation_lengths(*map.after));
+  }
+  if (!map.predicted.norm_uncertainty.empty()) {
+    std::vector<double> expanded = map.predicted.norm_uncertainty;
+    for (double& value : expanded) value *= 2;
+    entry["predicted_expanded_uncertainty_um"] = statistics_um(sample_statistics(expanded, map.predicted.covered));
+  }
 }
 
 }  // namespace
@@ -98,17 +114,17 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
       json["normalised_residual_rms"] = std::sqrt(identified.statistics.variance_factor);
       json["fit_residual_um"] = statistics_um(fit_residuals(result));
       if (result.monte_carlo && result.monte_carlo->status == MonteCarloStatus::done) {
-        double smallest = 1e300, largest = 0;
-        for (Eigen::Index p = 0; p < identified.standard_uncertainties.size(); ++p) {
-          const double u = identified.standard_uncertainties[p];
-          if (u <= 0) continue;
-          const double ratio = std::sqrt(result.monte_carlo->covariance(p, p)) / u;
-          smallest = std::min(smallest, ratio);
-          largest = std::max(largest, ratio);
-        }
-        json["monte_carlo"] = {{"samples", result.monte_carlo->samples},
-                               {"smallest_uncertainty_ratio", smallest},
-                               {"largest_uncertainty_ratio", largest}};
+        const MonteCarloComparison comparison = compare_with_covariance(identified, *result.monte_carlo);
+        json["monte_carlo"] = {{"samples", comparison.samples},
+                               {"compared", comparison.parameters.size()},
+                               {"smallest_uncertainty_ratio", comparison.smallest_ratio},
+                               {"largest_uncertainty_ratio", comparison.largest_ratio},
+                               {"chance_ratio_low", comparison.ratio_low},
+                               {"chance_ratio_high", comparison.ratio_high},
+                               {"largest_shift", comparison.largest_shift},
+                               {"chance_shift", comparison.shift_limit},
+                               {"beyond_chance", comparison.beyond},
+                               {"agrees", comparison.agrees()}};
       }
     }
   }
@@ -130,15 +146,10 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
   if (result.map) {
     const StudyMap& map = *result.map;
     nlohmann::ordered_json entry;
-    entry["poses"] = map.poses.count();
+    entry["poses"] = map.before.statistics.count;
     entry["description"] = map.description + ", after the best fit of the workpiece datum";
     entry["reference"] = map.against_truth ? "truth" : "model";
-    entry["position_before_um"] = statistics_um(map.before.statistics);
-    entry["orientation_before_urad"] = statistics_urad(rotation_lengths(map.before));
-    if (map.after) {
-      entry["position_after_um"] = statistics_um(map.after->statistics);
-      entry["orientation_after_urad"] = statistics_urad(rotation_lengths(*map.after));
-    }
+    if (map.before.statistics.count > 0) add_map_statistics(map, entry);
     if (map.before.statistics.excluded > 0) entry["outside_range"] = map.before.statistics.excluded;
     json["map"] = entry;
   }

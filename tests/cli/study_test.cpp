@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -102,6 +104,13 @@ class Studies : public CommandTest {
     folder.write("s.study.toml", text);
   }
 
+  /// The data inside the page of the last run.
+  nlohmann::json report_data() const {
+    const std::string page = folder.read("out/report.html"), mark = "id=\"abbe-data\">";
+    const std::size_t start = page.find(mark) + mark.size();
+    return nlohmann::json::parse(page.substr(start, page.find("</script>", start) - start));
+  }
+
   nlohmann::json run_json(int expected_exit = ExitCode::done) const {
     const CommandResult result = abbe({"run", "s.study.toml", "--json"});
     EXPECT_EQ(result.exit_code, expected_exit) << result.err;
@@ -122,11 +131,73 @@ TEST_F(Studies, FindTheErrorsFromNothingButReadings) {
   EXPECT_NEAR(summary["normalised_residual_rms"].get<double>(), 1, 0.06);
   EXPECT_EQ(nlohmann::json::parse(folder.read("out/summary.json")), summary);
   // The report shows the same figures.
-  const std::string page = folder.read("out/report.html"), mark = "id=\"abbe-data\">";
-  const std::size_t start = page.find(mark) + mark.size();
-  const nlohmann::json data = nlohmann::json::parse(page.substr(start, page.find("</script>", start) - start));
-  EXPECT_EQ(data["summary"], summary);
-  EXPECT_LT(page.size(), 3'000'000U);
+  EXPECT_EQ(report_data()["summary"], summary);
+  EXPECT_LT(folder.read("out/report.html").size(), 3'000'000U);
+}
+
+TEST_F(Studies, MonteCarloConfirmsTheUncertaintiesOfTheCovariance) {
+  write_study({{"[identify]", "[identify]\nmonte_carlo = 400"}});
+  const nlohmann::json figures = run_json()["monte_carlo"];
+  EXPECT_EQ(figures["samples"], 400);
+  EXPECT_EQ(figures["agrees"], true) << figures;
+  EXPECT_GT(figures["compared"], 60);
+  // Four standard deviations of the ratio by chance: 1 / sqrt(2 * 399).
+  EXPECT_NEAR(figures["chance_ratio_high"].get<double>(), 1 + 4 / std::sqrt(798), 0.03);
+  // The columns of the page tell the same, parameter by parameter, in the parameter's unit.
+  const nlohmann::json parameters = report_data()["parameters"];
+  std::size_t compared = 0;
+  double smallest = 10, largest = 0;
+  for (std::size_t p = 0; p < parameters["name"].size(); ++p) {
+    const nlohmann::json u = parameters["standard_uncertainty"][p], ratio = parameters["monte_carlo_ratio"][p];
+    EXPECT_EQ(u.is_null(), ratio.is_null()) << parameters["name"][p];
+    if (ratio.is_null()) continue;
+    ++compared;
+    smallest = std::min(smallest, ratio.get<double>());
+    largest = std::max(largest, ratio.get<double>());
+    EXPECT_NEAR(parameters["monte_carlo_uncertainty"][p].get<double>(), ratio.get<double>() * u.get<double>(),
+                1e-9 * u.get<double>());
+    const double width =
+        parameters["monte_carlo_high"][p].get<double>() - parameters["monte_carlo_low"][p].get<double>();
+    EXPECT_NEAR(width, 3.92 * u.get<double>(), 0.9 * u.get<double>());
+  }
+  EXPECT_EQ(figures["compared"], compared);
+  EXPECT_DOUBLE_EQ(figures["smallest_uncertainty_ratio"].get<double>(), smallest);
+  EXPECT_DOUBLE_EQ(figures["largest_uncertainty_ratio"].get<double>(), largest);
+}
+
+TEST_F(Studies, AMapKeepsToTheMeasuredRangeAndItsStatisticsToTheSamePoses) {
+  write_study();
+  const nlohmann::json summary = run_json(), map = report_data()["map"];
+  // Asked for over the whole travel, measured at random positions inside it.
+  const std::vector<double> x = map["positions"]["X_mm"].get<std::vector<double>>();
+  EXPECT_GT(*std::min_element(x.begin(), x.end()), 0);
+  EXPECT_LT(*std::max_element(x.begin(), x.end()), 1400);
+  EXPECT_THAT(summary["map"]["description"].get<std::string>(), HasSubstr("over the measured range"));
+  ASSERT_EQ(summary["map"]["poses"], x.size());
+  const auto mean_length = [&](const char* key) {
+    double sum = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      const nlohmann::json& v = map[key];
+      sum += std::hypot(v["x"][k].get<double>(), v["y"][k].get<double>(), v["z"][k].get<double>());
+    }
+    return sum / static_cast<double>(x.size());
+  };
+  for (const char* key : {"before_um", "after_um"}) {
+    const double stated = summary["map"]["position_" + std::string(key)]["mean"];
+    EXPECT_NEAR(mean_length(key), stated, 1e-3 * stated) << key;
+  }
+  const std::vector<double> uncertainty = map["expanded_uncertainty_um"].get<std::vector<double>>();
+  const double largest = summary["map"]["predicted_expanded_uncertainty_um"]["max"];
+  EXPECT_NEAR(*std::max_element(uncertainty.begin(), uncertainty.end()), largest, 1e-3 * largest);
+}
+
+TEST_F(Studies, AMapWithoutAnyMeasuredPoseStatesNoFigure) {
+  write_study({{"axis.X = { count = 3 }", "axis.X = { range_mm = [1399.9, 1400], count = 2 }"}});
+  const nlohmann::json map = run_json()["map"];
+  EXPECT_EQ(map["poses"], 0);
+  EXPECT_GT(map["outside_range"], 0);
+  EXPECT_FALSE(map.contains("position_before_um"));
+  EXPECT_FALSE(report_data().contains("map"));
 }
 
 TEST_F(Studies, SameInputAndSeedGiveTheSameBytes) {

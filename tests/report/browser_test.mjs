@@ -6,6 +6,10 @@ import {createRequire} from 'node:module';
 import {basename, join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
 
+import {contentOf, mapChoicesOf} from './content_checks.mjs';
+import {until} from './until.mjs';
+import {keyboardOf, paperOf} from './use_checks.mjs';
+
 const reports = [];
 const options = {web: '', out: ''};
 for (let i = 2; i < process.argv.length; ++i) {
@@ -21,15 +25,6 @@ if (!existsSync(chromiumPath)) {
 const {chromium} = createRequire(join(resolve(options.web), 'package.json'))('playwright-core');
 mkdirSync(options.out, {recursive: true});
 
-/// Waits for a condition, because drawing is slow on a busy machine; the last value of the condition.
-async function until(condition) {
-  for (let waited = 0; waited < 15000; waited += 250) {
-    if (await condition()) return true;
-    await new Promise((done) => setTimeout(done, 250));
-  }
-  return condition();
-}
-
 const failures = [];
 const check = (good, text) => {
   if (!good) failures.push(text);
@@ -44,42 +39,11 @@ const parse = (text) => {
   return Number(power[1]) * 10 ** Number(exponent);
 };
 
-/// Every set-up with every component of its instrument: as many dots as values, every outlier marked, in both kinds of residual.
-async function residualsOf(page, data, problems) {
-  const blocks = await page.$$('#residuals .setup');
-  const setups = data.residuals?.setups ?? [];
-  check(blocks.length === setups.length, problems(`${blocks.length} blocks of residuals for ${setups.length} set-ups`));
-  for (const [i, setup] of setups.entries()) {
-    const components = setup.components ?? [];
-    const drawn = () => blocks[i].$$eval('.plot', (all) => all.map((e) => ({
-      label: [...e.querySelectorAll('.axis-label')].pop().textContent,
-      dots: [...e.querySelectorAll('.dots')].reduce((n, d) => n + (d.getAttribute('d') ?? '').split('M').length - 1, 0),
-      outliers: (e.querySelector('.dots.outlier').getAttribute('d') ?? '').split('M').length - 1,
-    })));
-    const wanted = (key, kept) => kept.map((c) => ({name: c.name, dots: c[key].filter((v) => v !== null).length,
-      outliers: c[key].filter((v, k) => v !== null && setup.outlier?.[k]).length}));
-    const compare = async (list, what) => {
-      await until(async () => (await drawn()).length >= list.length);
-      const plots = await drawn();
-      for (const [k, row] of list.entries())
-        check(plots[k]?.label.startsWith(row.name) && plots[k].dots === row.dots && plots[k].outliers === row.outliers,
-            problems(`${what} of ${setup.name}: ${JSON.stringify(plots[k])} for ${JSON.stringify(row)}`));
-      return plots;
-    };
-    const plots = await compare(wanted('normalised', components), 'residuals');
-    check(plots.length === components.length + (components.length > 1 ? 1 : 0), problems(`${plots.length} plots of residuals for ${components.length} components of ${setup.name}`));
-    const raw = components.filter((c) => c.residual);
-    if (!raw.length) continue;
-    await page.selectOption(`#residual-y-${i}`, 'raw');
-    await compare(wanted('residual', raw), 'residuals in a unit');
-    check((await drawn()).length === raw.length, problems(`${setup.name}: residuals in a unit are not those stated`));
-    await page.selectOption(`#residual-y-${i}`, 'normalised');
-  }
-}
-
 async function inspect(browser, file) {
   const name = basename(file, '.html');
   const problems = (text) => `${name}: ${text}`;
+  const expect = (good, text) => check(good, problems(text));
+  const shot = (locator, part) => locator.screenshot({path: join(options.out, `${name}-${part}.png`)});
   const size = statSync(file).size;
   check(size < 3e6, problems(`${size} bytes, 3 MB allowed`));
   const data = JSON.parse(readFileSync(file, 'utf8').match(/id="abbe-data">([\s\S]*?)<\/script>/)[1]);
@@ -103,15 +67,19 @@ async function inspect(browser, file) {
   check((await page.evaluate(() => window.broken)) === undefined, problems('data were executed as a script'));
 
   // Figures on the page against summary: equal to the digits printed.
-  const figures = await page.$$eval('[data-key]', (all) => all.map((e) => [e.dataset.key, e.textContent]));
-  let compared = 0;
-  for (const [key, text] of figures) {
-    if (key === 'verdict') continue;
-    const expected = key.split('.').reduce((object, part) => object?.[part], data.summary);
-    const shown = parse(text);
-    check(typeof expected === 'number' && Math.abs(shown - expected) <= (Number.isInteger(expected) ? 0 : 0.0051 * Math.abs(expected)), problems(`${key}: page says ${text}, summary ${expected}`));
-    ++compared;
-  }
+  const compareFigures = async (selector) => {
+    const figures = await page.$$eval(selector, (all) => all.map((e) => [e.dataset.key, e.textContent]));
+    let compared = 0;
+    for (const [key, text] of figures) {
+      if (key === 'verdict') continue;
+      const expected = key.split('.').reduce((object, part) => object?.[part], data.summary);
+      const shown = parse(text);
+      expect(typeof expected === 'number' && Math.abs(shown - expected) <= (Number.isInteger(expected) ? 0 : 0.0051 * Math.abs(expected)), `${key}: page says ${text}, summary ${expected}`);
+      ++compared;
+    }
+    return compared;
+  };
+  const compared = await compareFigures('[data-key]');
   if (data.summary?.held_out?.position_before_um || data.summary?.map?.position_before_um) {
     check(compared >= 3, problems(`only ${compared} figures of the summary are on the page`));
     check((await page.textContent('.verdict')).length > 20, problems('no verdict'));
@@ -135,7 +103,7 @@ async function inspect(browser, file) {
     check(kept >= 1 && (kept < rows || rows === 1), problems('the filter of the parameters does nothing'));
     await page.fill('#parameter-filter', '');
   }
-  await residualsOf(page, data, problems);
+  await contentOf(page, data, expect);
   const drawing = await page.evaluate(() => [...document.querySelectorAll('svg path')].filter((p) => (p.getAttribute('d') ?? '').includes('NaN')).length);
   check(drawing === 0, problems(`${drawing} paths hold NaN`));
 
@@ -184,12 +152,16 @@ async function inspect(browser, file) {
     check(await until(async () => (await stills()).every((n) => n > 2000)), problems('no still image of the map for printing'));
   }
 
+  if (data.map) await mapChoicesOf(page, data, expect, shot, compareFigures);
+  if (data.summary?.monte_carlo) await shot(page.locator('#monte-carlo'), 'monte-carlo');
+
   const overflow = async (width) => {
     await page.setViewportSize({width, height: 900});
     await page.waitForTimeout(400);
     const [inner, outer] = await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.clientWidth]);
     check(inner <= outer, problems(`${inner} px wide in a window of ${outer} px`));
   };
+  await overflow(320);
   await overflow(390);
   await page.screenshot({path: join(options.out, `${name}-narrow.png`), fullPage: true});
   await overflow(1280);
@@ -227,6 +199,9 @@ async function inspect(browser, file) {
   for (const text of await contrast()) check(false, problems(`low contrast in the dark theme: ${text}`));
   await page.screenshot({path: join(options.out, `${name}-dark.png`), fullPage: true});
   await page.pdf({path: join(options.out, `${name}-print.pdf`), format: 'A4', printBackground: true});
+
+  await paperOf(page, data, expect);
+  await keyboardOf(page, expect);
 
   const unlabelled = await page.evaluate(() =>
     [...document.querySelectorAll('input,select,button,canvas,svg[role=img]')].filter((e) =>

@@ -69,15 +69,25 @@ const held = Array.from({length: 2000}, () => [360 * uniform(), 1400 * uniform()
 const before = held.map((p) => errorAt(truth, p)), after = held.map(difference);
 
 const map = {frame: 'machine', poses: 8 * 11 * 7, description: '8 × 11 × 7 grid of C, X, Z', positions: {C_deg: [], X_mm: [], Z_mm: []},
-  point_mm: {x: [], y: [], z: []}, before_um: {x: [], y: [], z: []}, after_um: {x: [], y: [], z: []}};
+  point_mm: {x: [], y: [], z: []}, before_um: {x: [], y: [], z: []}, after_um: {x: [], y: [], z: []},
+  before_urad: {a: [], b: [], c: []}, after_urad: {a: [], b: [], c: []}, expanded_uncertainty_um: []};
+const mapped = {before: [], after: []};
 for (let c = 0; c < 8; ++c)
   for (let x = 0; x <= 1400; x += 140)
     for (let z = 0; z <= 600; z += 100) {
       const pose = [c * 45, x, z], turn = (c * Math.PI) / 4;
       map.positions.C_deg.push(pose[0]); map.positions.X_mm.push(x); map.positions.Z_mm.push(z);
       [x, 350 * Math.sin(turn) + 250, z + 120].forEach((v, i) => map.point_mm['xyz'[i]].push(digits(v, 6)));
-      const b = errorAt(truth, pose).e, a = difference(pose).e;
-      for (let i = 0; i < 3; ++i) { map.before_um['xyz'[i]].push(digits(b[i])); map.after_um['xyz'[i]].push(digits(a[i], 3)); }
+      const b = errorAt(truth, pose), a = difference(pose);
+      mapped.before.push(b);
+      mapped.after.push(a);
+      for (let i = 0; i < 3; ++i) {
+        map.before_um['xyz'[i]].push(digits(b.e[i]));
+        map.after_um['xyz'[i]].push(digits(a.e[i], 3));
+        map.before_urad['abc'[i]].push(digits(b.w[i]));
+        map.after_urad['abc'[i]].push(digits(a.w[i], 3));
+      }
+      map.expanded_uncertainty_um.push(digits(4.2 + 6 * ((x - 700) / 700) ** 2 + 3 * ((z - 300) / 300) ** 2, 3));
     }
 
 const motions = [];
@@ -113,6 +123,19 @@ for (const l of locations) {
 }
 ['x', 'y', 'z'].forEach((k, i) => add(`tracker1.${k}`, 'tracker1', 'mm', digits([1210.3141, -402.7718, 355.0932][i], 9), 0.0021 + 0.0004 * i, digits(-0.4 - 0.1 * i, 3), 'EX0C', '', null));
 ['a', 'b', 'c'].forEach((k, i) => add(`tracker1.${k}`, 'tracker1', 'deg', digits([0.4182, -1.20311, 14.88193][i], 8), 0.00012, digits(0.3 + 0.1 * i, 3), 'EC0X', '', null));
+
+// A simulation of 1,000 campaigns: ratios scatter by 1 / sqrt(2 * 999); one parameter is made to differ.
+const samples = 1000;
+for (const key of ['uncertainty', 'ratio', 'low', 'high']) parameters[`monte_carlo_${key}`] = [];
+parameters.standard_uncertainty.forEach((u, i) => {
+  const ratio = u === null ? null : parameters.name[i] === 'EBZ[P4]' ? 1.19 : 1 + normal() / Math.sqrt(2 * (samples - 1));
+  const at = (z) => (u === null ? null : digits(parameters.value[i] + (z + 0.06 * normal()) * ratio * u, 9));
+  parameters.monte_carlo_uncertainty.push(u === null ? null : digits(u * ratio));
+  parameters.monte_carlo_ratio.push(ratio === null ? null : digits(ratio, 5));
+  parameters.monte_carlo_low.push(at(-1.96));
+  parameters.monte_carlo_high.push(at(1.96));
+});
+const ratios = parameters.monte_carlo_ratio.filter((r) => r !== null);
 
 const readings = 2000, outliers = new Set([41, 377, 905, 906, 1333, 1704]);
 const setup = {name: 'tracker1', readings, reading: [], positions: {C_deg: [], X_mm: [], Z_mm: []}, outlier_limit: 4.59,
@@ -166,6 +189,13 @@ const data = {
       position_before_um: statistics(before.map((p) => length(p.e))), position_after_um: statistics(after.map((p) => length(p.e))),
       orientation_before_urad: statistics(before.map((p) => length(p.w))), orientation_after_urad: statistics(after.map((p) => length(p.w))),
       predicted_expanded_uncertainty_um: {mean: 12.4, max: 21.9}, coverage_percent: 95.2},
+    map: {poses: map.poses, description: map.description, reference: 'truth', outside_range: 12,
+      position_before_um: statistics(mapped.before.map((p) => length(p.e))), position_after_um: statistics(mapped.after.map((p) => length(p.e))),
+      orientation_before_urad: statistics(mapped.before.map((p) => length(p.w))), orientation_after_urad: statistics(mapped.after.map((p) => length(p.w))),
+      predicted_expanded_uncertainty_um: statistics(map.expanded_uncertainty_um)},
+    fit_residual_um: {mean: 25.7, rms: 28.4, median: 25.1, p95: 45.6, max: 61.3},
+    monte_carlo: {samples, compared: ratios.length, smallest_uncertainty_ratio: Math.min(...ratios), largest_uncertainty_ratio: Math.max(...ratios),
+      chance_ratio_low: 0.91, chance_ratio_high: 1.093, largest_shift: 0.094, chance_shift: 0.129, beyond_chance: ratios.filter((r) => r < 0.91 || r > 1.093).length, agrees: false},
   },
   warnings: [{level: 'warning', text: '6 of 2,000 readings were marked as outliers and carry no weight.'},
     {level: 'note', text: '18 combinations of parameters are not separable from the tracker pose; they are fixed by convention, see Gauge.'}],
@@ -182,8 +212,16 @@ const data = {
     gauge: [{parameters: ['EXX[P0]', 'EYX[P0]', 'EZX[P0]', 'tracker1.x'], text: 'The constants of the X slide are not separable from the place of the tracker.', convention: 'The errors of X are zero at X = 0.'},
       {parameters: ['EXZ[P0]', 'EYZ[P0]', 'EZZ[P0]'], text: 'The constants of the Z slide are not separable from the tool offset.', convention: 'The errors of Z are zero at Z = 0.'},
       {parameters: ['EXC[1]', 'EYC[1]', 'EZC[1]', 'EAC[1]', 'EBC[1]', 'ECC[1]'], text: 'The constants of the rotary table are not separable from its axis average line.', convention: 'Rotary error motions have no constant: they are referred to the axis average line.'}],
-    history: {iteration: [0, 1, 2, 3, 4, 5, 6], chi_square: [8.1e9, 3.4e7, 2.1e5, 6410, squares + 12, squares + 0.02, squares], largest_step: [null, 0.9, 0.2, 0.03, 1e-3, 1e-5, 1e-8], damping: [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]},
-    order_selection: {label: ['1', '2', '3', '4', '5', '6', '8'], held_out_rms_um: [160, 71, 22, 17.1, 17.2, 17.5, 18.4], fit_rms_um: [158, 69, 21.3, 16.4, 16.3, 16.2, 15.9], chosen: 3}},
+    history: {iteration: [0, 1, 2, 3, 4, 5, 6], chi_square: [8.1e9, 3.4e7, 2.1e5, 6410, squares + 12, squares + 0.02, squares], relative_step: [null, 0.9, 0.2, 0.03, 1e-3, 1e-5, 1e-8], damping: [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]},
+    hardly_seen: 1,
+    stages: [{status: 'converged', parameters: 66, residuals: 2400, degrees_of_freedom: 2346, chi_square: 2360.2}, {status: 'converged', parameters: 60, residuals: 3600, degrees_of_freedom: 3552, chi_square: 3499.8}],
+    order_selection: {label: ['X 1, Z 1, C 1', 'X 2, Z 1, C 1', 'X 3, Z 1, C 1', 'X 4, Z 1, C 1', 'X 4, Z 2, C 1', 'X 4, Z 3, C 1', 'X 4, Z 4, C 2', 'X 4, Z 4, C 3', 'X 4, Z 4, C 4'],
+      held_out_normalised_rms: [9.8, 6.1, 4.4, 3.2, 2.4, 1.6, 1.21, 1.013, 1.016], chosen: 7}},
+  advice: [
+    {parameters: ['EBZ[P4]', 'EBZ[P3]'], text: 'The tilt of the column about Y (EBZ) is seen through one reflector offset only; near the ends of Z its expanded uncertainty is three times that of EAZ.',
+      remedy: 'Repeat 60 readings with a reflector on an arm of at least 150 mm across X, over the whole travel of Z.'},
+    {parameters: ['EX0C', 'tracker1.x'], text: 'The place of the axis average line along X is hardly separable from the place of the tracker.', remedy: 'Measure a part of the poses from a second station of the tracker on the bed.'},
+    {text: 'Hysteresis is not seen: all positions were approached from one side.'}],
   references: ['ISO 230-1:2012, ISO 230-7:2015', 'JCGM 100:2008 (GUM)', "Breaking out: </script><script>window.broken = 1</script>"],
 };
 data.summary.held_out.remaining_percent = (100 * data.summary.held_out.position_after_um.mean) / data.summary.held_out.position_before_um.mean;
@@ -222,8 +260,8 @@ const edge = {
   location_errors: [{name: 'EC0X', value_urad: 0, standard_uncertainty_urad: null}],
   parameters: {name: ['EXX[P0]', 'EXX[P1]'], value: [0, null]},
   residuals: {setups: [{name: 'empty', reading: [], components: [{name: 'x', normalised: []}]}, {name: 'null', reading: [0], components: [{name: 'x', unit: 'um', normalised: [null], residual: [null]}, {name: 'y', normalised: [0]}]}, {name: 'none', reading: []}]},
-  identification: {singular_values: [0, 0], history: {iteration: [0], chi_square: [0]}, order_selection: {label: ['1'], held_out_rms_um: [null]}, gauge: [{parameters: ['EXX[P0]']}]},
-  tables: [{title: 'Nothing', columns: [], rows: []}],
+  identification: {singular_values: [0, 0], history: {iteration: [0], chi_square: [0]}, order_selection: {label: ['1'], held_out_normalised_rms: [null]}, gauge: [{parameters: ['EXX[P0]']}]},
+  tables: [{title: 'Nothing', columns: [], rows: []}], advice: [{text: 'Everything.'}],
 };
 
 const [, , dataFile, pageFile, templateFile] = process.argv;

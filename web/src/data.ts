@@ -21,6 +21,7 @@ export interface PoseErrors {
   orientation_before_urad?: Statistics;
   orientation_after_urad?: Statistics;
   predicted_expanded_uncertainty_um?: Statistics;
+  outside_range?: number;
   coverage_percent?: number;
   remaining_percent?: number;
 }
@@ -51,7 +52,21 @@ export interface Summary {
   fit_residual_um?: Statistics;
   held_out?: PoseErrors;
   map?: PoseErrors;
+  monte_carlo?: MonteCarlo;
   seed?: number;
+}
+
+export interface MonteCarlo {
+  samples?: number;
+  compared?: number;
+  smallest_uncertainty_ratio?: number;
+  largest_uncertainty_ratio?: number;
+  chance_ratio_low?: number;
+  chance_ratio_high?: number;
+  largest_shift?: number;
+  chance_shift?: number;
+  beyond_chance?: number;
+  agrees?: boolean;
 }
 
 export interface Axis {
@@ -85,6 +100,12 @@ export interface Vectors {
   z: number[];
 }
 
+export interface Rotations {
+  a: number[];
+  b: number[];
+  c: number[];
+}
+
 export interface ErrorMap {
   frame?: string;
   poses?: number;
@@ -93,6 +114,8 @@ export interface ErrorMap {
   point_mm: Vectors;
   before_um: Vectors;
   after_um?: Vectors;
+  before_urad?: Rotations;
+  after_urad?: Rotations;
   expanded_uncertainty_um?: number[];
 }
 
@@ -115,6 +138,10 @@ export interface Parameters {
   correlated_with?: string[];
   gauge?: string[];
   truth?: Column;
+  monte_carlo_uncertainty?: Column;
+  monte_carlo_ratio?: Column;
+  monte_carlo_low?: Column;
+  monte_carlo_high?: Column;
 }
 
 /// One component of the readings of a set-up; `unit` is that of `residual`, as in the keys: um, urad, mm, deg, ...
@@ -142,9 +169,11 @@ export interface Identification {
   loss?: string;
   rank_threshold?: number;
   singular_values?: number[];
-  gauge?: {parameters?: string[]; text?: string; convention?: string}[];
-  history?: {iteration?: number[]; chi_square?: number[]; largest_step?: Column; damping?: Column};
-  order_selection?: {label?: string[]; held_out_rms_um?: Column; fit_rms_um?: Column; chosen?: number};
+  hardly_seen?: number;
+  gauge?: {parameters?: string[]; text?: string; convention?: string; by_convention?: boolean}[];
+  history?: {iteration?: number[]; chi_square?: Column; relative_step?: Column; damping?: Column};
+  stages?: {status?: string; parameters?: number; residuals?: number; degrees_of_freedom?: number; chi_square?: number}[];
+  order_selection?: {label?: string[]; held_out_normalised_rms?: Column; chosen?: number};
   strategies?: {
     name: string;
     mean_before_um?: number;
@@ -168,7 +197,7 @@ export interface Report {
   subtitle?: string;
   generator?: string;
   created?: string;
-  study?: {name?: string; description?: string; file?: string; seed?: number};
+  study?: {name?: string; file?: string; seed?: number};
   simulated?: boolean;
   machine?: Machine;
   summary?: Summary;
@@ -182,7 +211,15 @@ export interface Report {
   residuals?: {setups?: SetupResiduals[]};
   identification?: Identification;
   tables?: DataTable[];
+  advice?: Advice[];
   references?: string[];
+}
+
+/// What the measurement cannot see, and which additional measurement would show it.
+export interface Advice {
+  parameters?: string[];
+  text: string;
+  remedy?: string;
 }
 
 const kUnits: [string, string][] = [

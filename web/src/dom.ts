@@ -31,6 +31,13 @@ export function svg<K extends keyof SVGElementTagNameMap>(
   return element;
 }
 
+const redraws: (() => void)[] = [];
+
+/// Makes every drawing on the page again for its present width.
+export function redrawAll(): void {
+  for (const redraw of redraws) redraw();
+}
+
 /// Draws into a box now and again whenever its width changes, so that letters keep their size.
 export function responsive(box: HTMLElement, draw: (width: number) => Element): () => void {
   let drawn = 0;
@@ -41,6 +48,7 @@ export function responsive(box: HTMLElement, draw: (width: number) => Element): 
     box.replaceChildren(draw(width));
   };
   new ResizeObserver(() => redraw(false)).observe(box);
+  redraws.push(() => redraw(false));
   return () => redraw(true);
 }
 
@@ -51,6 +59,11 @@ export function section(id: string, title: string, lead?: string): HTMLElement {
     html('h2', {id: `${id}-title`}, title),
     lead && html('p', {class: 'lead'}, lead),
   );
+}
+
+/// A control with its label, kept together on one line.
+export function field(text: string, control: HTMLElement, ...more: Child[]): HTMLElement {
+  return html('span', {class: 'field'}, html('label', {for: control.id}, text), control, ...more);
 }
 
 export function figure(caption: string, ...children: Child[]): HTMLElement {

@@ -64,3 +64,8 @@ export function alike(value: number | null | undefined, printed: string): string
   const text = Math.abs(value).toFixed(decimals);
   return (value < 0 && Number(text) !== 0 ? kMinus : '') + grouped(text);
 }
+
+/// Text of a producer without Greek letters, as people write it.
+export function micro(text: string): string {
+  return text.replace(/(\d) u(m|rad)\b/g, '$1\u2009µ$2');
+}

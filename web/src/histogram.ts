@@ -1,9 +1,10 @@
 // Distributions before and after, on one logarithmic axis so that both can be read.
 
-import {ErrorMap, Histogram, Vectors} from './data';
+import {ErrorMap, Histogram, Summary, Vectors} from './data';
 import {figure, html, responsive, section, svg} from './dom';
 import {count, quantity} from './format';
 import {plot, Plot, rule} from './plot';
+import {statisticsTable} from './statistics';
 
 interface Distribution {
   edges: number[];
@@ -115,13 +116,15 @@ function one(entry: Histogram): HTMLElement | undefined {
   return undefined;
 }
 
-export function histogramSection(entries: Histogram[] | undefined, map: ErrorMap | undefined): HTMLElement | undefined {
+export function histogramSection(entries: Histogram[] | undefined, map: ErrorMap | undefined, summary: Summary | undefined): HTMLElement | undefined {
   let list = entries ?? [];
   if (!list.length && map)
     list = [{title: 'Volumetric error at the points of the map', before_um: lengths(map.before_um), after_um: map.after_um && lengths(map.after_um)}];
   const figures = list.map(one).filter((f): f is HTMLElement => f !== undefined);
-  if (!figures.length) return undefined;
+  const table = summary && statisticsTable(summary);
+  if (!figures.length && !table) return undefined;
   const part = section('distribution', 'Distribution of the error');
-  part.append(html('div', {class: figures.length > 1 ? 'columns' : ''}, ...figures));
+  if (figures.length) part.append(html('div', {class: figures.length > 1 ? 'columns' : ''}, ...figures));
+  if (table) part.append(table);
   return part;
 }

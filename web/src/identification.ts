@@ -1,6 +1,6 @@
 // How well the readings determine the parameters: rank, gauge, convergence, order.
 
-import {Identification, Summary} from './data';
+import {Column, Identification, Summary} from './data';
 import {figure, html, responsive, section} from './dom';
 import {count, number} from './format';
 import {dots, line, plot, rule} from './plot';
@@ -49,11 +49,12 @@ function convergence(history: NonNullable<Identification['history']>): HTMLEleme
   const chi = history.chi_square;
   if (!chi?.length) return undefined;
   const iteration = history.iteration ?? chi.map((_, i) => i);
+  const axis = {label: 'iteration', range: [Math.min(...iteration), Math.max(...iteration, 1)] as [number, number],
+    ticks: iteration.length <= 14 ? iteration.map((i) => ({at: i, label: String(i)})) : undefined};
   const drawing = html('div', {class: 'drawing'});
   responsive(drawing, (width) => {
     const target = plot({
-      width, height: 250,
-      x: {label: 'iteration', range: [Math.min(...iteration), Math.max(...iteration, 1)], ticks: iteration.length <= 14 ? iteration.map((i) => ({at: i, label: String(i)})) : undefined},
+      width, height: 250, x: axis,
       y: {label: 'χ²', range: decades(positive(chi), 0.1), log: true},
       description: `Chi-square from ${number(chi[0])} to ${number(chi[chi.length - 1])} in ${iteration.length - 1} iterations`,
     });
@@ -64,11 +65,33 @@ function convergence(history: NonNullable<Identification['history']>): HTMLEleme
   return figure(`Convergence: χ² from ${number(chi[0])} to ${number(chi[chi.length - 1], 4)}.`, drawing);
 }
 
+/// Size of the steps and of the damping, both without unit, on one axis.
+function steps(history: NonNullable<Identification['history']>): HTMLElement | undefined {
+  const step = history.relative_step ?? [], damping = history.damping ?? [];
+  const all = positive([...step, ...damping]);
+  if (!all.length) return undefined;
+  const iteration = history.iteration ?? (history.chi_square ?? step).map((_, i) => i);
+  const shown = (values: Column) => values.map((v) => (v !== null && v > 0 ? v : null));
+  const drawing = html('div', {class: 'drawing'});
+  responsive(drawing, (width) => {
+    const target = plot({
+      width, height: 250,
+      x: {label: 'iteration', range: [Math.min(...iteration), Math.max(...iteration, 1)]},
+      y: {label: 'relative step, damping', range: decades(all, 0.1), log: true},
+      description: `Relative step from ${number(positive(step)[0])} to ${number(positive(step)[positive(step).length - 1])}`,
+    });
+    line(target, iteration, shown(damping), 'truth');
+    line(target, iteration, shown(step), 'value');
+    dots(target, iteration, shown(step), 'determined');
+    return target.root;
+  });
+  return figure(`Size of each step relative to the parameters${positive(damping).length ? '; damping dashed' : ''}.`, drawing);
+}
+
 function orders(selection: NonNullable<Identification['order_selection']>): HTMLElement | undefined {
-  const held = selection.held_out_rms_um ?? [];
-  const fit = selection.fit_rms_um ?? [];
+  const held = selection.held_out_normalised_rms ?? [];
   const labels = selection.label ?? held.map((_, i) => String(i + 1));
-  const all = positive([...held, ...fit]);
+  const all = positive(held);
   if (!all.length) return undefined;
   const index = labels.map((_, i) => i);
   const drawing = html('div', {class: 'drawing'});
@@ -76,17 +99,16 @@ function orders(selection: NonNullable<Identification['order_selection']>): HTML
     const every = Math.max(1, Math.ceil((labels.length * Math.max(...labels.map((l) => l.length)) * 7) / Math.max(120, width - 90)));
     const target = plot({
       width, height: 250,
-      x: {label: 'order', range: [-0.4, labels.length - 0.6], ticks: labels.map((label, at) => ({at, label})).filter((_, i) => i % every === 0)},
-      y: {label: 'rms residual / µm', range: decades(all, 0.1), log: true},
-      description: 'Residual at the measured and at held-out poses against the order of the model',
+      x: {label: 'model, in the order tried', range: [-0.4, labels.length - 0.6], ticks: labels.map((label, at) => ({at, label})).filter((_, i) => i % every === 0)},
+      y: {label: 'rms of held-out residuals / standard uncertainty', range: decades(all, 0.1), log: true},
+      description: `Residual at held-out poses for ${labels.length} models tried${selection.chosen === undefined ? '' : `; chosen: ${labels[selection.chosen]}`}`,
     });
     if (selection.chosen !== undefined) rule(target, selection.chosen, 'x', 'limit', 'chosen');
-    line(target, index, fit, 'faint');
     line(target, index, held, 'value');
     dots(target, index, held, 'determined');
     return target.root;
   });
-  return figure('Choice of the order: residual at held-out poses (strong) and at fitted poses (faint).', drawing);
+  return figure(`Choice of the order by the residual at held-out poses${selection.chosen === undefined ? '' : `; chosen: ${labels[selection.chosen]}`}.`, drawing);
 }
 
 export function identificationSection(data: Identification, summary: Summary): HTMLElement | undefined {
@@ -96,26 +118,28 @@ export function identificationSection(data: Identification, summary: Summary): H
   if (data.loss) words.push(`Loss: ${data.loss}.`);
   if (summary.rank !== undefined && summary.parameters !== undefined)
     words.push(`${count(summary.parameters)} parameters, rank ${count(summary.rank)}, null space ${count(summary.null_space ?? summary.parameters - summary.rank)}.`);
+  if (data.hardly_seen) words.push(`${count(data.hardly_seen)} more combinations are seen so weakly that they are fixed too.`);
   if (summary.condition_number !== undefined) words.push(`Condition number without the null space ${number(summary.condition_number)}.`);
+  if (summary.observability_index !== undefined && summary.observability_index_kind)
+    words.push(`Observability index ${summary.observability_index_kind} ${number(summary.observability_index)}.`);
   if (words.length) part.append(html('p', {class: 'lead'}, words.join(' ')));
   const figures = [
     data.singular_values?.length ? singularValues(data.singular_values, summary.rank, data.rank_threshold) : undefined,
     data.history && convergence(data.history),
+    data.history && steps(data.history),
     data.order_selection && orders(data.order_selection),
   ].filter((f): f is HTMLElement => Boolean(f));
-  if (figures.length) part.append(html('div', {class: `columns ${figures.length > 2 ? 'three' : ''}`}, ...figures));
+  if (figures.length) part.append(html('div', {class: `columns ${figures.length === 3 ? 'three' : ''}`}, ...figures));
   if (data.gauge?.length) {
     part.append(html('h3', {}, 'Gauge'), html('p', {class: 'note'}, 'What the readings cannot separate, and the convention that settles it.'),
       html('ol', {class: 'gauge-list'}, ...data.gauge.map((entry) => html('li', {},
         html('span', {}, entry.text ?? entry.parameters?.join(', ') ?? ''),
-        entry.convention && html('em', {}, entry.convention),
+        entry.convention && html('em', {}, entry.by_convention === false ? `No convention fits, fixed by: ${entry.convention}` : entry.convention),
         entry.text && !!entry.parameters?.length && html('code', {}, entry.parameters.join('  '))))));
   }
-  if (data.strategies?.length)
-    part.append(dataTable('Strategies', ['Strategy', 'Mean before / µm', 'Mean after / µm', 'Max after / µm', 'Left / %', 'Published / %', 'Why'],
-      data.strategies.map((s) => [s.name, s.mean_before_um ?? null, s.mean_after_um ?? null, s.max_after_um ?? null,
-        s.mean_before_um && s.mean_after_um !== undefined ? (100 * s.mean_after_um) / s.mean_before_um : null,
-        s.published_percent ?? null, s.note ?? ''])));
+  if (data.stages?.length)
+    part.append(dataTable('Stages of the identification', ['Stage', 'Status', 'Parameters', 'Residuals', 'Degrees of freedom', 'χ²'],
+      data.stages.map((s, i) => [String(i + 1), s.status ?? '', s.parameters ?? null, s.residuals ?? null, s.degrees_of_freedom ?? null, s.chi_square ?? null])));
   if (part.children.length < 2) return undefined;
   return part;
 }

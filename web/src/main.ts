@@ -1,25 +1,29 @@
 // Puts the page together: a section per part of the data that is there.
 
+import {adviceSection} from './advice';
 import {machineSection} from './chain';
 import {Report} from './data';
 import {html, section} from './dom';
+import {micro} from './format';
 import {histogramSection} from './histogram';
 import {identificationSection} from './identification';
 import {mapSection} from './map';
+import {monteCarloSection} from './monte_carlo';
 import {locationSection, motionSection} from './motions';
 import {overview} from './overview';
+import {preparePrint} from './print';
 import {residualSection} from './residuals';
 import {parameterSection, tablesSection} from './table';
 import {themeButton} from './theme';
 
 const kShort: Record<string, string> = {
   map: 'Map', distribution: 'Distribution', machine: 'Machine', motions: 'Error motions', locations: 'Location errors', tables: 'Comparison',
-  identification: 'Observability', residuals: 'Residuals', parameters: 'Parameters', assumptions: 'Assumptions', references: 'References',
+  identification: 'Observability', advice: 'Unseen', 'monte-carlo': 'Monte Carlo', residuals: 'Residuals', parameters: 'Parameters', assumptions: 'Assumptions', references: 'References',
 };
 
 function listSection(id: string, title: string, lines: string[]): HTMLElement {
   const part = section(id, title);
-  part.append(html('ul', {class: 'plain'}, ...lines.map((text) => html('li', {}, text))));
+  part.append(html('ul', {class: 'plain'}, ...lines.map((text) => html('li', {}, micro(text)))));
   return part;
 }
 
@@ -32,14 +36,16 @@ function build(report: Report): void {
   print.addEventListener('click', () => window.print());
 
   const sections = [
-    report.map && mapSection(report.map),
-    histogramSection(report.histograms, report.map),
+    report.map && mapSection(report.map, report.summary?.map),
+    histogramSection(report.histograms, report.map, report.summary),
     report.machine && machineSection(report.machine),
     report.error_motions?.length ? motionSection(report.error_motions, report.machine) : undefined,
     report.location_errors?.length ? locationSection(report.location_errors) : undefined,
     report.tables?.length ? tablesSection(report.tables) : undefined,
     report.identification && identificationSection(report.identification, report.summary ?? {}),
+    report.advice?.length ? adviceSection(report.advice) : undefined,
     report.residuals && residualSection(report.residuals),
+    monteCarloSection(report.parameters, report.summary?.monte_carlo),
     report.parameters?.name?.length ? parameterSection(report.parameters) : undefined,
     report.assumptions?.length ? listSection('assumptions', 'What was assumed', report.assumptions) : undefined,
     report.references?.length ? listSection('references', 'References', report.references) : undefined,
@@ -48,11 +54,13 @@ function build(report: Report): void {
   const links = html('nav', {'aria-label': 'Sections'}, ...sections.map((part) =>
     html('a', {href: `#${part.id}`}, kShort[part.id] ?? part.id)));
   page.append(
+    html('a', {class: 'skip', href: '#content'}, 'Skip to the report'),
     html('div', {class: 'bar'}, html('span', {class: 'brand'}, 'Abbe'), links, html('div', {class: 'actions'}, print, toggle)),
-    html('main', {}, overview(report), ...sections),
+    html('main', {id: 'content', tabindex: -1}, overview(report), ...sections),
     html('footer', {}, report.generator ?? 'Abbe', report.study?.file && ` · ${report.study.file}`,
       report.study?.seed !== undefined && ` · seed ${report.study.seed}`),
   );
+  preparePrint();
 }
 
 function fail(message: string): void {

@@ -1,10 +1,10 @@
 // The map of error vectors: before and after side by side, one camera, one colour scale.
 
 import {isDark, cssColour, rampColour} from './colour';
-import {ErrorMap, splitUnit} from './data';
-import {html, responsive, section, svg} from './dom';
-import {count, number, quantity} from './format';
-import {lengths} from './histogram';
+import {ErrorMap, PoseErrors, splitUnit} from './data';
+import {field, html, responsive, section, svg} from './dom';
+import {count, number, quantity as withUnit} from './format';
+import {Colour, colours, exaggeration, quantities, range, roundFactor, statisticsTable} from './map_choices';
 import {Camera, View} from './map_view';
 import {linearScale, logScale} from './scale';
 import {onThemeChange} from './theme';
@@ -13,9 +13,10 @@ interface Scaling {
   low: number;
   high: number;
   log: boolean;
+  colour: Colour;
 }
 
-export function fraction(value: number, scaling: Scaling): number {
+export function fraction(value: number, scaling: {low: number; high: number; log: boolean}): number {
   if (scaling.log) return Math.log(Math.max(value, scaling.low) / scaling.low) / Math.log(scaling.high / scaling.low);
   return value / scaling.high;
 }
@@ -23,11 +24,11 @@ export function fraction(value: number, scaling: Scaling): number {
 function colourBar(scaling: () => Scaling): {box: HTMLElement; redraw: () => void} {
   const box = html('div', {class: 'colour-bar'});
   const redraw = responsive(box, (width) => {
-    const {low, high, log} = scaling();
+    const {low, high, log, colour} = scaling();
     const inner: [number, number] = [10, width - 10];
     const scale = log ? logScale([low, high], inner, 6) : linearScale([0, high], inner, 6);
     const root = svg('svg', {viewBox: `0 0 ${width} 44`, width, height: 44, role: 'img',
-      'aria-label': `Colour scale of the length of the error from ${number(log ? low : 0)} to ${number(high)} micrometres`});
+      'aria-label': `Colour scale, ${colour.legend}, from ${number(log ? low : 0)} to ${number(high)}`});
     // Both are there, the style sheet shows one: paper always gets the light one, as the stills do.
     for (const name of ['light', 'dark']) {
       const stops = svg('linearGradient', {id: `ramp-${name}`});
@@ -39,16 +40,10 @@ function colourBar(scaling: () => Scaling): {box: HTMLElement; redraw: () => voi
       const x = scale(tick);
       root.append(svg('line', {x1: x, x2: x, y1: 14, y2: 18, class: 'mark'}), svg('text', {x, y: 29, class: 'tick middle'}, scale.label(tick)));
     }
-    root.append(svg('text', {x: inner[1], y: 42, class: 'axis-label end'}, 'length of the error / µm'));
+    root.append(svg('text', {x: inner[1], y: 42, class: 'axis-label end'}, colour.legend));
     return root;
   });
   return {box, redraw};
-}
-
-/// 1, 2, 5, 10, ... nearest below.
-function roundFactor(value: number): number {
-  const power = Math.pow(10, Math.floor(Math.log10(value)));
-  return (value / power >= 5 ? 5 : value / power >= 2 ? 2 : 1) * power;
 }
 
 interface Slice {
@@ -72,28 +67,25 @@ function slices(map: ErrorMap): Slice[] {
   });
 }
 
-export function mapSection(map: ErrorMap): HTMLElement {
+export function mapSection(map: ErrorMap, summary: PoseErrors | undefined): HTMLElement {
   const shown = map.point_mm.x.length;
   const total = map.poses ?? shown;
   const frame = map.frame ? `${map.frame} frame` : 'workpiece frame';
   const part = section('map', 'Map of the volumetric error',
     `Each arrow stands at its nominal point (${frame}) and shows where the tool really is, exaggerated. ` +
     `${shown < total ? `${count(shown)} of ${count(total)} poses drawn` : `${count(total)} ${total === 1 ? 'pose' : 'poses'}`}${map.description ? `: ${map.description}` : ''}.`);
-  const before = lengths(map.before_um);
-  const after = map.after_um && lengths(map.after_um);
-  const all = [...before, ...(after ?? [])];
-  const high = Math.max(...all) || 1;
-  const small = [...all].sort((a, b) => a - b)[Math.floor(all.length * 0.02)];
-  const scaling: Scaling = {low: Math.max(small, high * 1e-4), high, log: false};
+  const kinds = quantities(map);
+  let kind = kinds[0];
+  const after = kind.views.length > 1;
 
   const camera = new Camera(map.point_mm);
-  const views: View[] = [new View(after ? 'Before' : 'Errors', map.point_mm, map.before_um, before, camera)];
-  if (map.after_um && after) views.push(new View('After', map.point_mm, map.after_um, after, camera));
+  const views: View[] = kind.views.map((_, i) => new View(i ? 'After' : after ? 'Before' : 'Errors', map.point_mm, camera));
   camera.onChange(() => views.forEach((view) => view.render()));
 
   const typical = (values: number[]) => [...values].sort((a, b) => a - b)[Math.floor(values.length * 0.95)] || 1;
-  const automatic = (values: number[]) => roundFactor((camera.size * 0.11) / (typical(values) * 1e-3));
-  const common = automatic(before);
+  const automatic = (values: number[]) => roundFactor((camera.size * 0.11) / (typical(values) * kind.millimetres));
+  const vectors = html('select', {id: 'map-vectors'}, ...kinds.map((entry) => html('option', {value: entry.id}, entry.label)));
+  const colouring = html('select', {id: 'map-colour'});
   const slider = html('input', {type: 'range', min: -2, max: 2, step: 0.05, value: 0, id: 'map-exaggeration'});
   const sliderValue = html('output', {for: 'map-exaggeration'});
   const own = html('input', {type: 'checkbox'});
@@ -103,8 +95,23 @@ export function mapSection(map: ErrorMap): HTMLElement {
     ...choices.map((slice, i) => html('option', {value: i}, `slice by ${slice.label}`)));
   const position = html('input', {type: 'range', min: 0, max: 1, step: 1, value: 0, 'aria-label': 'Position of the slice', hidden: true});
   const positionValue = html('output', {});
+  const statistics = html('div', {class: 'map-statistics-box', 'aria-live': 'polite'});
+  let scaling: Scaling;
   const bar = colourBar(() => scaling);
 
+  /// After a change of what is drawn: colours to choose from, one scale for all views, statistics.
+  const choose = () => {
+    kind = kinds.find((entry) => entry.id === vectors.value) ?? kinds[0];
+    const offered = colours(map, kind);
+    const wanted = colouring.value;
+    colouring.replaceChildren(...offered.map((entry) => html('option', {value: entry.id}, entry.label)));
+    const colour = offered.find((entry) => entry.id === wanted) ?? offered[0];
+    colouring.value = colour.id;
+    scaling = {...range(kind.views.flatMap((_, i) => colour.values(i))), log: log.checked, colour};
+    const table = statisticsTable(kind, Boolean(map.expanded_uncertainty_um), summary);
+    statistics.replaceChildren(...(table ? [table] : []));
+    update();
+  };
   const update = () => {
     const factor = Math.pow(10, Number(slider.value));
     scaling.log = log.checked;
@@ -115,17 +122,24 @@ export function mapSection(map: ErrorMap): HTMLElement {
       position.max = String(slice.stops.length - 1);
       const at = slice.stops[Number(position.value)];
       visible = slice.values.map((v) => Math.abs(v - at) <= slice.half * 1.0001);
-      positionValue.textContent = `${slice.label} = ${quantity(at, slice.unit, 4)}${slice.half > 1e-3 ? ` ± ${quantity(slice.half, slice.unit, 2)}` : ''}, ${count(visible.filter(Boolean).length)} poses`;
+      positionValue.textContent = `${slice.label} = ${withUnit(at, slice.unit, 4)}${slice.half > 1e-3 ? ` ± ${withUnit(slice.half, slice.unit, 2)}` : ''}, ${count(visible.filter(Boolean).length)} poses`;
+      position.setAttribute('aria-valuetext', positionValue.textContent);
     } else positionValue.textContent = '';
+    const common = automatic(kind.views[0].length);
     views.forEach((view, i) => {
-      const scale = factor * (own.checked && i > 0 && after ? automatic(after) : common);
-      view.caption.textContent = `${slice ? `${positionValue.textContent}; ` : ''}arrows × ${count(scale)}`;
-      view.update(scale, visible, (value) => rampColour(fraction(value, scaling), isDark()), (value) => rampColour(fraction(value, scaling), false));
+      const entry = kind.views[Math.min(i, kind.views.length - 1)];
+      const scale = factor * (own.checked && i > 0 ? automatic(entry.length) : common);
+      view.caption.textContent = `${slice ? `${positionValue.textContent}; ` : ''}arrows ${exaggeration(kind, scale)}`;
+      view.describe(`${kind.what} in three dimensions, ${exaggeration(kind, scale)}, coloured by ${scaling.colour.legend}`);
+      view.update({...entry.vectors, length: entry.length, colour: scaling.colour.values(i)}, scale * kind.millimetres, visible,
+        (value) => rampColour(fraction(value, scaling), isDark()), (value) => rampColour(fraction(value, scaling), false));
     });
-    sliderValue.textContent = `× ${count(common * factor)}`;
+    sliderValue.textContent = exaggeration(kind, common * factor);
+    slider.setAttribute('aria-valuetext', sliderValue.textContent);
     bar.redraw();
   };
   for (const input of [slider, own, log, position]) input.addEventListener('input', update);
+  for (const input of [vectors, colouring]) input.addEventListener('change', choose);
   axis.addEventListener('change', () => {
     const slice = axis.value === '' ? undefined : choices[Number(axis.value)];
     if (slice) {
@@ -138,18 +152,23 @@ export function mapSection(map: ErrorMap): HTMLElement {
   const reset = html('button', {type: 'button'}, 'Reset view');
   reset.addEventListener('click', () => camera.reset());
 
+  const several = kinds.length > 1, coloured = Boolean(map.expanded_uncertainty_um?.length);
   part.append(
     html('div', {class: `views ${views.length > 1 ? 'two' : 'one'}`}, ...views.map((view) => view.box)),
     bar.box,
     html('div', {class: 'controls'},
-      html('label', {for: 'map-exaggeration'}, 'Exaggeration'), slider, sliderValue,
-      choices.length > 0 && html('label', {for: 'map-slice'}, 'Show'), choices.length > 0 && axis,
-      choices.length > 0 && position, choices.length > 0 && positionValue,
+      several && field('Arrows', vectors),
+      coloured && field('Colour', colouring),
+      field('Exaggeration', slider, sliderValue),
+      choices.length > 0 && field('Show', axis),
+      choices.length > 0 && html('span', {class: 'field'}, position, positionValue),
       html('label', {class: 'check'}, log, 'logarithmic colours'),
       after && html('label', {class: 'check'}, own, 'arrows after at their own length'),
       reset),
-    html('p', {class: 'note screen-only'}, 'Drag to rotate, wheel or + and − to zoom, arrow keys to turn.' + (after ? ' Both views move together.' : '')),
+    html('p', {class: 'note screen-only'}, 'Drag to rotate, wheel or + and − to zoom, arrow keys to turn.' + (after ? ' Both views move together.' : '') +
+      (several ? ' A rotation is drawn along its axis, right-handed.' : '')),
+    statistics,
   );
-  update();
+  choose();
   return part;
 }

@@ -15,6 +15,12 @@ import {extent, niceTicks} from './scale';
 
 type Rgb = [number, number, number];
 
+/// Columns of what is drawn at each point: direction, length and the value that its colour shows.
+export interface Arrows extends Vectors {
+  length: number[];
+  colour: number[];
+}
+
 /// One camera, turned from any of the views.
 export class Camera {
   readonly camera = new PerspectiveCamera(32, 1, 1, 10);
@@ -46,7 +52,7 @@ export class Camera {
 
   reset(): void {
     this.target.copy(this.low).add(this.high).multiplyScalar(0.5);
-    this.camera.position.copy(this.target).add(new Vector3(-0.95, -1.35, 0.85).normalize().multiplyScalar(this.size * 1.95));
+    this.camera.position.copy(this.target).add(new Vector3(-0.95, -1.35, 0.85).normalize().multiplyScalar(this.size * 1.8));
     this.camera.lookAt(this.target);
     this.changed();
   }
@@ -99,6 +105,7 @@ function label(text: string, colour: string, pixels: number): Sprite {
 export class View {
   readonly box: HTMLElement;
   readonly caption = html('span', {class: 'note'});
+  private arrowsShown: Arrows = {x: [], y: [], z: [], length: [], colour: []};
   private readonly still = html('img', {class: 'still', alt: ''});
   private readonly canvas: HTMLCanvasElement;
   private readonly renderer?: WebGLRenderer;
@@ -112,16 +119,13 @@ export class View {
   private pending = false;
 
   constructor(
-    title: string,
+    private readonly title: string,
     private readonly points: Vectors,
-    private readonly vectors: Vectors,
-    private readonly size: number[],
     private readonly shared: Camera,
   ) {
-    this.canvas = html('canvas', {tabindex: 0, role: 'img', 'aria-label': `${title}: error vectors in three dimensions. Arrow keys turn the view.`});
-    this.still.alt = `${title}: error vectors`;
+    this.canvas = html('canvas', {tabindex: 0, role: 'img', 'aria-label': title});
     this.box = html('figure', {class: 'view'}, html('figcaption', {}, html('b', {}, title), this.caption), html('div', {class: 'stage'}, this.canvas, this.still));
-    const count = size.length;
+    const count = points.x.length;
     this.arrows = new InstancedMesh(arrowGeometry(), new MeshBasicMaterial(), count);
     this.arrows.instanceMatrix.setUsage(DynamicDrawUsage);
     this.arrows.frustumCulled = false;
@@ -149,6 +153,7 @@ export class View {
     this.canvas.addEventListener('keydown', (event) => this.key(event));
     new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement!);
     window.addEventListener('beforeprint', () => this.photograph());
+    window.addEventListener('afterprint', () => this.render());
   }
 
   private key(event: KeyboardEvent): void {
@@ -162,11 +167,18 @@ export class View {
     this.shared.turn(...turn);
   }
 
-  /// @param scale    exaggeration, length drawn over length of the error
-  /// @param visible  which points are drawn; all if undefined
-  update(scale: number, visible: boolean[] | undefined, screen: (value: number) => Rgb, print: (value: number) => Rgb): void {
+  /// What the arrows are, in words, for those who do not see them.
+  describe(words: string): void {
+    this.canvas.setAttribute('aria-label', `${this.title}: ${words}. Arrow keys turn the view, plus and minus zoom.`);
+    this.still.alt = `${this.title}: ${words}`;
+  }
+
+  /// @param scale    millimetres drawn for one unit of `arrows.length`
+  /// @param visible  undefined: all
+  update(arrows: Arrows, scale: number, visible: boolean[] | undefined, screen: (value: number) => Rgb, print: (value: number) => Rgb): void {
     this.screenColour = screen;
     this.printColour = print;
+    this.arrowsShown = arrows;
     const width = this.shared.size * 0.013;
     const matrix = new Matrix4();
     const up = new Vector3(0, 1, 0);
@@ -174,12 +186,12 @@ export class View {
     const place = new Vector3();
     const turn = new Quaternion();
     const feet = this.feet.geometry.getAttribute('position');
-    for (let i = 0; i < this.size.length; ++i) {
-      const length = this.size[i] * 1e-3 * scale;
+    for (let i = 0; i < arrows.length.length; ++i) {
+      const length = arrows.length[i] * scale;
       place.set(this.points.x[i], this.points.y[i], this.points.z[i]);
       const drawn = !visible || visible[i];
       if (drawn && length > 0) {
-        direction.set(this.vectors.x[i], this.vectors.y[i], this.vectors.z[i]).normalize();
+        direction.set(arrows.x[i], arrows.y[i], arrows.z[i]).normalize();
         turn.setFromUnitVectors(up, direction);
         const thick = Math.min(width, length * 0.35);
         matrix.compose(place, turn, new Vector3(thick, length, thick));
@@ -196,8 +208,9 @@ export class View {
   private paint(colour: (value: number) => Rgb): void {
     const shade = new Color();
     const feet = this.feet.geometry.getAttribute('color');
-    for (let i = 0; i < this.size.length; ++i) {
-      shade.setRGB(...colour(this.size[i]), SRGBColorSpace);
+    const values = this.arrowsShown.colour;
+    for (let i = 0; i < values.length; ++i) {
+      shade.setRGB(...colour(values[i]), SRGBColorSpace);
       this.arrows.setColorAt(i, shade);
       feet.setXYZ(i, shade.r, shade.g, shade.b);
     }
@@ -275,6 +288,8 @@ export class View {
     this.drawFrame(dark);
     const camera = this.shared.camera;
     camera.aspect = stage.clientWidth / stage.clientHeight;
+    // Letters keep their size on a small stage, so that the box must leave them more room.
+    camera.fov = stage.clientWidth < 420 ? 37 : 32;
     camera.updateProjectionMatrix();
     const unit = (2 * Math.tan((camera.fov * Math.PI) / 360)) / stage.clientHeight;
     for (const part of this.frame?.parts ?? [])

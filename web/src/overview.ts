@@ -2,7 +2,7 @@
 
 import {PoseErrors, Report, Statistics, Summary} from './data';
 import {html} from './dom';
-import {count, number, quantity} from './format';
+import {count, micro, number, quantity} from './format';
 
 /// The errors a reader asks for first: at unseen poses if there are any, else over the map.
 function headline(summary: Summary): {errors: PoseErrors; key: 'held_out' | 'map'; where: string} | undefined {
@@ -18,7 +18,7 @@ function headline(summary: Summary): {errors: PoseErrors; key: 'held_out' | 'map
 }
 
 export function verdict(summary: Summary): string {
-  if (summary.verdict) return summary.verdict;
+  if (summary.verdict) return micro(summary.verdict);
   if (summary.converged === false) return 'The identification did not converge; the figures below are no result.';
   const head = headline(summary);
   if (!head) return '';
@@ -40,7 +40,7 @@ interface Tile {
   note?: string;
 }
 
-function errorTiles(errors: PoseErrors, key: string): HTMLElement[] {
+function errorTiles(errors: PoseErrors, key: string, where = ''): HTMLElement[] {
   const tiles: HTMLElement[] = [];
   const pair = (label: string, before: Statistics | undefined, after: Statistics | undefined, stem: string, unit: string) => {
     if (!before) return;
@@ -78,7 +78,7 @@ function errorTiles(errors: PoseErrors, key: string): HTMLElement[] {
     );
   };
   pair('Volumetric error, mean', errors.position_before_um, errors.position_after_um, 'position', 'µm');
-  pair('Orientation error, mean', errors.orientation_before_urad, errors.orientation_after_urad, 'orientation', 'µrad');
+  pair(`Orientation error, mean${where}`, errors.orientation_before_urad, errors.orientation_after_urad, 'orientation', 'µrad');
   return tiles;
 }
 
@@ -91,16 +91,20 @@ function smallTiles(summary: Summary, errors: PoseErrors | undefined, key: strin
   if (errors) {
     add('Remaining error', `${key}.remaining_percent`, errors.remaining_percent, 3, '%', 'of the mean before');
     add('Predicted uncertainty', `${key}.predicted_expanded_uncertainty_um.mean`, errors.predicted_expanded_uncertainty_um?.mean, 3, 'µm',
-        errors.coverage_percent === undefined ? 'k = 2, mean' : `k = 2, mean; covers ${number(errors.coverage_percent)}\u2009% of the poses`);
+        errors.coverage_percent === undefined ? 'k = 2, mean' : `k = 2, mean; covers ${number(errors.coverage_percent)}\u2009% of the coordinates`);
   }
+  const monte = summary.monte_carlo;
+  if (monte?.samples) add('Monte Carlo', 'monte_carlo.samples', monte.samples, 0, '',
+      monte.agrees === undefined ? 'samples' : monte.agrees ? 'samples; confirm the uncertainties' : 'samples; differ from the covariance');
   add('Readings', 'readings', summary.readings, 0, '',
       summary.outliers === undefined ? '' : `${count(summary.outliers)} marked as outlier${summary.outliers === 1 ? '' : 's'}`);
   add('Parameters', 'parameters', summary.parameters, 0, '',
-      summary.rank === undefined ? '' : `rank ${count(summary.rank)}, ${count(summary.null_space)} fixed by convention`);
+      [summary.machine_parameters === undefined ? '' : `${count(summary.machine_parameters)} of the machine, ${count(summary.setup_parameters)} of set-ups`,
+        summary.rank === undefined ? '' : `rank ${count(summary.rank)}, ${count(summary.null_space)} fixed by convention`].filter(Boolean).join('; '));
   add('Degrees of freedom', 'degrees_of_freedom', summary.degrees_of_freedom, 0, '',
       summary.chi_square === undefined || summary.chi_square === null ? '' : `χ² = ${number(summary.chi_square, 4)}` +
           (summary.chi_square_probability === undefined ? '' : `, p = ${number(summary.chi_square_probability, 2)}`));
-  add('Residual, normalised', 'normalised_residual_rms', summary.normalised_residual_rms, 3, '', '1 if model and noise are right');
+  add('Residual, normalised', 'normalised_residual_rms', summary.normalised_residual_rms, 3, '', summary.residuals === undefined ? '1 if model and noise are right' : `of ${count(summary.residuals)} residuals; 1 if model and noise are right`);
   add('Observability index', 'observability_index', summary.observability_index, 3, '', summary.observability_index_kind ?? '');
   return tiles;
 }
@@ -132,7 +136,7 @@ export function warnings(report: Report): HTMLElement | undefined {
   for (const entry of entries) {
     const {level, text} = typeof entry === 'string' ? {level: 'warning', text: entry} : {level: entry.level ?? 'warning', text: entry.text};
     const known = ['error', 'warning', 'note'].includes(level) ? level : 'warning';
-    list.append(html('li', {class: `level-${known}`}, html('strong', {}, known[0].toUpperCase() + known.slice(1)), html('span', {}, text)));
+    list.append(html('li', {class: `level-${known}`}, html('strong', {}, known[0].toUpperCase() + known.slice(1)), html('span', {}, micro(text))));
   }
   return list;
 }
@@ -152,6 +156,9 @@ export function overview(report: Report): HTMLElement {
   );
   const tiles = html('div', {class: 'tiles'});
   if (head) tiles.append(...errorTiles(head.errors, head.key));
+  // Unseen poses may say nothing of the orientation; the map does.
+  if (head?.key === 'held_out' && !head.errors.orientation_before_urad && summary.map?.orientation_before_urad)
+    tiles.append(...errorTiles({orientation_before_urad: summary.map.orientation_before_urad, orientation_after_urad: summary.map.orientation_after_urad}, 'map', ' over the map'));
   const small = html('div', {class: 'tiles small'});
   for (const tile of smallTiles(summary, head?.errors, head?.key ?? ''))
     small.append(
@@ -167,8 +174,9 @@ export function overview(report: Report): HTMLElement {
   if (head?.errors.description) {
     const against: Record<string, string> = {truth: 'compared with the known truth', readings: 'compared with readings not used in the fit', model: 'predicted by the model'};
     const reference = head.errors.reference;
-    box.append(html('p', {class: 'note under'}, `Evaluated at ${head.errors.poses ? `${count(head.errors.poses)} poses: ` : ''}${head.errors.description}` +
-      (reference ? `; ${against[reference] ?? `compared with ${reference}`}.` : '.')));
+    box.append(html('p', {class: 'note under'}, `Evaluated at ${head.errors.poses && !head.errors.description.startsWith(String(head.errors.poses)) ? `${count(head.errors.poses)} poses: ` : ''}${head.errors.description}` +
+      (reference ? `; ${against[reference] ?? `compared with ${reference}`}` : '') +
+      (head.errors.outside_range ? `; ${count(head.errors.outside_range)} more poses are outside the measured range and have no result.` : '.')));
   }
   if (small.children.length) box.append(small);
   return box;

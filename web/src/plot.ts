@@ -43,7 +43,7 @@ export function plot(options: PlotOptions): Plot {
   const {width, height} = options;
   const bottom = height - (options.compact ? 34 : 40);
   const top = 18;
-  const y = axisScale(options.y, [bottom, top], Math.max(2, (bottom - top) / 30));
+  const y = axisScale(options.y, [bottom, top], Math.max(2, (bottom - top) / 22));
   const yTicks = options.y.ticks ?? y.ticks.map((at) => ({at, label: y.label(at)}));
   const widest = Math.max(1, ...yTicks.map((tick) => tick.label.length));
   const left = 14 + widest * 6.4;

@@ -1,7 +1,7 @@
 // Residuals of any instrument: every component in the order of the readings, over time and over each axis, outliers marked.
 
 import {Column, SetupResiduals, splitUnit, unitText} from './data';
-import {html, responsive, section} from './dom';
+import {field, html, responsive, section} from './dom';
 import {count, number} from './format';
 import {dots, plot, rule} from './plot';
 import {extent} from './scale';
@@ -73,8 +73,9 @@ function drawRow(row: Row, setup: SetupResiduals, choice: Choice, raw: boolean):
       rule(target, limit, 'y', 'limit', 'limit of outliers');
       if (!row.length) rule(target, -limit, 'y', 'limit');
     }
-    dots(target, choice.values, clamped.map((v, i) => (marked(i) || unused(i) ? null : v)), 'residual');
-    dots(target, choice.values, clamped.map((v, i) => (unused(i) ? v : null)), 'residual unused');
+    const few = row.values.length < 400 ? ' few' : '';
+    dots(target, choice.values, clamped.map((v, i) => (marked(i) || unused(i) ? null : v)), `residual${few}`);
+    dots(target, choice.values, clamped.map((v, i) => (unused(i) ? v : null)), `residual unused${few}`);
     dots(target, choice.values, clamped.map((v, i) => (marked(i) ? v : null)), 'outlier');
     return target.root;
   });
@@ -100,12 +101,12 @@ function setupBlock(setup: SetupResiduals, index: number): HTMLElement {
   const bad = (setup.outlier ?? []).filter(Boolean).length;
   const unused = (setup.held_out ?? []).filter(Boolean).length;
   const words = [shown < total ? `${count(shown)} of ${count(total)} readings shown` : `${count(total)} readings`];
-  if (bad) words.push(`${count(bad)} marked as outliers`);
+  if (bad) words.push(`${count(bad)} marked as outlier${bad === 1 ? '' : 's'}`);
   return html('div', {class: 'setup'},
     html('h3', {}, setup.name, html('small', {}, words.join(', '))),
     html('div', {class: 'controls'},
-      html('label', {for: `residual-x-${index}`}, 'Against'), against,
-      html('label', {for: `residual-y-${index}`}, 'Residual'), kind,
+      field('Against', against),
+      field('Residual', kind),
       bad > 0 && html('span', {class: 'key'}, html('i', {class: 'dot outlier'}), 'outlier'),
       unused > 0 && html('span', {class: 'key'}, html('i', {class: 'dot unused'}), 'held out of the fit')),
     plots,

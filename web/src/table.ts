@@ -1,8 +1,8 @@
 // Tables: plain ones, and the parameter table that sorts and filters.
 
 import {DataTable, Parameters, unitText} from './data';
-import {html, section} from './dom';
-import {alike, number, withUncertainty} from './format';
+import {field, html, section} from './dom';
+import {alike, count, number, withUncertainty} from './format';
 
 export function dataTable(caption: string, columns: string[], rows: (string | number | boolean | null)[][]): HTMLElement {
   const isNumber = columns.map((_, i) => rows.some((row) => typeof row[i] === 'number'));
@@ -19,7 +19,7 @@ export function dataTable(caption: string, columns: string[], rows: (string | nu
         {},
         ...rows.map((row) =>
           html('tr', {}, ...row.map((cell, i) =>
-            html('td', {class: isNumber[i] ? 'number' : ''}, typeof cell === 'number' ? number(cell, 5) : cell === null ? '\u2013' : String(cell)))),
+            html('td', {class: isNumber[i] ? 'number' : ''}, typeof cell === 'number' ? (Number.isInteger(cell) ? count(cell) : number(cell, 5)) : cell === null ? '\u2013' : String(cell)))),
         ),
       ),
     ),
@@ -39,6 +39,8 @@ interface Row {
   cells: HTMLElement[];
   sort: (string | number)[];
   text: string;
+  /// A convention acts on it; it alone fixes the value.
+  gauge: boolean;
   fixed: boolean;
 }
 
@@ -62,11 +64,16 @@ function parameterRows(p: Parameters): Row[] {
       html('td', {class: 'gauge'}, gauge),
     ];
     if (p.truth) cells.splice(4, 0, html('td', {class: 'number'}, alike(truth, uncertainty ? value : '')));
+    const simulated = p.monte_carlo_uncertainty?.[i];
+    const ratio = p.monte_carlo_ratio?.[i];
+    if (p.monte_carlo_uncertainty)
+      cells.splice(4, 0, html('td', {class: 'number'}, alike(simulated, spread)), html('td', {class: 'number'}, alike(ratio, '0.00')));
     const low = -Infinity;
     const sort: (string | number)[] = [name, p.group?.[i] ?? '', p.value[i] ?? low, uncertainty ?? low, unit,
       correlation === null || correlation === undefined ? low : Math.abs(correlation), partner, gauge];
     if (p.truth) sort.splice(4, 0, truth ?? low);
-    return {cells, sort, text: `${name} ${p.group?.[i] ?? ''} ${partner} ${gauge}`.toLowerCase(), fixed: gauge !== ''};
+    if (p.monte_carlo_uncertainty) sort.splice(4, 0, simulated ?? low, ratio ?? low);
+    return {cells, sort, text: `${name} ${p.group?.[i] ?? ''} ${partner} ${gauge}`.toLowerCase(), gauge: gauge !== '', fixed: gauge !== '' && !uncertainty};
   });
 }
 
@@ -75,26 +82,33 @@ export function parameterSection(p: Parameters): HTMLElement {
     'Every estimated parameter with its standard uncertainty and the parameter it is most correlated with. Where the readings cannot separate parameters, the gauge column says which convention fixes them.');
   const columns = ['Parameter', 'Group', 'Value', 'Standard uncertainty', 'Unit', 'Largest correlation', 'with', 'Gauge'];
   if (p.truth) columns.splice(4, 0, 'Truth');
-  const numeric = new Set(['Value', 'Standard uncertainty', 'Truth', 'Largest correlation']);
+  if (p.monte_carlo_uncertainty) columns.splice(4, 0, 'Monte Carlo', 'Ratio');
+  const numeric = new Set(['Value', 'Standard uncertainty', 'Monte Carlo', 'Ratio', 'Truth', 'Largest correlation']);
   const rows = parameterRows(p);
   const order = rows.map((_, i) => i);
   const body = html('tbody');
+  const caption = html('caption');
   const status = html('span', {class: 'note', 'aria-live': 'polite'});
   const filter = html('input', {type: 'search', placeholder: 'EXX, tracker, C …', id: 'parameter-filter'});
   const onlyFixed = html('input', {type: 'checkbox', id: 'parameter-fixed'});
   const elements = rows.map((row) => html('tr', row.fixed ? {class: 'fixed'} : {}, ...row.cells));
   const show = () => {
     const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
-    const kept = order.filter((i) => (!onlyFixed.checked || rows[i].fixed) && words.every((word) => rows[i].text.includes(word)));
+    const kept = order.filter((i) => (!onlyFixed.checked || rows[i].gauge) && words.every((word) => rows[i].text.includes(word)));
     body.replaceChildren(...kept.map((i) => elements[i]));
     status.textContent = `${kept.length} of ${rows.length}`;
+    caption.textContent = `Parameters${kept.length < rows.length ? `, ${kept.length} of ${rows.length} shown` : ''}`;
+    // The heading says it already unless something is left out, which paper must say too.
+    caption.className = kept.length < rows.length ? '' : 'unseen';
   };
   filter.addEventListener('input', show);
   onlyFixed.addEventListener('change', show);
 
   const heads = columns.map((name, column) => {
     const button = html('button', {type: 'button', title: `Sort by ${name.toLowerCase()}`}, name);
-    const head = html('th', {scope: 'col', class: numeric.has(name) ? 'number' : '', 'aria-sort': 'none'}, button);
+    const head = html('th', {scope: 'col', class: numeric.has(name) ? 'number' : '', 'aria-sort': 'none'}, button,
+      // Browsers leave buttons out of the heads that they repeat on every sheet.
+      html('span', {class: 'print-only'}, name));
     button.addEventListener('click', () => {
       const down = head.getAttribute('aria-sort') === 'ascending';
       for (const other of heads) other.setAttribute('aria-sort', 'none');
@@ -113,13 +127,12 @@ export function parameterSection(p: Parameters): HTMLElement {
     html(
       'div',
       {class: 'controls'},
-      html('label', {for: 'parameter-filter'}, 'Filter'),
-      filter,
-      rows.some((row) => row.fixed) && html('label', {class: 'check'}, onlyFixed, 'only those fixed by the gauge'),
+      field('Filter', filter),
+      rows.some((row) => row.gauge) && html('label', {class: 'check'}, onlyFixed, 'only those in the gauge'),
       status,
     ),
     html('div', {class: 'scroll tall', tabindex: 0, role: 'region', 'aria-label': 'Parameters'},
-      html('table', {class: 'parameters'}, html('thead', {}, html('tr', {}, ...heads)), body)),
+      html('table', {class: 'parameters'}, caption, html('thead', {}, html('tr', {}, ...heads)), body)),
   );
   show();
   return part;
