@@ -64,7 +64,7 @@ struct PositioningEvaluation {
 /// differ between positions; the standard asks for the same everywhere (`fewest_runs`, `most_runs` tell).
 /// @param readings  in any order, finite
 /// @throws nothing
-/// Source: ISO 230-2:2014, clause 3 (definitions) and docs/evaluate.md.
+/// Source: ISO 230-2:2014, terms and definitions; docs/evaluate.md.
 PositioningEvaluation evaluate_positioning(const std::vector<PositioningReading>& readings);
 
 }  // namespace abbe
