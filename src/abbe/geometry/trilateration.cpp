@@ -45,7 +45,8 @@ struct Frame {
 struct Candidate {
   Vector3d position;
   std::vector<double> dead_path;
-  double scale = std::numeric_limits<double>::infinity();  ///< 1.4826 times the median residual
+  double scale =
+      std::numeric_limits<double>::infinity();  ///< 1.4826 times the residual within which enough lengths lie
 };
 
 /// Dead path of every run for a position, points and position in one frame.
@@ -66,6 +67,11 @@ class Search {
  public:
   Search(const TrilaterationData& data, const Frame& frame) : data_(data), frame_(frame) {
     for (const Vector3d& point : data.points) points_.push_back(frame.into(point));
+    // Rousseeuw and Leroy, Robust Regression (1987), ch. 3: with the plain median of few lengths, as many as there are
+    // unknowns would always be explained.
+    std::size_t unknowns = 3;
+    for (const std::optional<double>& known : data.dead_path) unknowns += known ? 0 : 1;
+    explained_ = std::min(data.points.size(), data.points.size() / 2 + (unknowns + 1) / 2);
   }
 
   double residual(const Candidate& candidate, std::size_t i) const {
@@ -82,7 +88,9 @@ class Search {
   double scale_of(const Candidate& candidate) const {
     std::vector<double> sizes;
     for (std::size_t i = 0; i < points_.size(); ++i) sizes.push_back(std::abs(residual(candidate, i)));
-    return 1.4826 * median(sizes);
+    const auto quantile = sizes.begin() + static_cast<std::ptrdiff_t>(explained_ - 1);
+    std::nth_element(sizes.begin(), quantile, sizes.end());
+    return 1.4826 * *quantile;
   }
 
   /// Linear solutions of readings of one run, in space and in the plane (both sides).
@@ -174,6 +182,7 @@ class Search {
   const TrilaterationData& data_;
   const Frame& frame_;
   std::vector<Vector3d> points_;
+  std::size_t explained_ = 0;  ///< lengths that a position has to explain
 };
 
 /// Start positions: subsets of the longest run, drawn with a fixed seed, and all of its readings.

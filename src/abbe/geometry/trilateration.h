@@ -27,7 +27,7 @@ struct TrilaterationData {
 };
 
 struct TrilaterationOptions {
-  double tolerance = 5;  ///< mm: more than half of the lengths have to be explained within it
+  double tolerance = 5;  ///< mm: more than half of the lengths, (n + unknowns) / 2, have to be explained within it
   std::size_t draws = 200;
 };
 
@@ -45,9 +45,9 @@ struct Trilateration {
 ///
 /// From |x - p|^2 = (l + d)^2 every length gives  2 x . p + 2 l d + (d^2 - |p|^2) = |x|^2 - l^2,  linear in p, d and
 /// the bracket. Random subsets of one run are solved that way, in space and, with the normal part of p from the
-/// bracket, in the best plane through the points; the best by median residual are refined by Gauss-Newton with Tukey's
-/// weights. The refined position mirrored at the plane is refined too: a unique answer has to explain the lengths
-/// better.
+/// bracket, in the best plane through the points; the best by the residual of the (n + unknowns) / 2-th length are
+/// refined by Gauss-Newton with Tukey's weights. The refined position mirrored at the plane is refined too: a unique
+/// answer has to explain the lengths better.
 /// @throws std::invalid_argument if sizes do not agree
 Trilateration trilaterate(const TrilaterationData& data, const TrilaterationOptions& options = {});
 
