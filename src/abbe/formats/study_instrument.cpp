@@ -10,6 +10,12 @@ struct Kind {
 
 constexpr Kind kKinds[] = {
     {"ball-bar", read_ball_bar},
+    {"r-test", read_r_test},
+    {"touch-probe", read_touch_probe},
+    {"dials", read_dials},
+    {"level", read_level},
+    {"autocollimator", read_autocollimator},
+    {"board-marks", read_board_marks},
 };
 
 }  // namespace

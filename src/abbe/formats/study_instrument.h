@@ -25,7 +25,13 @@ std::vector<std::string_view> instrument_words();
 std::shared_ptr<Instrument> read_instrument(std::size_t index, TomlTable& table, const InstrumentContext& context);
 
 // One per instrument, each in a file of its own. Numbers stated as true are in SetupQuantity::truth.
+std::shared_ptr<Instrument> read_autocollimator(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_ball_bar(TomlTable& table, const InstrumentContext& context);
+std::shared_ptr<Instrument> read_board_marks(TomlTable& table, const InstrumentContext& context);
+std::shared_ptr<Instrument> read_dials(TomlTable& table, const InstrumentContext& context);
+std::shared_ptr<Instrument> read_level(TomlTable& table, const InstrumentContext& context);
+std::shared_ptr<Instrument> read_r_test(TomlTable& table, const InstrumentContext& context);
+std::shared_ptr<Instrument> read_touch_probe(TomlTable& table, const InstrumentContext& context);
 
 /// Body by `key`: "bed", "workpiece" or "tool".
 Body read_body(TomlTable& table, std::string_view key, Body otherwise);

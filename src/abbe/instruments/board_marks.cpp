@@ -1,6 +1,7 @@
 #include "abbe/instruments/board_marks.h"
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace abbe {
@@ -48,6 +49,11 @@ BoardMarks::BoardMarks(const BoardMarksSetup& setup)
 
 double BoardMarks::standard_uncertainty(const InstrumentReadings&, std::size_t, std::size_t component) const {
   return width_ && component + 1 == components_.size() ? width_noise_ : position_noise_;
+}
+
+std::vector<std::vector<double>> BoardMarks::planned_inputs(std::size_t) const {
+  if (position_ != BoardMarksSetup::Position::line) return {{}};
+  return {{0}, {std::numbers::pi / 2}};
 }
 
 std::optional<MeetingPoints> BoardMarks::meeting_points(std::size_t item) const {

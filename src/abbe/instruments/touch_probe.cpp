@@ -52,6 +52,11 @@ TouchProbe::TouchProbe(const TouchProbeSetup& setup)
 
 double TouchProbe::standard_uncertainty(const InstrumentReadings&, std::size_t, std::size_t) const { return noise_; }
 
+std::vector<std::vector<double>> TouchProbe::planned_inputs(std::size_t) const {
+  if (measure_ == TouchProbeSetup::Measure::centre) return {{}};
+  return {{0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+}
+
 std::optional<MeetingPoints> TouchProbe::meeting_points(std::size_t item) const {
   double value[15];
   for (std::size_t i = 0; i < 15; ++i) value[i] = quantities_[items_[item].quantities[i]].value;
