@@ -58,7 +58,7 @@ void circular(std::string_view text) {
 void rotation(std::string_view text) {
   const abbe::RotationReadings readings = abbe::parse_rotation(text, "fuzz.csv");
   const abbe::RotationResult result = abbe::rotation_error_motions(readings, {.plane_distance = 80});
-  for (const abbe::ErrorMotion& motion : result.motions) {
+  for (const abbe::AxisErrorMotion& motion : result.motions) {
     if (!std::isfinite(motion.total_value) || !std::isfinite(motion.asynchronous_value)) std::abort();
   }
 }

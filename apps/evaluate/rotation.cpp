@@ -22,29 +22,29 @@ struct MotionName {
   const char* name;
 };
 
-MotionName name_of(ErrorMotionKind kind) {
+MotionName name_of(AxisErrorMotionKind kind) {
   switch (kind) {
-    case ErrorMotionKind::radial_fixed_x1:
+    case AxisErrorMotionKind::radial_fixed_x1:
       return {"radial_x1", "radial along X, plane 1"};
-    case ErrorMotionKind::radial_fixed_y1:
+    case AxisErrorMotionKind::radial_fixed_y1:
       return {"radial_y1", "radial along Y, plane 1"};
-    case ErrorMotionKind::radial_rotating_1:
+    case AxisErrorMotionKind::radial_rotating_1:
       return {"radial_rotating_1", "radial, rotating direction, plane 1"};
-    case ErrorMotionKind::radial_fixed_x2:
+    case AxisErrorMotionKind::radial_fixed_x2:
       return {"radial_x2", "radial along X, plane 2"};
-    case ErrorMotionKind::radial_fixed_y2:
+    case AxisErrorMotionKind::radial_fixed_y2:
       return {"radial_y2", "radial along Y, plane 2"};
-    case ErrorMotionKind::radial_rotating_2:
+    case AxisErrorMotionKind::radial_rotating_2:
       return {"radial_rotating_2", "radial, rotating direction, plane 2"};
-    case ErrorMotionKind::tilt_fixed_x:
+    case AxisErrorMotionKind::tilt_fixed_x:
       return {"tilt_x", "tilt towards X"};
-    case ErrorMotionKind::tilt_fixed_y:
+    case AxisErrorMotionKind::tilt_fixed_y:
       return {"tilt_y", "tilt towards Y"};
-    case ErrorMotionKind::tilt_rotating:
+    case AxisErrorMotionKind::tilt_rotating:
       return {"tilt_rotating", "tilt, rotating direction"};
-    case ErrorMotionKind::axial:
+    case AxisErrorMotionKind::axial:
       return {"axial", "axial"};
-    case ErrorMotionKind::face:
+    case AxisErrorMotionKind::face:
       return {"face", "face"};
   }
   return {"", ""};
@@ -66,7 +66,7 @@ std::string reason(const RotationResult& result) {
   return "";
 }
 
-void add_figures(ErrorMotionKind kind, const ErrorMotion* motion, bool stated, const std::string& missing,
+void add_figures(AxisErrorMotionKind kind, const AxisErrorMotion* motion, bool stated, const std::string& missing,
                  EvaluationReport& report) {
   const MotionName name = name_of(kind);
   const auto add = [&](const char* suffix, const char* words, double value, double uncertainty) {
@@ -85,7 +85,7 @@ void add_figures(ErrorMotionKind kind, const ErrorMotion* motion, bool stated, c
     }
     report.figures.push_back(std::move(figure));
   };
-  const ErrorMotion none, &m = motion == nullptr ? none : *motion;
+  const AxisErrorMotion none, &m = motion == nullptr ? none : *motion;
   add("total", "total error motion", m.total_value, m.total_uncertainty);
   add("synchronous", "synchronous error motion", m.synchronous_value, m.synchronous_uncertainty);
   add("asynchronous", "asynchronous error motion", m.asynchronous_value, m.asynchronous_uncertainty);
@@ -94,7 +94,7 @@ void add_figures(ErrorMotionKind kind, const ErrorMotion* motion, bool stated, c
   add("residual", "residual synchronous error motion", m.residual_value, m.synchronous_uncertainty);
 }
 
-EvaluationPlot plot_of(const RotationResult& result, const ErrorMotion& motion, const std::string& file) {
+EvaluationPlot plot_of(const RotationResult& result, const AxisErrorMotion& motion, const std::string& file) {
   const double unit = is_tilt(motion.kind) ? 1e6 : 1e3;
   const MotionName name = name_of(motion.kind);
   PolarPlot plot(fmt::format("Error motion, {} ({})", name.name, file),
@@ -127,7 +127,7 @@ void add_notes(const RotationResult& result, const RotationCommand& command, Eva
     report.notes.push_back(
         "The readings do not stand at the same angles in every turn; they were interpolated linearly in between.");
   }
-  for (const ErrorMotion& motion : result.motions) {
+  for (const AxisErrorMotion& motion : result.motions) {
     if (std::abs(motion.drift) > 0.3 * motion.asynchronous_value && motion.asynchronous_value > 0) {
       report.notes.push_back(
           fmt::format("{}: the mean of a turn drifts by {:.2f} {} from the first to the last turn; that is part of the "
@@ -136,7 +136,7 @@ void add_notes(const RotationResult& result, const RotationCommand& command, Eva
                       name_of(motion.kind).name, motion.drift * (is_tilt(motion.kind) ? 1e6 : 1e3),
                       unit_symbol(is_tilt(motion.kind) ? "urad" : "um")));
     }
-    if (motion.kind == ErrorMotionKind::face) {
+    if (motion.kind == AxisErrorMotionKind::face) {
       report.notes.push_back(
           "The fundamental face error motion contains the angle between the measured face and the axis.");
     }
@@ -163,8 +163,8 @@ EvaluationReport rotation_report(const RotationCommand& command, const RotationR
     report.facts.emplace_back("distance of the planes", fmt::format("{:.6g} mm", command.rotation.plane_distance));
   }
   std::size_t next = 0;
-  for (const ErrorMotionKind kind : evaluated_kinds(readings, command.rotation)) {
-    const ErrorMotion* motion = result.status == RotationStatus::done ? &result.motions[next++] : nullptr;
+  for (const AxisErrorMotionKind kind : evaluated_kinds(readings, command.rotation)) {
+    const AxisErrorMotion* motion = result.status == RotationStatus::done ? &result.motions[next++] : nullptr;
     add_figures(kind, motion, command.rotation.reading_uncertainty > 0, reason(result), report);
     if (motion == nullptr) continue;
     report.plots.push_back(plot_of(result, *motion, file));

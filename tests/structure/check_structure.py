@@ -3,7 +3,7 @@
 
 A folder of src/abbe includes only itself and folders above it in ORDER; `identify` and `compensate` do not see each
 other; only `formats`, `report` and `apps` touch files; headers have `#pragma once`; nothing is included twice; no file
-is longer than MAX_LINES; no folder has a name that says nothing. Every violation is one line: file:line: message.
+is longer than MAX_LINES; no folder has a name that says nothing; no two headers of the library declare a type of one name. Every violation is one line: file:line: message.
 """
 import os
 import re
@@ -76,12 +76,33 @@ def check_cpp(root, path, text):
         yield 1, "header without #pragma once"
 
 
+TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)(?: final)?(?: : [^;]*)?\s*(?:\{|$)")
+
+
+def repeated_types(root):
+    """Types of one name in two headers of the library: one namespace, so each must have a name of its own."""
+    where = {}
+    for folder, files in files_below(root, "src"):
+        for name in files:
+            if not name.endswith(".h") or name.endswith("_for_test.h"):
+                continue
+            path = f"{folder}/{name}"
+            with open(os.path.join(root, path), encoding="utf-8") as stream:
+                for number, line in enumerate(stream, 1):
+                    match = TYPE.match(line.rstrip())
+                    if match and match.group(1) in where and where[match.group(1)] != path:
+                        yield path, number, f"'{match.group(1)}' is also in {where[match.group(1)]}"
+                    elif match:
+                        where[match.group(1)] = path
+
+
 def violations(root):
     """All violations as (path, line, message)."""
     library = os.path.join(root, "src", "abbe")
     for name in sorted(os.listdir(library)):
         if os.path.isdir(os.path.join(library, name)) and name not in ORDER:
             yield f"src/abbe/{name}", 1, f"folder is not in the order {' '.join(ORDER)}"
+    yield from repeated_types(root)
     for place in PLACES:
         for folder, files in files_below(root, place):
             if os.path.basename(folder).lower() in MEANINGLESS:

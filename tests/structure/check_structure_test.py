@@ -35,6 +35,11 @@ class CheckStructure(unittest.TestCase):
                          "src/abbe/geometry/a.cpp": '#include <cmath>\n#include "abbe/machine/axis.h"\n'},
                         "src/abbe/geometry/a.cpp:2:", "below it")
 
+    def test_one_name_for_two_types_is_found(self):
+        self.assert_one({"src/abbe/errors/a.h": "#pragma once\nstruct Motion {\n};\nstruct Other;\n",
+                         "src/abbe/verify/b.h": "#pragma once\nstruct Other;\nclass Motion : public X {\n};\n"},
+                        "src/abbe/verify/b.h:3:", "'Motion' is also in src/abbe/errors/a.h")
+
     def test_identify_and_compensate_do_not_see_each_other(self):
         headers = {"src/abbe/identify/a.h": "#pragma once\n", "src/abbe/compensate/b.h": "#pragma once\n"}
         for source, target in (("identify/x.cpp", "compensate/b.h"), ("compensate/x.cpp", "identify/a.h")):

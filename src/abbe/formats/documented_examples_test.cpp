@@ -29,7 +29,7 @@ std::vector<std::string> blocks(const std::string& kind) {
 
 TEST(DocumentedExamples, AreAccepted) {
   const std::vector<std::string> toml = blocks("toml"), csv = blocks("csv");
-  ASSERT_EQ(toml.size(), 4U);
+  ASSERT_EQ(toml.size(), 5U);
   ASSERT_EQ(csv.size(), 1U);
   const Machine machine = parse_machine(toml[0], "machine");
   EXPECT_EQ(machine.chain(), "w C' X' b Z t");
@@ -52,6 +52,8 @@ TEST(DocumentedExamples, AreAccepted) {
   EXPECT_EQ(simulated.identification->motions.size(), 12U);
   const Study measured = parse_study(toml[3], "b.study.toml", machine);
   EXPECT_TRUE(measured.setups[0].noise_from_data);
+  const Study bar = parse_study(toml[4], "c.study.toml", machine);
+  EXPECT_EQ(bar.setups[0].plans.size(), 2U);
 }
 
 }  // namespace

@@ -109,8 +109,9 @@ double drift_of(const std::vector<double>& values, std::size_t turns, std::size_
   return product / spread * static_cast<double>(turns - 1);
 }
 
-ErrorMotion evaluate(ErrorMotionKind kind, std::vector<double> values, const RotationResult& grid, double uncertainty) {
-  ErrorMotion motion;
+AxisErrorMotion evaluate(AxisErrorMotionKind kind, std::vector<double> values, const RotationResult& grid,
+                         double uncertainty) {
+  AxisErrorMotion motion;
   motion.kind = kind;
   const std::size_t turns = grid.turns, positions = grid.positions;
   const Fundamental part = fundamental_of(values, grid.angle);
@@ -151,33 +152,33 @@ ErrorMotion evaluate(ErrorMotionKind kind, std::vector<double> values, const Rot
 
 }  // namespace
 
-bool is_tilt(ErrorMotionKind kind) {
-  return kind == ErrorMotionKind::tilt_fixed_x || kind == ErrorMotionKind::tilt_fixed_y ||
-         kind == ErrorMotionKind::tilt_rotating;
+bool is_tilt(AxisErrorMotionKind kind) {
+  return kind == AxisErrorMotionKind::tilt_fixed_x || kind == AxisErrorMotionKind::tilt_fixed_y ||
+         kind == AxisErrorMotionKind::tilt_rotating;
 }
 
-bool fundamental_is_removed(ErrorMotionKind kind) {
-  return kind != ErrorMotionKind::axial && kind != ErrorMotionKind::face;
+bool fundamental_is_removed(AxisErrorMotionKind kind) {
+  return kind != AxisErrorMotionKind::axial && kind != AxisErrorMotionKind::face;
 }
 
-std::vector<ErrorMotionKind> evaluated_kinds(const RotationReadings& readings, const RotationOptions& options) {
+std::vector<AxisErrorMotionKind> evaluated_kinds(const RotationReadings& readings, const RotationOptions& options) {
   const bool x1 = !readings.x1.empty(), y1 = !readings.y1.empty(), x2 = !readings.x2.empty(), y2 = !readings.y2.empty();
   const bool tilt = options.plane_distance > 0;
-  std::vector<ErrorMotionKind> kinds;
-  const auto add = [&](ErrorMotionKind kind, bool allowed) {
+  std::vector<AxisErrorMotionKind> kinds;
+  const auto add = [&](AxisErrorMotionKind kind, bool allowed) {
     if (allowed) kinds.push_back(kind);
   };
-  add(ErrorMotionKind::radial_fixed_x1, x1);
-  add(ErrorMotionKind::radial_fixed_y1, y1);
-  add(ErrorMotionKind::radial_rotating_1, x1 && y1);
-  add(ErrorMotionKind::radial_fixed_x2, x2);
-  add(ErrorMotionKind::radial_fixed_y2, y2);
-  add(ErrorMotionKind::radial_rotating_2, x2 && y2);
-  add(ErrorMotionKind::tilt_fixed_x, tilt && x1 && x2);
-  add(ErrorMotionKind::tilt_fixed_y, tilt && y1 && y2);
-  add(ErrorMotionKind::tilt_rotating, tilt && x1 && x2 && y1 && y2);
-  add(ErrorMotionKind::axial, !readings.axial.empty());
-  add(ErrorMotionKind::face, !readings.face.empty());
+  add(AxisErrorMotionKind::radial_fixed_x1, x1);
+  add(AxisErrorMotionKind::radial_fixed_y1, y1);
+  add(AxisErrorMotionKind::radial_rotating_1, x1 && y1);
+  add(AxisErrorMotionKind::radial_fixed_x2, x2);
+  add(AxisErrorMotionKind::radial_fixed_y2, y2);
+  add(AxisErrorMotionKind::radial_rotating_2, x2 && y2);
+  add(AxisErrorMotionKind::tilt_fixed_x, tilt && x1 && x2);
+  add(AxisErrorMotionKind::tilt_fixed_y, tilt && y1 && y2);
+  add(AxisErrorMotionKind::tilt_rotating, tilt && x1 && x2 && y1 && y2);
+  add(AxisErrorMotionKind::axial, !readings.axial.empty());
+  add(AxisErrorMotionKind::face, !readings.face.empty());
   return kinds;
 }
 
@@ -204,34 +205,34 @@ RotationResult rotation_error_motions(const RotationReadings& readings, const Ro
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = (far[i] - near[i]) / options.plane_distance;
     return values;
   };
-  const auto values_of = [&](ErrorMotionKind kind) -> std::vector<double> {
+  const auto values_of = [&](AxisErrorMotionKind kind) -> std::vector<double> {
     switch (kind) {
-      case ErrorMotionKind::radial_fixed_x1:
+      case AxisErrorMotionKind::radial_fixed_x1:
         return x1;
-      case ErrorMotionKind::radial_fixed_y1:
+      case AxisErrorMotionKind::radial_fixed_y1:
         return y1;
-      case ErrorMotionKind::radial_rotating_1:
+      case AxisErrorMotionKind::radial_rotating_1:
         return rotating(x1, y1);
-      case ErrorMotionKind::radial_fixed_x2:
+      case AxisErrorMotionKind::radial_fixed_x2:
         return x2;
-      case ErrorMotionKind::radial_fixed_y2:
+      case AxisErrorMotionKind::radial_fixed_y2:
         return y2;
-      case ErrorMotionKind::radial_rotating_2:
+      case AxisErrorMotionKind::radial_rotating_2:
         return rotating(x2, y2);
-      case ErrorMotionKind::tilt_fixed_x:
+      case AxisErrorMotionKind::tilt_fixed_x:
         return tilt(x1, x2);
-      case ErrorMotionKind::tilt_fixed_y:
+      case AxisErrorMotionKind::tilt_fixed_y:
         return tilt(y1, y2);
-      case ErrorMotionKind::tilt_rotating:
+      case AxisErrorMotionKind::tilt_rotating:
         return rotating(tilt(x1, x2), tilt(y1, y2));
-      case ErrorMotionKind::axial:
+      case AxisErrorMotionKind::axial:
         return signal(readings.axial);
-      case ErrorMotionKind::face:
+      case AxisErrorMotionKind::face:
         return signal(readings.face);
     }
     return {};
   };
-  for (const ErrorMotionKind kind : evaluated_kinds(readings, options)) {
+  for (const AxisErrorMotionKind kind : evaluated_kinds(readings, options)) {
     const double uncertainty = is_tilt(kind) ? std::sqrt(2.0) * options.reading_uncertainty / options.plane_distance
                                              : options.reading_uncertainty;
     result.motions.push_back(evaluate(kind, values_of(kind), result, uncertainty));

@@ -24,7 +24,7 @@ struct RotationOptions {
 
 /// Error motions of ISO 230-7. "Fixed": along a direction of the machine (a turning workpiece). "Rotating": along a
 /// direction that turns with the axis (a turning tool); it needs two probes.
-enum class ErrorMotionKind : std::uint8_t {
+enum class AxisErrorMotionKind : std::uint8_t {
   radial_fixed_x1,
   radial_fixed_y1,
   radial_rotating_1,
@@ -39,17 +39,17 @@ enum class ErrorMotionKind : std::uint8_t {
 };
 
 /// True for the tilts, whose values are in rad; all others are in mm.
-bool is_tilt(ErrorMotionKind kind);
+bool is_tilt(AxisErrorMotionKind kind);
 /// True where the once-per-turn part belongs to the artefact (its eccentricity, its tilt) and is taken out: radial and
 /// tilt. Axial and face error motions keep it.
-bool fundamental_is_removed(ErrorMotionKind kind);
+bool fundamental_is_removed(AxisErrorMotionKind kind);
 
-/// The error motions that these probes and options allow, in the order of ErrorMotionKind.
-std::vector<ErrorMotionKind> evaluated_kinds(const RotationReadings& readings, const RotationOptions& options);
+/// The error motions that these probes and options allow, in the order of AxisErrorMotionKind.
+std::vector<AxisErrorMotionKind> evaluated_kinds(const RotationReadings& readings, const RotationOptions& options);
 
 /// One error motion; values in mm or rad (is_tilt()).
-struct ErrorMotion {
-  ErrorMotionKind kind = ErrorMotionKind::axial;
+struct AxisErrorMotion {
+  AxisErrorMotionKind kind = AxisErrorMotionKind::axial;
   /// Polar plot: [positions] and [turns * positions], turn after turn, deviations from the base circle whose centre is
   /// the least-squares centre (mean and, where it is removed, the once-per-turn part taken out).
   std::vector<double> synchronous, total;
@@ -77,11 +77,11 @@ inline constexpr double kLargestStepRatio = 3;
 
 struct RotationResult {
   RotationStatus status = RotationStatus::not_run;
-  std::size_t turns = 0;             ///< whole turns used
-  std::size_t positions = 0;         ///< angular positions per turn
-  bool interpolated = false;         ///< readings do not stand at the same angles in every turn
-  std::vector<double> angle;         ///< [positions] rad, spindle angle of the first turn
-  std::vector<ErrorMotion> motions;  ///< as evaluated_kinds() lists; empty unless done
+  std::size_t turns = 0;                 ///< whole turns used
+  std::size_t positions = 0;             ///< angular positions per turn
+  bool interpolated = false;             ///< readings do not stand at the same angles in every turn
+  std::vector<double> angle;             ///< [positions] rad, spindle angle of the first turn
+  std::vector<AxisErrorMotion> motions;  ///< as evaluated_kinds() lists; empty unless done
 };
 
 /// Error motions of an axis of rotation (ISO 230-7:2015) from angle-indexed readings.

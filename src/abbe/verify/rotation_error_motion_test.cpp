@@ -27,9 +27,9 @@ std::vector<double> of(const std::vector<double>& angle, const Function& functio
   return values;
 }
 
-const ErrorMotion& motion(const RotationResult& result, ErrorMotionKind kind) {
+const AxisErrorMotion& motion(const RotationResult& result, AxisErrorMotionKind kind) {
   const auto found = std::find_if(result.motions.begin(), result.motions.end(),
-                                  [&](const ErrorMotion& entry) { return entry.kind == kind; });
+                                  [&](const AxisErrorMotion& entry) { return entry.kind == kind; });
   EXPECT_NE(found, result.motions.end());
   return *found;
 }
@@ -46,16 +46,16 @@ TEST(RotationErrorMotion, EccentricityIsNoErrorMotionAndLobesAre) {
   EXPECT_EQ(result.positions, 72U);
   EXPECT_FALSE(result.interpolated);
   ASSERT_EQ(result.motions.size(), 3U);
-  const ErrorMotion& x = motion(result, ErrorMotionKind::radial_fixed_x1);
+  const AxisErrorMotion& x = motion(result, AxisErrorMotionKind::radial_fixed_x1);
   EXPECT_NEAR(x.total_value, 0.006, 1e-12);
   EXPECT_NEAR(x.synchronous_value, 0.006, 1e-12);
   EXPECT_NEAR(x.asynchronous_value, 0, 1e-12);
   EXPECT_NEAR(x.fundamental_value, 0.08, 1e-12);
   EXPECT_NEAR(x.synchronous_uncertainty, 1e-5 * std::sqrt(2.0 / 8), 1e-18);
   EXPECT_NEAR(x.total_uncertainty, 1e-5 * std::sqrt(2.0), 1e-18);
-  EXPECT_NEAR(motion(result, ErrorMotionKind::radial_fixed_y1).total_value, 0, 1e-12);
+  EXPECT_NEAR(motion(result, AxisErrorMotionKind::radial_fixed_y1).total_value, 0, 1e-12);
   // cos 2a cos a = (cos a + cos 3a)/2, of which the centre takes the first part.
-  EXPECT_NEAR(motion(result, ErrorMotionKind::radial_rotating_1).synchronous_value, 0.003, 1e-12);
+  EXPECT_NEAR(motion(result, AxisErrorMotionKind::radial_rotating_1).synchronous_value, 0.003, 1e-12);
 }
 
 TEST(RotationErrorMotion, WhatComesBackEveryOtherTurnIsAsynchronous) {
@@ -65,7 +65,7 @@ TEST(RotationErrorMotion, WhatComesBackEveryOtherTurnIsAsynchronous) {
     return 7 + 0.002 * std::cos(a + 1) + 0.001 * std::cos(4 * a) + 0.0015 * std::cos(2.5 * a);
   });
   const RotationResult result = rotation_error_motions(readings);
-  const ErrorMotion& axial = motion(result, ErrorMotionKind::axial);
+  const AxisErrorMotion& axial = motion(result, AxisErrorMotionKind::axial);
   // Half-odd harmonics change their sign from turn to turn: their mean over an even number of turns is zero.
   EXPECT_NEAR(axial.asynchronous_value, 0.003, 1e-12);
   EXPECT_NEAR(axial.fundamental_value, 0.004, 1e-12);
@@ -91,13 +91,13 @@ TEST(RotationErrorMotion, TiltComesFromTwoPlanesAndHasNoEccentricity) {
   readings.y2 = of(readings.angle, [](double a) { return 0.03 * std::sin(a + 1); });
   const RotationResult result = rotation_error_motions(readings, {.plane_distance = 80, .reading_uncertainty = 1e-4});
   ASSERT_EQ(result.motions.size(), 9U);
-  const ErrorMotion& tilt = motion(result, ErrorMotionKind::tilt_fixed_x);
+  const AxisErrorMotion& tilt = motion(result, AxisErrorMotionKind::tilt_fixed_x);
   EXPECT_TRUE(is_tilt(tilt.kind));
   EXPECT_NEAR(tilt.synchronous_value, 40e-6, 1e-12);
   EXPECT_NEAR(tilt.total_uncertainty, 2e-4 / 80, 1e-15);
-  EXPECT_NEAR(motion(result, ErrorMotionKind::tilt_fixed_y).synchronous_value, 0, 1e-12);
+  EXPECT_NEAR(motion(result, AxisErrorMotionKind::tilt_fixed_y).synchronous_value, 0, 1e-12);
   // cos 3a cos a = (cos 2a + cos 4a)/2: from 1 at 0 to -0.5625 where cos 2a = -1/4.
-  EXPECT_NEAR(motion(result, ErrorMotionKind::tilt_rotating).synchronous_value, (1 + 0.5625) * 20e-6, 2e-9);
+  EXPECT_NEAR(motion(result, AxisErrorMotionKind::tilt_rotating).synchronous_value, (1 + 0.5625) * 20e-6, 2e-9);
   // Without the distance there is no tilt.
   EXPECT_EQ(rotation_error_motions(readings).motions.size(), 6U);
 }
@@ -121,8 +121,8 @@ TEST(RotationErrorMotion, DoesNotDependOnSenseStartOrOffset) {
   std::swap(forward.x1, forward.y1);
   for (double& value : forward.x1) value = -value;
   const RotationResult turned = rotation_error_motions(forward, {.sensitive_angle = kTurn / 4});
-  EXPECT_NEAR(motion(turned, ErrorMotionKind::radial_rotating_1).total_value,
-              motion(a, ErrorMotionKind::radial_rotating_1).total_value, 1e-12);
+  EXPECT_NEAR(motion(turned, AxisErrorMotionKind::radial_rotating_1).total_value,
+              motion(a, AxisErrorMotionKind::radial_rotating_1).total_value, 1e-12);
 }
 
 TEST(RotationErrorMotion, ReadingsAtOtherAnglesInEveryTurnAreInterpolated) {
@@ -134,7 +134,7 @@ TEST(RotationErrorMotion, ReadingsAtOtherAnglesInEveryTurnAreInterpolated) {
   EXPECT_TRUE(result.interpolated);
   EXPECT_EQ(result.turns, 11U);
   EXPECT_EQ(result.positions, 180U);
-  const ErrorMotion& x = motion(result, ErrorMotionKind::radial_fixed_x1);
+  const AxisErrorMotion& x = motion(result, AxisErrorMotionKind::radial_fixed_x1);
   EXPECT_NEAR(x.synchronous_value, 0.01, 1e-5);
   // Linear interpolation leaves step^2/8 of the second derivative, 0.02 + 9 * 0.005 mm per rad^2.
   EXPECT_LT(x.asynchronous_value, 0.065 * std::pow(kTurn / 180, 2) / 8 + 1e-9);
@@ -146,7 +146,7 @@ TEST(RotationErrorMotion, DriftIsToldApart) {
   for (std::size_t i = 0; i < readings.angle.size(); ++i) {
     readings.axial.push_back(0.001 * static_cast<double>(i / 36));
   }
-  const ErrorMotion axial = rotation_error_motions(readings).motions.at(0);
+  const AxisErrorMotion axial = rotation_error_motions(readings).motions.at(0);
   EXPECT_NEAR(axial.drift, 0.009, 1e-12);
   EXPECT_NEAR(axial.asynchronous_value, 0.009, 1e-12);
   EXPECT_NEAR(axial.synchronous_value, 0, 1e-12);
@@ -163,7 +163,7 @@ TEST(RotationErrorMotion, UncertaintiesCoverRepeatedSimulation) {
     return k == 10 ? 0.001 : k == 31 ? -0.001 : 0;
   };
   double mean = 0, squares = 0;
-  ErrorMotion x;
+  AxisErrorMotion x;
   const int repetitions = 600;
   for (int r = 0; r < repetitions; ++r) {
     readings.x1 = of(readings.angle, [&](double a) { return bump(a) + noise(random); });
