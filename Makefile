@@ -76,7 +76,7 @@ format:
 bench:
 	@.ci/set-up bench
 	$(call build_preset,bench)
-	@for program in forward_pose identification identification_memory planning polygon_trace read_csv; do \
+	@for program in forward_pose five_instruments identification identification_memory planning polygon_trace read_csv; do \
 	  echo "== $$program"; build/bench/bin/$$program; done
 
 fuzz:

@@ -6,22 +6,19 @@
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <string>
 
-#include "abbe/identify/identify.h"
 #include "abbe/identify/monte_carlo.h"
+#include "ceres_solution.h"
 #include "identification_case.h"
 
 namespace {
 
 using abbe::benchmark_case::XcfzCase;
-constexpr int kThreads = 2;
+using namespace abbe::benchmarks;
 constexpr double kSigma = 0.010;  // mm
-
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// One reading as a user of Ceres writes it: 4x4 chain with error matrices, basis values computed once.
 struct ChainResidual {
@@ -145,17 +142,9 @@ class MoveObservations : public ceres::EvaluationCallback {
   const Eigen::VectorXd& x_;
 };
 
-struct CeresResult {
-  double time = 0;
-  Eigen::VectorXd x;
-  Eigen::VectorXd uncertainty;
-  int iterations = 0;
-};
-
 template <int N>
-CeresResult solve_with_ceres(const XcfzCase& data, const abbe::Problem& problem, abbe::Observations& observed,
-                             bool analytic) {
-  CeresResult result;
+CeresSolution solve_with_ceres(const XcfzCase& data, const abbe::Problem& problem, abbe::Observations& observed,
+                               bool analytic) {
   Eigen::VectorXd x = abbe::present_values(problem);
   MoveObservations move(problem, x);
   ceres::Problem::Options problem_options;
@@ -171,44 +160,7 @@ CeresResult solve_with_ceres(const XcfzCase& data, const abbe::Problem& problem,
     for (std::size_t i = 0; i < count; ++i)
       ceres_problem.AddResidualBlock(new ceres::AutoDiffCostFunction<ChainResidual, 3, N>(new ChainResidual(data, i)),
                                      nullptr, x.data());
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
-  options.num_threads = kThreads;
-  options.function_tolerance = 1e-12;
-  options.gradient_tolerance = 1e-10;
-  options.parameter_tolerance = 1e-11;
-  options.max_num_iterations = 50;
-  ceres::Solver::Summary summary;
-  const double start = seconds();
-  ceres::Solve(options, &ceres_problem, &summary);
-  // Covariance from the Jacobian at the solution, the cheapest way Ceres offers: one evaluation, J'J by Eigen.
-  ceres::Problem::EvaluateOptions evaluate;
-  evaluate.num_threads = kThreads;
-  ceres::CRSMatrix crs;
-  ceres_problem.Evaluate(evaluate, nullptr, nullptr, nullptr, &crs);
-  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
-      crs.values.data(), crs.num_rows, crs.num_cols);
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(crs.num_cols, crs.num_cols);
-  normal.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
-  const Eigen::MatrixXd covariance =
-      normal.selfadjointView<Eigen::Lower>().llt().solve(Eigen::MatrixXd::Identity(crs.num_cols, crs.num_cols));
-  result.time = seconds() - start;
-  result.uncertainty = covariance.diagonal().cwiseSqrt();
-  result.x = x;
-  result.iterations = static_cast<int>(summary.iterations.size());
-  return result;
-}
-
-abbe::IdentifyOptions our_options() {
-  abbe::IdentifyOptions options;
-  options.solver.threads = kThreads;
-  options.solver.relative_cost = 1e-12;
-  return options;
-}
-
-bool check(const char* what, double value, bool good) {
-  std::printf("  %-58s %10.3g  %s\n", what, value, good ? "reached" : "MISSED");
-  return good;
+  return solve_with_covariance(ceres_problem, x, {x.data()});
 }
 
 bool compare(std::size_t count, bool with_ceres) {
@@ -237,7 +189,7 @@ bool compare(std::size_t count, bool with_ceres) {
   for (const bool analytic : {false, true}) {
     observed = data.observations();
     const abbe::Problem problem = data.problem(*observed);
-    CeresResult theirs;
+    CeresSolution theirs;
     double ceres_best = 1e9;
     for (int repetition = 0; repetition < (count > 50000 ? 1 : 4); ++repetition) {
       observed = data.observations();

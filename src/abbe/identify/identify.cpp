@@ -15,8 +15,11 @@ namespace {
 
 using Index = Eigen::Index;
 constexpr int kMostScaleRounds = 12;
-// Below this relative singular value the covariance is taken from an orthogonal factor instead of J'J.
+// Below this relative singular value the covariance is taken from an orthogonal factor instead of J'J. J'J loses
+// rounding / square of it: 1e-8, or 1e-4 of the worst variance where the factor would take longer than the rest.
 constexpr double kIllConditioned = 1e-4;
+constexpr double kIllConditionedLarge = 1e-6;
+constexpr double kLarge = 5e8;  // residuals times square of the parameters
 // A gauge that costs this part of the cost along one clearly seen direction is none.
 constexpr int kMostGaugeRounds = 2;
 constexpr double kClearlySeen = 1e-9;
@@ -208,7 +211,9 @@ class Run {
     }
     list_outliers(norms);
     statistics(unweighted, space);
-    const bool ill_conditioned = result_.statistics.observability.o2 < kIllConditioned;
+    const double parameters = static_cast<double>(start_.size());
+    const bool large = static_cast<double>(stream_.residual_count()) * parameters * parameters > kLarge;
+    const bool ill_conditioned = result_.statistics.observability.o2 < (large ? kIllConditionedLarge : kIllConditioned);
     const bool known = ill_conditioned ? covariance_from_factor(stream_.orthogonal_factor(solved.estimates, Loss{}),
                                                                 space, result_.covariance)
                                        : covariance_of_estimates(unweighted.normal, space, result_.covariance);

@@ -14,6 +14,7 @@ constexpr double kUnseen = 5e-14;
 constexpr double kWeak = 3e-8;
 // Eigenvalues of J'J relative to the largest: clear of rounding above, nothing but rounding below.
 constexpr double kClearlySeen = 1e-9;
+constexpr double kSeen = 1e-12;  // a hundred times above rounding
 constexpr double kRounding = 1e-14;
 // Column norms relative to the largest: below is rounding of a column that is zero.
 constexpr double kNoColumn = 1e-14;
@@ -46,17 +47,19 @@ NullSpace find_null_space(const ReadingStream& stream, const Eigen::VectorXd& es
   singular_values();
   result.rank = static_cast<std::size_t>(p);
   const auto relative = [&](Index i) { return eigen.eigenvalues()[i] / std::max(eigen.eigenvalues()[p - 1], 1e-300); };
-  if (relative(0) > kClearlySeen) {
+  // Small problems can afford more digits of the singular values.
+  const double work = static_cast<double>(stream.residual_count()) * static_cast<double>(p * p);
+  const double seen_above = work < kQuickFactor ? kClearlySeen : kSeen;
+  if (relative(0) > seen_above) {
     result.basis.resize(p, 0);
     return result;
   }
 
   Eigen::MatrixXd vectors;  // of the unseen directions, scaled
   bool ambiguous = false;
-  for (Index i = 0; i < p; ++i) ambiguous = ambiguous || (relative(i) > kRounding && relative(i) < kClearlySeen);
+  for (Index i = 0; i < p; ++i) ambiguous = ambiguous || (relative(i) > kRounding && relative(i) < seen_above);
   // Rounding hides what lies below 1e-7 in J'J. The orthogonal factor shows it; with very many readings it takes
   // seconds, and then only an open question is worth them.
-  const double work = static_cast<double>(stream.residual_count()) * static_cast<double>(p * p);
   if (ambiguous || work < kQuickFactor) {
     const Eigen::MatrixXd factor = stream.orthogonal_factor(estimates, Loss{}) * inverse.asDiagonal();
     const Eigen::BDCSVD<Eigen::MatrixXd> svd(factor, Eigen::ComputeFullV);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <memory>
@@ -45,8 +46,16 @@ class EquationInstrument : public Instrument {
   void model(const ItemBlock& block, const ModelledBlock& out) const final {
     if (out.by_motion == nullptr && out.by_quantity == nullptr) {
       evaluate<double>(block, out);
+      return;
+    }
+    // Every derivative that is carried costs, and most numbers of a set-up are exact.
+    const std::size_t estimated = estimated_quantities(block.item);
+    if (kQuantities > kFew && estimated <= kFew) {
+      evaluate<Dual<6 + std::min(kFew, kQuantities)>>(block, out);
+    } else if (kQuantities > kSome && estimated <= kSome) {
+      evaluate<Dual<6 + std::min(kSome, kQuantities)>>(block, out);
     } else {
-      evaluate<Dual<kVariables>>(block, out);
+      evaluate<Dual<6 + kQuantities>>(block, out);
     }
   }
 
@@ -60,16 +69,20 @@ class EquationInstrument : public Instrument {
   using Instrument::Instrument;
 
  private:
-  static constexpr int kVariables = 6 + kQuantities;
+  static constexpr int kFew = 4, kSome = 12;
   static constexpr std::size_t kMaxInputs = 16;
 
-  /// Value with the derivatives by shift and turn of the body.
-  static Dual<kVariables> moved(double value, const Eigen::Vector3d& by_shift, const Eigen::Vector3d& by_turn) {
-    Dual<kVariables> result(value);
-    for (std::size_t i = 0; i < 3; ++i) {
-      result.slope[i] = by_shift[static_cast<Eigen::Index>(i)];
-      result.slope[3 + i] = by_turn[static_cast<Eigen::Index>(i)];
-    }
+  std::size_t estimated_quantities(std::size_t item) const {
+    std::size_t count = 0;
+    for (const std::size_t q : items_[item].quantities) count += quantities_[q].knowledge != Knowledge::exact ? 1U : 0U;
+    return count;
+  }
+
+  /// Value with the derivatives by the turn of the body.
+  template <typename S>
+  static S turned(double value, const Eigen::Vector3d& by_turn) {
+    S result(value);
+    for (std::size_t i = 0; i < 3; ++i) result.slope[3 + i] = by_turn[static_cast<Eigen::Index>(i)];
     return result;
   }
 
@@ -86,7 +99,7 @@ class EquationInstrument : public Instrument {
           Eigen::Vector3d by_turn = Eigen::Vector3d::Zero();
           by_turn[(i + 1) % 3] = column[(i + 2) % 3];
           by_turn[(i + 2) % 3] = -column[(i + 1) % 3];
-          seen.rotation(i, j) = moved(column[i], Eigen::Vector3d::Zero(), by_turn);
+          seen.rotation(i, j) = turned<S>(column[i], by_turn);
         }
       }
       if constexpr (std::is_same_v<S, double>) {
@@ -104,12 +117,15 @@ class EquationInstrument : public Instrument {
     assert(used.size() <= static_cast<std::size_t>(kQuantities) && block.inputs.size() <= kMaxInputs);
     assert(components_.size() <= static_cast<std::size_t>(kRows));
     std::array<S, static_cast<std::size_t>(kQuantities > 0 ? kQuantities : 1)> quantities{};
+    std::array<int, static_cast<std::size_t>(kQuantities > 0 ? kQuantities : 1)> variable{};  // -1: exact
+    int next = 6;
     for (std::size_t q = 0; q < used.size(); ++q) {
       const double value = block.quantities[used[q]];
+      variable[q] = quantities_[used[q]].knowledge != Knowledge::exact ? next++ : -1;
       if constexpr (std::is_same_v<S, double>) {
         quantities[q] = value;
       } else {
-        quantities[q] = S::variable(value, 6 + static_cast<int>(q));
+        quantities[q] = variable[q] >= 0 ? S::variable(value, variable[q]) : S(value);
       }
     }
     std::array<double, kMaxInputs> inputs{};
@@ -125,7 +141,8 @@ class EquationInstrument : public Instrument {
             out.by_motion[(row * 6 + j) * block.count + k] = reading[row].slope[j];
           }
           for (std::size_t q = 0; q < used.size() && out.by_quantity != nullptr; ++q) {
-            out.by_quantity[(row * used.size() + q) * block.count + k] = reading[row].slope[6 + q];
+            out.by_quantity[(row * used.size() + q) * block.count + k] =
+                variable[q] >= 0 ? reading[row].slope[static_cast<std::size_t>(variable[q])] : 0.0;
           }
         }
       }

@@ -64,7 +64,7 @@ struct ModelledBlock {
   /// Null or out, by_motion[(row * 6 + j) * count + k]: derivative by a displacement of the body `from`, frame of `to`:
   /// j = 0..2 shift along x, y, z (per mm); 3..5 turn about x, y, z through the origin of its frame (per rad).
   double* by_motion = nullptr;
-  /// Null or out, by_quantity[(row * n + q) * count + k], q < n = number of the item's quantities.
+  /// Null or out, by_quantity[(row * n + q) * count + k], q < n = number of the item's quantities; 0 of exact ones.
   double* by_quantity = nullptr;
 };
 

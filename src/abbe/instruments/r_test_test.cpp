@@ -102,6 +102,31 @@ TEST(RTest, DerivativesEqualDifferences) {
   }
 }
 
+TEST(RTest, DerivativesEqualDifferencesWhenMostOfTheSetUpIsExact) {
+  const Machine machine = test::trunnion_mill();
+  RTestSetup setup = cosy_nest(machine, RTestSetup::Tip::ball);
+  setup.sphere_radius.knowledge = Knowledge::exact;
+  for (RTestSetup::Probe& probe : setup.probes) {
+    for (SetupNumber* number : {&probe.tilt_first, &probe.tilt_second, &probe.offset_first, &probe.offset_second}) {
+      number->knowledge = Knowledge::exact;
+    }
+  }
+  for (const std::size_t estimated : {9U, 4U, 3U}) {
+    if (estimated < 9) {
+      for (SetupNumber& number : setup.nest.coordinate) number.knowledge = Knowledge::exact;
+      setup.spheres[0].centre = SetupPoint::exact(kSphere);
+      // An unknown behind an exact number of the same kind.
+      if (estimated == 4) setup.nest.coordinate[1].knowledge = Knowledge::open;
+    }
+    const auto nest = std::make_shared<RTest>(setup);
+    std::size_t unknowns = 0;
+    for (const SetupQuantity& q : nest->quantities()) unknowns += q.knowledge != Knowledge::exact ? 1U : 0U;
+    EXPECT_EQ(unknowns, estimated);
+    test::expect_jacobian_equals_differences(machine, test::some_errors(machine), nest,
+                                             test::meeting_plan(machine, *nest, 0.5, 0.4, 15), 5e-6);
+  }
+}
+
 TEST(RTest, NestInTheSpindleSeesTheSphereOnTheTable) {
   const Machine machine = test::trunnion_mill();
   const ErrorSet errors = test::some_errors(machine);
