@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-void check_ranges(const Machine& machine, const std::vector<AxisRange>& ranges) {
+/// @param either_way  ranges may also run downwards
+void check_ranges(const Machine& machine, const std::vector<AxisRange>& ranges, bool either_way = false) {
   if (ranges.size() != machine.axes.size()) {
     throw std::invalid_argument("plan with " + std::to_string(ranges.size()) + " ranges for " +
                                 std::to_string(machine.axes.size()) + " axes");
@@ -20,12 +21,15 @@ void check_ranges(const Machine& machine, const std::vector<AxisRange>& ranges) 
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     const Axis& axis = machine.axes[i];
     const AxisRange& range = ranges[i];
-    if (!std::isfinite(range.from) || !std::isfinite(range.to) || range.to < range.from || !(range.step >= 0)) {
+    if (!std::isfinite(range.from) || !std::isfinite(range.to) || (range.to < range.from && !either_way) ||
+        !(range.step >= 0)) {
       throw std::invalid_argument("plan: range of " + axis.name +
-                                  " must be finite and increasing, its step not negative");
+                                  (either_way ? " must be finite, its step not negative"
+                                              : " must be finite and increasing, its step not negative"));
     }
     const double spare = 1e-9 * (axis.travel_max - axis.travel_min);
-    if (!axis.endless && (range.from < axis.travel_min - spare || range.to > axis.travel_max + spare)) {
+    if (!axis.endless && (std::min(range.from, range.to) < axis.travel_min - spare ||
+                          std::max(range.from, range.to) > axis.travel_max + spare)) {
       throw std::invalid_argument("plan: range of " + axis.name + " is outside its travel");
     }
   }
@@ -98,9 +102,41 @@ PoseList grid_plan(const Machine& machine, const std::vector<AxisRange>& ranges)
 }
 
 PoseList line_plan(const Machine& machine, const std::vector<AxisRange>& ranges, std::size_t count) {
-  check_ranges(machine, ranges);
+  check_ranges(machine, ranges, true);
   PoseList plan;
   for (const AxisRange& range : ranges) plan.axis.push_back(evenly_spaced(range.from, range.to, count));
+  return plan;
+}
+
+PoseList step_diagonal_plan(const Machine& machine, const std::vector<AxisRange>& ranges, std::size_t steps,
+                            const std::vector<std::size_t>& order) {
+  check_ranges(machine, ranges, true);
+  if (steps == 0) throw std::invalid_argument("step diagonal: no step");
+  std::vector<std::uint8_t> moves(ranges.size(), 0);
+  for (const std::size_t axis : order) {
+    if (axis >= ranges.size() || moves[axis] != 0) {
+      throw std::invalid_argument("step diagonal: the order names an axis that is not there, or names it twice");
+    }
+    moves[axis] = 1;
+  }
+  std::vector<double> positions;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    if (moves[i] == 0 && !ranges[i].is_fixed()) {
+      throw std::invalid_argument("step diagonal: " + machine.axes[i].name + " is not in the order of the axes");
+    }
+    positions.push_back(ranges[i].from);
+  }
+  PoseList plan;
+  plan.append(positions);
+  for (std::size_t step = 1; step <= steps; ++step) {
+    for (const std::size_t axis : order) {
+      const double share = static_cast<double>(step) / static_cast<double>(steps);
+      // The last step ends at `to` itself, whatever rounding does.
+      positions[axis] =
+          step == steps ? ranges[axis].to : ranges[axis].from + share * (ranges[axis].to - ranges[axis].from);
+      plan.append(positions);
+    }
+  }
   return plan;
 }
 

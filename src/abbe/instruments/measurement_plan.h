@@ -30,8 +30,18 @@ std::vector<AxisRange> full_ranges(const Machine& machine, std::size_t count_per
 /// @throws std::invalid_argument, as all plans: ranges not one per axis, outside the travel, or count 0
 PoseList grid_plan(const Machine& machine, const std::vector<AxisRange>& ranges);
 
-/// `count` poses on a straight line (in axis space) from all `from` to all `to`, both included.
+/// `count` poses on a straight line (in axis space) from all `from` to all `to`, both included;
+/// `to` may be below `from`, as in step_diagonal_plan().
 PoseList line_plan(const Machine& machine, const std::vector<AxisRange>& ranges, std::size_t count);
+
+/// From all `from` to all `to` in equal steps, one axis moving at a time: sequential step diagonal. In every step the
+/// axes move one after the other in `order`; a pose follows each of these moves.
+/// @param order  axes that move, in their order within a step; indices into the chain, each once
+/// @return 1 + steps * order.size() poses
+/// @throws std::invalid_argument also if an axis with a range is not in `order`, or steps is 0
+/// Source: Wang, Review of Scientific Instruments 71 (2000) 3933; its limits: docs/interferometer.md.
+PoseList step_diagonal_plan(const Machine& machine, const std::vector<AxisRange>& ranges, std::size_t steps,
+                            const std::vector<std::size_t>& order);
 
 /// `count` poses uniform over the ranges. Pose k depends on seed and k only.
 PoseList random_plan(const Machine& machine, const std::vector<AxisRange>& ranges, std::size_t count,

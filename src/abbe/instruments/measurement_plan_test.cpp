@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "abbe/instruments/aguado_for_test.h"
+#include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
 namespace {
@@ -100,6 +101,35 @@ TEST(MeasurementPlan, RefusesPosesOutsideTheTravel) {
   EXPECT_THROW(grid_plan(machine(), ranges), std::invalid_argument);
   ranges.pop_back();
   EXPECT_THROW(random_plan(machine(), ranges, 5, 1), std::invalid_argument);
+}
+
+TEST(MeasurementPlan, ALineMayRunDownwards) {
+  const Machine machine = test::three_axis_mill();
+  const PoseList plan = line_plan(machine, {{0, 600, 5, 0}, {400, 100, 5, 0}, AxisRange::fixed(-10)}, 4);
+  EXPECT_EQ(plan.axis[1], (std::vector<double>{400, 300, 200, 100}));
+  EXPECT_THROW(line_plan(machine, {{0, 600, 5, 0}, {400, -100, 5, 0}, AxisRange::fixed(-10)}, 4),
+               std::invalid_argument);
+  EXPECT_THROW(grid_plan(machine, {{0, 600, 5, 0}, {400, 100, 5, 0}, AxisRange::fixed(-10)}), std::invalid_argument);
+}
+
+TEST(MeasurementPlan, AStepDiagonalMovesOneAxisAtATimeInTheOrderGiven) {
+  const Machine machine = test::three_axis_mill();
+  const std::vector<AxisRange> ranges = {{0, 600, 5, 0}, {400, 100, 5, 0}, {-450, 0, 5, 0}};
+  const std::vector<std::size_t> order = {2, 0, 1};
+  const PoseList plan = step_diagonal_plan(machine, ranges, 3, order);
+  ASSERT_EQ(plan.count(), 10u);
+  EXPECT_EQ(plan.pose(0), (std::vector<double>{0, 400, -450}));
+  EXPECT_EQ(plan.pose(9), (std::vector<double>{600, 100, 0}));
+  for (std::size_t k = 1; k < plan.count(); ++k) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double step = (ranges[axis].to - ranges[axis].from) / 3;
+      EXPECT_NEAR(plan.axis[axis][k] - plan.axis[axis][k - 1], axis == order[(k - 1) % 3] ? step : 0, 1e-9) << k;
+    }
+  }
+  EXPECT_THROW(step_diagonal_plan(machine, ranges, 0, order), std::invalid_argument);
+  EXPECT_THROW(step_diagonal_plan(machine, ranges, 3, {0, 1}), std::invalid_argument);
+  EXPECT_THROW(step_diagonal_plan(machine, ranges, 3, {0, 1, 2, 1}), std::invalid_argument);
+  EXPECT_THROW(step_diagonal_plan(machine, ranges, 3, {0, 1, 3}), std::invalid_argument);
 }
 
 }  // namespace

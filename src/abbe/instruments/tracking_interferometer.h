@@ -42,8 +42,8 @@ struct TrackingInterferometerSetup {
 /// is zero. Every interruption of the beam begins a run with a new dead path; runs of one station share its position,
 /// runs with one reflector its offset. Items: the runs. Component: length (mm). The orientation of an interferometer
 /// that turns about a stationary reference sphere does not enter.
-/// Quantities: NAME.length_scale, STATION.x .., REFLECTOR.x .., RUN.dead_path. Source: Schwenke et al., Precision
-/// Engineering 29 (2005) 1; derivation in docs/tracking-interferometer.md.
+/// Quantities: NAME.length_scale, STATION.x .., REFLECTOR.x .., RUN.dead_path. Source: Schwenke et al., CIRP
+/// Annals 54 (2005) 475; derivation in docs/tracking-interferometer.md.
 class TrackingInterferometer : public EquationInstrument<TrackingInterferometer, 8, 1> {
  public:
   /// @throws std::invalid_argument: no run, a run without its station or reflector, both on one body
