@@ -15,6 +15,14 @@ TEST_F(InstrumentStudies, ABallBarOnATrunnionMill) {
   EXPECT_GT(held_out["coverage_percent"].get<double>(), 90);
 }
 
+TEST_F(InstrumentStudies, ATrackingInterferometerOnAThreeAxisMill) {
+  const nlohmann::json summary = expect_same_from_files("three_axis", "tracking-interferometer");
+  const nlohmann::json& held_out = summary["held_out"];
+  EXPECT_LT(held_out["position_after_um"]["mean"].get<double>(),
+            0.1 * held_out["position_before_um"]["mean"].get<double>());
+  EXPECT_GT(held_out["coverage_percent"].get<double>(), 90);
+}
+
 TEST_F(InstrumentStudies, ACircleOutOfReachIsSaid) {
   folder.write("bar.study.toml", "machine = \"" + std::string(ABBE_SOURCE_DIR) +
                                      "/examples/machines/trunnion-mill.machine.toml\"\n"

@@ -16,6 +16,8 @@ constexpr Kind kKinds[] = {
     {"level", read_level},
     {"autocollimator", read_autocollimator},
     {"board-marks", read_board_marks},
+    {"interferometer", read_interferometer},
+    {"tracking-interferometer", read_tracking_interferometer},
 };
 
 }  // namespace

@@ -32,6 +32,8 @@ std::shared_ptr<Instrument> read_dials(TomlTable& table, const InstrumentContext
 std::shared_ptr<Instrument> read_level(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_r_test(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_touch_probe(TomlTable& table, const InstrumentContext& context);
+std::shared_ptr<Instrument> read_interferometer(TomlTable& table, const InstrumentContext& context);
+std::shared_ptr<Instrument> read_tracking_interferometer(TomlTable& table, const InstrumentContext& context);
 
 /// Body by `key`: "bed", "workpiece" or "tool".
 Body read_body(TomlTable& table, std::string_view key, Body otherwise);
