@@ -81,7 +81,7 @@ Machine yin_engraver(char convention) {
   tool(m, {x0 + r_c1, y0 + l_ac1, z}, {0, l_ta, u ? -r_a : r_a});
   travel(m, "X", -800, 800);
   travel(m, "Y", -800, 800);
-  travel(m, "Z", -200, 800);
+  travel(m, "Z", u ? -450 : -200, 800);
   travel(m, "C1", -200, 200);
   travel(m, "A", -185, 185);
   endless(m, "C2");
