@@ -28,6 +28,7 @@ struct CommandLine {
 void add_new_command(CommandLine& line);
 void add_check_command(CommandLine& line);
 void add_simulate_command(CommandLine& line);
+void add_plan_command(CommandLine& line);
 void add_identify_command(CommandLine& line);
 void add_map_command(CommandLine& line);
 void add_run_command(CommandLine& line);

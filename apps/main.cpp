@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   add_new_command(line);
   add_check_command(line);
   add_simulate_command(line);
+  add_plan_command(line);
   add_identify_command(line);
   add_map_command(line);
   add_evaluate_command(line);

@@ -12,7 +12,8 @@ namespace {
 
 RigidTransform transform(const StudyPose& pose) { return {rotation_from_error_angles(pose.angles), pose.position}; }
 
-/// Stations and reflectors of a set-up; `truth` chooses the true values of a simulation.
+}  // namespace
+
 TrackerSetup tracker_setup(const Setup& setup, bool truth) {
   TrackerSetup result;
   for (const SetupStation& given : setup.stations) {
@@ -23,6 +24,10 @@ TrackerSetup tracker_setup(const Setup& setup, bool truth) {
     station.noise = setup.noise;
     const std::optional<StudyPose>& pose = truth && given.true_pose ? given.true_pose : given.pose;
     if (pose) station.body_from_tracker = transform(*pose);
+    station.elevation_min = given.elevation[0];
+    station.elevation_max = given.elevation[1];
+    station.range_min = given.range[0];
+    station.range_max = given.range[1];
     result.stations.push_back(station);
   }
   for (const SetupReflector& given : setup.reflectors) {
@@ -31,10 +36,14 @@ TrackerSetup tracker_setup(const Setup& setup, bool truth) {
     reflector.body = given.mounted_on;
     reflector.offset = truth && given.true_offset ? *given.true_offset : given.offset;
     reflector.estimate_offset = given.estimate_offset;
+    reflector.view_direction = given.view_direction;
+    reflector.view_half_angle = given.view_half_angle;
     result.reflectors.push_back(reflector);
   }
   return result;
 }
+
+namespace {
 
 void append(TrackerReadings& all, const TrackerReadings& more) {
   if (all.count() == 0) {

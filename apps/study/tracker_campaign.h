@@ -24,6 +24,9 @@ class TrackerCampaign : public CampaignSetup {
   std::vector<KnownUnknown> known_unknowns() const override;
 };
 
+/// Stations and reflectors of a tracker's set-up; `truth` chooses the true values of a simulation.
+TrackerSetup tracker_setup(const Setup& setup, bool truth);
+
 /// Reads or simulates the readings of one set-up. @param truth  null: measured
 /// @throws InputError
 std::unique_ptr<CampaignSetup> gather_tracker(const Study& study, std::size_t setup, const ErrorSet* truth,

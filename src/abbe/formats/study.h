@@ -1,15 +1,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "abbe/errors/error_set.h"
 #include "abbe/formats/measurement_file.h"
+#include "abbe/formats/study_planning.h"
 #include "abbe/identify/robust_loss.h"
 #include "abbe/identify/strategies.h"
 #include "abbe/instruments/instrument.h"
@@ -84,13 +87,17 @@ struct SetupReflector {
   bool estimate_offset = false;
   Eigen::Vector3d offset_standard_uncertainty = Eigen::Vector3d::Zero();  ///< mm, prior of the estimate; 0: none
   std::optional<Eigen::Vector3d> true_offset;                             ///< mm, simulation; else the offset
+  Eigen::Vector3d view_direction = Eigen::Vector3d::UnitX();              ///< unit: middle of its acceptance cone
+  double view_half_angle = std::numbers::pi;                              ///< rad; pi: seen from everywhere
 };
 
 struct SetupStation {
   std::string name;
   std::optional<StudyPose> pose;  ///< start of the estimate, or fixed; absent: find it from the data
   bool estimate_pose = true;
-  std::optional<StudyPose> true_pose;  ///< simulation; else `pose`
+  std::optional<StudyPose> true_pose;                                               ///< simulation; else `pose`
+  std::array<double, 2> elevation = {-std::numbers::pi / 2, std::numbers::pi / 2};  ///< rad, limits of the sight
+  std::array<double, 2> range = {0, 1e9};                                           ///< mm, limits of the sight
 };
 
 struct SetupData {
@@ -179,6 +186,7 @@ struct Study {
   std::vector<Setup> setups;
   std::optional<IdentificationPlan> identification;
   std::optional<MapPlan> map;
+  std::optional<PlanningStudy> planning;
   ReportOptions report;
   std::filesystem::path output;  ///< results folder; default "results/<name of the study file>"
 };

@@ -140,8 +140,10 @@ Study parse_study(const std::string& text, const std::filesystem::path& path, co
   study.threads = static_cast<int>(root.integer_or("threads", 0, 0, 1024));
   study.output = folder / root.text_or("output", "results/" + bare_name(path));
   if (auto table = root.optional_table("simulate")) study.simulation = read_simulation(*table, folder);
+  if (auto table = root.optional_table("plan")) study.planning = read_planning(*table, machine);
   for (TomlTable& table : root.tables("setup")) {
-    study.setups.push_back(read_setup(table, folder, machine, study.simulation.has_value()));
+    study.setups.push_back(
+        read_setup(table, folder, machine, study.simulation.has_value(), study.planning.has_value()));
     for (std::size_t i = 0; i + 1 < study.setups.size(); ++i) {
       if (study.setups[i].name != study.setups.back().name) continue;
       table.fail("name", fmt::format("another set-up is called \"{}\"", study.setups[i].name), "different names");

@@ -10,7 +10,10 @@
 
 namespace abbe {
 
-Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated);
+/// @param planned  the readings are still to be planned: neither plans nor data are needed
+Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated,
+                 bool planned);
+PlanningStudy read_planning(TomlTable& table, const Machine& machine);
 IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);
 
 /// What a plan may name: targets ("reflectors" of a tracker, "items" of other instruments) and stations (tracker only).

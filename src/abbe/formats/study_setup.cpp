@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <numbers>
 
 #include "abbe/formats/study_instrument.h"
 #include "abbe/formats/study_parts.h"
@@ -39,6 +41,14 @@ SetupStation read_station(TomlTable& table, bool simulated) {
     if (!simulated) table.fail("true_pose", "belongs to a simulation only", "[simulate]");
     station.true_pose = read_pose(*pose);
   }
+  const auto limits = [&](const char* name, Quantity quantity, std::array<double, 2>& range) {
+    const auto values = table.optional_numbers(name, quantity, 2);
+    if (!values) return;
+    range = {(*values)[0], (*values)[1]};
+    if (range[0] >= range[1]) table.fail_quantity(name, quantity, "is not increasing", "[smallest, largest]");
+  };
+  limits("elevation", Quantity::angle, station.elevation);
+  limits("range", Quantity::length, station.range);
   if (simulated && !station.pose && !station.true_pose) {
     table.fail("", "a simulation needs the true pose",
                "true_pose = { position_mm = [x, y, z], angles_deg = [a, b, c] }");
@@ -70,6 +80,15 @@ SetupReflector read_reflector(TomlTable& table, bool simulated) {
   if (const auto offset = table.optional_numbers("true_offset", Quantity::length, 3)) {
     if (!simulated) table.fail_quantity("true_offset", Quantity::length, "belongs to a simulation only", "[simulate]");
     reflector.true_offset = vector(*offset);
+  }
+  if (const auto direction = table.optional_numbers("view_direction", Quantity::dimensionless, 3)) {
+    reflector.view_direction = vector(*direction);
+    if (reflector.view_direction.norm() == 0) table.fail("view_direction", "has no length", "a direction [x, y, z]");
+    reflector.view_direction.normalize();
+    reflector.view_half_angle = table.number("view_half_angle", Quantity::angle);
+    if (reflector.view_half_angle <= 0 || reflector.view_half_angle > std::numbers::pi) {
+      table.fail_quantity("view_half_angle", Quantity::angle, "is out of range", "above 0, up to 180 degrees");
+    }
   }
   table.finish();
   return reflector;
@@ -150,7 +169,8 @@ PlanNames plan_names(const Setup& setup) {
 
 }  // namespace
 
-Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated) {
+Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated,
+                 bool planned) {
   Setup setup;
   setup.name = table.text("name");
   std::vector<std::string_view> words = instrument_words();
@@ -179,7 +199,7 @@ Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Ma
     if (simulated) table.fail("data", "stands beside [simulate]", "only one of them");
     setup.data.push_back(read_data(data, folder));
   }
-  if (setup.plans.empty() && setup.data.empty()) {
+  if (setup.plans.empty() && setup.data.empty() && !planned) {
     table.fail("", "the readings are missing", simulated ? "[[setup.plan]]" : "[[setup.data]] with a file");
   }
   table.finish();

@@ -161,7 +161,9 @@ class Search {
       if (!fill()) break;
       if (design_.chosen().size() > before) continue;
       const double change = design_.objective() - objective_before;
-      if (plan.exchanges == exchanges_before || change > change_of(options_.pass_gain)) break;
+      if (plan.exchanges == exchanges_before ||
+          change > change_of(options_.pass_gain * (by_variance_ ? 1.0 : static_cast<double>(space_.dimension()))))
+        break;
     }
     const std::vector<double> history = plan.history;
     const std::size_t exchanges = plan.exchanges, passes = plan.passes;

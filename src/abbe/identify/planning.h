@@ -29,7 +29,8 @@ struct PlanningOptions {
   int most_passes = 10;         ///< over all chosen readings, looking for exchanges
   double smallest_gain = 1e-7;  ///< exchanges that lower the criterion by less are not made; determinant: of its
                                 ///< logarithm, variance: relative
-  double pass_gain = 2e-3;      ///< the search ends after a pass that lowers it by less; 0: if no exchange helps
+  double pass_gain = 1e-3;      ///< the search ends after a pass that lowers it by less; determinant: of its logarithm
+                                ///< per seen direction, variance: relative; 0: if no exchange helps
   std::uint64_t seed = 1;
   int threads = 0;                             ///< 0: all; the result does not depend on it
   std::function<void(double share)> progress;  ///< 0 to 1, called from one thread

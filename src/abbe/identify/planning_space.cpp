@@ -62,25 +62,43 @@ void validate(const PlanningCandidates& candidates, const Eigen::MatrixXd& known
   if (!candidates.rows.allFinite() || !known.allFinite()) fail("planning: a derivative is not finite");
 }
 
-/// Singular value decomposition of the rows of a choice in seen coordinates, what is known included.
-Eigen::BDCSVD<Eigen::MatrixXd> decompose(const PlanningSpace& space, std::span<const std::size_t> chosen) {
-  const Index v = static_cast<Index>(space.dimension());
-  StreamingFactor stream(v);
+using Decomposition = Eigen::BDCSVD<Eigen::MatrixXd>;
+
+void add_known(const PlanningSpace& space, StreamingFactor& stream) {
   for (Index k = 0; k < space.known_rows().rows(); ++k) {
     stream.next() = space.known_rows().row(k);
     stream.add();
   }
+}
+
+/// Singular value decomposition of the rows of a choice in seen coordinates, what is known included.
+Decomposition decompose(const PlanningSpace& space, std::span<const std::size_t> chosen) {
+  const Index v = static_cast<Index>(space.dimension());
+  StreamingFactor stream(v);
+  add_known(space, stream);
   for (const std::size_t candidate : chosen)
     for (std::size_t k = 0; k < space.row_count(candidate); ++k) {
       stream.next() = Eigen::Map<const Eigen::RowVectorXd>(space.row(space.first_row(candidate) + k), v);
       stream.add();
     }
-  return Eigen::BDCSVD<Eigen::MatrixXd>(stream.factor(), Eigen::ComputeFullV);
+  return Decomposition(stream.factor(), Eigen::ComputeFullV);
 }
 
 std::size_t rank_of(const PlanningSpace& space, const Eigen::VectorXd& singular) {
   const double smallest = singular.size() > 0 ? space.determined() * singular[0] : 0;
   return static_cast<std::size_t>((singular.array() > smallest).count());
+}
+
+PlanValue value_of(const PlanningSpace& space, const Decomposition& svd, const Eigen::MatrixXd& functionals) {
+  PlanValue value;
+  value.rank = rank_of(space, svd.singularValues());
+  value.determined = value.rank == space.dimension();
+  if (!value.determined) return value;
+  value.log_determinant = 2 * svd.singularValues().array().log().sum();
+  if (functionals.rows() > 0)
+    value.variance = (space.functionals(functionals) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal())
+                         .squaredNorm();
+  return value;
 }
 
 }  // namespace
@@ -136,21 +154,26 @@ Eigen::VectorXd PlanningSpace::unseen_part(const Eigen::MatrixXd& rows) const {
 
 PlanValue value_of(const PlanningSpace& space, std::span<const std::size_t> chosen,
                    const Eigen::MatrixXd& functionals) {
-  PlanValue value;
+  PlanValue value = value_of(space, decompose(space, chosen), functionals);
   for (const std::size_t candidate : chosen) value.cost += space.cost(candidate);
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd = decompose(space, chosen);
-  value.rank = rank_of(space, svd.singularValues());
-  value.determined = value.rank == space.dimension();
-  if (!value.determined) return value;
-  value.log_determinant = 2 * svd.singularValues().array().log().sum();
-  if (functionals.rows() > 0)
-    value.variance = (space.functionals(functionals) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal())
-                         .squaredNorm();
+  return value;
+}
+
+PlanValue value_of(const PlanningSpace& space, const PlanningCandidates& others, const Eigen::MatrixXd& functionals) {
+  if (others.rows.rows() > 0) validate(others, Eigen::MatrixXd());
+  StreamingFactor stream(static_cast<Index>(space.dimension()));
+  add_known(space, stream);
+  for (Index k = 0; k < others.rows.rows(); ++k) {
+    stream.next().noalias() = others.rows.row(k) * space.estimates_from_seen();
+    stream.add();
+  }
+  PlanValue value = value_of(space, Decomposition(stream.factor(), Eigen::ComputeFullV), functionals);
+  for (std::size_t i = 0; i < others.count(); ++i) value.cost += others.cost(i);
   return value;
 }
 
 Eigen::MatrixXd planned_covariance(const PlanningSpace& space, std::span<const std::size_t> chosen) {
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd = decompose(space, chosen);
+  const Decomposition svd = decompose(space, chosen);
   if (rank_of(space, svd.singularValues()) != space.dimension()) return {};
   const Eigen::MatrixXd root =
       space.estimates_from_seen() * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();

@@ -94,6 +94,10 @@ struct PlanValue {
 /// @param functionals  [m, p] of the estimates, or without rows
 PlanValue value_of(const PlanningSpace& space, std::span<const std::size_t> chosen, const Eigen::MatrixXd& functionals);
 
+/// Value of readings that are no candidates, all of them taken once, within the same seen directions. What they see
+/// beyond these is not counted.
+PlanValue value_of(const PlanningSpace& space, const PlanningCandidates& others, const Eigen::MatrixXd& functionals);
+
 /// Covariance of the estimates from a choice, [p, p], in the gauge of smallest scaled parameters; empty if the choice
 /// does not determine all that the space sees.
 Eigen::MatrixXd planned_covariance(const PlanningSpace& space, std::span<const std::size_t> chosen);

@@ -265,6 +265,20 @@ TEST(PlanningTest, AWeaklySeenDirectionIsNotTakenForAnUnseenOne) {
   EXPECT_EQ(planned_covariance(space, blind).size(), 0);
 }
 
+TEST(PlanningTest, ReadingsThatAreNoCandidatesAreValuedAlike) {
+  const PlanningCandidates candidates = random_candidates(40, 2, 6, 8);
+  const Eigen::MatrixXd known = random_matrix(2, 6, 1), functionals = random_matrix(4, 6, 2);
+  const PlanningSpace space(candidates, known);
+  const std::vector<std::size_t> first = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+  PlanningCandidates others;
+  others.rows = candidates.rows.topRows(20);
+  others.first_row.assign(candidates.first_row.begin(), candidates.first_row.begin() + 11);
+  const PlanValue chosen = value_of(space, first, functionals), other = value_of(space, others, functionals);
+  EXPECT_NEAR(chosen.variance, other.variance, 1e-10 * chosen.variance);
+  EXPECT_NEAR(chosen.log_determinant, other.log_determinant, 1e-9);
+  EXPECT_EQ(other.cost, 10);
+}
+
 TEST(PlanningTest, KnownReadingsCount) {
   // What is known needs no reading: with x known, all readings go to y.
   PlanningCandidates candidates = random_candidates(20, 1, 2, 1);

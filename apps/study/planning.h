@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "abbe/formats/study.h"
+#include "abbe/identify/planning.h"
+#include "abbe/identify/problem.h"
+#include "abbe/instruments/tracker.h"
+
+namespace abbe {
+
+/// One reading that may be taken: where the machine stands, who looks at what.
+struct SightReading {
+  std::vector<double> pose;  ///< [axes] mm or rad
+  std::size_t setup = 0, station = 0, reflector = 0;
+};
+
+/// Which sights are used at the poses of a list.
+enum class SightsPerPose {
+  every,  ///< all that have a line of sight
+  cycle   ///< one at each pose, in turn
+};
+
+/// The identification problem of a study as far as it can be set up before anything is measured: all errors zero,
+/// stations where the study says they stand.
+class PlanningModel {
+ public:
+  /// @throws InputError naming what is missing for a plan
+  explicit PlanningModel(const Study& study);
+
+  struct Candidates {
+    PlanningCandidates rows;
+    std::vector<SightReading> readings;  ///< [rows.count()]
+    std::size_t hidden = 0;              ///< without a line of sight
+    std::size_t forbidden = 0;           ///< poses in a forbidden box
+  };
+  /// What could be read at poses. Rows over the vector of estimates.
+  Candidates readings_at(const PoseList& poses, SightsPerPose sights) const;
+
+  /// Poses that no forbidden box touches.
+  PoseList allowed(const PoseList& poses, std::size_t* forbidden = nullptr) const;
+
+  /// Deviation of the tool's functional point in the workpiece frame, best-fit rigid motion over all poses removed, as
+  /// rows over the vector of estimates: [3 poses, p], mm per mm or rad.
+  Eigen::MatrixXd prediction_rows(const PoseList& poses) const;
+  /// Rows of named parameters in um or urad, for goal = "parameters". @throws InputError if a pattern matches nothing
+  Eigen::MatrixXd parameter_rows() const;
+  /// Priors of the study, [rows, p].
+  const Eigen::MatrixXd& known() const { return known_; }
+
+  const Study& study() const { return study_; }
+  const ErrorSet& errors() const { return errors_; }
+  std::size_t sight_count() const { return sights_.size(); }
+  std::size_t parameter_count() const { return parameters_.size(); }
+
+ private:
+  struct Sight {
+    std::size_t setup, station, reflector;
+  };
+  Problem problem(std::vector<std::unique_ptr<Observations>>& observations,
+                  const std::vector<TrackerReadings>& readings) const;
+
+  const Study& study_;
+  ErrorSet errors_;
+  std::vector<TrackerSetup> setups_;
+  std::vector<Sight> sights_;
+  std::vector<EstimatedParameter> parameters_;
+  Eigen::MatrixXd known_;
+};
+
+/// Uncertainty that a number of readings would give.
+struct PlanPoint {
+  std::size_t readings = 0;
+  bool determined = false;
+  double uncertainty = 0;  ///< mm, root mean square of the predicted volumetric standard uncertainty
+};
+
+/// A regular grid that was compared.
+struct GridPoint {
+  std::vector<std::size_t> positions;  ///< per axis, chain order
+  SightsPerPose sights = SightsPerPose::every;
+  PlanPoint value;
+};
+
+/// A plan of readings and what it is worth.
+struct StudyPlan {
+  ReadingPlan plan;
+  std::vector<SightReading> readings;  ///< in the order in which they are to be taken
+  double time = 0;                     ///< s
+  double uncertainty = 0;              ///< mm, as PlanPoint
+  std::size_t candidates = 0, hidden = 0, forbidden = 0;
+  std::size_t parameters = 0, seen = 0;
+  double unseen_part = 0;  ///< largest part of a prediction that lies in directions no candidate sees, 0..1
+  std::vector<PlanPoint> curve;
+  std::size_t enough = 0;  ///< index into curve; its size: not reached
+  std::string enough_words;
+  std::size_t grids_tried = 0;
+  std::optional<GridPoint> same_grid;     ///< best determined grid of about as many readings (not fewer)
+  std::optional<GridPoint> equal_grid;    ///< smallest determined grid found that is as good as the plan
+  std::optional<GridPoint> largest_grid;  ///< the largest grid tried, if none was as good
+};
+
+/// Chooses readings for a study with a [plan] table. @throws InputError
+/// @param progress  share done, 0 to 1
+StudyPlan plan_study(const Study& study, const std::function<void(double)>& progress = {});
+
+/// Looks for regular grids to compare with: those that determine all that the candidates see.
+void compare_with_grids(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
+                        StudyPlan& result);
+
+}  // namespace abbe

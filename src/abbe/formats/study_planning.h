@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "abbe/errors/chain_plan.h"
+#include "abbe/instruments/measurement_plan.h"
+
+namespace abbe {
+
+/// What a plan of readings makes small.
+enum class PlanningGoal {
+  volumetric,   ///< V: mean predicted volumetric uncertainty
+  determinant,  ///< D: volume of the confidence ellipsoid
+  parameters    ///< A: sum of the variances of named parameters, lengths in um and angles in urad
+};
+
+/// A box into which the functional point of the tool must not come.
+struct ForbiddenBox {
+  Body frame = Body::workpiece;                                                  ///< workpiece or bed
+  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();  ///< corners, mm
+};
+
+/// What `abbe plan` is to choose from, and how much it may take. Table [plan] of a study.
+struct PlanningStudy {
+  int readings = 0;  ///< to be chosen; 0: as many as the time allows
+  double time = 0;   ///< s, of the whole measurement; 0: no limit. At least one of the two is given
+  PlanningGoal goal = PlanningGoal::volumetric;
+  std::vector<std::string> parameters;  ///< patterns of names, for the goal of that name
+  double target = 0;                    ///< mm, standard uncertainty that would be enough; 0: none
+  bool grid = false;                    ///< candidates on a grid, else random
+  int candidates = 0;                   ///< random: number of poses
+  std::vector<AxisRange> axes;          ///< [axes], chain order; the travel by default
+  std::vector<double> speed;            ///< [axes] mm/s or rad/s
+  double settle = 0;                    ///< s, from standstill to the reading
+  double reading = 0;                   ///< s, one reading
+  std::vector<ForbiddenBox> forbidden;
+};
+
+}  // namespace abbe
