@@ -342,7 +342,7 @@ INSTANTIATE_TEST_SUITE_P(All, ContactInstrument,
                                          touch_probe(TouchProbeSetup::Measure::centre),
                                          touch_probe(TouchProbeSetup::Measure::touch), dials(), with_line(level()),
                                          with_line(autocollimator()), board_marks()),
-                         [](const testing::TestParamInfo<Campaign>& info) { return info.param.name; });
+                         [](const testing::TestParamInfo<Campaign>& tested) { return tested.param.name; });
 
 }  // namespace
 }  // namespace abbe
