@@ -7,6 +7,7 @@
 #include "abbe/identify/monte_carlo.h"
 #include "abbe/identify/order_selection.h"
 #include "abbe/identify/strategies.h"
+#include "abbe/identify/unseen.h"
 #include "abbe/verify/error_map.h"
 #include "study/campaign.h"
 #include "study/model.h"
@@ -36,6 +37,7 @@ struct StudyResult {
   std::optional<UnseenPoses> unseen;
   std::optional<StudyMap> map;
   std::vector<std::string> warnings;
+  std::vector<Advice> advice;  ///< trackers only: what the readings do not see, and what would show it
 
   /// True if the result may be used: converged and nothing impossible.
   bool usable() const { return identification.status == IdentifyStatus::converged; }

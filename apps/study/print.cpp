@@ -12,6 +12,17 @@ void print_statistics(const char* name, const SampleStatistics& s) {
              1e3 * s.maximum);
 }
 
+/// What no measurement can show is a convention and stands elsewhere.
+void print_advice(const StudyResult& result) {
+  bool first = true;
+  for (const Advice& advice : result.advice) {
+    if (!advice.shown) continue;
+    if (first) fmt::print("\nwhat would show more\n");
+    first = false;
+    fmt::print("  {}: {}\n", advice.text, advice.remedy);
+  }
+}
+
 }  // namespace
 
 void print_study(const Study& study, const StudyResult& result) {
@@ -22,7 +33,10 @@ void print_study(const Study& study, const StudyResult& result) {
   if (!study.identification) return;
   const Identification& identified = result.identification;
   fmt::print("\n{}\n", study_verdict(study, result));
-  if (!result.usable()) return;
+  if (!result.usable()) {
+    print_advice(result);
+    return;
+  }
   const FitStatistics& fit = identified.statistics;
   fmt::print("\nidentification: {} after {} iterations, {} outliers\n", status_text(identified.status),
              identified.history.size(), identified.outliers.size());
@@ -60,6 +74,7 @@ void print_study(const Study& study, const StudyResult& result) {
       fmt::print("  {}: {}\n", constraint.words, constraint.inseparable_words);
     }
   }
+  print_advice(result);
 }
 
 }  // namespace abbe

@@ -54,6 +54,16 @@ std::vector<std::size_t> thinned(const std::vector<std::uint8_t>& covered, std::
   return part;
 }
 
+nlohmann::ordered_json advice_json(const StudyResult& result) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Advice& advice : result.advice) {
+    std::vector<std::string> names;
+    for (const std::size_t p : advice.parameters) names.push_back(result.identification.parameters[p].name);
+    list.push_back({{"parameters", names}, {"text", advice.text}, {"remedy", advice.remedy}});
+  }
+  return list;
+}
+
 }  // namespace
 
 double for_drawing(double value) {
@@ -156,6 +166,7 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
     json["residuals"] = report_residuals(study.machine, result);
     json["identification"] = report_identification(study, result);
   }
+  if (!result.advice.empty()) json["advice"] = advice_json(result);
   json["references"] = {"ISO 230-1:2012 (geometric accuracy)", "ISO 230-7:2015 (axes of rotation)",
                         "JCGM 100:2008 (GUM)",
                         "Aguado et al. (2014), laser tracker verification of multi-axis machines"};

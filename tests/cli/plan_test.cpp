@@ -1,0 +1,69 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+using testing::HasSubstr;
+using Plans = CommandTest;
+
+std::string trunnion_study() {
+  std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/examples/trunnion/trunnion.study.toml");
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string study = text.str();
+  const std::string relative = "\"../machines";
+  study.replace(study.find(relative), relative.size(), "\"" + std::string(ABBE_SOURCE_DIR) + "/examples/machines");
+  // Fewer candidates than in the example: the sanitizers are slow.
+  study.replace(study.find("poses = 1500"), 12, "poses = 400");
+  study.replace(study.find("readings = 240"), 14, "readings = 100");
+  return study;
+}
+
+TEST_F(Plans, ListReadingsAndCompareThemWithGrids) {
+  folder.write("trunnion.study.toml", trunnion_study());
+  const CommandResult planned = abbe({"plan", "trunnion.study.toml", "-o", "poses.csv", "--json"});
+  ASSERT_EQ(planned.exit_code, done) << planned.err;
+  const nlohmann::json json = nlohmann::json::parse(planned.out);
+  const std::string csv = folder.read("poses.csv");
+  EXPECT_EQ(csv.substr(csv.find("\nC_deg") + 1, 45), "C_deg,A_deg,Y_mm,X_mm,Z_mm,station,reflector\n");
+  // A comment and a header stand above the readings.
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), 100U + 2U);
+  EXPECT_FALSE(json.empty());
+  const CommandResult words = abbe({"plan", "trunnion.study.toml"});
+  EXPECT_THAT(words.out, HasSubstr("how many are enough"));
+  EXPECT_THAT(words.out, HasSubstr("against regular grids"));
+}
+
+TEST_F(Plans, WithoutATableSayWhatIsMissing) {
+  std::string study = trunnion_study();
+  const std::size_t begin = study.find("[plan]"), end = study.find("[simulate");
+  ASSERT_LT(begin, end);
+  study.erase(begin, end - begin);
+  folder.write("trunnion.study.toml", study);
+  const CommandResult result = abbe({"plan", "trunnion.study.toml"});
+  EXPECT_EQ(result.exit_code, bad_input);
+  EXPECT_THAT(result.err, HasSubstr("[plan]"));
+}
+
+TEST_F(Plans, WhatOneReflectorCannotSeeAnotherWouldShow) {
+  std::string study = trunnion_study();
+  const std::size_t second = study.find("[[setup.reflector]]\nname = \"S2\""), plan = study.find("[[setup.plan]]");
+  ASSERT_LT(second, plan);
+  study.erase(second, plan - second);
+  folder.write("one.study.toml", study);
+  const CommandResult result = abbe({"run", "one.study.toml", "-o", "out"});
+  EXPECT_EQ(result.exit_code, computation_says_no);
+  EXPECT_THAT(result.out, HasSubstr("what would show more"));
+  EXPECT_THAT(result.out, HasSubstr("another reflector at a known place"));
+  EXPECT_THAT(folder.read("out/report.html"), HasSubstr("\"advice\":[{"));
+}
+
+}  // namespace
+}  // namespace abbe
