@@ -60,7 +60,7 @@ async function inspect(browser, file) {
   page.on('request', (request) => {
     if (request.url() !== url && !/^(data|blob):/.test(request.url())) check(false, problems(`request of ${request.url()}`));
   });
-  await page.goto(url);
+  await page.goto(url, { timeout: 120_000 });
   await page.waitForTimeout(600);
 
   check((await page.textContent('h1')) === data.title, problems('the heading is not the title'));
@@ -211,7 +211,7 @@ async function inspect(browser, file) {
   // The system's preference is followed when nothing was chosen.
   const second = await browser.newContext({colorScheme: 'dark', offline: true});
   const other = await second.newPage();
-  await other.goto(url);
+  await other.goto(url, { timeout: 120_000 });
   check((await other.evaluate(() => document.documentElement.dataset.theme)) === 'dark', problems('does not follow the system to dark'));
   await second.close();
   await context.close();
