@@ -5,13 +5,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
 #include "abbe/geometry/rotation.h"
+#include "abbe/geometry/singular_values.h"
 
 namespace abbe {
 namespace {
@@ -103,14 +103,14 @@ std::vector<std::size_t> find_components(const AxisIndications& readings, const 
   }
   Eigen::MatrixXd scaled = columns_of(d, components);
   scaled.colwise().normalize();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeFullV);
+  const RightSingular svd = right_singular(scaled);
   const Eigen::Index n = scaled.cols();
   Eigen::Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > kRankTolerance) ++rank;
+  while (rank < svd.values.size() && svd.values[rank] > kRankTolerance) ++rank;
   if (rank < n) {
     std::string names;
     for (std::size_t i = 0; i < components.size(); ++i) {
-      if (svd.matrixV().row(static_cast<Eigen::Index>(i)).tail(n - rank).norm() < 1e-6) continue;
+      if (svd.vectors.row(static_cast<Eigen::Index>(i)).tail(n - rank).norm() < 1e-6) continue;
       names += (names.empty() ? "" : ", ") + name_of(readings, components[i]);
     }
     result.status = DecouplingStatus::combination_only;

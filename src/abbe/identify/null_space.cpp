@@ -1,8 +1,8 @@
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/singular_values.h"
 #include "abbe/identify/gauge.h"
 
 namespace abbe {
@@ -62,10 +62,10 @@ NullSpace find_null_space(const ReadingStream& stream, const Eigen::VectorXd& es
   // seconds, and then only an open question is worth them.
   if (ambiguous || work < kQuickFactor) {
     const Eigen::MatrixXd factor = stream.orthogonal_factor(estimates, Loss{}) * inverse.asDiagonal();
-    const Eigen::BDCSVD<Eigen::MatrixXd> svd(factor, Eigen::ComputeFullV);
+    const RightSingular svd = right_singular(factor);
     result.refined = true;
-    result.singular_values = svd.singularValues() / std::max(svd.singularValues()[0], 1e-300);
-    vectors = svd.matrixV();
+    result.singular_values = svd.values / std::max(svd.values[0], 1e-300);
+    vectors = svd.vectors;
   } else {
     eigen.compute(scaled);
     singular_values();

@@ -1,10 +1,11 @@
 #include "abbe/identify/planning_space.h"
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "abbe/geometry/singular_values.h"
 
 namespace abbe {
 namespace {
@@ -62,8 +63,6 @@ void validate(const PlanningCandidates& candidates, const Eigen::MatrixXd& known
   if (!candidates.rows.allFinite() || !known.allFinite()) fail("planning: a derivative is not finite");
 }
 
-using Decomposition = Eigen::BDCSVD<Eigen::MatrixXd>;
-
 void add_known(const PlanningSpace& space, StreamingFactor& stream) {
   for (Index k = 0; k < space.known_rows().rows(); ++k) {
     stream.next() = space.known_rows().row(k);
@@ -72,7 +71,7 @@ void add_known(const PlanningSpace& space, StreamingFactor& stream) {
 }
 
 /// Singular value decomposition of the rows of a choice in seen coordinates, what is known included.
-Decomposition decompose(const PlanningSpace& space, std::span<const std::size_t> chosen) {
+RightSingular decompose(const PlanningSpace& space, std::span<const std::size_t> chosen) {
   const Index v = static_cast<Index>(space.dimension());
   StreamingFactor stream(v);
   add_known(space, stream);
@@ -81,7 +80,7 @@ Decomposition decompose(const PlanningSpace& space, std::span<const std::size_t>
       stream.next() = Eigen::Map<const Eigen::RowVectorXd>(space.row(space.first_row(candidate) + k), v);
       stream.add();
     }
-  return Decomposition(stream.factor(), Eigen::ComputeFullV);
+  return right_singular(stream.factor());
 }
 
 std::size_t rank_of(const PlanningSpace& space, const Eigen::VectorXd& singular) {
@@ -89,15 +88,15 @@ std::size_t rank_of(const PlanningSpace& space, const Eigen::VectorXd& singular)
   return static_cast<std::size_t>((singular.array() > smallest).count());
 }
 
-PlanValue value_of(const PlanningSpace& space, const Decomposition& svd, const Eigen::MatrixXd& functionals) {
+PlanValue value_of(const PlanningSpace& space, const RightSingular& svd, const Eigen::MatrixXd& functionals) {
   PlanValue value;
-  value.rank = rank_of(space, svd.singularValues());
+  value.rank = rank_of(space, svd.values);
   value.determined = value.rank == space.dimension();
   if (!value.determined) return value;
-  value.log_determinant = 2 * svd.singularValues().array().log().sum();
+  value.log_determinant = 2 * svd.values.array().log().sum();
   if (functionals.rows() > 0)
-    value.variance = (space.functionals(functionals) * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal())
-                         .squaredNorm();
+    value.variance =
+        (space.functionals(functionals) * svd.vectors * svd.values.cwiseInverse().asDiagonal()).squaredNorm();
   return value;
 }
 
@@ -122,17 +121,17 @@ PlanningSpace::PlanningSpace(const PlanningCandidates& candidates, const Eigen::
   };
   for (Index k = 0; k < known.rows(); ++k) add(known.row(k));
   for (Index k = 0; k < all; ++k) add(candidates.rows.row(k));
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(stream.factor(), Eigen::ComputeFullV);
-  const double largest = p > 0 ? std::max(svd.singularValues()[0], 1e-300) : 1;
-  singular_values_ = svd.singularValues() / largest;
+  const RightSingular svd = right_singular(stream.factor());
+  const double largest = p > 0 ? std::max(svd.values[0], 1e-300) : 1;
+  singular_values_ = svd.values / largest;
   Index v = p;
   while (v > 0 && !(singular_values_[v - 1] > threshold)) --v;
   determined_ = std::max(kDetermined, v > 0 ? kRounding / singular_values_[v - 1] : 0.0);
-  estimates_from_seen_ = inverse.asDiagonal() * svd.matrixV().leftCols(v) *
-                         (singular_values_.head(v) * largest).cwiseInverse().asDiagonal();
+  estimates_from_seen_ =
+      inverse.asDiagonal() * svd.vectors.leftCols(v) * (singular_values_.head(v) * largest).cwiseInverse().asDiagonal();
   // Parameters without any influence have no scale; their direction is the parameter itself.
   unseen_ = inverse.unaryExpr([](double scale) { return scale > 0 ? scale : 1.0; }).asDiagonal() *
-            svd.matrixV().rightCols(p - v);
+            svd.vectors.rightCols(p - v);
 
   known_rows_ = known.rows() > 0 ? Eigen::MatrixXd(known * estimates_from_seen_) : Eigen::MatrixXd(0, v);
   known_information_ = known_rows_.transpose() * known_rows_;
@@ -167,16 +166,15 @@ PlanValue value_of(const PlanningSpace& space, const PlanningCandidates& others,
     stream.next().noalias() = others.rows.row(k) * space.estimates_from_seen();
     stream.add();
   }
-  PlanValue value = value_of(space, Decomposition(stream.factor(), Eigen::ComputeFullV), functionals);
+  PlanValue value = value_of(space, right_singular(stream.factor()), functionals);
   for (std::size_t i = 0; i < others.count(); ++i) value.cost += others.cost(i);
   return value;
 }
 
 Eigen::MatrixXd planned_covariance(const PlanningSpace& space, std::span<const std::size_t> chosen) {
-  const Decomposition svd = decompose(space, chosen);
-  if (rank_of(space, svd.singularValues()) != space.dimension()) return {};
-  const Eigen::MatrixXd root =
-      space.estimates_from_seen() * svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+  const RightSingular svd = decompose(space, chosen);
+  if (rank_of(space, svd.values) != space.dimension()) return {};
+  const Eigen::MatrixXd root = space.estimates_from_seen() * svd.vectors * svd.values.cwiseInverse().asDiagonal();
   return root * root.transpose();
 }
 

@@ -5,10 +5,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "abbe/geometry/singular_values.h"
 
 namespace abbe {
 namespace {
@@ -34,11 +35,11 @@ Eigen::MatrixXd without_own(const PossibleMeasurement& measurement, Index parame
 /// Which part of `direction` (a column of `open`'s space) the rows leave unseen; all in scaled parameters.
 double left_unseen(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& open, const Eigen::VectorXd& direction) {
   const Eigen::MatrixXd seen = rows * open;
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(seen, Eigen::ComputeFullV);
+  const RightSingular svd = right_singular(seen);
   const double limit = kStillZero * std::max(rows.norm(), 1e-300);
   Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()[rank] > limit) ++rank;
-  const Eigen::MatrixXd rest = svd.matrixV().rightCols(open.cols() - rank);
+  while (rank < svd.values.size() && svd.values[rank] > limit) ++rank;
+  const Eigen::MatrixXd rest = svd.vectors.rightCols(open.cols() - rank);
   return (rest.transpose() * (open.transpose() * direction)).norm() / direction.norm();
 }
 

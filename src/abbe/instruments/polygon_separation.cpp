@@ -4,11 +4,12 @@
 
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "abbe/geometry/singular_values.h"
 
 namespace abbe {
 namespace {
@@ -92,17 +93,17 @@ struct Candidates {
 PolygonObservability polygon_observability(const PolygonCampaign& campaign, const PolygonNoise& noise) {
   const MatrixXd jacobian = weighted_jacobian(campaign, noise);
   const VectorXd scale = column_scale(jacobian);
-  const Eigen::BDCSVD<MatrixXd> svd(jacobian * scale.cwiseInverse().asDiagonal(), Eigen::ComputeFullV);
+  const RightSingular svd = right_singular(jacobian * scale.cwiseInverse().asDiagonal());
   PolygonObservability result;
   result.unknowns = static_cast<std::size_t>(jacobian.cols());
   result.readings = static_cast<std::size_t>(jacobian.rows());
-  result.singular_values = svd.singularValues() / svd.singularValues()[0];
+  result.singular_values = svd.values / svd.values[0];
   while (result.rank < static_cast<std::size_t>(result.singular_values.size()) &&
          result.singular_values[static_cast<Index>(result.rank)] > kZero) {
     ++result.rank;
   }
   result.unseen =
-      scale.cwiseInverse().asDiagonal() * svd.matrixV().rightCols(jacobian.cols() - static_cast<Index>(result.rank));
+      scale.cwiseInverse().asDiagonal() * svd.vectors.rightCols(jacobian.cols() - static_cast<Index>(result.rank));
   return result;
 }
 
