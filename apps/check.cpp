@@ -105,7 +105,7 @@ void add_check_command(CommandLine& line) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = line.add("check", "Validate a machine file and show its chain, axes and error names",
-                               "  abbe check examples/machines/trunnion_mill.machine.toml\n"
+                               "  abbe check examples/machines/trunnion-mill.machine.toml\n"
                                "  abbe check my.machine.toml --errors my.errors.toml");
   command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("--errors", options->errors, "Errors file of this machine to validate too (*.errors.toml)");

@@ -20,7 +20,7 @@ CommandLine::CommandLine()
   app.footer(
       "Examples:\n"
       "  abbe run examples/aguado/aguado.study.toml     the whole job, from readings to the report\n"
-      "  abbe check examples/machines/trunnion_mill.machine.toml\n"
+      "  abbe check examples/machines/trunnion-mill.machine.toml\n"
       "  abbe reproduce wang                            a published study, recomputed\n\n"
       "Exit codes: 0 done, 1 the computation says no, 2 bad input, 3 internal error.");
   app.set_version_flag("--version", "abbe " ABBE_VERSION);

@@ -17,16 +17,7 @@ std::shared_ptr<Instrument> read_ball_bar(TomlTable& table, const InstrumentCont
   setup.noise = read_noise(noise, "length", Quantity::length);
   setup.noise_per_length = noise.size_or("length", Quantity::length_per_length, 0);
   noise.finish();
-  for (TomlTable& entry : table.tables("ball")) {
-    BallBarSetup::Ball ball;
-    ball.name = entry.text("name");
-    ball.centre = read_setup_point(entry, "centre", Knowledge::open, context.simulated);
-    entry.finish();
-    setup.balls.push_back(ball);
-  }
-  if (setup.balls.empty()) {
-    table.fail("", "the balls are missing", "[[setup.ball]] with name and centre_mm = [x, y, z]");
-  }
+  setup.balls = read_named_points(table, "ball", Knowledge::open, context.simulated);
   return std::make_shared<BallBar>(setup);
 }
 

@@ -98,6 +98,7 @@ TEST(StudyInstrument, SaysWhatIsWrong) {
   EXPECT_NE(wrong("items = [\"B2\"]", "items = [\"B3\"]").find("there is no item \"B3\"; expected one of B1, B2"),
             std::string::npos);
   EXPECT_NE(wrong("[\"X\", \"Z\"]", "[\"X\", \"X\"]").find("is no plane"), std::string::npos);
+  EXPECT_NE(wrong("name = \"B2\"", "name = \"B1\"").find("two items are called \"B1\""), std::string::npos);
   EXPECT_NE(wrong("radius_mm = 150", "radius_mm = 0").find("is not above zero"), std::string::npos);
   EXPECT_NE(wrong("axis.C = { count = 7 }", "axis.X = { count = 7 }").find("X is linear and follows by itself"),
             std::string::npos);

@@ -64,6 +64,19 @@ SetupPoint read_setup_point(TomlTable& table, std::string_view base, Knowledge u
   return point;
 }
 
+std::vector<NamedPoint> read_named_points(TomlTable& table, std::string_view key, Knowledge unstated, bool simulated) {
+  std::vector<NamedPoint> points;
+  for (TomlTable& entry : table.tables(key)) {
+    points.push_back({entry.text("name"), read_setup_point(entry, "centre", unstated, simulated)});
+    entry.finish();
+  }
+  if (points.empty()) {
+    table.fail("", fmt::format("there is no {}", key),
+               fmt::format("[[{}]] with name and centre_mm = [x, y, z]", table.full_name(key)));
+  }
+  return points;
+}
+
 double read_noise(TomlTable& table, std::string_view base, Quantity quantity) {
   const double noise = table.number(base, quantity);
   if (!(noise > 0)) table.fail_quantity(base, quantity, "is not above zero", "a standard uncertainty");

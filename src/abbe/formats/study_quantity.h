@@ -3,6 +3,7 @@
 // Internal to formats: numbers of a set-up with what is known of them.
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "abbe/formats/toml_table.h"
 #include "abbe/instruments/setup_quantity.h"
@@ -24,6 +25,9 @@ SetupNumber read_setup_number(TomlTable& table, std::string_view base, Quantity 
 /// The same for three coordinates; the uncertainty is one number or three.
 SetupPoint read_setup_point(TomlTable& table, std::string_view base, Knowledge unstated, bool simulated,
                             std::optional<Eigen::Vector3d> otherwise = std::nullopt);
+
+/// Tables [[KEY]] with `name` and the point `centre`: balls, spheres. @throws InputError if there is none
+std::vector<NamedPoint> read_named_points(TomlTable& table, std::string_view key, Knowledge unstated, bool simulated);
 
 /// A standard uncertainty of the instrument, > 0. @throws InputError if it is missing or zero
 double read_noise(TomlTable& table, std::string_view base, Quantity quantity);

@@ -46,16 +46,7 @@ std::shared_ptr<Instrument> read_r_test(TomlTable& table, const InstrumentContex
   if (setup.probes.empty() || setup.probes.size() > kMostProbes) {
     table.fail("", "the nest has no probes or too many", "one to four [[setup.probe]] with name and direction");
   }
-  for (TomlTable& entry : table.tables("sphere")) {
-    RTestSetup::Sphere sphere;
-    sphere.name = entry.text("name");
-    sphere.centre = read_setup_point(entry, "centre", Knowledge::exact, context.simulated);
-    entry.finish();
-    setup.spheres.push_back(sphere);
-  }
-  if (setup.spheres.empty()) {
-    table.fail("", "the sphere is missing", "[[setup.sphere]] with name and centre_mm = [x, y, z]");
-  }
+  setup.spheres = read_named_points(table, "sphere", Knowledge::exact, context.simulated);
   return std::make_shared<RTest>(setup);
 }
 

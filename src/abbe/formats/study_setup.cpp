@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <set>
 
 #include "abbe/formats/study_instrument.h"
 #include "abbe/formats/study_parts.h"
@@ -154,6 +155,16 @@ void read_tracker(TomlTable& table, bool simulated, Setup& setup) {
   }
 }
 
+/// The readings of a file name their item, so that every item needs a name of its own.
+void refuse_same_items(const TomlTable& table, const Instrument& device) {
+  std::set<std::string> names;
+  for (const InstrumentItem& item : device.items()) {
+    if (!names.insert(item.name).second) {
+      table.fail("", fmt::format("two items are called \"{}\"", item.name), "different names");
+    }
+  }
+}
+
 /// Names of what can be measured at a position, and of where it can be measured from.
 PlanNames plan_names(const Setup& setup) {
   PlanNames names;
@@ -188,6 +199,7 @@ Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Ma
     read_tracker(table, simulated, setup);
   } else {
     setup.device = read_instrument(instrument - 1, table, {setup.name, machine, simulated});
+    refuse_same_items(table, *setup.device);
   }
   const PlanNames names = plan_names(setup);
   for (TomlTable& plan : table.tables("plan")) {

@@ -11,7 +11,7 @@ BallBar::BallBar(const BallBarSetup& setup)
   components_ = {{"length", false}};
   const std::array<std::size_t, 3> spindle = add(setup.name + ".spindle_ball", setup.spindle_ball);
   const std::size_t deviation = add(quantity(setup.name + ".length_deviation", false, setup.length_deviation));
-  for (const BallBarSetup::Ball& ball : setup.balls) {
+  for (const NamedPoint& ball : setup.balls) {
     const std::array<std::size_t, 3> centre = add(ball.name, ball.centre);
     add(InstrumentItem{ball.name,
                        setup.spindle_body,

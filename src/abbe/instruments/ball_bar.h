@@ -10,15 +10,11 @@ namespace abbe {
 
 /// A telescoping ball bar between a ball on one body (usually in the spindle) and balls on another.
 struct BallBarSetup {
-  struct Ball {
-    std::string name = "ball1";
-    SetupPoint centre;  ///< mm, frame of `carried_by`
-  };
   std::string name = "ballbar1";
   Body spindle_body = Body::tool;  ///< carries the spindle ball
   SetupPoint spindle_ball;         ///< mm, frame of spindle_body; tool: from the gauge point
   Body table_body = Body::workpiece;
-  std::vector<Ball> balls;  ///< at least one
+  std::vector<NamedPoint> balls;  ///< at least one
   /// Indicated minus true distance of the ball centres, mm: zero error of the scale after calibration.
   SetupNumber length_deviation;
   double noise = 0.1e-3;        ///< mm, standard uncertainty of one indicated length

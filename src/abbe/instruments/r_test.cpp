@@ -27,7 +27,7 @@ RTest::RTest(const RTestSetup& setup) : EquationInstrument(setup.name), noise_(s
     shared.push_back(add(quantity(prefix + "offset_first", false, probe.offset_first)));
     shared.push_back(add(quantity(prefix + "offset_second", false, probe.offset_second)));
   }
-  for (const RTestSetup::Sphere& sphere : setup.spheres) {
+  for (const NamedPoint& sphere : setup.spheres) {
     const std::array<std::size_t, 3> centre = add(sphere.name, sphere.centre);
     InstrumentItem item{sphere.name, setup.sphere_body, setup.nest_body, {centre.begin(), centre.end()}};
     item.quantities.insert(item.quantities.end(), shared.begin(), shared.end());

@@ -26,16 +26,12 @@ struct RTestSetup {
     double tip_radius = 0;                    ///< mm, ball only
     SetupNumber offset_first, offset_second;  ///< mm, ball only: by how much the plunger's line misses the nest centre
   };
-  struct Sphere {
-    std::string name = "sphere1";
-    SetupPoint centre;  ///< mm, frame of sphere_body; tool: from the gauge point
-  };
   std::string name = "rtest1";
   Body nest_body = Body::workpiece;
   SetupPoint nest;            ///< mm, frame of nest_body
   std::vector<Probe> probes;  ///< 1 to 4, usually three
   Body sphere_body = Body::tool;
-  std::vector<Sphere> spheres;                         ///< at least one
+  std::vector<NamedPoint> spheres;                     ///< at least one
   SetupNumber sphere_radius = SetupNumber::exact(11);  ///< mm; only ball tips see it
   double noise = 0.1e-3;                               ///< mm, standard uncertainty of one indication
 };

@@ -44,6 +44,12 @@ struct SetupPoint {
   Eigen::Vector3d value() const { return {coordinate[0].value, coordinate[1].value, coordinate[2].value}; }
 };
 
+/// A ball or a sphere by its centre, mm; frame of the body that carries it (tool: from the gauge point).
+struct NamedPoint {
+  std::string name;
+  SetupPoint centre;
+};
+
 /// A named number of the set-up: the length of a bar, a coordinate of a ball, the zero of an indication.
 struct SetupQuantity : SetupNumber {
   std::string name;       ///< with the set-up's name in front: "bar1.length", "table_ball.x"
