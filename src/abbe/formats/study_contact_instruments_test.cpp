@@ -70,8 +70,7 @@ TEST(StudyContactInstruments, ReadAnRTest) {
   EXPECT_SAYS(wrong(kRTest, "\"ball\"", "\"round\""), "unknown word \"round\"");
   EXPECT_SAYS(wrong(kRTest, "indication_um = 0.3", "indication_um = -1"), "is not above zero");
   EXPECT_SAYS(wrong(kRTest, "nest_mm", "nest_deg"), "nest_mm");
-  EXPECT_SAYS(wrong(kRTest, "[[setup.sphere]]\nname = \"ball\"\ncentre_mm = [0, 0, -150]\n", ""),
-              "there is no sphere");
+  EXPECT_SAYS(wrong(kRTest, "[[setup.sphere]]\nname = \"ball\"\ncentre_mm = [0, 0, -150]\n", ""), "there is no sphere");
   EXPECT_SAYS(wrong(kRTest, "noise", "nest_on = \"tool\"\nnoise"), "same body");
 }
 
