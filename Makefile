@@ -67,7 +67,8 @@ lint:
 	@.ci/set-up lint
 	@.ci/format --check
 	@python3 tests/structure/check_structure.py .
-	$(call build_preset,tidy,)
+	@cmake --preset tidy $(LAUNCHER) --log-level=WARNING >/dev/null
+	@.ci/lint --jobs $(JOBS)
 
 format:
 	@.ci/set-up lint

@@ -104,6 +104,7 @@ struct Eigen::NumTraits<abbe::Dual<N>> : Eigen::NumTraits<double> {
   using Real = abbe::Dual<N>;
   using NonInteger = abbe::Dual<N>;
   using Nested = abbe::Dual<N>;
+  // NOLINTBEGIN(readability-identifier-naming): names that Eigen asks for
   enum {
     IsComplex = 0,
     IsInteger = 0,
@@ -113,4 +114,5 @@ struct Eigen::NumTraits<abbe::Dual<N>> : Eigen::NumTraits<double> {
     AddCost = N,
     MulCost = 3 * N
   };
+  // NOLINTEND(readability-identifier-naming)
 };
