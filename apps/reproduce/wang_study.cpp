@@ -7,8 +7,8 @@
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/chain_plan.h"
-#include "abbe/errors/parallel_blocks.h"
 #include "abbe/errors/poses.h"
+#include "abbe/geometry/parallel_blocks.h"
 #include "reproduce/wang_tables.h"
 
 namespace abbe {

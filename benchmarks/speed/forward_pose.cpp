@@ -9,7 +9,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "abbe/errors/parallel_blocks.h"
+#include "abbe/geometry/parallel_blocks.h"
 #include "eigen_chain.h"
 #include "fastest.h"
 #include "grinding_poses.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "abbe/errors/parallel_blocks.h"
+#include "abbe/geometry/parallel_blocks.h"
 
 namespace abbe::benchmarks {
 namespace {

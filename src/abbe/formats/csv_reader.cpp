@@ -8,9 +8,9 @@
 #include <cstring>
 #include <optional>
 
-#include "abbe/errors/parallel_blocks.h"
 #include "abbe/formats/csv_header.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/geometry/parallel_blocks.h"
 
 namespace abbe {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "abbe/errors/parallel_blocks.h"
+#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/identify/distributions.h"
 #include "abbe/identify/normal_equations.h"
 

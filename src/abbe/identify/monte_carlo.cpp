@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "abbe/errors/parallel_blocks.h"
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/identify/cross_products.h"
 #include "abbe/identify/normal_equations.h"
 

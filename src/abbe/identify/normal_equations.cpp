@@ -6,7 +6,7 @@
 #include <cstring>
 #include <mutex>
 
-#include "abbe/errors/parallel_blocks.h"
+#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/identify/cross_products.h"
 
 namespace abbe {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "abbe/errors/parallel_blocks.h"
+#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/identify/cross_products.h"
 
 namespace abbe {

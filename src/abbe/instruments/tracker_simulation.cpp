@@ -6,8 +6,8 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "abbe/errors/parallel_blocks.h"
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/parallel_blocks.h"
 
 namespace abbe {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "abbe/errors/parallel_blocks.h"
 #include "abbe/geometry/best_fit_transform.h"
+#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/verify/deviation_block.h"
 #include "abbe/verify/map_uncertainty.h"
 

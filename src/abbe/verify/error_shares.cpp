@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "abbe/errors/parallel_blocks.h"
+#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/verify/deviation_block.h"
 #include "abbe/verify/error_map.h"
 

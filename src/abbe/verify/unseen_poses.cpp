@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "abbe/errors/parallel_blocks.h"
+#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/verify/deviation_block.h"
 
 namespace abbe {

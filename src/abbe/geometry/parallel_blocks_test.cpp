@@ -1,4 +1,4 @@
-#include "abbe/errors/parallel_blocks.h"
+#include "abbe/geometry/parallel_blocks.h"
 
 #include <gtest/gtest.h>
 
