@@ -95,10 +95,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
   for (const GaugeConstraint& constraint : result.identification.gauge.constraints) {
     if (!constraint.by_convention) result.warnings.push_back(constraint.words + ": " + constraint.inseparable_words);
   }
-  const bool trackers_only = std::none_of(study.setups.begin(), study.setups.end(),
-                                          [](const Setup& setup) { return setup.device != nullptr; });
-  const bool has_estimates = result.identification.estimates.size() > 0;
-  if (trackers_only && has_estimates) {
+  if (result.identification.estimates.size() > 0) {
     result.advice = unseen_advice(problem, result.identification, possible_measurements(problem));
   }
   if (!result.usable()) return;

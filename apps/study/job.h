@@ -37,7 +37,7 @@ struct StudyResult {
   std::optional<UnseenPoses> unseen;
   std::optional<StudyMap> map;
   std::vector<std::string> warnings;
-  std::vector<Advice> advice;  ///< trackers only: what the readings do not see, and what would show it
+  std::vector<Advice> advice;  ///< what the readings do not see, and what would show it
 
   /// True if the result may be used: converged and nothing impossible.
   bool usable() const { return identification.status == IdentifyStatus::converged; }

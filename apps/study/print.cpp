@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "study/advice.h"
 #include "study/summary.h"
 
 namespace abbe {
@@ -10,17 +11,6 @@ namespace {
 void print_statistics(const char* name, const SampleStatistics& s) {
   fmt::print("  {:<34} mean {:>9.3f}   95 % {:>9.3f}   max {:>9.3f} um\n", name, 1e3 * s.mean, 1e3 * s.p95,
              1e3 * s.maximum);
-}
-
-/// What no measurement can show is a convention and stands elsewhere.
-void print_advice(const StudyResult& result) {
-  bool first = true;
-  for (const Advice& advice : result.advice) {
-    if (!advice.shown) continue;
-    if (first) fmt::print("\nwhat would show more\n");
-    first = false;
-    fmt::print("  {}: {}\n", advice.text, advice.remedy);
-  }
 }
 
 }  // namespace

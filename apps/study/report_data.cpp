@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "study/advice.h"
 #include "study/report_identification.h"
 #include "study/report_parameters.h"
 #include "study/report_residuals.h"
@@ -52,16 +53,6 @@ std::vector<std::size_t> thinned(const std::vector<std::uint8_t>& covered, std::
   std::vector<std::size_t> part;
   for (std::size_t i = 0; i < limit; ++i) part.push_back(all[i * all.size() / limit]);
   return part;
-}
-
-nlohmann::ordered_json advice_json(const StudyResult& result) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const Advice& advice : result.advice) {
-    std::vector<std::string> names;
-    for (const std::size_t p : advice.parameters) names.push_back(result.identification.parameters[p].name);
-    list.push_back({{"parameters", names}, {"text", advice.text}, {"remedy", advice.remedy}});
-  }
-  return list;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "abbe/geometry/rotation.h"
 #include "abbe/identify/monte_carlo_comparison.h"
+#include "study/advice.h"
 
 namespace abbe {
 namespace {
@@ -128,6 +129,7 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
       }
     }
   }
+  if (!result.advice.empty()) json["not_seen"] = advice_json(result);
   if (result.unseen && !result.unseen->after.empty()) {
     const UnseenPoses& unseen = *result.unseen;
     nlohmann::ordered_json held_out;

@@ -65,5 +65,30 @@ TEST_F(Plans, WhatOneReflectorCannotSeeAnotherWouldShow) {
   EXPECT_THAT(folder.read("out/report.html"), HasSubstr("\"advice\":[{"));
 }
 
+TEST_F(Plans, WhatABallBarDoesNotSeeIsSaidInTheTerminalTheSummaryAndTheReport) {
+  std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/examples/trunnion/ball-bar.study.toml");
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string study = text.str();
+  const std::string relative = "\"../machines";
+  study.replace(study.find(relative), relative.size(), "\"" + std::string(ABBE_SOURCE_DIR) + "/examples/machines");
+  folder.write("bar.study.toml", study);
+  const CommandResult result = abbe({"run", "bar.study.toml", "-o", "out"});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("rests on prior knowledge alone"));
+  EXPECT_THAT(result.out, HasSubstr("straightness error motion of Z in Y"));
+  EXPECT_THAT(result.out, HasSubstr("at another place, 100 mm off in"));
+  EXPECT_THAT(result.out, HasSubstr("are conventions: no measurement would show them"));
+  const nlohmann::json summary = nlohmann::json::parse(folder.read("out/summary.json"));
+  std::size_t verified = 0, conventions = 0;
+  for (const nlohmann::json& one : summary.at("not_seen")) {
+    verified += one.at("verified").get<bool>() && one.at("kind") == "not measured" ? 1U : 0U;
+    conventions += one.at("kind") == "convention" ? 1U : 0U;
+  }
+  EXPECT_GT(verified, 5U);
+  EXPECT_GT(conventions, 5U);
+  EXPECT_THAT(folder.read("out/report.html"), HasSubstr("straightness error motion of Z in Y"));
+}
+
 }  // namespace
 }  // namespace abbe

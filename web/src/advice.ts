@@ -3,12 +3,20 @@
 import {Advice} from './data';
 import {html, section} from './dom';
 
+/// What lacks a measurement first; conventions and matters of the set-up need none.
+const kOrder = ['not measured', 'weak', 'convention', 'set-up'];
+const needsNone = (entry: Advice) => entry.kind === 'convention' || entry.kind === 'set-up';
+
 export function adviceSection(advice: Advice[]): HTMLElement {
   const part = section('advice', 'What the measurement cannot see',
-    'Parameters that these readings do not determine, or hardly, and the additional measurement that would show them.');
-  part.append(html('ol', {class: 'advice-list'}, ...advice.map((entry) => html('li', {},
+    'Parameters that these readings do not determine, or hardly, and the additional measurement that would show them, ' +
+    'tried with simulated readings.');
+  const sorted = [...advice].sort((a, b) => kOrder.indexOf(a.kind ?? '') - kOrder.indexOf(b.kind ?? ''));
+  part.append(html('ol', {class: 'advice-list'}, ...sorted.map((entry) => html('li', {},
     html('p', {}, entry.text),
-    entry.remedy && html('p', {class: 'remedy'}, html('b', {}, 'To see it: '), entry.remedy),
+    entry.words && html('p', {}, entry.words),
+    entry.remedy && html('p', {class: 'remedy'}, html('b', {}, needsNone(entry) ? 'Measurement: ' : 'To see it: '),
+      entry.remedy),
     !!entry.parameters?.length && html('code', {}, entry.parameters.join('  '))))));
   return part;
 }

@@ -217,8 +217,12 @@ export interface Report {
 
 /// What the measurement cannot see, and which additional measurement would show it.
 export interface Advice {
+  /// "not measured", "weak", "convention" or "set-up".
+  kind?: string;
   parameters?: string[];
   text: string;
+  /// The parameters in words of ISO 230.
+  words?: string;
   remedy?: string;
 }
 

@@ -10,6 +10,8 @@
 #include <numeric>
 
 #include "abbe/geometry/singular_values.h"
+#include "abbe/identify/normal_equations.h"
+#include "abbe/identify/parameter_words.h"
 
 namespace abbe {
 namespace {
@@ -18,6 +20,11 @@ using Index = Eigen::Index;
 // A direction is separable if less than this part of it is left unseen.
 constexpr double kLeftUnseen = 0.1;
 constexpr double kStillZero = 1e-7;
+constexpr double kSeenAbove = 1;  // standard uncertainties of all trial readings together
+constexpr double kSameDirection = 0.4;
+constexpr double kNoMachinePart = 1e-6;
+constexpr double kPriorShare = 0.9;
+constexpr double kHardlyLess = 0.5;
 constexpr double kQuarter = 0.25;
 constexpr double kNamedEntry = 0.2;
 constexpr std::size_t kMostNamed = 4;
@@ -32,15 +39,27 @@ Eigen::MatrixXd without_own(const PossibleMeasurement& measurement, Index parame
   return rows - basis * (basis.transpose() * rows);
 }
 
-/// Which part of `direction` (a column of `open`'s space) the rows leave unseen; all in scaled parameters.
-double left_unseen(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& open, const Eigen::VectorXd& direction) {
-  const Eigen::MatrixXd seen = rows * open;
-  const RightSingular svd = right_singular(seen);
-  const double limit = kStillZero * std::max(rows.norm(), 1e-300);
+/// The part of the space of `open` (orthonormal columns, scaled parameters) that the rows leave unseen, orthonormal.
+Eigen::MatrixXd left_open(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& open) {
+  if (open.cols() == 0 || rows.rows() == 0) return open;
+  const RightSingular svd = right_singular(rows * open);
+  // Seen: errors of typical size change the readings by more than their noise, and by more than rounding.
+  const double limit = std::max(kStillZero * rows.norm(), kSeenAbove);
   Index rank = 0;
   while (rank < svd.values.size() && svd.values[rank] > limit) ++rank;
-  const Eigen::MatrixXd rest = svd.vectors.rightCols(open.cols() - rank);
-  return (rest.transpose() * (open.transpose() * direction)).norm() / direction.norm();
+  return open * svd.vectors.rightCols(open.cols() - rank);
+}
+
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
+  if (columns.cols() == 0) return Eigen::MatrixXd(columns.rows(), 0);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
+}
+
+/// Information of the priors in scaled parameters.
+Eigen::MatrixXd prior_information(const Problem& problem, const Eigen::VectorXd& typical) {
+  const Eigen::MatrixXd rows = prior_rows(problem) * typical.asDiagonal();
+  return rows.transpose() * rows;
 }
 
 std::vector<std::size_t> largest_entries(const Eigen::VectorXd& scaled) {
@@ -63,93 +82,215 @@ std::string names(const std::vector<EstimatedParameter>& parameters, const std::
   return text;
 }
 
-}  // namespace
-
-std::vector<Advice> unseen_advice(const Problem& problem, const Identification& identification,
-                                  const std::vector<PossibleMeasurement>& possible, const AdviceOptions& options) {
-  std::vector<Advice> result;
-  const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
-  const Index p = static_cast<Index>(parameters.size());
-  if (identification.covariance.rows() != p || p == 0) return result;
-  Eigen::VectorXd typical(p);
-  for (Index i = 0; i < p; ++i) {
-    const EstimatedParameter& parameter = parameters[static_cast<std::size_t>(i)];
-    // What is known of a set-up beforehand is coarse: a weak direction is about the machine.
-    const double factor = parameter.id.is_machine() ? 1 : 1e3;
-    typical[i] = factor * (parameter.is_angle ? options.typical_angle : options.typical_length);
+/// Finds what every direction is, and the first measurement that shows it.
+class Adviser {
+ public:
+  Adviser(const Problem& problem, const Identification& identification,
+          const std::vector<PossibleMeasurement>& possible, const AdviceOptions& options)
+      : problem_(problem),
+        identification_(identification),
+        possible_(possible),
+        options_(options),
+        parameters_(estimated_parameters(problem)),
+        typical_(static_cast<Index>(parameters_.size())) {
+    const Index p = typical_.size();
+    for (Index i = 0; i < p; ++i) {
+      const EstimatedParameter& parameter = parameters_[static_cast<std::size_t>(i)];
+      // What is known of a set-up beforehand is coarse: a weak direction is about the machine.
+      const double factor = parameter.id.is_machine() ? 1 : 1e3;
+      typical_[i] = factor * (parameter.is_angle ? options.typical_angle : options.typical_length);
+    }
+    for (const PossibleMeasurement& measurement : possible)
+      rows_.push_back(without_own(measurement, p) * typical_.asDiagonal());
   }
-  std::vector<Eigen::MatrixXd> rows;
-  for (const PossibleMeasurement& measurement : possible)
-    rows.push_back(without_own(measurement, p) * typical.asDiagonal());
 
-  const std::vector<GaugeConstraint>& constraints = identification.gauge.constraints;
-  Eigen::MatrixXd open(p, 0);  // unseen directions in units of typical sizes, orthonormal
-  if (!constraints.empty()) {
-    // Where the trials are: unseen directions turn a little with the errors.
-    Eigen::VectorXd nominal = present_values(problem);
+  std::vector<Advice> run() {
+    unseen();
+    weak();
+    return std::move(result_);
+  }
+
+ private:
+  bool set_up_alone(const Eigen::VectorXd& scaled) const {
+    double machine = 0;
+    for (Index i = 0; i < scaled.size(); ++i)
+      if (parameters_[static_cast<std::size_t>(i)].id.is_machine()) machine = std::max(machine, std::abs(scaled[i]));
+    return machine < kNoMachinePart * scaled.cwiseAbs().maxCoeff();
+  }
+
+  /// Unseen directions in units of typical sizes, orthonormal, where the trials are: they turn a little with the
+  /// errors.
+  Eigen::MatrixXd open_directions() const {
+    const Index p = typical_.size();
+    Eigen::VectorXd nominal = present_values(problem_);
     for (Index i = 0; i < p; ++i)
-      if (parameters[static_cast<std::size_t>(i)].id.is_machine()) nominal[i] = 0;
-    const NullSpace null_space = find_null_space(problem, nominal);
-    set_observations(problem, identification.estimates);
-    if (null_space.basis.cols() > 0) {
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(typical.cwiseInverse().asDiagonal() * null_space.basis);
-      open = qr.householderQ() * Eigen::MatrixXd::Identity(p, null_space.basis.cols());
+      if (parameters_[static_cast<std::size_t>(i)].id.is_machine()) nominal[i] = 0;
+    const NullSpace null_space = find_null_space(problem_, nominal);
+    set_observations(problem_, identification_.estimates);
+    Eigen::MatrixXd open = orthonormal(typical_.cwiseInverse().asDiagonal() * null_space.basis);
+    // What was fixed at the start may be seen by a trace at the solution: a sphere a micrometre off the axis.
+    for (const GaugeConstraint& constraint : identification_.gauge.constraints) {
+      const Eigen::VectorXd direction = constraint.direction.cwiseQuotient(typical_);
+      const Eigen::VectorXd rest = direction - open * (open.transpose() * direction);
+      if (rest.norm() < kSameDirection * direction.norm()) continue;
+      open.conservativeResize(p, open.cols() + 1);
+      open.rightCols(1) = rest.normalized();
     }
-  }
-  for (const GaugeConstraint& constraint : constraints) {
-    Advice advice;
-    advice.parameters = constraint.inseparable;
-    advice.text = constraint.inseparable_words;
-    const Eigen::VectorXd given = constraint.direction.cwiseQuotient(typical);
-    const Eigen::VectorXd direction = open * (open.transpose() * given);
-    // Not unseen at nominal errors: nothing to try there.
-    const bool tried = direction.norm() > 0.9 * given.norm();
-    for (std::size_t k = 0; k < possible.size() && tried && !advice.shown; ++k) {
-      if (left_unseen(rows[k], open, direction) > kLeftUnseen) continue;
-      advice.shown = true;
-      advice.remedy = possible[k].words + " would show it";
-    }
-    if (!advice.shown)
-      advice.remedy = possible.empty() || !tried ? "no additional measurement was tried"
-                      : constraint.by_convention ? "none is needed: it is a convention (" + constraint.words + ")"
-                                                 : "none of the measurements tried would show it";
-    result.push_back(std::move(advice));
+    return open;
   }
 
-  const Eigen::MatrixXd covariance =
-      typical.cwiseInverse().asDiagonal() * identification.covariance * typical.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  for (Index k = p; k-- > 0;) {
-    const double variance = eigen.eigenvalues()[k];
-    if (!(variance > options.weak * options.weak)) break;
-    const Eigen::VectorXd direction = eigen.eigenvectors().col(k);
+  void unseen() {
+    const std::vector<GaugeConstraint>& constraints = identification_.gauge.constraints;
+    if (constraints.empty()) return;
+    const Eigen::MatrixXd open = open_directions();
+    std::vector<Eigen::MatrixXd> left;
+    Eigen::MatrixXd never = open;
+    for (const Eigen::MatrixXd& rows : rows_) {
+      left.push_back(left_open(rows, open));
+      never = left_open(rows, never);
+    }
+    for (const GaugeConstraint& constraint : constraints) {
+      Advice advice;
+      advice.parameters = constraint.inseparable;
+      advice.text = constraint.inseparable_words;
+      if (!constraint.by_convention)
+        advice.text =
+            fmt::format("{}{} is not seen by the readings", advice.parameters.size() > 1 ? "a combination of " : "",
+                        names(parameters_, advice.parameters));
+      advice.words = parameter_words(problem_, parameters_, advice.parameters);
+      const Eigen::VectorXd given = constraint.direction.cwiseQuotient(typical_);
+      const Eigen::VectorXd unseen = open * (open.transpose() * given);
+      const Eigen::VectorXd direction = unseen - never * (never.transpose() * unseen);
+      const bool tried = !possible_.empty();
+      const bool measurable = direction.norm() > kLeftUnseen * given.norm();
+      for (std::size_t k = 0; k < possible_.size() && tried && measurable && !advice.shown; ++k) {
+        if ((left[k].transpose() * direction).norm() > kLeftUnseen * direction.norm()) continue;
+        advice.shown = true;
+        advice.remedy = possible_[k].words + " would show it";
+      }
+      if (set_up_alone(given)) {
+        advice.kind = AdviceKind::set_up;
+        if (!advice.shown) advice.remedy = "none is needed: the machine's errors do not depend on it";
+      } else if (tried && !measurable) {
+        advice.kind = constraint.by_convention ? AdviceKind::convention : AdviceKind::not_measured;
+        advice.remedy = constraint.by_convention ? "none is needed: it is a convention (" + constraint.words + ")"
+                                                 : "none of the measurements tried would show it";
+      } else if (!advice.shown) {
+        advice.remedy = tried ? together(left, direction) : "no additional measurement was tried";
+        advice.shown = tried;
+      }
+      result_.push_back(std::move(advice));
+    }
+  }
+
+  /// No single measurement shows all of a direction: the ones that do it one after the other.
+  std::string together(const std::vector<Eigen::MatrixXd>& left, const Eigen::VectorXd& direction) const {
+    std::string text;
+    Eigen::VectorXd rest = direction;
+    for (int step = 0; step < 3 && rest.norm() > kLeftUnseen * direction.norm(); ++step) {
+      std::size_t best = 0;
+      double least = rest.norm();
+      for (std::size_t k = 0; k < left.size(); ++k) {
+        const double after = (left[k].transpose() * rest).norm();
+        if (after < 0.999 * least) {
+          least = after;
+          best = k;
+        }
+      }
+      if (!(least < rest.norm())) break;
+      text += (text.empty() ? "" : ", together with ") + possible_[best].words;
+      rest = left[best] * (left[best].transpose() * rest);
+    }
+    return text.empty() ? "several of the measurements tried would show it together" : text + " would show it";
+  }
+
+  void weak() {
+    const Eigen::MatrixXd covariance =
+        typical_.cwiseInverse().asDiagonal() * identification_.covariance * typical_.cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd prior = prior_information(problem_, typical_);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+    for (Index k = typical_.size(); k-- > 0;) {
+      const double variance = eigen.eigenvalues()[k];
+      if (!(variance > options_.weak * options_.weak)) break;
+      weak(covariance, prior, eigen.eigenvectors().col(k), variance);
+    }
+  }
+
+  void weak(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& prior, const Eigen::VectorXd& direction,
+            double variance) {
     Advice advice;
     advice.unseen = false;
+    advice.kind = AdviceKind::weak;
     advice.parameters = largest_entries(direction);
-    if (!parameters[advice.parameters.front()].id.is_machine()) continue;
-    const bool angle = parameters[advice.parameters.front()].is_angle;
-    const double size = std::sqrt(variance) * std::abs(direction[static_cast<Index>(advice.parameters.front())]) *
-                        typical[static_cast<Index>(advice.parameters.front())];
+    const EstimatedParameter& first = parameters_[advice.parameters.front()];
+    if (!first.id.is_machine()) return;
+    advice.words = parameter_words(problem_, parameters_, advice.parameters);
+    const Index at = static_cast<Index>(advice.parameters.front());
+    const double size = std::sqrt(variance) * std::abs(direction[at]) * typical_[at];
+    // Share of the information along the direction that the priors give.
+    const bool by_prior = direction.dot(prior * direction) * variance > kPriorShare;
+    if (by_prior) advice.kind = AdviceKind::not_measured;
     advice.text =
-        fmt::format("{}{} {} seen only weakly: standard uncertainty of {} {:.3g} {}",
-                    advice.parameters.size() > 1 ? "a combination of " : "", names(parameters, advice.parameters), "is",
-                    parameters[advice.parameters.front()].name, (angle ? 1e6 : 1e3) * size, angle ? "urad" : "um");
-    for (std::size_t m = 0; m < possible.size() && !advice.shown; ++m) {
+        fmt::format("{}{} {}: standard uncertainty of {} {:.3g} {}",
+                    advice.parameters.size() > 1 ? "a combination of " : "", names(parameters_, advice.parameters),
+                    by_prior ? "is not seen by the readings and rests on prior knowledge alone" : "is seen only weakly",
+                    first.name, (first.is_angle ? 1e6 : 1e3) * size, first.is_angle ? "urad" : "um");
+    double least = variance;
+    for (std::size_t m = 0; m < possible_.size() && !advice.shown; ++m) {
       // Variance after adding rows A: d'(C - C A'(I + A C A')^-1 A C) d.
-      const Eigen::MatrixXd spread = rows[m] * covariance;
-      Eigen::MatrixXd inner = spread * rows[m].transpose();
+      const Eigen::MatrixXd spread = rows_[m] * covariance;
+      Eigen::MatrixXd inner = spread * rows_[m].transpose();
       inner.diagonal().array() += 1;
       const Eigen::VectorXd seen = spread * direction;
       const double after = variance - seen.dot(inner.llt().solve(seen));
+      least = std::min(least, after);
       if (!(after < kQuarter * variance)) continue;
       advice.shown = true;
-      advice.remedy = fmt::format("{} would lower it {:.1f} times", possible[m].words,
-                                  std::sqrt(variance / std::max(after, 1e-12 * variance)));
+      advice.factor = std::sqrt(variance / std::max(after, 1e-12 * variance));
+      advice.remedy = possible_[m].words + " would lower its uncertainty";
     }
-    if (!advice.shown) advice.remedy = "more readings of the same kind, or a more accurate instrument";
-    result.push_back(std::move(advice));
+    if (!advice.shown && by_prior && !possible_.empty() && least > kHardlyLess * variance) {
+      advice.kind = AdviceKind::convention;
+      advice.remedy = "none is needed: no measurement tried tells it apart, the prior takes the place of a convention";
+    } else if (!advice.shown && by_prior && !possible_.empty()) {
+      advice.remedy = "none of the measurements tried lowers its uncertainty to a half";
+    } else if (!advice.shown) {
+      advice.remedy = "more readings of the same kind, or a more accurate instrument";
+    }
+    result_.push_back(std::move(advice));
   }
-  return result;
+
+  const Problem& problem_;
+  const Identification& identification_;
+  const std::vector<PossibleMeasurement>& possible_;
+  const AdviceOptions& options_;
+  std::vector<EstimatedParameter> parameters_;
+  Eigen::VectorXd typical_;            // [p] size of each that matters, mm or rad
+  std::vector<Eigen::MatrixXd> rows_;  // [possible] [rows, p] in scaled parameters
+  std::vector<Advice> result_;
+};
+
+}  // namespace
+
+const char* kind_text(AdviceKind kind) {
+  switch (kind) {
+    case AdviceKind::not_measured:
+      return "not measured";
+    case AdviceKind::weak:
+      return "weak";
+    case AdviceKind::convention:
+      return "convention";
+    case AdviceKind::set_up:
+      break;
+  }
+  return "set-up";
+}
+
+std::vector<Advice> unseen_advice(const Problem& problem, const Identification& identification,
+                                  const std::vector<PossibleMeasurement>& possible, const AdviceOptions& options) {
+  const Index p = static_cast<Index>(estimated_count(problem));
+  if (identification.covariance.rows() != p || p == 0) return {};
+  return Adviser(problem, identification, possible, options).run();
 }
 
 }  // namespace abbe

@@ -48,6 +48,7 @@ class Autocollimator : public EquationInstrument<Autocollimator, 4, 2> {
 
   double standard_uncertainty(const InstrumentReadings& readings, std::size_t reading,
                               std::size_t component) const override;
+  PoseFreedom pose_freedom() const override { return PoseFreedom::along_line; }
 
   template <typename S>
   void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const {

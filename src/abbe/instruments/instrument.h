@@ -48,6 +48,14 @@ struct MeetingPoints {
   Eigen::Vector3d on_to = Eigen::Vector3d::Zero();    ///< mm, frame of its `to` body
 };
 
+/// At which other poses an instrument that stands where it stands could be read too.
+enum class PoseFreedom {
+  anywhere,    ///< wherever the axes go: a tracking interferometer, a level
+  along_line,  ///< where those axes go that already moved: a beam, a straightedge
+  together,    ///< where the meeting points keep their displacement, the linear axes following: a nest, a probe
+  at_distance  ///< where the meeting points keep their distance: a bar
+};
+
 /// Poses at which readings of one item are modelled, and where its body is seen there.
 struct ItemBlock {
   std::size_t item = 0;
@@ -101,6 +109,9 @@ class Instrument {
 
   /// Nominal points of an item that plans bring together; none where the instrument has no such points.
   virtual std::optional<MeetingPoints> meeting_points(std::size_t item) const;
+
+  /// For proposals of further readings.
+  virtual PoseFreedom pose_freedom() const { return PoseFreedom::anywhere; }
 
   /// Known numbers with which a plan measures an item at every pose: one reading per entry, [inputs()] each.
   virtual std::vector<std::vector<double>> planned_inputs(std::size_t item) const;

@@ -101,6 +101,7 @@ class Interferometer : public EquationInstrument<Interferometer, 25, 6> {
                                    std::vector<std::string>& notes) const override;
   /// Moving optic and origin.
   std::optional<MeetingPoints> meeting_points(std::size_t item) const override;
+  PoseFreedom pose_freedom() const override { return PoseFreedom::along_line; }
 
   const std::vector<InterferometerComponent>& measured_components() const { return measured_; }
 

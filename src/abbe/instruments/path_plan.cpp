@@ -31,10 +31,15 @@ std::string pose_text(const Machine& machine, const std::vector<double>& positio
 
 }  // namespace
 
+Eigen::Vector3d nominal_displacement(const Machine& machine, const std::vector<double>& positions, Body from, Body to,
+                                     const MeetingPoints& points) {
+  return in_machine(machine, positions, from, points.on_from) - in_machine(machine, positions, to, points.on_to);
+}
+
 std::optional<std::vector<double>> meet(const Machine& machine, const std::vector<double>& positions, Body from,
                                         Body to, const MeetingPoints& points, const Eigen::Vector3d& displacement) {
   const auto gap = [&](const std::vector<double>& at) -> Eigen::Vector3d {
-    return in_machine(machine, at, from, points.on_from) - in_machine(machine, at, to, points.on_to) - displacement;
+    return nominal_displacement(machine, at, from, to, points) - displacement;
   };
   std::vector<std::size_t> linear;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {

@@ -9,6 +9,11 @@
 
 namespace abbe {
 
+/// on_from minus on_to on the nominal machine, mm, machine frame.
+/// @param positions  [axes] chain order, mm or rad
+Eigen::Vector3d nominal_displacement(const Machine& machine, const std::vector<double>& positions, Body from, Body to,
+                                     const MeetingPoints& points);
+
 /// Axis commands that bring two points together: on_from (on body `from`) comes to on_to (on body `to`) plus
 /// `displacement`, nominal machine.
 ///

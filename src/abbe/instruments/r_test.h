@@ -61,6 +61,7 @@ class RTest : public EquationInstrument<RTest, 27, 4> {
   double standard_uncertainty(const InstrumentReadings& readings, std::size_t reading,
                               std::size_t component) const override;
   std::optional<MeetingPoints> meeting_points(std::size_t item) const override;
+  PoseFreedom pose_freedom() const override { return PoseFreedom::together; }
 
   template <typename S>
   void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const {

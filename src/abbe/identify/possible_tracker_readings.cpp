@@ -6,8 +6,7 @@
 #include <numbers>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/identify/planning_candidates.h"
-#include "abbe/identify/unseen.h"
+#include "abbe/identify/trial_readings.h"
 #include "abbe/instruments/tracker_observations.h"
 #include "abbe/instruments/tracker_residual.h"
 #include "abbe/instruments/tracker_simulation.h"
@@ -28,20 +27,11 @@ class TrackerTrials {
       : problem_(problem),
         observations_(observations),
         tracker_(tracker),
-        errors_(problem.errors),
+        errors_(without_errors(problem)),
         parameters_(estimated_parameters(problem)) {
-    errors_.set_parameters(std::vector<double>(errors_.parameter_count(), 0.0));
-    const PoseList& poses = tracker.readings().poses;
-    for (const std::vector<double>& values : poses.axis) {
-      const auto [low, high] = std::minmax_element(values.begin(), values.end());
-      from_.push_back(values.empty() ? 0 : *low);
-      to_.push_back(values.empty() ? 0 : *high);
-    }
-    for (std::size_t i = 0; i < problem.machine.axes.size(); ++i) {
-      const Axis& axis = problem.machine.axes[i];
-      // Steps of a whole turn leave the last one out; the axis moved over all of it nevertheless.
-      if (axis.kind == AxisKind::rotary && to_[i] - from_[i] > std::numbers::pi)
-        to_[i] = std::max(to_[i], axis.endless ? from_[i] + 2 * std::numbers::pi : axis.travel_max);
+    for (const TrialRange& range : measured_ranges(problem.machine, tracker.readings().poses)) {
+      from_.push_back(range.from);
+      to_.push_back(range.to);
     }
   }
 
@@ -144,40 +134,23 @@ class TrackerTrials {
     options.sights = sights;
     options.choice = sights.size() > 3 ? SightChoice::cycle : SightChoice::every;
     const TrackerReadings readings = simulate_tracker(problem_.machine, errors_, setup, trial_poses, options).readings;
+    if (readings.count() == 0) return;
     TrackerObservations trial(problem_.machine, errors_, setup, readings);
-    Problem small = estimate_everything(problem_.machine, errors_, {&trial});
-    small.machine_parameters = problem_.machine_parameters;
-    PlanningCandidates rows = candidate_rows(small);
-    const std::vector<EstimatedParameter> theirs = estimated_parameters(small);
-    turn_as_ours(theirs, rows.rows);
-
-    PossibleMeasurement measurement;
-    measurement.words = std::move(words);
-    const Index p = static_cast<Index>(parameters_.size());
-    std::vector<Index> column;
-    for (const EstimatedParameter& parameter : theirs) {
-      const auto same = std::find_if(parameters_.begin(), parameters_.end(), [&](const EstimatedParameter& ours) {
-        if (parameter.id.is_machine()) return ours.id == parameter.id;
-        return ours.id.observations == observations_ && ours.name == parameter.name;
-      });
-      column.push_back(same != parameters_.end() ? static_cast<Index>(same - parameters_.begin())
-                                                 : p + static_cast<Index>(measurement.own++));
-    }
-    measurement.rows = PlanningCandidates::Rows::Zero(rows.rows.rows(), p + static_cast<Index>(measurement.own));
-    for (std::size_t c = 0; c < column.size(); ++c)
-      measurement.rows.col(column[c]) = rows.rows.col(static_cast<Index>(c));
+    PossibleMeasurement measurement = trial_measurement(problem_, observations_, std::move(words), trial,
+                                                        std::vector<TrialUnknown>(trial.unknowns().size()));
+    turn_as_ours(measurement.rows);
     list.push_back(std::move(measurement));
   }
 
   // A trial's station has its present rotation as the given one; ours has a rotation vector w on top of the given one:
   // a change of w turns it about the columns of J(w).
-  void turn_as_ours(const std::vector<EstimatedParameter>& theirs, PlanningCandidates::Rows& rows) const {
+  void turn_as_ours(PlanningCandidates::Rows& rows) const {
     const std::vector<SetupUnknown>& unknowns = tracker_.unknowns();
     const std::vector<double> values = tracker_.unknown_values();
     for (std::size_t u = 0; u + 2 < unknowns.size(); ++u) {
       if (!unknowns[u].name.ends_with(".rx")) continue;
-      for (std::size_t c = 0; c + 2 < theirs.size(); ++c) {
-        if (theirs[c].id.is_machine() || theirs[c].name != unknowns[u].name) continue;
+      for (std::size_t c = 0; c + 2 < parameters_.size(); ++c) {
+        if (parameters_[c].id.observations != observations_ || parameters_[c].name != unknowns[u].name) continue;
         const Eigen::Matrix3d axes = rotation_vector_axes({values[u], values[u + 1], values[u + 2]});
         rows.middleCols<3>(static_cast<Index>(c)) = (rows.middleCols<3>(static_cast<Index>(c)) * axes).eval();
       }
@@ -194,14 +167,12 @@ class TrackerTrials {
 
 }  // namespace
 
-std::vector<PossibleMeasurement> possible_measurements(const Problem& problem) {
-  std::vector<PossibleMeasurement> list;
+void add_tracker_readings(const Problem& problem, std::vector<PossibleMeasurement>& list) {
   for (std::size_t o = 0; o < problem.observations.size(); ++o) {
     const auto* tracker = dynamic_cast<const TrackerObservations*>(problem.observations[o].observations);
     if (!tracker || tracker->reading_count() == 0) continue;
     TrackerTrials(problem, o, *tracker).add(list);
   }
-  return list;
 }
 
 }  // namespace abbe

@@ -1,0 +1,55 @@
+#include "study/advice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "study/job.h"
+
+namespace abbe {
+
+nlohmann::ordered_json advice_json(const StudyResult& result) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Advice& advice : result.advice) {
+    std::vector<std::string> names;
+    for (const std::size_t p : advice.parameters) names.push_back(result.identification.parameters[p].name);
+    list.push_back({{"kind", kind_text(advice.kind)},
+                    {"parameters", names},
+                    {"text", advice.text},
+                    {"words", advice.words},
+                    {"remedy", advice.remedy},
+                    {"verified", advice.shown}});
+    if (advice.factor > 0) list.back()["uncertainty_falls_times"] = advice.factor;
+  }
+  return list;
+}
+
+void print_advice(const StudyResult& result) {
+  std::vector<std::string> remedies;
+  std::size_t conventions = 0, set_up = 0;
+  for (const Advice& advice : result.advice) {
+    conventions += advice.kind == AdviceKind::convention ? 1U : 0U;
+    const bool no_harm = advice.kind == AdviceKind::set_up && !advice.shown;
+    set_up += no_harm ? 1U : 0U;
+    if (advice.kind == AdviceKind::convention || no_harm) continue;
+    if (std::find(remedies.begin(), remedies.end(), advice.remedy) == remedies.end()) remedies.push_back(advice.remedy);
+  }
+  if (!remedies.empty()) fmt::print("\nnot measured, and what would show more (tried with simulated readings)\n");
+  for (const std::string& remedy : remedies) {
+    fmt::print("  {}:\n", remedy);
+    for (const Advice& advice : result.advice) {
+      if (advice.remedy != remedy) continue;
+      fmt::print("    {}{}\n", advice.text,
+                 advice.factor > 0 ? fmt::format(" (would fall {:.1f} times)", advice.factor) : "");
+      if (!advice.words.empty()) fmt::print("      ({})\n", advice.words);
+    }
+  }
+  if (conventions > 0)
+    fmt::print("\n{} of the directions not seen {}: no measurement would show {}\n", conventions,
+               conventions > 1 ? "are conventions" : "is a convention", conventions > 1 ? "them" : "it");
+  if (set_up > 0)
+    fmt::print("{} concern{} the set-up alone; the machine's errors do not depend on {}\n", set_up,
+               set_up > 1 ? "" : "s", set_up > 1 ? "them" : "it");
+}
+
+}  // namespace abbe

@@ -1,0 +1,79 @@
+#include "abbe/identify/parameter_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace abbe {
+namespace {
+
+constexpr double kParallel = 0.99;
+
+/// The error a machine parameter belongs to: "EXX" with its words.
+std::string words_of(const Problem& problem, std::size_t index) {
+  const Machine& machine = problem.machine;
+  std::size_t next = 0;
+  for (const ErrorMotion& motion : problem.errors.motions) {
+    next += motion.coefficients.size();
+    if (index < next) {
+      return error_motion_name(machine, motion.axis, motion.component) + ": " +
+             error_words(machine, motion.axis, motion.component, false);
+    }
+  }
+  if (index - next < problem.errors.locations.size()) {
+    const LocationError& location = problem.errors.locations[index - next];
+    return location_error_name(machine, location.axis, location.component) + ": " +
+           error_words(machine, location.axis, location.component, true);
+  }
+  return fmt::format("tool_{}: error of the tool offset in {}", "XYZ"[index - next - problem.errors.locations.size()],
+                     "XYZ"[index - next - problem.errors.locations.size()]);
+}
+
+}  // namespace
+
+std::string error_words(const Machine& machine, std::size_t axis, Component component, bool is_location) {
+  const Axis& moving = machine.axes[axis];
+  const bool rotation = is_rotation(component);
+  const int k = static_cast<int>(component) % 3;
+  const char along = "XYZ"[k];
+  const bool own = std::abs(moving.direction[k]) > kParallel;
+  const bool rotary = moving.kind == AxisKind::rotary;
+  const std::string& name = moving.name;
+  if (is_location) {
+    if (is_zero_position_error(moving, component)) return "zero position error of " + name;
+    if (!rotary) return fmt::format("squareness or parallelism error of {} about {}", name, along);
+    return rotation ? fmt::format("orientation error of the axis average line of {} about {}", name, along)
+                    : fmt::format("position error of the axis average line of {} in {}", name, along);
+  }
+  if (!rotary) {
+    if (!rotation) {
+      return own ? "positioning error motion of " + name
+                 : fmt::format("straightness error motion of {} in {}", name, along);
+    }
+    return own ? "roll error motion of " + name : fmt::format("angular error motion of {} about {}", name, along);
+  }
+  if (!rotation) {
+    return own ? "axial error motion of " + name : fmt::format("radial error motion of {} in {}", name, along);
+  }
+  return own ? "angular positioning error motion of " + name
+             : fmt::format("tilt error motion of {} about {}", name, along);
+}
+
+std::string parameter_words(const Problem& problem, const std::vector<EstimatedParameter>& parameters,
+                            const std::vector<std::size_t>& which, std::size_t most) {
+  std::vector<std::string> said;
+  for (const std::size_t i : which) {
+    const ParameterId& id = parameters[i].id;
+    std::string words = id.is_machine()
+                            ? words_of(problem, id.index)
+                            : "unknowns of the set-up of " + problem.observations[id.observations].observations->name();
+    if (std::find(said.begin(), said.end(), words) == said.end()) said.push_back(std::move(words));
+  }
+  std::string text;
+  for (std::size_t k = 0; k < std::min(most, said.size()); ++k) text += (k > 0 ? "; " : "") + said[k];
+  if (said.size() > most) text += fmt::format("; and {} more", said.size() - most);
+  return text;
+}
+
+}  // namespace abbe

@@ -1,0 +1,243 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "abbe/errors/random_stream.h"
+#include "abbe/identify/trial_readings.h"
+#include "abbe/instruments/instrument_observations.h"
+#include "abbe/instruments/instrument_simulation.h"
+#include "abbe/instruments/path_plan.h"
+
+namespace abbe {
+namespace {
+
+using Eigen::Vector3d;
+constexpr std::size_t kTrialReadings = 60;
+constexpr std::size_t kLeastReadings = 6;
+constexpr std::size_t kMostPoints = 4;
+constexpr double kOtherPlace_mm = 100;
+constexpr double kLongerBar = 2;
+// Levels and autocollimators show no more.
+constexpr double kAngleRange = 0.02;  // rad
+
+/// What a trial does differently from what was measured.
+struct Change {
+  std::vector<bool> axes;           // [axes] takes other positions
+  bool other_directions = false;    // of a bar
+  double length = 1;                // of a bar, times that measured
+  std::vector<std::size_t> places;  // quantities of other values
+};
+
+/// One set-up of a problem with the trials that can be made of it.
+class InstrumentTrials {
+ public:
+  InstrumentTrials(const Problem& problem, std::size_t observations, const InstrumentObservations& measured)
+      : problem_(problem),
+        observations_(observations),
+        measured_(measured),
+        values_(measured.quantity_values()),
+        device_(measured.instrument().with_values(values_)),
+        freedom_(device_->pose_freedom()),
+        ranges_(measured_ranges(problem.machine, measured.readings().poses)) {}
+
+  void add(std::vector<PossibleMeasurement>& list) {
+    add_positions(list);
+    if (freedom_ == PoseFreedom::at_distance) add_bars(list);
+    add_places(list);
+  }
+
+ private:
+  bool follows() const { return freedom_ == PoseFreedom::together || freedom_ == PoseFreedom::at_distance; }
+  bool may_move(std::size_t axis) const { return !follows() || problem_.machine.axes[axis].kind == AxisKind::rotary; }
+  std::vector<bool> no_axes() const { return std::vector<bool>(ranges_.size(), false); }
+
+  void add_positions(std::vector<PossibleMeasurement>& list) {
+    const std::vector<Axis>& axes = problem_.machine.axes;
+    std::vector<bool> all = no_axes();
+    for (const bool moved : {true, false})
+      for (std::size_t i = 0; i < axes.size(); ++i) {
+        if (!may_move(i) || ranges_[i].moved() != moved) continue;
+        if (!moved && freedom_ == PoseFreedom::along_line) continue;
+        Change change{no_axes(), false, 1, {}};
+        change.axes[i] = true;
+        all[i] = all[i] || moved;
+        add_trial(list,
+                  moved ? fmt::format("more positions of {} with {}, not in equal steps,", axes[i].name, name())
+                        : fmt::format("moving {} over its travel with {}", axes[i].name, name()),
+                  change, device_);
+      }
+    if (std::count(all.begin(), all.end(), true) > 1)
+      add_trial(list, fmt::format("poses at which all axes stand differently, with {},", name()), {all, false, 1, {}},
+                device_);
+  }
+
+  void add_bars(std::vector<PossibleMeasurement>& list) {
+    std::vector<bool> rotary = no_axes();
+    for (std::size_t i = 0; i < ranges_.size(); ++i) rotary[i] = may_move(i) && ranges_[i].moved();
+    add_trial(list, fmt::format("{} in other directions", name()), {no_axes(), true, 1, {}}, device_);
+    add_trial(list, fmt::format("{} {:.0f} times as long, in other directions,", name(), kLongerBar),
+              {no_axes(), true, kLongerBar, {}}, device_);
+    if (std::count(rotary.begin(), rotary.end(), true) > 0)
+      add_trial(list, fmt::format("{} in other directions while the rotary axes turn", name()), {rotary, true, 1, {}},
+                device_);
+  }
+
+  /// Balls, spheres, optics, reflectors somewhere else.
+  void add_places(std::vector<PossibleMeasurement>& list) {
+    const std::vector<SetupQuantity>& quantities = device_->quantities();
+    std::size_t points = 0;
+    std::vector<bool> moved = no_axes();
+    for (std::size_t i = 0; i < ranges_.size(); ++i) {
+      moved[i] = may_move(i) && ranges_[i].moved();
+    }
+    for (std::size_t q = 0; q + 2 < quantities.size() && points < kMostPoints; ++q) {
+      const std::string& first = quantities[q].name;
+      if (!first.ends_with(".x") || !quantities[q + 1].name.ends_with(".y") || !quantities[q + 2].name.ends_with(".z"))
+        continue;
+      ++points;
+      const std::string point = first.substr(0, first.size() - 2);
+      for (std::size_t k = 0; k < 3; ++k)
+        for (const double sign : {1.0, -1.0}) {
+          std::vector<double> values = values_;
+          values[q + k] += sign * kOtherPlace_mm;
+          if (add_trial(list, fmt::format("{} at another place, {:.0f} mm off in {},", point, kOtherPlace_mm, "xyz"[k]),
+                        {moved, false, 1, {q, q + 1, q + 2}}, device_->with_values(values)))
+            break;
+        }
+    }
+  }
+
+  std::string name() const { return measured_.name(); }
+
+  /// Readings that the change allows; nothing measured yet.
+  InstrumentReadings plan(const Change& change, const Instrument& device) const {
+    const InstrumentReadings& readings = measured_.readings();
+    const Machine& machine = problem_.machine;
+    std::vector<std::size_t> bases;
+    for (std::size_t k = 0; k < readings.count(); ++k) {
+      const std::vector<std::size_t>& used = device.items()[readings.item[k]].quantities;
+      if (change.places.empty() || std::find(used.begin(), used.end(), change.places.front()) != used.end())
+        bases.push_back(k);
+    }
+    InstrumentReadings result;
+    result.poses.axis.resize(machine.axes.size());
+    result.inputs.resize(readings.inputs.size());
+    for (std::size_t k = 0; k < kTrialReadings && !bases.empty(); ++k) {
+      RandomStream random(23, k);
+      const std::size_t base = bases[std::min(
+          bases.size() - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(bases.size())))];
+      const std::size_t item = readings.item[base];
+      const std::vector<double> old_pose = readings.poses.pose(base);
+      std::vector<double> pose = old_pose;
+      for (std::size_t i = 0; i < pose.size(); ++i) {
+        if (!change.axes[i]) continue;
+        const TrialRange range = ranges_[i].moved() ? ranges_[i] : whole_travel(machine.axes[i]);
+        pose[i] = random.uniform(range.from, range.to);
+      }
+      const std::optional<MeetingPoints> before = device_->meeting_points(item), points = device.meeting_points(item);
+      if (follows() && before && points) {
+        const InstrumentItem& ends = device.items()[item];
+        Vector3d displacement = nominal_displacement(machine, old_pose, ends.from, ends.to, *before);
+        if (change.other_directions) displacement = displacement.norm() * change.length * direction(random);
+        const auto reached = meet(machine, pose, ends.from, ends.to, *points, displacement);
+        if (!reached || !within_known(*reached)) continue;
+        pose = *reached;
+      }
+      std::vector<double> inputs;
+      for (const std::vector<double>& column : readings.inputs) inputs.push_back(column[base]);
+      result.append(pose, item, inputs);
+    }
+    return result;
+  }
+
+  static Vector3d direction(RandomStream& random) {
+    // A bar does not go far below the table.
+    const double z = random.uniform(-0.3, 1), turn = random.uniform(0, 2 * std::numbers::pi);
+    const double across = std::sqrt(std::max(0.0, 1 - z * z));
+    return {across * std::cos(turn), across * std::sin(turn), z};
+  }
+
+  /// Error motions have no value outside their range.
+  bool within_known(const std::vector<double>& pose) const {
+    for (std::size_t i = 0; i < pose.size(); ++i)
+      if (!problem_.errors.covers(i, pose[i])) return false;
+    return true;
+  }
+
+  /// Those that the instrument can show, with the uncertainty of the readings measured.
+  InstrumentReadings readable(const std::shared_ptr<const Instrument>& device,
+                              const InstrumentReadings& planned) const {
+    InstrumentSimulationOptions options;
+    options.noise_factor = 0;
+    InstrumentReadings all =
+        simulate_instrument(problem_.machine, without_errors(problem_), device, planned, options).readings;
+    const InstrumentReadings& before = measured_.readings();
+    std::vector<std::size_t> kept;
+    for (std::size_t k = 0; k < all.count(); ++k) {
+      bool shown = true;
+      for (std::size_t c = 0; c < all.measured.size(); ++c) {
+        const double value = all.measured[c][k];
+        shown = shown && std::isfinite(value);
+        if (!device->components()[c].is_angle) continue;
+        const auto [low, high] = std::minmax_element(before.measured[c].begin(), before.measured[c].end());
+        shown = shown && value > *low - kAngleRange && value < *high + kAngleRange;
+      }
+      if (shown) kept.push_back(k);
+    }
+    all = all.subset(kept);
+    all.uncertainty.clear();
+    for (std::vector<double> stated : before.uncertainty) {
+      std::nth_element(stated.begin(), stated.begin() + static_cast<std::ptrdiff_t>(stated.size() / 2), stated.end());
+      all.uncertainty.emplace_back(all.count(), stated[stated.size() / 2]);
+    }
+    return all;
+  }
+
+  bool add_trial(std::vector<PossibleMeasurement>& list, std::string words, const Change& change,
+                 const std::shared_ptr<const Instrument>& device) const {
+    const InstrumentReadings planned = plan(change, *device);
+    if (planned.count() < kLeastReadings) return false;
+    const InstrumentReadings readings = readable(device, planned);
+    if (readings.count() < kLeastReadings) return false;
+    InstrumentObservations trial(problem_.machine, without_errors(problem_), device, readings);
+    std::vector<TrialUnknown> unknowns;
+    for (std::size_t u = 0; u < trial.unknowns().size(); ++u) {
+      const std::size_t q = trial.quantity_of(u);
+      const SetupQuantity& quantity = device->quantities()[q];
+      const bool moved = std::find(change.places.begin(), change.places.end(), q) != change.places.end();
+      // What is set up anew has new zeros and a new alignment; a bar, a nest and a probe keep theirs.
+      const bool anew = moved || (!change.places.empty() && !follows() && !is_coordinate(quantity.name));
+      unknowns.push_back({anew, anew && quantity.knowledge == Knowledge::within ? quantity.standard_uncertainty : 0.0});
+    }
+    list.push_back(trial_measurement(problem_, observations_, std::move(words), trial, unknowns));
+    return true;
+  }
+
+  static bool is_coordinate(const std::string& quantity) {
+    return quantity.ends_with(".x") || quantity.ends_with(".y") || quantity.ends_with(".z");
+  }
+
+  const Problem& problem_;
+  std::size_t observations_;
+  const InstrumentObservations& measured_;
+  std::vector<double> values_;
+  std::shared_ptr<const Instrument> device_;  // at the present values
+  PoseFreedom freedom_;
+  std::vector<TrialRange> ranges_;
+};
+
+}  // namespace
+
+void add_instrument_readings(const Problem& problem, std::vector<PossibleMeasurement>& list) {
+  for (std::size_t o = 0; o < problem.observations.size(); ++o) {
+    const auto* measured = dynamic_cast<const InstrumentObservations*>(problem.observations[o].observations);
+    if (measured == nullptr || measured->reading_count() == 0) continue;
+    InstrumentTrials(problem, o, *measured).add(list);
+  }
+}
+
+}  // namespace abbe

@@ -1,0 +1,84 @@
+#include "abbe/identify/trial_readings.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "abbe/identify/planning_candidates.h"
+
+namespace abbe {
+
+using Eigen::Index;
+
+std::vector<TrialRange> measured_ranges(const Machine& machine, const PoseList& poses) {
+  std::vector<TrialRange> ranges;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const std::vector<double>& values = poses.axis[i];
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    TrialRange range;
+    if (!values.empty()) range = {*low, *high};
+    const Axis& axis = machine.axes[i];
+    // Steps of a whole turn leave the last one out; the axis moved over all of it nevertheless.
+    if (axis.kind == AxisKind::rotary && range.to - range.from > std::numbers::pi)
+      range.to = std::max(range.to, axis.endless ? range.from + 2 * std::numbers::pi : axis.travel_max);
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+TrialRange whole_travel(const Axis& axis) {
+  if (axis.endless) return {0, 2 * std::numbers::pi};
+  return {axis.travel_min, axis.travel_max};
+}
+
+ErrorSet without_errors(const Problem& problem) {
+  ErrorSet errors = problem.errors;
+  errors.set_parameters(std::vector<double>(errors.parameter_count(), 0.0));
+  return errors;
+}
+
+PossibleMeasurement trial_measurement(const Problem& problem, std::size_t observations, std::string words,
+                                      Observations& trial, const std::vector<TrialUnknown>& unknowns) {
+  Problem small = estimate_everything(problem.machine, without_errors(problem), {&trial});
+  small.machine_parameters = problem.machine_parameters;
+  const PlanningCandidates rows = candidate_rows(small);
+  const std::vector<EstimatedParameter> ours = estimated_parameters(problem), theirs = estimated_parameters(small);
+  const Index p = static_cast<Index>(ours.size());
+  PossibleMeasurement measurement;
+  measurement.words = std::move(words);
+  std::vector<Index> column;
+  std::vector<std::pair<Index, double>> known;
+  for (const EstimatedParameter& parameter : theirs) {
+    if (parameter.id.is_machine()) {
+      column.push_back(static_cast<Index>(find_estimated(problem, parameter.id)));
+      continue;
+    }
+    const TrialUnknown& unknown = unknowns[parameter.id.index];
+    const auto same = std::find_if(ours.begin(), ours.end(), [&](const EstimatedParameter& one) {
+      return one.id.observations == observations && one.name == parameter.name;
+    });
+    if (!unknown.own && same != ours.end()) {
+      column.push_back(static_cast<Index>(same - ours.begin()));
+      continue;
+    }
+    column.push_back(p + static_cast<Index>(measurement.own++));
+    if (unknown.standard_uncertainty > 0) known.emplace_back(column.back(), unknown.standard_uncertainty);
+  }
+  const Index all = rows.rows.rows();
+  measurement.rows =
+      PlanningCandidates::Rows::Zero(all + static_cast<Index>(known.size()), p + static_cast<Index>(measurement.own));
+  for (std::size_t c = 0; c < column.size(); ++c)
+    measurement.rows.col(column[c]).head(all) = rows.rows.col(static_cast<Index>(c));
+  for (std::size_t k = 0; k < known.size(); ++k)
+    measurement.rows(all + static_cast<Index>(k), known[k].first) = 1 / known[k].second;
+  return measurement;
+}
+
+std::vector<PossibleMeasurement> possible_measurements(const Problem& problem) {
+  std::vector<PossibleMeasurement> list;
+  add_tracker_readings(problem, list);
+  add_instrument_readings(problem, list);
+  add_further_instruments(problem, list);
+  return list;
+}
+
+}  // namespace abbe
