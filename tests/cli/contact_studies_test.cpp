@@ -20,6 +20,7 @@ TEST_F(ContactStudies, DialsOnAThreeAxisMill) { expect_noise_only("three_axis", 
 TEST_F(ContactStudies, LevelAndAutocollimatorOnAThreeAxisMill) {
   expect_noise_only("three_axis", "level-and-autocollimator");
 }
+TEST_F(ContactStudies, AStandardCylinderOnBothStagesOfACradle) { expect_noise_only("cradle_scanner", "calibration"); }
 TEST_F(ContactStudies, MarksOfALaserEngraver) { expect_noise_only("laser_engraver", "marks"); }
 
 }  // namespace

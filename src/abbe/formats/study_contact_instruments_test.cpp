@@ -74,6 +74,42 @@ TEST(StudyContactInstruments, ReadAnRTest) {
   EXPECT_SAYS(wrong(kRTest, "noise", "nest_on = \"tool\"\nnoise"), "same body");
 }
 
+const std::string kSurface = R"(instrument = "surface-probe"
+standard = "cylinder"
+radius_mm = 10
+taper_um_per_m = 5
+taper_standard_uncertainty_um_per_m = 2
+noise = { indication_um = 0.3, form_um = 0.4 }
+[[setup.clamping]]
+name = "upright"
+point_mm = [0, 0, 60]
+direction = [0, 1, 0]
+[[setup.clamping]]
+name = "turned"
+point_mm = [0, 0, 60]
+direction = [0, 1, 0]
+reversed = true
+tilt_first_mrad = 2
+)";
+
+TEST(StudyContactInstruments, ReadAProbeOnAStandard) {
+  const auto device = read(kSurface);
+  ASSERT_EQ(device->items().size(), 2U);
+  EXPECT_EQ(device->items()[1].name, "turned");
+  EXPECT_EQ(quantity_of(*device, "s.radius").knowledge, Knowledge::exact);
+  EXPECT_DOUBLE_EQ(quantity_of(*device, "s.taper").value, 5e-6);
+  EXPECT_EQ(quantity_of(*device, "upright.offset_first").knowledge, Knowledge::open);
+  EXPECT_EQ(quantity_of(*device, "upright.offset_along").knowledge, Knowledge::exact) << "a cylinder has no end";
+  EXPECT_DOUBLE_EQ(quantity_of(*device, "turned.tilt_first").value, 2e-3);
+  EXPECT_DOUBLE_EQ(device->standard_uncertainty({}, 0, 0), 0.5e-3);
+  EXPECT_SAYS(wrong(kSurface, "\"cylinder\"", "\"cone\""), "unknown word \"cone\"");
+  EXPECT_SAYS(wrong(kSurface, "radius_mm = 10", "radius_mm = -1"), "radius_mm: is not above zero");
+  EXPECT_SAYS(wrong(kSurface, "taper_um_per_m = 5", "taper_um = 5"), "taper_um");
+  EXPECT_SAYS(wrong(kSurface, "\"cylinder\"", "\"sphere\""), "direction: unknown key");
+  EXPECT_SAYS(wrong(kSurface, "noise", "standard_on = \"tool\"\nnoise"), "same body");
+  EXPECT_SAYS(wrong(kSurface, "\"turned\"", "\"upright\""), "upright");
+}
+
 const std::string kProbe = R"(instrument = "touch-probe"
 measure = "touch"
 tip_mm = [0, 0, -150]

@@ -11,6 +11,7 @@ struct Kind {
 constexpr Kind kKinds[] = {
     {"ball-bar", read_ball_bar},
     {"r-test", read_r_test},
+    {"surface-probe", read_surface_probe},
     {"touch-probe", read_touch_probe},
     {"dials", read_dials},
     {"level", read_level},

@@ -31,6 +31,7 @@ std::shared_ptr<Instrument> read_board_marks(TomlTable& table, const InstrumentC
 std::shared_ptr<Instrument> read_dials(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_level(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_r_test(TomlTable& table, const InstrumentContext& context);
+std::shared_ptr<Instrument> read_surface_probe(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_touch_probe(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_interferometer(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_tracking_interferometer(TomlTable& table, const InstrumentContext& context);
