@@ -42,29 +42,26 @@ std::string plan_svg(const Study& study, const StudyPlan& result) {
     plot.points({{static_cast<double>(enough.readings), 1e3 * enough.uncertainty}}, Marker::up,
                 {PlotColour::third, 1.6, false, 1}, "enough");
   }
-  if (result.same_grid)
-    plot.points({{static_cast<double>(result.same_grid->value.readings), 1e3 * result.same_grid->value.uncertainty}},
-                Marker::cross, {PlotColour::second, 1.6, false, 1}, "best regular grid");
+  std::vector<PlotPoint> grids;
+  for (const GridsOfANumber& one : result.curve_grids)
+    if (one.determined)
+      grids.push_back({static_cast<double>(one.determined->value.readings), 1e3 * one.determined->value.uncertainty});
+  if (!grids.empty())
+    plot.points(grids, Marker::cross, {PlotColour::second, 1.6, false, 1}, "best grid that determines everything");
   return plot.svg();
 }
 
-std::string grid_text(const Study& study, const GridPoint& grid) {
-  std::string text;
-  for (std::size_t i = 0; i < grid.positions.size(); ++i) {
-    if (grid.positions[i] > 1)
-      text += fmt::format("{}{} {}", text.empty() ? "" : " x ", study.machine.axes[i].name, grid.positions[i]);
+nlohmann::ordered_json grid_json(const GridPoint& grid) {
+  nlohmann::ordered_json json = {{"made", grid.words},
+                                 {"readings", grid.value.readings},
+                                 {"determined", grid.value.determined},
+                                 {"uncertainty_with_prior_um", 1e3 * grid.value.with_prior}};
+  if (grid.value.determined) json["uncertainty_um"] = 1e3 * grid.value.uncertainty;
+  if (grid.open > 0) {
+    json["open_directions"] = grid.open;
+    json["open_errors"] = grid.open_words;
   }
-  return text +
-         (grid.sights == SightsPerPose::every ? ", every sight at each pose" : ", one sight at each pose in turn");
-}
-
-nlohmann::ordered_json grid_json(const Study& study, const GridPoint& grid) {
-  nlohmann::ordered_json positions;
-  for (std::size_t i = 0; i < grid.positions.size(); ++i) positions[study.machine.axes[i].name] = grid.positions[i];
-  return {{"positions", positions},
-          {"sights", grid.sights == SightsPerPose::every ? "every" : "in turn"},
-          {"readings", grid.value.readings},
-          {"uncertainty_um", 1e3 * grid.value.uncertainty}};
+  return json;
 }
 
 nlohmann::ordered_json plan_json(const Study& study, const StudyPlan& result) {
@@ -86,50 +83,78 @@ nlohmann::ordered_json plan_json(const Study& study, const StudyPlan& result) {
   json["predicted_volumetric_uncertainty_um"] = 1e3 * result.uncertainty;
   json["largest_unseen_part_of_a_prediction"] = result.unseen_part;
   json["exchanges"] = result.plan.exchanges;
-  for (const PlanPoint& point : result.curve) {
+  json["predicted_volumetric_uncertainty_with_prior_um"] = 1e3 * result.with_prior;
+  for (std::size_t k = 0; k < result.curve.size(); ++k) {
+    const PlanPoint& point = result.curve[k];
     nlohmann::ordered_json entry = {{"readings", point.readings}, {"determined", point.determined}};
-    if (point.determined) entry["uncertainty_um"] = 1e3 * point.uncertainty;
+    if (point.determined) {
+      entry["uncertainty_um"] = 1e3 * point.uncertainty;
+      entry["uncertainty_with_prior_um"] = 1e3 * point.with_prior;
+    }
+    if (k < result.curve_grids.size()) {
+      const GridsOfANumber& grids = result.curve_grids[k];
+      if (grids.determined) entry["best_determined_grid"] = grid_json(*grids.determined);
+      if (grids.any) entry["best_grid_with_prior"] = grid_json(*grids.any);
+    }
     json["curve"].push_back(entry);
   }
   if (result.enough < result.curve.size()) json["enough_readings"] = result.curve[result.enough].readings;
   json["enough"] = result.enough_words;
   json["grids_tried"] = result.grids_tried;
-  if (result.same_grid) {
-    json["grid_of_the_same_number"] = grid_json(study, *result.same_grid);
-    json["gain"] = result.same_grid->value.uncertainty / result.uncertainty;
+  const GridsOfANumber& same = result.same_number;
+  if (same.determined) {
+    json["best_determined_grid_of_the_same_number"] = grid_json(*same.determined);
+    json["gain"] = same.determined->value.uncertainty / result.uncertainty;
+  }
+  if (same.any) {
+    json["best_grid_of_the_same_number_with_prior"] = grid_json(*same.any);
+    json["gain_with_prior"] = same.any->value.with_prior / result.with_prior;
+  }
+  if (result.random_poses) {
+    json["random_choice_uncertainty_um"] = 1e3 * result.random_poses->uncertainty;
+    json["gain_over_random_choice"] = result.random_poses->uncertainty / result.uncertainty;
   }
   if (result.equal_grid) {
-    json["grid_of_the_same_uncertainty"] = grid_json(study, *result.equal_grid);
+    json["grid_of_the_same_uncertainty"] = grid_json(*result.equal_grid);
     json["grid_readings_per_reading"] =
         static_cast<double>(result.equal_grid->value.readings) / static_cast<double>(result.readings.size());
   }
-  if (result.largest_grid) json["largest_grid_tried"] = grid_json(study, *result.largest_grid);
   return json;
 }
 
-void print_grids(const Study& study, const StudyPlan& result) {
-  fmt::print("\nagainst regular grids ({} tried, line of sight respected; in what the candidates can see)\n",
+void print_grid(const char* title, const GridPoint& grid) {
+  fmt::print("  {}: {} readings ({})\n", title, grid.value.readings, grid.words);
+}
+
+void print_grids(const StudyPlan& result) {
+  fmt::print("\nagainst grids ({} tried, in the same limits and lines of sight, never with fewer readings)\n",
              result.grids_tried);
-  if (result.same_grid) {
-    const GridPoint& grid = *result.same_grid;
-    fmt::print("  about the same number: {} readings ({}): {:.3f} um, {:.2f} times the plan's\n", grid.value.readings,
-               grid_text(study, grid), 1e3 * grid.value.uncertainty, grid.value.uncertainty / result.uncertainty);
+  const GridsOfANumber& same = result.same_number;
+  if (same.determined) {
+    print_grid("as many readings, everything determined", *same.determined);
+    fmt::print("    {:.3f} um: the plan's is {:.2f} times smaller\n", 1e3 * same.determined->value.uncertainty,
+               same.determined->value.uncertainty / result.uncertainty);
   } else {
-    fmt::print(
-        "  about the same number: no grid determines everything (too few positions of an axis, or harmonics\n"
-        "  that equal steps cannot tell apart), so there is no ratio\n");
+    fmt::print("  as many readings: none of {} grids determines everything that the plan does\n", same.tried);
   }
+  if (same.any) {
+    print_grid("as many readings, with prior knowledge in both (20 um, 60 urad for every error)", *same.any);
+    fmt::print("    {:.3f} um: the plan's {:.3f} um is {:.2f} times smaller\n", 1e3 * same.any->value.with_prior,
+               1e3 * result.with_prior, same.any->value.with_prior / result.with_prior);
+    if (same.any->open > 0)
+      fmt::print("    by itself it leaves {} directions open, most of all in {}\n", same.any->open,
+                 same.any->open_words);
+  }
+  if (result.random_poses)
+    fmt::print("  as many of the candidates at random (median of {}): {:.3f} um, {:.2f} times the plan's\n",
+               result.random_tried, 1e3 * result.random_poses->uncertainty,
+               result.random_poses->uncertainty / result.uncertainty);
   if (result.equal_grid) {
-    const GridPoint& grid = *result.equal_grid;
-    fmt::print("  the same uncertainty: {} readings ({}): {:.3f} um, {:.2f} times the plan's number\n",
-               grid.value.readings, grid_text(study, grid), 1e3 * grid.value.uncertainty,
-               static_cast<double>(grid.value.readings) / static_cast<double>(result.readings.size()));
-  } else if (result.largest_grid) {
-    const GridPoint& grid = *result.largest_grid;
-    fmt::print("  the same uncertainty: not reached by {} readings ({}): {:.3f} um\n", grid.value.readings,
-               grid_text(study, grid), 1e3 * grid.value.uncertainty);
+    print_grid("the same uncertainty", *result.equal_grid);
+    fmt::print("    {:.3f} um: {:.2f} times the plan's number\n", 1e3 * result.equal_grid->value.uncertainty,
+               static_cast<double>(result.equal_grid->value.readings) / static_cast<double>(result.readings.size()));
   } else {
-    fmt::print("  the same uncertainty: no grid tried determines everything\n");
+    fmt::print("  the same uncertainty: no grid tried reaches it\n");
   }
 }
 
@@ -150,15 +175,19 @@ void print_plan(const Study& study, const StudyPlan& result) {
     fmt::print("warning: this is more than the {:.0f} min allowed\n", study.planning->time / 60);
   fmt::print("predicted volumetric standard uncertainty (root mean square): {:.3f} um\n", 1e3 * result.uncertainty);
   fmt::print("\nhow many are enough: {}\n", result.enough_words);
+  fmt::print("                  chosen    best grid\n");
   for (std::size_t k = 0; k < result.curve.size(); ++k) {
     const PlanPoint& point = result.curve[k];
+    std::string grid = "       open";
+    if (k < result.curve_grids.size() && result.curve_grids[k].determined)
+      grid = fmt::format("{:>8.3f} um", 1e3 * result.curve_grids[k].determined->value.uncertainty);
     const char* const mark = k == result.enough ? "   <- enough" : "";
     if (point.determined)
-      fmt::print("  {:>6} readings {:>10.3f} um{}\n", point.readings, 1e3 * point.uncertainty, mark);
+      fmt::print("  {:>6} readings {:>6.3f} um {}{}\n", point.readings, 1e3 * point.uncertainty, grid, mark);
     else
       fmt::print("  {:>6} readings   do not determine everything\n", point.readings);
   }
-  print_grids(study, result);
+  print_grids(result);
 }
 
 }  // namespace

@@ -127,16 +127,19 @@ Problem PlanningModel::problem(std::vector<std::unique_ptr<Observations>>& obser
   return result;
 }
 
-PlanningModel::Candidates PlanningModel::readings_at(const PoseList& all_poses, SightsPerPose sights) const {
+PlanningModel::Candidates PlanningModel::readings_at(const PoseList& poses,
+                                                     const std::vector<std::size_t>& sight) const {
   Candidates result;
-  const PoseList poses = allowed(all_poses, &result.forbidden);
+  const std::vector<bool> out = forbidden(poses);
+  result.forbidden = static_cast<std::size_t>(std::count(out.begin(), out.end(), true));
   std::vector<TrackerReadings> readings(setups_.size());
   for (std::size_t i = 0; i < sights_.size(); ++i) {
     PoseList own;
     own.axis.resize(poses.axis.size());
-    for (std::size_t k = sights == SightsPerPose::every ? 0 : i; k < poses.count();
-         k += sights == SightsPerPose::every ? 1 : sights_.size())
+    for (std::size_t k = 0; k < poses.count(); ++k) {
+      if (out[k] || (!sight.empty() && sight[k] % sights_.size() != i)) continue;
       for (std::size_t a = 0; a < poses.axis.size(); ++a) own.axis[a].push_back(poses.axis[a][k]);
+    }
     if (own.count() == 0) continue;
     TrackerSimulationOptions options;
     options.measure = study_.setups[sights_[i].setup].measure;
@@ -156,7 +159,7 @@ PlanningModel::Candidates PlanningModel::readings_at(const PoseList& all_poses, 
   return result;
 }
 
-PoseList PlanningModel::allowed(const PoseList& poses, std::size_t* forbidden) const {
+std::vector<bool> PlanningModel::forbidden(const PoseList& poses) const {
   std::vector<bool> out(poses.count(), false);
   for (const ForbiddenBox& box : study_.planning->forbidden) {
     const std::array<std::vector<double>, 3> points = tool_points(study_.machine, poses, box.frame);
@@ -168,14 +171,18 @@ PoseList PlanningModel::allowed(const PoseList& poses, std::size_t* forbidden) c
       if (inside) out[k] = true;
     }
   }
-  PoseList kept;
-  kept.axis.resize(poses.axis.size());
-  for (std::size_t k = 0; k < poses.count(); ++k) {
-    if (out[k]) continue;
-    for (std::size_t a = 0; a < poses.axis.size(); ++a) kept.axis[a].push_back(poses.axis[a][k]);
+  return out;
+}
+
+Eigen::MatrixXd PlanningModel::weak_prior() const {
+  constexpr double kLength_mm = 0.02, kAngle_rad = 6e-5, kSetUp = 1e3;
+  Eigen::VectorXd information(static_cast<Index>(parameters_.size()));
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const double u =
+        (parameters_[i].is_angle ? kAngle_rad : kLength_mm) * (parameters_[i].id.is_machine() ? 1 : kSetUp);
+    information[static_cast<Index>(i)] = 1 / (u * u);
   }
-  if (forbidden) *forbidden = poses.count() - kept.count();
-  return kept;
+  return information.asDiagonal();
 }
 
 Eigen::MatrixXd PlanningModel::prediction_rows(const PoseList& poses) const {

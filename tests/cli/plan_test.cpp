@@ -35,10 +35,24 @@ TEST_F(Plans, ListReadingsAndCompareThemWithGrids) {
   EXPECT_EQ(csv.substr(csv.find("\nC_deg") + 1, 45), "C_deg,A_deg,Y_mm,X_mm,Z_mm,station,reflector\n");
   // A comment and a header stand above the readings.
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), 100U + 2U);
-  EXPECT_FALSE(json.empty());
-  const CommandResult words = abbe({"plan", "trunnion.study.toml"});
-  EXPECT_THAT(words.out, HasSubstr("how many are enough"));
-  EXPECT_THAT(words.out, HasSubstr("against regular grids"));
+  // The best of some hundred grids with no fewer readings, and the smallest one that is as good.
+  EXPECT_GT(json.at("grids_tried"), 100);
+  EXPECT_GE(json.at("best_determined_grid_of_the_same_number").at("readings"), 100);
+  EXPECT_GE(json.at("gain"), 1.5);
+  EXPECT_GE(json.at("best_grid_of_the_same_number_with_prior").at("readings"), 100);
+  EXPECT_GE(json.at("gain_with_prior"), 1.5);
+  EXPECT_GE(json.at("gain_over_random_choice"), 1.3);
+  EXPECT_GE(json.at("grid_readings_per_reading"), 2);
+  EXPECT_LE(json.at("grid_of_the_same_uncertainty").at("uncertainty_um"),
+            json.at("predicted_volumetric_uncertainty_um"));
+  double before = 1e9;
+  for (const nlohmann::json& point : json.at("curve")) {
+    if (!point.at("determined").get<bool>()) continue;
+    EXPECT_LT(point.at("uncertainty_um"), before);
+    before = point.at("uncertainty_um");
+    // Prior knowledge makes nothing worse.
+    EXPECT_LE(point.at("uncertainty_with_prior_um").get<double>(), before * (1 + 1e-9));
+  }
 }
 
 TEST_F(Plans, WithoutATableSayWhatIsMissing) {

@@ -27,5 +27,20 @@ TEST_F(Published, StudiesAgreeWithTheReference) {
   EXPECT_EQ(figures["populations_um"]["12^6, degrees as printed"]["poses"], 2985984);
 }
 
+TEST_F(Published, APlanForTheTrunnionMillNeedsLessThanHalfTheReadingsOfAGrid) {
+  const std::string study = std::string(ABBE_SOURCE_DIR) + "/examples/trunnion/trunnion.study.toml";
+  const CommandResult planned = abbe({"plan", study, "--json"});
+  ASSERT_EQ(planned.exit_code, ExitCode::done) << planned.err;
+  const nlohmann::json json = nlohmann::json::parse(planned.out);
+  EXPECT_EQ(json.at("readings"), 240);
+  EXPECT_GE(json.at("grid_readings_per_reading"), 2);
+  EXPECT_GE(json.at("gain"), 1.5);
+  EXPECT_GE(json.at("gain_with_prior"), 1.4);
+  EXPECT_LT(json.at("predicted_volumetric_uncertainty_um"), 1.0);
+  const CommandResult words = abbe({"plan", study});
+  EXPECT_NE(words.out.find("how many are enough"), std::string::npos);
+  EXPECT_NE(words.out.find("against grids"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace abbe

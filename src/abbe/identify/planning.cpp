@@ -31,7 +31,7 @@ class Search {
     for (int start = 0; start < std::max(1, options_.starts); ++start) {
       start_ = start;
       ReadingPlan plan;
-      if (!(start == 0 ? greedy_start() : random_start(static_cast<std::uint64_t>(start)))) {
+      if (!(start == 0 ? first_start() : random_start(static_cast<std::uint64_t>(start)))) {
         if (best.status == PlanningStatus::not_run)
           best.status = nothing_chosen_ ? PlanningStatus::nothing_fits : PlanningStatus::not_determined;
         continue;
@@ -93,6 +93,12 @@ class Search {
     return true;
   }
 
+  bool first_start() {
+    if (options_.start.empty() || !design_.rebuild(options_.start, 0)) return greedy_start();
+    ridge_ = 0;
+    return fill();
+  }
+
   bool greedy_start() {
     ridge_ = typical_ridge();
     if (!design_.rebuild({}, ridge_) || !fill()) return false;
@@ -103,6 +109,7 @@ class Search {
     all.criterion = PlanningCriterion::determinant;
     all.starts = 1;
     all.most_passes = 0;
+    all.start.clear();
     all.progress = nullptr;
     const ReadingPlan plan = plan_readings(space_, all);
     return plan.status == PlanningStatus::done && design_.rebuild(plan.chosen, 0);
@@ -199,6 +206,8 @@ void check(const PlanningSpace& space, const PlanningOptions& options) {
     throw std::invalid_argument("planning: neither a number of readings nor a time is given");
   if (!options.eligible.empty() && options.eligible.size() != space.count())
     throw std::invalid_argument("planning: eligible is not one per candidate");
+  for (const std::size_t i : options.start)
+    if (i >= space.count()) throw std::invalid_argument("planning: the start is not among the candidates");
   if (options.repeats == 0) throw std::invalid_argument("planning: every reading would be refused");
   if (options.criterion == PlanningCriterion::variance &&
       (options.functionals.rows() == 0 ||
