@@ -6,6 +6,7 @@
 #include "abbe/formats/measurement_file.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/instruments/tracker_start.h"
+#include "abbe/instruments/tracker_whitening.h"
 
 namespace abbe {
 namespace {
@@ -105,7 +106,9 @@ TrackerReadings readings_from_table(const MeasurementTable& table, const Setup& 
     readings.uncertainty = {};
   } else if (readings.stated == StatedUncertainty::none) {
     throw InputError({.file = file}, "the study takes the noise from the data, but the file states no uncertainties",
-                     "columns u_x_um, u_y_um, u_z_um or cov_xx_um2, ...");
+                     readings.measure == TrackerMeasure::cartesian
+                         ? "columns u_x_um, u_y_um, u_z_um or cov_xx_um2, ..."
+                         : "columns u_range_um, u_azimuth_arcsec, u_elevation_arcsec or cov_range_range_um2, ...");
   }
   for (std::uint16_t& station : readings.station) station = station_index[station];
   for (std::uint16_t& reflector : readings.reflector) reflector = reflector_index[reflector];
@@ -130,13 +133,16 @@ void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet&
       options.sights.push_back({static_cast<std::uint16_t>(plan.station), static_cast<std::uint16_t>(reflector)});
     }
     const PoseList poses = plan_poses(study.machine, plan, seed);
-    const SimulatedTracker simulated = simulate_tracker(study.machine, truth, result.truth, poses, options);
+    SimulatedTracker simulated = simulate_tracker(study.machine, truth, result.truth, poses, options);
+    state_uncertainty(result.truth, setup.stated, simulated.readings);
     const std::uint32_t offset = static_cast<std::uint32_t>(result.readings.count());
     append(result.readings, simulated.readings);
     options.noise_factor = 0;
     options.outlier_fraction = 0;
     options.progress = nullptr;
-    append(result.exact, simulate_tracker(study.machine, truth, result.truth, poses, options).readings);
+    TrackerReadings exact = simulate_tracker(study.machine, truth, result.truth, poses, options).readings;
+    state_uncertainty(result.truth, setup.stated, exact);
+    append(result.exact, exact);
     for (std::uint32_t outlier : simulated.outliers) result.outliers.push_back(offset + outlier);
     result.hidden += simulated.hidden;
   }

@@ -222,6 +222,44 @@ TEST_F(Studies, ReadingsWrittenByASimulationGiveTheSameResultAsData) {
   EXPECT_FALSE(read["held_out"].contains("coverage_percent"));
 }
 
+TEST_F(Studies, CovariancesOfRangeAndAnglesAreWrittenReadBackAndWeighTheFit) {
+  write_study({{"noise = {", "measure = \"range-angles\"\nstate_uncertainty = \"covariance\"\nnoise = {"}});
+  ASSERT_EQ(abbe({"simulate", "s.study.toml", "-o", "readings"}).exit_code, ExitCode::done);
+  const nlohmann::json simulated = run_json();
+  const std::string csv = folder.read("readings/tracker.csv");
+  EXPECT_THAT(csv, HasSubstr(",cov_range_range_um2,cov_azimuth_azimuth_arcsec2,"));
+  write_measured_study(csv);
+  const std::string study = folder.read("s.study.toml");
+  const std::size_t noise = study.find("noise = {"), end = study.find("[[setup.station]]");
+  folder.write("s.study.toml", study.substr(0, noise) + "noise_from_data = true\n" + study.substr(end));
+  const nlohmann::json read = run_json();
+  EXPECT_NEAR(read["chi_square"].get<double>(), simulated["chi_square"].get<double>(), 1e-3);
+
+  // Variances a hundred times as large, correlations kept: a hundredth of the chi-square.
+  std::string wider;
+  for (std::size_t at = 0; at < csv.size();) {
+    std::size_t line_end = csv.find('\n', at);
+    std::string line = csv.substr(at, line_end - at);
+    at = line_end + 1;
+    if (!wider.empty()) {
+      std::size_t field = line.rfind(',');
+      const std::string time = line.substr(field);
+      line.resize(field);
+      for (int k = 0; k < 6; ++k) field = line.rfind(',', field - 1);
+      std::string scaled;
+      for (std::size_t from = field; from != std::string::npos; from = line.find(',', from + 1)) {
+        scaled += "," + std::to_string(100 * std::stod(line.substr(from + 1)));
+      }
+      line = line.substr(0, field) + scaled + time;
+    }
+    wider += line + "\n";
+  }
+  folder.write("readings.csv", wider);
+  EXPECT_NEAR(run_json()["chi_square"].get<double>(), 0.01 * simulated["chi_square"].get<double>(),
+              1e-4 * simulated["chi_square"].get<double>());
+  EXPECT_LT(simulated["chi_square"].get<double>(), 1.3 * simulated["degrees_of_freedom"].get<double>());
+}
+
 TEST_F(Studies, ThirtyPercentGrossOutliersCostNoMoreThanTwiceTheCleanError) {
   write_study();
   const double clean = run_json()["held_out"]["position_after_um"]["mean"];

@@ -30,7 +30,7 @@ std::vector<std::string> blocks(const std::string& kind) {
 TEST(DocumentedExamples, AreAccepted) {
   const std::vector<std::string> toml = blocks("toml"), csv = blocks("csv");
   ASSERT_EQ(toml.size(), 5U);
-  ASSERT_EQ(csv.size(), 1U);
+  ASSERT_EQ(csv.size(), 2U);
   const Machine machine = parse_machine(toml[0], "machine");
   EXPECT_EQ(machine.chain(), "w C' X' b Z t");
 
@@ -46,6 +46,7 @@ TEST(DocumentedExamples, AreAccepted) {
   EXPECT_EQ(contents.errors.motions[4].basis.nodes.size(), 2U);
 
   EXPECT_EQ(parse_measurements(csv[0], "csv", machine).readings.count(), 2U);
+  EXPECT_EQ(parse_measurements(csv[1], "csv", machine).readings.stated, StatedUncertainty::covariance);
 
   const Study simulated = parse_study(toml[2], "a.study.toml", machine);
   EXPECT_EQ(simulated.setups[0].plans.size(), 2U);

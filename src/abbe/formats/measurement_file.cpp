@@ -7,8 +7,10 @@
 #include <tuple>
 
 #include "abbe/formats/axis_columns.h"
+#include "abbe/formats/covariance_columns.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/instruments/tracker_whitening.h"
 
 namespace abbe {
 namespace {
@@ -44,15 +46,19 @@ class Reader {
     const std::size_t u_xyz = add_all({"u_x", "u_y", "u_z"}, Quantity::length, CsvColumn::Range::positive);
     const std::size_t u_range = layout_.add("u_range", Quantity::length, CsvColumn::Range::positive);
     add_all({"u_azimuth", "u_elevation"}, Quantity::angle, CsvColumn::Range::positive);
-    const std::size_t covariance =
-        add_all({"cov_xx", "cov_yy", "cov_zz", "cov_xy", "cov_xz", "cov_yz"}, Quantity::length_squared);
+    const std::size_t cov_xyz = add_covariance(TrackerMeasure::cartesian);
+    const std::size_t cov_range = add_covariance(TrackerMeasure::range_and_angles);
     const std::size_t time = layout_.add("time", Quantity::time);
 
     csv_ = read_csv(text_, file_, layout_.columns, options_.mapping, options_.threads);
     TrackerReadings& readings = table_.readings;
     readings.poses = poses();
     read_measured(xyz, range);
-    read_uncertainty(u_xyz, u_range, covariance);
+    const bool cartesian = readings.measure == TrackerMeasure::cartesian;
+    refuse_other(cartesian ? u_range : u_xyz, 3);
+    refuse_other(cartesian ? cov_range : cov_xyz, 6);
+    read_uncertainty(cartesian ? u_xyz : u_range, cartesian ? cov_xyz : cov_range);
+    if (!cartesian && readings.stated != StatedUncertainty::none) refuse_vertical_beams(csv_.columns[range + 2].header);
     if (csv_.columns[time].present) readings.time_s = std::move(csv_.columns[time].numbers);
     read_names(station, readings.station, table_.stations);
     if (table_.stations.empty()) table_.stations.emplace_back();
@@ -120,39 +126,63 @@ class Reader {
     for (std::size_t k = 0; k < 3; ++k) table_.readings.measured[k] = std::move(csv_.columns[first + k].numbers);
   }
 
-  void read_uncertainty(std::size_t u_xyz, std::size_t u_range, std::size_t covariance) {
-    const bool cartesian = table_.readings.measure == TrackerMeasure::cartesian;
-    const std::size_t standard = cartesian ? u_xyz : u_range, other = cartesian ? u_range : u_xyz;
-    if (all_or_none(other, 3)) {
-      throw InputError({file_, 0, 0, csv_.columns[other].header}, "does not belong to what was measured",
-                       cartesian ? "u_x_um, u_y_um, u_z_um" : "u_range_um, u_azimuth_arcsec, u_elevation_arcsec");
+  std::size_t add_covariance(TrackerMeasure measure) {
+    const std::size_t first = layout_.columns.size();
+    for (const CovarianceColumn& column : covariance_columns(measure)) {
+      layout_.add(column.base, column.quantity, column.variance ? CsvColumn::Range::positive : CsvColumn::Range::any);
     }
-    const bool has_standard = all_or_none(standard, 3), has_covariance = all_or_none(covariance, 6);
-    if (has_standard && has_covariance) fail_beside(covariance, standard);
-    if (has_covariance && !cartesian) {
-      throw InputError({file_, 0, 0, csv_.columns[covariance].header}, "does not belong to what was measured",
-                       "u_range_um, u_azimuth_arcsec, u_elevation_arcsec");
-    }
-    TrackerReadings& readings = table_.readings;
-    if (has_standard) {
-      readings.stated = StatedUncertainty::standard;
-      for (std::size_t k = 0; k < 3; ++k) readings.uncertainty[k] = std::move(csv_.columns[standard + k].numbers);
-    } else if (has_covariance) {
-      readings.stated = StatedUncertainty::covariance;
-      for (std::size_t k = 0; k < 6; ++k) readings.uncertainty[k] = std::move(csv_.columns[covariance + k].numbers);
-      check_covariance(csv_.columns[covariance].header);
+    return first;
+  }
+
+  /// Refuses uncertainties of components that were not measured.
+  void refuse_other(std::size_t first, std::size_t count) const {
+    for (std::size_t i = first; i < first + count; ++i) {
+      if (!csv_.columns[i].present) continue;
+      const bool cartesian = table_.readings.measure == TrackerMeasure::cartesian;
+      throw InputError({file_, 0, 0, csv_.columns[i].header}, "does not belong to what was measured",
+                       cartesian ? "u_x_um, u_y_um, u_z_um or cov_xx_um2, ..."
+                                 : "u_range_um, u_azimuth_arcsec, u_elevation_arcsec or cov_range_range_um2, ...");
     }
   }
 
-  void check_covariance(const std::string& field) const {
-    const auto& c = table_.readings.uncertainty;
+  void read_uncertainty(std::size_t standard, std::size_t covariance) {
+    const bool has_standard = all_or_none(standard, 3), has_covariance = all_or_none(covariance, 6);
+    if (has_standard && has_covariance) fail_beside(covariance, standard);
+    TrackerReadings& readings = table_.readings;
+    if (!has_standard && !has_covariance) return;
+    readings.stated = has_standard ? StatedUncertainty::standard : StatedUncertainty::covariance;
+    const std::size_t first = has_standard ? standard : covariance;
+    for (std::size_t k = 0; k < (has_standard ? 3U : 6U); ++k) {
+      readings.uncertainty[k] = std::move(csv_.columns[first + k].numbers);
+    }
+    if (has_covariance) check_covariance(covariance);
+  }
+
+  void check_covariance(std::size_t first) const {
+    static constexpr std::size_t kPairs[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+    const std::array<std::vector<double>, 6>& c = table_.readings.uncertainty;
     for (std::size_t row = 0; row < c[0].size(); ++row) {
-      const double xx = c[0][row], yy = c[1][row], zz = c[2][row], xy = c[3][row], xz = c[4][row], yz = c[5][row];
-      const double minor = xx * yy - xy * xy;
-      const double determinant = zz * minor - xx * yz * yz + 2 * xy * xz * yz - yy * xz * xz;
-      if (xx > 0 && minor > 0 && determinant > 0) continue;
-      fail_row(row, field, "the covariance of this reading is not positive definite",
-               "variances above zero and correlations between -1 and 1");
+      if (is_positive_definite(reading_covariance(table_.readings, row))) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double correlation = c[3 + k][row] / std::sqrt(c[kPairs[k][0]][row] * c[kPairs[k][1]][row]);
+        if (std::abs(correlation) < 1) continue;
+        fail_row(row, csv_.columns[first + 3 + k].header,
+                 fmt::format("means a correlation of {:.6g} beside {} and {}", correlation,
+                             csv_.columns[first + kPairs[k][0]].header, csv_.columns[first + kPairs[k][1]].header),
+                 "a positive definite covariance: correlations between -1 and 1");
+      }
+      fail_row(row, csv_.columns[first].header, "the covariance of this reading is not positive definite",
+               "correlations that go together");
+    }
+  }
+
+  /// Across a vertical beam an azimuth moves nothing, so that its uncertainty says nothing about the reading.
+  void refuse_vertical_beams(const std::string& field) const {
+    const std::vector<double>& elevation = table_.readings.measured[2];
+    for (std::size_t row = 0; row < elevation.size(); ++row) {
+      if (std::abs(std::cos(elevation[row])) > kVerticalBeam) continue;
+      fail_row(row, field, "the beam is vertical, where an uncertainty of the azimuth has no meaning",
+               "an elevation between -90 and 90 deg, or no columns of uncertainty");
     }
   }
 

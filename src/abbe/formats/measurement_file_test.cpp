@@ -77,7 +77,6 @@ TEST(MeasurementFile, ReadsBackWhatItWrites) {
   for (const bool cartesian : {true, false}) {
     for (const StatedUncertainty stated :
          {StatedUncertainty::none, StatedUncertainty::standard, StatedUncertainty::covariance}) {
-      if (!cartesian && stated == StatedUncertainty::covariance) continue;
       MeasurementTable table;
       TrackerReadings& readings = table.readings;
       readings.measure = cartesian ? TrackerMeasure::cartesian : TrackerMeasure::range_and_angles;
@@ -149,20 +148,81 @@ TEST(MeasurementFile, RefusesMissingAndContradictoryColumns) {
   EXPECT_EQ(wrong("X_mm,Z_mm,C_deg\n1,2,3\n"),
             "r.csv: measured_x: missing column; expected measured_x_mm, measured_y_mm, measured_z_mm or range_mm, "
             "azimuth_deg, elevation_deg");
-  EXPECT_EQ(wrong("X_mm,Z_mm,C_deg,measured_x_mm,measured_y_mm,measured_z_mm,u_range_um,u_azimuth_deg,u_elevation_deg\n"
-                  "1,2,3,4,5,6,7,8,9\n"),
-            "r.csv: u_range_um: does not belong to what was measured; expected u_x_um, u_y_um, u_z_um");
+  EXPECT_EQ(
+      wrong("X_mm,Z_mm,C_deg,measured_x_mm,measured_y_mm,measured_z_mm,u_range_um,u_azimuth_deg,u_elevation_deg\n"
+            "1,2,3,4,5,6,7,8,9\n"),
+      "r.csv: u_range_um: does not belong to what was measured; expected u_x_um, u_y_um, u_z_um or cov_xx_um2, ...");
 }
 
 TEST(MeasurementFile, RefusesCovariancesThatAreNoneAndReflectorsThatMove) {
   const std::string start = "X_mm,Z_mm,C_deg,measured_x_mm,measured_y_mm,measured_z_mm,";
   EXPECT_EQ(
       wrong(start + "cov_xx_um2,cov_xy_um2,cov_xz_um2,cov_yy_um2,cov_yz_um2,cov_zz_um2\n1,2,3,4,5,6,1,2,0,1,0,1\n"),
-      "r.csv:2: cov_xx_um2: the covariance of this reading is not positive definite; expected variances above "
-      "zero and correlations between -1 and 1");
+      "r.csv:2: cov_xy_um2: means a correlation of 2 beside cov_xx_um2 and cov_yy_um2; expected a positive definite "
+      "covariance: correlations between -1 and 1");
+  EXPECT_EQ(
+      wrong(start + "cov_xx_um2,cov_xy_um2,cov_xz_um2,cov_yy_um2,cov_yz_um2,cov_zz_um2\n1,2,3,4,5,6,0,0,0,1,0,1\n"),
+      "r.csv:2:13: cov_xx_um2: is 0; expected a squared length in um2 above zero");
   EXPECT_EQ(
       wrong(start + "reflector,offset_x_mm,offset_y_mm,offset_z_mm\n1,2,3,4,5,6,T1,0,0,0\n1,2,3,4,5,6,T1,0,0,1\n"),
       "r.csv:3: offset_x_mm: reflector T1 had another offset in an earlier row; expected (0, 0, 0) mm");
+}
+
+const char* const kPolarCovariance =
+    "X_mm,Z_mm,C_deg,range_mm,azimuth_deg,elevation_deg,cov_range_range_um2,cov_azimuth_azimuth_arcsec2,"
+    "cov_elevation_elevation_arcsec2,cov_range_azimuth_um_arcsec,cov_range_elevation_um_arcsec,"
+    "cov_azimuth_elevation_arcsec2\n";
+
+TEST(MeasurementFile, ReadsCovariancesOfRangeAndAngles) {
+  const MeasurementTable table = parse(std::string(kPolarCovariance) + "1,2,3,1500,90,10,25,4,1,-5,2,0.5\n");
+  EXPECT_EQ(table.readings.stated, StatedUncertainty::covariance);
+  const double arcsec = 3.14159265358979323846 / 648000;
+  const auto& c = table.readings.uncertainty;
+  EXPECT_DOUBLE_EQ(c[0][0], 25e-6);
+  EXPECT_DOUBLE_EQ(c[1][0], 4 * arcsec * arcsec);
+  EXPECT_DOUBLE_EQ(c[2][0], arcsec * arcsec);
+  EXPECT_DOUBLE_EQ(c[3][0], -5e-3 * arcsec);
+  EXPECT_DOUBLE_EQ(c[4][0], 2e-3 * arcsec);
+  EXPECT_DOUBLE_EQ(c[5][0], 0.5 * arcsec * arcsec);
+
+  // The same matrix in other units.
+  const MeasurementTable other = parse(
+      "X_mm,Z_mm,C_deg,range_mm,azimuth_deg,elevation_deg,cov_range_range_mm2,cov_azimuth_azimuth_urad2,"
+      "cov_elevation_elevation_rad2,cov_range_azimuth_um_urad,cov_range_elevation_mm_rad,cov_azimuth_elevation_mrad2\n"
+      "1,2,3,1500,90,10,25e-6,94,24e-12,-24,1e-9,1e-5\n");
+  EXPECT_DOUBLE_EQ(other.readings.uncertainty[0][0], 25e-6);
+  EXPECT_DOUBLE_EQ(other.readings.uncertainty[1][0], 94e-12);
+  EXPECT_DOUBLE_EQ(other.readings.uncertainty[3][0], -24e-9);
+  EXPECT_DOUBLE_EQ(other.readings.uncertainty[4][0], 1e-9);
+  EXPECT_DOUBLE_EQ(other.readings.uncertainty[5][0], 1e-11);
+}
+
+TEST(MeasurementFile, RefusesCovariancesOfRangeAndAnglesThatAreNone) {
+  const std::string start = kPolarCovariance;
+  EXPECT_EQ(wrong(start + "# c\n1,2,3,1500,90,10,25,4,1,-5,2,0.5\n1,2,3,1500,90,10,25,4,1,-5,5.5,0.5\n"),
+            "r.csv:4: cov_range_elevation_um_arcsec: means a correlation of 1.1 beside cov_range_range_um2 and "
+            "cov_elevation_elevation_arcsec2; expected a positive definite covariance: correlations between -1 and 1");
+  EXPECT_EQ(wrong(start + "1,2,3,1500,90,10,25,4,1,9,4.5,-1.8\n"),
+            "r.csv:2: cov_range_range_um2: the covariance of this reading is not positive definite; expected "
+            "correlations that go together");
+  EXPECT_EQ(wrong(start + "1,2,3,1500,90,10,25,-4,1,0,0,0\n"),
+            "r.csv:2:21: cov_azimuth_azimuth_arcsec2: is -4; expected a squared angle in arcsec2 above zero");
+  EXPECT_EQ(
+      wrong(start + "1,2,3,1500,90,90,25,4,1,0,0,0\n"),
+      "r.csv:2: elevation_deg: the beam is vertical, where an uncertainty of the azimuth has no meaning; expected "
+      "an elevation between -90 and 90 deg, or no columns of uncertainty");
+  EXPECT_EQ(wrong("X_mm,Z_mm,C_deg,range_mm,azimuth_deg,elevation_deg,cov_range_range_um2,cov_range_azimuth_um2\n"
+                  "1,2,3,4,5,6,7,8\n"),
+            "r.csv:1:72: cov_range_azimuth_um2: 'um2' is not a unit of a length times an angle; expected "
+            "cov_range_azimuth_mm_rad, cov_range_azimuth_um_urad, cov_range_azimuth_um_arcsec or "
+            "cov_range_azimuth_mm_arcsec");
+  EXPECT_EQ(wrong("X_mm,Z_mm,C_deg,range_mm,azimuth_deg,elevation_deg,cov_range_range_um2\n1,2,3,4,5,6,7\n"),
+            "r.csv: cov_azimuth_elevation: missing column; expected cov_azimuth_elevation_rad2, "
+            "cov_azimuth_elevation_mrad2, cov_azimuth_elevation_urad2, cov_azimuth_elevation_deg2 or "
+            "cov_azimuth_elevation_arcsec2");
+  EXPECT_EQ(wrong("X_mm,Z_mm,C_deg,range_mm,azimuth_deg,elevation_deg,cov_xx_um2\n1,2,3,4,5,6,7\n"),
+            "r.csv: cov_xx_um2: does not belong to what was measured; expected u_range_um, u_azimuth_arcsec, "
+            "u_elevation_arcsec or cov_range_range_um2, ...");
 }
 
 TEST(MeasurementFile, SaysWhichFileIsMissing) {

@@ -1,5 +1,6 @@
 #include <cassert>
 
+#include "abbe/formats/covariance_columns.h"
 #include "abbe/formats/measurement_file.h"
 #include "abbe/formats/number_text.h"
 
@@ -104,10 +105,8 @@ std::string measurements_text(const Machine& machine, const MeasurementTable& ta
     }
   }
   if (readings.stated == StatedUncertainty::covariance) {
-    const char* const names[6] = {"xx", "yy", "zz", "xy", "xz", "yz"};
-    for (std::size_t k = 0; k < 6; ++k) {
-      columns.add(std::string("cov_") + names[k], Quantity::length_squared, "um2", u[k]);
-    }
+    const std::array<CovarianceColumn, 6> stated = covariance_columns(readings.measure);
+    for (std::size_t k = 0; k < 6; ++k) columns.add(stated[k].base, stated[k].quantity, stated[k].unit, u[k]);
   }
   if (!readings.time_s.empty()) columns.add("time", Quantity::time, "s", readings.time_s);
   return columns.text(readings.count());

@@ -115,18 +115,20 @@ struct Setup {
   Body mounted_on = Body::workpiece;
   TrackerMeasure measure = TrackerMeasure::cartesian;
   TrackerNoise noise;
-  bool noise_from_data = false;            ///< use the uncertainties in the data; `noise` is then unused
-  std::vector<SetupStation> stations;      ///< at least one
-  std::vector<SetupReflector> reflectors;  ///< at least one unless the data define them
-  std::vector<MeasurementPlan> plans;      ///< simulation
-  std::vector<SetupData> data;             ///< measurement; exactly one of plans and data is given
+  StatedUncertainty stated = StatedUncertainty::none;  ///< simulation: what the written readings say of themselves
+  bool noise_from_data = false;                        ///< use the uncertainties in the data; `noise` is then unused
+  std::vector<SetupStation> stations;                  ///< at least one
+  std::vector<SetupReflector> reflectors;              ///< at least one unless the data define them
+  std::vector<MeasurementPlan> plans;                  ///< simulation
+  std::vector<SetupData> data;                         ///< measurement; exactly one of plans and data is given
 };
 
 /// One error motion to be identified.
 struct IdentifiedMotion {
   std::size_t axis = 0;
   Component component = Component::X;
-  Basis basis;             ///< with the largest order to be tried
+  /// With the largest order to be tried; a table has its number of intervals as order and no nodes yet.
+  Basis basis;
   int smallest_order = 0;  ///< equal to basis.order unless the order is to be selected
 };
 

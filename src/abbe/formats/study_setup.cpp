@@ -137,6 +137,11 @@ void read_tracker(TomlTable& table, bool simulated, Setup& setup) {
   setup.mounted_on = read_body(table, "mounted_on", Body::workpiece);
   setup.measure = static_cast<TrackerMeasure>(table.word_or("measure", 0, {"xyz", "range-angles"}));
   if (!setup.noise_from_data) setup.noise = read_noise(table.table("noise"));
+  if (table.has("state_uncertainty") && !simulated) {
+    table.fail("state_uncertainty", "belongs to a simulation only", "[simulate], or noise_from_data = true");
+  }
+  setup.stated =
+      static_cast<StatedUncertainty>(table.word_or("state_uncertainty", 0, {"none", "standard", "covariance"}));
   for (TomlTable& station : table.tables("station")) {
     setup.stations.push_back(read_station(station, simulated));
     refuse_same_name(station, setup.stations);

@@ -18,9 +18,17 @@ constexpr std::array<Unit, 5> kAngle = {
 constexpr std::array<Unit, 2> kLengthPerLength = {{{"mm_per_m", -3, 1}, {"um_per_m", -6, 1}}};
 constexpr std::array<Unit, 2> kTime = {{{"s", 0, 1}, {"ms", -3, 1}}};
 constexpr std::array<Unit, 2> kLengthSquared = {{{"mm2", 0, 1}, {"um2", -6, 1}}};
-constexpr std::array<Quantity, 6> kQuantities = {Quantity::dimensionless, Quantity::length,
-                                                 Quantity::angle,         Quantity::length_per_length,
-                                                 Quantity::time,          Quantity::length_squared};
+constexpr double kArcsecond = kDegree / 3600;
+constexpr std::array<Unit, 5> kAngleSquared = {{{"rad2", 0, 1},
+                                                {"mrad2", -6, 1},
+                                                {"urad2", -12, 1},
+                                                {"deg2", 0, kDegree* kDegree},
+                                                {"arcsec2", 0, kArcsecond* kArcsecond}}};
+constexpr std::array<Unit, 4> kLengthAngle = {
+    {{"mm_rad", 0, 1}, {"um_urad", -9, 1}, {"um_arcsec", -3, kArcsecond}, {"mm_arcsec", 0, kArcsecond}}};
+constexpr std::array<Quantity, 8> kQuantities = {
+    Quantity::dimensionless, Quantity::length,         Quantity::angle,         Quantity::length_per_length,
+    Quantity::time,          Quantity::length_squared, Quantity::angle_squared, Quantity::length_angle};
 
 /// Edits from one spelling to the other: insert, remove, replace, exchange neighbours (1 each), change case (0.5).
 double spelling_distance(std::string_view a, std::string_view b) {
@@ -59,6 +67,10 @@ std::span<const Unit> units_of(Quantity quantity) {
       return kTime;
     case Quantity::length_squared:
       return kLengthSquared;
+    case Quantity::angle_squared:
+      return kAngleSquared;
+    case Quantity::length_angle:
+      return kLengthAngle;
   }
   assert(false);
   return kDimensionless;
@@ -89,6 +101,10 @@ std::string_view quantity_words(Quantity quantity) {
       return "a time";
     case Quantity::length_squared:
       return "a squared length";
+    case Quantity::angle_squared:
+      return "a squared angle";
+    case Quantity::length_angle:
+      return "a length times an angle";
   }
   assert(false);
   return "";

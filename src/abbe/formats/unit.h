@@ -16,6 +16,8 @@ enum class Quantity {
   length_per_length,  ///< inside mm per mm; a noise growing with distance
   time,               ///< inside s
   length_squared,     ///< inside mm^2
+  angle_squared,      ///< inside rad^2
+  length_angle,       ///< inside mm rad; a covariance of a length and an angle
 };
 
 /// A unit as written at the end of a name: inside value = text * 10^decimal_shift * factor.
