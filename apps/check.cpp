@@ -104,9 +104,10 @@ void add_check_command(CommandLine& line) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = line.add("check", "Validate a machine file and show its chain, axes and error names",
-                               "  abbe check examples/machines/trunnion-mill.machine.toml\n"
-                               "  abbe check my.machine.toml --errors my.errors.toml");
+  CLI::App* command = line.add(
+      "check", "Validate a machine file and show its chain, axes and error names",
+      "  abbe check examples/machines/trunnion-mill.machine.toml\n"
+      "  abbe check examples/machines/aguado.machine.toml --errors examples/aguado/results/aguado/errors.toml");
   command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("--errors", options->errors, "Errors file of this machine to validate too (*.errors.toml)");
   command->add_flag("--json", options->json, "Print JSON for programs");

@@ -199,7 +199,7 @@ void add_plan_command(CommandLine& line) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = line.add("plan", "Choose the readings that determine a machine's errors best",
-                               "  abbe plan my.study.toml -o poses.csv --svg curve.svg");
+                               "  abbe plan examples/trunnion/trunnion.study.toml -o poses.csv --svg curve.svg");
   command->add_option("study", options->study, "Study file (*.study.toml) with tables [plan] and [identify]")
       ->required();
   command->add_option("-o,--output", options->output, "Readings to take, in an order of short travel (*.csv)");

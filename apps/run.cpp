@@ -16,9 +16,10 @@ void add_run_command(CommandLine& line) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = line.add("run", "Do a whole study: simulate or read, identify, verify, map, report",
-                               "  abbe run examples/aguado/aguado.study.toml\n"
-                               "  abbe run my.study.toml -o results/monday --json");
+  CLI::App* command =
+      line.add("run", "Do a whole study: simulate or read, identify, verify, map, report",
+               "  abbe run examples/aguado/aguado.study.toml\n"
+               "  abbe run examples/three_axis/level-and-autocollimator.study.toml -o results/level --json");
   command->add_option("study", options->study, "Study file (*.study.toml)")->required();
   command->add_option("-o,--output", options->output, "Results folder (default: as in the study)");
   command->add_flag("--json", options->json, "Print the summary as JSON for programs");

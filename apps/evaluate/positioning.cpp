@@ -81,7 +81,8 @@ void add_evaluate_positioning(CLI::App& evaluate, CommandLine& line) {
       "  run             optional: number or name of the run",
       "  abbe evaluate positioning examples/evaluate/linear.csv\n"
       "  abbe evaluate positioning examples/evaluate/rotary.csv --tolerance A_arcsec=20 -o results/c\n"
-      "  abbe evaluate positioning x.csv --instrument-um-per-m 0.6 --misalignment-mm 1 --environment-um 1.2",
+      "  abbe evaluate positioning examples/evaluate/linear.csv --instrument-um-per-m 0.6 --misalignment-mm 1 "
+      "--environment-um 1.2",
       options->common);
   add_contributions(*command, options->contributions);
   command->callback([&line, options] {

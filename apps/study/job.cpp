@@ -85,8 +85,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     OrderSelectionOptions selection;
     selection.seed = study.seed;
     selection.identify = options;
-    result.order_selection = select_orders(problem, result.model.order_groups, selection);
-    if (result.order_selection->done) problem.machine_parameters = result.order_selection->machine_parameters;
+    result.order_selection = select_model(study, result.campaign, selection, result.model);
   }
   StagedIdentification staged = identify_in_stages(problem, plan.strategy, options);
   result.stages = std::move(staged.stages);
@@ -104,7 +103,13 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     monte_carlo_options.samples = static_cast<std::size_t>(plan.monte_carlo);
     monte_carlo_options.seed = study.seed;
     monte_carlo_options.threads = study.threads;
+    monte_carlo_options.loss = options.loss;
+    monte_carlo_options.loss_tuning = options.loss_tuning;
     result.monte_carlo = monte_carlo(problem, result.identification, monte_carlo_options);
+    if (result.monte_carlo->not_settled > 0) {
+      result.warnings.push_back(fmt::format("Monte Carlo: {} of {} robust fits had not settled",
+                                            result.monte_carlo->not_settled, result.monte_carlo->samples));
+    }
   }
   if (progress) progress(1, 1);
 }

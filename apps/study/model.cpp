@@ -43,6 +43,16 @@ std::string range_text(const Axis& axis, double from, double to) {
   return fmt::format("{} = {:.6g} .. {:.6g} {}", axis.name, from / unit, to / unit, rotary ? "deg" : "mm");
 }
 
+/// Nodes of a table to be identified: evenly over its range, or around the period.
+void place_nodes(Basis& basis) {
+  const int count = basis.periodic ? basis.order : basis.order + 1;
+  const double step = (basis.periodic ? basis.period : basis.to - basis.from) / basis.order;
+  for (int k = 0; k < count; ++k) basis.nodes.push_back(basis.from + k * step);
+  if (!basis.periodic) basis.nodes.back() = basis.to;
+  basis.to = basis.nodes.back();
+  basis.order = 0;
+}
+
 void mark_held_out(const Study& study, Problem& problem) {
   const double fraction = study.identification->held_out_fraction;
   if (fraction <= 0 || study.identification->held_out_file) return;
@@ -63,7 +73,8 @@ void mark_held_out(const Study& study, Problem& problem) {
   }
 }
 
-void add_priors(const Study& study, const Campaign& campaign, Problem& problem) {
+/// @param all_found  every prior of the study has a parameter; lower orders than the study's may not have them all
+void add_priors(const Study& study, const Campaign& campaign, bool all_found, Problem& problem) {
   const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
   for (const ParameterPrior& prior : study.identification->priors) {
     std::size_t found = 0;
@@ -79,7 +90,7 @@ void add_priors(const Study& study, const Campaign& campaign, Problem& problem) 
       }
       problem.priors.push_back({parameter.id, prior.value, prior.standard_uncertainty});
     }
-    if (found == 0) {
+    if (found == 0 && all_found) {
       throw InputError({.field = "identify.prior"},
                        fmt::format("no estimated parameter matches '{}'", prior.parameters),
                        "a name such as " + (parameters.empty() ? std::string("EXX[P1]") : parameters.front().name));
@@ -120,6 +131,7 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
         }
       }
     }
+    if (basis.kind == BasisKind::table_linear) place_nodes(basis);
     motion.coefficients.assign(basis.size(), 0.0);
     if (initial) {
       for (const ErrorMotion& start : initial->motions) {
@@ -143,7 +155,9 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
   return errors;
 }
 
-StudyModel build_model(const Study& study, const Campaign& campaign) {
+namespace {
+
+StudyModel model_of(const Study& study, const Campaign& campaign, bool all_priors) {
   StudyModel model;
   const IdentificationPlan& plan = *study.identification;
   const ErrorSet errors = model_errors(study, campaign, model);
@@ -162,10 +176,17 @@ StudyModel build_model(const Study& study, const Campaign& campaign) {
         parameters.end());
   }
   mark_held_out(study, model.problem);
-  add_priors(study, campaign, model.problem);
+  add_priors(study, campaign, all_priors, model.problem);
+  return model;
+}
 
-  if (plan.select_order) {
-    for (OrderGroup group : order_groups_by_axis(study.machine, errors)) {
+}  // namespace
+
+StudyModel build_model(const Study& study, const Campaign& campaign) {
+  StudyModel model = model_of(study, campaign, true);
+  const IdentificationPlan& plan = *study.identification;
+  if (plan.select_order && model.impossible.empty()) {
+    for (OrderGroup group : order_groups_by_axis(study.machine, model.problem.errors)) {
       int smallest = 1 << 20;
       for (std::size_t motion : group.motions) smallest = std::min(smallest, plan.motions[motion].smallest_order);
       group.start_order = smallest;
@@ -173,6 +194,41 @@ StudyModel build_model(const Study& study, const Campaign& campaign) {
     }
   }
   return model;
+}
+
+StudyModel build_model_at(const Study& study, const Campaign& campaign, const std::vector<OrderGroup>& groups,
+                          const std::vector<int>& orders) {
+  Study lower = study;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (groups[g].nested) continue;
+    for (const std::size_t m : groups[g].motions) {
+      IdentifiedMotion& motion = lower.identification->motions[m];
+      motion.basis.order = std::clamp(orders[g], motion.smallest_order, motion.basis.order);
+    }
+  }
+  StudyModel model = model_of(lower, campaign, false);
+  if (model.impossible.empty()) model.problem = at_nested_orders(model.problem, groups, orders);
+  model.order_groups = groups;
+  return model;
+}
+
+OrderSelection select_model(const Study& study, const Campaign& campaign, const OrderSelectionOptions& options,
+                            StudyModel& model) {
+  const std::vector<OrderGroup> groups = model.order_groups;
+  if (std::all_of(groups.begin(), groups.end(), [](const OrderGroup& group) { return group.nested; })) {
+    OrderSelection selection = select_orders(model.problem, groups, options);
+    if (selection.done) model.problem.machine_parameters = selection.machine_parameters;
+    return selection;
+  }
+  StudyModel trial;
+  OrderSelection selection = select_orders(
+      [&](const std::vector<int>& orders) {
+        trial = build_model_at(study, campaign, groups, orders);
+        return trial.problem;
+      },
+      groups, options);
+  if (selection.done) model = build_model_at(study, campaign, groups, selection.orders);
+  return selection;
 }
 
 }  // namespace abbe

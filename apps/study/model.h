@@ -26,4 +26,13 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
 /// Builds observations and problem; readings that are held out are marked in problem.observations[].use.
 StudyModel build_model(const Study& study, const Campaign& campaign);
 
+/// The same with orders chosen per group of `groups` (those of the model with the highest orders): splines and tables
+/// get that many intervals, of polynomials and Fourier series only the lower coefficients are estimated.
+StudyModel build_model_at(const Study& study, const Campaign& campaign, const std::vector<OrderGroup>& groups,
+                          const std::vector<int>& orders);
+
+/// Chooses the orders of model.order_groups by held-out poses; the model is then that with the chosen orders.
+OrderSelection select_model(const Study& study, const Campaign& campaign, const OrderSelectionOptions& options,
+                            StudyModel& model);
+
 }  // namespace abbe

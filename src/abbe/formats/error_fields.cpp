@@ -33,6 +33,7 @@ Basis read_basis_kind(TomlTable& table) {
 }
 
 int smallest_order(const Basis& basis) {
+  if (is_table(basis.kind)) return basis.periodic ? 3 : 1;
   if (basis.kind != BasisKind::bspline) return 0;
   return basis.periodic ? 4 : 1;
 }

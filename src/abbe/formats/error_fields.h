@@ -24,7 +24,7 @@ std::string axis_names(const Machine& machine);
 
 /// Keys `basis` and `periodic`.
 Basis read_basis_kind(TomlTable& table);
-/// Smallest sensible order of a basis that is no table.
+/// Smallest sensible order of a basis; of a table to be identified the smallest number of intervals.
 int smallest_order(const Basis& basis);
 /// Keys `from`, `to`, `period`; the travel of the axis and a whole turn if they are not there.
 void read_basis_range(TomlTable& table, const Axis& axis, Basis& basis);

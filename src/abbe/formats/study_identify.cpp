@@ -36,8 +36,9 @@ std::vector<std::pair<std::size_t, Component>> find_motions(const TomlTable& tab
 
 std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& machine) {
   Basis basis = read_basis_kind(table);
-  if (is_table(basis.kind)) {
-    table.fail("basis", "a table cannot be identified as it has no nodes of its own", "\"bspline\" or a polynomial");
+  if (basis.kind == BasisKind::table_monotone) {
+    table.fail("basis", "the functions of a monotone table depend on its values, so that these cannot be identified",
+               "\"table-linear\", \"bspline\" or a polynomial");
   }
   const int smallest = smallest_order(basis);
   int smallest_tried = 0;
@@ -63,7 +64,10 @@ std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& mach
                    "one [[identify.motion]] for each kind of axis");
       }
       IdentifiedMotion motion{axis, component, basis, smallest_tried};
+      // A table to be identified has no nodes yet, but a range like a spline, over which they will stand evenly.
+      motion.basis.kind = is_table(basis.kind) ? BasisKind::bspline : basis.kind;
       read_basis_range(table, machine.axes[axis], motion.basis);
+      motion.basis.kind = basis.kind;
       motions.push_back(std::move(motion));
     }
   }

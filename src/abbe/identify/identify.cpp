@@ -9,6 +9,7 @@
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/identify/distributions.h"
 #include "abbe/identify/normal_equations.h"
+#include "abbe/identify/robust_covariance.h"
 
 namespace abbe {
 namespace {
@@ -31,29 +32,6 @@ std::vector<double> scaled_norms(const Problem& problem, const std::vector<std::
     for (const double norm : norms[o])
       if (norm >= 0) result.push_back(norm / median_norm(problem.observations[o].observations->rows()));
   return result;
-}
-
-/// Values of the loss's functions over all readings that enter the covariance of a robust estimate.
-///
-/// Cov = (B / A^2) (J'J)^-1 with A = mean of w + u w'(u) / m, B = mean of w^2 d^2 / m over the readings (Huber
-/// 1981, 7.6).
-double robust_factor(const Problem& problem, const std::vector<std::vector<double>>& norms, const Loss& loss) {
-  double a = 0, b = 0, count = 0;
-  for (std::size_t o = 0; o < norms.size(); ++o) {
-    const int rows = problem.observations[o].observations->rows();
-    for (const double norm : norms[o]) {
-      if (norm < 0) continue;
-      const double weight = loss.weight(norm, rows);
-      const double small = 1e-6 * loss.scale;
-      const double slope = (loss.weight(norm + small, rows) - weight) / small;
-      a += weight + norm * slope / rows;
-      b += weight * weight * norm * norm / rows;
-      count += 1;
-    }
-  }
-  if (!(count > 0) || !(a > 0)) return 1;
-  // Huber's correction takes the residuals' own size; the stated uncertainties set the unit, so divide it out.
-  return (b / count) / ((a / count) * (a / count));
 }
 
 class Run {
@@ -202,21 +180,30 @@ class Run {
     result_.estimates = solved.estimates;
     const std::vector<std::vector<double>> norms = stream_.norms(solved.estimates);
     NormalEquations unweighted;
+    LossMoments moments;
     if (loss_.kind == LossKind::none) {
       unweighted.normal = solved.normal;
       unweighted.cost = solved.cost;
     } else {
       unweighted = stream_.sums(solved.estimates, Loss{}, Wanted::normal);
-      result_.statistics.robust_factor = robust_factor(problem_, norms, loss_);
     }
     list_outliers(norms);
+    if (loss_.kind != LossKind::none) {
+      const Index free = space ? space->directions.cols() : start_.size();
+      moments = robust_moments(problem_, norms, result_.outliers, loss_, static_cast<double>(free));
+      result_.statistics.robust_factor = moments.square / (moments.slope * moments.slope);
+    }
     statistics(unweighted, space);
     const double parameters = static_cast<double>(start_.size());
     const bool large = static_cast<double>(stream_.residual_count()) * parameters * parameters > kLarge;
     const bool ill_conditioned = result_.statistics.observability.o2 < (large ? kIllConditionedLarge : kIllConditioned);
-    const bool known = ill_conditioned ? covariance_from_factor(stream_.orthogonal_factor(solved.estimates, Loss{}),
-                                                                space, result_.covariance)
-                                       : covariance_of_estimates(unweighted.normal, space, result_.covariance);
+    const Eigen::MatrixXd priors = loss_.kind == LossKind::none ? Eigen::MatrixXd() : prior_rows(problem_);
+    const Eigen::MatrixXd curvature = robust_curvature(unweighted.normal, priors, moments);
+    const bool known = ill_conditioned
+                           ? covariance_from_factor(
+                                 robust_factor(stream_.orthogonal_factor(solved.estimates, Loss{}), priors, moments),
+                                 space, result_.covariance)
+                           : covariance_of_estimates(curvature, space, result_.covariance);
     keep_estimates(problem_, solved.estimates);
     result_.gauge.rank_at_solution = rank_at_solution(unweighted);
     if (!known) {
@@ -225,7 +212,7 @@ class Run {
       result_.message = "the readings do not determine all parameters at the solution";
       return;
     }
-    result_.covariance *= result_.statistics.robust_factor;
+    if (loss_.kind != LossKind::none) spread_of_robust_estimates(priors, moments, result_.covariance);
     if (options_.apply_variance_factor && result_.statistics.variance_factor > 0 && loss_.kind == LossKind::none)
       result_.covariance *= result_.statistics.variance_factor;
     result_.standard_uncertainties = result_.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();

@@ -11,7 +11,9 @@ namespace abbe {
 struct MonteCarloOptions {
   std::size_t samples = 10000;
   std::uint64_t seed = 1;
-  int chord_iterations = 1;  ///< exact evaluations of the model per sample; 0: linear propagation only
+  int chord_iterations = 1;        ///< exact evaluations of the model per sample; 0: linear propagation only
+  LossKind loss = LossKind::none;  ///< with which the identification was made, and every sample is
+  double loss_tuning = 0;          ///< as IdentifyOptions::loss_tuning
   std::vector<double> probabilities = {0.025, 0.5, 0.975};
   int threads = 0;
   std::size_t memory_limit_bytes = std::size_t{1} << 30;  ///< for the kept Jacobian and the samples
@@ -22,6 +24,7 @@ enum class MonteCarloStatus { not_run, done, no_solution, too_large };
 struct MonteCarloResult {
   MonteCarloStatus status = MonteCarloStatus::not_run;
   std::size_t samples = 0;
+  std::size_t not_settled = 0;             ///< samples whose robust fit was still moving; they are counted in
   Eigen::VectorXd mean;                    ///< [p], mm or rad
   Eigen::MatrixXd covariance;              ///< [p, p]
   Eigen::MatrixXd percentiles;             ///< [p, probabilities], mm or rad
@@ -33,7 +36,9 @@ struct MonteCarloResult {
 /// Propagates the readings' uncertainties through the identification by simulation (JCGM 101).
 ///
 /// Every sample adds standard normal numbers to the residuals of the model at the identified values, and is identified
-/// again with the kept factor and exact residuals (chord iterations), in the same gauge. Sample k uses
+/// again with the kept factor and exact residuals (chord iterations), in the same gauge and with the same loss. With a
+/// robust loss the outliers that the identification listed are outliers in every sample too: gross errors of the size
+/// found, in random directions; the noise of the others has the robust scale. Sample k uses
 /// RandomStream(seed, k), so the result depends neither on the number of threads nor on the other samples.
 /// @param problem     observations stand at the estimates, as identify() leaves them
 /// @param prediction  null, or P: [rows, p], d(quantity)/d(estimate); quantities P (x - estimate) are then returned too

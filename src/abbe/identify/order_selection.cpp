@@ -18,6 +18,18 @@ bool is_nested(const Basis& basis) {
          basis.kind == BasisKind::fourier;
 }
 
+// Degree, harmonics, or intervals.
+int order_of(const Basis& basis) {
+  return basis.nodes.empty() ? basis.order : static_cast<int>(basis.nodes.size()) - (basis.periodic ? 0 : 1);
+}
+
+// All numbers of intervals, or steps of about a fifth if there are many.
+std::vector<int> interval_counts(const OrderGroup& group) {
+  std::vector<int> counts;
+  for (int n = group.start_order; n <= group.largest_order; n += std::max(1, n / 5)) counts.push_back(n);
+  return counts;
+}
+
 std::size_t size_at_order(const Basis& basis, int order) {
   const std::size_t n = static_cast<std::size_t>(std::max(order, 0));
   return std::min(basis.size(), basis.kind == BasisKind::fourier ? 2 * n + 1 : n + 1);
@@ -52,76 +64,17 @@ Partition partition_by_pose(const Problem& problem, int folds, std::uint64_t see
 
 class Selection {
  public:
-  Selection(const Problem& problem, const std::vector<OrderGroup>& groups, const OrderSelectionOptions& options)
-      : problem_(problem),
-        groups_(groups),
-        options_(options),
-        partition_(partition_by_pose(problem, std::max(2, options.folds), options.seed)) {}
-
-  std::vector<std::size_t> parameters(const std::vector<int>& orders) const {
-    std::set<std::size_t> dropped;
-    std::vector<std::size_t> first;
-    std::size_t next = 0;
-    for (const ErrorMotion& motion : problem_.errors.motions) {
-      first.push_back(next);
-      next += motion.coefficients.size();
-    }
-    for (std::size_t g = 0; g < groups_.size(); ++g)
-      for (const std::size_t m : groups_[g].motions) {
-        const Basis& basis = problem_.errors.motions[m].basis;
-        for (std::size_t k = size_at_order(basis, orders[g]); k < basis.size(); ++k) dropped.insert(first[m] + k);
-      }
-    std::vector<std::size_t> result;
-    for (const std::size_t i : problem_.machine_parameters)
-      if (!dropped.count(i)) result.push_back(i);
-    return result;
-  }
-
-  int highest_order(const OrderGroup& group) const {
-    int order = 0;
-    for (const std::size_t m : group.motions) order = std::max(order, problem_.errors.motions[m].basis.order);
-    return order;
-  }
+  Selection(const ProblemAtOrders& at, const OrderSelectionOptions& options) : at_(at), options_(options) {}
 
   /// Mean squared residual of every pose when it was held out; empty if a fold could not be identified.
-  std::vector<double> held_out_squares(const std::vector<int>& orders, IdentifyStatus& status) const {
+  std::vector<double> held_out_squares(const std::vector<int>& orders, IdentifyStatus& status) {
+    const Problem whole = at_(orders);
+    if (partition_.fold.empty()) partition_ = partition_by_pose(whole, std::max(2, options_.folds), options_.seed);
     std::vector<double> sums(partition_.fold.size(), 0), counts(partition_.fold.size(), 0);
-    const Eigen::VectorXd start = present_values(problem_);
+    const Eigen::VectorXd start = present_values(whole);
     for (int fold = 0; fold < std::max(2, options_.folds); ++fold) {
-      Problem training = problem_, test = problem_;
-      training.machine_parameters = test.machine_parameters = parameters(orders);
-      drop_higher(orders, training);
-      for (std::size_t o = 0; o < problem_.observations.size(); ++o) {
-        const std::vector<std::uint8_t>& use = problem_.observations[o].use;
-        const std::size_t count = problem_.observations[o].observations->reading_count();
-        training.observations[o].use.assign(count, 0);
-        test.observations[o].use.assign(count, 0);
-        for (std::size_t i = 0; i < count; ++i) {
-          if (!use.empty() && !use[i]) continue;
-          const bool held_out = partition_.fold[partition_.pose[o][i]] == fold;
-          (held_out ? test : training).observations[o].use[i] = 1;
-        }
-      }
-      const Identification identified = identify(training, options_.identify);
-      status = identified.status;
-      const bool usable = identified.estimates.size() > 0 && status == IdentifyStatus::converged;
-      if (usable) {
-        test.errors = training.errors;
-        const auto norms = ReadingStream(test, options_.identify.solver.threads).norms(identified.estimates);
-        for (std::size_t o = 0; o < norms.size(); ++o)
-          for (std::size_t i = 0; i < norms[o].size(); ++i) {
-            if (norms[o][i] < 0) continue;
-            const int rows = problem_.observations[o].observations->rows();
-            double square = norms[o][i] * norms[o][i];
-            // With a robust loss a gross error counts as an outlier just does: it must not hide what the others say.
-            if (options_.identify.loss != LossKind::none) {
-              square = std::min(square, chi_square_quantile(options_.identify.outlier_norm_quantile, rows));
-            }
-            sums[partition_.pose[o][i]] += square;
-            counts[partition_.pose[o][i]] += rows;
-          }
-      }
-      set_observations(problem_, start);
+      const bool usable = hold_out(whole, fold, status, sums, counts);
+      set_observations(whole, start);
       if (!usable) return {};
     }
     std::vector<double> squares;
@@ -131,18 +84,42 @@ class Selection {
   }
 
  private:
-  // Coefficients above the order are no part of the model: zero, not their present value.
-  void drop_higher(const std::vector<int>& orders, Problem& problem) const {
-    for (std::size_t g = 0; g < groups_.size(); ++g)
-      for (const std::size_t m : groups_[g].motions) {
-        ErrorMotion& motion = problem.errors.motions[m];
-        for (std::size_t k = size_at_order(motion.basis, orders[g]); k < motion.coefficients.size(); ++k)
-          motion.coefficients[k] = 0;
+  /// Identifies without one part of the poses and adds that part's squares; false if it could not be identified.
+  bool hold_out(const Problem& whole, int fold, IdentifyStatus& status, std::vector<double>& sums,
+                std::vector<double>& counts) const {
+    Problem training = whole, test = whole;
+    for (std::size_t o = 0; o < whole.observations.size(); ++o) {
+      const std::vector<std::uint8_t>& use = whole.observations[o].use;
+      const std::size_t count = whole.observations[o].observations->reading_count();
+      training.observations[o].use.assign(count, 0);
+      test.observations[o].use.assign(count, 0);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!use.empty() && !use[i]) continue;
+        const bool held_out = partition_.fold[partition_.pose[o][i]] == fold;
+        (held_out ? test : training).observations[o].use[i] = 1;
       }
+    }
+    const Identification identified = identify(training, options_.identify);
+    status = identified.status;
+    if (identified.estimates.size() == 0 || status != IdentifyStatus::converged) return false;
+    test.errors = training.errors;
+    const auto norms = ReadingStream(test, options_.identify.solver.threads).norms(identified.estimates);
+    for (std::size_t o = 0; o < norms.size(); ++o)
+      for (std::size_t i = 0; i < norms[o].size(); ++i) {
+        if (norms[o][i] < 0) continue;
+        const int rows = whole.observations[o].observations->rows();
+        double square = norms[o][i] * norms[o][i];
+        // With a robust loss a gross error counts as an outlier just does: it must not hide what the others say.
+        if (options_.identify.loss != LossKind::none) {
+          square = std::min(square, chi_square_quantile(options_.identify.outlier_norm_quantile, rows));
+        }
+        sums[partition_.pose[o][i]] += square;
+        counts[partition_.pose[o][i]] += rows;
+      }
+    return true;
   }
 
-  const Problem& problem_;
-  const std::vector<OrderGroup>& groups_;
+  const ProblemAtOrders& at_;
   const OrderSelectionOptions& options_;
   Partition partition_;
 };
@@ -165,63 +142,164 @@ double paired_exceedance(const std::vector<double>& higher, const std::vector<do
   return student_exceedance(average / deviation, n - 1);
 }
 
+/// The best model so far and the ways to a better one.
+class Search {
+ public:
+  Search(const ProblemAtOrders& at, const std::vector<OrderGroup>& groups, const OrderSelectionOptions& options)
+      : groups_(groups), options_(options), selection_(at, options) {}
+
+  bool start() {
+    for (const OrderGroup& group : groups_) result.orders.push_back(std::min(group.start_order, group.largest_order));
+    best_ = tried(result.orders, "");
+    if (best_.empty()) return false;
+    result.trials.back().accepted = true;
+    result.done = true;
+    return true;
+  }
+
+  /// Raises a nested group by one; or by two, because an even error may need the fourth and not the third degree.
+  bool raise(std::size_t g) {
+    for (const int more : {1, 2}) {
+      std::vector<int> orders = result.orders;
+      orders[g] += more;
+      if (orders[g] > groups_[g].largest_order) return false;
+      std::vector<double> squares = tried(orders, groups_[g].name);
+      if (squares.empty()) continue;
+      result.trials.back().exceedance = paired_exceedance(best_, squares);
+      if (!is_better(best_, squares)) continue;
+      accept(result.trials.size() - 1, std::move(squares));
+      return true;
+    }
+    return false;
+  }
+
+  /// Tries every number of intervals: knots elsewhere may be better or worse, so that no few steps show the way. Taken
+  /// is the smallest number than which the best one is not significantly better.
+  bool choose_intervals(std::size_t g) {
+    std::vector<std::vector<double>> squares;
+    std::vector<std::size_t> trial;
+    std::size_t least = 0;
+    for (const int count : interval_counts(groups_[g])) {
+      if (count == result.orders[g]) continue;
+      std::vector<int> orders = result.orders;
+      orders[g] = count;
+      std::vector<double> one = tried(orders, groups_[g].name);
+      if (one.empty()) continue;
+      result.trials.back().exceedance = paired_exceedance(best_, one);
+      trial.push_back(result.trials.size() - 1);
+      squares.push_back(std::move(one));
+      if (mean(squares.back()) < mean(squares[least])) least = squares.size() - 1;
+    }
+    if (squares.empty() || !is_better(best_, squares[least])) return false;
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      if (is_better(squares[i], squares[least])) continue;
+      accept(trial[i], std::move(squares[i]));
+      return true;
+    }
+    return false;
+  }
+
+  OrderSelection result;
+
+ private:
+  std::vector<double> tried(const std::vector<int>& orders, const std::string& raised) {
+    OrderTrial trial;
+    trial.orders = orders;
+    trial.raised = raised;
+    std::vector<double> squares = selection_.held_out_squares(orders, trial.status);
+    if (!squares.empty()) trial.held_out_rms = std::sqrt(mean(squares));
+    result.trials.push_back(std::move(trial));
+    return squares;
+  }
+
+  bool is_better(const std::vector<double>& than, const std::vector<double>& squares) const {
+    return paired_exceedance(than, squares) < options_.significance &&
+           std::sqrt(mean(squares)) < (1 - options_.minimum_gain) * std::sqrt(mean(than));
+  }
+
+  void accept(std::size_t trial, std::vector<double> squares) {
+    result.trials[trial].accepted = true;
+    result.orders = result.trials[trial].orders;
+    best_ = std::move(squares);
+  }
+
+  const std::vector<OrderGroup>& groups_;
+  const OrderSelectionOptions& options_;
+  Selection selection_;
+  std::vector<double> best_;
+};
+
 }  // namespace
 
 std::vector<OrderGroup> order_groups_by_axis(const Machine& machine, const ErrorSet& errors) {
   std::vector<OrderGroup> groups;
-  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
-    OrderGroup group;
-    group.name = machine.axes[axis].name;
-    for (std::size_t m = 0; m < errors.motions.size(); ++m)
-      if (errors.motions[m].axis == axis && is_nested(errors.motions[m].basis)) group.motions.push_back(m);
-    if (!group.motions.empty()) groups.push_back(std::move(group));
-  }
+  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis)
+    for (const bool nested : {true, false}) {
+      OrderGroup group;
+      group.name = machine.axes[axis].name + (nested ? "" : " intervals");
+      group.nested = nested;
+      group.largest_order = 0;
+      for (std::size_t m = 0; m < errors.motions.size(); ++m) {
+        if (errors.motions[m].axis != axis || is_nested(errors.motions[m].basis) != nested) continue;
+        group.motions.push_back(m);
+        group.largest_order = std::max(group.largest_order, order_of(errors.motions[m].basis));
+      }
+      if (!group.motions.empty()) groups.push_back(std::move(group));
+    }
   return groups;
+}
+
+Problem at_nested_orders(Problem problem, const std::vector<OrderGroup>& groups, const std::vector<int>& orders) {
+  std::set<std::size_t> dropped;
+  std::vector<std::size_t> first;
+  std::size_t next = 0;
+  for (const ErrorMotion& motion : problem.errors.motions) {
+    first.push_back(next);
+    next += motion.coefficients.size();
+  }
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (!groups[g].nested) continue;
+    for (const std::size_t m : groups[g].motions) {
+      ErrorMotion& motion = problem.errors.motions[m];
+      // Coefficients above the order are no part of the model: zero, not their present value.
+      for (std::size_t k = size_at_order(motion.basis, orders[g]); k < motion.coefficients.size(); ++k) {
+        motion.coefficients[k] = 0;
+        dropped.insert(first[m] + k);
+      }
+    }
+  }
+  std::vector<std::size_t> kept;
+  for (const std::size_t i : problem.machine_parameters)
+    if (!dropped.count(i)) kept.push_back(i);
+  problem.machine_parameters = std::move(kept);
+  return problem;
+}
+
+OrderSelection select_orders(const ProblemAtOrders& at, const std::vector<OrderGroup>& groups,
+                             const OrderSelectionOptions& options) {
+  Search search(at, groups, options);
+  if (!search.start()) return search.result;
+  // A group is done until another one has changed.
+  std::vector<std::uint8_t> open(groups.size(), 1);
+  while (std::find(open.begin(), open.end(), 1) != open.end()) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      if (open[g] == 0) continue;
+      open[g] = 0;
+      if (!(groups[g].nested ? search.raise(g) : search.choose_intervals(g))) continue;
+      std::fill(open.begin(), open.end(), std::uint8_t{1});
+      if (!groups[g].nested) open[g] = 0;
+    }
+  }
+  search.result.machine_parameters = at(search.result.orders).machine_parameters;
+  return search.result;
 }
 
 OrderSelection select_orders(const Problem& problem, const std::vector<OrderGroup>& groups,
                              const OrderSelectionOptions& options) {
-  OrderSelection result;
-  const Selection selection(problem, groups, options);
-  for (const OrderGroup& group : groups)
-    result.orders.push_back(std::min(group.start_order, selection.highest_order(group)));
-  const auto try_orders = [&](const std::vector<int>& orders, const std::string& raised, std::vector<double>& squares) {
-    OrderTrial trial;
-    trial.orders = orders;
-    trial.raised = raised;
-    squares = selection.held_out_squares(orders, trial.status);
-    if (!squares.empty()) trial.held_out_rms = std::sqrt(mean(squares));
-    result.trials.push_back(std::move(trial));
-  };
-  std::vector<double> best;
-  try_orders(result.orders, "", best);
-  if (best.empty()) return result;
-  result.trials.back().accepted = true;
-  result.done = true;
-  for (bool raised = true; raised;) {
-    raised = false;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-      // Two orders at once as well: an even error may need the fourth and not the third degree.
-      for (const int more : {1, 2}) {
-        std::vector<int> orders = result.orders;
-        orders[g] += more;
-        if (orders[g] > selection.highest_order(groups[g])) break;
-        std::vector<double> squares;
-        try_orders(orders, groups[g].name, squares);
-        if (squares.empty()) continue;
-        OrderTrial& trial = result.trials.back();
-        trial.exceedance = paired_exceedance(best, squares);
-        trial.accepted = trial.exceedance < options.significance &&
-                         trial.held_out_rms < (1 - options.minimum_gain) * std::sqrt(mean(best));
-        if (!trial.accepted) continue;
-        best = std::move(squares);
-        result.orders = orders;
-        raised = true;
-        break;
-      }
-    }
-  }
-  result.machine_parameters = selection.parameters(result.orders);
+  const Eigen::VectorXd start = present_values(problem);
+  OrderSelection result = select_orders(
+      [&](const std::vector<int>& orders) { return at_nested_orders(problem, groups, orders); }, groups, options);
+  set_observations(problem, start);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -8,15 +9,29 @@
 
 namespace abbe {
 
-/// Terms of the error model whose orders are raised together: all motions of X, or the harmonics of C.
+/// Terms of the error model whose orders are raised together: all polynomials of X, or the harmonics of C, or the
+/// splines and tables of Z, whose order is their number of intervals.
 struct OrderGroup {
-  std::string name;                  ///< "X", "C"
-  std::vector<std::size_t> motions;  ///< indices into ErrorSet::motions; nested bases (polynomials, Fourier) only
+  std::string name;                  ///< "X", "C"; "Z intervals" of splines and tables
+  std::vector<std::size_t> motions;  ///< indices into ErrorSet::motions
   int start_order = 1;
+  int largest_order = 1;
+  /// True for polynomials and Fourier series: the lower orders are the first coefficients of the highest. A spline or
+  /// table with fewer intervals is another basis.
+  bool nested = true;
 };
 
-/// One group per axis, of all terms with nested bases of that axis.
+/// Per axis one group of all terms with nested bases, and one of its splines and tables. The largest orders are those
+/// of the bases.
 std::vector<OrderGroup> order_groups_by_axis(const Machine& machine, const ErrorSet& errors);
+
+/// The problem with the model at these orders, one per group. Its observations stay valid until the next call; all
+/// problems have the same readings in the same order.
+using ProblemAtOrders = std::function<Problem(const std::vector<int>& orders)>;
+
+/// A problem with the highest orders at lower ones: of nested groups the higher coefficients are zero and no longer
+/// estimated. Groups that are not nested stay as they are.
+Problem at_nested_orders(Problem problem, const std::vector<OrderGroup>& groups, const std::vector<int>& orders);
 
 struct OrderSelectionOptions {
   int folds = 5;                ///< held-out parts; poses with the same axis positions stay together
@@ -45,8 +60,12 @@ struct OrderSelection {
 
 /// Raises the orders group by group as long as the error at held-out poses falls significantly.
 ///
-/// The problem carries the highest orders allowed; lower orders leave the higher coefficients at zero, so that the
-/// observations need not be built again.
+/// Nested groups are raised by one and by two; of splines and tables every number of intervals is tried.
+OrderSelection select_orders(const ProblemAtOrders& at, const std::vector<OrderGroup>& groups,
+                             const OrderSelectionOptions& options = {});
+
+/// The same for nested groups. The problem carries the highest orders allowed; lower orders leave the higher
+/// coefficients at zero, so that the observations need not be built again. They stand at their start values afterwards.
 OrderSelection select_orders(const Problem& problem, const std::vector<OrderGroup>& groups,
                              const OrderSelectionOptions& options = {});
 

@@ -10,6 +10,7 @@
 #include "abbe/instruments/tracker_observations.h"
 #include "abbe/instruments/tracker_residual.h"
 #include "abbe/instruments/tracker_simulation.h"
+#include "abbe/instruments/tracker_whitening.h"
 
 namespace abbe {
 namespace {
@@ -29,6 +30,7 @@ class TrackerTrials {
         tracker_(tracker),
         errors_(without_errors(problem)),
         parameters_(estimated_parameters(problem)) {
+    if (tracker.readings().stated != StatedUncertainty::none) noise_ = typical_noise(tracker.readings());
     for (const TrialRange& range : measured_ranges(problem.machine, tracker.readings().poses)) {
       from_.push_back(range.from);
       to_.push_back(range.to);
@@ -125,8 +127,12 @@ class TrackerTrials {
   }
 
   void add_trial(std::vector<PossibleMeasurement>& list, std::string words, const PoseList& trial_poses,
-                 const TrackerSetup& setup, const std::vector<Sight>& sights) const {
+                 TrackerSetup setup, const std::vector<Sight>& sights) const {
     if (sights.empty()) return;
+    if (tracker_.readings().stated != StatedUncertainty::none) {
+      // The stations have no noise model of their own then.
+      for (TrackerStation& station : setup.stations) station.noise = noise_;
+    }
     TrackerSimulationOptions options;
     options.measure = tracker_.readings().measure;
     options.noise_factor = 0;
@@ -162,6 +168,7 @@ class TrackerTrials {
   const TrackerObservations& tracker_;
   ErrorSet errors_;
   std::vector<EstimatedParameter> parameters_;
+  TrackerNoise noise_;  ///< if the data state their uncertainties
   std::vector<double> from_, to_;
 };
 

@@ -42,6 +42,45 @@ double median_scale(std::vector<double> scaled_norms) {
   return *middle;
 }
 
+LossMoments loss_moments_at(const Loss& loss, int rows, double norm) {
+  const double w = loss.weight(norm, rows), along = w + norm * loss.weight_slope(norm, rows), m = rows;
+  return {((m - 1) * w + along) / m, w * w * norm * norm / m, ((m - 1) * w * w + along * along) / m};
+}
+
+LossMoments loss_moments(const Loss& loss, int rows) {
+  if (loss.kind == LossKind::none) return {1, loss.scale * loss.scale, 1};
+  constexpr int kSteps = 4000;
+  const double m = rows, to = std::sqrt(m) + 8, step = to / kSteps;
+  const double constant = (1 - m / 2) * std::log(2.0) - std::lgamma(m / 2);
+  LossMoments sum{0, 0, 0};
+  for (int i = 0; i < kSteps; ++i) {
+    const double d = (i + 0.5) * step;
+    const double share = step * std::exp(constant + (m - 1) * std::log(d) - d * d / 2);
+    const LossMoments at = loss_moments_at(loss, rows, d * loss.scale);
+    sum.slope += share * at.slope;
+    sum.square += share * at.square;
+    sum.slope_square += share * at.slope_square;
+  }
+  return sum;
+}
+
+double Loss::weight_slope(double norm, int rows) const {
+  if (kind == LossKind::none) return 0;
+  const double c = scale * (tuning > 0 ? tuning : tuning_constant(kind, rows));
+  const double u = norm / c;
+  switch (kind) {
+    case LossKind::huber:
+      return u <= 1 ? 0 : -1 / (u * u * c);
+    case LossKind::cauchy:
+      return -2 * u / ((1 + u * u) * (1 + u * u) * c);
+    case LossKind::tukey:
+      return u <= 1 ? -4 * u * (1 - u * u) / c : 0;
+    case LossKind::none:
+      break;
+  }
+  return 0;
+}
+
 double Loss::weight(double norm, int rows) const {
   if (kind == LossKind::none) return 1;
   const double c = tuning > 0 ? tuning : tuning_constant(kind, rows);

@@ -22,11 +22,27 @@ struct Loss {
   double scale = 1;   ///< s, in standard uncertainties
 
   double weight(double norm, int rows) const;
+  double weight_slope(double norm, int rows) const;  ///< d(weight)/d(norm), 1/standard uncertainties
   double cost(double norm, int rows) const;
 };
 
 /// Tuning constant for 95 % efficiency with `rows` residuals per reading (1 to 6; beyond 6 that of 6).
 double tuning_constant(LossKind kind, int rows);
+
+/// What a robust estimate's covariance is made of, per residual: the pseudo-residual psi(r) = w(|r|) r of a reading
+/// with m rows has the derivative Psi' = w I + w' r r'/|r|.
+struct LossMoments {
+  double slope = 1;         ///< trace Psi' / m
+  double square = 1;        ///< |psi|^2 / m, squared standard uncertainties
+  double slope_square = 1;  ///< trace (Psi' Psi') / m
+};
+
+/// Of one reading with that norm.
+LossMoments loss_moments_at(const Loss& loss, int rows, double norm);
+
+/// Expected values for readings whose residuals are normal with the loss's scale as standard deviation; integrated over
+/// the distribution of the norm to 1e-6.
+LossMoments loss_moments(const Loss& loss, int rows);
 
 /// Median of the norm of `rows` standard normal residuals (1 to 6).
 double median_norm(int rows);

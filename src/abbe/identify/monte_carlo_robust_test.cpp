@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "abbe/errors/random_stream.h"
+#include "abbe/identify/function_observations_test.h"
+#include "abbe/identify/monte_carlo_comparison.h"
+
+namespace abbe {
+namespace {
+
+using Complex = FunctionObservations::Complex;
+constexpr double kNoise = 0.01;
+const std::vector<double> kTruth = {3, 0.4, 1, 2, 1.3, -1, 0.5};
+
+/// Three rows per reading: a decay, an oscillation and a line.
+Complex model(std::size_t k, std::size_t row, const std::vector<Complex>& b) {
+  const double t = static_cast<double>(k) / 40;
+  if (row == 0) return b[0] * std::exp(-b[1] * t) + b[2];
+  if (row == 1) return b[3] * std::sin(b[4] * t);
+  return b[5] + b[6] * t;
+}
+
+std::vector<double> readings(std::uint64_t seed, double outlier_share = 0) {
+  RandomStream random(seed);
+  const std::vector<Complex> truth(kTruth.begin(), kTruth.end());
+  std::vector<double> data;
+  for (std::size_t k = 0; k < 200; ++k) {
+    const double shift = random.uniform() < outlier_share ? 60 * kNoise : 0;
+    for (std::size_t r = 0; r < 3; ++r)
+      data.push_back(model(k, r, truth).real() + kNoise * random.normal() + shift * random.uniform(-1, 1));
+  }
+  return data;
+}
+
+struct Fitted {
+  FunctionObservations observations;
+  Problem problem;
+  Identification identification;
+
+  Fitted(std::vector<double> data, LossKind loss, double prior_uncertainty = 0)
+      : observations(7, 3, std::move(data), kNoise, model) {
+    observations.start({2.5, 0.3, 0.8, 1.5, 1.2, -0.5, 0.3});
+    problem = function_problem({&observations});
+    if (prior_uncertainty > 0) {
+      problem.priors.push_back({estimated_parameters(problem)[0].id, kTruth[0], prior_uncertainty});
+    }
+    IdentifyOptions options;
+    options.loss = loss;
+    identification = identify(problem, options);
+  }
+  MonteCarloResult simulate(LossKind loss, std::size_t samples, std::uint64_t seed = 1, int threads = 1) const {
+    MonteCarloOptions options;
+    options.samples = samples;
+    options.seed = seed;
+    options.threads = threads;
+    options.loss = loss;
+    return monte_carlo(problem, identification, options);
+  }
+};
+
+TEST(RobustMonteCarlo, agrees_with_the_covariance_on_clean_readings) {
+  for (const LossKind loss : {LossKind::huber, LossKind::cauchy, LossKind::tukey}) {
+    const Fitted fitted(readings(3), loss);
+    ASSERT_EQ(fitted.identification.status, IdentifyStatus::converged);
+    const MonteCarloResult simulated = fitted.simulate(loss, 4000);
+    EXPECT_EQ(simulated.not_settled, 0u);
+    const MonteCarloComparison comparison = compare_with_covariance(fitted.identification, simulated);
+    EXPECT_TRUE(comparison.agrees()) << static_cast<int>(loss) << " " << comparison.smallest_ratio << " "
+                                     << comparison.largest_ratio << " " << comparison.largest_shift;
+    // Least squares repeated for a robust estimate is more certain than that: the test would see it.
+    const MonteCarloResult squares = fitted.simulate(LossKind::none, 4000);
+    double robust = 0, plain = 0;
+    for (Eigen::Index i = 0; i < 7; ++i) {
+      robust += simulated.covariance(i, i) / fitted.identification.covariance(i, i) / 7;
+      plain += squares.covariance(i, i) / fitted.identification.covariance(i, i) / 7;
+    }
+    EXPECT_NEAR(robust, 1, 0.03);
+    EXPECT_NEAR(plain, 0.95, 0.03);
+  }
+}
+
+TEST(RobustMonteCarlo, agrees_with_identifying_simulated_readings_again) {
+  const Fitted fitted(readings(3), LossKind::tukey);
+  const MonteCarloResult simulated = fitted.simulate(LossKind::tukey, 4000);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(7), square = sum;
+  constexpr int kRepetitions = 400;
+  for (int i = 0; i < kRepetitions; ++i) {
+    const Fitted one(readings(static_cast<std::uint64_t>(i) + 100), LossKind::tukey);
+    ASSERT_EQ(one.identification.status, IdentifyStatus::converged);
+    sum += one.identification.estimates;
+    square += one.identification.estimates.cwiseAbs2();
+  }
+  // Standard deviation of a standard deviation from 400: 3.5 %.
+  for (Eigen::Index i = 0; i < 7; ++i) {
+    const double mean = sum[i] / kRepetitions, spread = std::sqrt(square[i] / kRepetitions - mean * mean);
+    EXPECT_NEAR(std::sqrt(simulated.covariance(i, i)) / spread, 1, 0.13) << i;
+  }
+}
+
+TEST(RobustMonteCarlo, repeats_the_outliers_that_were_found) {
+  const Fitted fitted(readings(5, 0.25), LossKind::tukey);
+  ASSERT_EQ(fitted.identification.status, IdentifyStatus::converged);
+  ASSERT_GT(fitted.identification.outliers.size(), 30u);
+  const MonteCarloResult simulated = fitted.simulate(LossKind::tukey, 3000);
+  double mean = 0;
+  for (Eigen::Index i = 0; i < 7; ++i)
+    mean += std::sqrt(simulated.covariance(i, i)) / fitted.identification.standard_uncertainties[i] / 7;
+  // Which readings are lost matters to single parameters by sqrt(1 / readings of weight); in the mean it does not.
+  EXPECT_NEAR(mean, 1, 0.04);
+  // Least squares of the same samples knows nothing of outliers and states the uncertainty of clean readings.
+  const MonteCarloResult clean = fitted.simulate(LossKind::none, 1000);
+  EXPECT_LT(clean.covariance(0, 0), 0.85 * simulated.covariance(0, 0));
+}
+
+TEST(RobustMonteCarlo, a_prior_keeps_its_weight) {
+  // A prior as good as the readings: half of the information is touched by the loss and half is not.
+  const Fitted free(readings(7), LossKind::huber);
+  const double u = free.identification.standard_uncertainties[0];
+  const Fitted fitted(readings(7), LossKind::huber, u);
+  const MonteCarloComparison comparison =
+      compare_with_covariance(fitted.identification, fitted.simulate(LossKind::huber, 8000));
+  EXPECT_TRUE(comparison.agrees()) << comparison.smallest_ratio << " " << comparison.largest_ratio;
+  const Fitted certain(readings(7), LossKind::huber, 1e-4 * u);
+  EXPECT_NEAR(certain.identification.standard_uncertainties[0] / (1e-4 * u), 1, 1e-6);
+}
+
+TEST(RobustMonteCarlo, does_not_depend_on_the_number_of_threads) {
+  const Fitted fitted(readings(5, 0.1), LossKind::cauchy);
+  const MonteCarloResult one = fitted.simulate(LossKind::cauchy, 200, 2, 1);
+  const MonteCarloResult three = fitted.simulate(LossKind::cauchy, 200, 2, 3);
+  EXPECT_EQ(one.covariance, three.covariance);
+  EXPECT_EQ(one.percentiles, three.percentiles);
+}
+
+}  // namespace
+}  // namespace abbe
