@@ -225,6 +225,7 @@ void write_folder(const std::filesystem::path& output, const std::vector<Populat
   folder.write("decoupled.errors.toml", errors_text(machine, contents, "decoupled.covariance.csv"));
   folder.write("decoupled.covariance.csv", covariance_text(machine, contents));
   for (const auto& [name, text] : wang_indication_files(dials.study)) folder.write("grids/" + name, text);
+  for (const auto& [name, text] : wang_ball_bar_files(dials.study)) folder.write("ball_bar/" + name, text);
   ParameterCovariance covariance;
   covariance.covariance = decoupled.covariance;
   for (std::size_t p = 0; p < decoupled.errors.parameter_count(); ++p) covariance.parameters.push_back(p);
@@ -264,7 +265,7 @@ int reproduce_wang(const ReproduceOptions& options) {
                                   {"displacements", list(displacement.machine)}};
     json["mean_columns"] = {{"rows", mean_column.rows}, {"equal_to_cut_off_mean", mean_column.equal}};
     json["dials"] = wang_dials_json(dials);
-    json["ball_bar_circular_deviation_um"] = wang_ball_bar_json();
+    json["ball_bar_circular_deviation_um"] = wang_ball_bar_json(dials.study);
     for (const PopulationRow& row : populations) json["populations_um"][row.name] = population_json(row.population);
     fmt::print("{}\n", json_text(json));
     return kDone;
@@ -315,7 +316,7 @@ int reproduce_wang(const ReproduceOptions& options) {
       angles / displacements, populations[3].population.norm.mean / displacements);
   fmt::print("  The paper speaks of 'near 3 million (12^6)' points and shows 36 of them.\n\n");
 
-  print_wang_ball_bar(displacement.machine.norm());
+  print_wang_ball_bar(dials.study, displacement.machine.norm());
   print_wang_dials(dials);
 
   // A pose away from zero shows what (33) and (35) leave out.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -16,9 +17,25 @@ struct WangCircle {
   std::vector<double> deviation;  ///< bar length less 100 mm as indicated, [360] by degrees, mm
   double circular = 0;            ///< ISO 230-4 circular deviation G about the least-squares centre, mm
   bool converged = false;         ///< G exists
+  /// Standard uncertainties propagated from those of the errors, mm; empty and 0 without a covariance.
+  std::vector<double> uncertainty;  ///< [360] of the deviation
+  double circular_uncertainty = 0;  ///< of G
 };
 
 /// What a ball bar would read with these errors, in three planes.
-std::vector<WangCircle> wang_ball_bar(const ErrorSet& errors);
+///
+/// Uncertainties of the deviation are of first order, with analytic derivatives of the indicated length; that of G is
+/// found from 400 traces drawn from the covariance of the deviations, because noise also chooses the angles that decide
+/// G. A trace with noise is wider than one without: its share in U(G) is not only scatter.
+/// @param covariance  null, or of ErrorSet::parameters(), [p, p]
+std::vector<WangCircle> wang_ball_bar(const ErrorSet& errors, const Eigen::MatrixXd* covariance = nullptr);
+
+/// CSV text of a circle: angle_deg, deviation_um and, with an uncertainty, U_k2_um and the deviation of
+/// `without_noise`.
+std::string wang_circle_csv(const WangCircle& circle, const WangCircle& without_noise);
+/// Polar plot of the same as SVG text, the k = 2 band by its two edges.
+std::string wang_circle_svg(const WangCircle& circle, const WangCircle& without_noise);
+/// Share of the angles at which the deviation of `without_noise` lies within k = 2.
+double wang_share_within(const WangCircle& circle, const WangCircle& without_noise);
 
 }  // namespace abbe

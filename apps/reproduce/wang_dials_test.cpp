@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "abbe/errors/random_stream.h"
@@ -100,6 +101,49 @@ TEST(WangBallBar, StraightnessMovesTheBarAsTheGeometrySays) {
     EXPECT_LT(circle.circular, 0.025);
     EXPECT_GT(circle.circular, 0.002);
   }
+}
+
+TEST(WangBallBar, UncertaintyOfTheTraceIsThatOfItsScatterOverCampaigns) {
+  const WangDialStudy study = wang_dial_study(1);
+  const std::vector<WangCircle> exact = wang_ball_bar(study.without_noise.errors);
+  const std::vector<WangCircle> circles = wang_ball_bar(study.with_noise.errors, &study.with_noise.covariance);
+  // Whole campaigns of dials and laser, decoupled each and driven on the exact chain: no derivative is used.
+  constexpr int kCampaigns = 120;
+  const std::size_t angles[] = {0, 37, 90, 200, 315};
+  double squares[3][5] = {}, circular[3] = {}, within = 0;
+  for (int seed = 1; seed <= kCampaigns; ++seed) {
+    const WangDialStudy campaign = wang_dial_study(static_cast<std::uint64_t>(100 + seed));
+    const std::vector<WangCircle> one = wang_ball_bar(campaign.with_noise.errors);
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t i = 0; i < 5; ++i) {
+        const double off = one[c].deviation[angles[i]] - exact[c].deviation[angles[i]];
+        squares[c][i] += off * off / kCampaigns;
+        within += std::abs(off) <= 2 * circles[c].uncertainty[angles[i]] ? 1 : 0;
+      }
+      const double off = one[c].circular - exact[c].circular;
+      circular[c] += off * off / kCampaigns;
+    }
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t i = 0; i < 5; ++i) {
+      // A standard deviation of 120 scatters by 1 / sqrt(240) = 6.5 %.
+      EXPECT_NEAR(std::sqrt(squares[c][i]) / circles[c].uncertainty[angles[i]], 1, 0.25) << c << " " << angles[i];
+    }
+    EXPECT_NEAR(std::sqrt(circular[c]) / circles[c].circular_uncertainty, 1, 0.25) << c;
+  }
+  EXPECT_NEAR(within / (kCampaigns * 15), 0.9545, 0.03);
+}
+
+TEST(WangBallBar, TableAndPictureCarryTheBand) {
+  const WangDialStudy study = wang_dial_study(1);
+  const WangCircle exact = wang_ball_bar(study.without_noise.errors)[0];
+  const WangCircle circle = wang_ball_bar(study.with_noise.errors, &study.with_noise.covariance)[0];
+  const std::string csv = wang_circle_csv(circle, exact);
+  EXPECT_EQ(csv.find("angle_deg,deviation_um,U_k2_um,deviation_without_noise_um\n0,"), 0U);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 361);
+  const std::string svg = wang_circle_svg(circle, exact);
+  EXPECT_NE(svg.find("expanded uncertainty, k = 2"), std::string::npos);
+  EXPECT_GT(wang_share_within(circle, exact), 0.6);
 }
 
 TEST(WangBallBar, NoErrorsGiveACircle) {

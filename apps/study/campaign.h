@@ -47,6 +47,8 @@ class CampaignSetup {
   virtual std::unique_ptr<Observations> exact_observations(const Machine& machine, const ErrorSet& errors) const = 0;
 
   virtual std::vector<KnownUnknown> known_unknowns() const = 0;
+  /// The same unknowns with what they really are; simulation only.
+  virtual std::vector<KnownUnknown> true_unknowns() const = 0;
 };
 
 /// All readings of a study, measured or simulated, and what is known about them.

@@ -17,15 +17,15 @@ namespace {
 // A stream of its own, apart from those of the readings.
 constexpr std::uint64_t kTruthStream = 1'000'000'007;
 
-/// Poses of a plan for one item.
-PoseList item_poses(const Machine& machine, const Instrument& device, const MeasurementPlan& plan, std::size_t item,
-                    std::uint64_t seed) {
+/// Poses of a plan for one target; those with points that meet are items.
+PoseList target_poses(const Machine& machine, const Instrument& device, const MeasurementPlan& plan, std::size_t target,
+                      std::uint64_t seed) {
   if (plan.kind != PlanKind::circle && plan.kind != PlanKind::follow) return plan_poses(machine, plan, seed);
-  const std::optional<MeetingPoints> points = device.meeting_points(item);
+  const std::optional<MeetingPoints> points = device.meeting_points(target);
   if (!points) {
     throw std::invalid_argument(device.name() + " has no points that meet; use a plan of another kind");
   }
-  const InstrumentItem& ends = device.items()[item];
+  const InstrumentItem& ends = device.items()[target];
   PoseList poses;
   if (plan.kind == PlanKind::circle) {
     std::vector<double> positions;
@@ -52,6 +52,7 @@ std::shared_ptr<const Instrument> true_device(const Study& study, std::size_t se
 void simulate(const Study& study, std::size_t setup_index, const ErrorSet& truth, InstrumentCampaign& result) {
   const Setup& setup = study.setups[setup_index];
   const std::shared_ptr<const Instrument> device = true_device(study, setup_index);
+  for (const SetupQuantity& quantity : device->quantities()) result.truth.push_back(quantity.value);
   for (std::size_t p = 0; p < setup.plans.size(); ++p) {
     const std::uint64_t seed = plan_seed(study, setup_index, p);
     // Poses are planned with what is known of the set-up, not with what it really is.
@@ -136,22 +137,32 @@ std::vector<KnownUnknown> InstrumentCampaign::known_unknowns() const {
   return known;
 }
 
+std::vector<KnownUnknown> InstrumentCampaign::true_unknowns() const {
+  std::vector<double> estimated;
+  for (std::size_t q = 0; q < truth.size(); ++q) {
+    if (device->quantities()[q].knowledge != Knowledge::exact) estimated.push_back(truth[q]);
+  }
+  std::vector<KnownUnknown> known = known_unknowns();
+  for (KnownUnknown& one : known) one.value = estimated.at(one.unknown);
+  return known;
+}
+
 InstrumentReadings planned_readings(const Machine& machine, const Instrument& device, const MeasurementPlan& plan,
                                     std::uint64_t seed, const std::string& setup_name) {
   InstrumentReadings readings;
-  for (const std::size_t item : plan.targets) {
-    PoseList poses;
+  for (const std::size_t target : plan.targets) {
     try {
-      poses = item_poses(machine, device, plan, item, seed);
+      const PoseList poses = target_poses(machine, device, plan, target, seed);
+      for (std::size_t k = 0; k < poses.count(); ++k) {
+        const std::size_t item = device.item_at(machine, target, poses.pose(k));
+        for (const std::vector<double>& inputs : device.planned_inputs(item)) {
+          readings.append(poses.pose(k), item, inputs);
+        }
+      }
     } catch (const std::invalid_argument& error) {
       throw InputError({.file = setup_name, .field = "plan"},
-                       fmt::format("{}: {}", device.items()[item].name, error.what()),
-                       "poses within the travel of the machine");
-    }
-    for (std::size_t k = 0; k < poses.count(); ++k) {
-      for (const std::vector<double>& inputs : device.planned_inputs(item)) {
-        readings.append(poses.pose(k), item, inputs);
-      }
+                       fmt::format("{}: {}", device.target_names()[target], error.what()),
+                       "poses at which it can be measured, within the travel of the machine");
     }
   }
   return readings;

@@ -13,7 +13,8 @@ class InstrumentCampaign : public CampaignSetup {
   std::shared_ptr<const Instrument> device;  ///< with the stated values
   std::vector<double> start;                 ///< [quantities] values the identification starts with
   InstrumentReadings readings;
-  InstrumentReadings exact;  ///< simulation: the same readings without noise and outliers
+  InstrumentReadings exact;   ///< simulation: the same readings without noise and outliers
+  std::vector<double> truth;  ///< simulation: [quantities] what they really are
 
   const PoseList& poses() const override { return readings.poses; }
   const std::vector<double>& time_s() const override { return readings.time_s; }
@@ -22,6 +23,7 @@ class InstrumentCampaign : public CampaignSetup {
   std::unique_ptr<Observations> observations(const Machine& machine, const ErrorSet& errors) const override;
   std::unique_ptr<Observations> exact_observations(const Machine& machine, const ErrorSet& errors) const override;
   std::vector<KnownUnknown> known_unknowns() const override;
+  std::vector<KnownUnknown> true_unknowns() const override;
 
  private:
   std::unique_ptr<Observations> observe(const Machine& machine, const ErrorSet& errors,

@@ -198,7 +198,7 @@ std::unique_ptr<Observations> TrackerCampaign::exact_observations(const Machine&
   return std::make_unique<TrackerObservations>(machine, errors, start, exact);
 }
 
-std::vector<KnownUnknown> TrackerCampaign::known_unknowns() const {
+std::vector<KnownUnknown> TrackerCampaign::known_offsets(const TrackerSetup& from) const {
   // The unknowns are ordered: poses of the estimated stations, then offsets of the estimated reflectors.
   std::size_t unknown = 0;
   for (const TrackerStation& station : start.stations) unknown += station.estimate_pose ? 6U : 0U;
@@ -207,11 +207,14 @@ std::vector<KnownUnknown> TrackerCampaign::known_unknowns() const {
     if (!start.reflectors[r].estimate_offset) continue;
     for (int k = 0; k < 3; ++k, ++unknown) {
       const double uncertainty = r < offset_uncertainty.size() ? offset_uncertainty[r][k] : 0.0;
-      if (uncertainty > 0) known.push_back({unknown, start.reflectors[r].offset[k], uncertainty});
+      if (uncertainty > 0) known.push_back({unknown, from.reflectors[r].offset[k], uncertainty});
     }
   }
   return known;
 }
+
+std::vector<KnownUnknown> TrackerCampaign::known_unknowns() const { return known_offsets(start); }
+std::vector<KnownUnknown> TrackerCampaign::true_unknowns() const { return known_offsets(truth); }
 
 std::unique_ptr<CampaignSetup> gather_tracker(const Study& study, std::size_t setup, const ErrorSet* truth,
                                               const ProgressCallback& progress) {

@@ -22,6 +22,10 @@ class TrackerCampaign : public CampaignSetup {
   std::unique_ptr<Observations> observations(const Machine& machine, const ErrorSet& errors) const override;
   std::unique_ptr<Observations> exact_observations(const Machine& machine, const ErrorSet& errors) const override;
   std::vector<KnownUnknown> known_unknowns() const override;
+  std::vector<KnownUnknown> true_unknowns() const override;
+
+ private:
+  std::vector<KnownUnknown> known_offsets(const TrackerSetup& from) const;
 };
 
 /// Stations and reflectors of a tracker's set-up; `truth` chooses the true values of a simulation.

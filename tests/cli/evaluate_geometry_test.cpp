@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "cli/command_test.h"
+#include "cli/evaluate_for_test.h"
 
 namespace abbe {
 namespace {
@@ -11,24 +11,11 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kExamples = std::string(ABBE_SOURCE_DIR) + "/examples/evaluate/";
-
 /// `abbe evaluate` of the examples of circular tests, axes of rotation, straightness and squareness.
-class EvaluateGeometry : public CommandTest {
+class EvaluateGeometry : public EvaluateTest {
  protected:
   nlohmann::json figures(std::vector<std::string> arguments, int exit_code = ExitCode::done) const {
-    arguments.insert(arguments.begin(), "evaluate");
-    arguments.emplace_back("--json");
-    const CommandResult result = abbe(arguments);
-    EXPECT_EQ(result.exit_code, exit_code) << result.err;
-    return nlohmann::json::parse(result.out).at("figures");
-  }
-  void expect_refused(std::vector<std::string> arguments, const std::string& message) const {
-    arguments.insert(arguments.begin(), "evaluate");
-    const CommandResult result = abbe(arguments);
-    EXPECT_EQ(result.exit_code, ExitCode::bad_input);
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(result.err, "abbe: " + message + "\n");
+    return json(std::move(arguments), exit_code).at("figures");
   }
   /// The true value lies within the stated expanded uncertainty and a little more, for what the simulation has besides.
   static void expect_covers(const nlohmann::json& figure, const std::string& unit, double truth, double allowance) {
@@ -38,7 +25,7 @@ class EvaluateGeometry : public CommandTest {
 };
 
 TEST_F(EvaluateGeometry, CausesOfTheCircularExampleAreThoseItWasMadeWith) {
-  const auto figures = this->figures({"circular", kExamples + "circular.csv", "--radius-mm", "150", "--u-reading-um",
+  const auto figures = this->figures({"circular", examples + "circular.csv", "--radius-mm", "150", "--u-reading-um",
                                       "0.2", "--feed-mm-min", "1000", "--skip-reversal-deg", "10"});
   expect_covers(figures.at("scale_X"), "um_per_m", 20, 0.3);
   expect_covers(figures.at("scale_Y"), "um_per_m", -8, 0.3);
@@ -55,7 +42,7 @@ TEST_F(EvaluateGeometry, CausesOfTheCircularExampleAreThoseItWasMadeWith) {
   EXPECT_GT(both, 0.95 * std::max(cw, ccw));
   EXPECT_GT(cw, 3);
   const auto zone =
-      this->figures({"circular", kExamples + "circular.csv", "--radius-mm", "150", "--centre", "minimum-zone"});
+      this->figures({"circular", examples + "circular.csv", "--radius-mm", "150", "--centre", "minimum-zone"});
   EXPECT_LT(zone.at("G_b").at("value_um"), both);
   EXPECT_FALSE(zone.at("G_b").contains("expanded_uncertainty_um"));
 }
@@ -74,7 +61,7 @@ TEST_F(EvaluateGeometry, ShortArcsSayWhatIsMissingAndTheExitCodeIsNegative) {
 
 TEST_F(EvaluateGeometry, RotationExampleHasItsLobesAndItsAsynchronousPart) {
   const auto figures =
-      this->figures({"rotation", kExamples + "rotation.csv", "--plane-distance-mm", "80", "--u-reading-um", "0.02"});
+      this->figures({"rotation", examples + "rotation.csv", "--plane-distance-mm", "80", "--u-reading-um", "0.02"});
   // 0.35 cos 2t + 0.12 cos(3t + 1), and 0.15 cos 2.4 t that comes back after five turns; noise 0.02.
   EXPECT_NEAR(figures.at("radial_x1_synchronous").at("value_um"), 0.8, 0.15);
   EXPECT_NEAR(figures.at("radial_x1_asynchronous").at("value_um"), 0.3, 0.1);
@@ -95,25 +82,25 @@ TEST_F(EvaluateGeometry, TooFewTurnsGiveNoErrorMotion) {
 }
 
 TEST_F(EvaluateGeometry, StraightnessAndSquarenessOfTheExamples) {
-  const auto straight = figures({"straightness", kExamples + "straightness.csv", "--u-reading-um", "0.3"});
+  const auto straight = figures({"straightness", examples + "straightness.csv", "--u-reading-um", "0.3"});
   const double least = straight.at("straightness_ls").at("value_um"),
                zone = straight.at("straightness_mz").at("value_um");
   EXPECT_LE(zone, least);
   EXPECT_NEAR(zone, 3, 1.2);
   EXPECT_GT(straight.at("straightness_mz").at("expanded_uncertainty_um"), 0.6);
   for (const std::string reference : {"least-squares", "minimum-zone"}) {
-    const auto square = figures({"squareness", kExamples + "squareness.csv", "--u-reading-um", "0.3", "--u-square-urad",
+    const auto square = figures({"squareness", examples + "squareness.csv", "--u-reading-um", "0.3", "--u-square-urad",
                                  "1", "--reference", reference});
     expect_covers(square.at("squareness"), "urad", -12, 1);
   }
-  const auto shifted = figures({"squareness", kExamples + "squareness.csv", "--square-urad=-5"});
-  const auto plain = figures({"squareness", kExamples + "squareness.csv"});
+  const auto shifted = figures({"squareness", examples + "squareness.csv", "--square-urad=-5"});
+  const auto plain = figures({"squareness", examples + "squareness.csv"});
   EXPECT_NEAR(shifted.at("squareness").at("value_urad"), plain.at("squareness").at("value_urad").get<double>() - 5,
               1e-6);
 }
 
 TEST_F(EvaluateGeometry, TolerancesCompareMagnitudesAndDecideTheExitCode) {
-  const std::string file = kExamples + "squareness.csv";
+  const std::string file = examples + "squareness.csv";
   EXPECT_EQ(abbe({"evaluate", "squareness", file, "--tolerance", "squareness_urad=20"}).exit_code, ExitCode::done);
   // -12 urad is below 5, but not within it.
   EXPECT_EQ(abbe({"evaluate", "squareness", file, "--tolerance", "squareness_urad=5"}).exit_code,
@@ -122,10 +109,10 @@ TEST_F(EvaluateGeometry, TolerancesCompareMagnitudesAndDecideTheExitCode) {
 
 TEST_F(EvaluateGeometry, ResultsFoldersHoldPlotsAndAPage) {
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases = {
-      {{"circular", kExamples + "circular.csv", "--radius-mm", "150"}, {"plot.svg", "causes.svg"}},
-      {{"rotation", kExamples + "rotation.csv"}, {"radial_x1.svg", "radial_rotating_2.svg", "axial.svg"}},
-      {{"straightness", kExamples + "straightness.csv"}, {"plot.svg"}},
-      {{"squareness", kExamples + "squareness.csv"}, {"line-1.svg", "line-2.svg"}}};
+      {{"circular", examples + "circular.csv", "--radius-mm", "150"}, {"plot.svg", "causes.svg"}},
+      {{"rotation", examples + "rotation.csv"}, {"radial_x1.svg", "radial_rotating_2.svg", "axial.svg"}},
+      {{"straightness", examples + "straightness.csv"}, {"plot.svg"}},
+      {{"squareness", examples + "squareness.csv"}, {"line-1.svg", "line-2.svg"}}};
   for (const auto& [arguments, plots] : cases) {
     std::vector<std::string> command = {"evaluate"};
     command.insert(command.end(), arguments.begin(), arguments.end());
@@ -140,9 +127,9 @@ TEST_F(EvaluateGeometry, ResultsFoldersHoldPlotsAndAPage) {
 }
 
 TEST_F(EvaluateGeometry, BadOptionsAndFilesAreSaid) {
-  expect_refused({"circular", kExamples + "circular.csv", "--radius-mm", "nan"},
+  expect_refused({"circular", examples + "circular.csv", "--radius-mm", "nan"},
                  "--radius-mm: 'nan' is no such number; expected a length in mm from 0.001 to 1e+06");
-  expect_refused({"circular", kExamples + "circular.csv", "--radius-mm", "150", "--u-reading-um=-1"},
+  expect_refused({"circular", examples + "circular.csv", "--radius-mm", "150", "--u-reading-um=-1"},
                  "--u-reading-um: '-1' is no such number; expected a length in um from 0 to 1e+06");
   folder.write("p.csv", "X_mm,Z_mm,direction\n100,0,cw\n");
   expect_refused(

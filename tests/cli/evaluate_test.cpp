@@ -1,8 +1,6 @@
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
-
-#include "cli/command_test.h"
+#include "cli/evaluate_for_test.h"
 
 namespace abbe {
 namespace {
@@ -14,24 +12,7 @@ const char* const kByHand =
     "run,direction,target_mm,deviation_um\n1,+,0,1\n1,+,100,4\n1,-,100,5\n1,-,0,-1\n2,+,0,3\n2,+,100,4\n2,-,100,7\n"
     "2,-,0,-1\n";
 
-class Evaluate : public CommandTest {
- protected:
-  nlohmann::json json(std::vector<std::string> arguments, int expected_exit = ExitCode::done) const {
-    arguments.insert(arguments.begin(), "evaluate");
-    arguments.emplace_back("--json");
-    const CommandResult result = abbe(arguments);
-    EXPECT_EQ(result.exit_code, expected_exit) << result.err;
-    return nlohmann::json::parse(result.out, nullptr, false);
-  }
-  void expect_refused(std::vector<std::string> arguments, const std::string& message) const {
-    arguments.insert(arguments.begin(), "evaluate");
-    const CommandResult result = abbe(arguments);
-    EXPECT_EQ(result.exit_code, ExitCode::bad_input);
-    EXPECT_EQ(result.out, "");
-    EXPECT_EQ(result.err, "abbe: " + message + "\n");
-  }
-  const std::string examples = std::string(ABBE_SOURCE_DIR) + "/examples/evaluate/";
-};
+class Evaluate : public EvaluateTest {};
 
 TEST_F(Evaluate, FiguresInTheirUnit) {
   folder.write("x.csv", kByHand);

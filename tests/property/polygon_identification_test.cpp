@@ -9,6 +9,7 @@
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/instruments/polygon_gauge.h"
+#include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
 namespace {
@@ -16,16 +17,6 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kArcsec = std::numbers::pi / (180 * 3600);
 constexpr std::size_t kCoefficients = 9;  // constant and four harmonics
-
-Machine rotary_table() {
-  Machine machine;
-  machine.name = "rotary table";
-  Axis c{.name = "C", .kind = AxisKind::rotary, .side = ChainSide::workpiece};
-  c.direction = Eigen::Vector3d::UnitZ();
-  c.travel_max = kTurn;
-  machine.axes = {c};
-  return machine;
-}
 
 ErrorSet table_errors(std::uint64_t seed) {
   RandomStream random(seed);
@@ -48,8 +39,7 @@ ErrorSet table_errors(std::uint64_t seed) {
 PolygonGaugeSetup prism(std::uint64_t seed) {
   PolygonGaugeSetup setup;
   setup.polygon = regular_polygon(12, 48.3, 17);
-  setup.shifts = {0, 1};
-  setup.mounts.resize(2);
+  setup.mounts = {{"mount1", 0}, {"mount2", 1}};
   if (seed == 0) return setup;
   RandomStream random(seed);
   const auto angle = [&](double arcsec) { return random.uniform(-arcsec, arcsec) * kArcsec; };
@@ -59,17 +49,14 @@ PolygonGaugeSetup prism(std::uint64_t seed) {
     face.tilt = angle(5);
     face.distance += length(1);
   }
-  for (PolygonMount& mount : setup.mounts) {
-    for (int i = 0; i < 3; ++i) {
-      mount.angles[i] = angle(20);
-      mount.offset[i] = length(10);
-    }
+  for (PolygonGaugeSetup::Mount& mount : setup.mounts) {
+    for (std::size_t i = 0; i < 6; ++i) mount.numbers[i].value = i < 3 ? angle(20) : length(10);
   }
   return setup;
 }
 
 TEST(PolygonIdentification, AMachinesRotaryAxisIsIdentifiedTogetherWithThePrism) {
-  const Machine machine = rotary_table();
+  const Machine machine = test::rotary_table();
   const ErrorSet truth = table_errors(4);
   const auto actual = std::make_shared<PolygonGauge>(prism(6));
   const auto nominal = std::make_shared<PolygonGauge>(prism(0));
@@ -117,10 +104,9 @@ TEST(PolygonIdentification, AMachinesRotaryAxisIsIdentifiedTogetherWithThePrism)
 }
 
 TEST(PolygonIdentification, OneMountCannotTellTheTableFromThePrism) {
-  const Machine machine = rotary_table();
+  const Machine machine = test::rotary_table();
   PolygonGaugeSetup setup = prism(0);
-  setup.shifts = {0};
-  setup.mounts.resize(1);
+  setup.mounts.pop_back();
   const auto nominal = std::make_shared<PolygonGauge>(setup);
   InstrumentSimulationOptions options;
   const InstrumentReadings readings =

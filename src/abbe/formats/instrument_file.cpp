@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "abbe/formats/axis_columns.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/number_text.h"
@@ -14,36 +17,51 @@ Quantity quantity_of(const ReadingComponent& component) {
   return component.is_angle ? Quantity::angle : Quantity::length;
 }
 
-std::string item_names(const Instrument& instrument) {
+std::string all_of(const std::vector<std::string>& targets) {
   std::string names;
-  for (const InstrumentItem& item : instrument.items()) names += (names.empty() ? "" : ", ") + item.name;
+  for (const std::string& target : targets) names += (names.empty() ? "" : ", ") + target;
   return names;
 }
 
-/// Index of every reading's item.
-std::vector<std::uint16_t> take_items(std::string_view text, const std::string& file, const Instrument& instrument,
+/// Index of every reading's target.
+std::vector<std::size_t> take_targets(std::string_view text, const std::string& file, const Instrument& instrument,
                                       const CsvValues& column, std::size_t rows) {
-  const std::vector<InstrumentItem>& items = instrument.items();
+  const std::vector<std::string> targets = instrument.target_names();
   if (!column.present) {
-    if (items.size() == 1) return std::vector<std::uint16_t>(rows, 0);
-    throw InputError({file, 0, 0, "item"}, "missing column",
-                     "item, with one of " + item_names(instrument) + " in every row");
+    if (targets.size() == 1) return std::vector<std::size_t>(rows, 0);
+    throw InputError({file, 0, 0, "item"}, "missing column", "item, with one of " + all_of(targets) + " in every row");
   }
-  std::vector<std::uint16_t> index_of_name;
+  std::vector<std::size_t> index_of_name;
   for (const std::string& name : column.names) {
-    std::size_t item = 0;
-    while (item < items.size() && items[item].name != name) ++item;
-    index_of_name.push_back(static_cast<std::uint16_t>(item));
+    index_of_name.push_back(
+        static_cast<std::size_t>(std::find(targets.begin(), targets.end(), name) - targets.begin()));
   }
-  std::vector<std::uint16_t> result(rows);
+  std::vector<std::size_t> result(rows);
   for (std::size_t row = 0; row < rows; ++row) {
     result[row] = index_of_name[column.words[row]];
-    if (result[row] < items.size()) continue;
+    if (result[row] < targets.size()) continue;
     throw InputError({file, csv_line(text, row), 0, column.header},
                      fmt::format("{} has no item '{}'", instrument.name(), column.names[column.words[row]]),
-                     "one of " + item_names(instrument));
+                     "one of " + all_of(targets));
   }
   return result;
+}
+
+/// Index of every reading's item.
+std::vector<std::uint16_t> take_items(std::string_view text, const std::string& file, const Machine& machine,
+                                      const Instrument& instrument, const std::vector<std::size_t>& targets,
+                                      const PoseList& poses) {
+  std::vector<std::uint16_t> items(targets.size());
+  for (std::size_t row = 0; row < targets.size(); ++row) {
+    try {
+      items[row] = static_cast<std::uint16_t>(instrument.item_at(machine, targets[row], poses.pose(row)));
+    } catch (const std::invalid_argument& error) {
+      throw InputError({file, csv_line(text, row), 0, "item"},
+                       fmt::format("{}: {}", instrument.target_names()[targets[row]], error.what()),
+                       "a pose at which it can be measured");
+    }
+  }
+  return items;
 }
 
 std::vector<std::vector<double>> take_columns(CsvTable& table, std::size_t first, std::size_t count) {
@@ -83,8 +101,9 @@ InstrumentReadings parse_instrument_readings(std::string_view text, const std::s
 
   CsvTable table = read_csv(text, file, wanted, options.mapping, options.threads);
   InstrumentReadings readings;
-  readings.item = take_items(text, file, instrument, table.columns[item], table.rows);
+  const std::vector<std::size_t> targets = take_targets(text, file, instrument, table.columns[item], table.rows);
   readings.poses = take_poses(text, file, machine, table, options.check_travel);
+  readings.item = take_items(text, file, machine, instrument, targets, readings.poses);
   readings.inputs = take_columns(table, input, instrument.inputs().size());
   readings.measured = take_columns(table, component, rows_each);
   std::size_t stated = 0, absent = uncertainty;
@@ -139,7 +158,8 @@ std::string instrument_readings_text(const Machine& machine, const Instrument& i
   }
   if (!readings.time_s.empty()) add("time", Quantity::time, "s", readings.time_s);
 
-  const bool named = instrument.items().size() > 1;
+  const std::vector<std::string> targets = instrument.target_names();
+  const bool named = targets.size() > 1;
   std::string text;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (i == axes && named) text += ",item";
@@ -148,7 +168,7 @@ std::string instrument_readings_text(const Machine& machine, const Instrument& i
   text += '\n';
   for (std::size_t row = 0; row < readings.count(); ++row) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (i == axes && named) text += "," + csv_field(instrument.items()[readings.item[row]].name);
+      if (i == axes && named) text += "," + csv_field(targets[instrument.target_of(readings.item[row])]);
       if (i > 0) text += ',';
       text += quantity_text((*columns[i].numbers)[row], *columns[i].unit);
     }

@@ -17,6 +17,7 @@ constexpr Kind kKinds[] = {
     {"level", read_level},
     {"autocollimator", read_autocollimator},
     {"board-marks", read_board_marks},
+    {"polygon", read_polygon},
     {"interferometer", read_interferometer},
     {"tracking-interferometer", read_tracking_interferometer},
 };

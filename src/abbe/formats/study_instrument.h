@@ -30,6 +30,7 @@ std::shared_ptr<Instrument> read_ball_bar(TomlTable& table, const InstrumentCont
 std::shared_ptr<Instrument> read_board_marks(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_dials(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_level(TomlTable& table, const InstrumentContext& context);
+std::shared_ptr<Instrument> read_polygon(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_r_test(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_surface_probe(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_touch_probe(TomlTable& table, const InstrumentContext& context);

@@ -175,9 +175,7 @@ PlanNames plan_names(const Setup& setup) {
   PlanNames names;
   names.key = setup.device ? "items" : "reflectors";
   names.one = setup.device ? "item" : "reflector";
-  if (setup.device) {
-    for (const InstrumentItem& item : setup.device->items()) names.targets.push_back(item.name);
-  }
+  if (setup.device) names.targets = setup.device->target_names();
   for (const SetupReflector& reflector : setup.reflectors) names.targets.push_back(reflector.name);
   for (const SetupStation& station : setup.stations) names.stations.push_back(station.name);
   return names;

@@ -80,6 +80,14 @@ std::vector<std::vector<double>> Instrument::planned_inputs(std::size_t) const {
   return {std::vector<double>(inputs_.size(), 0.0)};
 }
 
+std::vector<std::string> Instrument::target_names() const {
+  std::vector<std::string> names;
+  for (const InstrumentItem& item : items_) names.push_back(item.name);
+  return names;
+}
+
+std::size_t Instrument::item_at(const Machine&, std::size_t target, const std::vector<double>&) const { return target; }
+
 void Instrument::set_values(const std::vector<double>& values) {
   for (std::size_t i = 0; i < quantities_.size(); ++i) quantities_[i].value = values.at(i);
 }

@@ -116,6 +116,18 @@ class Instrument {
   /// Known numbers with which a plan measures an item at every pose: one reading per entry, [inputs()] each.
   virtual std::vector<std::vector<double>> planned_inputs(std::size_t item) const;
 
+  /// What plans and files of readings name: the items, or groups of items among which the pose decides (the mounts of a
+  /// prism: which face then stands before the sensors).
+  virtual std::vector<std::string> target_names() const;
+
+  /// The item that a target is at a pose, by the nominal machine.
+  /// @param positions  commands in chain order, mm or rad
+  /// @throws std::invalid_argument if there is none, in words
+  virtual std::size_t item_at(const Machine& machine, std::size_t target, const std::vector<double>& positions) const;
+
+  /// The target of an item.
+  virtual std::size_t target_of(std::size_t item) const { return item; }
+
   /// The same instrument with other values of its quantities, [quantities()]; knowledge and uncertainties stay.
   virtual std::shared_ptr<const Instrument> with_values(const std::vector<double>& values) const = 0;
 

@@ -8,18 +8,44 @@
 #include <stdexcept>
 
 #include "abbe/geometry/rotation.h"
-#include "abbe/instruments/interferometer.h"
+#include "abbe/instruments/polygon_placement.h"
 
 namespace abbe {
 namespace {
 
+using Face = PolygonGaugeSetup::Face;
+using Mount = PolygonGaugeSetup::Mount;
+using Step = PolygonGaugeSetup::Step;
+
 constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr const char* kSix[] = {"tilt_x", "tilt_y", "turn", "x", "y", "z"};
 
-SetupQuantity known(std::string name, bool is_angle, double value, const PolygonKnowledge& knowledge) {
-  const double uncertainty = is_angle ? knowledge.angle_uncertainty : knowledge.length_uncertainty;
-  return quantity(std::move(name), is_angle,
-                  {value, knowledge.knowledge, knowledge.knowledge == Knowledge::within ? uncertainty : 0});
+/// Name of a component that several steps have in common.
+std::string common_name(PolygonReading reading) {
+  using enum PolygonReading;
+  if (!is_angle(reading)) return "displacement";
+  const bool about_z = reading == autocollimator_x_about_z || reading == autocollimator_y_about_z;
+  return about_z ? "autocollimator_about_z" : "autocollimator_tilt";
+}
+
+void check_step(const PolygonGaugeSetup& setup, const Step& step) {
+  const auto refuse = [&](const std::string& what) { throw std::invalid_argument(setup.name + ": " + what); };
+  if (step.measured.empty() || step.measured.size() > 6) {
+    refuse(fmt::format("{} numbers per reading, expected 1 to 6", step.measured.size()));
+  }
+  for (const PolygonReading reading : step.measured) {
+    if (std::count(step.measured.begin(), step.measured.end(), reading) > 1) {
+      refuse(fmt::format("{} is measured twice", reading_name(reading)));
+    }
+  }
+  if (!step.zeros.empty() && step.zeros.size() != step.measured.size()) {
+    refuse(fmt::format("{} zeros of {} readings", step.zeros.size(), step.measured.size()));
+  }
+  const std::vector<PolygonReading>& first = setup.steps.front().measured;
+  const bool same = std::equal(first.begin(), first.end(), step.measured.begin(), step.measured.end(),
+                               [](PolygonReading a, PolygonReading b) { return common_name(a) == common_name(b); });
+  if (!same && setup.steps.size() > 1) refuse("the steps measure different kinds of readings");
 }
 
 void check(const PolygonGaugeSetup& setup) {
@@ -27,70 +53,86 @@ void check(const PolygonGaugeSetup& setup) {
   if (setup.polygon.order != PolygonFaceOrder::face) refuse("expected the tilt of a face as a constant of the face");
   validate(setup.polygon, setup.bench);
   regular_position(setup.polygon.faces.size(), 0);  // a number of faces that will not do is refused here
-  if (setup.shifts.empty()) refuse("expected at least one mount");
-  if (!setup.mounts.empty() && setup.mounts.size() != setup.shifts.size()) {
-    refuse(fmt::format("{} mounts and {} turns in faces, expected as many", setup.mounts.size(), setup.shifts.size()));
+  if (setup.mounts.empty()) refuse("expected at least one mount");
+  if (setup.steps.empty()) refuse("expected at least one step");
+  if (!setup.faces.empty() && setup.faces.size() != setup.polygon.faces.size()) {
+    refuse(fmt::format("errors of {} faces, expected {}", setup.faces.size(), setup.polygon.faces.size()));
   }
-  if (setup.measured.empty() || setup.measured.size() > 6) {
-    refuse(fmt::format("{} numbers per reading, expected 1 to 6", setup.measured.size()));
-  }
-  for (const PolygonReading reading : setup.measured) {
-    if (std::count(setup.measured.begin(), setup.measured.end(), reading) > 1) {
-      refuse(fmt::format("{} is measured twice", reading_name(reading)));
-    }
-  }
+  for (const Step& step : setup.steps) check_step(setup, step);
   if (!(setup.noise.angle > 0) || !(setup.noise.length > 0)) refuse("expected noise above zero, in rad and mm");
 }
 
+/// `text` with a point behind it, unless it is empty.
+std::string prefix(const std::string& text) { return text.empty() ? "" : text + "."; }
+
 }  // namespace
+
+Step PolygonGaugeSetup::all_at_once() {
+  using enum PolygonReading;
+  return {"",
+          {autocollimator_x_about_z, autocollimator_x_about_y, autocollimator_y_about_x, displacement_x, displacement_y,
+           displacement_z},
+          {}};
+}
 
 PolygonGauge::PolygonGauge(const PolygonGaugeSetup& setup) : EquationInstrument(setup.name), setup_(setup) {
   check(setup_);
   const std::size_t faces = setup_.polygon.faces.size();
-  if (setup_.mounts.empty()) setup_.mounts.resize(setup_.shifts.size());
+  for (std::size_t j = setup_.faces.size(); j < faces; ++j) {
+    const PolygonFace& face = setup_.polygon.faces[j];
+    setup_.faces.push_back(
+        {SetupNumber::open(face.azimuth_error), SetupNumber::open(face.tilt), SetupNumber::open(face.distance)});
+  }
   for (std::size_t i = 0; i < kPolygonReadings; ++i) {
     axes_[i] = rotation_from_error_angles(setup_.bench.sensor(static_cast<PolygonReading>(i)).angles);
   }
-  for (const PolygonReading reading : setup_.measured)
-    components_.push_back({reading_name(reading), is_angle(reading)});
+  for (const PolygonReading reading : setup_.steps.front().measured) {
+    components_.push_back({steps() > 1 ? common_name(reading) : reading_name(reading), is_angle(reading)});
+  }
 
   std::vector<std::array<std::size_t, 6>> mounts;
-  for (std::size_t m = 0; m < setup_.mounts.size(); ++m) {
+  for (const Mount& mount : setup_.mounts) {
     mounts.emplace_back();
     for (std::size_t i = 0; i < 6; ++i) {
-      const PolygonMount& mount = setup_.mounts[m];
-      const double value = i < 3 ? mount.angles[static_cast<int>(i)] : mount.offset[static_cast<int>(i) - 3];
-      mounts[m][i] =
-          add(known(fmt::format("{}.mount{}.{}", name_, m + 1, kSix[i]), i < 3, value, setup_.mount_knowledge));
+      mounts.back()[i] = add(quantity(fmt::format("{}.{}.{}", name_, mount.name, kSix[i]), i < 3, mount.numbers[i]));
     }
   }
   std::vector<std::array<std::size_t, 3>> planes;
   for (std::size_t j = 0; j < faces; ++j) {
-    const PolygonFace& face = setup_.polygon.faces[j];
+    const Face& face = setup_.faces[j];
     const std::string of = fmt::format("{}.face{}.", name_, j + 1);
-    planes.push_back({add(known(of + "azimuth_error", true, face.azimuth_error, setup_.face_knowledge)),
-                      add(known(of + "tilt", true, face.tilt, setup_.face_knowledge)),
-                      add(known(of + "distance", false, face.distance, setup_.face_knowledge))});
+    planes.push_back({add(quantity(of + "azimuth_error", true, face.azimuth_error)),
+                      add(quantity(of + "tilt", true, face.tilt)),
+                      add(quantity(of + "distance", false, face.distance))});
   }
-  const std::size_t top[] = {add(known(name_ + ".top.tilt_x", true, setup_.polygon.top.tilt_x, setup_.top_knowledge)),
-                             add(known(name_ + ".top.tilt_y", true, setup_.polygon.top.tilt_y, setup_.top_knowledge))};
-  std::vector<std::size_t> zeros;
-  for (const PolygonReading reading : setup_.measured) {
-    zeros.push_back(add(known(fmt::format("{}.zero.{}", name_, reading_name(reading)), is_angle(reading),
-                              setup_.zeros[static_cast<std::size_t>(reading)], setup_.zero_knowledge)));
+  const std::size_t top[] = {add(quantity(name_ + ".top.tilt_x", true, setup_.top[0])),
+                             add(quantity(name_ + ".top.tilt_y", true, setup_.top[1]))};
+  std::vector<std::vector<std::size_t>> zeros;
+  for (const Step& step : setup_.steps) {
+    zeros.emplace_back();
+    for (std::size_t i = 0; i < step.measured.size(); ++i) {
+      zeros.back().push_back(
+          add(quantity(fmt::format("{}.{}zero.{}", name_, prefix(step.name), reading_name(step.measured[i])),
+                       is_angle(step.measured[i]), step.zeros.empty() ? SetupNumber::open(0) : step.zeros[i])));
+    }
   }
-  for (std::size_t m = 0; m < setup_.mounts.size(); ++m) {
-    setup_.mounts[m].turn = kTurn * static_cast<double>(setup_.shifts[m]) / static_cast<double>(faces);
+  const std::vector<std::string> targets = target_names();
+  for (std::size_t target = 0; target < targets.size(); ++target) {
+    const std::size_t m = target / steps(), step = target % steps();
+    const double turn = kTurn * static_cast<double>(setup_.mounts[m].turned_by) / static_cast<double>(faces);
     for (std::size_t x = 0; x < faces; ++x) {
       const std::size_t y = (x + faces - faces / 4) % faces;
-      InstrumentItem item{fmt::format("mount{}.face{}", m + 1, x + 1), setup_.table_body, setup_.sensor_body, {}};
-      item.quantities.insert(item.quantities.end(), mounts[m].begin(), mounts[m].end());
-      item.quantities.insert(item.quantities.end(), planes[x].begin(), planes[x].end());
-      item.quantities.insert(item.quantities.end(), planes[y].begin(), planes[y].end());
-      item.quantities.insert(item.quantities.end(), std::begin(top), std::end(top));
-      item.quantities.insert(item.quantities.end(), zeros.begin(), zeros.end());
+      InstrumentItem item{fmt::format("{}.face{}", targets[target], x + 1), setup_.table_body, setup_.sensor_body, {}};
+      const auto use = [&](const auto& quantities) {
+        item.quantities.insert(item.quantities.end(), std::begin(quantities), std::end(quantities));
+      };
+      use(mounts[m]);
+      use(planes[x]);
+      use(planes[y]);
+      use(top);
+      use(zeros[step]);
       add(std::move(item));
-      nominal_.push_back({setup_.mounts[m].turn, setup_.polygon.faces[x].azimuth, setup_.polygon.faces[y].azimuth});
+      nominal_.push_back({step, turn, setup_.polygon.faces[x].azimuth, setup_.polygon.faces[y].azimuth});
     }
   }
 }
@@ -99,38 +141,66 @@ double PolygonGauge::standard_uncertainty(const InstrumentReadings&, std::size_t
   return components_[component].is_angle ? setup_.noise.angle : setup_.noise.length;
 }
 
+std::vector<std::string> PolygonGauge::target_names() const {
+  std::vector<std::string> names;
+  for (const Mount& mount : setup_.mounts) {
+    for (const Step& step : setup_.steps) names.push_back(steps() > 1 ? mount.name + "." + step.name : mount.name);
+  }
+  return names;
+}
+
+std::size_t PolygonGauge::item_at(const Machine& machine, std::size_t target,
+                                  const std::vector<double>& positions) const {
+  const Polygon& polygon = setup_.polygon;
+  const std::size_t faces = polygon.faces.size();
+  const double step = kTurn / static_cast<double>(faces);
+  const double turn = nominal_[target * faces].turn;
+  const RigidTransform bench_from_prism =
+      setup_.sensors_from_bench.inverse() * nominal_seen(machine, positions, setup_.table_body, setup_.sensor_body) *
+      setup_.table_from_prism * RigidTransform::rotate(rotation_about(Eigen::Vector3d::UnitZ(), turn));
+  const auto in_prism = [&](std::size_t face) -> Eigen::Vector3d {
+    return {std::cos(polygon.faces[face].azimuth), std::sin(polygon.faces[face].azimuth), 0};
+  };
+  const auto cosine = [&](std::size_t face, int axis) { return (bench_from_prism.rotation * in_prism(face))[axis]; };
+  std::size_t seen[2] = {0, 0};
+  for (std::size_t j = 1; j < faces; ++j) {
+    if (cosine(j, 0) > cosine(seen[0], 0)) seen[0] = j;
+  }
+  seen[1] = (seen[0] + faces - faces / 4) % faces;
+  const auto refuse = [](const std::string& what) { throw std::invalid_argument(what); };
+  const double miss = std::acos(std::clamp(std::min(cosine(seen[0], 0), cosine(seen[1], 1)), -1.0, 1.0));
+  // A few minutes of arc are the range of an autocollimator; what is beyond a tenth of a face is another position.
+  if (miss > 0.1 * step) {
+    refuse(fmt::format("the nearest face looks {:.3g} deg aside of the sensors, expected a face every {:.6g} deg",
+                       miss * kDegrees, step * kDegrees));
+  }
+  for (const PolygonReading reading : setup_.steps[target % steps()].measured) {
+    const PolygonSensor& sensor = setup_.bench.sensor(reading);
+    const Eigen::Vector3d start = bench_from_prism.inverse() * Eigen::Vector3d(sensor.position + sensor.exit);
+    const int side = static_cast<int>(sensor.side);
+    const Eigen::Vector3d normal = side == 2 ? Eigen::Vector3d::UnitZ() : in_prism(seen[side]);
+    const double distance = polygon.faces.front().distance;
+    const double aside = Eigen::Vector3d(start - start.dot(normal) * normal).head<2>().norm();
+    const bool on_it = side == 2 ? aside <= distance && start.z() > polygon.top.height
+                                 : aside <= polygon.half_face_width() && start.z() >= 0 &&
+                                       start.z() <= polygon.top.height && start.dot(normal) > distance;
+    if (!on_it) {
+      refuse(fmt::format("the beam of {} misses the prism: its sensor stands at [{:.4g}, {:.4g}, {:.4g}] mm of it",
+                         reading_name(reading), start.x(), start.y(), start.z()));
+    }
+  }
+  return target * faces + seen[0];
+}
+
 InstrumentReadings polygon_plan(const Machine& machine, const PolygonGauge& gauge, std::size_t axis,
                                 std::vector<double> positions) {
-  const PolygonGaugeSetup& setup = gauge.setup();
-  const std::size_t faces = setup.polygon.faces.size();
+  const std::size_t faces = gauge.setup().polygon.faces.size(), targets = gauge.target_names().size();
   const double step = kTurn / static_cast<double>(faces), first = positions.at(axis);
   InstrumentReadings plan;
-  for (std::size_t m = 0; m < setup.shifts.size(); ++m) {
+  for (std::size_t target = 0; target < targets; ++target) {
     for (std::size_t k = 0; k < faces; ++k) {
       positions[axis] = first + step * static_cast<double>(k);
-      const Eigen::Matrix3d bench_from_prism =
-          setup.sensors_from_bench.rotation.transpose() *
-          nominal_orientation(machine, positions, setup.table_body, setup.sensor_body) *
-          setup.table_from_prism.rotation * rotation_about(Eigen::Vector3d::UnitZ(), setup.mounts[m].turn);
-      const auto normal = [&](std::size_t face) -> Eigen::Vector3d {
-        const double azimuth = setup.polygon.faces[face].azimuth;
-        return bench_from_prism * Eigen::Vector3d(std::cos(azimuth), std::sin(azimuth), 0);
-      };
-      std::size_t nearest = 0;
-      for (std::size_t j = 1; j < faces; ++j) {
-        if (normal(j).x() > normal(nearest).x()) nearest = j;
-      }
-      const double miss_x = std::acos(std::clamp(normal(nearest).x(), -1.0, 1.0));
-      const double miss_y = std::acos(std::clamp(normal((nearest + faces - faces / 4) % faces).y(), -1.0, 1.0));
-      // A few minutes of arc are the range of an autocollimator; what is beyond a tenth of a face is another position.
-      if (std::max(miss_x, miss_y) > 0.1 * step) {
-        throw std::invalid_argument(fmt::format(
-            "{}: with {} at {:.6g} deg the nearest face looks {:.3g} deg aside of the sensors, expected a face every "
-            "{:.6g} deg",
-            gauge.name(), machine.axes[axis].name, positions[axis] * 180 / std::numbers::pi,
-            std::max(miss_x, miss_y) * 180 / std::numbers::pi, step * 180 / std::numbers::pi));
-      }
-      plan.append(positions, m * faces + nearest);
+      plan.append(positions, gauge.item_at(machine, target, positions));
     }
   }
   return plan;

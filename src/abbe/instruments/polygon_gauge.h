@@ -13,50 +13,70 @@
 
 namespace abbe {
 
-/// How well a group of numbers of a prism's set-up is known.
-struct PolygonKnowledge {
-  Knowledge knowledge = Knowledge::open;
-  double angle_uncertainty = 0;   ///< rad, for Knowledge::within
-  double length_uncertainty = 0;  ///< mm, for Knowledge::within
-};
-
 /// A polygon prism on any rotary axis of any machine, with the instruments that look at it.
 struct PolygonGaugeSetup {
+  /// Errors of a face and what is known of them.
+  struct Face {
+    SetupNumber azimuth_error = SetupNumber::open(0);  ///< rad, as PolygonFace
+    SetupNumber tilt = SetupNumber::open(0);           ///< rad
+    SetupNumber distance;                              ///< of the plane from the prism's origin, actual, mm
+  };
+  /// The prism as it was put on once.
+  struct Mount {
+    std::string name = "mount1";
+    std::size_t turned_by = 0;  ///< faces
+    /// tilt_x, tilt_y, turn (rad), x, y, z (mm): PolygonMount::angles and offset.
+    std::array<SetupNumber, 6> numbers = {SetupNumber::open(0), SetupNumber::open(0), SetupNumber::open(0),
+                                          SetupNumber::open(0), SetupNumber::open(0), SetupNumber::open(0)};
+  };
+  /// Readings that are taken at once. All steps of a stepwise measurement have the same kinds of readings.
+  struct Step {
+    std::string name;                      ///< empty if it is the only one
+    std::vector<PolygonReading> measured;  ///< in this order; one to six
+    std::vector<SetupNumber> zeros;        ///< [measured] rad or mm, or empty: open, from zero
+  };
+
   std::string name = "polygon1";
-  Polygon polygon;  ///< start values of its faces; regular, PolygonFaceOrder::face, faces divisible by four
+  Polygon polygon;                    ///< regular, PolygonFaceOrder::face, faces divisible by four
+  std::vector<Face> faces;            ///< [faces], or empty: open, starting where `polygon` says
+  std::array<SetupNumber, 2> top;     ///< tilt_x, tilt_y of the mirror, rad
   Body table_body = Body::workpiece;  ///< carries the prism
   Body sensor_body = Body::bed;       ///< carries autocollimators and displacement sensors
   RigidTransform table_from_prism;    ///< nominal, frame of table_body: z along the rotary axis, not turned by faces
   RigidTransform sensors_from_bench;  ///< frame of PolygonBench in that of sensor_body, at the position of measuring
   PolygonBench bench;                 ///< positions of the sensors, taken as known
-  std::vector<std::size_t> shifts = {0};  ///< [mounts] by how many faces the prism is turned
-  std::vector<PolygonMount> mounts;       ///< [mounts] start values, or empty: no errors; `turn` is not used
-  PolygonReadings zeros{};                ///< start values, rad and mm
-  /// What a reading consists of, in this order; at most six.
-  std::vector<PolygonReading> measured = {
-      PolygonReading::autocollimator_x_about_z, PolygonReading::autocollimator_x_about_y,
-      PolygonReading::autocollimator_y_about_x, PolygonReading::displacement_x,
-      PolygonReading::displacement_y,           PolygonReading::displacement_z};
-  PolygonKnowledge mount_knowledge, face_knowledge, zero_knowledge;
-  PolygonKnowledge top_knowledge{Knowledge::exact, 0, 0};
+  std::vector<Mount> mounts = {Mount{}};
+  std::vector<Step> steps = {all_at_once()};
   PolygonNoise noise;
+
+  /// Everything but the redundant reading about z along y.
+  static Step all_at_once();
 };
 
 /// The prism as one instrument among others in the identification of a machine: the machine's errors, as they are where
 /// the table stands, take the place of the table's six motions.
 ///
 /// Frames: bench = inverse(sensors_from_bench) * (table_body seen from sensor_body) * table_from_prism * mount, with
-/// mount = [Ry Rx Rz(turn + ez) | d]; planes and readings as in polygon.h. Items: mount and face seen along x
-/// ("mount2.face5"). Quantities: NAME.mountM.tilt_x, tilt_y, turn, x, y, z; NAME.faceJ.azimuth_error, tilt, distance;
-/// NAME.top.tilt_x, tilt_y; NAME.zero.READING. Derivatives by forward differentiation. Source: docs/polygon.md.
+/// mount = [Ry Rx Rz(turn + ez) | d]; planes and readings as in polygon.h. Targets: MOUNT, or MOUNT.STEP if there are
+/// several steps. Items: a target and the face seen along x ("mount2.face5"). Quantities: NAME.MOUNT.tilt_x, tilt_y,
+/// turn, x, y, z; NAME.faceJ.azimuth_error, tilt, distance; NAME.top.tilt_x, tilt_y; NAME.zero.READING or
+/// NAME.STEP.zero.READING. Components: names of the readings; with several steps autocollimator_about_z,
+/// autocollimator_tilt (about y seen along x, about x seen along y), displacement. Derivatives by forward
+/// differentiation. Source: docs/polygon.md.
 class PolygonGauge : public EquationInstrument<PolygonGauge, 20, 6> {
  public:
-  /// @throws std::invalid_argument: as validate(); faces not divisible by four, no or a repeated or more than six
-  ///         readings, mounts and shifts that do not belong together, the paper's order of the face
+  /// @throws std::invalid_argument: as validate(); faces not divisible by four, no or repeated or more than six
+  ///         readings, steps with different kinds of readings, sizes that do not fit, the paper's order of the face
   explicit PolygonGauge(const PolygonGaugeSetup& setup);
 
   double standard_uncertainty(const InstrumentReadings& readings, std::size_t reading,
                               std::size_t component) const override;
+  std::vector<std::string> target_names() const override;
+  /// @throws std::invalid_argument if no face looks along the sensors' axes there, saying by how many degrees it
+  /// misses,
+  ///         or if a beam misses its face
+  std::size_t item_at(const Machine& machine, std::size_t target, const std::vector<double>& positions) const override;
+  std::size_t target_of(std::size_t item) const override { return item / setup_.polygon.faces.size(); }
 
   const PolygonGaugeSetup& setup() const { return setup_; }
 
@@ -66,17 +86,25 @@ class PolygonGauge : public EquationInstrument<PolygonGauge, 20, 6> {
  private:
   /// Order of the quantities of an item.
   enum Place { kMount = 0, kFaceX = 6, kFaceY = 9, kTop = 12, kZero = 14 };
+  /// What an item nominally is.
+  struct Seen {
+    std::size_t step;
+    double turn, azimuth_x, azimuth_y;  ///< of the mount and of the faces seen along x and y, rad
+  };
+
+  const PolygonGaugeSetup::Mount& mount_of(std::size_t target) const { return setup_.mounts[target / steps()]; }
+  std::size_t steps() const { return setup_.steps.size(); }
 
   PolygonGaugeSetup setup_;
-  std::vector<std::array<double, 3>> nominal_;  ///< [items] turn of the mount, azimuth of the faces along x and y
+  std::vector<Seen> nominal_;                           ///< [items]
   std::array<Eigen::Matrix3d, kPolygonReadings> axes_;  ///< of the sensors in the bench
 };
 
-/// Poses and items for all mounts: the rotary axis goes once round in steps of one face, the others stay.
+/// Poses and items for all targets: the rotary axis goes once round in steps of one face, the others stay.
 ///
 /// @param axis       index into Machine::axes
 /// @param positions  commands of all axes, chain order; of `axis`: the first position
-/// @throws std::invalid_argument if no face looks along the sensors' axes there, saying by how many degrees it misses
+/// @throws std::invalid_argument as PolygonGauge::item_at()
 InstrumentReadings polygon_plan(const Machine& machine, const PolygonGauge& gauge, std::size_t axis,
                                 std::vector<double> positions);
 
@@ -92,9 +120,10 @@ void PolygonGauge::equation(std::size_t item, const SeenBody<S>& seen, const S* 
     result[b] = s * v[a] + c * v[b];
     return result;
   };
-  const double turn = nominal_[item][0];
-  const S mount_c[3] = {cos(q[kMount]), cos(q[kMount + 1]), cos(q[kMount + 2] + S(turn))};
-  const S mount_s[3] = {sin(q[kMount]), sin(q[kMount + 1]), sin(q[kMount + 2] + S(turn))};
+  const Seen& nominal = nominal_[item];
+  const std::vector<PolygonReading>& measured = setup_.steps[nominal.step].measured;
+  const S mount_c[3] = {cos(q[kMount]), cos(q[kMount + 1]), cos(q[kMount + 2] + S(nominal.turn))};
+  const S mount_s[3] = {sin(q[kMount]), sin(q[kMount + 1]), sin(q[kMount + 2] + S(nominal.turn))};
   const Vector offset(q[kMount + 3], q[kMount + 4], q[kMount + 5]);
   const auto constant = [](const Eigen::Vector3d& v) { return Vector(S(v[0]), S(v[1]), S(v[2])); };
   const auto times = [](const Eigen::Matrix3d& m, const Vector& v) {
@@ -118,7 +147,7 @@ void PolygonGauge::equation(std::size_t item, const SeenBody<S>& seen, const S* 
       normal = Vector(-sy, cy * sx, cy * cx);
     } else {
       const int face = side == 0 ? kFaceX : kFaceY;
-      const S azimuth = q[face] + S(nominal_[item][static_cast<std::size_t>(1 + side)]);
+      const S azimuth = q[face] + S(side == 0 ? nominal.azimuth_x : nominal.azimuth_y);
       const S flat = cos(q[face + 1]);
       normal = Vector(cos(azimuth) * flat, sin(azimuth) * flat, sin(q[face + 1]));
       distance = q[face + 2];
@@ -134,8 +163,8 @@ void PolygonGauge::equation(std::size_t item, const SeenBody<S>& seen, const S* 
     offsets[side] = normals[side].dot(times(to_bench, seen_point));
   };
 
-  for (std::size_t row = 0; row < setup_.measured.size(); ++row) {
-    const PolygonReading kind = setup_.measured[row];
+  for (std::size_t row = 0; row < measured.size(); ++row) {
+    const PolygonReading kind = measured[row];
     const PolygonSensor& sensor = setup_.bench.sensor(kind);
     const int side = static_cast<int>(sensor.side);
     plane(side);

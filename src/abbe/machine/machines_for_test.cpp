@@ -214,6 +214,16 @@ Machine three_axis_head() {
   return m;
 }
 
+Machine rotary_table() {
+  Machine machine;
+  machine.name = "rotary table";
+  Axis c{.name = "C", .kind = AxisKind::rotary, .side = ChainSide::workpiece};
+  c.direction = Eigen::Vector3d::UnitZ();
+  c.travel_max = 2 * std::numbers::pi;
+  machine.axes = {c};
+  return machine;
+}
+
 Machine single_axis(const std::string& chain) { return from_chain(chain, chain); }
 
 std::vector<NamedMachine> all_machines() {

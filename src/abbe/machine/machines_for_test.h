@@ -28,6 +28,8 @@ Machine nutating_head_mill();
 Machine redundant_gantry();
 /// Three rotary axes in the head: full orientation.
 Machine three_axis_head();
+/// A bare rotary table in the machine's origin, turning in its own positive sense, from 0 to one turn.
+Machine rotary_table();
 Machine single_axis(const std::string& chain);
 
 struct NamedMachine {
