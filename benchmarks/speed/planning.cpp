@@ -69,12 +69,16 @@ bool run(const char* name, const PlanningCandidates& candidates, std::size_t cho
   std::printf("%s: %zu candidates, %zu parameters, rank %zu; space in %.2f s\n", name, space.count(),
               space.parameter_count(), space.dimension(), factorised);
   bool quick = true;
-  for (const bool variance : {false, true}) {
+  for (const char* const criterion : {"D, determinant", "A, all parameters", "V, 200 predictions"}) {
     PlanningOptions options;
     options.count = chosen;
-    if (variance) {
+    if (criterion[0] != 'D') {
+      const Eigen::Index p = static_cast<Eigen::Index>(space.parameter_count());
       options.criterion = PlanningCriterion::variance;
-      options.functionals = candidates.rows.topRows(std::min<Eigen::Index>(600, candidates.rows.rows()));
+      options.functionals =
+          criterion[0] == 'A'
+              ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(p, p))
+              : Eigen::MatrixXd(candidates.rows.topRows(std::min<Eigen::Index>(600, candidates.rows.rows())));
     }
     const auto begin = std::chrono::steady_clock::now();
     const ReadingPlan plan = plan_readings(space, options);
@@ -83,8 +87,7 @@ bool run(const char* name, const PlanningCandidates& candidates, std::size_t cho
     const double first = plan.history.front(), last = plan.history.back();
     std::printf(
         "  %s, %zu chosen: %s in %.2f s (space included), %zu exchanges in %zu passes, criterion %.6g to %.6g\n",
-        variance ? "variance" : "determinant", plan.chosen.size(), status_text(plan.status), time, plan.exchanges,
-        plan.passes, first, last);
+        criterion, plan.chosen.size(), status_text(plan.status), time, plan.exchanges, plan.passes, first, last);
   }
   return quick;
 }

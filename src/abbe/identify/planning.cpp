@@ -184,6 +184,7 @@ class Search {
     PlanDesign::Allowed rules = rules_;
     rules.per_cost = false;
     rules.most_cost = time_left() + space_.cost(design_.chosen()[place]);
+    rules.ceiling = change_of(options_.smallest_gain);
     const PlanDesign::Best best = design_.best_instead(place, rules);
     if (!(best.change < change_of(options_.smallest_gain)) || !design_.exchange(place, best.candidate)) return;
     ++plan.exchanges;

@@ -1,6 +1,7 @@
 #include "abbe/identify/planning_design.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,6 +19,9 @@ using ColumnsMap = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 constexpr std::size_t kBlockRows = 192;
 // Below this the rest of a choice does not determine everything, and a pivot is rounding.
 constexpr double kSmallestPivot = 1e-9;
+// An eigenvalue of W_j nearer to one has no digits left below it.
+constexpr double kSafelyBelowOne = 1 - 1e-6;
+
 // Below this much work in one pass a second thread costs more than it brings.
 constexpr double kWorthThreads = 2e5;
 
@@ -84,14 +88,17 @@ PlanDesign::PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functi
   if (blocks_.back() != n) blocks_.push_back(n);
   w_.assign(square_[n], 0);
   if (by_variance_) g_.assign(square_[n], 0);
+  gain_.assign(n, 0);
+  size_.assign(n, 0);
   const std::size_t columns = padded(2 * most * (by_variance_ ? 2 : 1), kColumnMultiple);
+  const std::size_t scored = padded(most, kColumnMultiple) + columns;  // of best_in_block()
   factors_.assign(columns * space.stride(), 0);
   scratch_.resize(static_cast<Index>(v_), static_cast<Index>(most));
   pending_.reserve(2);
   x_stride_ = padded(kBlockRows + most, kColumnMultiple);
   x_.resize(block_count());
   best_.resize(block_count());
-  for (std::vector<double>& x : x_) x.resize(columns * x_stride_);
+  for (std::vector<double>& x : x_) x.resize(scored * x_stride_);
   if (static_cast<double>(space.first_row(n)) * static_cast<double>(v_) < kWorthThreads) threads_ = 1;
 }
 
@@ -136,6 +143,7 @@ void PlanDesign::refresh_all() {
       if (by_variance_)
         Eigen::Map<Eigen::MatrixXd>(g_.data() + square_[i], n, n).noalias() =
             zc.middleRows(at, n) * z.middleRows(at, n).transpose();
+      measure(i);
     }
   });
 }
@@ -232,10 +240,12 @@ void PlanDesign::pass() {
   for_each_block(block_count(), threads_, [this](std::size_t block) {
     const double* x = products(block, pending_.back().end);
     const std::size_t first = space_.first_row(blocks_[block]);
-    for (std::size_t i = blocks_[block]; i < blocks_[block + 1]; ++i)
+    for (std::size_t i = blocks_[block]; i < blocks_[block + 1]; ++i) {
       for (const Update& update : pending_)
         change_squares(update, x + (space_.first_row(i) - first), space_.row_count(i), &w_[square_[i]],
                        by_variance_ ? &g_[square_[i]] : nullptr);
+      measure(i);
+    }
   });
   pending_.clear();
 }
@@ -285,9 +295,15 @@ double PlanDesign::change_by_adding(const double* w, const double* g, std::size_
   return by_variance_ ? -trace_of_quotient(lower, g, n) : -log_determinant(lower, n);
 }
 
-double PlanDesign::gain(std::size_t candidate) const {
-  return change_by_adding(&w_[square_[candidate]], by_variance_ ? &g_[square_[candidate]] : nullptr,
-                          space_.row_count(candidate));
+double PlanDesign::gain(std::size_t candidate) const { return gain_[candidate]; }
+
+void PlanDesign::measure(std::size_t candidate) {
+  const std::size_t n = space_.row_count(candidate);
+  const double* w = &w_[square_[candidate]];
+  gain_[candidate] = change_by_adding(w, by_variance_ ? &g_[square_[candidate]] : nullptr, n);
+  double trace = 0;
+  for (std::size_t k = 0; k < n; ++k) trace += w[k * n + k];
+  size_[candidate] = trace;
 }
 
 double PlanDesign::loss(std::size_t place) const {
@@ -343,22 +359,70 @@ PlanDesign::Best PlanDesign::best_instead(std::size_t place, const Allowed& rule
     behind.noalias() = inverse_ * weighted;
     end *= 2;
   }
+  const Eigen::Map<const Eigen::MatrixXd> w(&w_[square_[before]], n, n);
+  const double largest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(w, Eigen::EigenvaluesOnly).eigenvalues()[n - 1];
+  leaving_.loss = loss(place);
+  leaving_.bounded = leaving_.loss < kImpossible && largest < kSafelyBelowOne && !rules.per_cost;
+  leaving_.root_loss = std::sqrt(std::max(leaving_.loss, 0.0));
+  leaving_.stretch = leaving_.bounded ? 1 / (1 - largest) : 0;
+  // Before any products: |W_ij|^2 <= lambda_j trace W_i.
+  leaving_.size = std::max(largest, 0.0) * leaving_.stretch;
+  leaving_.rows = static_cast<std::size_t>(n);
   struct {
     PlanDesign& design;
     const Allowed& rules;
     std::size_t before, end;
   } here{*this, rules, before, end};
-  for_each_block(block_count(), threads_, [&here](std::size_t block) {
-    PlanDesign& design = here.design;
-    design.best_[block] = {};
-    const double* x = design.products(block, here.end);
-    const std::size_t first = design.space_.first_row(design.blocks_[block]);
-    for (std::size_t i = design.blocks_[block]; i < design.blocks_[block + 1]; ++i)
-      if (design.allowed(i, here.rules))
-        design.keep_better(i, design.change_by_exchange(here.before, i, x + (design.space_.first_row(i) - first)),
-                           here.rules, design.best_[block]);
-  });
+  for_each_block(block_count(), threads_,
+                 [&here](std::size_t block) { here.design.best_in_block(block, here.before, here.end, here.rules); });
   return best_of_blocks();
+}
+
+bool PlanDesign::may_be_better(std::size_t candidate, double square, double limit) const {
+  if (!leaving_.bounded) return true;
+  const double gain = -gain_[candidate];
+  double least = leaving_.loss;
+  if (by_variance_) {
+    const double sum = std::sqrt(std::max(gain, 0.0)) + std::sqrt(square) * leaving_.root_loss;
+    least -= sum * sum;
+  } else {
+    // log det(I + S) <= n log(1 + trace(S) / n)
+    const double n = static_cast<double>(std::min(leaving_.rows, space_.row_count(candidate)));
+    least -= gain + n * std::log1p(square / n);
+  }
+  return least < limit;
+}
+
+void PlanDesign::best_in_block(std::size_t block, std::size_t before, std::size_t end, const Allowed& rules) {
+  best_[block] = {};
+  const std::size_t n = leaving_.rows, first = space_.first_row(blocks_[block]);
+  const bool any = std::any_of(&size_[blocks_[block]], &size_[blocks_[block]] + (blocks_[block + 1] - blocks_[block]),
+                               [&](const double& size) {
+                                 const auto i = static_cast<std::size_t>(&size - size_.data());
+                                 return allowed(i, rules) && may_be_better(i, leaving_.size * size, rules.ceiling);
+                               });
+  if (!any) return;
+  const double* x = products(block, n);
+  for (std::size_t i = blocks_[block]; i < blocks_[block + 1]; ++i) {
+    if (!allowed(i, rules)) continue;
+    const double* own = x + (space_.first_row(i) - first);
+    double square = 0;
+    for (std::size_t c = 0; c < n; ++c)
+      for (std::size_t r = 0; r < space_.row_count(i); ++r) square += own[r + c * x_stride_] * own[r + c * x_stride_];
+    if (!may_be_better(i, square * leaving_.stretch, std::min(rules.ceiling, best_[block].change))) continue;
+    if (end > n) own = products_of(block, i, end);
+    keep_better(i, change_by_exchange(before, i, own), rules, best_[block]);
+  }
+}
+
+const double* PlanDesign::products_of(std::size_t block, std::size_t candidate, std::size_t end) {
+  // Behind the columns of the whole block.
+  double* x = x_[block].data() + padded(leaving_.rows, kColumnMultiple) * x_stride_;
+  const std::size_t columns = padded(end, kColumnMultiple), rows = padded(space_.row_count(candidate), kColumnMultiple);
+  for (std::size_t c = 0; c < columns; ++c) std::fill(x + c * x_stride_, x + c * x_stride_ + rows, 0.0);
+  add_cross_products(space_.row(space_.first_row(candidate)), rows, space_.stride(), factors_.data(), columns,
+                     space_.stride(), space_.stride(), x, x_stride_);
+  return x;
 }
 
 // Adding i, then taking out j: with W_ij = A_i M^-1 A_j' and K = (I + W_i)^-1 W_ij, W_j becomes W_j - W_ij' K, and

@@ -61,10 +61,17 @@ class PlanDesign {
     std::size_t repeats = 1;
     double most_cost = std::numeric_limits<double>::infinity();
     bool per_cost = false;
+    double ceiling = kImpossible;  ///< of the change: candidates that cannot come below it need not be looked at
   };
   /// The candidate whose adding lowers the objective most; the first of equal ones.
   Best best_to_add(const Allowed& rules);
   /// The candidate that lowers the objective most in the place of a chosen one, with the change by the whole exchange.
+  ///
+  /// Most candidates are passed over by a bound. With loss_j of the chosen one, gain_i of the other and lambda_j the
+  /// largest eigenvalue of W_j, the change is at least
+  ///     determinant   loss_j - gain_i - n log(1 + q / n),   n the smaller number of rows
+  ///     variance      loss_j - (sqrt(gain_i) + sqrt(q loss_j))^2,   q = |W_ij|^2 / (1 - lambda_j), Frobenius norm
+  /// (docs/planning.md), and q itself is at most lambda_j trace(W_i) / (1 - lambda_j), which needs no products at all.
   Best best_instead(std::size_t place, const Allowed& rules);
 
  private:
@@ -81,6 +88,11 @@ class PlanDesign {
   void commit(double direction);
   void pass();
   double* products(std::size_t block, std::size_t end);
+  /// Products of one candidate's rows with the factors, at the start of the block's array.
+  const double* products_of(std::size_t block, std::size_t candidate, std::size_t end);
+  void measure(std::size_t candidate);
+  void best_in_block(std::size_t block, std::size_t before, std::size_t end, const Allowed& rules);
+  bool may_be_better(std::size_t candidate, double square, double limit) const;
   void change_squares(const Update& update, const double* x, std::size_t n, double* w, double* g) const;
   void refresh_all();
   double change_by_exchange(std::size_t before, std::size_t candidate, const double* x) const;
@@ -103,6 +115,15 @@ class PlanDesign {
   std::vector<std::size_t> blocks_;  // first candidate of each block
   std::vector<std::size_t> square_;  // [candidates + 1] where W_i and G_i start
   std::vector<double> w_, g_;
+  std::vector<double> gain_;  // [candidates] change of the objective by adding
+  std::vector<double> size_;  // [candidates] trace of W_i
+  struct Leaving {
+    double loss = 0, root_loss = 0;
+    double stretch = 0;  // 1 / (1 - lambda_j)
+    double size = 0;     // lambda_j / (1 - lambda_j)
+    std::size_t rows = 0;
+    bool bounded = false;
+  } leaving_;                           // of the chosen reading that is to be exchanged
   std::vector<double> factors_;         // columns, each [stride]
   std::vector<Update> pending_;         // at most two
   std::vector<std::vector<double>> x_;  // A_i times the columns, per block
