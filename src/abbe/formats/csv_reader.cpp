@@ -284,6 +284,16 @@ CsvTable read_csv(std::string_view text, const std::string& file, const std::vec
   if (table.rows == 0) throw InputError({file, 0, 0, ""}, "there are no rows below the header", "at least one row");
 
   table.columns.resize(wanted.size());
+  // The first touch of so much memory takes its time: on all threads too.
+  for_each_block(columns.size(), threads, [&](std::size_t i) {
+    if (columns[i].wanted == kUnreadColumn) return;
+    CsvValues& values = table.columns[columns[i].wanted];
+    if (wanted[columns[i].wanted].is_text) {
+      values.words.resize(table.rows);
+    } else {
+      values.numbers.resize(table.rows);
+    }
+  });
   std::vector<Target> targets;
   for (const CsvFileColumn& column : columns) {
     Target target;
@@ -294,10 +304,8 @@ CsvTable read_csv(std::string_view text, const std::string& file, const std::vec
       values.header = column.name;
       target.wanted = &wanted[column.wanted];
       if (target.wanted->is_text) {
-        values.words.resize(table.rows);
         target.words = values.words.data();
       } else {
-        values.numbers.resize(table.rows);
         target.numbers = values.numbers.data();
         target.decimal_shift = column.unit->decimal_shift;
         target.factor = column.unit->factor;
