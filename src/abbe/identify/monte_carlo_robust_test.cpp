@@ -63,38 +63,39 @@ TEST(RobustMonteCarlo, agrees_with_the_covariance_on_clean_readings) {
   for (const LossKind loss : {LossKind::huber, LossKind::cauchy, LossKind::tukey}) {
     const Fitted fitted(readings(3), loss);
     ASSERT_EQ(fitted.identification.status, IdentifyStatus::converged);
-    const MonteCarloResult simulated = fitted.simulate(loss, 4000);
+    const MonteCarloResult simulated = fitted.simulate(loss, 2500);
     EXPECT_EQ(simulated.not_settled, 0u);
     const MonteCarloComparison comparison = compare_with_covariance(fitted.identification, simulated);
     EXPECT_TRUE(comparison.agrees()) << static_cast<int>(loss) << " " << comparison.smallest_ratio << " "
                                      << comparison.largest_ratio << " " << comparison.largest_shift;
     // Least squares repeated for a robust estimate is more certain than that: the test would see it.
-    const MonteCarloResult squares = fitted.simulate(LossKind::none, 4000);
+    const MonteCarloResult squares = fitted.simulate(LossKind::none, 2500);
     double robust = 0, plain = 0;
     for (Eigen::Index i = 0; i < 7; ++i) {
       robust += simulated.covariance(i, i) / fitted.identification.covariance(i, i) / 7;
       plain += squares.covariance(i, i) / fitted.identification.covariance(i, i) / 7;
     }
-    EXPECT_NEAR(robust, 1, 0.03);
-    EXPECT_NEAR(plain, 0.95, 0.03);
+    // Standard deviation of these means: at most that of one variance, sqrt(2 / 2500) = 2.8 %.
+    EXPECT_NEAR(robust, 1, 0.04);
+    EXPECT_NEAR(plain / robust, 0.95, 0.03);  // the same noise: their ratio varies less
   }
 }
 
 TEST(RobustMonteCarlo, agrees_with_identifying_simulated_readings_again) {
   const Fitted fitted(readings(3), LossKind::tukey);
-  const MonteCarloResult simulated = fitted.simulate(LossKind::tukey, 4000);
+  const MonteCarloResult simulated = fitted.simulate(LossKind::tukey, 1500);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(7), square = sum;
-  constexpr int kRepetitions = 400;
+  constexpr int kRepetitions = 150;
   for (int i = 0; i < kRepetitions; ++i) {
     const Fitted one(readings(static_cast<std::uint64_t>(i) + 100), LossKind::tukey);
     ASSERT_EQ(one.identification.status, IdentifyStatus::converged);
     sum += one.identification.estimates;
     square += one.identification.estimates.cwiseAbs2();
   }
-  // Standard deviation of a standard deviation from 400: 3.5 %.
+  // Standard deviation of a standard deviation from 150: 5.8 %.
   for (Eigen::Index i = 0; i < 7; ++i) {
     const double mean = sum[i] / kRepetitions, spread = std::sqrt(square[i] / kRepetitions - mean * mean);
-    EXPECT_NEAR(std::sqrt(simulated.covariance(i, i)) / spread, 1, 0.13) << i;
+    EXPECT_NEAR(std::sqrt(simulated.covariance(i, i)) / spread, 1, 0.2) << i;
   }
 }
 
@@ -119,7 +120,7 @@ TEST(RobustMonteCarlo, a_prior_keeps_its_weight) {
   const double u = free.identification.standard_uncertainties[0];
   const Fitted fitted(readings(7), LossKind::huber, u);
   const MonteCarloComparison comparison =
-      compare_with_covariance(fitted.identification, fitted.simulate(LossKind::huber, 8000));
+      compare_with_covariance(fitted.identification, fitted.simulate(LossKind::huber, 4000));
   EXPECT_TRUE(comparison.agrees()) << comparison.smallest_ratio << " " << comparison.largest_ratio;
   const Fitted certain(readings(7), LossKind::huber, 1e-4 * u);
   EXPECT_NEAR(certain.identification.standard_uncertainties[0] / (1e-4 * u), 1, 1e-6);

@@ -72,7 +72,7 @@ TEST(OrderSelection, finds_the_number_of_intervals_of_splines_and_tables) {
   int found = 0, tried = 0;
   for (const BasisKind kind : {BasisKind::bspline, BasisKind::table_linear})
     for (const int intervals : {1, 2, 4, 7})
-      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      for (std::uint64_t seed = 1; seed <= 2; ++seed) {
         Splines splines(kind, readings(with_intervals(kind, intervals), seed));
         const OrderSelection selection =
             select_orders([&](const std::vector<int>& orders) { return splines.at(orders); }, {group}, options);
@@ -87,7 +87,7 @@ TEST(OrderSelection, finds_the_number_of_intervals_of_splines_and_tables) {
         }
       }
   // A spline with more intervals is taken for better by chance now and then: the test's significance.
-  EXPECT_GE(found, tried - 2);
+  EXPECT_GE(found, tried - 1);
 }
 
 TEST(OrderSelection, splines_and_tables_are_groups_of_their_own) {
