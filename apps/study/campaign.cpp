@@ -16,6 +16,7 @@ namespace {
 PoseList poses_once(const Machine& machine, const MeasurementPlan& plan, std::uint64_t seed) {
   const std::size_t points = static_cast<std::size_t>(std::max(plan.points, 0));
   if (plan.kind == PlanKind::line) return line_plan(machine, plan.axes, points);
+  if (plan.kind == PlanKind::step_diagonal) return step_diagonal_plan(machine, plan.axes, plan.steps, plan.order);
   if (plan.kind == PlanKind::random) return random_plan(machine, plan.axes, points, seed);
   if (plan.kind != PlanKind::spiral) return grid_plan(machine, plan.axes);
   // The two axes of largest range carry the ellipse.

@@ -67,7 +67,7 @@ ErrorSet true_errors(const Study& study);
 /// Seed of one plan: every plan of every set-up has numbers of its own, whatever stands beside it in the study.
 std::uint64_t plan_seed(const Study& study, std::size_t setup, std::size_t plan);
 
-/// Poses of a plan of one of the kinds grid, line, random and spiral, repeated as it says.
+/// Poses of a plan of one of the kinds grid, line, random, spiral and step diagonal, repeated as it says.
 PoseList plan_poses(const Machine& machine, const MeasurementPlan& plan, std::uint64_t seed);
 
 /// Reads or simulates all readings. Start values are not yet looked for. @throws InputError

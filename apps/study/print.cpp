@@ -58,6 +58,8 @@ void print_study(const Study& study, const StudyResult& result) {
                  100 * unseen.coverage);
     }
   }
+  if (result.unseen && !result.unseen->open.empty())
+    fmt::print("\nwarning: {}\n", open_directions_text(*result.unseen));
   if (!identified.gauge.constraints.empty()) {
     fmt::print("\nwhat the readings cannot see, and what was assumed instead\n");
     for (const GaugeConstraint& constraint : identified.gauge.constraints) {

@@ -11,6 +11,7 @@
 #include "study/report_parameters.h"
 #include "study/report_residuals.h"
 #include "study/summary.h"
+#include "study/truth_in_gauge.h"
 
 namespace abbe {
 namespace {
@@ -131,6 +132,9 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
     json["warnings"].push_back({{"level", "warning"}, {"text", warning}});
   if (study.identification && !result.usable()) {
     json["warnings"].push_back({{"level", "error"}, {"text", study_verdict(study, result)}});
+  }
+  if (result.unseen && !result.unseen->open.empty()) {
+    json["warnings"].push_back({{"level", "warning"}, {"text", open_directions_text(*result.unseen)}});
   }
   json["assumptions"] = report_assumptions(study, result);
   if (result.map && result.map->before.statistics.count > 0) {

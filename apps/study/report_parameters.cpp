@@ -200,30 +200,4 @@ nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResu
   return json;
 }
 
-std::optional<ErrorSet> truth_in_gauge(const Study& study, const StudyResult& result) {
-  if (!result.campaign.truth) return std::nullopt;
-  Problem problem = result.model.problem;
-  // What was known of the set-ups separates directions that the readings alone do not; here it is the truth.
-  problem.priors.clear();
-  for (std::size_t s = 0; s < result.campaign.setups.size(); ++s) {
-    for (const KnownUnknown& known : result.campaign.setups[s]->true_unknowns()) {
-      problem.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
-    }
-  }
-  std::vector<std::unique_ptr<Observations>> observations;
-  for (std::size_t s = 0; s < result.campaign.setups.size(); ++s) {
-    observations.push_back(result.campaign.setups[s]->exact_observations(study.machine, problem.errors));
-    observations.back()->set_parameters(problem.errors.parameters(), result.identification.setup[s]);
-    problem.observations[s].observations = observations.back().get();
-  }
-  SolverOptions options;
-  options.threads = study.threads;
-  const ConstrainedSpace& space = result.identification.space;
-  const SolverResult solved =
-      solve(problem, result.identification.estimates, space.directions.size() > 0 ? &space : nullptr, Loss{}, options);
-  if (solved.status != IdentifyStatus::converged) return std::nullopt;
-  keep_estimates(problem, solved.estimates);
-  return problem.errors;
-}
-
 }  // namespace abbe

@@ -18,9 +18,4 @@ nlohmann::ordered_json report_location_errors(const Machine& machine, const Iden
 /// Columns of the table of all estimated parameters.
 nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResult& result, const ErrorSet* truth);
 
-/// The errors that the identification would find from readings without noise and without outliers: the truth in the
-/// model's basis functions and in the result's gauge, so that both may be compared coefficient by coefficient.
-/// @returns nothing for measured studies, or if that fit does not converge
-std::optional<ErrorSet> truth_in_gauge(const Study& study, const StudyResult& result);
-
 }  // namespace abbe

@@ -143,6 +143,10 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
     if (unseen.before_statistics.mean > 0) {
       held_out["remaining_percent"] = 100 * unseen.after_statistics.mean / unseen.before_statistics.mean;
     }
+    if (!unseen.open.empty()) {
+      held_out["not_determined"] = unseen.open;
+      if (unseen.against_truth) held_out["not_determined_rms_um"] = 1e3 * unseen.open_rms;
+    }
     json["held_out"] = held_out;
   }
   if (result.map) {

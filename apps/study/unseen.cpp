@@ -8,11 +8,11 @@
 #include "abbe/identify/prediction.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/tracker_start.h"
+#include "abbe/verify/determined_part.h"
 #include "abbe/verify/error_map.h"
 #include "study/instrument_campaign.h"
 #include "study/job.h"
 #include "study/predicted_readings.h"
-#include "study/report_parameters.h"
 #include "study/tracker_campaign.h"
 
 namespace abbe {
@@ -144,38 +144,69 @@ void add_instrument(const Study& study, const StudyResult& result, std::size_t s
   tally.add(predict_readings(observations, result.identification, s));
 }
 
-/// The volumetric error at random poses, against the truth in the gauge of the result.
+ParameterCovariance covariance_of_errors(const StudyResult& result) {
+  const std::size_t count = result.identification.errors.parameter_count();
+  ParameterCovariance covariance;
+  covariance.covariance = machine_covariance(result.identification, count);
+  for (std::size_t p = 0; p < count; ++p) covariance.parameters.push_back(p);
+  return covariance;
+}
+
+/// Directions that the gauge fixes, as far as they are errors of the machine: [machine parameters, constraints].
+Eigen::MatrixXd unseen_directions(const Identification& identification) {
+  const std::vector<GaugeConstraint>& constraints = identification.gauge.constraints;
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(identification.errors.parameter_count()),
+                                                     static_cast<Eigen::Index>(constraints.size()));
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    for (std::size_t p = 0; p < identification.parameters.size(); ++p) {
+      const ParameterId& id = identification.parameters[p].id;
+      if (!id.is_machine()) continue;
+      directions(static_cast<Eigen::Index>(id.index), static_cast<Eigen::Index>(i)) =
+          constraints[i].direction[static_cast<Eigen::Index>(p)];
+    }
+  }
+  return directions;
+}
+
+/// The volumetric error at random poses against the truth, and which of the unseen directions it depends on.
 void add_volumetric(const Study& study, const StudyResult& result, std::size_t poses, Tally& tally) {
-  // Without a gauge the truth is what it is; with one, the same machine is described in many ways.
-  const std::optional<ErrorSet> truth =
-      result.identification.gauge.constraints.empty() ? result.campaign.truth : truth_in_gauge(study, result);
-  if (!truth) return;
+  UnseenPoses& unseen = tally.unseen;
   const ErrorSet& identified = result.identification.errors;
   const PoseList list = random_plan(study.machine, known_ranges(study, result), poses, unseen_seed(study, 0));
   const PoseSource source = pose_source(list);
-  ParameterCovariance covariance;
-  covariance.covariance = machine_covariance(result.identification, identified.parameter_count());
-  for (std::size_t p = 0; p < identified.parameter_count(); ++p) covariance.parameters.push_back(p);
   ErrorMapOptions options;
+  options.orientation = false;
   options.remove_rigid_motion = true;
   options.threads = study.threads;
-  const ErrorMap before = error_map(study.machine, *truth, nullptr, source, options);
-  const ErrorMap after = error_map(study.machine, *truth, &identified, source, options);
-  options.covariance = &covariance;
-  const ErrorMap predicted = error_map(study.machine, identified, nullptr, source, options);
+  const bool simulated = unseen.against_truth;
+  const ErrorSet& actual = simulated ? *result.campaign.truth : identified;
+  const ErrorMap before = error_map(study.machine, actual, nullptr, source, options);
+  ErrorMap after = error_map(study.machine, actual, &identified, source, options);
+  for (std::size_t k = 0; k < after.count(); ++k) after.covered[k] = after.covered[k] & before.covered[k];
+  const DeterminedPart part = determined_part(study.machine, identified, covariance_of_errors(result),
+                                              unseen_directions(result.identification), source, after);
+  for (const std::size_t direction : part.open_directions) {
+    const GaugeConstraint& constraint = result.identification.gauge.constraints[direction];
+    unseen.open.push_back(constraint.words);
+  }
+  unseen.open_rank = part.open_rank;
+  if (!simulated) return;
+  double open_square = 0;
   for (std::size_t k = 0; k < after.count(); ++k) {
-    if (after.covered[k] == 0 || before.covered[k] == 0) continue;
+    if (after.covered[k] == 0) continue;
     double variance = 0;
     for (std::size_t d = 0; d < 3; ++d) {
-      const double u = predicted.uncertainty[d][k];
+      const double u = part.uncertainty[d][k];
       variance += u * u;
-      tally.within += std::abs(after.displacement[d][k]) <= 2 * u ? 1U : 0U;
+      open_square += part.open[d][k] * part.open[d][k];
+      tally.within += std::abs(part.displacement[d][k]) <= 2 * u ? 1U : 0U;
       ++tally.coordinates;
     }
-    tally.unseen.before.push_back(before.norm[k]);
-    tally.unseen.after.push_back(after.norm[k]);
-    tally.unseen.expanded_uncertainty.push_back(2 * std::sqrt(variance));
+    unseen.before.push_back(before.norm[k]);
+    unseen.after.push_back(after.norm[k]);
+    unseen.expanded_uncertainty.push_back(2 * std::sqrt(variance));
   }
+  if (!unseen.after.empty()) unseen.open_rms = std::sqrt(open_square / static_cast<double>(unseen.after.size()));
 }
 
 }  // namespace
@@ -187,7 +218,7 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
   const std::vector<std::unique_ptr<CampaignSetup>>& setups = result.campaign.setups;
   const bool trackers_only = std::none_of(study.setups.begin(), study.setups.end(),
                                           [](const Setup& setup) { return setup.device != nullptr; });
-  if (unseen.against_truth && !trackers_only) add_volumetric(study, result, poses, tally);
+  if (!trackers_only) add_volumetric(study, result, poses, tally);
   for (std::size_t s = 0; s < setups.size() && (!unseen.against_truth || trackers_only); ++s) {
     if (const auto* tracker = dynamic_cast<const TrackerCampaign*>(setups[s].get())) {
       TrackerReadings readings;
@@ -214,6 +245,19 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
           ? fmt::format("{} random poses that were not measured, against the simulated truth", unseen.after.size())
           : fmt::format("{} readings held out of the fit", unseen.after.size());
   return unseen;
+}
+
+std::string open_directions_text(const UnseenPoses& unseen) {
+  std::string text = fmt::format(
+      "the readings leave the volumetric error open in {} direction{}, beyond the choice of the workpiece datum; what "
+      "is "
+      "assumed there decides it: ",
+      unseen.open_rank, unseen.open_rank == 1 ? "" : "s");
+  for (std::size_t i = 0; i < unseen.open.size(); ++i) text += (i > 0 ? ", " : "") + unseen.open[i];
+  if (unseen.against_truth) {
+    text += fmt::format(". {:.3g} um (root mean square) of the error after lie there", 1e3 * unseen.open_rms);
+  }
+  return text + ". Predicted uncertainties do not include it.";
 }
 
 }  // namespace abbe

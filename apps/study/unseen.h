@@ -18,15 +18,24 @@ struct UnseenPoses {
   std::vector<double> after;                 ///< identified machine; mm
   std::vector<double> expanded_uncertainty;  ///< k = 2 of the prediction, root of the trace of its covariance; mm
   double coverage = 0;                       ///< share of the coordinates within 2 u of the prediction; 0..1
+  /// Conventions on which the volumetric error depends other than by the choice of the workpiece datum: the readings
+  /// do not determine it in these directions.
+  std::vector<std::string> open;
+  std::size_t open_rank = 0;  ///< number of independent displacements among them
+  double open_rms = 0;        ///< simulation: root mean square of the part of `after` that lies in them, mm
   SampleStatistics before_statistics, after_statistics, uncertainty_statistics;
 };
 
 /// Validation at poses that were not used.
 ///
 /// Simulated, trackers only: what the trackers would read at random poses. Simulated, any instruments: the volumetric
-/// error there, after the best fit of the workpiece datum, against the truth in the gauge of the result. Measured:
+/// error there, after the best fit of the workpiece datum, against the truth; uncertainty and coverage are those of the
+/// part that the readings determine (verify/determined_part.h), what lies in open directions is told apart. Measured:
 /// readings held out of the fit (their lengths; angles take no part).
 /// @param poses  number of random poses compared with the truth
 UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::size_t poses = 1000);
+
+/// What to say about the open directions, one sentence; there are some.
+std::string open_directions_text(const UnseenPoses& unseen);
 
 }  // namespace abbe

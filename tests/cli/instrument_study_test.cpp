@@ -23,6 +23,44 @@ TEST_F(InstrumentStudies, ATrackingInterferometerOnAThreeAxisMill) {
   EXPECT_GT(held_out["coverage_percent"].get<double>(), 90);
 }
 
+TEST_F(InstrumentStudies, ALaserInterferometerAlongEveryLineOfAMill) {
+  const nlohmann::json summary = expect_same_from_files("three_axis", "interferometer");
+  const nlohmann::json& held_out = summary["held_out"];
+  EXPECT_LT(held_out["position_after_um"]["mean"].get<double>(),
+            0.1 * held_out["position_before_um"]["mean"].get<double>());
+  // The uncertainty is neither too small nor so large that it holds anything: rms error and rms uncertainty agree.
+  EXPECT_GT(held_out["coverage_percent"].get<double>(), 85);
+  const double expanded = held_out["predicted_expanded_uncertainty_um"]["rms"].get<double>();
+  EXPECT_GT(held_out["position_after_um"]["rms"].get<double>(), 0.5 * expanded / 2);
+  EXPECT_LT(expanded, 1.5);
+  EXPECT_FALSE(held_out.contains("not_determined"));
+}
+
+TEST_F(InstrumentStudies, WhatLasersLeaveOpenIsSaidWithItsSize) {
+  // Without the step diagonal no reading shows how the roll of X grows along X.
+  std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/examples/three_axis/interferometer.study.toml");
+  std::stringstream content;
+  content << file.rdbuf();
+  std::string text = content.str();
+  const std::size_t from = text.find("# --- Step diagonal"), to = text.find("[identify]");
+  ASSERT_NE(from, std::string::npos);
+  text.erase(from, to - from);
+  const std::string relative = "machine = \"../";
+  text.replace(text.find(relative), relative.size(), "machine = \"" + std::string(ABBE_SOURCE_DIR) + "/examples/");
+  folder.write("open.study.toml", text);
+  const CommandResult result = abbe({"run", "open.study.toml", "-o", "out", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json held_out = nlohmann::json::parse(result.out)["held_out"];
+  ASSERT_TRUE(held_out.contains("not_determined"));
+  EXPECT_THAT(held_out["not_determined"].dump(), HasSubstr("slope of the reference straight line of EAX"));
+  // What is open is real: it is most of the error that is left, and not within the uncertainty of what is seen.
+  const double left = held_out["position_after_um"]["rms"].get<double>();
+  EXPECT_GT(held_out["not_determined_rms_um"].get<double>(), 0.5 * left);
+  EXPECT_GT(left, held_out["predicted_expanded_uncertainty_um"]["rms"].get<double>());
+  // The part that is seen is as certain as stated.
+  EXPECT_GT(held_out["coverage_percent"].get<double>(), 80);
+}
+
 TEST_F(InstrumentStudies, ACircleOutOfReachIsSaid) {
   folder.write("bar.study.toml", "machine = \"" + std::string(ABBE_SOURCE_DIR) +
                                      "/examples/machines/trunnion-mill.machine.toml\"\n"

@@ -57,8 +57,9 @@ enum class PlanKind {
   line,
   random,
   spiral,
-  circle,  ///< one point of an item goes round the other, the linear axes moving
-  follow   ///< the points of an item stay together while the rotary axes go through their grid
+  circle,        ///< one point of an item goes round the other, the linear axes moving
+  follow,        ///< the points of an item stay together while the rotary axes go through their grid
+  step_diagonal  ///< as line, but one axis after the other in every step
 };
 
 /// Axis positions at which simulated readings are taken.
@@ -67,9 +68,11 @@ enum class PlanKind {
 /// al., fig. 5, are fixed axes and restricted ranges: A all axes over their range, B one fixed C, C one fixed X and Z.
 struct MeasurementPlan {
   PlanKind kind = PlanKind::grid;
-  std::vector<AxisRange> axes;  ///< [axes], chain order; mm or rad
-  int points = 0;               ///< line, random, spiral
-  double turns = 1;             ///< spiral: turns of the ellipse over the two axes of largest range
+  std::vector<AxisRange> axes;     ///< [axes], chain order; mm or rad
+  int points = 0;                  ///< line, random, spiral, circle
+  double turns = 1;                ///< spiral: turns of the ellipse over the two axes of largest range
+  std::size_t steps = 0;           ///< step diagonal: how often every axis moves
+  std::vector<std::size_t> order;  ///< step diagonal: axes that move, in their order within a step
   /// Indices into Setup::reflectors or the instrument's items; each position is measured with each.
   std::vector<std::size_t> targets;
   std::size_t station = 0;                                 ///< index into Setup::stations

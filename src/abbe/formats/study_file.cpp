@@ -51,7 +51,7 @@ Simulation read_simulation(TomlTable& table, const std::filesystem::path& folder
   return simulation;
 }
 
-AxisRange read_axis_range(TomlTable& table, const Axis& axis, bool with_counts) {
+AxisRange read_axis_range(TomlTable& table, const Axis& axis, bool with_counts, RangeOrder order) {
   const Quantity quantity = axis_quantity(axis);
   AxisRange range;
   if (const auto at = table.optional_number("at", quantity)) {
@@ -63,6 +63,9 @@ AxisRange read_axis_range(TomlTable& table, const Axis& axis, bool with_counts) 
     range.to = limits ? (*limits)[1] : axis.travel_max;
     if (with_counts) range.count = static_cast<std::size_t>(table.integer_or("count", 5, 1, kLargestAxisCount));
     range.step = table.size_or("step", quantity, 0);
+    if (order == RangeOrder::rising && range.to < range.from) {
+      table.fail_quantity("range", quantity, "is falling", "[smallest, largest]; a line or a step diagonal may fall");
+    }
     if (range.count == 1 && range.from != range.to) table.fail("count", "is 1 for a range", "2 or more, or `at`");
   }
   for (const double position : {range.from, range.to}) {
@@ -109,7 +112,7 @@ std::string bare_name(const std::filesystem::path& path) {
 
 }  // namespace
 
-std::vector<AxisRange> read_axis_ranges(TomlTable& parent, const Machine& machine, bool with_counts) {
+std::vector<AxisRange> read_axis_ranges(TomlTable& parent, const Machine& machine, bool with_counts, RangeOrder order) {
   std::vector<AxisRange> ranges;
   for (const Axis& axis : machine.axes) {
     const bool has_zero = axis.endless || (axis.travel_min <= 0 && axis.travel_max >= 0);
@@ -123,7 +126,7 @@ std::vector<AxisRange> read_axis_ranges(TomlTable& parent, const Machine& machin
       tables->fail(name, fmt::format("the machine has no axis {}", name), "one of " + axis_names(machine));
     }
     TomlTable table = tables->table(name);
-    ranges[axis] = read_axis_range(table, machine.axes[axis], with_counts);
+    ranges[axis] = read_axis_range(table, machine.axes[axis], with_counts, order);
   }
   return ranges;
 }

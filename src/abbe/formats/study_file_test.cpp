@@ -69,7 +69,7 @@ errors = "E*C"
 basis = "fourier"
 order = 4
 [[identify.prior]]
-parameters = "EXX[*]"
+parameters = ["EXX[*]", "EZX[*]"]
 standard_uncertainty_um = 50
 
 [map]
@@ -134,6 +134,8 @@ TEST(StudyFile, ReadsASimulation) {
   ASSERT_EQ(identify.locations.size(), 5U);  // EX0C EY0C EA0C EB0C, not the zero EC0C; EX0X because it is named
   EXPECT_EQ(identify.strategy, Strategy::combined);
   EXPECT_EQ(identify.loss, LossKind::cauchy);
+  ASSERT_EQ(identify.priors.size(), 2U);
+  EXPECT_EQ(identify.priors[1].parameters, "EZX[*]");
   EXPECT_EQ(identify.priors[0].standard_uncertainty, 0.05);
   EXPECT_FALSE(identify.priors[0].is_angle);
   EXPECT_EQ(study.map->axes[1].count, 11U);

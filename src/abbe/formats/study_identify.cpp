@@ -104,9 +104,11 @@ void read_locations(TomlTable& table, const Machine& machine, IdentificationPlan
   }
 }
 
-ParameterPrior read_prior(TomlTable& table) {
+/// The same knowledge of every pattern that `parameters` lists.
+void read_prior(TomlTable& table, std::vector<ParameterPrior>& priors) {
   ParameterPrior prior;
-  prior.parameters = table.text("parameters");
+  const std::vector<std::string> patterns = table.texts("parameters");
+  if (patterns.empty()) table.fail("parameters", "are missing", "a parameter name or pattern, or a list of them");
   const auto length = table.optional_number("standard_uncertainty", Quantity::length);
   const auto angle = table.optional_number("standard_uncertainty", Quantity::angle);
   prior.is_angle = angle.has_value();
@@ -123,7 +125,10 @@ ParameterPrior read_prior(TomlTable& table) {
   if (prior.standard_uncertainty <= 0) {
     table.fail_quantity("standard_uncertainty", quantity, "is not above zero", "a standard uncertainty");
   }
-  return prior;
+  for (const std::string& pattern : patterns) {
+    prior.parameters = pattern;
+    priors.push_back(prior);
+  }
 }
 
 }  // namespace
@@ -169,7 +174,7 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
   plan.tool_offset = table.boolean_or("tool_offset", false);
   if (table.has("initial")) plan.initial_errors = folder / table.text("initial");
   table.text_or("initial", "");
-  for (TomlTable& prior : table.tables("prior")) plan.priors.push_back(read_prior(prior));
+  for (TomlTable& prior : table.tables("prior")) read_prior(prior, plan.priors);
   plan.strategy = static_cast<Strategy>(table.word_or("strategy", 0, {"joint", "independent", "combined"}));
   plan.loss = static_cast<LossKind>(table.word_or("loss", 0, {"none", "huber", "cauchy", "tukey"}));
   plan.loss_scale = table.size_or("loss_scale", Quantity::dimensionless, 0);

@@ -109,5 +109,51 @@ TEST(StudyInstrument, SaysWhatIsWrong) {
             std::string::npos);
 }
 
+/// The study with a third plan.
+std::string with_plan(const std::string& plan) { return kStudy + ("[[setup.plan]]\n" + plan); }
+
+TEST(StudyInstrument, ReadsAStepDiagonalWhichMayFall) {
+  const MeasurementPlan plan = parsed(with_plan("kind = \"step-diagonal\"\nsteps = 4\norder = [\"Z\", \"X\"]\n"
+                                                "axis.X = { range_mm = [900, 100] }\naxis.Z = {}\n"))
+                                   .setups.at(0)
+                                   .plans.at(2);
+  EXPECT_EQ(plan.kind, PlanKind::step_diagonal);
+  EXPECT_EQ(plan.steps, 4U);
+  EXPECT_EQ(plan.order, (std::vector<std::size_t>{2, 1}));
+  EXPECT_EQ(plan.axes[1].from, 900);
+  EXPECT_EQ(plan.axes[1].to, 100);
+  const MeasurementPlan by_chain =
+      parsed(with_plan("kind = \"step-diagonal\"\nsteps = 4\naxis.Z = {}\naxis.X = {}\n")).setups.at(0).plans.at(2);
+  EXPECT_EQ(by_chain.order, (std::vector<std::size_t>{1, 2}));
+}
+
+TEST(StudyInstrument, SaysWhatIsWrongWithAStepDiagonal) {
+  const auto wrong_plan = [](const std::string& plan) {
+    return message_of([&] { parsed(with_plan("kind = \"step-diagonal\"\n" + plan)); });
+  };
+  const std::string axes = "axis.X = {}\naxis.Z = {}\n";
+  EXPECT_NE(wrong_plan(axes).find("setup[1].plan[3].steps"), std::string::npos);
+  EXPECT_NE(wrong_plan("steps = 0\n" + axes).find("steps"), std::string::npos);
+  EXPECT_NE(wrong_plan("steps = 3\npoints = 7\n" + axes).find("points"), std::string::npos);
+  EXPECT_NE(wrong_plan("steps = 3\norder = [\"X\"]\n" + axes).find("order: Z has a range and is missing"),
+            std::string::npos);
+  EXPECT_NE(wrong_plan("steps = 3\norder = [\"X\", \"C\", \"Z\"]\n" + axes).find("order: C does not move"),
+            std::string::npos);
+  EXPECT_NE(wrong_plan("steps = 3\norder = [\"X\", \"X\"]\n" + axes).find("order: X stands twice"), std::string::npos);
+  EXPECT_NE(wrong_plan("steps = 3\naxis.X = {}\n").find("too few axes move"), std::string::npos);
+}
+
+TEST(StudyInstrument, RefusesAFallingRangeWhereTheOrderSaysNothing) {
+  const std::string message =
+      message_of([] { parsed(with_plan("kind = \"random\"\npoints = 4\naxis.X = { range_mm = [900, 100] }\n")); });
+  EXPECT_NE(message.find("setup[1].plan[3].axis.X.range_mm: is falling"), std::string::npos) << message;
+  EXPECT_EQ(parsed(with_plan("kind = \"line\"\npoints = 4\naxis.X = { range_mm = [900, 100] }\n"))
+                .setups.at(0)
+                .plans.at(2)
+                .axes[1]
+                .from,
+            900);
+}
+
 }  // namespace
 }  // namespace abbe

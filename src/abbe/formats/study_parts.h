@@ -26,7 +26,11 @@ struct PlanNames {
 
 MeasurementPlan read_plan(TomlTable& table, const Machine& machine, const PlanNames& names);
 
+/// Which way ranges of axes may be written.
+enum class RangeOrder { rising, either };
+
 /// Table `axis` with one table per axis: `range` and `count`, or `at`. Axes that are not named stay fixed.
-std::vector<AxisRange> read_axis_ranges(TomlTable& parent, const Machine& machine, bool with_counts);
+std::vector<AxisRange> read_axis_ranges(TomlTable& parent, const Machine& machine, bool with_counts,
+                                        RangeOrder order = RangeOrder::rising);
 
 }  // namespace abbe

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kLargestPointCount = 10'000'000;
 constexpr int kLargestRepeatCount = 10'000;
+constexpr int kMostSteps = 100'000;
 
 std::string all_names(const std::vector<std::string>& items) {
   std::string names;
@@ -46,6 +47,30 @@ void read_circle(TomlTable& table, MeasurementPlan& plan) {
   plan.circle.count = static_cast<std::size_t>(plan.points);
 }
 
+/// Axes that move, as the file orders them, or in the order of the chain.
+void read_step_diagonal(TomlTable& table, const Machine& machine, MeasurementPlan& plan) {
+  plan.steps = static_cast<std::size_t>(table.integer("steps", 1, kMostSteps));
+  for (const std::string& name : table.texts_or_none("order")) {
+    const std::size_t axis = machine.find_axis(name);
+    if (axis == Machine::npos || plan.axes[axis].is_fixed()) {
+      table.fail("order", fmt::format("{} does not move", name), "axes with a range");
+    }
+    if (std::find(plan.order.begin(), plan.order.end(), axis) != plan.order.end()) {
+      table.fail("order", fmt::format("{} stands twice", name), "every moving axis once");
+    }
+    plan.order.push_back(axis);
+  }
+  const bool by_chain = plan.order.empty();
+  for (std::size_t axis = 0; axis < plan.axes.size(); ++axis) {
+    if (plan.axes[axis].is_fixed()) continue;
+    if (by_chain) plan.order.push_back(axis);
+    if (std::find(plan.order.begin(), plan.order.end(), axis) == plan.order.end()) {
+      table.fail("order", fmt::format("{} has a range and is missing", machine.axes[axis].name),
+                 "every moving axis once");
+    }
+  }
+}
+
 void read_targets(TomlTable& table, const PlanNames& names, MeasurementPlan& plan) {
   for (const std::string& name : table.texts_or_none(names.key)) {
     plan.targets.push_back(find_name(names.targets, name));
@@ -77,7 +102,8 @@ void check_moving_axes(TomlTable& table, const Machine& machine, const Measureme
       table.fail("axis", fmt::format("{} goes round by itself, or stays", machine.axes[i].name), "at_mm or at_deg");
     }
   }
-  const std::ptrdiff_t needed = plan.kind == PlanKind::spiral ? 2 : plan.kind == PlanKind::circle ? 0 : 1;
+  const bool two = plan.kind == PlanKind::spiral || plan.kind == PlanKind::step_diagonal;
+  const std::ptrdiff_t needed = two ? 2 : plan.kind == PlanKind::circle ? 0 : 1;
   if (moving < needed) {
     table.fail("", "too few axes move", needed == 2 ? "ranges of two axes" : "the range of an axis");
   }
@@ -87,10 +113,14 @@ void check_moving_axes(TomlTable& table, const Machine& machine, const Measureme
 
 MeasurementPlan read_plan(TomlTable& table, const Machine& machine, const PlanNames& names) {
   MeasurementPlan plan;
-  plan.kind = static_cast<PlanKind>(table.word("kind", {"grid", "line", "random", "spiral", "circle", "follow"}));
+  plan.kind = static_cast<PlanKind>(
+      table.word("kind", {"grid", "line", "random", "spiral", "circle", "follow", "step-diagonal"}));
   const bool is_grid = plan.kind == PlanKind::grid || plan.kind == PlanKind::follow;
-  plan.axes = read_axis_ranges(table, machine, is_grid);
-  if (!is_grid) plan.points = static_cast<int>(table.integer("points", 1, kLargestPointCount));
+  const bool is_step_diagonal = plan.kind == PlanKind::step_diagonal;
+  const bool may_fall = plan.kind == PlanKind::line || is_step_diagonal;
+  plan.axes = read_axis_ranges(table, machine, is_grid, may_fall ? RangeOrder::either : RangeOrder::rising);
+  if (is_step_diagonal) read_step_diagonal(table, machine, plan);
+  if (!is_grid && !is_step_diagonal) plan.points = static_cast<int>(table.integer("points", 1, kLargestPointCount));
   if (plan.kind == PlanKind::spiral) plan.turns = table.size_or("turns", Quantity::dimensionless, 5);
   if (plan.kind == PlanKind::circle) read_circle(table, plan);
   if (plan.kind == PlanKind::follow) {
@@ -99,7 +129,8 @@ MeasurementPlan read_plan(TomlTable& table, const Machine& machine, const PlanNa
     }
   }
   if ((plan.kind == PlanKind::circle || plan.kind == PlanKind::follow) && !names.stations.empty()) {
-    table.fail("kind", "a tracker has no points that meet", "\"grid\", \"line\", \"random\" or \"spiral\"");
+    table.fail("kind", "a tracker has no points that meet",
+               "\"grid\", \"line\", \"random\", \"spiral\" or \"step-diagonal\"");
   }
   check_moving_axes(table, machine, plan);
   if (is_grid) {

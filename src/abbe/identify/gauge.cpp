@@ -24,6 +24,7 @@ Eigen::VectorXd usable_scale(const Eigen::VectorXd& column_norms) {
   return column_norms.unaryExpr([](double norm) { return norm > 0 ? norm : 1.0; });
 }
 
+/// @param quantity  what the functional is; empty: a combination that has no name
 void describe(const std::vector<EstimatedParameter>& parameters, const Eigen::VectorXd& scale,
               const std::string& quantity, GaugeConstraint& constraint) {
   const Eigen::VectorXd scaled = constraint.direction.cwiseProduct(scale).cwiseAbs();
@@ -39,10 +40,15 @@ void describe(const std::vector<EstimatedParameter>& parameters, const Eigen::Ve
   for (const std::size_t i : order) {
     if (scaled[static_cast<Index>(i)] < kNamedEntry * largest) break;
     constraint.inseparable.push_back(i);
-    if (std::abs(constraint.functional[static_cast<Index>(i)]) > 1e-9 * own) continue;
+    // What the quantity itself consists of is no other; a combination without a name is all of its parts.
+    if (!quantity.empty() && std::abs(constraint.functional[static_cast<Index>(i)]) > 1e-9 * own) continue;
     if (named++ < kMostNamed) others += (others.empty() ? "" : ", ") + parameters[i].name;
   }
   if (named > kMostNamed) others += fmt::format(" and {} more", named - kMostNamed);
+  if (quantity.empty()) {
+    constraint.inseparable_words = fmt::format("a combination of {} is not seen by the readings", others);
+    return;
+  }
   constraint.inseparable_words = others.empty() ? fmt::format("{} is not seen by the readings", quantity)
                                                 : fmt::format("{} is not separable from {}", quantity, others);
 }
@@ -91,7 +97,7 @@ std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& 
       constraint.words = fmt::format("unseen direction {}: smallest change from the start", i + 1);
       constraint.by_convention = choice == GaugeChoice::minimum_norm;
       constraints.push_back(std::move(constraint));
-      quantities.push_back(fmt::format("a combination of parameters ({})", i + 1));
+      quantities.emplace_back();
     }
   }
 

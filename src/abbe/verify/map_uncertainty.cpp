@@ -6,18 +6,15 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/verify/deviation_jacobian.h"
+
 namespace abbe {
 namespace {
 
-constexpr std::size_t kPart = ChainPlan::kBlockSize;
 using Motion = Eigen::Matrix<double, 3, 6>;
 
-/// Displacement of a point by a small motion (translation, rotation about the origin).
 Motion displacement_by_motion(const DeviationBlock& block, std::size_t k) {
-  const double x = block.seen[0][k], y = block.seen[1][k], z = block.seen[2][k];
-  Motion b;
-  b << 1, 0, 0, 0, z, -y, 0, 1, 0, -z, 0, x, 0, 0, 1, y, -x, 0;
-  return b;
+  return abbe::displacement_by_motion(block.seen[0][k], block.seen[1][k], block.seen[2][k]);
 }
 
 }  // namespace
@@ -44,44 +41,20 @@ MapUncertainty::MapUncertainty(const ParameterCovariance& covariance, std::size_
   factor_ = u.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
-template <class Visit>
-void MapUncertainty::for_each_part(const DeviationModel& model, const DeviationBlock& block, const Visit& visit) const {
-  const std::vector<double> zero(kPart, 0.0), one(kPart, 1.0);
-  const double* unit[3][3];
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) unit[i][j] = i == j ? one.data() : zero.data();
-  }
-  std::vector<RowArrays> rows;
-  for (int i = 0; i < 3; ++i) rows.push_back({{unit[i][0], unit[i][1], unit[i][2]}, {}});
-  for (int i = 0; i < rows_ - 3; ++i) {
-    rows.push_back({{zero.data(), zero.data(), zero.data()}, {unit[i][0], unit[i][1], unit[i][2]}});
-  }
-  std::vector<double> start[3];
-  for (int c = 0; c < 3; ++c) start[c].assign(kPart, model.actual_tip()[c]);
-  std::vector<const double*> shifted;
-  Eigen::MatrixXd jacobian(rows_ * static_cast<Eigen::Index>(kPart), static_cast<Eigen::Index>(parameters_.size()));
-  for (std::size_t from = 0; from < block.count; from += kPart) {
-    const std::size_t number = std::min(kPart, block.count - from);
-    model.actual().differentiate(
-        block.position_arrays(shifted, from, number), {start[0].data(), start[1].data(), start[2].data()},
-        {block.seen[0].data() + from, block.seen[1].data() + from, block.seen[2].data() + from}, rows, parameters_,
-        jacobian.data(), static_cast<std::size_t>(jacobian.rows()));
-    visit(from, static_cast<Eigen::Index>(number), jacobian);
-  }
-}
-
 MapUncertainty::Sums MapUncertainty::sums(const DeviationModel& model, const DeviationBlock& block) const {
   Sums sums;
   sums.mixed = Eigen::MatrixXd::Zero(6, static_cast<Eigen::Index>(parameters_.size()));
-  for_each_part(model, block, [&](std::size_t from, Eigen::Index number, const Eigen::MatrixXd& jacobian) {
-    for (Eigen::Index k = 0; k < number; ++k) {
-      const std::size_t pose = from + static_cast<std::size_t>(k);
-      if (!block.covered[pose]) continue;
-      const Motion b = displacement_by_motion(block, pose);
-      sums.normal += b.transpose() * b;
-      for (int c = 0; c < 3; ++c) sums.mixed += b.row(c).transpose() * jacobian.row(c * number + k);
-    }
-  });
+  for_each_deviation_jacobian(model, block, parameters_, rows_,
+                              [&](std::size_t from, Eigen::Index number, const Eigen::MatrixXd& jacobian) {
+                                for (Eigen::Index k = 0; k < number; ++k) {
+                                  const std::size_t pose = from + static_cast<std::size_t>(k);
+                                  if (!block.covered[pose]) continue;
+                                  const Motion b = displacement_by_motion(block, pose);
+                                  sums.normal += b.transpose() * b;
+                                  for (int c = 0; c < 3; ++c)
+                                    sums.mixed += b.row(c).transpose() * jacobian.row(c * number + k);
+                                }
+                              });
   return sums;
 }
 
@@ -97,37 +70,38 @@ void MapUncertainty::evaluate(const DeviationModel& model, const DeviationBlock&
   norm_uncertainty.resize(block.count);
   Eigen::MatrixXd removed_factor;
   if (removed_.size() > 0) removed_factor = removed_ * factor_;
-  for_each_part(model, block, [&](std::size_t from, Eigen::Index number, const Eigen::MatrixXd& jacobian) {
-    Eigen::MatrixXd spread = jacobian.topRows(rows_ * number) * factor_;
-    for (Eigen::Index k = 0; k < number; ++k) {
-      const std::size_t pose = from + static_cast<std::size_t>(k);
-      if (removed_.size() > 0) {
-        const Eigen::MatrixXd moved = displacement_by_motion(block, pose) * removed_factor;
-        for (int c = 0; c < 3; ++c) spread.row(c * number + k) -= moved.row(c);
-        for (int c = 3; c < rows_; ++c) spread.row(c * number + k) -= removed_factor.row(c);
-      }
-      Eigen::Matrix3d covariance;
-      for (int i = 0; i < 3; ++i) {
-        for (int j = i; j < 3; ++j) {
-          covariance(i, j) = covariance(j, i) = spread.row(i * number + k).dot(spread.row(j * number + k));
+  for_each_deviation_jacobian(
+      model, block, parameters_, rows_, [&](std::size_t from, Eigen::Index number, const Eigen::MatrixXd& jacobian) {
+        Eigen::MatrixXd spread = jacobian.topRows(rows_ * number) * factor_;
+        for (Eigen::Index k = 0; k < number; ++k) {
+          const std::size_t pose = from + static_cast<std::size_t>(k);
+          if (removed_.size() > 0) {
+            const Eigen::MatrixXd moved = displacement_by_motion(block, pose) * removed_factor;
+            for (int c = 0; c < 3; ++c) spread.row(c * number + k) -= moved.row(c);
+            for (int c = 3; c < rows_; ++c) spread.row(c * number + k) -= removed_factor.row(c);
+          }
+          Eigen::Matrix3d covariance;
+          for (int i = 0; i < 3; ++i) {
+            for (int j = i; j < 3; ++j) {
+              covariance(i, j) = covariance(j, i) = spread.row(i * number + k).dot(spread.row(j * number + k));
+            }
+          }
+          for (int c = 0; c < rows_; ++c) {
+            const double variance = c < 3 ? covariance(c, c) : spread.row(c * number + k).squaredNorm();
+            uncertainty[static_cast<std::size_t>(c)][pose] = std::sqrt(variance);
+          }
+          double along = 0;
+          if (block.norm[pose] > 0) {
+            const Eigen::Vector3d direction =
+                Eigen::Vector3d(block.displacement[0][pose], block.displacement[1][pose], block.displacement[2][pose]) /
+                block.norm[pose];
+            along = direction.dot(covariance * direction);
+          } else {
+            along = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues()[2];
+          }
+          norm_uncertainty[pose] = std::sqrt(std::max(0.0, along));
         }
-      }
-      for (int c = 0; c < rows_; ++c) {
-        const double variance = c < 3 ? covariance(c, c) : spread.row(c * number + k).squaredNorm();
-        uncertainty[static_cast<std::size_t>(c)][pose] = std::sqrt(variance);
-      }
-      double along = 0;
-      if (block.norm[pose] > 0) {
-        const Eigen::Vector3d direction =
-            Eigen::Vector3d(block.displacement[0][pose], block.displacement[1][pose], block.displacement[2][pose]) /
-            block.norm[pose];
-        along = direction.dot(covariance * direction);
-      } else {
-        along = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues()[2];
-      }
-      norm_uncertainty[pose] = std::sqrt(std::max(0.0, along));
-    }
-  });
+      });
 }
 
 }  // namespace abbe

@@ -31,9 +31,6 @@ class MapUncertainty {
                 std::array<std::vector<double>, 6>& uncertainty, std::vector<double>& norm_uncertainty) const;
 
  private:
-  template <class Visit>
-  void for_each_part(const DeviationModel& model, const DeviationBlock& block, const Visit& visit) const;
-
   std::vector<std::size_t> parameters_;
   Eigen::MatrixXd factor_;   ///< [n, rank], covariance = factor * factor^T
   Eigen::MatrixXd removed_;  ///< [6, n] derivative of the removed motion, or empty
