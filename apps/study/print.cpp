@@ -65,6 +65,9 @@ void print_study(const Study& study, const StudyResult& result) {
     for (const GaugeConstraint& constraint : identified.gauge.constraints) {
       fmt::print("  {}: {}\n", constraint.words, constraint.inseparable_words);
     }
+    if (result.unseen && result.unseen->open_known && result.unseen->open.empty()) {
+      fmt::print("  none of these changes the volumetric error other than by the choice of the workpiece datum\n");
+    }
   }
   print_advice(result);
 }

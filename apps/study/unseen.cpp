@@ -189,6 +189,7 @@ void add_volumetric(const Study& study, const StudyResult& result, std::size_t p
     const GaugeConstraint& constraint = result.identification.gauge.constraints[direction];
     unseen.open.push_back(constraint.words);
   }
+  unseen.open_known = true;
   unseen.open_rank = part.open_rank;
   if (!simulated) return;
   double open_square = 0;

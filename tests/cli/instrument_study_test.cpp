@@ -36,6 +36,16 @@ TEST_F(InstrumentStudies, ALaserInterferometerAlongEveryLineOfAMill) {
   EXPECT_FALSE(held_out.contains("not_determined"));
 }
 
+TEST_F(InstrumentStudies, ASixComponentLaserWithDiagonals) {
+  const nlohmann::json summary = expect_same_from_files("three_axis", "six-component-laser");
+  const nlohmann::json& held_out = summary["held_out"];
+  EXPECT_LT(held_out["position_after_um"]["mean"].get<double>(),
+            0.1 * held_out["position_before_um"]["mean"].get<double>());
+  EXPECT_GT(held_out["coverage_percent"].get<double>(), 85);
+  EXPECT_LT(held_out["predicted_expanded_uncertainty_um"]["rms"].get<double>(), 1.0);
+  EXPECT_FALSE(held_out.contains("not_determined"));
+}
+
 TEST_F(InstrumentStudies, WhatLasersLeaveOpenIsSaidWithItsSize) {
   // Without the step diagonal no reading shows how the roll of X grows along X.
   std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/examples/three_axis/interferometer.study.toml");
