@@ -156,8 +156,12 @@ class Search {
       std::vector<double> losses(order.size());
       for (std::size_t i = 0; i < order.size(); ++i) losses[i] = design_.loss(i);
       std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
+      std::size_t ahead = 1;
       for (std::size_t k = 0; k < order.size(); ++k) {
-        exchange_one(order[k], plan);
+        if (ahead > 1 && !design_.looked_ahead(order[k]))
+          design_.look_ahead(std::span(order).subspan(k, std::min(ahead, order.size() - k)));
+        // The more places in a row bring nothing, the less is lost by looking ahead.
+        ahead = exchange_one(order[k], plan) ? 1 : std::min(2 * ahead, PlanDesign::kMostAhead);
         if (options_.progress)
           options_.progress((start_ + (pass + static_cast<double>(k + 1) / static_cast<double>(order.size())) /
                                           options_.most_passes) /
@@ -180,16 +184,17 @@ class Search {
     plan.passes = passes;
   }
 
-  void exchange_one(std::size_t place, ReadingPlan& plan) {
+  bool exchange_one(std::size_t place, ReadingPlan& plan) {
     PlanDesign::Allowed rules = rules_;
     rules.per_cost = false;
     rules.most_cost = time_left() + space_.cost(design_.chosen()[place]);
     rules.ceiling = change_of(options_.smallest_gain);
     const PlanDesign::Best best = design_.best_instead(place, rules);
-    if (!(best.change < change_of(options_.smallest_gain)) || !design_.exchange(place, best.candidate)) return;
+    if (!(best.change < change_of(options_.smallest_gain)) || !design_.exchange(place, best.candidate)) return false;
     ++plan.exchanges;
     plan.history.push_back(design_.objective());
     refresh();
+    return true;
   }
 
   const PlanningSpace& space_;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "abbe/identify/planning_space.h"
@@ -65,6 +66,12 @@ class PlanDesign {
   };
   /// The candidate whose adding lowers the objective most; the first of equal ones.
   Best best_to_add(const Allowed& rules);
+  /// Of best_instead() for so many places, what needs the rows of all candidates, in one pass over them. It is used as
+  /// long as nothing changes; results are the same without.
+  static constexpr std::size_t kMostAhead = 8;
+  void look_ahead(std::span<const std::size_t> places);
+  bool looked_ahead(std::size_t place) const;
+
   /// The candidate that lowers the objective most in the place of a chosen one, with the change by the whole exchange.
   ///
   /// Most candidates are passed over by a bound. With loss_j of the chosen one, gain_i of the other and lambda_j the
@@ -117,6 +124,14 @@ class PlanDesign {
   std::vector<double> w_, g_;
   std::vector<double> gain_;  // [candidates] change of the objective by adding
   std::vector<double> size_;  // [candidates] trace of W_i
+  struct Ahead {
+    std::size_t place, first;  // first column of its products
+  };
+  static constexpr std::size_t kNotAhead = static_cast<std::size_t>(-1);
+  std::vector<Ahead> ahead_;
+  std::size_t ahead_at_ = kNotAhead;
+  std::vector<double> ahead_factors_;         // M^-1 A_j', columns, each [stride]
+  std::vector<std::vector<double>> ahead_x_;  // A_i times these, per block
   struct Leaving {
     double loss = 0, root_loss = 0;
     double stretch = 0;  // 1 / (1 - lambda_j)

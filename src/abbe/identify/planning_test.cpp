@@ -156,6 +156,37 @@ TEST_P(UpdatedDesign, EqualsOneFactorisedAnew) {
     EXPECT_NEAR(updated.loss(i), anew.loss(i), 1e-9 * std::abs(anew.loss(i)));
 }
 
+TEST_P(UpdatedDesign, FindsTheBestOfAllWhateverTheBoundPassesOver) {
+  const PlanningCandidates candidates = random_candidates(250, 3, 20, 4);
+  const PlanningSpace space(candidates, Eigen::MatrixXd());
+  const Eigen::MatrixXd functionals = GetParam() ? space.functionals(random_matrix(30, 20, 5)) : Eigen::MatrixXd();
+  PlanDesign design(space, functionals, 2);
+  std::vector<std::size_t> chosen, places;
+  for (std::size_t i = 0; i < 12; ++i) chosen.push_back(i);
+  for (std::size_t i = 0; i < PlanDesign::kMostAhead; ++i) places.push_back(i);
+  ASSERT_TRUE(design.rebuild(chosen, 0));
+  std::vector<PlanDesign::Best> alone;
+  for (const std::size_t place : places) alone.push_back(design.best_instead(place, {}));
+  design.look_ahead(places);
+  for (const std::size_t place : places) {
+    ASSERT_TRUE(design.looked_ahead(place));
+    const PlanDesign::Best best = design.best_instead(place, {});
+    EXPECT_EQ(best.candidate, alone[place].candidate);
+    EXPECT_EQ(best.change, alone[place].change);
+    // Every exchange by itself.
+    double least = 1e300;
+    for (std::size_t i = 12; i < 250; i += place == 0 ? 1 : 23) {
+      PlanDesign other(space, functionals, 1);
+      std::vector<std::size_t> exchanged = chosen;
+      exchanged[place] = i;
+      if (other.rebuild(exchanged, 0)) least = std::min(least, other.objective() - design.objective());
+    }
+    EXPECT_LE(best.change, least + 1e-9 * std::abs(design.objective()));
+  }
+  design.add(100);
+  EXPECT_FALSE(design.looked_ahead(0));
+}
+
 INSTANTIATE_TEST_SUITE_P(ByCriterion, UpdatedDesign, ::testing::Bool());
 
 TEST(PlanningTest, EveryExchangeImprovesTheCriterion) {
