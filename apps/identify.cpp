@@ -6,6 +6,7 @@
 #include "abbe/formats/study_file.h"
 #include "abbe/identify/prediction.h"
 #include "command.h"
+#include "study/advice.h"
 #include "study/job.h"
 #include "study/print.h"
 #include "study/report_parameters.h"
@@ -40,6 +41,7 @@ void add_identify_command(CommandLine& line) {
       identify_study(study, result, progress.callback());
       if (result.usable()) {
         result.unseen = evaluate_unseen(study, result);
+        tell_datum_apart(result, *result.unseen);
         if (!options->output.empty()) {
           ErrorsFile file;
           file.errors = result.identification.errors;

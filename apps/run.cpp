@@ -3,6 +3,7 @@
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/study_file.h"
 #include "command.h"
+#include "study/advice.h"
 #include "study/job.h"
 #include "study/print.h"
 #include "study/results.h"
@@ -39,6 +40,7 @@ void add_run_command(CommandLine& line) {
         }
         if (result.usable()) {
           result.unseen = evaluate_unseen(study, result);
+          tell_datum_apart(result, *result.unseen);
           Progress progress("mapping the volumetric error");
           result.map = map_study(study, result, progress.callback());
         }

@@ -24,14 +24,27 @@ nlohmann::ordered_json advice_json(const StudyResult& result) {
   return list;
 }
 
+void tell_datum_apart(StudyResult& result, const UnseenPoses& unseen) {
+  if (!unseen.open_known) return;
+  const std::size_t constraints = result.identification.gauge.constraints.size();
+  for (std::size_t i = 0; i < std::min(constraints, result.advice.size()); ++i) {
+    Advice& advice = result.advice[i];
+    const std::vector<std::size_t>& open = unseen.open_constraints;
+    if (advice.kind != AdviceKind::not_measured || std::find(open.begin(), open.end(), i) != open.end()) continue;
+    advice.kind = AdviceKind::datum;
+    advice.remedy = "none is needed: the volumetric error does not depend on it";
+  }
+}
+
 void print_advice(const StudyResult& result) {
   std::vector<std::string> remedies;
-  std::size_t conventions = 0, set_up = 0;
+  std::size_t conventions = 0, set_up = 0, datum = 0;
   for (const Advice& advice : result.advice) {
     conventions += advice.kind == AdviceKind::convention ? 1U : 0U;
     const bool no_harm = advice.kind == AdviceKind::set_up && !advice.shown;
     set_up += no_harm ? 1U : 0U;
-    if (advice.kind == AdviceKind::convention || no_harm) continue;
+    datum += advice.kind == AdviceKind::datum ? 1U : 0U;
+    if (advice.kind == AdviceKind::convention || advice.kind == AdviceKind::datum || no_harm) continue;
     if (std::find(remedies.begin(), remedies.end(), advice.remedy) == remedies.end()) remedies.push_back(advice.remedy);
   }
   if (!remedies.empty()) fmt::print("\nnot measured, and what would show more (tried with simulated readings)\n");
@@ -47,6 +60,9 @@ void print_advice(const StudyResult& result) {
   if (conventions > 0)
     fmt::print("\n{} of the directions not seen {}: no measurement would show {}\n", conventions,
                conventions > 1 ? "are conventions" : "is a convention", conventions > 1 ? "them" : "it");
+  if (datum > 0)
+    fmt::print("{} move{} the workpiece as a whole or not at all; the volumetric error does not depend on {}\n", datum,
+               datum > 1 ? "" : "s", datum > 1 ? "them" : "it");
   if (set_up > 0)
     fmt::print("{} concern{} the set-up alone; the machine's errors do not depend on {}\n", set_up,
                set_up > 1 ? "" : "s", set_up > 1 ? "them" : "it");

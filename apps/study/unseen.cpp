@@ -188,6 +188,7 @@ void add_volumetric(const Study& study, const StudyResult& result, std::size_t p
   for (const std::size_t direction : part.open_directions) {
     const GaugeConstraint& constraint = result.identification.gauge.constraints[direction];
     unseen.open.push_back(constraint.words);
+    unseen.open_constraints.push_back(direction);
   }
   unseen.open_known = true;
   unseen.open_rank = part.open_rank;

@@ -21,9 +21,10 @@ struct UnseenPoses {
   /// Conventions on which the volumetric error depends other than by the choice of the workpiece datum: the readings
   /// do not determine it in these directions.
   std::vector<std::string> open;
-  bool open_known = false;    ///< whether that was looked for: not with trackers alone
-  std::size_t open_rank = 0;  ///< number of independent displacements among them
-  double open_rms = 0;        ///< simulation: root mean square of the part of `after` that lies in them, mm
+  std::vector<std::size_t> open_constraints;  ///< their indices in the gauge report
+  bool open_known = false;                    ///< whether that was looked for: not with trackers alone
+  std::size_t open_rank = 0;                  ///< number of independent displacements among them
+  double open_rms = 0;  ///< simulation: root mean square of the part of `after` that lies in them, mm
   SampleStatistics before_statistics, after_statistics, uncertainty_statistics;
 };
 

@@ -34,6 +34,13 @@ TEST_F(InstrumentStudies, ALaserInterferometerAlongEveryLineOfAMill) {
   EXPECT_GT(held_out["position_after_um"]["rms"].get<double>(), 0.5 * expanded / 2);
   EXPECT_LT(expanded, 1.5);
   EXPECT_FALSE(held_out.contains("not_determined"));
+  std::size_t datum = 0;
+  for (const nlohmann::json& advice : summary["not_seen"]) {
+    EXPECT_NE(advice["kind"], "not measured")
+        << "proposed, though the volumetric error does not depend on it: " << advice;
+    datum += advice["kind"] == "datum" ? 1U : 0U;
+  }
+  EXPECT_GT(datum, 3U) << "rigid motions of the workpiece";
 }
 
 TEST_F(InstrumentStudies, ASixComponentLaserWithDiagonals) {
@@ -60,9 +67,16 @@ TEST_F(InstrumentStudies, WhatLasersLeaveOpenIsSaidWithItsSize) {
   folder.write("open.study.toml", text);
   const CommandResult result = abbe({"run", "open.study.toml", "-o", "out", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const nlohmann::json held_out = nlohmann::json::parse(result.out)["held_out"];
+  const nlohmann::json summary = nlohmann::json::parse(result.out), held_out = summary["held_out"];
   ASSERT_TRUE(held_out.contains("not_determined"));
   EXPECT_THAT(held_out["not_determined"].dump(), HasSubstr("slope of the reference straight line of EAX"));
+  std::string proposed;
+  for (const nlohmann::json& advice : summary["not_seen"]) {
+    if (advice["kind"] == "not measured")
+      proposed += advice["text"].get<std::string>() + ": " + advice["remedy"].get<std::string>();
+  }
+  EXPECT_THAT(proposed, HasSubstr("slope of EAX"));
+  EXPECT_THAT(proposed, HasSubstr("would show it"));
   // What is open is real: it is most of the error that is left, and not within the uncertainty of what is seen.
   const double left = held_out["position_after_um"]["rms"].get<double>();
   EXPECT_GT(held_out["not_determined_rms_um"].get<double>(), 0.5 * left);

@@ -4,8 +4,8 @@ import {Advice} from './data';
 import {html, section} from './dom';
 
 /// What lacks a measurement first; conventions and matters of the set-up need none.
-const kOrder = ['not measured', 'weak', 'convention', 'set-up'];
-const needsNone = (entry: Advice) => entry.kind === 'convention' || entry.kind === 'set-up';
+const kOrder = ['not measured', 'weak', 'convention', 'datum', 'set-up'];
+const needsNone = (entry: Advice) => ['convention', 'datum', 'set-up'].includes(entry.kind ?? '');
 
 export function adviceSection(advice: Advice[]): HTMLElement {
   const part = section('advice', 'What the measurement cannot see',

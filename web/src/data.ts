@@ -217,7 +217,7 @@ export interface Report {
 
 /// What the measurement cannot see, and which additional measurement would show it.
 export interface Advice {
-  /// "not measured", "weak", "convention" or "set-up".
+  /// "not measured", "weak", "convention", "datum" or "set-up".
   kind?: string;
   parameters?: string[];
   text: string;

@@ -198,7 +198,9 @@ class Adviser {
         }
       }
       if (!(least < rest.norm())) break;
-      text += (text.empty() ? "" : ", together with ") + possible_[best].words;
+      std::string words = possible_[best].words;
+      if (words.ends_with(',')) words.pop_back();  // of a clause that was to go on
+      text += (text.empty() ? "" : ", together with ") + words;
       rest = left[best] * (left[best].transpose() * rest);
     }
     return text.empty() ? "several of the measurements tried would show it together" : text + " would show it";
@@ -280,6 +282,8 @@ const char* kind_text(AdviceKind kind) {
       return "weak";
     case AdviceKind::convention:
       return "convention";
+    case AdviceKind::datum:
+      return "datum";
     case AdviceKind::set_up:
       break;
   }

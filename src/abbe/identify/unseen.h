@@ -22,6 +22,7 @@ enum class AdviceKind {
   not_measured,  ///< some further measurement would determine it: lack of data
   weak,          ///< seen, but its uncertainty is above the typical size of errors
   convention,    ///< nothing that could be measured would determine it: the same machine is described in several ways
+  datum,         ///< it moves the workpiece as a whole or nothing at all: the volumetric error does not depend on it
   set_up         ///< it concerns unknowns of the set-up alone; the machine's errors do not depend on it
 };
 
@@ -37,7 +38,7 @@ struct Advice {
   double factor = 0;                    ///< seen, but hardly: by how much the remedy lowers the standard uncertainty
 };
 
-/// For programs: "not measured", "weak", "convention", "set-up".
+/// For programs: "not measured", "weak", "convention", "datum", "set-up".
 const char* kind_text(AdviceKind kind);
 
 struct AdviceOptions {
@@ -60,7 +61,8 @@ std::vector<PossibleMeasurement> possible_measurements(const Problem& problem);
 /// Each is tried: its rows are added to the information, and the direction has to become separable, with errors of
 /// typical size showing by more than the noise (weak ones: the variance has to fall to a quarter). Directions that all
 /// of them together leave open are conventions, and their part is left out of the others. A direction held by a prior
-/// alone is said to be so.
+/// alone is said to be so. Those of the gauge come first, in its order; whether they are a matter of the datum is not
+/// found here (verify/determined_part.h).
 /// @param problem  observations stand at the estimates, and do so afterwards
 std::vector<Advice> unseen_advice(const Problem& problem, const Identification& identification,
                                   const std::vector<PossibleMeasurement>& possible, const AdviceOptions& options = {});
