@@ -105,11 +105,11 @@ DeterminedPart determined_part(const Machine& machine, const ErrorSet& errors, c
   remove(rigid, beside);
   // At every pose 1 mm for a millimetre, the size of the workspace for a radian.
   const std::vector<bool> is_angle = parameters_are_angles(errors);
-  Eigen::VectorXd possible = Eigen::VectorXd::Zero(unseen.cols());
+  Eigen::VectorXd effect(n);
   for (Index p = 0; p < n; ++p) {
-    const double effect = is_angle[covariance.parameters[static_cast<std::size_t>(p)]] ? at.size : 1;
-    possible += effect * std::sqrt(static_cast<double>(rows)) * unseen.row(p).cwiseAbs().transpose();
+    effect[p] = is_angle[covariance.parameters[static_cast<std::size_t>(p)]] ? at.size : 1;
   }
+  const Eigen::VectorXd possible = std::sqrt(static_cast<double>(rows)) * (unseen.cwiseAbs().transpose() * effect);
   for (Index i = 0; i < unseen.cols(); ++i) {
     if (beside.col(i).norm() > kOpenPart * possible[i]) part.open_directions.push_back(static_cast<std::size_t>(i));
   }
@@ -140,7 +140,8 @@ DeterminedPart determined_part(const Machine& machine, const ErrorSet& errors, c
     for (std::size_t k = 0; k < at.pose.size(); ++k) {
       const Index row = static_cast<Index>(3 * k + c);
       part.displacement[c][at.pose[k]] = left(row, 0);
-      part.uncertainty[c][at.pose[k]] = spread.row(row).norm();
+      // A row of no columns has no place in memory.
+      part.uncertainty[c][at.pose[k]] = spread.cols() > 0 ? spread.row(row).norm() : 0;
       part.open[c][at.pose[k]] = in_open(row, 0);
     }
   }
