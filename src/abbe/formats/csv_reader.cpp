@@ -3,39 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
-#include <optional>
 
 #include "abbe/formats/csv_header.h"
+#include "abbe/formats/decimal_text.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/text_blocks.h"
 #include "abbe/geometry/parallel_blocks.h"
 
 namespace abbe {
 namespace {
 
-constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 constexpr std::uint32_t kLargestNameCount = 1000;
-constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                                 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-
-/// Where and why a row was refused.
-struct Refusal {
-  std::size_t offset = 0;  // byte in the text
-  std::string field;
-  std::string problem;
-  std::string expected;
-};
 
 /// A run of whole lines and where its rows belong.
-struct Block {
-  std::size_t begin = 0;
-  std::size_t end = 0;
+struct Block : TextBlock {
   std::size_t rows = 0;
   std::size_t first_row = 0;
   std::vector<std::vector<std::string>> names;  // per wanted text column, in order of appearance here
-  std::optional<Refusal> refusal;
 };
 
 /// What to do with one column of the file, in the form the inner loop needs.
@@ -63,39 +49,11 @@ std::size_t count_rows(std::string_view text, std::size_t begin, std::size_t end
   return rows;
 }
 
-/// Plain decimals of at most 19 digits that end at a comma or the end of the line: one exact operation, see
-/// number_text.cpp.
-/// @returns the place behind the number, or null if it has to be read the long way
+/// @returns the place behind the number, a comma or the end, or null if it has to be read the long way
 const char* fast_number(const char* at, const char* end, int decimal_shift, double& value) {
-  bool negative = false;
   while (at != end && *at == ' ') ++at;
-  if (at != end && *at == '-') {
-    negative = true;
-    ++at;
-  }
-  const char* const start = at;
-  std::uint64_t digits = 0;
-  for (; at != end && static_cast<unsigned char>(*at - '0') < 10; ++at) {
-    digits = digits * 10 + static_cast<std::uint64_t>(*at - '0');
-  }
-  std::ptrdiff_t count = at - start;
-  int exponent = decimal_shift;
-  if (at != end && *at == '.') {
-    const char* const fraction = ++at;
-    for (; at != end && static_cast<unsigned char>(*at - '0') < 10; ++at) {
-      digits = digits * 10 + static_cast<std::uint64_t>(*at - '0');
-    }
-    count += at - fraction;
-    if (count > 19) return nullptr;
-    exponent -= static_cast<int>(at - fraction);
-  }
-  if (count == 0 || count > 19 || digits > (std::uint64_t{1} << 53) || exponent < -22) return nullptr;
-  if (at != end && *at != ',') return nullptr;
-  const double exact = static_cast<double>(digits);
-  const double result = exponent < 0 ? exact / kPowersOfTen[static_cast<std::size_t>(-exponent)]
-                                     : exact * kPowersOfTen[static_cast<std::size_t>(exponent)];
-  value = negative ? -result : result;
-  return at;
+  at = read_short_decimal(at, end, decimal_shift, value);
+  return at == nullptr || at == end || *at == ',' ? at : nullptr;
 }
 
 std::string expected_number(const Target& target) {
@@ -147,7 +105,7 @@ class BlockReader {
  private:
   bool refuse(const char* at, const std::string& field, std::string problem, std::string expected) {
     block_.refusal =
-        Refusal{static_cast<std::size_t>(at - text_.data()), field, std::move(problem), std::move(expected)};
+        TextRefusal{static_cast<std::size_t>(at - text_.data()), field, std::move(problem), std::move(expected)};
     return false;
   }
 
@@ -222,24 +180,6 @@ class BlockReader {
   std::string unquoted_;
 };
 
-std::size_t line_number(std::string_view text, std::size_t offset) {
-  return 1 +
-         static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
-}
-
-std::vector<Block> split_into_blocks(std::string_view text, std::size_t begin) {
-  std::vector<Block> blocks;
-  while (begin < text.size()) {
-    Block block;
-    block.begin = begin;
-    std::size_t end = std::min(begin + kBlockBytes, text.size());
-    if (end < text.size()) end = std::min(text.find('\n', end), text.size() - 1) + 1;
-    block.end = begin = end;
-    blocks.push_back(std::move(block));
-  }
-  return blocks;
-}
-
 /// Names of all blocks in order of appearance; renumbers the words of the blocks.
 void join_names(const std::vector<Block>& blocks, std::size_t wanted, CsvValues& values) {
   std::map<std::string, std::uint32_t, std::less<>> index;
@@ -271,9 +211,9 @@ CsvTable read_csv(std::string_view text, const std::string& file, const std::vec
   if (csv_is_passed_over(header))
     throw InputError({file, 0, 0, ""}, "the file is empty", "a header line with column names");
   const std::vector<CsvFileColumn> columns =
-      csv_match_header(header, file, line_number(text, header_at), wanted, mapping);
+      csv_match_header(header, file, text_line(text, header_at), wanted, mapping);
 
-  std::vector<Block> blocks = split_into_blocks(text, at);
+  std::vector<Block> blocks = split_into_blocks<Block>(text, at);
   for_each_block(blocks.size(), threads,
                  [&](std::size_t i) { blocks[i].rows = count_rows(text, blocks[i].begin, blocks[i].end); });
   CsvTable table;
@@ -317,12 +257,7 @@ CsvTable read_csv(std::string_view text, const std::string& file, const std::vec
                  [&](std::size_t i) { BlockReader(text, targets, wanted.size(), blocks[i]).read(); });
 
   for (const Block& block : blocks) {
-    if (!block.refusal) continue;
-    const Refusal& refusal = *block.refusal;
-    const std::size_t line_start = text.rfind('\n', refusal.offset == 0 ? 0 : refusal.offset - 1);
-    const std::size_t column = refusal.offset - (line_start == std::string_view::npos ? 0 : line_start + 1) + 1;
-    throw InputError({file, line_number(text, refusal.offset), column, refusal.field}, refusal.problem,
-                     refusal.expected);
+    if (block.refusal) throw_refusal(text, file, *block.refusal);
   }
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (!table.columns[i].words.empty()) join_names(blocks, i, table.columns[i]);

@@ -1,0 +1,19 @@
+// OBJ files: any bytes give points and triangles that hold together, or an InputError.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/obj_file.h"
+#include "fuzz_geometry.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view contents(reinterpret_cast<const char*>(data), size);
+  try {
+    const abbe::ObjContents read = abbe::parse_obj(contents, "fuzz.obj", {}, 1);
+    require_sound(read.points, read.triangles);
+  } catch (const abbe::InputError&) {
+  }
+  return 0;
+}

@@ -1,0 +1,70 @@
+#include "abbe/formats/mesh_file.h"
+
+#include <fmt/format.h>
+
+#include "abbe/formats/file_extension.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/obj_file.h"
+#include "abbe/formats/ply_file.h"
+#include "abbe/formats/results_folder.h"
+#include "abbe/formats/stl_file.h"
+#include "abbe/formats/text_file.h"
+
+namespace abbe {
+namespace {
+
+constexpr const char* kFormats = "a mesh: STL, PLY or OBJ";
+
+[[noreturn]] void refuse_no_faces(const std::string& file) {
+  throw InputError({file, 0, 0, ""}, "there are no faces in the file", kFormats);
+}
+
+MeshFile mesh_of_ply(std::string_view contents, const std::string& file, const MeshFileOptions& options) {
+  PlyContents ply = parse_ply(contents, file, options.unit);
+  if (ply.triangles.cols() == 0) refuse_no_faces(file);
+  return {{std::move(ply.points), std::move(ply.triangles)}, ply.format, ply.unit, {}};
+}
+
+MeshFile mesh_of_obj(std::string_view contents, const std::string& file, const MeshFileOptions& options) {
+  ObjContents obj = parse_obj(contents, file, options.unit, options.threads);
+  if (obj.triangles.cols() == 0) refuse_no_faces(file);
+  return {{std::move(obj.points), std::move(obj.triangles)}, "OBJ", obj.unit, {}};
+}
+
+}  // namespace
+
+MeshFile parse_mesh(std::string_view contents, const std::string& file, const MeshFileOptions& options) {
+  const std::string extension = file_extension(file);
+  if (is_ply(contents)) return mesh_of_ply(contents, file, options);
+  if (is_binary_stl(contents) || extension == ".stl") return parse_stl(contents, file, options);
+  if (extension == ".obj") return mesh_of_obj(contents, file, options);
+  if (extension == ".ply") throw InputError({file, 1, 0, ""}, "this is no PLY file", "a first line 'ply'");
+  if (is_ascii_stl(contents)) return parse_stl(contents, file, options);
+  throw InputError({file, 0, 0, ""}, fmt::format("files with the extension '{}' are not known", extension), kFormats);
+}
+
+MeshFile read_mesh(const std::filesystem::path& path, const MeshFileOptions& options) {
+  const MappedFile file(path);
+  return parse_mesh(file.text(), path.string(), options);
+}
+
+bool has_mesh_extension(const std::filesystem::path& path) {
+  const std::string extension = file_extension(path);
+  return extension == ".stl" || extension == ".ply" || extension == ".obj";
+}
+
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
+  const std::string extension = file_extension(path);
+  if (extension == ".stl") {
+    write_file_atomically(path, stl_bytes(mesh));
+  } else if (extension == ".ply") {
+    PlyParts parts{mesh.vertices};
+    parts.triangles = mesh.triangles;
+    write_file_atomically(path, ply_bytes(parts));
+  } else {
+    throw InputError({path.string(), 0, 0, ""}, fmt::format("meshes are not written as '{}'", extension),
+                     ".stl or .ply");
+  }
+}
+
+}  // namespace abbe

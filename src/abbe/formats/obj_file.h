@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "abbe/formats/file_unit.h"
+
+namespace abbe {
+
+/// What a Wavefront OBJ file holds of a point cloud or a mesh.
+struct ObjContents {
+  Eigen::Matrix3Xd points;   ///< [3, n] mm
+  Eigen::Matrix3Xd normals;  ///< [3, n] unit vectors where the file has one "vn" for each "v" and no faces; or [3, 0]
+  Eigen::Matrix<std::uint32_t, 3, Eigen::Dynamic> triangles;
+  FileUnit unit;
+};
+
+/// Reads OBJ: v, vn, f with corners a, a/b, a//c, a/b/c, counted from 1 or backwards from -1; polygons become
+/// triangles. Groups, materials, texture coordinates, points and lines are passed over; free-form surfaces are refused.
+/// In parallel; the result does not depend on the number of threads. @throws InputError
+ObjContents parse_obj(std::string_view contents, const std::string& file, const std::optional<FileLength>& unit = {},
+                      int threads = 0);
+
+}  // namespace abbe
