@@ -1,3 +1,0 @@
-#pragma once
-
-#include "abbe/geometry/parallel_blocks.h"
