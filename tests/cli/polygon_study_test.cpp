@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "cli/instrument_study_test.h"
 
 namespace abbe {
@@ -10,7 +12,8 @@ using testing::HasSubstr;
 class PolygonStudies : public InstrumentStudies {
  protected:
   /// Runs the example, and once more from its files; what is found must hold at poses that were not measured.
-  /// @param share_left  largest mean volumetric error after, as a share of that before
+  /// @param share_left  largest part left of what the readings determine, root mean square, as a share of the error
+  /// before
   void expect_found(const std::string& example, const std::string& name, double share_left) {
     const nlohmann::json summary = expect_same_from_files(example, name);
     ASSERT_TRUE(summary.contains("status"));
@@ -18,10 +21,16 @@ class PolygonStudies : public InstrumentStudies {
     EXPECT_NEAR(summary["normalised_residual_rms"].get<double>(), 1, 0.15);
     const nlohmann::json& held_out = summary["held_out"];
     EXPECT_EQ(held_out["reference"], "truth");
-    EXPECT_LT(held_out["position_after_um"]["mean"].get<double>(),
-              share_left * held_out["position_before_um"]["mean"].get<double>());
-    // One campaign: the coordinates share a few dozen parameters, so its share scatters about 95 %.
-    EXPECT_GT(held_out["coverage_percent"].get<double>(), 85);
+    const double before = held_out["position_before_um"]["rms"].get<double>();
+    const double after = held_out["position_after_um"]["rms"].get<double>();
+    // A prism does not see where the axis average line is in the bed; what that leaves open is told apart.
+    ASSERT_TRUE(held_out.contains("not_determined_rms_um"));
+    const double open = held_out["not_determined_rms_um"].get<double>();
+    EXPECT_LT(open, 0.1 * before);
+    EXPECT_LT(std::sqrt(after * after - open * open), share_left * before);
+    // One campaign: the coordinates share a few dozen parameters, so its share scatters about 95 % (82 to 100 over
+    // seeds).
+    EXPECT_GT(held_out["coverage_percent"].get<double>(), 75);
   }
 };
 
