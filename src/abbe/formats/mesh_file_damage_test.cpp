@@ -141,6 +141,18 @@ void survive(const std::string& good, const std::string& file) {
   }
 }
 
+TEST(DamagedMesh, APartOfANormalIsRefused) {
+  // Found by fuzzing: without the first of three the others were written beside the array.
+  for (const std::string present :
+       {"property float ny\nproperty float nz\n", "property float nx\n", "property float nz\nproperty float nx\n"}) {
+    EXPECT_EQ(
+        message("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n" +
+                    present + "end_header\n0 0 0 1 1\n",
+                "a.ply"),
+        "a.ply:3: element vertex: has only a part of a normal; expected numbers nx, ny, nz or none of them");
+  }
+}
+
 TEST(DamagedMesh, CutOffAndChangedFilesReadOrAreRefused) {
   survive(stl_bytes(block()), "a.stl");
   const TriangleMesh mesh = block();

@@ -201,10 +201,12 @@ class BodyReader {
       if (present) {
         slots[at] = static_cast<int>(k);
         ++found;
-      } else if (k < 3 || found > 3) {
-        refuse_element(element, fmt::format("has no property {}", kWanted[k]),
-                       k < 3 ? "numbers x, y, z" : "numbers nx, ny, nz or none of them");
+      } else if (k < 3) {
+        refuse_element(element, fmt::format("has no property {}", kWanted[k]), "numbers x, y, z");
       }
+    }
+    if (found != 3 && found != kWanted.size()) {
+      refuse_element(element, "has only a part of a normal", "numbers nx, ny, nz or none of them");
     }
     if (element.count == 0) refuse_element(element, "there are no vertices", "at least one");
     if (element.count >= 0xffffffffU) refuse_element(element, "too many vertices", "at most 4294967294");
