@@ -10,12 +10,12 @@ struct UnseenPoses;
 /// What the readings cannot see and what would show it, for the report and for programs.
 nlohmann::ordered_json advice_json(const StudyResult& result);
 
+/// The same for people; directions with the same remedy stand together. Conventions and matters of the datum are
+/// counted only.
+void print_advice(const StudyResult& result);
+
 /// Directions that the readings leave open, but on which the volumetric error does not depend, become a matter of the
 /// datum.
 void tell_datum_apart(StudyResult& result, const UnseenPoses& unseen);
-
-/// The same for people; directions with the same remedy stand together. Conventions and matters of the datum
-/// are counted only.
-void print_advice(const StudyResult& result);
 
 }  // namespace abbe

@@ -14,33 +14,12 @@
 #include "abbe/instruments/interferometer.h"
 #include "abbe/instruments/measurement_plan.h"
 #include "abbe/instruments/tracking_interferometer.h"
+#include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
 namespace {
 
 using enum InterferometerComponent;
-
-/// Cross table X on Y under a spindle on Z.
-Machine mill() {
-  Machine machine;
-  machine.name = "mill";
-  const char* names[] = {"X", "Y", "Z"};
-  const double low[] = {0, 0, -460}, high[] = {760, 440, 0};
-  for (int i = 0; i < 3; ++i) {
-    Axis axis;
-    axis.name = names[i];
-    axis.side = i < 2 ? ChainSide::workpiece : ChainSide::tool;
-    axis.primed = i < 2;
-    axis.direction = Eigen::Vector3d::Unit(i);
-    axis.travel_min = low[i];
-    axis.travel_max = high[i];
-    machine.axes.push_back(axis);
-  }
-  machine.bed_from_workpiece.translation = {380, 220, 0};
-  machine.tool_reference = {0, 0, 610};
-  machine.tool_offset = {0, 0, -120};
-  return machine;
-}
 
 ErrorSet true_errors(const Machine& machine) {
   RandomErrorOptions options;
@@ -145,7 +124,7 @@ Measured tracking(const Machine& machine, std::uint64_t seed) {
 }
 
 TEST(TrackingInterferometerCampaign, LengthsWithoutNoisePredictLengthsElsewhere) {
-  const Machine machine = mill();
+  const Machine machine = test::three_axis_mill();
   Share share;
   predict(machine, true_errors(machine), {tracking(machine, 0)}, 0, 1, share);
   EXPECT_EQ(share.count, 144u);
@@ -153,7 +132,7 @@ TEST(TrackingInterferometerCampaign, LengthsWithoutNoisePredictLengthsElsewhere)
 }
 
 TEST(TrackingInterferometerCampaign, PredictedLengthsContainTheTruthAsStated) {
-  const Machine machine = mill();
+  const Machine machine = test::three_axis_mill();
   const ErrorSet truth = true_errors(machine);
   Share share;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -272,7 +251,7 @@ Measured diagonals(const Machine& machine) {
 }
 
 TEST(InterferometerCampaign, RunsWithoutNoisePredictEveryReadingElsewhere) {
-  const Machine machine = mill();
+  const Machine machine = test::three_axis_mill();
   Share share;
   predict(machine, true_errors(machine), {six_components(machine, 0), squares(machine, 0), diagonals(machine)}, 0, 1,
           share);
@@ -282,7 +261,7 @@ TEST(InterferometerCampaign, RunsWithoutNoisePredictEveryReadingElsewhere) {
 
 TEST(InterferometerCampaign, SixComponentsAndSquaresForetellTheBodyDiagonals) {
   // The diagonals take no part but for three points that cost next to nothing: their zeros.
-  const Machine machine = mill();
+  const Machine machine = test::three_axis_mill();
   const ErrorSet truth = true_errors(machine);
   Share share;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {

@@ -149,7 +149,7 @@ Survey survey(ShapeKind kind, const FitPoints& points, const FitConstraints& con
   result.centre = result.sample.rowwise().mean();
   if (in_plane) result.centre.z() = 0;
   result.sample.colwise() -= result.centre;
-  result.centroid = centroid(points, result.centre, {}, threads);
+  result.centroid = centroid(points, result.centre, threads);
   if (!result.centre.allFinite() || !result.centroid.finite) {
     result.status = FitStatus::bad_points;
     result.reason = "a coordinate is not finite";

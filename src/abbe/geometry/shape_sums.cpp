@@ -342,8 +342,7 @@ void distances(const ShapeFrame& frame, const FitPoints& points, std::span<doubl
   });
 }
 
-ExtremeDistances extreme_distances(const ShapeFrame& frame, const FitPoints& points, int threads,
-                                   std::vector<ExtremeDistances>* per_block) {
+ExtremeDistances extreme_distances(const ShapeFrame& frame, const FitPoints& points, int threads) {
   const KernelFrame kernel = kernel_frame(frame);
   const auto n = static_cast<std::size_t>(points.cols());
   const std::size_t blocks = block_count(n);
@@ -365,15 +364,11 @@ ExtremeDistances extreme_distances(const ShapeFrame& frame, const FitPoints& poi
     if (e.smallest < all.smallest) all.smallest = e.smallest, all.smallest_at = e.smallest_at;
     if (e.largest > all.largest) all.largest = e.largest, all.largest_at = e.largest_at;
   }
-  if (per_block != nullptr) *per_block = std::move(found);
   return all;
 }
 
-Centroid centroid(const FitPoints& points, const Eigen::Vector3d& centre, std::span<const double> weights,
-                  int threads) {
-  // Products of the coordinates themselves: those of a plane through the centre, whose slopes are they.
+Centroid centroid(const FitPoints& points, const Eigen::Vector3d& centre, int threads) {
   struct Moments {
-    double weight = 0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
     bool finite = true;
@@ -383,40 +378,36 @@ Centroid centroid(const FitPoints& points, const Eigen::Vector3d& centre, std::s
   std::vector<Moments> moments(blocks);
   for_each_block(blocks, worth(threads, blocks), [&](std::size_t block) {
     const std::size_t first = block * kBlockPoints, last = std::min(first + kBlockPoints, n);
-    double s[10] = {};
+    double s[9] = {};
     for (std::size_t i = first; i < last; ++i) {
       const auto column = static_cast<Eigen::Index>(i);
-      const double w = weights.empty() ? 1 : weights[i];
       const double x = points(0, column) - centre.x(), y = points(1, column) - centre.y(),
                    z = points(2, column) - centre.z();
-      s[0] += w;
-      s[1] += w * x;
-      s[2] += w * y;
-      s[3] += w * z;
-      s[4] += w * x * x;
-      s[5] += w * x * y;
-      s[6] += w * x * z;
-      s[7] += w * y * y;
-      s[8] += w * y * z;
-      s[9] += w * z * z;
+      s[0] += x;
+      s[1] += y;
+      s[2] += z;
+      s[3] += x * x;
+      s[4] += x * y;
+      s[5] += x * z;
+      s[6] += y * y;
+      s[7] += y * z;
+      s[8] += z * z;
     }
     Moments& m = moments[block];
-    m.weight = s[0];
-    m.sum = {s[1], s[2], s[3]};
-    m.products << s[4], s[5], s[6], s[5], s[7], s[8], s[6], s[8], s[9];
+    m.sum = {s[0], s[1], s[2]};
+    m.products << s[3], s[4], s[5], s[4], s[6], s[7], s[5], s[7], s[8];
     m.finite = m.products.allFinite() && m.sum.allFinite();
   });
   Centroid result;
   Moments total;
   for (const Moments& m : moments) {
-    total.weight += m.weight;
     total.sum += m.sum;
     total.products += m.products;
     result.finite = result.finite && m.finite;
   }
-  if (total.weight <= 0 || !result.finite) return result;
-  result.mean = total.sum / total.weight;
-  result.scatter = total.products / total.weight - result.mean * result.mean.transpose();
+  if (n == 0 || !result.finite) return result;
+  result.mean = total.sum / static_cast<double>(n);
+  result.scatter = total.products / static_cast<double>(n) - result.mean * result.mean.transpose();
   return result;
 }
 

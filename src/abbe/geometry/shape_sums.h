@@ -33,9 +33,7 @@ struct ExtremeDistances {
   double smallest = 0, largest = 0;
   std::size_t smallest_at = 0, largest_at = 0;
 };
-/// @param per_block  if not null: the extremes of each block of kBlockPoints
-ExtremeDistances extreme_distances(const ShapeFrame& frame, const FitPoints& points, int threads,
-                                   std::vector<ExtremeDistances>* per_block = nullptr);
+ExtremeDistances extreme_distances(const ShapeFrame& frame, const FitPoints& points, int threads);
 
 /// Centroid from `centre`, mm, and whether every coordinate is finite.
 struct Centroid {
@@ -43,7 +41,7 @@ struct Centroid {
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();  ///< mean of (q - mean)(q - mean)', mm^2
   bool finite = true;
 };
-Centroid centroid(const FitPoints& points, const Eigen::Vector3d& centre, std::span<const double> weights, int threads);
+Centroid centroid(const FitPoints& points, const Eigen::Vector3d& centre, int threads);
 
 /// The frame as the vectorised functions take it.
 struct KernelFrame {

@@ -1,11 +1,11 @@
 #include "abbe/verify/determined_part.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/verify/covariance_root.h"
 #include "abbe/verify/deviation_block.h"
 #include "abbe/verify/deviation_jacobian.h"
 
@@ -28,16 +28,6 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns, double threshold) {
 
 void remove(const Eigen::MatrixXd& span, Eigen::MatrixXd& from) {
   if (span.cols() > 0) from -= span * (span.transpose() * from).eval();
-}
-
-/// Root of a covariance: factor * factor' = covariance.
-Eigen::MatrixXd root(const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd u = covariance.diagonal().cwiseMax(0).cwiseSqrt();
-  const Eigen::VectorXd scale = u.unaryExpr([](double value) { return value > 0 ? 1 / value : 0.0; });
-  const Eigen::MatrixXd correlation =
-      scale.asDiagonal() * (0.5 * (covariance + covariance.transpose())) * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
-  return u.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
 /// Displacements at the covered poses, three rows each.
@@ -130,7 +120,7 @@ DeterminedPart determined_part(const Machine& machine, const ErrorSet& errors, c
   remove(rigid, left);
   const Eigen::MatrixXd in_open = open * (open.transpose() * left);
   left -= in_open;
-  Eigen::MatrixXd spread = at.by_parameter * root(covariance.covariance);
+  Eigen::MatrixXd spread = at.by_parameter * covariance_root(covariance.covariance);
   remove(rigid, spread);
   remove(open, spread);
   for (std::size_t c = 0; c < 3; ++c) {

@@ -6,30 +6,12 @@
 #include <stdexcept>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
 namespace {
 
 using Eigen::Index;
-
-/// Table on X and Y, spindle on Z.
-Machine mill() {
-  Machine machine;
-  const char* names[] = {"X", "Y", "Z"};
-  const double low[] = {0, 0, -460}, high[] = {760, 440, 0};
-  for (int i = 0; i < 3; ++i) {
-    Axis axis;
-    axis.name = names[i];
-    axis.side = i < 2 ? ChainSide::workpiece : ChainSide::tool;
-    axis.primed = i < 2;
-    axis.direction = Eigen::Vector3d::Unit(i);
-    axis.travel_min = low[i];
-    axis.travel_max = high[i];
-    machine.axes.push_back(axis);
-  }
-  machine.tool_offset = {0, 0, -120};
-  return machine;
-}
 
 /// Every error motion as constant and slope: 36 parameters, then the tool offset error.
 ErrorSet errors_of(const Machine& machine, double size, std::uint64_t seed) {
@@ -92,7 +74,7 @@ ParameterCovariance covariance_of(std::size_t parameters, double size) {
 
 class DeterminedParts : public testing::Test {
  protected:
-  Machine machine = mill();
+  Machine machine = test::three_axis_mill();
   PoseList poses = poses_of(machine, 60);
   PoseSource source = pose_source(poses);
   ErrorSet identified = errors_of(machine, 1, 1);

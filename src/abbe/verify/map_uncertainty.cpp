@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/verify/covariance_root.h"
 #include "abbe/verify/deviation_jacobian.h"
 
 namespace abbe {
@@ -27,18 +28,7 @@ MapUncertainty::MapUncertainty(const ParameterCovariance& covariance, std::size_
   for (std::size_t index : parameters_) {
     if (index >= parameter_count) throw std::invalid_argument("covariance of a parameter that is not there");
   }
-  if (!c.allFinite() || (c.diagonal().array() < 0).any()) {
-    throw std::invalid_argument("covariance with negative variances or numbers that are not finite");
-  }
-  // Scaled, so that mm beside rad do not hide small variances; a parameter known exactly stays exact.
-  const Eigen::VectorXd u = c.diagonal().cwiseSqrt();
-  const Eigen::VectorXd scale = u.unaryExpr([](double value) { return value > 0 ? 1 / value : 0.0; });
-  const Eigen::MatrixXd correlation = scale.asDiagonal() * (0.5 * (c + c.transpose())) * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
-  if (n > 0 && eigen.eigenvalues().minCoeff() < -1e-8 * static_cast<double>(n)) {
-    throw std::invalid_argument("covariance is not positive semi-definite");
-  }
-  factor_ = u.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+  factor_ = covariance_root(c);
 }
 
 MapUncertainty::Sums MapUncertainty::sums(const DeviationModel& model, const DeviationBlock& block) const {

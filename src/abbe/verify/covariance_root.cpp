@@ -1,0 +1,24 @@
+#include "abbe/verify/covariance_root.h"
+
+#include <Eigen/Eigenvalues>
+#include <stdexcept>
+
+namespace abbe {
+
+Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
+  if (!covariance.allFinite() || (covariance.diagonal().array() < 0).any()) {
+    throw std::invalid_argument("covariance with negative variances or numbers that are not finite");
+  }
+  const Eigen::Index n = covariance.rows();
+  const Eigen::VectorXd u = covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd scale = u.unaryExpr([](double value) { return value > 0 ? 1 / value : 0.0; });
+  const Eigen::MatrixXd correlation =
+      scale.asDiagonal() * (0.5 * (covariance + covariance.transpose())) * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  if (n > 0 && eigen.eigenvalues().minCoeff() < -1e-8 * static_cast<double>(n)) {
+    throw std::invalid_argument("covariance is not positive semi-definite");
+  }
+  return u.asDiagonal() * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
+}
+
+}  // namespace abbe
