@@ -5,8 +5,11 @@
 
 #include "abbe/errors/error_set.h"
 #include "abbe/formats/errors_file.h"
+#include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/machine_file.h"
+#include "abbe/formats/mesh_file.h"
+#include "abbe/formats/point_cloud_file.h"
 #include "abbe/machine/drawing.h"
 #include "command.h"
 
@@ -113,6 +116,10 @@ void add_check_command(CommandLine& line) {
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] {
     line.run = [options]() -> int {
+      if (has_mesh_extension(options->machine) || has_point_cloud_extension(options->machine)) {
+        throw InputError({.file = options->machine}, "this is the name of a mesh or a point cloud",
+                         "a machine file (*.machine.toml), as `abbe new` writes one");
+      }
       const Machine machine = read_machine(options->machine);
       nlohmann::ordered_json json = machine_json(machine);
       std::size_t coefficients = 0, terms = 0;
