@@ -8,8 +8,10 @@
 #include "abbe/formats/input_error.h"
 #include "command.h"
 
-int main(int argc, char** argv) {
-  using namespace abbe;
+namespace abbe {
+namespace {
+
+int run_command(int argc, char** argv) {
   CommandLine line;
   add_run_command(line);
   add_new_command(line);
@@ -43,3 +45,8 @@ int main(int argc, char** argv) {
     return kInternalError;
   }
 }
+
+}  // namespace
+}  // namespace abbe
+
+int main(int argc, char** argv) { return abbe::run_command(argc, argv); }

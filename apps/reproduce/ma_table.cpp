@@ -30,7 +30,10 @@ Courses table_motions(RandomStream& random) {
   for (std::size_t i = 0; i < 6; ++i) {
     double largest = 0;
     double part[8];
-    for (int h = 0; h < 8; ++h) part[h] = random.normal() / (1 + h / 2);
+    for (int h = 0; h < 8; ++h) {
+      const int harmonic = 1 + h / 2;
+      part[h] = random.normal() / harmonic;
+    }
     for (std::size_t k = 0; k < kSteps; ++k) {
       for (int h = 0; h < 4; ++h) {
         const double angle = (h + 1) * step_angle(k);

@@ -111,8 +111,8 @@ TEST(WangBallBar, UncertaintyOfTheTraceIsThatOfItsScatterOverCampaigns) {
   constexpr int kCampaigns = 120;
   const std::size_t angles[] = {0, 37, 90, 200, 315};
   double squares[3][5] = {}, circular[3] = {}, within = 0;
-  for (int seed = 1; seed <= kCampaigns; ++seed) {
-    const WangDialStudy campaign = wang_dial_study(static_cast<std::uint64_t>(100 + seed));
+  for (std::uint64_t seed = 1; seed <= kCampaigns; ++seed) {
+    const WangDialStudy campaign = wang_dial_study(100 + seed);
     const std::vector<WangCircle> one = wang_ball_bar(campaign.with_noise.errors);
     for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t i = 0; i < 5; ++i) {

@@ -101,7 +101,7 @@ std::string residuals_csv(const Study& study, const StudyResult& result) {
 }
 
 nlohmann::ordered_json write_results(const Study& study, const StudyResult& result) {
-  const nlohmann::ordered_json summary = study_summary(study, result);
+  nlohmann::ordered_json summary = study_summary(study, result);
   ResultsFolder folder(study.output);
   folder.write("summary.json", json_text(summary) + "\n");
   if (result.campaign.truth) {

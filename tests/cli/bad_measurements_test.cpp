@@ -110,7 +110,7 @@ TEST_F(BadMeasurements, AreRefusedWithFileLineFieldAndUnit) {
   folder.write("r.csv", "");
   expect_refused("r.csv: the file is empty");
   std::string without = good();
-  for (std::size_t at = 0; (at = without.find(",", at)) != std::string::npos;) {
+  for (std::size_t at = 0; (at = without.find(',', at)) != std::string::npos;) {
     const std::size_t second = without.find_first_of(",\n", at + 1), line_end = without.find('\n', at);
     without.erase(at, second - at);
     at = without.find('\n', at);

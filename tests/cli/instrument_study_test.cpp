@@ -67,7 +67,8 @@ TEST_F(InstrumentStudies, WhatLasersLeaveOpenIsSaidWithItsSize) {
   folder.write("open.study.toml", text);
   const CommandResult result = abbe({"run", "open.study.toml", "-o", "out", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const nlohmann::json summary = nlohmann::json::parse(result.out), held_out = summary["held_out"];
+  const nlohmann::json summary = nlohmann::json::parse(result.out);
+  const nlohmann::json& held_out = summary["held_out"];
   ASSERT_TRUE(held_out.contains("not_determined"));
   EXPECT_THAT(held_out["not_determined"].dump(), HasSubstr("slope of the reference straight line of EAX"));
   std::string proposed;

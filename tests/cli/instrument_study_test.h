@@ -53,7 +53,8 @@ class InstrumentStudies : public CommandTest {
     const CommandResult second = abbe({"run", "measured.study.toml", "-o", "read", "--json"});
     EXPECT_EQ(second.exit_code, 0) << second.err;
     if (first.exit_code != 0 || second.exit_code != 0) return {};
-    const nlohmann::json a = nlohmann::json::parse(first.out), b = nlohmann::json::parse(second.out);
+    nlohmann::json a = nlohmann::json::parse(first.out);
+    const nlohmann::json b = nlohmann::json::parse(second.out);
     EXPECT_EQ(a["readings"], b["readings"]);
     EXPECT_EQ(a["parameters"], b["parameters"]);
     EXPECT_NEAR(a["chi_square"].get<double>(), b["chi_square"].get<double>(), 1e-4 * a["chi_square"].get<double>());

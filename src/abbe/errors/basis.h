@@ -41,8 +41,8 @@ struct Basis {
 
   /// Basis functions at one position.
   /// @param coefficients  [size()]; read only by table_monotone
-  /// @param values        [size()], written
-  void values(double position, std::span<const double> coefficients, std::span<double> values) const;
+  /// @param out           [size()], written
+  void values(double position, std::span<const double> coefficients, std::span<double> out) const;
 
   /// Sum of coefficients times basis functions.
   double evaluate(double position, std::span<const double> coefficients) const;

@@ -170,9 +170,9 @@ void run(const CompiledChain& chain, const PositionArrays& positions, std::size_
   finish<kColumns>(chain.end, results, count, state);
 }
 
-void TransformBlock(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
-                    const ConstPointArrays& start, const PointArrays& seen, const RotationArrays& rotation,
-                    std::uint8_t* covered) {
+void transform_block(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
+                     const ConstPointArrays& start, const PointArrays& seen, const RotationArrays& rotation,
+                     std::uint8_t* covered) {
   State state;
   AxisLanes lanes;
   Results results{{seen.x + first, seen.y + first, seen.z + first}, {}};
@@ -207,12 +207,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace abbe::chain {
 
-HWY_EXPORT(TransformBlock);
+HWY_EXPORT(transform_block);
 
 void transform_block(const CompiledChain& chain, const PositionArrays& positions, std::size_t first, std::size_t count,
                      const ConstPointArrays& start, const PointArrays& seen, const RotationArrays& rotation,
                      std::uint8_t* covered) {
-  HWY_DYNAMIC_DISPATCH(TransformBlock)(chain, positions, first, count, start, seen, rotation, covered);
+  HWY_DYNAMIC_DISPATCH(transform_block)(chain, positions, first, count, start, seen, rotation, covered);
 }
 
 }  // namespace abbe::chain

@@ -301,8 +301,8 @@ HWY_NOINLINE void read_rows(const DifferentiateCall& call, std::size_t first_row
   }
 }
 
-void DifferentiateRows(const CompiledChain& chain, const DifferentiateCall& call, std::size_t first_row,
-                       std::size_t rows) {
+void differentiate_rows(const CompiledChain& chain, const DifferentiateCall& call, std::size_t first_row,
+                        std::size_t rows) {
   const std::size_t count = call.positions.count, end = whole_vectors(count);
   if (count == 0) return;
   Sweep s;
@@ -361,11 +361,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace abbe::chain {
 
-HWY_EXPORT(DifferentiateRows);
+HWY_EXPORT(differentiate_rows);
 
 void differentiate_rows(const CompiledChain& chain, const DifferentiateCall& call, std::size_t first_row,
                         std::size_t row_count) {
-  HWY_DYNAMIC_DISPATCH(DifferentiateRows)(chain, call, first_row, row_count);
+  HWY_DYNAMIC_DISPATCH(differentiate_rows)(chain, call, first_row, row_count);
 }
 
 }  // namespace abbe::chain

@@ -26,7 +26,7 @@ std::string wrong(const std::string& text) {
 }
 
 std::filesystem::path test_folder(const char* name) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / name;
+  auto folder = std::filesystem::path(testing::TempDir()) / name;
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

@@ -22,7 +22,7 @@ Eigen::Vector3d vector(const std::vector<double>& values) { return {values[0], v
 Eigen::Vector3d direction(TomlTable& table, const Eigen::Vector3d& otherwise) {
   const auto values = table.optional_numbers("direction", Quantity::dimensionless, 3);
   if (!values) return otherwise;
-  const Eigen::Vector3d found = vector(*values);
+  Eigen::Vector3d found = vector(*values);
   const double length = found.norm();
   if (length < 1e-6) table.fail("direction", "has no length", "a vector (x, y, z) along the positive direction");
   if (std::abs(length - 1) <= 4 * std::numeric_limits<double>::epsilon()) return found;

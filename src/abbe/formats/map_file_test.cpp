@@ -14,7 +14,7 @@ MapData map_of_six() {
   for (int i = 0; i < 6; ++i) {
     map.points[0].push_back(10.0 * (i % 3));
     map.points[1].push_back(0);
-    map.points[2].push_back(0.1 * (i / 3));
+    map.points[2].push_back(i < 3 ? 0 : 0.1);
   }
   map.fields.push_back({"C", Quantity::angle, "deg", {{0, 0, 0, 3.14159265358979323846, 0, 0}}});
   map.fields.push_back({"before", Quantity::length, "um", {map.points[2], map.points[1], map.points[0]}});

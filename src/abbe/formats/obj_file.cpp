@@ -124,8 +124,7 @@ class BlockReader {
 
   bool read_normal(const char* at) {
     const std::size_t column = normal_++;
-    if (!read_three(at, result_.normals, column, "vn")) return false;
-    return true;
+    return read_three(at, result_.normals, column, "vn");
   }
 
   /// A reference counted from 1, or backwards from the last one so far.

@@ -1,11 +1,11 @@
 #include "abbe/formats/results_folder.h"
 
 #include <gtest/gtest.h>
-#include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path test_folder(const char* name) {
-  const fs::path folder = fs::path(testing::TempDir()) / name;
+  fs::path folder = fs::path(testing::TempDir()) / name;
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;

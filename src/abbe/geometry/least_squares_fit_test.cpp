@@ -232,7 +232,7 @@ TEST(LeastSquaresFit, SaysWhenThePointsDoNotDetermineTheShape) {
   EXPECT_NE(status(ShapeKind::circle2, noisy), FitStatus::ok);
   // The corners of a cube are on three cylinders.
   Matrix3Xd cube(3, 8);
-  for (int i = 0; i < 8; ++i) cube.col(i) << (i & 1) * 2 - 1, (i & 2) - 1, (i & 4) / 2 - 1;
+  for (int i = 0; i < 8; ++i) cube.col(i) << ((i & 1) != 0 ? 1 : -1), ((i & 2) != 0 ? 1 : -1), ((i & 4) != 0 ? 1 : -1);
   EXPECT_EQ(status(ShapeKind::cylinder, 10 * cube), FitStatus::ambiguous);
   // A round cloud has no best plane.
   Matrix3Xd cross(3, 6);

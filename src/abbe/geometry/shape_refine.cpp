@@ -181,10 +181,9 @@ Survey survey(ShapeKind kind, const FitPoints& points, const FitConstraints& con
   return result;
 }
 
-void report_fit(ShapeFit& fit, const ShapeFrame& settled, const Survey& survey, const FitPoints& points,
+void report_fit(ShapeFit& fit, const ShapeFrame& frame, const Survey& survey, const FitPoints& points,
                 const std::vector<int>& free, const Eigen::Matrix<double, kParameters, kParameters>& normal,
                 double sigma, int threads) {
-  const ShapeFrame& frame = settled;
   fit.shape = shape_of(frame, survey.centroid.mean);
   const ExtremeDistances extreme = extreme_distances(frame, points, threads);
   fit.smallest = extreme.smallest;

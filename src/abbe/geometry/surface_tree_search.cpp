@@ -156,7 +156,7 @@ double square_from(const Tree& tree, const Slot& slot, const double* point) {
   return squares[slot.lane - lane];
 }
 
-void SearchBlock(const Tree& tree, const double* points, std::size_t count, const Slot* hints, Found* found) {
+void search_block(const Tree& tree, const double* points, std::size_t count, const Slot* hints, Found* found) {
   double start = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < count; ++i) {
     const double* point = points + 3 * i;
@@ -178,10 +178,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace abbe::surface {
 
-HWY_EXPORT(SearchBlock);
+HWY_EXPORT(search_block);
 
 void search_block(const Tree& tree, const double* points, std::size_t count, const Slot* hints, Found* found) {
-  HWY_DYNAMIC_DISPATCH(SearchBlock)(tree, points, count, hints, found);
+  HWY_DYNAMIC_DISPATCH(search_block)(tree, points, count, hints, found);
 }
 
 }  // namespace abbe::surface

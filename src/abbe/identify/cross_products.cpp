@@ -22,11 +22,11 @@ constexpr std::size_t kTileWidth = 4;
 constexpr std::size_t kTileWidth = 2;
 #endif
 
-HWY_INLINE double Sum(Vector v) { return hn::GetLane(hn::SumOfLanes(Lanes(), v)); }
+HWY_INLINE double sum_of(Vector v) { return hn::GetLane(hn::SumOfLanes(Lanes(), v)); }
 
 // Inner products of four columns of a with kTileWidth columns of b.
-HWY_INLINE void AddTile(const double* HWY_RESTRICT a, std::size_t a_stride, const double* HWY_RESTRICT b,
-                        std::size_t b_stride, std::size_t length, double* HWY_RESTRICT sums, std::size_t sums_stride) {
+HWY_INLINE void add_tile(const double* HWY_RESTRICT a, std::size_t a_stride, const double* HWY_RESTRICT b,
+                         std::size_t b_stride, std::size_t length, double* HWY_RESTRICT sums, std::size_t sums_stride) {
   const Lanes d;
   const std::size_t lanes = hn::Lanes(d);
   const double *a0 = a, *a1 = a + a_stride, *a2 = a + 2 * a_stride, *a3 = a + 3 * a_stride;
@@ -62,10 +62,10 @@ HWY_INLINE void AddTile(const double* HWY_RESTRICT a, std::size_t a_stride, cons
   }
   const auto add = [&](std::size_t j, Vector t0, Vector t1, Vector t2, Vector t3) {
     double* column = sums + j * sums_stride;
-    column[0] += Sum(t0);
-    column[1] += Sum(t1);
-    column[2] += Sum(t2);
-    column[3] += Sum(t3);
+    column[0] += sum_of(t0);
+    column[1] += sum_of(t1);
+    column[2] += sum_of(t2);
+    column[3] += sum_of(t3);
   };
   add(0, s00, s10, s20, s30);
   add(1, s01, s11, s21, s31);
@@ -75,23 +75,24 @@ HWY_INLINE void AddTile(const double* HWY_RESTRICT a, std::size_t a_stride, cons
 #endif
 }
 
-void AddSelfProducts(const double* a, std::size_t count, std::size_t stride, std::size_t length, double* sums,
-                     std::size_t sums_stride) {
+void add_self_products_here(const double* a, std::size_t count, std::size_t stride, std::size_t length, double* sums,
+                            std::size_t sums_stride) {
   for (std::size_t i = 0; i < count; i += 4)
     for (std::size_t j = 0; j < i + 4; j += kTileWidth)
-      AddTile(a + i * stride, stride, a + j * stride, stride, length, sums + i + j * sums_stride, sums_stride);
+      add_tile(a + i * stride, stride, a + j * stride, stride, length, sums + i + j * sums_stride, sums_stride);
 }
 
-void AddCrossProducts(const double* a, std::size_t a_count, std::size_t a_stride, const double* b, std::size_t b_count,
-                      std::size_t b_stride, std::size_t length, double* sums, std::size_t sums_stride) {
+void add_cross_products_here(const double* a, std::size_t a_count, std::size_t a_stride, const double* b,
+                             std::size_t b_count, std::size_t b_stride, std::size_t length, double* sums,
+                             std::size_t sums_stride) {
   // Pieces short enough for four columns of each side to stay in the first-level cache.
   constexpr std::size_t kPiece = 512;
   for (std::size_t start = 0; start < length; start += kPiece) {
     const std::size_t piece = length - start < kPiece ? length - start : kPiece;
     for (std::size_t i = 0; i < a_count; i += 4)
       for (std::size_t j = 0; j < b_count; j += kTileWidth)
-        AddTile(a + i * a_stride + start, a_stride, b + j * b_stride + start, b_stride, piece,
-                sums + i + j * sums_stride, sums_stride);
+        add_tile(a + i * a_stride + start, a_stride, b + j * b_stride + start, b_stride, piece,
+                 sums + i + j * sums_stride, sums_stride);
   }
 }
 
@@ -102,18 +103,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace abbe {
 
-HWY_EXPORT(AddSelfProducts);
-HWY_EXPORT(AddCrossProducts);
+HWY_EXPORT(add_self_products_here);
+HWY_EXPORT(add_cross_products_here);
 
 void add_self_products(const double* a, std::size_t count, std::size_t stride, std::size_t length, double* sums,
                        std::size_t sums_stride) {
-  HWY_DYNAMIC_DISPATCH(AddSelfProducts)(a, count, stride, length, sums, sums_stride);
+  HWY_DYNAMIC_DISPATCH(add_self_products_here)(a, count, stride, length, sums, sums_stride);
 }
 
 void add_cross_products(const double* a, std::size_t a_count, std::size_t a_stride, const double* b,
                         std::size_t b_count, std::size_t b_stride, std::size_t length, double* sums,
                         std::size_t sums_stride) {
-  HWY_DYNAMIC_DISPATCH(AddCrossProducts)(a, a_count, a_stride, b, b_count, b_stride, length, sums, sums_stride);
+  HWY_DYNAMIC_DISPATCH(add_cross_products_here)(a, a_count, a_stride, b, b_count, b_stride, length, sums, sums_stride);
 }
 
 }  // namespace abbe

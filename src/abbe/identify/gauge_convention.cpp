@@ -170,7 +170,8 @@ void once_per_turn(const Problem& problem, std::size_t axis, std::vector<GaugeCa
           const double along_v = quadrature ? std::cos(q) : sense * std::sin(q);
           const Eigen::Vector3d direction = along_u * first + along_v * second;
           Weights weights{};
-          for (int i = 0; i < 3; ++i) weights[static_cast<std::size_t>(i + offset)] = direction[i];
+          for (int i = 0; i < 3; ++i)
+            weights[static_cast<std::size_t>(i) + static_cast<std::size_t>(offset)] = direction[i];
           return weights;
         };
         add_candidate(list,

@@ -159,7 +159,7 @@ class Run {
     rough.max_iterations = std::min(rough.max_iterations, 20);
     for (int round = 0; round < kMostScaleRounds; ++round) {
       const Loss cauchy{LossKind::cauchy, 0, scale};
-      const SolverResult step = solve(stream_, x, space, cauchy, rough, nullptr);
+      SolverResult step = solve(stream_, x, space, cauchy, rough, nullptr);
       result_.history.insert(result_.history.end(), step.history.begin(), step.history.end());
       if (step.status == IdentifyStatus::not_finite || step.status == IdentifyStatus::rank_deficient) return step;
       x = step.estimates;

@@ -240,7 +240,7 @@ Eigen::MatrixXd ReadingStream::orthogonal_factor(const Eigen::VectorXd& estimate
       factor = std::move(stacked);
       return;
     }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(std::move(stacked));
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
     factor = qr.matrixQR().topRows(p).triangularView<Eigen::Upper>();
   };
   for_each(true, loss, [&](std::size_t piece, const ResidualBlock& block, double) {

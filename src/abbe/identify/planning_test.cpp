@@ -15,7 +15,6 @@ namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
-using ::testing::ElementsAre;
 
 PlanningCandidates random_candidates(std::size_t count, std::size_t rows, std::size_t parameters, std::uint64_t seed) {
   PlanningCandidates candidates;
@@ -239,7 +238,8 @@ TEST(PlanningTest, HarmonicsAreMeasuredAtEqualAngles) {
   std::vector<double> angles;
   for (int i = 0; i < 420; ++i) angles.push_back(i * std::numbers::pi / 210);
   const PlanningCandidates candidates = regression(angles, 2 * harmonics + 1, [](double a, Index j) {
-    const double k = static_cast<double>((j + 1) / 2);
+    const Index harmonic = (j + 1) / 2;
+    const double k = static_cast<double>(harmonic);
     return j == 0 ? std::sqrt(0.5) : j % 2 == 1 ? std::cos(k * a) : std::sin(k * a);
   });
   PlanningOptions options;

@@ -178,7 +178,7 @@ Eigen::MatrixXd SampledFit::step(const double* residuals, std::size_t count, Eig
   const Eigen::MatrixXd gradient =
       Eigen::Map<const Eigen::MatrixXd>(products.data(), static_cast<Index>(columns_), static_cast<Index>(samples))
           .topLeftCorner(static_cast<Index>(free_), static_cast<Index>(count));
-  const Eigen::MatrixXd y = inverse_scale_.asDiagonal() * factor_.solve(inverse_scale_.asDiagonal() * gradient);
+  Eigen::MatrixXd y = inverse_scale_.asDiagonal() * factor_.solve(inverse_scale_.asDiagonal() * gradient);
   decrements = gradient.cwiseProduct(y).colwise().sum();
   return y;
 }

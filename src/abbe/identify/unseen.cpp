@@ -31,7 +31,7 @@ constexpr std::size_t kMostNamed = 4;
 
 /// Rows of the estimates with the measurement's own unknowns taken out: what it says whatever they are.
 Eigen::MatrixXd without_own(const PossibleMeasurement& measurement, Index parameters) {
-  const Eigen::MatrixXd rows = measurement.rows.leftCols(parameters);
+  Eigen::MatrixXd rows = measurement.rows.leftCols(parameters);
   if (measurement.own == 0) return rows;
   const Eigen::MatrixXd own = measurement.rows.rightCols(static_cast<Index>(measurement.own));
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(own);

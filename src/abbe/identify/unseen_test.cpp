@@ -65,8 +65,8 @@ ErrorSet errors_named(const Machine& machine, const std::vector<std::string>& na
 /// One instrument on one machine, its readings simulated, and what is to be identified from them.
 class BlindStudy {
  public:
-  BlindStudy(const Machine& machine, const std::vector<std::string>& errors, std::shared_ptr<const Instrument> device,
-             const InstrumentReadings& plan)
+  BlindStudy(const Machine& machine, const std::vector<std::string>& errors,
+             const std::shared_ptr<const Instrument>& device, const InstrumentReadings& plan)
       : errors_(errors_named(machine, errors)) {
     const InstrumentReadings readings = simulate_instrument(machine, errors_, device, plan, {}).readings;
     observations_ = std::make_unique<InstrumentObservations>(machine, errors_, device, readings);

@@ -50,13 +50,13 @@ class EquationInstrument : public Instrument {
     }
     // Every derivative that is carried costs, and most numbers of a set-up are exact.
     const std::size_t estimated = estimated_quantities(block.item);
-    if (kQuantities > kFew && estimated <= kFew) {
-      evaluate<Dual<6 + std::min(kFew, kQuantities)>>(block, out);
-    } else if (kQuantities > kSome && estimated <= kSome) {
-      evaluate<Dual<6 + std::min(kSome, kQuantities)>>(block, out);
-    } else {
-      evaluate<Dual<6 + kQuantities>>(block, out);
+    if constexpr (kQuantities > kFew) {
+      if (estimated <= kFew) return evaluate<Dual<6 + kFew>>(block, out);
     }
+    if constexpr (kQuantities > kSome) {
+      if (estimated <= kSome) return evaluate<Dual<6 + kSome>>(block, out);
+    }
+    evaluate<Dual<6 + kQuantities>>(block, out);
   }
 
   std::shared_ptr<const Instrument> with_values(const std::vector<double>& values) const final {

@@ -6,7 +6,7 @@
 namespace abbe {
 
 SimulatedInstrument simulate_instrument(const Machine& machine, const ErrorSet& errors,
-                                        std::shared_ptr<const Instrument> instrument, InstrumentReadings plan,
+                                        const std::shared_ptr<const Instrument>& instrument, InstrumentReadings plan,
                                         const InstrumentSimulationOptions& options) {
   check_readings(machine, *instrument, plan, false);
   const std::size_t rows = instrument->components().size(), count = plan.count();

@@ -29,7 +29,7 @@ struct SimulatedInstrument {
 /// @param plan  poses, items and inputs; nothing measured
 /// @throws std::invalid_argument as check_readings()
 SimulatedInstrument simulate_instrument(const Machine& machine, const ErrorSet& errors,
-                                        std::shared_ptr<const Instrument> instrument, InstrumentReadings plan,
+                                        const std::shared_ptr<const Instrument>& instrument, InstrumentReadings plan,
                                         const InstrumentSimulationOptions& options);
 
 }  // namespace abbe

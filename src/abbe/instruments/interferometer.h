@@ -147,7 +147,7 @@ Eigen::Matrix<S, 3, 3> Interferometer::beam_axes(const Line& line, const S* quan
   Eigen::Matrix<S, 3, 3> aligned;  // Rz(yaw) Ry(pitch) Rx(roll)
   aligned << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, sy * cp, sy * sp * sr + cy * cr,
       sy * sp * cr - cy * sr, -sp, cp * sr, cp * cr;
-  const Eigen::Matrix<S, 3, 3> first = line.first_axes.cast<S>() * aligned;
+  Eigen::Matrix<S, 3, 3> first = line.first_axes.cast<S>() * aligned;
   if (line.square_normal.isZero(0)) return first;
   // Rodrigues: the square turns the reference of the first run, and everything aligned with it.
   const S c = cos(quantities[kSquare]), s = sin(quantities[kSquare]);

@@ -33,7 +33,8 @@ Vector3d range_and_angles_from_point(const Vector3d& point) {
   return {point.norm(), horizontal > 0 ? std::atan2(point.y(), point.x()) : 0.0, std::atan2(point.z(), horizontal)};
 }
 
-Vector3d point_from_range_and_angles(const Vector3d& v) {
+Vector3d point_from_range_and_angles(const Vector3d& range_and_angles) {
+  const Vector3d& v = range_and_angles;
   const double horizontal = v[0] * std::cos(v[2]);
   return {horizontal * std::cos(v[1]), horizontal * std::sin(v[1]), v[0] * std::sin(v[2])};
 }

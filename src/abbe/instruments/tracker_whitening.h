@@ -21,7 +21,7 @@ Eigen::Matrix3d whitening_matrix(const Eigen::Matrix3d& covariance);
 
 /// Covariance of one reading's measured components as the data state it, which has to be `standard` or `covariance`;
 /// azimuth as the angle itself.
-Eigen::Matrix3d reading_covariance(const TrackerReadings& readings, std::size_t reading);
+Eigen::Matrix3d reading_covariance(const TrackerReadings& readings, std::size_t k);
 
 /// States with the readings what their stations' noise model says at the measured points: standard uncertainties (then
 /// without the correlations of Cartesian components) or full covariances; `none` takes them away.
@@ -35,8 +35,7 @@ TrackerNoise typical_noise(const TrackerReadings& readings);
 /// Covariance of one reading in the components of its residual: Cartesian x, y, z (mm); or range (mm) and the angles
 /// across the beam in azimuth and elevation (rad). From the data where they state it, else from the noise model at the
 /// measured point.
-Eigen::Matrix3d residual_covariance(const TrackerReadings& readings, const TrackerStation& station,
-                                    std::size_t reading);
+Eigen::Matrix3d residual_covariance(const TrackerReadings& readings, const TrackerStation& station, std::size_t k);
 
 /// Upper triangles of all readings, w[0..5] = W00, W01, W02, W11, W12, W22, each [count].
 /// @throws std::invalid_argument naming the reading

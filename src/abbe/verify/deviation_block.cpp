@@ -24,8 +24,8 @@ RotationArrays arrays(std::array<std::vector<double>, 9>& r) {
 void rotation_vectors(DeviationBlock& block, const Eigen::Matrix3d& datum) {
   for (std::size_t k = 0; k < block.count; ++k) {
     Eigen::Matrix3d a, r;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index j = 0; j < 3; ++j) {
         a(i, j) = block.actual_rotation[static_cast<std::size_t>(3 * i + j)][k];
         r(i, j) = block.reference_rotation[static_cast<std::size_t>(3 * i + j)][k];
       }

@@ -220,7 +220,7 @@ PositioningEvaluation evaluate_positioning(const std::vector<PositioningReading>
       result.fewest_runs = result.fewest_runs == 0 ? runs : std::min(result.fewest_runs, runs);
       result.most_runs = std::max(result.most_runs, runs);
     }
-    result.targets.push_back(std::move(target));
+    result.targets.push_back(target);
   }
   result.accuracy = span_of(result.targets, true, true, 2);
   result.systematic = span_of(result.targets, true, true, 0);

@@ -190,8 +190,8 @@ RotationResult rotation_error_motions(const RotationReadings& readings, const Ro
     assert(probe.empty() || probe.size() == readings.angle.size());
     return probe.empty() ? probe : on_grid(grid, probe);
   };
-  const std::vector<double> x1 = signal(readings.x1), y1 = signal(readings.y1), x2 = signal(readings.x2),
-                            y2 = signal(readings.y2);
+  std::vector<double> x1 = signal(readings.x1), y1 = signal(readings.y1), x2 = signal(readings.x2),
+                      y2 = signal(readings.y2);
   const auto rotating = [&](const std::vector<double>& x, const std::vector<double>& y) {
     std::vector<double> values(x.size());
     for (std::size_t i = 0; i < values.size(); ++i) {

@@ -144,7 +144,8 @@ TEST(RotationErrorMotion, DriftIsToldApart) {
   RotationReadings readings;
   readings.angle = turning(10, 36);
   for (std::size_t i = 0; i < readings.angle.size(); ++i) {
-    readings.axial.push_back(0.001 * static_cast<double>(i / 36));
+    const std::size_t turn = i / 36;
+    readings.axial.push_back(0.001 * static_cast<double>(turn));
   }
   const AxisErrorMotion axial = rotation_error_motions(readings).motions.at(0);
   EXPECT_NEAR(axial.drift, 0.009, 1e-12);
