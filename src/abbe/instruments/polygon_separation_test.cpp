@@ -115,6 +115,39 @@ TEST(PolygonSeparation, StatedUncertaintiesAreThoseOfRepeatedSimulations) {
   EXPECT_NEAR(chi_square, 1, 0.2);
 }
 
+TEST(PolygonSeparation, PositioningHasTheUncertaintyOfTheClosedForm) {
+  // Positions and faces are two circular sequences that the readings couple; harmonic by harmonic this is 2 by 2.
+  // docs/polygon.md derives u^2 = sigma^2 / n * sum over k of 1 / stiffness(2 pi k / n), k = 1 ... n - 1.
+  const std::size_t n = 12;
+  const PolygonNoise noise;
+  const auto once = [](double a) { return 1 - std::cos(a); };
+  const auto twice = [](double a) { return 4 - (1 + std::cos(a)) * (1 + std::cos(3 * a)); };  // a quarter: 3 faces
+  const auto expected = [&](const auto& stiffness, std::size_t from) {
+    double sum = 0;
+    for (std::size_t k = from; k <= n - from; ++k) {
+      sum += 1 / stiffness(2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(n));
+    }
+    return noise.angle * std::sqrt(sum / static_cast<double>(n));
+  };
+  PolygonCampaign nominal = regular_campaign(n, 48.3, 17, {0, 1});
+  const auto found = [&] {
+    const auto gauge = polygon_gauge(nominal, polygon_observability(nominal));
+    const PolygonSeparation result = separate_polygon(nominal, campaign_readings(nominal), noise, gauge);
+    EXPECT_EQ(result.status, PolygonSeparationStatus::converged);
+    const std::vector<PolygonUnknown> unknowns = polygon_unknowns(nominal);
+    for (std::size_t i = 0; i < unknowns.size(); ++i) {
+      if (unknowns[i].name.starts_with("ECC")) return result.standard_uncertainties[static_cast<Eigen::Index>(i)];
+    }
+    return 0.0;
+  };
+  EXPECT_NEAR(expected(once, 1), noise.angle * std::sqrt((n * n - 1.0) / (6.0 * n)), 1e-6 * noise.angle);
+  EXPECT_NEAR(found(), expected(once, 1), 1e-3 * noise.angle);  // 0.0705"
+  nominal.measured.push_back(PolygonReading::autocollimator_y_about_z);
+  EXPECT_NEAR(found(), expected(twice, 1), 1e-3 * noise.angle);  // 0.0271"
+  // With the once-per-turn part taken out as well, as some evaluations do: 0.0233".
+  EXPECT_NEAR(expected(twice, 2) / kArcsec, 0.0233, 5e-5);
+}
+
 TEST(PolygonSeparation, WithoutAGaugeTheAnswerIsRankDeficient) {
   const PolygonCampaign nominal = regular_campaign(12, 48.3, 17, {0, 1});
   const PolygonSeparation found = separate_polygon(nominal, campaign_readings(nominal), {}, {});
