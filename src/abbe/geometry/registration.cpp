@@ -1,0 +1,243 @@
+#include "abbe/geometry/registration.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "abbe/geometry/pair_search.h"
+#include "abbe/geometry/rotation.h"
+
+namespace abbe {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+constexpr Eigen::Index kPartSamples = 700;
+constexpr Eigen::Index kRoughPoints = 500, kComparedPoints = 3000, kFirstFinePoints = 20000;
+constexpr std::size_t kCompared = 12;
+constexpr double kWelsch = 2.985;
+
+/// Every n-th point, so that about `count` are left.
+Matrix3Xd some_of(const Matrix3Xd& points, Eigen::Index count) {
+  const Eigen::Index stride = std::max<Eigen::Index>(1, points.cols() / count);
+  Matrix3Xd some(3, (points.cols() + stride - 1) / stride);
+  for (Eigen::Index i = 0; i < some.cols(); ++i) some.col(i) = points.col(i * stride);
+  return some;
+}
+
+/// A pose with the loss of every compared point, 0 .. 1.
+struct Compared {
+  FineRegistration fine;
+  std::vector<double> loss;
+  double mean = 0;
+};
+
+/// Motion that leads from one pose to another: rotation vector about the reference and translation, of one screw.
+Vector6d motion_between(const RigidTransform& from, const RigidTransform& to, const Vector3d& reference) {
+  const RigidTransform difference = to * from.inverse();
+  const Vector3d omega = rotation_vector(difference.rotation);
+  const Vector3d shift = difference * reference - reference;
+  const double angle = omega.norm();
+  Vector6d motion;
+  motion.head<3>() = omega;
+  if (angle < 1e-8) {
+    motion.tail<3>() = shift;
+    return motion;
+  }
+  const Eigen::Matrix3d k = skew(omega / angle);
+  const Eigen::Matrix3d left =
+      Eigen::Matrix3d::Identity() + (1 - std::cos(angle)) / angle * k + (1 - std::sin(angle) / angle) * k * k;
+  motion.tail<3>() = left.inverse() * shift;
+  return motion;
+}
+
+/// Length of a motion beside the undetermined ones, mm at the extent.
+double seen_length(Vector6d motion, const FineRegistration& fine, double extent) {
+  Eigen::MatrixXd unseen(6, static_cast<Eigen::Index>(fine.undetermined.size()));
+  for (std::size_t i = 0; i < fine.undetermined.size(); ++i) {
+    const UndeterminedMotion& u = fine.undetermined[i];
+    Vector6d column = Vector6d::Zero();
+    if (u.rotation) {
+      column.head<3>() = extent * u.direction;
+      column.tail<3>() = extent * (u.direction.cross(fine.reference - u.point) + u.pitch_mm * u.direction);
+    } else {
+      column.tail<3>() = u.direction;
+    }
+    unseen.col(static_cast<Eigen::Index>(i)) = column;
+  }
+  motion.head<3>() *= extent;
+  if (unseen.cols() == 0) return motion.norm();
+  // Normal equations do: the columns are few and far from parallel.
+  const Eigen::MatrixXd gram = unseen.transpose() * unseen;
+  return (motion - unseen * gram.fullPivLu().solve(unseen.transpose() * motion)).norm();
+}
+
+}  // namespace
+
+const char* registration_status_name(RegistrationStatus status) {
+  switch (status) {
+    case RegistrationStatus::not_run:
+      return "not_run";
+    case RegistrationStatus::ok:
+      return "ok";
+    case RegistrationStatus::too_few_points:
+      return "too_few_points";
+    case RegistrationStatus::no_start:
+      return "no_start";
+    case RegistrationStatus::not_converged:
+      return "not_converged";
+    case RegistrationStatus::undetermined:
+      return "undetermined";
+    case RegistrationStatus::ambiguous:
+      return "ambiguous";
+  }
+  return "not_run";
+}
+
+struct RegistrationTarget::Inside {
+  RegistrationOptions options;
+  ClosestPointFinder surface;
+  SmoothSurface smooth;
+  PointCloud samples;
+  Vector3d low, high;
+  double diameter = 0;
+
+  Inside(const TriangleMesh& mesh, const RegistrationOptions& given)
+      : options(given),
+        surface(mesh, given.threads),
+        smooth(mesh, given.crease_angle, given.threads),
+        samples(sample_surface(mesh, kPartSamples, given.seed)),
+        low(mesh.vertices.rowwise().minCoeff()),
+        high(mesh.vertices.rowwise().maxCoeff()),
+        diameter((high - low).norm()) {}
+
+  FineRegistrationOptions fine_options() const {
+    return {.loss = options.loss,
+            .adaptive_distance = options.adaptive_distance,
+            .noise_mm = options.noise_mm,
+            .threads = options.threads};
+  }
+
+  std::vector<RigidTransform> starts(const PointCloud& scan) const {
+    if (options.start) return {*options.start};
+    const double reach = 0.035 * diameter;
+    const DistanceGrid grid(surface, low, high, 2 * reach, 64, options.threads);
+    const ThinnedScan thinned = thin_scan(scan, 0.03 * diameter);
+    std::vector<RigidTransform> poses;
+    for (const PoseCandidate& candidate :
+         search_poses(samples, thinned, grid, {.seed = options.seed, .reach_mm = reach})) {
+      poses.push_back(candidate.mesh_from_scan);
+    }
+    return poses;
+  }
+
+  Compared compare(const Matrix3Xd& points, FineRegistration fine, double scale) const {
+    Compared result;
+    const Matrix3Xd moved = (fine.mesh_from_scan.rotation * points).colwise() + fine.mesh_from_scan.translation;
+    for (const SurfacePoint& at : surface.closest(moved, options.threads)) {
+      const double u = at.distance / (kWelsch * scale);
+      result.loss.push_back(at.on_border ? 1 : 1 - std::exp(-u * u));
+      result.mean += result.loss.back() / static_cast<double>(points.cols());
+    }
+    result.fine = std::move(fine);
+    return result;
+  }
+};
+
+RegistrationTarget::RegistrationTarget(const TriangleMesh& mesh, const RegistrationOptions& options)
+    : inside_(std::make_unique<const Inside>(mesh, options)) {}
+RegistrationTarget::~RegistrationTarget() = default;
+
+const ClosestPointFinder& RegistrationTarget::surface() const { return inside_->surface; }
+
+Registration RegistrationTarget::register_scan(const PointCloud& scan) const {
+  Registration result;
+  if (scan.size() < 6) {
+    result.status = RegistrationStatus::too_few_points;
+    return result;
+  }
+  const Inside& in = *inside_;
+  const std::vector<RigidTransform> starts = in.starts(scan);
+  result.starts = starts.size();
+  if (starts.empty()) {
+    result.status = RegistrationStatus::no_start;
+    return result;
+  }
+
+  // Roughly on few points; the loss reaches less far than what the poses are wrong by only after some steps.
+  const Matrix3Xd rough = some_of(scan.points, kRoughPoints), compared = some_of(scan.points, kComparedPoints);
+  std::vector<FineRegistration> refined;
+  for (const RigidTransform& start : starts) {
+    FineRegistrationOptions options = in.fine_options();
+    options.largest_scale_mm = 0.015 * in.diameter;
+    options.iterations = 25;
+    options.movement_mm = 1e-4 * in.diameter;
+    options.threads = 1;
+    refined.push_back(register_finely(rough, in.surface, in.smooth, start, options));
+  }
+  const auto rank = [](const FineRegistration& a, const FineRegistration& b) { return a.scale_mm < b.scale_mm; };
+  std::stable_sort(refined.begin(), refined.end(), rank);
+  if (refined.size() > kCompared) refined.resize(kCompared);
+  for (FineRegistration& fine : refined) {
+    FineRegistrationOptions options = in.fine_options();
+    options.largest_scale_mm = std::max(fine.scale_mm, 1e-9 * in.diameter);
+    options.movement_mm = 1e-8 * in.diameter;
+    fine = register_finely(compared, in.surface, in.smooth, fine.mesh_from_scan, options);
+  }
+  std::stable_sort(refined.begin(), refined.end(), rank);
+
+  // One scale for all, so that their losses can be compared point by point.
+  const double scale = std::max(refined.front().scale_mm, 1e-8 * in.diameter);
+  std::vector<Compared> poses;
+  for (const FineRegistration& fine : refined) poses.push_back(in.compare(compared, fine, scale));
+  std::stable_sort(poses.begin(), poses.end(), [](const Compared& a, const Compared& b) { return a.mean < b.mean; });
+
+  // The rest of the way in two steps: few points are quick, and from there all need two or three passes.
+  RigidTransform pose = poses.front().fine.mesh_from_scan;
+  FineRegistrationOptions options = in.fine_options();
+  options.largest_scale_mm = 3 * scale;
+  if (scan.size() > 2 * kFirstFinePoints) {
+    pose = register_finely(some_of(scan.points, kFirstFinePoints), in.surface, in.smooth, pose, options).mesh_from_scan;
+  }
+  result.fine = register_finely(scan.points, in.surface, in.smooth, pose, options);
+
+  const double extent = in.diameter / 3;
+  std::vector<RigidTransform> distinct{result.fine.mesh_from_scan};
+  for (const Compared& other : poses) {
+    const auto same = [&](const RigidTransform& known) {
+      const Vector6d motion = motion_between(known, other.fine.mesh_from_scan, result.fine.reference);
+      return seen_length(motion, result.fine, extent) < 0.02 * in.diameter;
+    };
+    if (std::any_of(distinct.begin(), distinct.end(), same)) continue;
+    double sum = 0, squares = 0;
+    const double count = static_cast<double>(other.loss.size());
+    for (std::size_t i = 0; i < other.loss.size(); ++i) {
+      const double difference = other.loss[i] - poses.front().loss[i];
+      sum += difference;
+      squares += difference * difference;
+    }
+    const double mean = sum / count;
+    const double uncertainty = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
+    if (mean > 3 * uncertainty + 0.005) continue;
+    distinct.push_back(other.fine.mesh_from_scan);
+    result.alternatives.push_back({other.fine.mesh_from_scan, mean, uncertainty});
+  }
+
+  const Matrix3Xd moved =
+      (result.fine.mesh_from_scan.rotation * compared).colwise() + result.fine.mesh_from_scan.translation;
+  Eigen::Index inliers = 0;
+  for (const SurfacePoint& at : in.surface.closest(moved, in.options.threads)) {
+    if (!at.on_border && std::abs(at.distance) <= 3 * std::max(result.fine.scale_mm, 1e-9 * in.diameter)) ++inliers;
+  }
+  result.inlier_share = static_cast<double>(inliers) / static_cast<double>(compared.cols());
+  result.status = result.fine.status == FineRegistrationStatus::too_few_points  ? RegistrationStatus::no_start
+                  : result.fine.status == FineRegistrationStatus::not_converged ? RegistrationStatus::not_converged
+                  : !result.alternatives.empty()                                ? RegistrationStatus::ambiguous
+                  : result.fine.status == FineRegistrationStatus::undetermined  ? RegistrationStatus::undetermined
+                                                                                : RegistrationStatus::ok;
+  return result;
+}
+
+}  // namespace abbe
