@@ -1,7 +1,6 @@
 #include "abbe/geometry/distance_grid.h"
 
 #include <cmath>
-#include <limits>
 
 namespace abbe {
 
@@ -22,16 +21,6 @@ DistanceGrid::DistanceGrid(const ClosestPointFinder& surface, const Eigen::Vecto
   const Eigen::VectorXd distances = surface.signed_distances(points, threads);
   distances_.reserve(static_cast<std::size_t>(distances.size()));
   for (const double d : distances) distances_.push_back(static_cast<float>(std::abs(d)));
-}
-
-float DistanceGrid::at(const Eigen::Vector3d& point) const {
-  const Eigen::Vector3d place = ((point - start_) * inverse_step_).array() + 0.5;
-  for (int k = 0; k < 3; ++k) {
-    if (!(place[k] >= 0 && place[k] < size_[k])) return std::numeric_limits<float>::infinity();
-  }
-  const std::size_t x = static_cast<std::size_t>(place[0]), y = static_cast<std::size_t>(place[1]),
-                    z = static_cast<std::size_t>(place[2]);
-  return distances_[(x * static_cast<std::size_t>(size_[1]) + y) * static_cast<std::size_t>(size_[2]) + z];
 }
 
 }  // namespace abbe

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "abbe/geometry/closest_point.h"
@@ -17,7 +18,15 @@ class DistanceGrid {
                double margin, int cells, int threads);
 
   /// Distance from the nearest point of the grid, mm; off by at most half a diagonal of a cell. Infinite outside.
-  float at(const Eigen::Vector3d& point) const;
+  float at(const Eigen::Vector3d& point) const {
+    std::size_t index = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double place = (point[k] - start_[k]) * inverse_step_ + 0.5;
+      if (!(place >= 0 && place < size_[k])) return std::numeric_limits<float>::infinity();
+      index = index * static_cast<std::size_t>(size_[k]) + static_cast<std::size_t>(place);
+    }
+    return distances_[index];
+  }
 
  private:
   Eigen::Vector3d start_;

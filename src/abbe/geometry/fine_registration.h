@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "abbe/geometry/closest_point.h"
+#include "abbe/geometry/pose_difference.h"
 #include "abbe/geometry/rigid_transform.h"
 #include "abbe/geometry/smooth_surface.h"
 
@@ -27,14 +28,6 @@ struct FineRegistrationOptions {
 };
 
 enum class FineRegistrationStatus { not_run, ok, too_few_points, not_converged, undetermined };
-
-/// A motion of the scan that its points on this surface do not tell from none.
-struct UndeterminedMotion {
-  bool rotation = false;                                ///< about a line; else along it
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit vector, frame of the mesh
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();      ///< rotation: on the line, mm
-  double pitch_mm = 0;  ///< rotation: movement along the line per radian, not zero for a screw
-};
 
 /// Rigid motion that lays a scan on a surface.
 struct FineRegistration {

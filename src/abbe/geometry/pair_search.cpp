@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kAngleBin = 0.2618;  ///< 15 degrees
 constexpr double kDistanceBins = 24;  ///< over the diameter
-constexpr std::size_t kScored = 256, kFirstScored = 32;
+constexpr std::size_t kScored = 256, kFirstScored = 24;
 constexpr std::size_t kPairsDrawn = 6000;
 
 /// What two points with normals look like from any side.
@@ -157,8 +157,11 @@ class Search {
     for (std::size_t k = 0; k < scored_.size(); ++k) {
       const double distance = static_cast<double>(grid_.at(pose * scored_[k]));
       sum += std::max(0.0, 1 - distance * distance / reach_square);
-      // Poses that start far below what is kept do not recover.
-      if (k + 1 == kFirstScored && sum < 0.6 * least() * static_cast<double>(kFirstScored)) break;
+      // Poses that start far below what is kept do not recover: a term scatters by 0.4 at most.
+      if ((k + 1) % kFirstScored == 0) {
+        const double count = static_cast<double>(k + 1);
+        if (sum < least() * count - 1.2 * std::sqrt(count)) break;
+      }
     }
     return sum / static_cast<double>(scored_.size());
   }

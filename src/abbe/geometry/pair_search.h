@@ -18,7 +18,7 @@ struct PoseCandidate {
 
 struct PairSearchOptions {
   std::uint64_t seed = 1;
-  std::size_t poses = 200000;   ///< tried
+  std::size_t poses = 100000;   ///< tried
   std::size_t candidates = 48;  ///< kept, all different
   double reach_mm = 0;          ///< farther points count nothing
 };

@@ -1,12 +1,11 @@
 #include "abbe/geometry/registration.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "abbe/geometry/pair_search.h"
-#include "abbe/geometry/rotation.h"
+#include "abbe/geometry/pose_difference.h"
 
 namespace abbe {
 namespace {
@@ -14,10 +13,13 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-constexpr Eigen::Index kPartSamples = 700;
-constexpr Eigen::Index kRoughPoints = 500, kComparedPoints = 3000, kFirstFinePoints = 20000;
+constexpr Eigen::Index kPartSamples = 600;
+constexpr Eigen::Index kRoughPoints = 400, kComparedPoints = 2500, kFirstFinePoints = 20000;
 constexpr std::size_t kCompared = 12;
 constexpr double kWelsch = 2.985;
+constexpr double kSamePose = 0.02;  ///< of the diameter: nearer poses count as one
+constexpr double kWorse = 4;        ///< times the best deviation: such poses are no alternatives
+constexpr double kHopeless = 0.65;  ///< of the best score: rougher starts are not refined
 
 /// Every n-th point, so that about `count` are left.
 Matrix3Xd some_of(const Matrix3Xd& points, Eigen::Index count) {
@@ -33,46 +35,6 @@ struct Compared {
   std::vector<double> loss;
   double mean = 0;
 };
-
-/// Motion that leads from one pose to another: rotation vector about the reference and translation, of one screw.
-Vector6d motion_between(const RigidTransform& from, const RigidTransform& to, const Vector3d& reference) {
-  const RigidTransform difference = to * from.inverse();
-  const Vector3d omega = rotation_vector(difference.rotation);
-  const Vector3d shift = difference * reference - reference;
-  const double angle = omega.norm();
-  Vector6d motion;
-  motion.head<3>() = omega;
-  if (angle < 1e-8) {
-    motion.tail<3>() = shift;
-    return motion;
-  }
-  const Eigen::Matrix3d k = skew(omega / angle);
-  const Eigen::Matrix3d left =
-      Eigen::Matrix3d::Identity() + (1 - std::cos(angle)) / angle * k + (1 - std::sin(angle) / angle) * k * k;
-  motion.tail<3>() = left.inverse() * shift;
-  return motion;
-}
-
-/// Length of a motion beside the undetermined ones, mm at the extent.
-double seen_length(Vector6d motion, const FineRegistration& fine, double extent) {
-  Eigen::MatrixXd unseen(6, static_cast<Eigen::Index>(fine.undetermined.size()));
-  for (std::size_t i = 0; i < fine.undetermined.size(); ++i) {
-    const UndeterminedMotion& u = fine.undetermined[i];
-    Vector6d column = Vector6d::Zero();
-    if (u.rotation) {
-      column.head<3>() = extent * u.direction;
-      column.tail<3>() = extent * (u.direction.cross(fine.reference - u.point) + u.pitch_mm * u.direction);
-    } else {
-      column.tail<3>() = u.direction;
-    }
-    unseen.col(static_cast<Eigen::Index>(i)) = column;
-  }
-  motion.head<3>() *= extent;
-  if (unseen.cols() == 0) return motion.norm();
-  // Normal equations do: the columns are few and far from parallel.
-  const Eigen::MatrixXd gram = unseen.transpose() * unseen;
-  return (motion - unseen * gram.fullPivLu().solve(unseen.transpose() * motion)).norm();
-}
 
 }  // namespace
 
@@ -126,8 +88,10 @@ struct RegistrationTarget::Inside {
     const DistanceGrid grid(surface, low, high, 2 * reach, 64, options.threads);
     const ThinnedScan thinned = thin_scan(scan, 0.03 * diameter);
     std::vector<RigidTransform> poses;
-    for (const PoseCandidate& candidate :
-         search_poses(samples, thinned, grid, {.seed = options.seed, .reach_mm = reach})) {
+    const std::vector<PoseCandidate> found =
+        search_poses(samples, thinned, grid, {.seed = options.seed, .reach_mm = reach});
+    for (const PoseCandidate& candidate : found) {
+      if (candidate.score < kHopeless * found.front().score) break;
       poses.push_back(candidate.mesh_from_scan);
     }
     return poses;
@@ -152,8 +116,13 @@ RegistrationTarget::~RegistrationTarget() = default;
 
 const ClosestPointFinder& RegistrationTarget::surface() const { return inside_->surface; }
 
-Registration RegistrationTarget::register_scan(const PointCloud& scan) const {
+Registration RegistrationTarget::register_scan(const PointCloud& scan,
+                                               const std::function<void(std::size_t, std::size_t)>& progress) const {
   Registration result;
+  // Shares of the time, roughly.
+  const auto report = [&](std::size_t percent) {
+    if (progress) progress(percent, 100);
+  };
   if (scan.size() < 6) {
     result.status = RegistrationStatus::too_few_points;
     return result;
@@ -161,6 +130,7 @@ Registration RegistrationTarget::register_scan(const PointCloud& scan) const {
   const Inside& in = *inside_;
   const std::vector<RigidTransform> starts = in.starts(scan);
   result.starts = starts.size();
+  report(30);
   if (starts.empty()) {
     result.status = RegistrationStatus::no_start;
     return result;
@@ -168,26 +138,43 @@ Registration RegistrationTarget::register_scan(const PointCloud& scan) const {
 
   // Roughly on few points; the loss reaches less far than what the poses are wrong by only after some steps.
   const Matrix3Xd rough = some_of(scan.points, kRoughPoints), compared = some_of(scan.points, kComparedPoints);
+  const double extent = in.diameter / 3;
+  const auto same_pose = [&](const FineRegistration& known, const RigidTransform& other) {
+    return pose_difference(known.mesh_from_scan, other, known.undetermined, known.reference, extent) <
+           kSamePose * in.diameter;
+  };
+  const auto drop_repeated = [&](std::vector<FineRegistration>* fits) {
+    std::vector<FineRegistration> distinct;
+    for (FineRegistration& fit : *fits) {
+      const auto same = [&](const FineRegistration& known) { return same_pose(known, fit.mesh_from_scan); };
+      if (std::none_of(distinct.begin(), distinct.end(), same)) distinct.push_back(std::move(fit));
+    }
+    *fits = std::move(distinct);
+  };
   std::vector<FineRegistration> refined;
   for (const RigidTransform& start : starts) {
     FineRegistrationOptions options = in.fine_options();
     options.largest_scale_mm = 0.015 * in.diameter;
-    options.iterations = 25;
+    options.iterations = 15;
     options.movement_mm = 1e-4 * in.diameter;
     options.threads = 1;
     refined.push_back(register_finely(rough, in.surface, in.smooth, start, options));
   }
   const auto rank = [](const FineRegistration& a, const FineRegistration& b) { return a.scale_mm < b.scale_mm; };
   std::stable_sort(refined.begin(), refined.end(), rank);
-  if (refined.size() > kCompared) refined.resize(kCompared);
+  drop_repeated(&refined);
+  const double worst = kWorse * refined.front().scale_mm + 0.002 * in.diameter;
+  while (refined.size() > kCompared || refined.back().scale_mm > worst) refined.pop_back();
   for (FineRegistration& fine : refined) {
     FineRegistrationOptions options = in.fine_options();
     options.largest_scale_mm = std::max(fine.scale_mm, 1e-9 * in.diameter);
-    options.movement_mm = 1e-8 * in.diameter;
+    options.iterations = 40;
+    options.movement_mm = 1e-7 * in.diameter;
     fine = register_finely(compared, in.surface, in.smooth, fine.mesh_from_scan, options);
   }
   std::stable_sort(refined.begin(), refined.end(), rank);
 
+  report(60);
   // One scale for all, so that their losses can be compared point by point.
   const double scale = std::max(refined.front().scale_mm, 1e-8 * in.diameter);
   std::vector<Compared> poses;
@@ -201,14 +188,15 @@ Registration RegistrationTarget::register_scan(const PointCloud& scan) const {
   if (scan.size() > 2 * kFirstFinePoints) {
     pose = register_finely(some_of(scan.points, kFirstFinePoints), in.surface, in.smooth, pose, options).mesh_from_scan;
   }
+  report(70);
   result.fine = register_finely(scan.points, in.surface, in.smooth, pose, options);
 
-  const double extent = in.diameter / 3;
+  report(95);
   std::vector<RigidTransform> distinct{result.fine.mesh_from_scan};
   for (const Compared& other : poses) {
     const auto same = [&](const RigidTransform& known) {
-      const Vector6d motion = motion_between(known, other.fine.mesh_from_scan, result.fine.reference);
-      return seen_length(motion, result.fine, extent) < 0.02 * in.diameter;
+      return pose_difference(known, other.fine.mesh_from_scan, result.fine.undetermined, result.fine.reference,
+                             extent) < kSamePose * in.diameter;
     };
     if (std::any_of(distinct.begin(), distinct.end(), same)) continue;
     double sum = 0, squares = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -53,7 +54,9 @@ class RegistrationTarget {
 
   /// Pose of a scan on the part: pairs of points with normals give rough poses, the best of them are refined on some of
   /// the points, the best of these on all. Poses that differ by an undetermined motion only count as one.
-  Registration register_scan(const PointCloud& scan) const;
+  /// @param progress  null, or called with the steps done and all steps
+  Registration register_scan(const PointCloud& scan,
+                             const std::function<void(std::size_t, std::size_t)>& progress = {}) const;
 
   const ClosestPointFinder& surface() const;
 

