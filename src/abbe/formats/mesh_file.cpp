@@ -7,13 +7,16 @@
 #include "abbe/formats/obj_file.h"
 #include "abbe/formats/ply_file.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/formats/step_file.h"
 #include "abbe/formats/stl_file.h"
 #include "abbe/formats/text_file.h"
 
 namespace abbe {
 namespace {
 
-constexpr const char* kFormats = "a mesh: STL, PLY or OBJ";
+constexpr const char* kFormats = "a mesh: STL, PLY, OBJ or STEP";
+
+bool is_step_extension(const std::string& extension) { return extension == ".step" || extension == ".stp"; }
 
 [[noreturn]] void refuse_no_faces(const std::string& file) {
   throw InputError({file, 0, 0, ""}, "there are no faces in the file", kFormats);
@@ -22,19 +25,25 @@ constexpr const char* kFormats = "a mesh: STL, PLY or OBJ";
 MeshFile mesh_of_ply(std::string_view contents, const std::string& file, const MeshFileOptions& options) {
   PlyContents ply = parse_ply(contents, file, options.unit);
   if (ply.triangles.cols() == 0) refuse_no_faces(file);
-  return {{std::move(ply.points), std::move(ply.triangles)}, ply.format, ply.unit, {}};
+  return {{std::move(ply.points), std::move(ply.triangles)}, ply.format, ply.unit, {}, 0, {}, 0};
 }
 
 MeshFile mesh_of_obj(std::string_view contents, const std::string& file, const MeshFileOptions& options) {
   ObjContents obj = parse_obj(contents, file, options.unit, options.threads);
   if (obj.triangles.cols() == 0) refuse_no_faces(file);
-  return {{std::move(obj.points), std::move(obj.triangles)}, "OBJ", obj.unit, {}};
+  return {{std::move(obj.points), std::move(obj.triangles)}, "OBJ", obj.unit, {}, 0, {}, 0};
 }
 
 }  // namespace
 
 MeshFile parse_mesh(std::string_view contents, const std::string& file, const MeshFileOptions& options) {
   const std::string extension = file_extension(file);
+  if (is_step(contents)) {
+    throw InputError({file, 0, 0, ""}, "a STEP file is read from the disk only", "STL, PLY or OBJ");
+  }
+  if (is_step_extension(extension)) {
+    throw InputError({file, 1, 0, ""}, "this is no STEP file", "a first line 'ISO-10303-21;'");
+  }
   if (is_ply(contents)) return mesh_of_ply(contents, file, options);
   if (is_binary_stl(contents) || extension == ".stl") return parse_stl(contents, file, options);
   if (extension == ".obj") return mesh_of_obj(contents, file, options);
@@ -45,12 +54,13 @@ MeshFile parse_mesh(std::string_view contents, const std::string& file, const Me
 
 MeshFile read_mesh(const std::filesystem::path& path, const MeshFileOptions& options) {
   const MappedFile file(path);
+  if (is_step(file.text())) return read_step(path, options);
   return parse_mesh(file.text(), path.string(), options);
 }
 
 bool has_mesh_extension(const std::filesystem::path& path) {
   const std::string extension = file_extension(path);
-  return extension == ".stl" || extension == ".ply" || extension == ".obj";
+  return extension == ".stl" || extension == ".ply" || extension == ".obj" || is_step_extension(extension);
 }
 
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {

@@ -70,7 +70,7 @@ TEST(DamagedMesh, AHeaderThatPromisesTooMuchIsRefusedBeforeMemoryIsTaken) {
   // Nothing to read for an element without properties, however many there are.
   EXPECT_EQ(
       message(head + "1" + xyz + "element nothing 999999999999999999\nend_header\n" + std::string(12, '\0'), "a.ply"),
-      "a.ply: there are no faces in the file; expected a mesh: STL, PLY or OBJ");
+      "a.ply: there are no faces in the file; expected a mesh: STL, PLY, OBJ or STEP");
 }
 
 TEST(DamagedMesh, IndicesOutOfRangeAreRefused) {

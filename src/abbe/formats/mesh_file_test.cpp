@@ -236,9 +236,9 @@ TEST(ObjFile, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(MeshFile, SaysWhatItDoesNotKnow) {
   EXPECT_EQ(message_of([] { parse_mesh("hello", "part.dwg"); }),
-            "part.dwg: files with the extension '.dwg' are not known; expected a mesh: STL, PLY or OBJ");
+            "part.dwg: files with the extension '.dwg' are not known; expected a mesh: STL, PLY, OBJ or STEP");
   EXPECT_EQ(message_of([] { parse_mesh("v 1 2 3\n", "part.obj"); }),
-            "part.obj: there are no faces in the file; expected a mesh: STL, PLY or OBJ");
+            "part.obj: there are no faces in the file; expected a mesh: STL, PLY, OBJ or STEP");
   EXPECT_EQ(message_of([] { write_mesh("part.obj", TriangleMesh()); }),
             "part.obj: meshes are not written as '.obj'; expected .stl or .ply");
 }

@@ -1,0 +1,156 @@
+#include "face_deviation.h"
+
+#include <BRepAdaptor_Curve.hxx>
+#include <BRepAdaptor_Surface.hxx>
+#include <BRep_Tool.hxx>
+#include <ElSLib.hxx>
+#include <Poly_PolygonOnTriangulation.hxx>
+#include <Poly_Triangulation.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+namespace abbe {
+namespace {
+
+/// Nearest point of a surface that has a formula for it.
+template <typename Elementary>
+double distance_in_closed_form(const Elementary& surface, const gp_Pnt& point) {
+  double u = 0, v = 0;
+  ElSLib::Parameters(surface, point, u, v);
+  return point.Distance(ElSLib::Value(u, v, surface));
+}
+
+std::optional<double> distance_in_closed_form(const BRepAdaptor_Surface& surface, const gp_Pnt& point) {
+  switch (surface.GetType()) {
+    case GeomAbs_Plane:
+      return distance_in_closed_form(surface.Plane(), point);
+    case GeomAbs_Cylinder:
+      return distance_in_closed_form(surface.Cylinder(), point);
+    case GeomAbs_Cone:
+      return distance_in_closed_form(surface.Cone(), point);
+    case GeomAbs_Sphere:
+      return distance_in_closed_form(surface.Sphere(), point);
+    case GeomAbs_Torus:
+      return distance_in_closed_form(surface.Torus(), point);
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Distance to the surface from a start near its nearest point; never less than the distance.
+double distance_by_steps(const BRepAdaptor_Surface& surface, const gp_Pnt& point, double u, double v) {
+  const auto within = [](double x, double first, double last, bool periodic) {
+    return periodic ? x : std::clamp(x, first, last);
+  };
+  gp_Pnt at;
+  gp_Vec du, dv;
+  surface.D1(u, v, at, du, dv);
+  double nearest = point.Distance(at);
+  for (int step = 0; step < 8; ++step) {
+    const gp_Vec rest(at, point);
+    const double a = du.SquareMagnitude(), b = du.Dot(dv), c = dv.SquareMagnitude();
+    const double determinant = a * c - b * b;
+    if (!(determinant > 1e-12 * a * c)) break;
+    const double along_u = du.Dot(rest), along_v = dv.Dot(rest);
+    const double next_u = within(u + (c * along_u - b * along_v) / determinant, surface.FirstUParameter(),
+                                 surface.LastUParameter(), surface.IsUPeriodic());
+    const double next_v = within(v + (a * along_v - b * along_u) / determinant, surface.FirstVParameter(),
+                                 surface.LastVParameter(), surface.IsVPeriodic());
+    surface.D1(next_u, next_v, at, du, dv);
+    const double distance = point.Distance(at);
+    if (!(distance < nearest * (1 - 1e-6))) return std::min(nearest, distance);
+    nearest = distance;
+    u = next_u;
+    v = next_v;
+  }
+  return nearest;
+}
+
+/// The larger one. A distance that is no number would otherwise be lost in comparisons.
+double larger(double distance, double largest) {
+  if (!std::isfinite(distance)) throw std::runtime_error("a point of a face is not finite");
+  return std::max(distance, largest);
+}
+
+double triangles_deviation(const TopoDS_Face& face, const Poly_Triangulation& triangulation,
+                           const gp_Trsf& part_from_face, double largest) {
+  const BRepAdaptor_Surface surface(face, Standard_False);
+  constexpr int kParts = 6;
+  for (int i = 1; i <= triangulation.NbTriangles(); ++i) {
+    std::array<int, 3> nodes{};
+    triangulation.Triangle(i).Get(nodes[0], nodes[1], nodes[2]);
+    std::array<gp_XYZ, 3> corners;
+    std::array<gp_XY, 3> parameters;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = triangulation.Node(nodes[k]).Transformed(part_from_face).XYZ();
+      if (triangulation.HasUVNodes()) parameters[k] = triangulation.UVNode(nodes[k]).XY();
+    }
+    for (int a = 0; a <= kParts; ++a) {
+      for (int b = 0; a + b <= kParts; ++b) {
+        const double wa = a / double{kParts}, wb = b / double{kParts}, wc = 1 - wa - wb;
+        const gp_Pnt point(corners[0] * wa + corners[1] * wb + corners[2] * wc);
+        if (const std::optional<double> distance = distance_in_closed_form(surface, point)) {
+          largest = larger(*distance, largest);
+          continue;
+        }
+        if (!triangulation.HasUVNodes()) throw std::runtime_error("triangles of a face have no parameters");
+        const gp_XY uv = parameters[0] * wa + parameters[1] * wb + parameters[2] * wc;
+        if (point.Distance(surface.Value(uv.X(), uv.Y())) <= largest) continue;
+        largest = larger(distance_by_steps(surface, point, uv.X(), uv.Y()), largest);
+      }
+    }
+  }
+  return largest;
+}
+
+double distance_to_piece(const gp_XYZ& point, const gp_XYZ& begin, const gp_XYZ& end) {
+  const gp_XYZ along = end - begin;
+  const double square = along.SquareModulus();
+  const double share = square > 0 ? std::clamp((point - begin).Dot(along) / square, 0.0, 1.0) : 0;
+  return (point - begin - along * share).Modulus();
+}
+
+double edge_deviation(const TopoDS_Edge& edge, const Handle(Poly_Triangulation) & triangulation,
+                      const TopLoc_Location& location, double largest) {
+  // The pole of a sphere and the apex of a cone are edges without length.
+  if (BRep_Tool::Degenerated(edge)) return largest;
+  const Handle(Poly_PolygonOnTriangulation) polygon = BRep_Tool::PolygonOnTriangulation(edge, triangulation, location);
+  if (polygon.IsNull() || !polygon->HasParameters()) throw std::runtime_error("an edge of a face was not divided");
+  const BRepAdaptor_Curve curve(edge);
+  const gp_Trsf part_from_face = location.Transformation();
+  constexpr int kParts = 8;
+  for (int i = 1; i < polygon->NbNodes(); ++i) {
+    const gp_XYZ begin = triangulation->Node(polygon->Node(i)).Transformed(part_from_face).XYZ();
+    const gp_XYZ end = triangulation->Node(polygon->Node(i + 1)).Transformed(part_from_face).XYZ();
+    const double from = polygon->Parameter(i), to = polygon->Parameter(i + 1);
+    for (int k = 1; k < kParts; ++k) {
+      const gp_Pnt point = curve.Value(from + (to - from) * k / kParts);
+      largest = larger(distance_to_piece(point.XYZ(), begin, end), largest);
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+double face_deviation(const TopoDS_Face& face, double at_least) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
+  if (triangulation.IsNull() || triangulation->NbTriangles() == 0) {
+    throw std::runtime_error("a face could not be divided into triangles");
+  }
+  double largest = triangles_deviation(face, *triangulation, location.Transformation(), at_least);
+  for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) {
+    largest = edge_deviation(TopoDS::Edge(edge.Current()), triangulation, location, largest);
+  }
+  return largest;
+}
+
+}  // namespace abbe

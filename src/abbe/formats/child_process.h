@@ -1,0 +1,54 @@
+#pragma once
+
+// Internal to formats: a program that is run to its end.
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace abbe {
+
+/// A file in memory; gone with the object, even if the process is killed.
+class MemoryFile {
+ public:
+  explicit MemoryFile(const char* name);
+  ~MemoryFile();
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  int descriptor() const { return descriptor_; }
+  /// Makes contents() what is in the file now. Once, when nobody writes any more.
+  void map();
+  std::string_view contents() const { return {static_cast<const char*>(data_), size_}; }
+
+ private:
+  int descriptor_;
+  void* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// Runs a program without a shell, its outputs into memory, its input empty, and waits for its end.
+///
+/// It is killed when the time is over, and must itself ask for being killed with its parent (PR_SET_PDEATHSIG).
+class ChildProcess {
+ public:
+  /// @param words         path of the program, arguments
+  /// @param most_seconds  of the clock on the wall
+  /// @throws InputError if the program cannot be started, std::runtime_error if the system gives no memory for its
+  /// output
+  ChildProcess(const std::vector<std::string>& words, double most_seconds);
+
+  bool timed_out() const { return timed_out_; }
+  int signal() const;                                                 ///< that ended it, or 0
+  int exit_code() const;                                              ///< if it was not ended by a signal
+  std::string_view output() const { return output_.contents(); }      ///< standard output
+  std::string_view messages() const { return messages_.contents(); }  ///< standard error
+
+ private:
+  MemoryFile output_{"abbe-output"};
+  MemoryFile messages_{"abbe-messages"};
+  int status_ = 0;
+  bool timed_out_ = false;
+};
+
+}  // namespace abbe

@@ -1,0 +1,123 @@
+#include "abbe/formats/step_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "abbe/formats/child_process.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/number_text.h"
+#include "abbe/formats/step_mesh.h"
+#include "abbe/formats/text_cursor.h"
+#include "abbe/formats/text_file.h"
+
+namespace abbe {
+namespace {
+
+constexpr const char* kValid = "a valid STEP file (AP203, AP214 or AP242) with faces";
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  const std::string name;
+  TextCursor cursor(text, name);
+  while (!cursor.at_end()) {
+    if (const std::string_view line = cursor.line(); !line.empty()) lines.emplace_back(line);
+  }
+  return lines;
+}
+
+void require_positive(double value, const char* field, const char* expected) {
+  if (!(value > 0) || value > kLargestInput) {
+    throw InputError({"", 0, 0, field}, fmt::format("is {:g}", value), expected);
+  }
+}
+
+std::filesystem::path require_program(const InputError::Place& place) {
+  const std::filesystem::path program = step_program();
+  if (program.empty()) {
+    throw InputError(place, "STEP files cannot be read here: this Abbe was built without OpenCASCADE",
+                     "Abbe built where the Debian package libocct-data-exchange-dev is installed, or the part as STL");
+  }
+  std::error_code error;
+  if (::access(program.c_str(), X_OK) != 0 || !std::filesystem::is_regular_file(program, error)) {
+    throw InputError(place, fmt::format("ABBE_STEP_PROGRAM names {}, which is no program", program.string()),
+                     "the program abbe-step, or no such variable");
+  }
+  return program;
+}
+
+[[noreturn]] void refuse(const InputError::Place& place, const ChildProcess& child, double seconds) {
+  if (child.timed_out()) {
+    throw InputError(place, fmt::format("OpenCASCADE was not done with the file after {:g} s", seconds), kValid);
+  }
+  if (child.signal() == SIGXCPU) {
+    throw InputError(place, "OpenCASCADE was not done with the file after 600 s of processor time", kValid);
+  }
+  if (child.signal() != 0) {
+    throw InputError(place, fmt::format("OpenCASCADE stopped at the file ({})", ::strsignal(child.signal())), kValid);
+  }
+  const std::vector<std::string> lines = lines_of(child.messages());
+  throw InputError(place, lines.empty() ? "OpenCASCADE could not read the file" : lines[0],
+                   lines.size() == 2 ? lines[1] : kValid);
+}
+
+FileLength length_of(const std::string& unit) {
+  return unit == "inch" ? FileLength::inch : unit == "metre" ? FileLength::metre : FileLength::millimetre;
+}
+
+}  // namespace
+
+bool is_step(std::string_view contents) {
+  while (!contents.empty() && is_blank(contents.front())) contents.remove_prefix(1);
+  return contents.starts_with("ISO-10303-21");
+}
+
+std::filesystem::path step_program() {
+  if (const char* named = std::getenv("ABBE_STEP_PROGRAM"); named != nullptr && *named != '\0') return named;
+  std::error_code error;
+  const std::filesystem::path beside =
+      std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "abbe-step";
+  return ::access(beside.c_str(), X_OK) == 0 ? beside : std::filesystem::path();
+}
+
+MeshFile read_step(const std::filesystem::path& path, const MeshFileOptions& options) {
+  const InputError::Place place{path.string(), 0, 0, ""};
+  if (options.unit) {
+    throw InputError({path.string(), 0, 0, "unit"}, "a STEP file states its unit itself", "no unit");
+  }
+  require_positive(options.step.chord_mm, "chord_mm", "a length above zero in mm");
+  require_positive(options.step.angle_rad, "angle_rad", "an angle above zero in rad");
+  const std::filesystem::path program = require_program(place);
+  // Cheaper and plainer than where the parser stumbles.
+  if (MappedFile(path).text().rfind("END-ISO-10303-21") == std::string_view::npos) {
+    throw InputError(place, "the file ends early", "a last line 'END-ISO-10303-21;'");
+  }
+  const ChildProcess child(
+      {program.string(), path.string(), shortest_text(options.step.chord_mm), shortest_text(options.step.angle_rad)},
+      options.step.most_seconds);
+  if (child.timed_out() || child.signal() != 0 || child.exit_code() != 0) {
+    refuse(place, child, options.step.most_seconds);
+  }
+  StepMesh read = parse_step_mesh(child.output(), path.string());
+  MeshFile result;
+  result.mesh = std::move(read.mesh);
+  result.format = "STEP";
+  result.unit = {length_of(read.unit), read.unit.empty() ? UnitSource::assumed : UnitSource::stated};
+  result.notes = std::move(read.notes);
+  result.notes.push_back(fmt::format("{} of {}, divided within {:.3g} mm of them (tolerance {:g} mm)",
+                                     read.faces == 1 ? "1 face" : fmt::format("{} faces", read.faces),
+                                     read.solids == 1 ? "1 solid" : fmt::format("{} solids", read.solids),
+                                     read.deviation_mm, options.step.chord_mm));
+  result.faces = read.faces;
+  result.face_of_triangle = std::move(read.face_of_triangle);
+  result.deviation_mm = read.deviation_mm;
+  return result;
+}
+
+}  // namespace abbe

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "abbe/formats/mesh_file.h"
+
+namespace abbe {
+
+/// True if the contents begin like a STEP file (ISO 10303-21).
+bool is_step(std::string_view contents);
+
+/// Where abbe-step is: the value of the environment variable ABBE_STEP_PROGRAM where that is set, else beside the
+/// running program; empty if there is none, because this Abbe was built without OpenCASCADE.
+std::filesystem::path step_program();
+
+/// Reads the faces of a STEP file as triangles; see read_mesh() and docs/geometry-files.md.
+///
+/// OpenCASCADE does it, in a process of its own (abbe-step): a damaged file that makes it stop, run too long or take
+/// more than 8 GiB is an InputError here. Nothing is left on the disk, and the process ends with this one.
+/// @throws InputError, also where abbe-step is missing
+MeshFile read_step(const std::filesystem::path& path, const MeshFileOptions& options = {});
+
+}  // namespace abbe

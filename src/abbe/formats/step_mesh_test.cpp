@@ -1,0 +1,87 @@
+#include "abbe/formats/step_mesh.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "abbe/formats/message_of.h"
+#include "abbe/geometry/meshes_for_test.h"
+
+namespace abbe {
+namespace {
+
+StepMesh block() {
+  StepMesh mesh;
+  mesh.mesh = block_for_test({0, 0, 0}, {1, 2, 3});
+  mesh.faces = 6;
+  mesh.solids = 1;
+  for (Eigen::Index i = 0; i < mesh.mesh.size(); ++i) {
+    mesh.face_of_triangle.push_back(static_cast<std::uint32_t>(i) / 2);
+  }
+  mesh.unit = "inch";
+  mesh.deviation_mm = 0.1;
+  mesh.deflection_mm = 0.2;
+  mesh.notes = {"a note", "bytes that are no text: \xff"};
+  return mesh;
+}
+
+TEST(StepMesh, ComesThroughWithTheSameBits) {
+  const StepMesh given = block();
+  const StepMesh read = parse_step_mesh(step_mesh_bytes(given), "part.step");
+  EXPECT_EQ(read.mesh.vertices, given.mesh.vertices);
+  EXPECT_EQ(read.mesh.triangles, given.mesh.triangles);
+  EXPECT_EQ(read.face_of_triangle, given.face_of_triangle);
+  EXPECT_EQ(read.faces, 6U);
+  EXPECT_EQ(read.solids, 1U);
+  EXPECT_EQ(read.unit, "inch");
+  EXPECT_EQ(read.deviation_mm, 0.1);
+  EXPECT_EQ(read.deflection_mm, 0.2);
+  EXPECT_EQ(read.notes[0], "a note");
+}
+
+TEST(StepMesh, AnyCutIsRefused) {
+  const std::string bytes = step_mesh_bytes(block());
+  for (std::size_t length = 0; length < bytes.size(); length += 7) {
+    EXPECT_THAT(message_of([&] { parse_step_mesh(bytes.substr(0, length), "part.step"); }),
+                testing::HasSubstr("part.step: abbe-step gave no mesh"));
+  }
+  EXPECT_THAT(message_of([&] { parse_step_mesh(bytes + "x", "part.step"); }),
+              testing::HasSubstr("the length does not fit"));
+}
+
+TEST(StepMesh, WhatCannotBeAMeshIsRefused) {
+  const auto message = [](const StepMesh& mesh) {
+    return message_of([&] { parse_step_mesh(step_mesh_bytes(mesh), "part.step"); });
+  };
+  StepMesh mesh = block();
+  mesh.mesh.triangles(2, 11) = 8;
+  EXPECT_THAT(message(mesh), testing::HasSubstr("a vertex that does not exist"));
+  mesh = block();
+  mesh.face_of_triangle[3] = 6;
+  EXPECT_THAT(message(mesh), testing::HasSubstr("a face that does not exist"));
+  for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), 1.1e9}) {
+    mesh = block();
+    mesh.mesh.vertices(1, 7) = wrong;
+    EXPECT_THAT(message(mesh), testing::HasSubstr("not finite or too large"));
+  }
+  mesh = block();
+  mesh.mesh.triangles.resize(3, 0);
+  mesh.face_of_triangle.clear();
+  EXPECT_THAT(message(mesh), testing::HasSubstr("no triangles"));
+  std::string other = step_mesh_bytes(block());
+  other.replace(other.find("mesh 1"), 6, "mesh 2");
+  EXPECT_THAT(message_of([&] { parse_step_mesh(other, "part.step"); }), testing::HasSubstr("another version"));
+}
+
+TEST(StepMesh, CountsBeyondAllMemoryAreRefused) {
+  const std::string head =
+      R"({"kind":"abbe-step mesh 1","vertices":768614336404564651,"triangles":1,"faces":1,"solids":1,"unit":"",)"
+      R"("deviation_mm":0,"deflection_mm":1,"notes":[]})";
+  EXPECT_THAT(message_of([&] { parse_step_mesh(head + "\n" + std::string(40, '\0'), "part.step"); }),
+              testing::HasSubstr("the length does not fit"));
+}
+
+}  // namespace
+}  // namespace abbe
