@@ -20,6 +20,7 @@ int run_command(int argc, char** argv) {
   add_plan_command(line);
   add_identify_command(line);
   add_map_command(line);
+  add_path_command(line);
   add_evaluate_command(line);
   add_reproduce_command(line);
   if (argc > 1 && argv[1][0] != '-') {

@@ -1,0 +1,268 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "abbe/errors/calibrated_machine.h"
+#include "abbe/formats/curve_file.h"
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/json_text.h"
+#include "abbe/formats/machine_file.h"
+#include "abbe/formats/number_text.h"
+#include "abbe/formats/path_program.h"
+#include "abbe/formats/placement_file.h"
+#include "abbe/formats/results_folder.h"
+#include "abbe/geometry/rotation.h"
+#include "abbe/machine/tool_path.h"
+#include "command.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+struct PathCommand {
+  std::string machine, curve, errors, placement;
+  std::vector<std::string> hold, start, words, outputs;
+  double feed_mm_per_min = 0, retract_mm = 0, tolerance_um = 0;
+  int decimals = 6;
+  bool feed_per_minute = false, json = false;
+};
+
+/// "C2_deg=30": an axis and its command, mm or rad.
+HeldAxis axis_option(const Machine& machine, const std::string& option, const std::string& text) {
+  const auto fail = [&](const std::string& problem) {
+    throw InputError({.field = option + " " + text}, problem, "AXIS_unit=position, such as C2_deg=30 or X_mm=100");
+  };
+  const std::size_t equals = text.find('='), underscore = text.rfind('_', equals);
+  if (equals == std::string::npos || underscore == std::string::npos) fail("not understood");
+  const std::size_t axis = machine.find_axis(text.substr(0, underscore));
+  if (axis == Machine::npos) fail("the machine has no axis '" + text.substr(0, underscore) + "'");
+  const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
+  const std::string unit = text.substr(underscore + 1, equals - underscore - 1);
+  if (unit != (rotary ? "deg" : "mm")) fail(fmt::format("unit '{}' for a {} axis", unit, rotary ? "rotary" : "linear"));
+  double value = 0;
+  if (parse_number(std::string_view(text).substr(equals + 1), 0, value) != NumberProblem::none) fail("not a number");
+  return {axis, rotary ? value * kDegree : value};
+}
+
+PathProgramOptions program_options(const PathCommand& command, const Machine& machine) {
+  PathProgramOptions options;
+  options.decimals = command.decimals;
+  options.inverse_time = !command.feed_per_minute;
+  for (const std::string& text : command.words) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    if (equals == std::string::npos || equals + 1 == text.size() || machine.find_axis(name) == Machine::npos) {
+      throw InputError({.field = "--word " + text}, "not an axis of this machine and its word",
+                       "AXIS=WORD, such as C1=C");
+    }
+    options.words[name] = text.substr(equals + 1);
+  }
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (axis_word(machine.axes[i].name, options) == axis_word(machine.axes[k].name, options)) {
+        throw InputError({.field = "--word"}, "two axes have the word " + axis_word(machine.axes[i].name, options),
+                         "a word of its own for each axis");
+      }
+    }
+  }
+  options.comments = {"tool path of " + std::filesystem::path(command.curve).filename().string() + " on " +
+                      machine.name};
+  return options;
+}
+
+/// Largest distance (mm) and angle (rad) of the tool from the points of the curve, by the forward kinematics.
+struct Miss {
+  double distance = 0, angle = 0;
+};
+Miss largest_miss(const Machine& machine, const Curve& curve, const ToolPath& path) {
+  Miss miss;
+  for (const ToolPathStep& step : path.steps) {
+    if (step.point == ToolPathStep::kNoPoint) continue;
+    const RigidTransform pose =
+        nominal_workpiece_from_tool(machine, std::span(step.command).first(machine.axes.size()));
+    const CurvePoint& at = curve.points[step.point];
+    const Eigen::Vector3d direction = pose.rotation * machine.tool_direction;
+    miss.distance = std::max(miss.distance, (pose.translation - at.point).norm());
+    miss.angle = std::max(miss.angle, std::atan2(direction.cross(at.direction).norm(), direction.dot(at.direction)));
+  }
+  return miss;
+}
+
+void print_path(const Machine& machine, const ToolPath& path, const Miss& miss, const PathCommand& command) {
+  fmt::print("{} moves of {} in {} region{}, {} poses inserted\n", path.steps.size(), machine.name, path.regions,
+             path.regions == 1 ? "" : "s", path.inserted);
+  fmt::print("length at work {:.3f} mm, {:.2f} s at the feeds, without acceleration\n", path.working_length,
+             path.working_time);
+  fmt::print(
+      "tool off the straight lines between the points by at most {:.3f} um; at the points by {:.1e} mm and {:.1e} "
+      "rad\n",
+      1e3 * path.largest_deviation, miss.distance, miss.angle);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    double low = path.steps[0].command[i], high = low;
+    for (const ToolPathStep& step : path.steps) {
+      low = std::min(low, step.command[i]);
+      high = std::max(high, step.command[i]);
+    }
+    const double unit = rotary ? 1 / kDegree : 1;
+    fmt::print("  {:<3} {:>12.4f} to {:>12.4f} {}\n", machine.axes[i].name, unit * low, unit * high,
+               rotary ? "deg" : "mm");
+  }
+  for (const PathJump& jump : path.jumps) {
+    fmt::print("  move {}: {} turns {:.1f} deg, linear axes {:.1f} mm{}\n", jump.pose + 1, machine.axes[jump.axis].name,
+               jump.turn / kDegree, jump.largest_linear_move, path.steps[jump.pose].working ? ", at work" : "");
+  }
+  for (const std::string& output : command.outputs) fmt::print("{} written\n", output);
+}
+
+nlohmann::ordered_json path_json(const Machine& machine, const ToolPath& path, const Miss& miss) {
+  nlohmann::ordered_json json;
+  json["machine"] = machine.name;
+  json["status"] = path.status == ToolPathStatus::followed ? "followed" : "jumps_while_working";
+  json["moves"] = path.steps.size();
+  json["regions"] = path.regions;
+  json["inserted"] = path.inserted;
+  json["length_mm"] = path.working_length;
+  json["time_s"] = path.working_time;
+  json["largest_deviation_um"] = 1e3 * path.largest_deviation;
+  json["largest_miss_mm"] = miss.distance;
+  json["largest_miss_rad"] = miss.angle;
+  json["jumps"] = nlohmann::ordered_json::array();
+  for (const PathJump& jump : path.jumps) {
+    json["jumps"].push_back({{"move", jump.pose + 1},
+                             {"axis", machine.axes[jump.axis].name},
+                             {"turn_deg", jump.turn / kDegree},
+                             {"largest_linear_move_mm", jump.largest_linear_move},
+                             {"at_work", path.steps[jump.pose].working}});
+  }
+  return json;
+}
+
+int run_path(const PathCommand& command) {
+  const Machine nominal = read_machine(command.machine);
+  CalibratedMachine calibrated{nominal, std::vector<double>(nominal.axes.size(), 0.0), {}};
+  if (!command.errors.empty()) {
+    calibrated = calibrated_machine(nominal, read_errors(command.errors, nominal).errors);
+    if (!calibrated.variable.empty()) {
+      throw InputError({.file = command.errors, .field = calibrated.variable},
+                       "an error motion, which depends on the position of its axis",
+                       "location errors and a tool offset error only: what changes the geometry of the machine once");
+    }
+  }
+  Machine machine = calibrated.machine;
+  if (!command.placement.empty()) machine = with_workpiece(machine, read_placement(command.placement));
+  Curve curve = read_curve(command.curve, machine);
+  for (CurvePoint& point : curve.points) {
+    if (!(point.feed > 0)) point.feed = command.feed_mm_per_min / 60;
+    if (point.working && !(point.feed > 0)) {
+      throw InputError({.file = command.curve}, "moves at work without a feed",
+                       "a column feed_mm_per_min, F in a program, or --feed-mm-per-min");
+    }
+    for (std::size_t k = 0; k < curve.indexed.size(); ++k) point.indexed[k] += calibrated.zero[curve.indexed[k]];
+  }
+  ToolPathOptions options;
+  options.retract = command.retract_mm;
+  options.tolerance = 1e-3 * command.tolerance_um;
+  for (const std::string& text : command.hold) {
+    HeldAxis held = axis_option(machine, "--hold", text);
+    if (std::find(curve.indexed.begin(), curve.indexed.end(), held.axis) != curve.indexed.end()) {
+      throw InputError({.field = "--hold " + text}, "the curve gives this axis its commands", "an axis of its own");
+    }
+    held.position += calibrated.zero[held.axis];
+    options.path.inverse.held.push_back(held);
+  }
+  if (!command.start.empty()) {
+    options.path.start.assign(machine.axes.size(), 0.0);
+    for (const std::string& text : command.start) {
+      const HeldAxis at = axis_option(machine, "--start", text);
+      options.path.start[at.axis] = at.position + calibrated.zero[at.axis];
+    }
+  }
+  const PathProgramOptions program = program_options(command, machine);
+
+  const ToolPath path = plan_tool_path(machine, curve, options);
+  if (path.status == ToolPathStatus::no_retract) {
+    throw InputError({.field = "--retract-mm"}, path.message, "a distance above zero");
+  }
+  if (path.status == ToolPathStatus::invalid_options) throw InputError({.file = command.curve}, path.message);
+  if (path.status != ToolPathStatus::followed && path.status != ToolPathStatus::jumps_while_working) {
+    fmt::print(stderr, "abbe: point {} of {}: {}\n", path.failed_point + 1, command.curve, path.message);
+    return kNegative;
+  }
+  std::vector<std::vector<double>> commands;
+  for (const ToolPathStep& step : path.steps) {
+    std::vector<double> row(machine.axes.size());
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] = step.command[i] - calibrated.zero[i];
+    commands.push_back(std::move(row));
+  }
+  for (const std::string& output : command.outputs) {
+    const std::string extension = std::filesystem::path(output).extension().string();
+    if (extension == ".csv") {
+      write_file_atomically(output, path_csv(machine, path, commands));
+    } else if (extension == ".ngc" || extension == ".nc" || extension == ".tap" || extension == ".mpf") {
+      write_file_atomically(output, path_program(machine, path, commands, program));
+    } else {
+      throw InputError({.file = output}, "unknown kind of program file",
+                       "a name ending in .ngc, .nc, .tap, .mpf or .csv");
+    }
+  }
+  const Miss miss = largest_miss(machine, curve, path);
+  if (command.json) {
+    fmt::print("{}\n", json_text(path_json(machine, path, miss)));
+  } else {
+    print_path(machine, path, miss, command);
+  }
+  if (path.status == ToolPathStatus::jumps_while_working) {
+    fmt::print(stderr, "abbe: {}: another start (--start), a held axis, or a cut of the curve there\n", path.message);
+    return kNegative;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_path_command(CommandLine& line) {
+  auto options = std::make_shared<PathCommand>();
+  CLI::App* command = line.add(
+      "path", "Axis commands and NC program for a curve on the workpiece, by the calibrated machine",
+      "  abbe path examples/machines/yin-engraver-u.machine.toml examples/laser_engraver/table-a4.csv --placement "
+      "examples/laser_engraver/part.placement.toml -o program.ngc -o commands.csv\n"
+      "  abbe path examples/machines/yin-engraver-u.machine.toml examples/laser_engraver/regions.ngc --errors "
+      "examples/laser_engraver/linkage.errors.toml --retract-mm 20 --tolerance-um 1 --word C1=C --word C2=B\n\n"
+      "The curve: CSV with x_mm, y_mm, z_mm, i, j, k (direction from the tool to the spindle or source), optional\n"
+      "feed_mm_per_min, pierce_s, beam and axes set beforehand (C2_deg); or a program with G0, G1, X Y Z I J K, F, G4, "
+      "M3.");
+  command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
+  command->add_option("curve", options->curve, "Curve (.csv, .ngc, .nc, .tap, .mpf) in workpiece coordinates")
+      ->required();
+  command->add_option("--errors", options->errors, "Identified location errors and tool offset (*.errors.toml)");
+  command->add_option("--placement", options->placement, "Where the workpiece is clamped (*.placement.toml)");
+  command->add_option("--hold", options->hold, "Axis kept at a command, AXIS_unit=position; repeatable");
+  command->add_option("--start", options->start,
+                      "Commands before the path, AXIS_unit=position; repeatable: chooses among branches");
+  command->add_option("--feed-mm-per-min", options->feed_mm_per_min, "Feed where the curve has none")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--retract-mm", options->retract_mm,
+                   "Retract along the tool before and behind each region; needed if axes are set anew")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--tolerance-um", options->tolerance_um,
+                   "Insert poses until the tool stays so near to the lines between the points (0: none)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--word", options->words, "Word of an axis in the program, AXIS=WORD (C1=C); repeatable");
+  command->add_option("--decimals", options->decimals, "Of mm and degrees in the program")->check(CLI::Range(1, 12));
+  command->add_flag("--feed-per-minute", options->feed_per_minute,
+                    "Write F in mm/min (G94) instead of inverse time (G93)");
+  command->add_option("-o,--output", options->outputs, "File to write: .ngc, .nc, .tap, .mpf or .csv; repeatable");
+  command->add_flag("--json", options->json, "Print JSON for programs");
+  command->callback([&line, options] { line.run = [options]() -> int { return run_path(*options); }; });
+}
+
+}  // namespace abbe

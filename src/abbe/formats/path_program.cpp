@@ -1,0 +1,150 @@
+#include "abbe/formats/path_program.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "abbe/formats/number_text.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+double in_degrees_or_mm(const Axis& axis, double value) {
+  return axis.kind == AxisKind::rotary ? value / kDegree : value;
+}
+
+/// Fixed digits without a minus before zero.
+std::string fixed(double value, int decimals) {
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1) : text;
+}
+
+std::string comment(std::string text) {
+  for (char& c : text) {
+    if (c == '(' || c == ')' || static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  return "(" + text + ")\n";
+}
+
+class ProgramWriter {
+ public:
+  ProgramWriter(const Machine& machine, const PathProgramOptions& options) : machine_(machine), options_(options) {
+    last_.resize(machine.axes.size());
+  }
+
+  std::string write(const ToolPath& path, const std::vector<std::vector<double>>& commands) {
+    for (const std::string& line : options_.comments) text_ += comment(line);
+    text_ += "G21 G90 G94\n";
+    std::size_t region = 0;
+    for (std::size_t i = 0; i < path.steps.size(); ++i) {
+      const ToolPathStep& step = path.steps[i];
+      if (path.regions > 1 && (i == 0 || step.region != region)) {
+        text_ += comment(fmt::format("region {}", step.region + 1));
+        region = step.region;
+      }
+      step.working ? work(step, commands[i], i > 0 ? commands[i - 1] : commands[i]) : rapid(commands[i]);
+      const bool goes_on = i + 1 < path.steps.size() && path.steps[i + 1].working;
+      if (step.dwell > 0) {
+        mode(false);
+        beam(true);
+        text_ += "G4 P" + fixed(step.dwell, 3) + "\n";
+      }
+      if (!goes_on) beam(false);
+    }
+    mode(false);
+    return text_ + "M30\n";
+  }
+
+ private:
+  /// Words of the axes that move; those of the first block are complete.
+  std::string moves(const std::vector<double>& command) {
+    std::string words;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const std::string value = fixed(in_degrees_or_mm(machine_.axes[i], command[i]), options_.decimals);
+      if (value == last_[i]) continue;
+      last_[i] = value;
+      words += " " + axis_word(machine_.axes[i].name, options_) + value;
+    }
+    return words;
+  }
+
+  void rapid(const std::vector<double>& command) {
+    mode(false);
+    beam(false);
+    const std::string words = moves(command);
+    if (!words.empty()) text_ += "G0" + words + "\n";
+  }
+
+  void work(const ToolPathStep& step, const std::vector<double>& command, const std::vector<double>& before) {
+    beam(true);
+    mode(options_.inverse_time && step.feed > 0);
+    const std::string words = moves(command);
+    if (words.empty()) return;
+    text_ += "G1" + words;
+    if (step.feed > 0) {
+      // Where the tool turns on the spot the axes give the time: as on a radius of 100 mm.
+      double length = step.length;
+      if (length < 1e-6) {
+        double squared = 0;
+        for (std::size_t i = 0; i < command.size(); ++i) {
+          const double weight = machine_.axes[i].kind == AxisKind::rotary ? 100 : 1;
+          squared += weight * weight * (command[i] - before[i]) * (command[i] - before[i]);
+        }
+        length = std::max(std::sqrt(squared), 1e-6);
+      }
+      text_ += " F" + fixed(60 * step.feed / (options_.inverse_time ? length : 1), 4);
+    }
+    text_ += "\n";
+  }
+
+  void beam(bool on) {
+    if (on != beam_) text_ += on ? "M3\n" : "M5\n";
+    beam_ = on;
+  }
+  void mode(bool inverse) {
+    if (inverse != inverse_) text_ += inverse ? "G93\n" : "G94\n";
+    inverse_ = inverse;
+  }
+
+  const Machine& machine_;
+  const PathProgramOptions& options_;
+  std::string text_;
+  std::vector<std::string> last_;
+  bool beam_ = false, inverse_ = false;
+};
+
+}  // namespace
+
+std::string axis_word(const std::string& name, const PathProgramOptions& options) {
+  const auto word = options.words.find(name);
+  if (word != options.words.end()) return word->second;
+  return name.size() == 1 ? name : name + "=";
+}
+
+std::string path_program(const Machine& machine, const ToolPath& path, const std::vector<std::vector<double>>& commands,
+                         const PathProgramOptions& options) {
+  return ProgramWriter(machine, options).write(path, commands);
+}
+
+std::string path_csv(const Machine& machine, const ToolPath& path, const std::vector<std::vector<double>>& commands) {
+  std::string text = "step,point,region,beam";
+  for (const Axis& axis : machine.axes) text += "," + axis.name + (axis.kind == AxisKind::rotary ? "_deg" : "_mm");
+  text += ",length_mm,feed_mm_per_min,dwell_s\n";
+  for (std::size_t i = 0; i < path.steps.size(); ++i) {
+    const ToolPathStep& step = path.steps[i];
+    // Points count from 1 as people do; 0: a pose between them.
+    text += fmt::format("{},{},{},{}", i + 1, step.point == ToolPathStep::kNoPoint ? 0 : step.point + 1,
+                        step.region + 1, step.working ? 1 : 0);
+    for (std::size_t k = 0; k < machine.axes.size(); ++k) {
+      text += "," + shortest_text(in_degrees_or_mm(machine.axes[k], commands[i][k]));
+    }
+    text += fmt::format(",{},{},{}\n", shortest_text(step.length), shortest_text(60 * step.feed),
+                        shortest_text(step.dwell));
+  }
+  return text;
+}
+
+}  // namespace abbe
