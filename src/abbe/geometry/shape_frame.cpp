@@ -176,6 +176,28 @@ PointSlopes point_slopes(const ShapeFrame& frame, const Vector3d& point) {
   return result;
 }
 
+std::array<PointSlopes, 2> point_components(const ShapeFrame& frame, const Vector3d& point) {
+  const Vector3d q = frame.axes.transpose() * ((point - frame.centre) - frame.origin);
+  std::array<PointSlopes, 2> parts;
+  const auto enter = [&](PointSlopes& part, double distance, const Vector3d& g) {
+    const Vector3d moment = q.cross(g);
+    part.distance = distance;
+    part.slope.head<3>() = -g;
+    part.slope[kTilt1] = -moment.x();
+    part.slope[kTilt2] = -moment.y();
+  };
+  if (frame.kind == ShapeKind::line3) {
+    enter(parts[0], q.x(), Vector3d::UnitX());
+    enter(parts[1], q.y(), Vector3d::UnitY());
+    return parts;
+  }
+  const double across = std::max(std::hypot(q.x(), q.y()), 1e-300);
+  enter(parts[0], across - frame.radius, {q.x() / across, q.y() / across, 0});
+  enter(parts[1], q.z(), Vector3d::UnitZ());
+  parts[0].slope[kRadius] = -1;
+  return parts;
+}
+
 Eigen::Matrix<double, 8, 8> shape_covariance(const ShapeFrame& frame, const std::vector<int>& free,
                                              const Eigen::MatrixXd& covariance) {
   Eigen::Matrix<double, 8, kParameters> slopes = Eigen::Matrix<double, 8, kParameters>::Zero();

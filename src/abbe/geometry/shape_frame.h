@@ -52,6 +52,8 @@ struct PointSlopes {
   Step slope = Step::Zero();
 };
 PointSlopes point_slopes(const ShapeFrame& frame, const Eigen::Vector3d& point);
+/// The two residuals of a point of line3 or circle3, whose length is its distance.
+std::array<PointSlopes, 2> point_components(const ShapeFrame& frame, const Eigen::Vector3d& point);
 
 /// Covariance of (point, direction, radius, half angle) from that of the free steps.
 Eigen::Matrix<double, 8, 8> shape_covariance(const ShapeFrame& frame, const std::vector<int>& free,

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "abbe/geometry/shape_fit.h"
+
+namespace abbe {
+
+/// Which extreme shape: minimum zone (Chebyshev: smallest largest distance), or the smallest around and the largest
+/// within all points (circle2, sphere, cylinder only).
+enum class ExtremeKind { minimum_zone, circumscribed, inscribed };
+
+/// Minimum zone, minimum circumscribed or maximum inscribed shape.
+///
+/// Exact to rounding, with a proof: the contacts' multipliers are not negative and combine the gradients to zero
+/// (Kolmogorov's criterion), and no other point is farther out. The least-squares shape is the start; the answer is the
+/// optimum of its neighbourhood, which for features whose form deviation is small against their size is the only one.
+ShapeFit extreme_fit(ShapeKind kind, ExtremeKind extreme, const FitPoints& points, const FitOptions& options = {});
+
+}  // namespace abbe

@@ -1,0 +1,270 @@
+#include "abbe/geometry/robust_fit.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "abbe/geometry/shape_start.h"
+
+namespace abbe {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+using namespace fits;
+
+double middle(std::vector<double>& values) {
+  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), half, values.end());
+  return *half;
+}
+
+/// The frame with the smallest median distance of a few points.
+class LeastMedian {
+ public:
+  LeastMedian(ShapeKind kind, const Survey& survey, const FitConstraints& constraints, std::uint64_t seed)
+      : kind_(kind),
+        survey_(survey),
+        constraints_(constraints),
+        scored_(spread_sample(survey.sample, Vector3d::Zero(), 200)),
+        generator_(seed) {}
+
+  bool search(ShapeFrame& best) {
+    if (kind_ == ShapeKind::cylinder || kind_ == ShapeKind::cone) {
+      along_all_directions();
+    } else {
+      for (int trial = 0; trial < 200; ++trial) try_subset(subset_size());
+    }
+    best = best_;
+    return std::isfinite(lowest_);
+  }
+
+ private:
+  Index subset_size() const {
+    switch (kind_) {
+      case ShapeKind::line2:
+      case ShapeKind::line3:
+        return 2;
+      case ShapeKind::sphere:
+        return 4;
+      case ShapeKind::cone:
+        return 5;
+      default:
+        return 3;
+    }
+  }
+  Matrix3Xd draw(Index count) {
+    Matrix3Xd subset(3, count);
+    for (Index k = 0; k < count; ++k) {
+      const std::uint64_t index = generator_() % static_cast<std::uint64_t>(survey_.sample.cols());
+      subset.col(k) = survey_.sample.col(static_cast<Index>(index));
+    }
+    return subset;
+  }
+  double score(const ShapeFrame& frame) {
+    std::vector<double> d(static_cast<std::size_t>(scored_.cols()));
+    for (Index i = 0; i < scored_.cols(); ++i) {
+      d[static_cast<std::size_t>(i)] = std::abs(point_slopes(frame, scored_.col(i)).distance);
+    }
+    const double value = middle(d);
+    if (!(value < lowest_)) return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+    // Huge circles come near everything that is small: a radius has to be of the data's order.
+    if (has_radius(kind_) && !(frame.radius > 0 && frame.radius < 1e4 * survey_.size)) return value;
+    lowest_ = value;
+    best_ = frame;
+    return value;
+  }
+  void try_subset(Index count) {
+    Survey few = survey_;
+    few.sample = draw(count);
+    few.centroid = centroid(few.sample, Vector3d::Zero(), 1);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(few.centroid.scatter);
+    few.directions = principal.eigenvectors().rowwise().reverse();
+    for (const ShapeFrame& frame : start_frames(kind_, few, constraints_)) score(frame);
+  }
+  double along(const Vector3d& direction, int trials) {
+    const Eigen::Matrix3d axes = axes_along(direction);
+    double best = std::numeric_limits<double>::infinity();
+    for (int trial = 0; trial < trials; ++trial) {
+      ShapeFrame frame;
+      if (frame_along(kind_, axes, draw(subset_size()), constraints_, frame)) best = std::min(best, score(frame));
+    }
+    return best;
+  }
+  void along_all_directions() {
+    if (constraints_.direction) {
+      along(*constraints_.direction, 300);
+      return;
+    }
+    std::vector<std::pair<double, Vector3d>> scored;
+    const auto add = [&](const Vector3d& direction) { scored.emplace_back(along(direction, 25), direction); };
+    for (const Vector3d& direction : half_sphere(250)) add(direction);
+    for (int k = 0; k < 3; ++k) add(survey_.directions.col(k));
+    // Between the directions over the sphere a long thin part is missed; its longest chords lie along it.
+    for (int k = 0; k < 60; ++k) {
+      Vector3d longest = Vector3d::Zero();
+      for (int chord = 0; chord < 4; ++chord) {
+        const Matrix3Xd ends = draw(2);
+        const Vector3d between = ends.col(1) - ends.col(0);
+        if (between.squaredNorm() > longest.squaredNorm()) longest = between;
+      }
+      if (longest.squaredNorm() > 0) add(longest.normalized());
+    }
+    std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    scored.resize(std::min<std::size_t>(scored.size(), 5));
+    for (auto [value, direction] : scored) {
+      for (double reach = 0.1; reach > 0.004; reach /= 2) {
+        const Eigen::Matrix3d axes = axes_along(direction);
+        for (int k = 0; k < 8; ++k) {
+          const double turn = 2 * std::numbers::pi * k / 8;
+          const Vector3d other =
+              (axes.col(2) + reach * (std::cos(turn) * axes.col(0) + std::sin(turn) * axes.col(1))).normalized();
+          const double found = along(other, 25);
+          if (found < value) {
+            value = found;
+            direction = other;
+          }
+        }
+      }
+    }
+  }
+
+  ShapeKind kind_;
+  const Survey& survey_;
+  const FitConstraints& constraints_;
+  Matrix3Xd scored_;
+  std::mt19937_64 generator_;
+  double lowest_ = std::numeric_limits<double>::infinity();
+  ShapeFrame best_;
+};
+
+/// Weight w = psi(u) / u, and the slope of psi(u) = u w, at a distance of u tuned scales.
+struct Influence {
+  double weight = 0, slope = 0;
+};
+Influence influence(RobustKind kind, double u) {
+  switch (kind) {
+    case RobustKind::huber:
+      return u <= 1 ? Influence{1, 1} : Influence{1 / u, 0};
+    case RobustKind::tukey: {
+      const double v = 1 - u * u;
+      return u < 1 ? Influence{v * v, v * (1 - 5 * u * u)} : Influence{0, 0};
+    }
+    case RobustKind::welsch:
+      break;
+  }
+  const double w = std::exp(-u * u);
+  return {w, w * (1 - 2 * u * u)};
+}
+
+double default_tuning(RobustKind kind) {
+  return kind == RobustKind::huber ? 1.345 : kind == RobustKind::tukey ? 4.685 : 2.985;
+}
+
+double change(const ShapeFrame& a, const ShapeFrame& b, double size) {
+  const double radius = std::abs(a.radius - b.radius), angle = std::abs(a.half_angle - b.half_angle);
+  return std::max({(a.origin - b.origin).norm() / size, radius / size, angle, (a.axes - b.axes).norm()});
+}
+
+}  // namespace
+
+ShapeFit robust_fit(ShapeKind kind, const FitPoints& points, const RobustOptions& robust, const FitOptions& options) {
+  ShapeFit fit;
+  fit.shape.kind = kind;
+  fit.points = static_cast<std::size_t>(points.cols());
+  const std::vector<int> free = free_parameters(kind, options.constraints);
+  fit.parameters = static_cast<int>(free.size());
+  const int rows = rows_per_point(kind);
+  fit.degrees_of_freedom = points.cols() * rows - static_cast<long>(free.size());
+  const Survey survey = fits::survey(kind, points, options.constraints, options.threads);
+  fit.status = survey.status;
+  fit.reason = survey.reason;
+  if (!fit.ok()) return fit;
+  ShapeFrame frame;
+  if (!LeastMedian(kind, survey, options.constraints, robust.seed).search(frame)) {
+    fit.status = FitStatus::no_consensus;
+    fit.reason = "no such shape comes near half of the points";
+    return fit;
+  }
+  settle(frame, survey.centroid.mean);
+  frame.centre = survey.centre;
+
+  const double tuning = robust.tuning > 0 ? robust.tuning : default_tuning(robust.kind);
+  // Median of the distance of normal points, in standard deviations of one residual.
+  const double median_of_normal = rows == 2 ? 1.1774100225154747 : 0.6744897501960817;
+  const double least_scale = 1e-14 * (survey.size + survey.centre.cwiseAbs().maxCoeff());
+  std::vector<double> d(fit.points), sorted;
+  fit.weights.resize(fit.points);
+  double scale = 0;
+  bool rested = false;
+  for (int step = 0; step < 200 && !rested; ++step) {
+    distances(frame, points, d, options.threads);
+    sorted.resize(d.size());
+    std::transform(d.begin(), d.end(), sorted.begin(), [](double x) { return std::abs(x); });
+    const double next = std::max(middle(sorted) / median_of_normal, least_scale);
+    // Late steps keep the scale, which could go to and fro with the middle point.
+    const double before = scale;
+    if (step < 60) scale = next;
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      fit.weights[i] = influence(robust.kind, std::abs(d[i]) / (tuning * scale)).weight;
+    }
+    const Refined refined = refine(frame, points, fit.weights, free, survey.size, 2, options.threads);
+    ++fit.iterations;
+    const double moved_by = change(refined.frame, frame, survey.size);
+    frame = refined.frame;
+    if (!std::isfinite(moved_by)) break;
+    rested = moved_by < 1e-12 && std::abs(scale - before) <= 1e-9 * scale;
+    // With the scale at rounding there is nothing more to weigh.
+    rested = rested || (moved_by < 1e-10 && scale <= 2 * least_scale);
+  }
+
+  distances(frame, points, d, options.threads);
+  std::vector<double> used(fit.points);
+  double psi_squares = 0, psi_slopes = 0, squares = 0, weight = 0, count = 0;
+  double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
+  std::size_t smallest_at = 0, largest_at = 0;
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    const Influence f = influence(robust.kind, std::abs(d[i]) / (tuning * scale));
+    fit.weights[i] = f.weight;
+    used[i] = f.weight > 1e-3 ? 1 : 0;
+    squares += f.weight * d[i] * d[i];
+    weight += f.weight;
+    if (used[i] == 0) continue;
+    ++count;
+    psi_squares += std::pow(f.weight * d[i], 2);
+    // Of two residuals with one weight only that along the distance sees the weight change.
+    psi_slopes += rows == 2 ? (f.weight + f.slope) / 2 : f.slope;
+    if (d[i] < smallest) smallest = d[i], smallest_at = i;
+    if (d[i] > largest) largest = d[i], largest_at = i;
+  }
+  fit.rejected = fit.points - static_cast<std::size_t>(count);
+  fit.rms = weight > 0 ? std::sqrt(squares / weight) : 0;
+  if (!rested) {
+    fit.status = FitStatus::not_converged;
+    fit.reason = "weights and shape did not come to rest";
+  }
+  if (2 * count < static_cast<double>(fit.points) || scale > 0.15 * survey.extent[0]) {
+    fit.status = FitStatus::no_consensus;
+    fit.reason = "no such shape explains half of the points";
+  }
+  // Huber (1981), 7.6: variance of an M-estimate.
+  const double freedom = count * rows - static_cast<double>(free.size());
+  const double mean_slope = psi_slopes / std::max(count, 1.0);
+  double sigma = options.sigma;
+  if (!(sigma > 0)) sigma = freedom > 0 && mean_slope > 0.05 ? std::sqrt(psi_squares / freedom) / mean_slope : 0;
+  const NormalSums sums = normal_sums(frame, points, used, options.threads);
+  report_fit(fit, frame, survey, points, free, sums.matrix, sigma, options.threads);
+  // The extremes that count are those of the points that took part.
+  const bool same_sense = std::abs(fit.largest - d[fit.largest_at]) <= 1e-9 * (1 + std::abs(fit.largest));
+  fit.smallest = same_sense ? smallest : -largest;
+  fit.largest = same_sense ? largest : -smallest;
+  fit.smallest_at = same_sense ? smallest_at : largest_at;
+  fit.largest_at = same_sense ? largest_at : smallest_at;
+  fit.form = rows == 2 ? 2 * fit.largest : fit.largest - fit.smallest;
+  return fit;
+}
+
+}  // namespace abbe
