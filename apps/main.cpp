@@ -22,6 +22,8 @@ int run_command(int argc, char** argv) {
   add_map_command(line);
   add_path_command(line);
   add_evaluate_command(line);
+  add_register_command(line);
+  add_deviate_command(line);
   add_reproduce_command(line);
   if (argc > 1 && argv[1][0] != '-') {
     const std::string name = argv[1];

@@ -67,11 +67,13 @@ void print_report(const EvaluationReport& report) {
   for (const std::string& note : report.notes) fmt::print("note: {}\n", note);
 }
 
-void write_report(const EvaluationReport& report, const nlohmann::ordered_json& json, const std::string& output) {
-  ResultsFolder folder(output);
+void write_report(const EvaluationReport& report, const nlohmann::ordered_json& json,
+                  const EvaluationOptions& options) {
+  ResultsFolder folder(options.output);
   folder.write("evaluation.json", json_text(json));
   for (const EvaluationPlot& plot : report.plots) folder.write(plot.name + ".svg", plot.svg);
   folder.write("report.html", evaluation_page(report));
+  for (const auto& [name, contents] : options.files) folder.write(name, contents);
   folder.commit();
 }
 
@@ -131,7 +133,7 @@ void apply_tolerances(const std::vector<std::string>& tolerances, EvaluationRepo
 int finish_evaluation(EvaluationReport& report, const EvaluationOptions& options) {
   apply_tolerances(options.tolerances, report);
   const nlohmann::ordered_json json = evaluation_json(report);
-  if (!options.output.empty()) write_report(report, json, options.output);
+  if (!options.output.empty()) write_report(report, json, options);
   if (options.json) {
     fmt::print("{}", json_text(json));
   } else {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "abbe/report/evaluation_report.h"
@@ -16,6 +17,7 @@ struct EvaluationOptions {
   std::string output;                   ///< results folder; empty: print only
   std::vector<std::string> tolerances;  ///< "A_um=10"
   bool json = false;
+  std::vector<std::pair<std::string, std::string>> files = {};  ///< more for the results folder: name, contents
 };
 
 /// `abbe evaluate KIND`: adds the subcommand with the options of every kind; its own options come behind it.

@@ -1,0 +1,54 @@
+#include "scan/scan_files.h"
+
+#include <fmt/format.h>
+
+#include "abbe/formats/input_error.h"
+
+namespace abbe {
+namespace {
+
+std::optional<FileLength> unit_of(const std::string& name) {
+  return name.empty() ? std::nullopt : file_length_named(name);
+}
+
+}  // namespace
+
+PointCloudFile ScanFiles::read_scan() const {
+  PointCloudOptions options;
+  options.unit = unit_of(scan_unit);
+  options.threads = threads;
+  PointCloudFile read = read_point_cloud(scan, options);
+  if (read.cloud.size() == 0) throw InputError({.file = scan}, "there is no point", "the points of a scan");
+  return read;
+}
+
+MeshFile ScanFiles::read_part() const {
+  MeshFileOptions options;
+  options.unit = unit_of(part_unit);
+  options.threads = threads;
+  MeshFile read = read_mesh(part, options);
+  if (read.mesh.size() == 0) throw InputError({.file = part}, "there is no triangle", "the surface of a part");
+  return read;
+}
+
+void add_scan_files(CLI::App* command, ScanFiles& files) {
+  command->add_option("scan", files.scan, "Points of the scan (.csv .xyz .ply .obj; docs/geometry-files.md)")
+      ->required();
+  command->add_option("part", files.part, "Surface of the part (.stl .ply .obj)")->required();
+  const CLI::IsMember units({"mm", "m", "inch"});
+  command->add_option("--scan-unit", files.scan_unit, "Unit of a scan file that states none (mm)")->check(units);
+  command->add_option("--part-unit", files.part_unit, "Unit of a part file that states none (mm)")->check(units);
+  command->add_option("--threads", files.threads, "Threads; the result does not depend on them (default: all)")
+      ->check(CLI::Range(0, 1024));
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const PointCloudFile& scan, const MeshFile& part) {
+  return {{"scan", fmt::format("{} points, {}, {}", scan.cloud.size(), scan.format, unit_words(scan.unit))},
+          {"part", fmt::format("{} triangles, {}, {}", part.mesh.size(), part.format, unit_words(part.unit))}};
+}
+
+std::string triple_text(const Eigen::Vector3d& vector) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", vector.x(), vector.y(), vector.z());
+}
+
+}  // namespace abbe

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "abbe/formats/mesh_file.h"
+#include "abbe/formats/point_cloud_file.h"
+#include "command.h"
+
+namespace abbe {
+
+/// The two files of a command that compares a scan with a part.
+struct ScanFiles {
+  std::string scan, part;
+  std::string scan_unit, part_unit;  ///< "mm", "m", "inch", or empty
+  int threads = 0;
+
+  PointCloudFile read_scan() const;
+  MeshFile read_part() const;
+};
+
+/// Adds the arguments `scan` and `part` and their options.
+void add_scan_files(CLI::App* command, ScanFiles& files);
+
+/// Facts about both files for a report: "scan", "part" with format, unit, counts.
+std::vector<std::pair<std::string, std::string>> facts_of(const PointCloudFile& scan, const MeshFile& part);
+
+/// Text of a vector: "(1.25, -3, 0.5)".
+std::string triple_text(const Eigen::Vector3d& vector);
+
+}  // namespace abbe
