@@ -8,9 +8,8 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/machine_file.h"
-#include "abbe/formats/mesh_file.h"
-#include "abbe/formats/point_cloud_file.h"
 #include "abbe/machine/drawing.h"
+#include "check_geometry.h"
 #include "command.h"
 
 namespace abbe {
@@ -99,28 +98,52 @@ void print_machine(const Machine& machine) {
   fmt::print("{} error motions, {} location errors\n", motions, locations);
 }
 
+void refuse_if_given(const CLI::Option* option, const char* why) {
+  if (option->count() > 0) throw InputError({.field = option->get_name()}, why, "no such option");
+}
+
 }  // namespace
 
 void add_check_command(CommandLine& line) {
   struct Options {
-    std::string machine, errors;
+    std::string file, errors;
     bool json = false;
+    GeometryCheckOptions geometry;
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = line.add(
-      "check", "Validate a machine file and show its chain, axes and error names",
+      "check", "Validate a machine file, a mesh or a point cloud and show what is in it",
       "  abbe check examples/machines/trunnion-mill.machine.toml\n"
-      "  abbe check examples/machines/aguado.machine.toml --errors examples/aguado/results/aguado/errors.toml");
-  command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
-  command->add_option("--errors", options->errors, "Errors file of this machine to validate too (*.errors.toml)");
+      "  abbe check examples/machines/aguado.machine.toml --errors examples/aguado/results/aguado/errors.toml\n"
+      "  abbe check examples/parts/wedge.stl --unit mm\n"
+      "Exit code 1: a mesh in which inside and outside are not told apart everywhere (turned or branching edges,\n"
+      "duplicate triangles, inside out). Holes are counted and are no error.");
+  command
+      ->add_option(
+          "file", options->file,
+          "Machine file (*.machine.toml), mesh (.stl .ply .obj .step .stp) or point cloud (.xyz .asc .pts .csv .ply)")
+      ->required();
+  const CLI::Option* errors_option =
+      command->add_option("--errors", options->errors, "Errors file of this machine to validate too (*.errors.toml)");
   command->add_flag("--json", options->json, "Print JSON for programs");
-  command->callback([&line, options] {
-    line.run = [options]() -> int {
-      if (has_mesh_extension(options->machine) || has_point_cloud_extension(options->machine)) {
-        throw InputError({.file = options->machine}, "this is the name of a mesh or a point cloud",
-                         "a machine file (*.machine.toml), as `abbe new` writes one");
+  const CLI::Option* unit =
+      command->add_option("--unit", options->geometry.unit,
+                          "Unit of a mesh or point cloud whose file states none: mm (assumed if not given), m or inch");
+  const CLI::Option* chord = command
+                                 ->add_option("--chord-mm", options->geometry.chord_mm,
+                                              "STEP: largest distance of the triangles from the exact faces")
+                                 ->capture_default_str();
+  command->callback([&line, options, errors_option, unit, chord] {
+    line.run = [options, errors_option, unit, chord]() -> int {
+      if (is_geometry_file(options->file)) {
+        refuse_if_given(errors_option, "a mesh or a point cloud has no error parameters");
+        options->geometry.file = options->file;
+        options->geometry.json = options->json;
+        return check_geometry(options->geometry);
       }
-      const Machine machine = read_machine(options->machine);
+      refuse_if_given(unit, "a machine file states its units");
+      refuse_if_given(chord, "a machine file has no faces");
+      const Machine machine = read_machine(options->file);
       nlohmann::ordered_json json = machine_json(machine);
       std::size_t coefficients = 0, terms = 0;
       if (!options->errors.empty()) {

@@ -49,13 +49,6 @@ TEST_F(BadInput, EmptyAndMissingFiles) {
   expect_refused({"check", "."}, ".: is not a regular file");
 }
 
-TEST_F(BadInput, AMeshIsNoMachine) {
-  folder.write("part.stl", "solid a\nfacet normal 0 0 1\n outer loop\n vertex 0 0");
-  expect_refused({"check", "part.stl"},
-                 "part.stl: this is the name of a mesh or a point cloud; expected a machine file (*.machine.toml), as "
-                 "`abbe new` writes one");
-}
-
 TEST_F(BadInput, ErrorsOfAnotherMachine) {
   folder.write("m.toml", kMachine);
   folder.write("e.toml", "chain = \"w b X Y Z t\"\n");

@@ -34,7 +34,7 @@ class ByVertex {
     give([&](std::uint32_t vertex, const Record& record) { records_[next[vertex]++] = record; });
   }
 
-  /// Calls group(first, last) for every run of records that `same` says are one.
+  /// Calls group(vertex, first, last) for every run of records that `same` says are one.
   template <typename Same, typename Group>
   void for_each_group(Same&& same, Group&& group) {
     for (std::size_t vertex = 0; vertex + 1 < begin_.size(); ++vertex) {
@@ -44,7 +44,7 @@ class ByVertex {
       for (Record* from = first; from != last;) {
         Record* to = from + 1;
         while (to != last && same(*from, *to)) ++to;
-        group(from, to);
+        group(static_cast<std::uint32_t>(vertex), from, to);
         from = to;
       }
     }
@@ -53,6 +53,39 @@ class ByVertex {
  private:
   std::vector<std::size_t> begin_;
   std::vector<Record> records_;
+};
+
+/// Vertices that something joins.
+class MergedVertices {
+ public:
+  explicit MergedVertices(std::size_t vertices) : parent_(vertices), used_(vertices, false) {
+    std::iota(parent_.begin(), parent_.end(), 0U);
+  }
+
+  void merge(std::uint32_t a, std::uint32_t b) {
+    used_[a] = used_[b] = true;
+    parent_[root(b)] = root(a);
+  }
+
+  std::size_t used() const { return static_cast<std::size_t>(std::count(used_.begin(), used_.end(), true)); }
+
+  std::size_t pieces() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < parent_.size(); ++i) count += used_[i] && parent_[i] == i ? 1 : 0;
+    return count;
+  }
+
+ private:
+  std::uint32_t root(std::uint32_t vertex) {
+    while (parent_[vertex] != vertex) {
+      parent_[vertex] = parent_[parent_[vertex]];
+      vertex = parent_[vertex];
+    }
+    return vertex;
+  }
+
+  std::vector<std::uint32_t> parent_;
+  std::vector<bool> used_;
 };
 
 void count_edges(const TriangleMesh& mesh, MeshCheck& check) {
@@ -69,13 +102,19 @@ void count_edges(const TriangleMesh& mesh, MeshCheck& check) {
       }
     }
   });
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> border;
   edges.for_each_group([](const Edge& a, const Edge& b) { return a.first == b.first; },
-                       [&](const Edge* from, const Edge* to) {
+                       [&](std::uint32_t vertex, const Edge* from, const Edge* to) {
                          ++check.edges;
-                         if (to - from == 1) ++check.border_edges;
+                         if (to - from == 1) border.emplace_back(vertex, from->first);
                          if (to - from > 2) ++check.branching_edges;
                          if (to - from == 2 && from[0].second == from[1].second) ++check.turned_edges;
                        });
+  check.border_edges = border.size();
+  if (border.empty()) return;
+  MergedVertices merged(check.vertices);
+  for (const std::pair<std::uint32_t, std::uint32_t>& edge : border) merged.merge(edge.first, edge.second);
+  check.rims = merged.pieces();
 }
 
 void count_duplicates(const TriangleMesh& mesh, MeshCheck& check) {
@@ -89,37 +128,21 @@ void count_duplicates(const TriangleMesh& mesh, MeshCheck& check) {
     }
   });
   triangles.for_each_group([](const Others& a, const Others& b) { return a == b; },
-                           [&](const Others* from, const Others* to) {
+                           [&](std::uint32_t, const Others* from, const Others* to) {
                              check.duplicate_triangles += static_cast<std::size_t>(to - from - 1);
                            });
 }
 
 /// Pieces by merging the vertices of each triangle.
 void count_parts(const TriangleMesh& mesh, MeshCheck& check) {
-  std::vector<std::uint32_t> parent(check.vertices);
-  std::iota(parent.begin(), parent.end(), 0U);
-  std::vector<bool> used(check.vertices, false);
-  const auto root = [&](std::uint32_t vertex) {
-    while (parent[vertex] != vertex) {
-      parent[vertex] = parent[parent[vertex]];
-      vertex = parent[vertex];
-    }
-    return vertex;
-  };
+  MergedVertices merged(check.vertices);
   for (Eigen::Index i = 0; i < mesh.size(); ++i) {
     const Corners c = corners_of(mesh, i);
-    const std::uint32_t first = root(c[0]);
-    for (const std::uint32_t vertex : c) used[vertex] = true;
-    parent[root(c[1])] = first;
-    parent[root(c[2])] = first;
+    merged.merge(c[0], c[1]);
+    merged.merge(c[0], c[2]);
   }
-  for (std::size_t vertex = 0; vertex < check.vertices; ++vertex) {
-    if (!used[vertex]) {
-      ++check.unused_vertices;
-    } else if (parent[vertex] == vertex) {
-      ++check.parts;
-    }
-  }
+  check.parts = merged.pieces();
+  check.unused_vertices = check.vertices - merged.used();
 }
 
 void measure(const TriangleMesh& mesh, MeshCheck& check) {

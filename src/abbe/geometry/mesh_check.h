@@ -19,9 +19,10 @@ struct MeshCheck {
   std::size_t duplicate_triangles = 0;   ///< beyond the first with the same three vertices, whatever the sense
   std::size_t edges = 0;                 ///< different ones
   std::size_t border_edges = 0;          ///< of one triangle
-  std::size_t branching_edges = 0;       ///< of more than two triangles
-  std::size_t turned_edges = 0;          ///< of two triangles that run along it the same way: one is turned over
-  std::size_t parts = 0;                 ///< pieces that share no vertex
+  std::size_t rims = 0;             ///< lines of border edges that hang together: holes, or the outline of an open part
+  std::size_t branching_edges = 0;  ///< of more than two triangles
+  std::size_t turned_edges = 0;     ///< of two triangles that run along it the same way: one is turned over
+  std::size_t parts = 0;            ///< pieces that share no vertex
 
   double area = 0;  ///< mm^2
   /// mm^3 inside, positive if the triangles count anticlockwise from outside; 0 unless encloses_volume().

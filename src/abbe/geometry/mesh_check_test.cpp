@@ -42,8 +42,22 @@ TEST(MeshCheck, AMissingTriangleOpensTheMesh) {
   const MeshCheck check = check_mesh(mesh);
   EXPECT_FALSE(check.is_closed());
   EXPECT_EQ(check.border_edges, 3U);
+  EXPECT_EQ(check.rims, 1U);
   EXPECT_TRUE(check.is_oriented());
   EXPECT_EQ(check.volume, 0);
+}
+
+TEST(MeshCheck, HolesThatDoNotTouchAreCountedOneByOne) {
+  TriangleMesh mesh = sphere_for_test(Eigen::Vector3d::Zero(), 1, 20);
+  EXPECT_EQ(check_mesh(mesh).rims, 0U);
+  // One triangle near the top, one below the middle.
+  const Eigen::Index last = mesh.size() - 1;
+  mesh.triangles.col(0) = mesh.triangles.col(last);
+  mesh.triangles.col(last / 2) = mesh.triangles.col(last - 1);
+  mesh.triangles.conservativeResize(3, last - 1);
+  const MeshCheck check = check_mesh(mesh);
+  EXPECT_EQ(check.border_edges, 6U);
+  EXPECT_EQ(check.rims, 2U);
 }
 
 TEST(MeshCheck, ATurnedTriangleIsSeenAtItsThreeEdges) {

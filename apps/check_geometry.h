@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "abbe/formats/mesh_file.h"
+
+namespace abbe {
+
+struct GeometryCheckOptions {
+  std::string file;
+  std::string unit;  ///< "mm", "m", "inch", or empty where the file states it or mm is assumed
+  double chord_mm = StepOptions{}.chord_mm;
+  bool json = false;
+};
+
+/// True for the extensions of point clouds and meshes.
+bool is_geometry_file(const std::string& file);
+
+/// Reads a point cloud or a mesh and says what it is. @returns kNegative for a mesh in which inside and outside are not
+/// told apart everywhere. @throws InputError
+int check_geometry(const GeometryCheckOptions& options);
+
+}  // namespace abbe
