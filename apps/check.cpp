@@ -76,9 +76,8 @@ nlohmann::ordered_json machine_json(const Machine& machine) {
 }
 
 void print_machine(const Machine& machine) {
-  fmt::print("{}\n", machine.name);
-  if (!machine.description.empty()) fmt::print("{}\n", machine.description);
-  fmt::print("\n{}\n", draw_machine(machine));
+  if (!machine.description.empty()) fmt::print("{}\n\n", machine.description);
+  fmt::print("{}\n", draw_machine(machine));
   fmt::print("{:<5} {:<7} {:<10} {:<24} {:<26} {}\n", "axis", "kind", "carries", "direction", "point / mm", "travel");
   for (const Axis& axis : machine.axes) {
     const auto triple = [](const Eigen::Vector3d& v) { return fmt::format("({:g}, {:g}, {:g})", v.x(), v.y(), v.z()); };

@@ -26,7 +26,8 @@ struct MapOptions {
 };
 
 /// "X_mm=0:1400:9" or "C_deg=30": from:to:count, or a fixed position.
-void apply_grid_option(const Machine& machine, const std::string& text, std::vector<AxisRange>& ranges) {
+void apply_grid_option(const Machine& machine, const std::string& text, std::vector<AxisRange>& ranges,
+                       std::vector<bool>& given) {
   const auto fail = [&](const std::string& problem) {
     throw InputError({.field = "--grid " + text}, problem,
                      "AXIS_unit=from:to:count or AXIS_unit=position, such as X_mm=0:1400:9");
@@ -35,6 +36,8 @@ void apply_grid_option(const Machine& machine, const std::string& text, std::vec
   if (equals == std::string::npos || underscore == std::string::npos) fail("not understood");
   const std::size_t axis = machine.find_axis(text.substr(0, underscore));
   if (axis == Machine::npos) fail("the machine has no axis '" + text.substr(0, underscore) + "'");
+  if (given[axis]) fail("axis " + machine.axes[axis].name + " was given before");
+  given[axis] = true;
   const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
   const std::string unit = text.substr(underscore + 1, equals - underscore - 1);
   if (unit != (rotary ? "deg" : "mm")) fail(fmt::format("unit '{}' for a {} axis", unit, rotary ? "rotary" : "linear"));
@@ -54,8 +57,44 @@ void apply_grid_option(const Machine& machine, const std::string& text, std::vec
   } else if (numbers.size() == 3 && numbers[2] >= 2 && numbers[2] <= 1e6 && numbers[2] == std::floor(numbers[2])) {
     ranges[axis] = {numbers[0] * scale, numbers[1] * scale, static_cast<std::size_t>(numbers[2]), 0};
   } else {
-    fail("one or three numbers are needed, the count a whole number from 2");
+    fail("one or three numbers are needed, the count a whole number from 2 to 1,000,000");
   }
+}
+
+void print_json(const Machine& machine, const ErrorMap& before, const ErrorMap* after) {
+  nlohmann::ordered_json json;
+  json["machine"] = machine.name;
+  json["poses"] = before.statistics.count;
+  json["outside_range"] = before.statistics.excluded;
+  if (before.statistics.count > 0) {
+    json["position_before_um"] = statistics_um(before.statistics);
+    json["orientation_before_urad"] = orientation_urad(before);
+    if (after != nullptr) {
+      json["position_after_um"] = statistics_um(after->statistics);
+      json["orientation_after_urad"] = orientation_urad(*after);
+    }
+    if (!before.norm_uncertainty.empty()) {
+      json["standard_uncertainty_um"] = statistics_um(sample_statistics(before.norm_uncertainty, before.covered));
+    }
+  }
+  fmt::print("{}\n", json_text(json));
+}
+
+void print_text(const Machine& machine, const ErrorMap& before, const ErrorMap* after) {
+  fmt::print("{} poses of {}\n", before.statistics.count, machine.name);
+  if (before.statistics.count == 0) return;
+  const auto print = [](const char* name, const SampleStatistics& s, double unit, const char* unit_name) {
+    fmt::print("{:<25} mean {:.3f}  rms {:.3f}  95 % {:.3f}  99 % {:.3f}  max {:.3f} {}\n", name, unit * s.mean,
+               unit * s.rms, unit * s.p95, unit * s.p99, unit * s.maximum, unit_name);
+  };
+  print(after != nullptr ? "volumetric error, before" : "volumetric error", before.statistics, 1e3, "um");
+  if (after != nullptr) print("volumetric error, after", after->statistics, 1e3, "um");
+  if (!before.norm_uncertainty.empty()) {
+    print("standard uncertainty", sample_statistics(before.norm_uncertainty, before.covered), 1e3, "um");
+  }
+  print(after != nullptr ? "orientation error, before" : "orientation error", orientation_statistics(before), 1e6,
+        "urad");
+  if (after != nullptr) print("orientation error, after", orientation_statistics(*after), 1e6, "urad");
 }
 
 int run_map(const MapOptions& options) {
@@ -70,10 +109,11 @@ int run_map(const MapOptions& options) {
     poses = read_poses(options.poses, machine);
   } else {
     std::vector<AxisRange> ranges;
+    std::vector<bool> given(machine.axes.size(), false);
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
       ranges.push_back(known_range(machine, errors.errors, i, machine.axes.size() > 3 ? 5 : 9));
     }
-    for (const std::string& text : options.grid) apply_grid_option(machine, text, ranges);
+    for (const std::string& text : options.grid) apply_grid_option(machine, text, ranges, given);
     PoseGrid positions;
     for (const AxisRange& range : ranges) {
       grid.push_back(range.is_fixed() ? 1 : range.count);
@@ -100,46 +140,29 @@ int run_map(const MapOptions& options) {
     for (std::size_t p = 0; p < errors.errors.parameter_count(); ++p) covariance.parameters.push_back(p);
     map_options.covariance = &covariance;
   }
-  const ErrorMap before = error_map(machine, errors.errors, nullptr, pose_source(poses), map_options);
+  ErrorMap before = error_map(machine, errors.errors, nullptr, pose_source(poses), map_options);
   std::optional<ErrorMap> after;
   if (reference) after = error_map(machine, errors.errors, &reference->errors, pose_source(poses), map_options);
+  std::vector<ErrorMap*> maps = {&before};
+  if (after) maps.push_back(&*after);
+  keep_common_poses(maps);
 
   const MapData data = map_data(machine, poses, grid, before, after ? &*after : nullptr, &before);
+  const std::string vtk = map_is_structured(data) ? ".vts" : ".vtu";
+  const auto extension_of = [](const std::string& name) { return std::filesystem::path(name).extension().string(); };
   for (const std::string& output : options.outputs) {
-    const std::string extension = std::filesystem::path(output).extension().string();
-    const std::string vtk = map_is_structured(data) ? ".vts" : ".vtu";
-    if (extension == ".csv") {
-      write_file_atomically(output, map_csv(data));
-    } else if (extension == vtk) {
-      write_file_atomically(output, map_vtk(data));
-    } else {
-      throw InputError({.file = output}, "unknown kind of map file",
-                       "a name ending in .csv, or in " + vtk + " for these poses");
-    }
+    if (extension_of(output) == ".csv" || extension_of(output) == vtk) continue;
+    throw InputError({.file = output}, "unknown kind of map file",
+                     "a name ending in .csv, or in " + vtk + " for these poses");
+  }
+  for (const std::string& output : options.outputs) {
+    write_file_atomically(output, extension_of(output) == ".csv" ? map_csv(data) : map_vtk(data));
   }
   const std::size_t outside = before.statistics.excluded;
   if (options.json) {
-    nlohmann::ordered_json json;
-    json["machine"] = machine.name;
-    json["poses"] = poses.count();
-    json["outside_range"] = outside;
-    json["position_before_um"] = statistics_um(before.statistics);
-    if (after) json["position_after_um"] = statistics_um(after->statistics);
-    if (!before.norm_uncertainty.empty()) {
-      json["standard_uncertainty_um"] = statistics_um(sample_statistics(before.norm_uncertainty, before.covered));
-    }
-    fmt::print("{}\n", json_text(json));
+    print_json(machine, before, after ? &*after : nullptr);
   } else {
-    fmt::print("{} poses of {}\n", poses.count(), machine.name);
-    const auto print = [](const char* name, const SampleStatistics& s) {
-      fmt::print("{:<22} mean {:.3f}  rms {:.3f}  95 % {:.3f}  99 % {:.3f}  max {:.3f} um\n", name, 1e3 * s.mean,
-                 1e3 * s.rms, 1e3 * s.p95, 1e3 * s.p99, 1e3 * s.maximum);
-    };
-    print(after ? "before" : "volumetric error", before.statistics);
-    if (after) print("after", after->statistics);
-    if (!before.norm_uncertainty.empty()) {
-      print("standard uncertainty", sample_statistics(before.norm_uncertainty, before.covered));
-    }
+    print_text(machine, before, after ? &*after : nullptr);
     for (const std::string& output : options.outputs) fmt::print("{} written\n", output);
   }
   if (outside > 0) {
@@ -168,7 +191,8 @@ void add_map_command(CommandLine& line) {
   command->add_option("--minus", options->reference,
                       "Errors corrected for (*.errors.toml): adds the error after correction");
   command->add_option("--grid", options->grid, "AXIS_unit=from:to:count or AXIS_unit=position; repeat per axis");
-  command->add_option("--poses", options->poses, "CSV with one column per axis (X_mm, C_deg, ...) instead of a grid");
+  command->add_option("--poses", options->poses, "CSV with one column per axis (X_mm, C_deg, ...) instead of a grid")
+      ->excludes("--grid");
   command->add_flag("--fit-datum", options->fit_datum,
                     "Remove the best-fit rigid motion (choice of the workpiece datum)");
   command->add_option("-o,--output", options->outputs, "File to write: .csv, .vts or .vtu (ParaView); repeatable");

@@ -25,22 +25,20 @@ bool narrow_to_known(const ErrorSet& errors, std::size_t axis, AxisRange& range)
   return range.from != from || range.to != to;
 }
 
-/// A pose that one of the maps cannot answer is a result in none of them, so that all statistics are over the same.
-void keep_common_poses(StudyMap& map) {
-  std::vector<std::uint8_t> covered = map.before.covered;
-  for (std::size_t k = 0; k < covered.size(); ++k) {
-    if (map.predicted.covered[k] == 0 || (map.after && map.after->covered[k] == 0)) covered[k] = 0;
-  }
-  const auto keep = [&](ErrorMap& part) {
-    part.covered = covered;
-    part.statistics = sample_statistics(part.norm, covered);
-  };
-  keep(map.before);
-  keep(map.predicted);
-  if (map.after) keep(*map.after);
-}
-
 }  // namespace
+
+void keep_common_poses(std::span<ErrorMap* const> maps) {
+  std::vector<std::uint8_t> covered = maps.front()->covered;
+  for (const ErrorMap* map : maps) {
+    for (std::size_t k = 0; k < covered.size(); ++k) {
+      if (map->covered[k] == 0) covered[k] = 0;
+    }
+  }
+  for (ErrorMap* map : maps) {
+    map->covered = covered;
+    map->statistics = sample_statistics(map->norm, covered);
+  }
+}
 
 IdentifyOptions identify_options(const Study& study) {
   const IdentificationPlan& plan = *study.identification;
@@ -171,7 +169,9 @@ StudyMap map_study(const Study& study, const StudyResult& result, const Progress
   } else {
     map.before = map.predicted;
   }
-  keep_common_poses(map);
+  std::vector<ErrorMap*> maps = {&map.before, &map.predicted};
+  if (map.after) maps.push_back(&*map.after);
+  keep_common_poses(maps);
   return map;
 }
 

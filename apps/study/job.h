@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,11 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
 
 /// Map of the study's plan, or of 7 positions per axis over the known range.
 StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress = {});
+
+/// A pose that one of the maps cannot answer is a result in none of them, so that all statistics are over the same
+/// poses.
+/// @param maps  of the same poses, at least one
+void keep_common_poses(std::span<ErrorMap* const> maps);
 
 /// Adds the length of measured - modelled of a reading (mm), if any of its components is a length.
 void append_length(const Observations& observations, std::size_t reading, std::vector<double>& lengths);

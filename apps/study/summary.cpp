@@ -25,31 +25,13 @@ SampleStatistics fit_residuals(const StudyResult& result) {
   return sample_statistics(lengths);
 }
 
-SampleStatistics rotation_lengths(const ErrorMap& map) {
-  std::vector<double> lengths(map.rotation[0].size());
-  for (std::size_t k = 0; k < lengths.size(); ++k) {
-    lengths[k] = std::hypot(map.rotation[0][k], map.rotation[1][k], map.rotation[2][k]);
-  }
-  return sample_statistics(lengths, map.covered);
-}
-
-/// A difference of two orientations by ErrorMap is in rad; the report wants urad.
-nlohmann::ordered_json statistics_urad(const SampleStatistics& s) {
-  const double unit = 1e6;
-  return {{"mean", s.mean * unit},
-          {"rms", s.rms * unit},
-          {"median", s.median * unit},
-          {"p95", s.p95 * unit},
-          {"max", s.maximum * unit}};
-}
-
 /// Statistics over the poses of a map that have a result.
 void add_map_statistics(const StudyMap& map, nlohmann::ordered_json& entry) {
   entry["position_before_um"] = statistics_um(map.before.statistics);
-  entry["orientation_before_urad"] = statistics_urad(rotation_lengths(map.before));
+  entry["orientation_before_urad"] = orientation_urad(map.before);
   if (map.after) {
     entry["position_after_um"] = statistics_um(map.after->statistics);
-    entry["orientation_after_urad"] = statistics_urad(rotation_lengths(*map.after));
+    entry["orientation_after_urad"] = orientation_urad(*map.after);
   }
   if (!map.predicted.norm_uncertainty.empty()) {
     std::vector<double> expanded = map.predicted.norm_uncertainty;
@@ -60,11 +42,26 @@ void add_map_statistics(const StudyMap& map, nlohmann::ordered_json& entry) {
 
 }  // namespace
 
-nlohmann::ordered_json statistics_um(const SampleStatistics& s) {
-  const double unit = 1e3;
+SampleStatistics orientation_statistics(const ErrorMap& map) {
+  std::vector<double> lengths(map.rotation[0].size());
+  for (std::size_t k = 0; k < lengths.size(); ++k) {
+    lengths[k] = std::hypot(map.rotation[0][k], map.rotation[1][k], map.rotation[2][k]);
+  }
+  return sample_statistics(lengths, map.covered);
+}
+
+namespace {
+
+nlohmann::ordered_json scaled(const SampleStatistics& s, double unit) {
   return {{"mean", s.mean * unit}, {"rms", s.rms * unit}, {"median", s.median * unit}, {"p90", s.p90 * unit},
           {"p95", s.p95 * unit},   {"p99", s.p99 * unit}, {"max", s.maximum * unit}};
 }
+
+}  // namespace
+
+nlohmann::ordered_json statistics_um(const SampleStatistics& s) { return scaled(s, 1e3); }
+
+nlohmann::ordered_json orientation_urad(const ErrorMap& map) { return scaled(orientation_statistics(map), 1e6); }
 
 std::string study_verdict(const Study& study, const StudyResult& result) {
   if (!study.identification) return "";

@@ -12,6 +12,12 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
 /// Statistics of lengths in mm as the report writes them, in um.
 nlohmann::ordered_json statistics_um(const SampleStatistics& statistics);
 
+/// Angle between the actual and the nominal orientation over the covered poses of a map, rad.
+SampleStatistics orientation_statistics(const ErrorMap& map);
+
+/// The same as the report writes it, in urad.
+nlohmann::ordered_json orientation_urad(const ErrorMap& map);
+
 /// The verdict in one sentence.
 std::string study_verdict(const Study& study, const StudyResult& result);
 

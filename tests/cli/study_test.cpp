@@ -12,6 +12,7 @@ namespace abbe {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 const char* const kMachine = R"(name = "table and column"
 chain = "w C' X' b Z t"
@@ -337,6 +338,57 @@ TEST_F(Studies, MapOfAnErrorsFileSaysWhatLiesOutsideItsRange) {
   const CommandResult wrong = abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_deg=0:2000:5"});
   EXPECT_EQ(wrong.exit_code, ExitCode::bad_input);
   EXPECT_THAT(wrong.err, HasSubstr("unit 'deg' for a linear axis"));
+}
+
+TEST_F(Studies, AMapWithoutKnownPosesStatesNoFigures) {
+  write_study();
+  ASSERT_EQ(abbe({"run", "s.study.toml"}).exit_code, ExitCode::done);
+  const std::string machine = std::regex_replace(folder.read("m.machine.toml"), std::regex("1400"), "5000");
+  folder.write("m.machine.toml", machine);
+  const CommandResult text = abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=3000:4000:5"});
+  EXPECT_EQ(text.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(text.out, HasSubstr("0 poses"));
+  EXPECT_THAT(text.out, Not(HasSubstr("mean")));
+  const CommandResult program = abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=3000", "--json"});
+  const nlohmann::json json = nlohmann::json::parse(program.out);
+  EXPECT_EQ(json["poses"], 0);
+  EXPECT_GT(json["outside_range"], 0);
+  EXPECT_FALSE(json.contains("position_before_um"));
+}
+
+TEST_F(Studies, AMapAfterCorrectionKeepsToWhereTheCorrectionIsKnown) {
+  write_study();
+  ASSERT_EQ(abbe({"run", "s.study.toml"}).exit_code, ExitCode::done);
+  const std::vector<std::string> arguments = {"map",     "m.machine.toml",  "out/truth.errors.toml",
+                                              "--minus", "out/errors.toml", "--fit-datum"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), arguments.begin(), arguments.end());
+    return abbe(more);
+  };
+  // The truth is known over the whole travel, the correction only where it was measured: 0 and 1400 mm are outside.
+  const CommandResult text = with({"--grid", "X_mm=0:1400:5", "--grid", "Z_mm=100:500:3", "-o", "map.csv"});
+  EXPECT_EQ(text.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(text.out, HasSubstr("orientation error, after"));
+  const nlohmann::json json =
+      nlohmann::json::parse(with({"--grid", "X_mm=0:1400:5", "--grid", "Z_mm=100:500:3", "--json"}).out);
+  EXPECT_EQ(2 * json["poses"].get<int>(), 3 * json["outside_range"].get<int>());
+  EXPECT_LT(json["position_after_um"]["mean"], 0.1 * json["position_before_um"]["mean"].get<double>());
+  EXPECT_LT(json["orientation_after_urad"]["p99"], json["orientation_before_urad"]["p99"]);
+  const std::string csv = folder.read("map.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + json["poses"].get<int>());
+}
+
+TEST_F(Studies, AnAxisOfAMapIsGivenOnce) {
+  write_study();
+  ASSERT_EQ(abbe({"run", "s.study.toml"}).exit_code, ExitCode::done);
+  const CommandResult twice =
+      abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=100:200:3", "--grid", "X_mm=300"});
+  EXPECT_EQ(twice.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(twice.err, HasSubstr("axis X was given before"));
+  folder.write("poses.csv", "X_mm,Z_mm,C_deg\n100,100,10\n");
+  const CommandResult both =
+      abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=300", "--poses", "poses.csv"});
+  EXPECT_EQ(both.exit_code, ExitCode::bad_input);
 }
 
 TEST_F(Studies, NewMachinesAreValidAndExistingFilesAreKept) {

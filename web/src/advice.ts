@@ -2,6 +2,7 @@
 
 import {Advice} from './data';
 import {html, section} from './dom';
+import {withUnits} from './format';
 
 /// What lacks a measurement first; conventions and matters of the set-up need none.
 const kOrder = ['not measured', 'weak', 'convention', 'datum', 'set-up'];
@@ -13,7 +14,7 @@ export function adviceSection(advice: Advice[]): HTMLElement {
     'tried with simulated readings.');
   const sorted = [...advice].sort((a, b) => kOrder.indexOf(a.kind ?? '') - kOrder.indexOf(b.kind ?? ''));
   part.append(html('ol', {class: 'advice-list'}, ...sorted.map((entry) => html('li', {},
-    html('p', {}, entry.text),
+    html('p', {}, withUnits(entry.text)),
     entry.words && html('p', {}, entry.words),
     entry.remedy && html('p', {class: 'remedy'}, html('b', {}, needsNone(entry) ? 'Measurement: ' : 'To see it: '),
       entry.remedy),

@@ -30,6 +30,11 @@ export function grouped(text: string): string {
   return fraction === undefined ? grouped : `${grouped}.${fraction}`;
 }
 
+/// Units of a sentence as the page writes them: 18.3 um becomes 18.3 µm.
+export function withUnits(text: string): string {
+  return text.replace(/(\d) u(m|rad)\b/g, '$1\u202fµ$2');
+}
+
 export function superscript(exponent: number): string {
   const digits = '⁰¹²³⁴⁵⁶⁷⁸⁹';
   return (exponent < 0 ? '⁻' : '') + [...String(Math.abs(exponent))].map((d) => digits[Number(d)]).join('');

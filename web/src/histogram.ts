@@ -27,7 +27,12 @@ function fromValues(values: number[], edges: number[]): Distribution {
     counts[Math.min(counts.length - 1, Math.max(0, bin))] += 1;
   }
   const sorted = [...values].sort((a, b) => a - b);
-  const at = (q: number) => sorted[Math.min(sorted.length - 1, Math.floor(q * sorted.length))];
+  // As the tables of the summary: linear between order statistics.
+  const at = (q: number) => {
+    const place = q * (sorted.length - 1);
+    const below = Math.floor(place);
+    return sorted[below] + (place - below) * (sorted[Math.min(below + 1, sorted.length - 1)] - sorted[below]);
+  };
   return {edges, share: counts.map((c) => (100 * c) / values.length), median: at(0.5), p95: at(0.95), total: values.length};
 }
 
