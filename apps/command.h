@@ -33,6 +33,7 @@ void add_identify_command(CommandLine& line);
 void add_map_command(CommandLine& line);
 void add_path_command(CommandLine& line);
 void add_run_command(CommandLine& line);
+void add_fit_command(CommandLine& line);
 void add_evaluate_command(CommandLine& line);
 void add_register_command(CommandLine& line);
 void add_deviate_command(CommandLine& line);

@@ -108,8 +108,9 @@ bool EvaluationReport::exceeds_tolerance() const {
 }
 
 std::string figure_text(const EvaluationFigure& figure, double value) {
-  std::string text = fmt::format("{:.2f}", in_unit(figure, value));
-  return text == "-0.00" ? "0.00" : text;
+  std::string text = fmt::format("{:.{}f}", in_unit(figure, value), figure.decimals);
+  const bool is_zero = text.find_first_of("123456789") == std::string::npos;
+  return is_zero && text.starts_with('-') ? text.substr(1) : text;
 }
 
 std::string unit_symbol(const std::string& unit) {

@@ -16,6 +16,7 @@ struct EvaluationFigure {
   std::string name;    ///< "bidirectional accuracy of positioning"
   Quantity quantity = Quantity::length;
   std::string unit = "um";            ///< in which it is shown; a unit of the quantity
+  int decimals = 2;                   ///< of the text, in that unit
   std::optional<double> value;        ///< mm, rad, ...
   std::string missing;                ///< without a value: why, in words
   std::optional<double> uncertainty;  ///< expanded, k = 2; like the value
@@ -27,7 +28,7 @@ struct EvaluationFigure {
   bool is_undecided() const;
 };
 
-/// Text of a value in the unit in which the figure is shown, with two decimals: "12.34".
+/// Text of a value in the unit in which the figure is shown, with its decimals: "12.34".
 std::string figure_text(const EvaluationFigure& figure, double value);
 /// The unit as written for people: "µm", "arcsec".
 std::string unit_symbol(const std::string& unit);
