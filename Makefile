@@ -77,7 +77,8 @@ format:
 bench:
 	@.ci/set-up bench
 	$(call build_preset,bench)
-	@for program in forward_pose five_instruments identification identification_memory planning polygon_trace read_csv; do \
+	@for program in closest_point forward_pose five_instruments identification identification_memory planning polygon_trace read_csv \
+	  registration; do \
 	  echo "== $$program"; build/bench/bin/$$program; done
 
 fuzz:

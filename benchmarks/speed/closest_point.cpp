@@ -1,0 +1,121 @@
+// Signed distances of points to a mesh: this project, Open3D, PCL, in one run.
+//
+//   closest_point [points] [triangles]     exit code 1 if one of the targets is missed
+#include "abbe/geometry/closest_point.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "abbe/geometry/parallel_blocks.h"
+#include "scan_yardsticks.h"
+
+namespace abbe::benchmarks {
+namespace {
+
+constexpr double kTarget = 3;
+
+/// Distance of a point from a triangle, by its regions. Source: Ericson, Real-Time Collision Detection (2005) 5.1.5.
+long double distance_from(const Eigen::Vector3d& point, const TriangleMesh& mesh, Eigen::Index triangle) {
+  using Vector = Eigen::Matrix<long double, 3, 1>;
+  const Vector p = point.cast<long double>(), a = mesh.corner(triangle, 0).cast<long double>(),
+               b = mesh.corner(triangle, 1).cast<long double>(), c = mesh.corner(triangle, 2).cast<long double>();
+  const Vector normal = (b - a).cross(c - a).normalized();
+  bool inside = true;
+  long double edge = 1e300L;
+  const Vector corners[3] = {a, b, c};
+  for (int k = 0; k < 3; ++k) {
+    const Vector from = corners[k], along = corners[(k + 1) % 3] - from;
+    inside = inside && normal.dot(along.cross(p - from)) >= 0;
+    const long double share = std::clamp((p - from).dot(along) / along.squaredNorm(), 0.0L, 1.0L);
+    edge = std::min(edge, (p - from - share * along).norm());
+  }
+  return inside ? std::abs(normal.dot(p - a)) : edge;
+}
+
+/// Largest error of the amounts on some of the points, against all triangles one by one.
+double largest_error(const TriangleMesh& mesh, const Eigen::Matrix3Xd& points, const std::vector<double>& distances) {
+  constexpr Eigen::Index kChecked = 40;
+  std::vector<double> errors(static_cast<std::size_t>(kChecked));
+  for_each_block(errors.size(), 0, [&](std::size_t k) {
+    const Eigen::Index i = static_cast<Eigen::Index>(k) * (points.cols() / kChecked);
+    const double found = std::abs(distances[static_cast<std::size_t>(i)]);
+    long double least = 1e300L;
+    for (Eigen::Index t = 0; t < mesh.size(); ++t) {
+      const Eigen::Vector3d corner = mesh.corner(t, 0);
+      const double longest = std::max((mesh.corner(t, 1) - corner).norm(), (mesh.corner(t, 2) - corner).norm());
+      // Farther away than what was found.
+      if ((corner - points.col(i)).norm() - longest > found + 0.01) continue;
+      least = std::min(least, distance_from(points.col(i), mesh, t));
+    }
+    errors[k] = std::abs(static_cast<double>(found - least));
+  });
+  return *std::max_element(errors.begin(), errors.end());
+}
+
+Outcome own_distances(const TriangleMesh& mesh, const Eigen::Matrix3Xd& points, std::vector<double>* distances) {
+  Outcome outcome;
+  double start = now_s();
+  const ClosestPointFinder finder(mesh);
+  outcome.prepare_s = now_s() - start;
+  start = now_s();
+  const Eigen::VectorXd found = finder.signed_distances(points);
+  outcome.run_s = now_s() - start;
+  distances->assign(found.data(), found.data() + found.size());
+  return outcome;
+}
+
+template <class Distances>
+Outcome best_of(int times, const TriangleMesh& mesh, const Eigen::Matrix3Xd& points, const char* name,
+                const Distances& compute) {
+  std::vector<double> distances;
+  Outcome best = compute(mesh, points, &distances);
+  for (int k = 1; k < times; ++k) {
+    const Outcome again = compute(mesh, points, &distances);
+    best.prepare_s = std::min(best.prepare_s, again.prepare_s);
+    best.run_s = std::min(best.run_s, again.run_s);
+  }
+  best.error_mm = largest_error(mesh, points, distances);
+  std::printf("%-22s build %7.3f s   points %7.3f s = %7.3f us each   largest error %8.1e mm\n", name, best.prepare_s,
+              best.run_s, 1e6 * best.run_s / static_cast<double>(points.cols()), best.error_mm);
+  std::fflush(stdout);
+  return best;
+}
+
+int run(int argc, char** argv) {
+  const Eigen::Index count = argc > 1 ? std::atol(argv[1]) : 1000000;
+  const std::size_t triangles = argc > 2 ? static_cast<std::size_t>(std::atol(argv[2])) : 1000000;
+  const std::size_t around = static_cast<std::size_t>(std::sqrt(static_cast<double>(triangles) / 4));
+  const ScanCase data(around, triangles / (2 * around), count, 0.02, 0);
+  std::printf("%ld points, %ld triangles, %d threads\n", static_cast<long>(count), static_cast<long>(data.mesh.size()),
+              default_thread_count());
+  Eigen::Matrix3Xd random = data.scan;
+  for (Eigen::Index i = 0; i < count; ++i) random.col(i) = data.scan.col((i * 7919 + 13) % count);
+  bool met = true;
+  for (const bool in_order : {true, false}) {
+    const Eigen::Matrix3Xd& points = in_order ? data.scan : random;
+    std::printf("points in %s order\n", in_order ? "scan" : "random");
+    const Outcome own = best_of(3, data.mesh, points, "this project", own_distances);
+    const auto compare = [&](const char* name, const Outcome& other) {
+      const double ratio = other.run_s / own.run_s, whole = other.total_s() / own.total_s();
+      const bool good = ratio >= kTarget && own.error_mm <= other.error_mm;
+      std::printf("  against %s: %.2f times, with building %.2f times   target %.0f   %s\n", name, ratio, whole,
+                  kTarget, good ? "met" : "MISSED");
+      met = met && good;
+    };
+#ifdef BENCHMARK_OPEN3D
+    compare("Open3D", best_of(2, data.mesh, points, "Open3D", open3d_distances));
+#endif
+#ifdef BENCHMARK_PCL
+    compare("PCL", best_of(2, data.mesh, points, "PCL, nearest vertex", pcl_distances));
+#endif
+  }
+  return met ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace abbe::benchmarks
+
+int main(int argc, char** argv) { return abbe::benchmarks::run(argc, argv); }
