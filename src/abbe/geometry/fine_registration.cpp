@@ -210,6 +210,17 @@ class Fit {
   double extent_ = 0;
 };
 
+/// Robust standard deviation of the distances at the start; some of very many points tell it.
+double start_scale(const Matrix3Xd& points, const ClosestPointFinder& surface, const SmoothSurface& smooth,
+                   const RigidTransform& pose, const FineRegistrationOptions& options, double extent) {
+  const Eigen::Index stride = std::max<Eigen::Index>(1, points.cols() / kPointsForRank);
+  Matrix3Xd some(3, (points.cols() + stride - 1) / stride);
+  for (Eigen::Index i = 0; i < some.cols(); ++i) some.col(i) = points.col(i * stride);
+  Fit fit(some, surface, smooth, options);
+  fit.pass(pose, extent);
+  return fit.scale();
+}
+
 /// Names the unseen motions: first pure translations, then rotations about lines.
 std::vector<UndeterminedMotion> named(const MatrixXd& unseen, double extent, const Vector3d& reference) {
   std::vector<UndeterminedMotion> motions;
@@ -266,14 +277,14 @@ FineRegistration register_finely(const Matrix3Xd& points, const ClosestPointFind
     return result;
   }
   RigidTransform& pose = result.mesh_from_scan;
-  fit.pass(pose, extent);
   // A scale below what ends the iteration would only follow roundings.
-  double scale = std::max(fit.scale(), movement);
+  double scale = std::max(start_scale(points, surface, smooth, pose, options, extent), movement);
   if (options.largest_scale_mm > 0) scale = std::min(scale, options.largest_scale_mm);
   Fit::Seen seen = fit.seen_motions(pose, scale);
   bool converged = false;
+  Sums sums;
   for (; result.iterations < options.iterations && !converged; ++result.iterations) {
-    const Sums sums = fit.pass(pose, scale);
+    sums = fit.pass(pose, scale);
     if (sums.used < 6 || seen.seen.cols() == 0) break;
     const MatrixXd hessian = seen.seen.transpose() * sums.hessian * seen.seen;
     const Eigen::LDLT<MatrixXd> solver(hessian);
@@ -291,7 +302,8 @@ FineRegistration register_finely(const Matrix3Xd& points, const ClosestPointFind
   }
   // Products of many rotations drift from orthogonality.
   pose.rotation = Eigen::Quaterniond(pose.rotation).normalized().toRotationMatrix();
-  const Sums sums = fit.pass(pose, scale);
+  // After a last step that moved nothing the sums are those of the pose.
+  if (!converged) sums = fit.pass(pose, scale);
   seen = fit.seen_motions(pose, scale);
   result.scale_mm = fit.scale();
   result.used = sums.used;

@@ -14,11 +14,12 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 constexpr Eigen::Index kPartSamples = 600;
-constexpr Eigen::Index kRoughPoints = 400, kComparedPoints = 2500, kFirstFinePoints = 20000;
+constexpr Eigen::Index kRoughPoints = 400, kComparedPoints = 2500, kFirstFinePoints = 50000;
 constexpr std::size_t kCompared = 12;
 constexpr double kWelsch = 2.985;
 constexpr double kSamePose = 0.02;  ///< of the diameter: nearer poses count as one
 constexpr double kWorse = 4;        ///< times the best deviation: such poses are no alternatives
+constexpr double kSettled = 0.02;   ///< of the uncertainty of a mean over all points
 constexpr double kHopeless = 0.65;  ///< of the best score: rougher starts are not refined
 
 /// Every n-th point, so that about `count` are left.
@@ -185,6 +186,8 @@ Registration RegistrationTarget::register_scan(const PointCloud& scan,
   RigidTransform pose = poses.front().fine.mesh_from_scan;
   FineRegistrationOptions options = in.fine_options();
   options.largest_scale_mm = 3 * scale;
+  // Far below the uncertainty that so many points leave.
+  options.movement_mm = std::max(3e-10 * in.diameter, kSettled * scale / std::sqrt(static_cast<double>(scan.size())));
   if (scan.size() > 2 * kFirstFinePoints) {
     pose = register_finely(some_of(scan.points, kFirstFinePoints), in.surface, in.smooth, pose, options).mesh_from_scan;
   }
