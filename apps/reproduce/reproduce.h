@@ -15,6 +15,8 @@ struct ReproduceOptions {
 int reproduce_wang(const ReproduceOptions& options);
 /// Aguado et al. (2014): laser tracker on an XCFZ machine. @returns an ExitCode
 int reproduce_aguado(const ReproduceOptions& options);
+/// Yin et al. (2021): laser engraver, linkage, workpiece, contour error. @returns an ExitCode
+int reproduce_yin(const ReproduceOptions& options);
 /// Ma et al. (2021): polygon prism on a rotary table. @returns an ExitCode
 int reproduce_ma(const ReproduceOptions& options);
 
