@@ -26,6 +26,7 @@ int run_command(int argc, char** argv) {
   add_register_command(line);
   add_deviate_command(line);
   add_reproduce_command(line);
+  add_scan_command(line);
   if (argc > 1 && argv[1][0] != '-') {
     const std::string name = argv[1];
     const std::vector<CLI::App*> known =

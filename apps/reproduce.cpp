@@ -22,12 +22,17 @@ void add_reproduce_command(CommandLine& line) {
                "  abbe reproduce aguado -o results/aguado_paper\n\n"
                "Papers:\n"
                "  aguado  laser tracker on a machine w C' X' b Z t, strategies of identification (2014)\n"
+               "  liu     cradle-type five-axis scanner: points, error terms, virtual measurement (2021)\n"
                "  ma      six motions of a rotary table by a polygon prism (2021)\n"
                "  wang    36 measured errors of a grinder w C b X Z A Y B t, integrated error (2020)\n"
                "  yin     laser engraver measures its linkage and the place of its workpiece (2021)");
   command->add_option("paper", options->paper, "aguado, ma, wang or yin")
       ->required()
       ->check(CLI::IsMember({"aguado", "ma", "wang", "yin"}));
+               "  wang    36 measured errors of a grinder w C b X Z A Y B t, integrated error (2020)");
+  command->add_option("paper", options->paper, "aguado, liu, ma or wang")
+      ->required()
+      ->check(CLI::IsMember({"aguado", "liu", "ma", "wang"}));
   command->add_option("-o,--output", options->output, "Results folder to write (maps, report); default: print only");
   command->add_option("--grids", options->grids,
                       "wang: decouple the indications of this folder (X.csv, A.csv, ...) instead");
@@ -42,6 +47,7 @@ void add_reproduce_command(CommandLine& line) {
                          "abbe reproduce wang");
       }
       if (options->paper == "yin") return reproduce_yin(options->reproduce);
+      if (options->paper == "liu") return reproduce_liu(options->reproduce);
       if (options->paper == "ma") return reproduce_ma(options->reproduce);
       return options->paper == "wang" ? reproduce_wang(options->reproduce) : reproduce_aguado(options->reproduce);
     };

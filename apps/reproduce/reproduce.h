@@ -17,6 +17,8 @@ int reproduce_wang(const ReproduceOptions& options);
 int reproduce_aguado(const ReproduceOptions& options);
 /// Yin et al. (2021): laser engraver, linkage, workpiece, contour error. @returns an ExitCode
 int reproduce_yin(const ReproduceOptions& options);
+/// Liu et al. (2021): cradle-type five-axis scanner, virtual measurement of its parts. @returns an ExitCode
+int reproduce_liu(const ReproduceOptions& options);
 /// Ma et al. (2021): polygon prism on a rotary table. @returns an ExitCode
 int reproduce_ma(const ReproduceOptions& options);
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "abbe/formats/csv_header.h"
+#include "abbe/formats/csv_rows.h"
 #include "abbe/formats/decimal_text.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/text_blocks.h"
@@ -197,43 +197,16 @@ void join_names(const std::vector<Block>& blocks, std::size_t wanted, CsvValues&
   }
 }
 
-}  // namespace
-
-CsvTable read_csv(std::string_view text, const std::string& file, const std::vector<CsvColumn>& wanted,
-                  const ColumnMapping& mapping, int threads) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  std::size_t at = 0, header_at = 0;
-  std::string_view header;
-  while (at < text.size() && csv_is_passed_over(header)) {
-    header_at = at;
-    header = csv_next_line(text, at);
+void make_room(const CsvColumn& wanted, std::size_t rows, CsvValues& values) {
+  if (wanted.is_text) {
+    values.words.resize(rows);
+  } else {
+    values.numbers.resize(rows);
   }
-  if (csv_is_passed_over(header))
-    throw InputError({file, 0, 0, ""}, "the file is empty", "a header line with column names");
-  const std::vector<CsvFileColumn> columns =
-      csv_match_header(header, file, text_line(text, header_at), wanted, mapping);
+}
 
-  std::vector<Block> blocks = split_into_blocks<Block>(text, at);
-  for_each_block(blocks.size(), threads,
-                 [&](std::size_t i) { blocks[i].rows = count_rows(text, blocks[i].begin, blocks[i].end); });
-  CsvTable table;
-  for (Block& block : blocks) {
-    block.first_row = table.rows;
-    table.rows += block.rows;
-  }
-  if (table.rows == 0) throw InputError({file, 0, 0, ""}, "there are no rows below the header", "at least one row");
-
-  table.columns.resize(wanted.size());
-  // The first touch of so much memory takes its time: on all threads too.
-  for_each_block(columns.size(), threads, [&](std::size_t i) {
-    if (columns[i].wanted == kUnreadColumn) return;
-    CsvValues& values = table.columns[columns[i].wanted];
-    if (wanted[columns[i].wanted].is_text) {
-      values.words.resize(table.rows);
-    } else {
-      values.numbers.resize(table.rows);
-    }
-  });
+std::vector<Target> targets_of(const std::vector<CsvFileColumn>& columns, const std::vector<CsvColumn>& wanted,
+                               CsvTable& table) {
   std::vector<Target> targets;
   for (const CsvFileColumn& column : columns) {
     Target target;
@@ -253,6 +226,75 @@ CsvTable read_csv(std::string_view text, const std::string& file, const std::vec
     }
     targets.push_back(target);
   }
+  return targets;
+}
+
+}  // namespace
+
+CsvRows::CsvRows(std::string_view text, std::string file, std::vector<CsvColumn> wanted, const ColumnMapping& mapping)
+    : text_(text), file_(std::move(file)), wanted_(std::move(wanted)) {
+  if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
+  std::size_t header_at = 0;
+  std::string_view header;
+  while (first_ < text_.size() && csv_is_passed_over(header)) {
+    header_at = first_;
+    header = csv_next_line(text_, first_);
+  }
+  if (csv_is_passed_over(header)) {
+    throw InputError({file_, 0, 0, ""}, "the file is empty", "a header line with column names");
+  }
+  columns_ = csv_match_header(header, file_, text_line(text_, header_at), wanted_, mapping);
+}
+
+std::optional<TextRefusal> CsvRows::read(std::size_t begin, std::size_t end, CsvTable& table) const {
+  Block block;
+  block.begin = begin;
+  block.end = end;
+  block.rows = count_rows(text_, begin, end);
+  table.rows = block.rows;
+  table.columns.resize(wanted_.size());
+  for (const CsvFileColumn& column : columns_) {
+    if (column.wanted != kUnreadColumn) make_room(wanted_[column.wanted], block.rows, table.columns[column.wanted]);
+  }
+  const std::vector<Target> targets = targets_of(columns_, wanted_, table);
+  BlockReader(text_, targets, wanted_.size(), block).read();
+  if (block.refusal) return std::move(block.refusal);
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    table.columns[i].names = wanted_[i].is_text ? std::move(block.names[i]) : std::vector<std::string>();
+  }
+  return std::nullopt;
+}
+
+std::size_t CsvRows::row_offset(std::size_t begin, std::size_t row) const {
+  for (std::size_t at = begin; at < text_.size();) {
+    const std::size_t start = at;
+    if (!csv_is_passed_over(csv_next_line(text_, at)) && row-- == 0) return start;
+  }
+  return text_.size();
+}
+
+CsvTable read_csv(std::string_view text, const std::string& file, const std::vector<CsvColumn>& wanted,
+                  const ColumnMapping& mapping, int threads) {
+  const CsvRows rows(text, file, wanted, mapping);
+  text = rows.text();
+  const std::vector<CsvFileColumn>& columns = rows.columns();
+  std::vector<Block> blocks = split_into_blocks<Block>(text, rows.first());
+  for_each_block(blocks.size(), threads,
+                 [&](std::size_t i) { blocks[i].rows = count_rows(text, blocks[i].begin, blocks[i].end); });
+  CsvTable table;
+  for (Block& block : blocks) {
+    block.first_row = table.rows;
+    table.rows += block.rows;
+  }
+  if (table.rows == 0) throw InputError({file, 0, 0, ""}, "there are no rows below the header", "at least one row");
+
+  table.columns.resize(wanted.size());
+  // The first touch of so much memory takes its time: on all threads too.
+  for_each_block(columns.size(), threads, [&](std::size_t i) {
+    const std::size_t column = columns[i].wanted;
+    if (column != kUnreadColumn) make_room(wanted[column], table.rows, table.columns[column]);
+  });
+  const std::vector<Target> targets = targets_of(columns, wanted, table);
   for_each_block(blocks.size(), threads,
                  [&](std::size_t i) { BlockReader(text, targets, wanted.size(), blocks[i]).read(); });
 

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/partial_names.h"
 
 namespace abbe {
 namespace {
@@ -79,8 +80,16 @@ pid_t writer_of(const std::string& found, const std::string& name, std::string_v
   return result.ec == std::errc() && result.ptr == end ? process : 0;
 }
 
-/// Removes what killed writers of this name left behind; puts an older result back that one of them had moved aside.
-void clean_up_after_killed_writers(const fs::path& path) {
+/// Exchanges two names in one step where the file system can. @returns errno, 0 if done
+int exchange(const fs::path& a, const fs::path& b) {
+  return ::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0 ? 0 : errno;
+}
+
+}  // namespace
+
+fs::path partial_name(const fs::path& path) { return with_suffix(path, kPartial); }
+
+void remove_partials_of_killed_writers(const fs::path& path) {
   std::error_code error;
   const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
   const std::string name = path.filename().string();
@@ -98,16 +107,9 @@ void clean_up_after_killed_writers(const fs::path& path) {
   }
 }
 
-/// Exchanges two names in one step where the file system can. @returns errno, 0 if done
-int exchange(const fs::path& a, const fs::path& b) {
-  return ::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0 ? 0 : errno;
-}
-
-}  // namespace
-
 ResultsFolder::ResultsFolder(fs::path name) : name_(std::move(name)) {
   if (name_.filename().empty()) name_ = name_.parent_path();
-  partial_ = with_suffix(name_, kPartial);
+  partial_ = partial_name(name_);
   std::error_code error;
   const auto status = fs::status(name_, error);
   if (fs::exists(status) && !fs::is_directory(status)) {
@@ -116,7 +118,7 @@ ResultsFolder::ResultsFolder(fs::path name) : name_(std::move(name)) {
   error.clear();
   if (!name_.parent_path().empty()) fs::create_directories(name_.parent_path(), error);
   if (error) fail(name_, error.value());
-  clean_up_after_killed_writers(name_);
+  remove_partials_of_killed_writers(name_);
   fs::remove_all(partial_, error);
   fs::create_directory(partial_, error);
   if (error) fail(partial_, error.value());
@@ -163,8 +165,8 @@ void ResultsFolder::commit() {
 }
 
 void write_file_atomically(const fs::path& path, std::string_view contents) {
-  const fs::path partial = with_suffix(path, kPartial);
-  clean_up_after_killed_writers(path);
+  const fs::path partial = partial_name(path);
+  remove_partials_of_killed_writers(path);
   try {
     write_and_flush(partial, contents);
     if (::rename(partial.c_str(), path.c_str()) != 0) fail(path, errno);

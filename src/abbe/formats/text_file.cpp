@@ -42,6 +42,15 @@ MappedFile::~MappedFile() {
   if (data_ != nullptr) ::munmap(const_cast<char*>(data_), size_);
 }
 
+void MappedFile::forget(std::size_t end) {
+  const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  end = end < size_ ? end / page * page : size_;
+  if (end <= forgotten_) return;
+  // The pages of a file come back from the file if they are read again.
+  ::madvise(const_cast<char*>(data_) + forgotten_, end - forgotten_, MADV_DONTNEED);
+  forgotten_ = end;
+}
+
 std::string read_text_file(const std::filesystem::path& path) { return std::string(MappedFile(path).text()); }
 
 }  // namespace abbe

@@ -20,10 +20,13 @@ class MappedFile {
   MappedFile& operator=(const MappedFile&) = delete;
 
   std::string_view text() const { return {data_, size_}; }
+  /// What was read before `end` needs no memory any more; reading it again is right but slow.
+  void forget(std::size_t end);
 
  private:
   const char* data_ = nullptr;
   std::size_t size_ = 0;
+  std::size_t forgotten_ = 0;
 };
 
 }  // namespace abbe

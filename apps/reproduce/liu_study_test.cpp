@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "abbe/geometry/mesh_check.h"
+#include "reproduce/liu_machine.h"
+#include "reproduce/liu_measurement.h"
+#include "reproduce/liu_parts.h"
+
+namespace abbe {
+namespace {
+
+double largest(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) { return (a - b).colwise().norm().maxCoeff(); }
+
+TEST(LiuRecursion, EqualsTheReferenceWithTheOrderOfTheChainAndIsMillimetresOffAsWorded) {
+  const Machine machine = liu_machine();
+  const LiuReference reference = read_liu_reference(machine);
+  const ErrorSet errors = liu_errors(machine, LiuUnit::millimetre);
+  ASSERT_GE(reference.indication.size(), 30U);
+  EXPECT_LT(largest(liu_recursion(machine, errors, reference.positions, reference.indication, LiuRecursion::corrected),
+                    reference.millimetre),
+            1e-9);
+  EXPECT_GT(largest(liu_recursion(machine, errors, reference.positions, reference.indication, LiuRecursion::as_worded),
+                    reference.millimetre),
+            1.0);
+}
+
+TEST(LiuParts, AreClosedMeshesWhosePlacesLieOnThemAlongTheirNormals) {
+  for (const LiuPart& part :
+       {liu_cylinder(10, 0.0006), liu_cross_cylinder(), liu_pyramid(), liu_blade(), liu_sphere(0.7)}) {
+    const MeshCheck check = check_mesh(part.mesh);
+    EXPECT_TRUE(check.encloses_volume()) << part.name << " " << check.border_edges << " " << check.turned_edges;
+    EXPECT_GT(check.volume, 0) << part.name;
+    ASSERT_GT(part.places.size(), 500U) << part.name;
+    const ClosestPointFinder finder(part.mesh, 1);
+    const RayTracer tracer(part.mesh, 1);
+    for (std::size_t k = 0; k < part.places.size(); k += 7) {
+      const SurfacePlace& place = part.places[k];
+      ASSERT_NEAR(place.normal.norm(), 1, 1e-12);
+      // The chord error of the meshes is below half a micrometre.
+      ASSERT_LT(std::abs(finder.closest_to(place.point).distance), 5e-4) << part.name << " " << k;
+      const auto hit = tracer.first(place.point + 0.1 * place.normal, -place.normal, 0, 0.2);
+      ASSERT_TRUE(hit) << part.name << " " << k;
+      ASSERT_GT(hit->normal.dot(place.normal), 0.99) << part.name << " " << k;
+    }
+  }
+}
+
+TEST(LiuParts, HaveTheVolumesOfTheirShapes) {
+  const auto volume = [](const LiuPart& part) { return check_mesh(part.mesh).volume; };
+  const double pi = std::numbers::pi;
+  EXPECT_NEAR(volume(liu_cylinder(10, 0)) / (pi * 100 * 30), 1, 1e-5);
+  EXPECT_NEAR(volume(liu_sphere(0.5)) / (4 * pi / 3 * std::pow(12.703, 3)), 1, 1e-4);
+  // A corner of a cube, half of which is above the hexagon through its middle, on the prism of that hexagon.
+  const double side = 5, hexagon = std::sqrt(3.0) * side * side, top = 5 - std::sqrt(3.0) / 2 * side;
+  EXPECT_NEAR(volume(liu_pyramid()), side * side * side / 2 + hexagon * (top + 20), 1e-6);
+  EXPECT_NEAR(volume(liu_blade()) / (pi * 7 * 1.5 * 24), 1, 2e-3);
+}
+
+TEST(LiuCalibration, WithoutNoiseFindsTheAxesAndLeavesNothingOfThePart) {
+  const Machine machine = liu_machine();
+  LiuScanner scanner;
+  scanner.unit = LiuUnit::millimetre;
+  scanner.noise = false;
+  const LiuCalibration calibration = liu_calibrate(machine, scanner);
+  ASSERT_TRUE(calibration.converged) << calibration.message;
+  // What is left is the chord error of the cylinder's mesh, 0.02 um.
+  for (std::size_t stage = 0; stage < 2; ++stage) {
+    EXPECT_LT(calibration.direction[stage], 1e-6);
+    EXPECT_LT(calibration.distance[stage], 3e-5);
+  }
+  const LiuPart pyramid = liu_pyramid();
+  const LiuMeasurement measured = liu_measure(machine, scanner, calibration.errors, pyramid, pyramid.mesh);
+  EXPECT_GT(measured.after.points, 3000U);
+  EXPECT_GT(measured.before.rms, 0.02);
+  EXPECT_LT(measured.after.rms, 3e-5);
+}
+
+}  // namespace
+}  // namespace abbe

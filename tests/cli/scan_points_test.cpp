@@ -1,0 +1,77 @@
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+class ScanPoints : public CommandTest {
+ protected:
+  const std::string examples = std::string(ABBE_SOURCE_DIR) + "/examples/";
+  const std::string machine = examples + "machines/liu-scanner.machine.toml";
+  const std::string readings = examples + "cradle_scanner/readings.csv";
+  const std::string errors = examples + "cradle_scanner/stages.errors.toml";
+
+  /// Largest distance from a radius of 10 mm about the best line parallel to y, roughly: the spread of hypot(x, z).
+  double spread(const std::string& file) const {
+    std::istringstream stream(folder.read(file));
+    std::string line;
+    std::getline(stream, line);
+    EXPECT_EQ(line, "x_mm,y_mm,z_mm");
+    double lowest = 1e9, highest = 0;
+    while (std::getline(stream, line)) {
+      double x = 0, y = 0, z = 0;
+      EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &x, &y, &z), 3);
+      lowest = std::min(lowest, std::hypot(x, z));
+      highest = std::max(highest, std::hypot(x, z));
+    }
+    return highest - lowest;
+  }
+};
+
+TEST_F(ScanPoints, ReadsTheExampleWithAndWithoutTheErrorsOfTheStages) {
+  const CommandResult with = abbe({"scan", "points", machine, readings, "--errors", errors, "-o", "p.csv", "--json"});
+  ASSERT_EQ(with.exit_code, ExitCode::done) << with.err;
+  const nlohmann::json json = nlohmann::json::parse(with.out);
+  EXPECT_EQ(json["readings"], 468);
+  EXPECT_EQ(json["points"], 468);
+  const CommandResult without = abbe({"scan", "points", machine, readings, "-o", "q.csv"});
+  ASSERT_EQ(without.exit_code, ExitCode::done) << without.err;
+  EXPECT_NE(without.out.find("machine without errors"), std::string::npos);
+  // The cylinder is tilted by 25 mrad and 0.13 mm beside the axis: 0.9 mm over 24 mm of length. The stages' errors of
+  // up to 0.7 mm show where they are not taken into account.
+  EXPECT_LT(spread("p.csv"), 1.0);
+  EXPECT_GT(std::abs(spread("p.csv") - spread("q.csv")), 0.1);
+  const CommandResult ply =
+      abbe({"scan", "points", machine, readings, "-o", "p.ply", "--indication-range-mm", "-0.01", "0.01", "--json"});
+  ASSERT_EQ(ply.exit_code, ExitCode::done) << ply.err;
+  const nlohmann::json left = nlohmann::json::parse(ply.out);
+  EXPECT_GT(left["outside_indication_range"].get<int>(), 0);
+  EXPECT_EQ(left["points"].get<int>() + left["outside_indication_range"].get<int>(), 468);
+  EXPECT_EQ(folder.read("p.ply").substr(0, 4), "ply\n");
+}
+
+TEST_F(ScanPoints, WhatIsWrongIsNamedAndNothingIsWritten) {
+  folder.write("r.csv", "C_deg,A_deg,X_mm,Y_mm,Z_mm,indication_mm\n0,0,0,0,0,0\n0,0,500,0,0,0\n");
+  const CommandResult travel = abbe({"scan", "points", machine, "r.csv", "-o", "p.csv"});
+  EXPECT_EQ(travel.exit_code, ExitCode::bad_input);
+  EXPECT_NE(travel.err.find("r.csv:3"), std::string::npos) << travel.err;
+  EXPECT_NE(travel.err.find("outside the travel of axis X"), std::string::npos) << travel.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "p.csv"));
+  EXPECT_EQ(abbe({"scan", "points", machine, "r.csv", "-o", "p.csv", "--any-travel"}).exit_code, ExitCode::done);
+  const CommandResult column = abbe({"scan", "points", machine, "r.csv", "-o", "p.csv", "--column", "indication_um=h"});
+  EXPECT_EQ(column.exit_code, ExitCode::bad_input);
+  EXPECT_EQ(abbe({"scan", "points", machine, "r.csv", "-o", "p.xyz"}).exit_code, ExitCode::bad_input);
+  EXPECT_EQ(abbe({"scan", "points", machine, "r.csv", "-o", "p.csv", "--beam", "0", "0", "0"}).exit_code,
+            ExitCode::bad_input);
+  EXPECT_EQ(abbe({"scan", "points", machine, "r.csv", "-o", "p.csv", "--any-travel", "--indication-range-mm", "1", "2"})
+                .exit_code,
+            ExitCode::computation_says_no);
+}
+
+}  // namespace
+}  // namespace abbe
