@@ -114,6 +114,9 @@ Results compute() {
     }
     measure(blade, blade.mesh, 0, 0);
     r.agrees = r.agrees && results.calibration.converged;
+    for (const Measured& part : results.parts) {
+      r.agrees = r.agrees && part.measurement.before.registered && part.measurement.after.registered;
+    }
     r.units.push_back(std::move(results));
   }
 
@@ -130,7 +133,8 @@ Results compute() {
 }
 
 nlohmann::ordered_json deviation_json(const LiuDeviation& d) {
-  nlohmann::ordered_json json = {{"points", d.points}, {"rms_um", 1e3 * d.rms}, {"largest_um", 1e3 * d.largest}};
+  nlohmann::ordered_json json = {
+      {"registered", d.registered}, {"points", d.points}, {"rms_um", 1e3 * d.rms}, {"largest_um", 1e3 * d.largest}};
   if (d.fitted_radius > 0) json["fitted_radius_mm"] = d.fitted_radius;
   return json;
 }
@@ -167,11 +171,9 @@ nlohmann::ordered_json json_of(const Results& r) {
   }
   json["terms"] = nlohmann::ordered_json::array();
   for (const LiuTerm& term : r.sensitivity.terms) {
-    const char* unit = term.is_angle ? "um_per_mrad" : "um_per_um";
-    const double scale = 1.0;
-    json["terms"].push_back({{"term", term.name},
-                             {std::string("across_") + unit, scale * term.across},
-                             {std::string("registered_") + unit, scale * term.remaining}});
+    const std::string unit = term.is_angle ? "um_per_mrad" : "um_per_um";
+    json["terms"].push_back(
+        {{"term", term.name}, {"across_" + unit, term.across}, {"registered_" + unit, term.remaining}});
   }
   for (const UnitResults& results : r.units) {
     nlohmann::ordered_json& unit = json[results.unit == LiuUnit::millimetre ? "table_3_in_mm" : "table_3_in_um"];

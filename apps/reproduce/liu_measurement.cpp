@@ -1,6 +1,5 @@
 #include "reproduce/liu_measurement.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <memory>
@@ -8,6 +7,7 @@
 #include <utility>
 
 #include "abbe/errors/actual_pose.h"
+#include "abbe/geometry/fine_registration.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/shape_fit.h"
 #include "abbe/identify/identify.h"
@@ -160,35 +160,6 @@ PoseList liu_positions(const Machine& machine, const LiuPart& part) {
   return poses;
 }
 
-Eigen::VectorXd registered_distances(const ClosestPointFinder& surface, Eigen::Matrix3Xd points) {
-  Eigen::VectorXd distances(points.cols());
-  for (int iteration = 0;; ++iteration) {
-    const std::vector<SurfacePoint> closest = surface.closest(points);
-    const Eigen::Vector3d centre = points.rowwise().mean();
-    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
-    Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-      const SurfacePoint& at = closest[static_cast<std::size_t>(i)];
-      distances[i] = at.distance;
-      Eigen::Matrix<double, 6, 1> row;
-      row << at.normal, Eigen::Vector3d(points.col(i) - centre).cross(at.normal);
-      normal += row * row.transpose();
-      right -= at.distance * row;
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(normal);
-    Eigen::Matrix<double, 6, 1> step = Eigen::Matrix<double, 6, 1>::Zero();
-    for (int k = 0; k < 6; ++k) {
-      // A part that is symmetric does not determine all six; 1e-5 is far above what noise leaves of the others.
-      if (solver.eigenvalues()[k] < 1e-5 * solver.eigenvalues()[5]) continue;
-      const auto vector = solver.eigenvectors().col(k);
-      step += vector * (vector.dot(right) / solver.eigenvalues()[k]);
-    }
-    if (step.norm() < 1e-9 || iteration == 50) return distances;
-    const Eigen::Matrix3d rotation = rotation_from_vector(step.tail<3>());
-    points = ((rotation * (points.colwise() - centre)).colwise() + (centre + step.head<3>())).eval();
-  }
-}
-
 LiuMeasurement liu_measure(const Machine& machine, const LiuScanner& scanner, const ErrorSet& calibrated,
                            const LiuPart& scanned, const TriangleMesh& model) {
   LiuMeasurement result;
@@ -201,6 +172,9 @@ LiuMeasurement liu_measure(const Machine& machine, const LiuScanner& scanner, co
   result.lost = scan.no_surface;
   result.too_steep = scan.too_steep;
   const ClosestPointFinder surface(model);
+  const SmoothSurface smooth(model);
+  FineRegistrationOptions registration;
+  registration.loss = RegistrationLoss::least_squares;  // the deviations of the paper are all of them
   const RigidTransform part_from_workpiece = setup.workpiece_from_part.inverse();
   const auto evaluate = [&](const ErrorSet& errors) {
     Eigen::Matrix3Xd points = scanned_points(machine, errors, setup.beam, scan);
@@ -211,8 +185,13 @@ LiuMeasurement liu_measure(const Machine& machine, const LiuScanner& scanner, co
       const ShapeFit fit = least_squares_fit(is_sphere ? ShapeKind::sphere : ShapeKind::cylinder, points);
       if (fit.ok()) deviation.fitted_radius = fit.shape.radius;
     }
-    points = ((part_from_workpiece.rotation * points).colwise() + part_from_workpiece.translation).eval();
-    const Eigen::VectorXd distances = registered_distances(surface, std::move(points));
+    const FineRegistration fit = register_finely(points, surface, smooth, part_from_workpiece, registration);
+    // Turns of a sphere or a cylinder are not seen and do not matter.
+    deviation.registered =
+        fit.status == FineRegistrationStatus::ok || fit.status == FineRegistrationStatus::undetermined;
+    const RigidTransform& pose = fit.mesh_from_scan;
+    points = ((pose.rotation * points).colwise() + pose.translation).eval();
+    const Eigen::VectorXd distances = surface.signed_distances(points);
     deviation.rms = std::sqrt(distances.squaredNorm() / static_cast<double>(distances.size()));
     deviation.largest = distances.cwiseAbs().maxCoeff();
     return deviation;

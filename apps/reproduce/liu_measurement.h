@@ -37,6 +37,7 @@ PoseList liu_positions(const Machine& machine, const LiuPart& part);
 
 /// Deviations of a measured part from its model, after registration by least squares.
 struct LiuDeviation {
+  bool registered = false;
   std::size_t points = 0;
   double rms = 0;            ///< mm, equation (16): about zero
   double largest = 0;        ///< mm, absolute
@@ -54,9 +55,5 @@ struct LiuMeasurement {
 /// @param model      what it is compared with
 LiuMeasurement liu_measure(const Machine& machine, const LiuScanner& scanner, const ErrorSet& calibrated,
                            const LiuPart& scanned, const TriangleMesh& model);
-
-/// Least-squares pose of points on a surface, from a start nearby, and their signed distances in it. Motions that the
-/// surface does not feel are left alone.
-Eigen::VectorXd registered_distances(const ClosestPointFinder& surface, Eigen::Matrix3Xd points);
 
 }  // namespace abbe

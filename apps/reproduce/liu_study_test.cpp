@@ -72,6 +72,7 @@ TEST(LiuCalibration, WithoutNoiseFindsTheAxesAndLeavesNothingOfThePart) {
   }
   const LiuPart pyramid = liu_pyramid();
   const LiuMeasurement measured = liu_measure(machine, scanner, calibration.errors, pyramid, pyramid.mesh);
+  EXPECT_TRUE(measured.before.registered && measured.after.registered);
   EXPECT_GT(measured.after.points, 3000U);
   EXPECT_GT(measured.before.rms, 0.02);
   EXPECT_LT(measured.after.rms, 3e-5);
