@@ -7,6 +7,7 @@
 
 #include "abbe/formats/input_error.h"
 #include "command.h"
+#include "scan/scan.h"
 
 namespace abbe {
 namespace {

@@ -4,6 +4,7 @@
 
 namespace abbe {
 
+void add_scan_command(CommandLine& line);
 /// abbe scan points: axis positions and indications to points.
 void add_scan_points(CLI::App& scan, CommandLine& line);
 
