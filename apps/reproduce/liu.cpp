@@ -273,7 +273,7 @@ void print_variants(const Results& r) {
       "what\n"
       "  a standard cylinder 21 um larger than taken for gives; its deviations then grow with the share of the sphere, "
       "as\n"
-      "  in the paper. With the stages and the probe of Table 2 alone, 1 to 2 um remain of every part: what the paper "
+      "  in the paper. With the stages and the probe of Table 2 alone, 1 to 6 um remain of a part: what the paper "
       "has\n"
       "  beyond that is the form of its parts, its standards and motions of the stages that Table 2 does not state.\n");
 }

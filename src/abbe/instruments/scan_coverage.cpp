@@ -1,0 +1,77 @@
+#include "abbe/instruments/scan_coverage.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace abbe {
+namespace {
+
+using Cell = std::array<long, 3>;
+
+Cell cell_of(const Eigen::Vector3d& point, double size) {
+  return {std::lround(std::floor(point.x() / size)), std::lround(std::floor(point.y() / size)),
+          std::lround(std::floor(point.z() / size))};
+}
+
+}  // namespace
+
+std::vector<CoveredPlace> covered_places(const TriangleMesh& mesh, const std::vector<std::uint32_t>& face_of_triangle,
+                                         const std::vector<MeasuredPlace>& measured, double radius) {
+  std::map<Cell, std::vector<MeasuredPlace>> cells;
+  for (const MeasuredPlace& place : measured) cells[cell_of(place.point, radius)].push_back(place);
+  const auto is_near = [&](const Eigen::Vector3d& point, std::uint32_t face) {
+    const Cell cell = cell_of(point, radius);
+    for (long i = -1; i <= 1; ++i) {
+      for (long j = -1; j <= 1; ++j) {
+        for (long k = -1; k <= 1; ++k) {
+          const auto found = cells.find({cell[0] + i, cell[1] + j, cell[2] + k});
+          if (found == cells.end()) continue;
+          for (const MeasuredPlace& other : found->second) {
+            if (other.face == face && (other.point - point).squaredNorm() <= radius * radius) return true;
+          }
+        }
+      }
+    }
+    return false;
+  };
+  std::vector<CoveredPlace> places;
+  struct Triangle {
+    Eigen::Vector3d a, b, c;
+  };
+  std::vector<Triangle> waiting;
+  for (Eigen::Index i = 0; i < mesh.size(); ++i) {
+    waiting.push_back({mesh.corner(i, 0), mesh.corner(i, 1), mesh.corner(i, 2)});
+    while (!waiting.empty()) {
+      const Triangle t = waiting.back();
+      waiting.pop_back();
+      const double ab = (t.b - t.a).norm(), bc = (t.c - t.b).norm(), ca = (t.a - t.c).norm();
+      const double longest = std::max({ab, bc, ca});
+      if (longest > 0.5 * radius) {
+        // Halved across the longest side, so that needles do not become thousands of pieces.
+        if (longest == ab) {
+          const Eigen::Vector3d middle = 0.5 * (t.a + t.b);
+          waiting.push_back({t.a, middle, t.c});
+          waiting.push_back({middle, t.b, t.c});
+        } else if (longest == bc) {
+          const Eigen::Vector3d middle = 0.5 * (t.b + t.c);
+          waiting.push_back({t.a, t.b, middle});
+          waiting.push_back({t.a, middle, t.c});
+        } else {
+          const Eigen::Vector3d middle = 0.5 * (t.a + t.c);
+          waiting.push_back({t.a, t.b, middle});
+          waiting.push_back({middle, t.b, t.c});
+        }
+        continue;
+      }
+      const Eigen::Vector3d point = (t.a + t.b + t.c) / 3;
+      places.push_back({point, static_cast<std::uint32_t>(i), 0.5 * (t.b - t.a).cross(t.c - t.a).norm(),
+                        is_near(point, face_of_triangle[static_cast<std::size_t>(i)])});
+    }
+  }
+  return places;
+}
+
+}  // namespace abbe

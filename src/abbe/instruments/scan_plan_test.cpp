@@ -1,0 +1,169 @@
+#include "abbe/instruments/scan_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "abbe/geometry/surface_lines.h"
+#include "abbe/machine/machines_for_test.h"
+
+namespace abbe {
+namespace {
+
+using std::numbers::pi;
+
+/// Prism about y: `sides` flat sides, or a round one if there are many.
+TriangleMesh prism(int sides, double radius, double low, double high) {
+  TriangleMesh mesh;
+  const auto n = static_cast<std::uint32_t>(sides);
+  mesh.vertices.resize(3, 2 * sides + 2);
+  mesh.triangles.resize(3, 4 * sides);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double angle = 2 * pi * i / sides + 0.3;
+    mesh.vertices.col(i) = Eigen::Vector3d(radius * std::sin(angle), low, radius * std::cos(angle));
+    mesh.vertices.col(n + i) = Eigen::Vector3d(radius * std::sin(angle), high, radius * std::cos(angle));
+    const std::uint32_t j = (i + 1) % n;
+    mesh.triangles.col(4 * i) << i, j, n + j;
+    mesh.triangles.col(4 * i + 1) << i, n + j, n + i;
+    mesh.triangles.col(4 * i + 2) << 2 * n, j, i;
+    mesh.triangles.col(4 * i + 3) << 2 * n + 1, n + i, n + j;
+  }
+  mesh.vertices.col(2 * n) = Eigen::Vector3d(0, low, 0);
+  mesh.vertices.col(2 * n + 1) = Eigen::Vector3d(0, high, 0);
+  return mesh;
+}
+
+ScanPlanOptions coarse() {
+  ScanPlanOptions options;
+  options.along = options.between = 1;
+  options.probe_radius = 3;
+  options.crease_angle = 20 * pi / 180;
+  return options;
+}
+
+void expect_sound(const Machine& machine, const ScanPlan& plan, const ScanPlanOptions& options) {
+  ASSERT_EQ(plan.positions.count(), plan.moves.size());
+  double time = 0;
+  std::vector<double> last;
+  for (std::size_t k = 0; k < plan.moves.size(); ++k) {
+    const PlannedMove& move = plan.moves[k];
+    const std::vector<double> positions = plan.positions.pose(k);
+    double least = move.measures ? 1 / options.readings_per_second : 0;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const Axis& axis = machine.axes[i];
+      if (!axis.endless) {
+        ASSERT_GE(positions[i], axis.travel_min - 1e-9);
+        ASSERT_LE(positions[i], axis.travel_max + 1e-9);
+      }
+      const double speed = axis.kind == AxisKind::rotary ? options.rotary_speed : options.linear_speed;
+      if (k > 0) least = std::max(least, std::abs(positions[i] - last[i]) / speed);
+    }
+    time += least;
+    last = positions;
+    if (!move.measures) continue;
+    const RigidTransform pose = nominal_workpiece_from_tool(machine, positions);
+    ASSERT_LT((pose.translation - move.point).norm(), 1e-6) << k;
+    ASSERT_LT((pose.rotation * machine.tool_direction - move.beam).norm(), 1e-8) << k;
+    ASSERT_GE(move.normal.dot(move.beam), std::cos(options.largest_angle) - 1e-12) << k;
+  }
+  EXPECT_NEAR(plan.time, time, 1e-6 * time);
+}
+
+TEST(ScanPlan, CoversAPrismByRastersAndACylinderByCircles) {
+  const Machine machine = test::liu_scanner();
+  const ScanPlanOptions options = coarse();
+  const ScanPlan flat = plan_scan(machine, prism(5, 8, -6, 6), options);
+  expect_sound(machine, flat, options);
+  ASSERT_EQ(flat.faces.size(), 7U);
+  for (const PlannedFace& face : flat.faces) EXPECT_EQ(face.kind, ScanPathKind::raster);
+  EXPECT_GT(flat.covered_share(), 0.99);
+  EXPECT_EQ(flat.blocked_links, 0U);
+  EXPECT_EQ(flat.beyond_range, 0U);
+  EXPECT_LT(flat.largest_sag, 1e-9);
+
+  const ScanPlan round = plan_scan(machine, prism(90, 8, -6, 6), options);
+  expect_sound(machine, round, options);
+  ASSERT_EQ(round.faces.size(), 3U);
+  std::size_t circles = 0;
+  for (const PlannedFace& face : round.faces) circles += face.kind == ScanPathKind::rotary ? 1U : 0U;
+  EXPECT_EQ(circles, 1U);
+  EXPECT_GT(round.covered_share(), 0.99);
+  // Half way along a step of 1 mm on a radius of 8 mm the axes turn too, so that the surface stays where it was, but
+  // for the strips of the mesh.
+  EXPECT_LT(round.largest_sag, 0.01);
+  // The stage turns with the part: circles need C and nothing else.
+  for (std::size_t k = 1; k < round.moves.size(); ++k) {
+    if (!round.moves[k].measures || !round.moves[k - 1].measures) continue;
+    if (round.faces[round.moves[k].face].kind != ScanPathKind::rotary) continue;
+    ASSERT_NEAR(round.positions.axis[machine.find_axis("A")][k], 0, 1e-9);
+  }
+}
+
+TEST(ScanPlan, WhatTheStageHidesIsNotPromised) {
+  const Machine machine = test::liu_scanner();
+  ScanPlanOptions options = coarse();
+  options.stage = prism(60, 30, -20, -6.01);  // right below the part
+  const ScanPlan plan = plan_scan(machine, prism(5, 8, -6, 6), options);
+  expect_sound(machine, plan, options);
+  std::size_t bottom = 0;
+  for (const PlannedFace& face : plan.faces) {
+    if (face.points > 0) continue;
+    ++bottom;
+    EXPECT_GT(face.hidden, 20U);
+    EXPECT_EQ(face.covered, 0);
+  }
+  EXPECT_EQ(bottom, 1U);
+  // A rod of 3 mm beside a stage of 30 mm: near the stage the sides are seen from above only, or not.
+  std::size_t tilted = 0, collision = 0;
+  for (const PlannedFace& face : plan.faces) {
+    tilted += face.tilted;
+    collision += face.collision;
+  }
+  EXPECT_GT(tilted + collision, 0U);
+  EXPECT_LT(plan.covered_share(), 0.9);
+  EXPECT_GT(plan.covered_share(), 0.5);
+}
+
+TEST(ScanPlan, StaysWithinTravel) {
+  Machine machine = test::liu_scanner();
+  const std::size_t a = machine.find_axis("A");
+  machine.axes[a].endless = false;
+  machine.axes[a].travel_min = -0.2;
+  machine.axes[a].travel_max = 1.2;
+  const ScanPlanOptions options = coarse();
+  const ScanPlan plan = plan_scan(machine, prism(5, 8, -6, 6), options);
+  expect_sound(machine, plan, options);
+  std::size_t out_of_travel = 0;
+  for (const PlannedFace& face : plan.faces) out_of_travel += face.travel;
+  // The lower end would need A at -90 degrees; the upper one, at +90 degrees, is reached with a tilted beam.
+  EXPECT_GT(out_of_travel, 20U);
+  EXPECT_LT(plan.covered_share(), 0.95);
+}
+
+TEST(SurfaceLines, AreCirclesOfACylinderEvenlySpaced) {
+  const TriangleMesh mesh = prism(360, 8, -6, 6);
+  std::vector<std::uint32_t> side;
+  for (std::uint32_t i = 0; i < 360; ++i) {
+    side.push_back(4 * i);
+    side.push_back(4 * i + 1);
+  }
+  const SmoothSurface smooth(mesh, 0.3);
+  const std::vector<SurfaceLine> lines = surface_lines(mesh, smooth, side, Eigen::Vector3d::UnitY(), 0.5, 1.5);
+  ASSERT_EQ(lines.size(), 8U);
+  for (const SurfaceLine& line : lines) {
+    EXPECT_TRUE(line.is_closed);
+    ASSERT_EQ(line.points.cols(), 101);  // 2 pi 8 / 0.5, rounded up
+    for (Eigen::Index k = 0; k < line.points.cols(); ++k) {
+      const Eigen::Vector3d p = line.points.col(k), next = line.points.col((k + 1) % line.points.cols());
+      EXPECT_NEAR(p.y(), line.height, 1e-12);
+      EXPECT_NEAR(std::hypot(p.x(), p.z()), 8, 4e-4);
+      EXPECT_NEAR((next - p).norm(), 2 * pi * 8 / 101, 1e-3);
+      EXPECT_NEAR(line.normals.col(k).dot(p) / std::hypot(p.x(), p.z()), 1, 1e-4);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace abbe
