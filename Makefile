@@ -78,8 +78,7 @@ bench:
 	@.ci/set-up bench
 	$(call build_preset,bench)
 	@for program in closest_point forward_pose five_instruments identification identification_memory planning polygon_trace read_csv \
-	  registration; do \
-	@for program in forward_pose five_instruments identification identification_memory planning polygon_trace read_csv scan_points; do \
+	  registration scan_points; do \
 	  echo "== $$program"; build/bench/bin/$$program; done
 
 fuzz:

@@ -26,13 +26,9 @@ void add_reproduce_command(CommandLine& line) {
                "  ma      six motions of a rotary table by a polygon prism (2021)\n"
                "  wang    36 measured errors of a grinder w C b X Z A Y B t, integrated error (2020)\n"
                "  yin     laser engraver measures its linkage and the place of its workpiece (2021)");
-  command->add_option("paper", options->paper, "aguado, ma, wang or yin")
+  command->add_option("paper", options->paper, "aguado, liu, ma, wang or yin")
       ->required()
-      ->check(CLI::IsMember({"aguado", "ma", "wang", "yin"}));
-               "  wang    36 measured errors of a grinder w C b X Z A Y B t, integrated error (2020)");
-  command->add_option("paper", options->paper, "aguado, liu, ma or wang")
-      ->required()
-      ->check(CLI::IsMember({"aguado", "liu", "ma", "wang"}));
+      ->check(CLI::IsMember({"aguado", "liu", "ma", "wang", "yin"}));
   command->add_option("-o,--output", options->output, "Results folder to write (maps, report); default: print only");
   command->add_option("--grids", options->grids,
                       "wang: decouple the indications of this folder (X.csv, A.csv, ...) instead");
