@@ -109,6 +109,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
                                             result.monte_carlo->not_settled, result.monte_carlo->samples));
     }
   }
+  result.not_identified = find_not_identified(study, result);
   if (progress) progress(1, 1);
 }
 

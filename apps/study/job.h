@@ -12,6 +12,7 @@
 #include "abbe/verify/error_map.h"
 #include "study/campaign.h"
 #include "study/model.h"
+#include "study/not_identified.h"
 #include "study/unseen.h"
 
 namespace abbe {
@@ -38,7 +39,8 @@ struct StudyResult {
   std::optional<UnseenPoses> unseen;
   std::optional<StudyMap> map;
   std::vector<std::string> warnings;
-  std::vector<Advice> advice;  ///< what the readings do not see, and what would show it
+  std::vector<Advice> advice;    ///< what the readings do not see, and what would show it
+  NotIdentified not_identified;  ///< errors of the machine that are not in the model; empty unless usable
 
   /// True if the result may be used: converged and nothing impossible.
   bool usable() const { return identification.status == IdentifyStatus::converged; }

@@ -53,11 +53,14 @@ void print_study(const Study& study, const StudyResult& result) {
     print_statistics("before", unseen.before_statistics);
     print_statistics("after", unseen.after_statistics);
     print_statistics("predicted expanded uncertainty", unseen.uncertainty_statistics);
+    if (!result.not_identified.errors.empty())
+      fmt::print("    (of the {}: see \"not identified\")\n", kIdentifiedErrorsOnly);
     if (unseen.against_truth) {
       fmt::print("  {:.1f} % of the coordinates within two standard uncertainties of the prediction\n",
                  100 * unseen.coverage);
     }
   }
+  if (!result.not_identified.errors.empty()) fmt::print("\nwarning: {}\n", not_identified_text(study, result));
   if (result.unseen && !result.unseen->open.empty())
     fmt::print("\nwarning: {}\n", open_directions_text(*result.unseen));
   if (!identified.gauge.constraints.empty()) {
@@ -70,6 +73,7 @@ void print_study(const Study& study, const StudyResult& result) {
     }
   }
   print_advice(result);
+  print_not_identified(result);
 }
 
 }  // namespace abbe

@@ -136,11 +136,18 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
   if (result.unseen && !result.unseen->open.empty()) {
     json["warnings"].push_back({{"level", "warning"}, {"text", open_directions_text(*result.unseen)}});
   }
+  if (!result.not_identified.errors.empty()) {
+    json["warnings"].push_back({{"level", "warning"}, {"text", not_identified_text(study, result)}});
+  }
   json["assumptions"] = report_assumptions(study, result);
   if (result.map && result.map->before.statistics.count > 0) {
     json["map"] =
         report_map(study.machine, result.map->poses, result.map->before,
                    result.map->after ? &*result.map->after : nullptr, &result.map->predicted, result.map->description);
+    if (!result.not_identified.errors.empty()) {
+      json["map"]["note"] = fmt::format("Not identified and taken as zero: {}. The uncertainty is that of the {}.",
+                                        not_identified_names(study, result.not_identified), kIdentifiedErrorsOnly);
+    }
   }
   if (result.unseen && !result.unseen->after.empty()) {
     const UnseenPoses& unseen = *result.unseen;
@@ -162,6 +169,7 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
     json["identification"] = report_identification(study, result);
   }
   if (!result.advice.empty()) json["advice"] = advice_json(result);
+  if (!result.not_identified.errors.empty()) json["not_identified"] = not_identified_json(study, result);
   json["references"] = {"ISO 230-1:2012 (geometric accuracy)", "ISO 230-7:2015 (axes of rotation)",
                         "JCGM 100:2008 (GUM)",
                         "Aguado et al. (2014), laser tracker verification of multi-axis machines"};

@@ -127,6 +127,8 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
     }
   }
   if (!result.advice.empty()) json["not_seen"] = advice_json(result);
+  const bool conditional = !result.not_identified.errors.empty();
+  if (conditional) json["not_identified"] = not_identified_json(study, result);
   if (result.unseen && !result.unseen->after.empty()) {
     const UnseenPoses& unseen = *result.unseen;
     nlohmann::ordered_json held_out;
@@ -136,6 +138,7 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
     held_out["position_before_um"] = statistics_um(unseen.before_statistics);
     held_out["position_after_um"] = statistics_um(unseen.after_statistics);
     held_out["predicted_expanded_uncertainty_um"] = statistics_um(unseen.uncertainty_statistics);
+    if (conditional) held_out["uncertainty_covers"] = kIdentifiedErrorsOnly;
     if (unseen.against_truth) held_out["coverage_percent"] = 100 * unseen.coverage;
     if (unseen.before_statistics.mean > 0) {
       held_out["remaining_percent"] = 100 * unseen.after_statistics.mean / unseen.before_statistics.mean;
@@ -153,6 +156,7 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
     entry["description"] = map.description + ", after the best fit of the workpiece datum";
     entry["reference"] = map.against_truth ? "truth" : "model";
     if (map.before.statistics.count > 0) add_map_statistics(map, entry);
+    if (conditional) entry["uncertainty_covers"] = kIdentifiedErrorsOnly;
     if (map.before.statistics.excluded > 0) entry["outside_range"] = map.before.statistics.excluded;
     json["map"] = entry;
   }

@@ -169,7 +169,8 @@ Eigen::MatrixXd unseen_directions(const Identification& identification) {
 }
 
 /// The volumetric error at random poses against the truth, and which of the unseen directions it depends on.
-void add_volumetric(const Study& study, const StudyResult& result, std::size_t poses, Tally& tally) {
+/// @param statistics  false: the directions alone
+void add_volumetric(const Study& study, const StudyResult& result, std::size_t poses, bool statistics, Tally& tally) {
   UnseenPoses& unseen = tally.unseen;
   const ErrorSet& identified = result.identification.errors;
   const PoseList list = random_plan(study.machine, known_ranges(study, result), poses, unseen_seed(study, 0));
@@ -194,13 +195,16 @@ void add_volumetric(const Study& study, const StudyResult& result, std::size_t p
   unseen.open_rank = part.open_rank;
   if (!simulated) return;
   double open_square = 0;
+  std::size_t covered = 0;
   for (std::size_t k = 0; k < after.count(); ++k) {
     if (after.covered[k] == 0) continue;
+    ++covered;
+    for (std::size_t d = 0; d < 3; ++d) open_square += part.open[d][k] * part.open[d][k];
+    if (!statistics) continue;
     double variance = 0;
     for (std::size_t d = 0; d < 3; ++d) {
       const double u = part.uncertainty[d][k];
       variance += u * u;
-      open_square += part.open[d][k] * part.open[d][k];
       tally.within += std::abs(part.displacement[d][k]) <= 2 * u ? 1U : 0U;
       ++tally.coordinates;
     }
@@ -208,7 +212,7 @@ void add_volumetric(const Study& study, const StudyResult& result, std::size_t p
     unseen.after.push_back(after.norm[k]);
     unseen.expanded_uncertainty.push_back(2 * std::sqrt(variance));
   }
-  if (!unseen.after.empty()) unseen.open_rms = std::sqrt(open_square / static_cast<double>(unseen.after.size()));
+  if (covered > 0) unseen.open_rms = std::sqrt(open_square / static_cast<double>(covered));
 }
 
 }  // namespace
@@ -220,7 +224,7 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
   const std::vector<std::unique_ptr<CampaignSetup>>& setups = result.campaign.setups;
   const bool trackers_only = std::none_of(study.setups.begin(), study.setups.end(),
                                           [](const Setup& setup) { return setup.device != nullptr; });
-  if (!trackers_only) add_volumetric(study, result, poses, tally);
+  add_volumetric(study, result, poses, !trackers_only, tally);
   for (std::size_t s = 0; s < setups.size() && (!unseen.against_truth || trackers_only); ++s) {
     if (const auto* tracker = dynamic_cast<const TrackerCampaign*>(setups[s].get())) {
       TrackerReadings readings;
@@ -257,7 +261,7 @@ std::string open_directions_text(const UnseenPoses& unseen) {
       unseen.open_rank, unseen.open_rank == 1 ? "" : "s");
   for (std::size_t i = 0; i < unseen.open.size(); ++i) text += (i > 0 ? ", " : "") + unseen.open[i];
   if (unseen.against_truth) {
-    text += fmt::format(". {:.3g} um (root mean square) of the error after lie there", 1e3 * unseen.open_rms);
+    text += fmt::format(". {:.3g} um (root mean square) of the volumetric error lie there", 1e3 * unseen.open_rms);
   }
   return text + ". Predicted uncertainties do not include it.";
 }

@@ -22,18 +22,19 @@ struct UnseenPoses {
   /// do not determine it in these directions.
   std::vector<std::string> open;
   std::vector<std::size_t> open_constraints;  ///< their indices in the gauge report
-  bool open_known = false;                    ///< whether that was looked for: not with trackers alone
+  bool open_known = false;                    ///< whether that was looked for
   std::size_t open_rank = 0;                  ///< number of independent displacements among them
-  double open_rms = 0;  ///< simulation: root mean square of the part of `after` that lies in them, mm
+  double open_rms = 0;  ///< simulation: root mean square of the part of the volumetric error that lies in them, mm
   SampleStatistics before_statistics, after_statistics, uncertainty_statistics;
 };
 
 /// Validation at poses that were not used.
 ///
-/// Simulated, trackers only: what the trackers would read at random poses. Simulated, any instruments: the volumetric
-/// error there, after the best fit of the workpiece datum, against the truth; uncertainty and coverage are those of the
-/// part that the readings determine (verify/determined_part.h), what lies in open directions is told apart. Measured:
-/// readings held out of the fit (their lengths; angles take no part).
+/// Whether the volumetric error depends on directions that the readings leave open is found for all. Simulated,
+/// trackers only: what the trackers would read at random poses. Simulated, any instruments: the volumetric error there,
+/// after the best fit of the workpiece datum, against the truth; uncertainty and coverage are those of the part that
+/// the readings determine (verify/determined_part.h), what lies in open directions is told apart. Measured: readings
+/// held out of the fit (their lengths; angles take no part).
 /// @param poses  number of random poses compared with the truth
 UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::size_t poses = 1000);
 

@@ -76,6 +76,7 @@ async function listsOf(page, data, expect) {
     expect(at >= 0, `advice ${i + 1} is not on the page: ${parts.join(' | ')}`);
     if (at >= 0) said.splice(at, 1);
   }
+  await count('#advice .not-identified > li', data.not_identified?.shown_by?.length ?? 0, 'errors that were not identified');
   await count('#assumptions li', data.assumptions?.length ?? 0, 'assumptions');
   await count('#references li', data.references?.length ?? 0, 'references');
   await count('#identification .gauge-list > li', data.identification?.gauge?.length ?? 0, 'the gauge');

@@ -222,6 +222,8 @@ const data = {
       remedy: 'Repeat 60 readings with a reflector on an arm of at least 150 mm across X, over the whole travel of Z.'},
     {parameters: ['EX0C', 'tracker1.x'], text: 'The place of the axis average line along X is hardly separable from the place of the tracker.', remedy: 'Measure a part of the poses from a second station of the tracker on the bed.'},
     {text: 'Hysteresis is not seen: all positions were approached from one side.'}],
+  not_identified: {errors: ['EBX', 'EA0Z'], text: 'not identified: EBX, EA0Z. They are taken as zero; the uncertainty of the volumetric error does not cover them. Errors there of usual size (10 um, 50 urad each) make about 12 um.',
+    shown_by: [{errors: ['EBX'], by_these_readings: true, remedy: 'the readings show it: identify it too'}, {errors: ['EA0Z'], by_these_readings: false, remedy: 'a ball bar on circles in XY, YZ and ZX'}]},
   references: ['ISO 230-1:2012, ISO 230-7:2015', 'JCGM 100:2008 (GUM)', "Breaking out: </script><script>window.broken = 1</script>"],
 };
 data.summary.held_out.remaining_percent = (100 * data.summary.held_out.position_after_um.mean) / data.summary.held_out.position_before_um.mean;

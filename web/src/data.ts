@@ -21,6 +21,7 @@ export interface PoseErrors {
   orientation_before_urad?: Statistics;
   orientation_after_urad?: Statistics;
   predicted_expanded_uncertainty_um?: Statistics;
+  uncertainty_covers?: string;
   outside_range?: number;
   coverage_percent?: number;
   remaining_percent?: number;
@@ -117,6 +118,7 @@ export interface ErrorMap {
   before_urad?: Rotations;
   after_urad?: Rotations;
   expanded_uncertainty_um?: number[];
+  note?: string;
 }
 
 export type Histogram = {title?: string} & Record<string, unknown>;
@@ -212,6 +214,7 @@ export interface Report {
   identification?: Identification;
   tables?: DataTable[];
   advice?: Advice[];
+  not_identified?: NotIdentified;
   references?: string[];
 }
 
@@ -224,6 +227,14 @@ export interface Advice {
   /// The parameters in words of ISO 230.
   words?: string;
   remedy?: string;
+}
+
+/// Errors of the machine that were taken as zero, and what would show them.
+export interface NotIdentified {
+  errors: string[];
+  words?: string[];
+  text: string;
+  shown_by?: {errors: string[]; by_these_readings?: boolean; remedy: string}[];
 }
 
 const kUnits: [string, string][] = [

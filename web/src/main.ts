@@ -43,7 +43,7 @@ function build(report: Report): void {
     report.location_errors?.length ? locationSection(report.location_errors) : undefined,
     report.tables?.length ? tablesSection(report.tables) : undefined,
     report.identification && identificationSection(report.identification, report.summary ?? {}),
-    report.advice?.length ? adviceSection(report.advice) : undefined,
+    report.advice?.length || report.not_identified ? adviceSection(report.advice ?? [], report.not_identified) : undefined,
     report.residuals && residualSection(report.residuals),
     monteCarloSection(report.parameters, report.summary?.monte_carlo),
     report.parameters?.name?.length ? parameterSection(report.parameters) : undefined,

@@ -3,7 +3,7 @@
 import {isDark, cssColour, rampColour} from './colour';
 import {ErrorMap, PoseErrors, splitUnit} from './data';
 import {field, html, responsive, section, svg} from './dom';
-import {count, number, quantity as withUnit} from './format';
+import {count, micro, number, quantity as withUnit} from './format';
 import {Colour, colours, exaggeration, quantities, range, roundFactor, statisticsTable} from './map_choices';
 import {Camera, View} from './map_view';
 import {linearScale, logScale} from './scale';
@@ -74,6 +74,7 @@ export function mapSection(map: ErrorMap, summary: PoseErrors | undefined): HTML
   const part = section('map', 'Map of the volumetric error',
     `Each arrow stands at its nominal point (${frame}) and shows where the tool really is, exaggerated. ` +
     `${shown < total ? `${count(shown)} of ${count(total)} poses drawn` : `${count(total)} ${total === 1 ? 'pose' : 'poses'}`}${map.description ? `: ${map.description}` : ''}.`);
+  if (map.note) part.append(html('p', {class: 'note under'}, micro(map.note)));
   const kinds = quantities(map);
   let kind = kinds[0];
   const after = kind.views.length > 1;

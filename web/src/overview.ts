@@ -28,7 +28,7 @@ export function verdict(summary: Summary): string {
   if (before === undefined) return '';
   if (after === undefined) return `Mean volumetric error ${quantity(before, 'µm')} ${where}.`;
   const predicted = errors.predicted_expanded_uncertainty_um?.mean;
-  const interval = predicted === undefined ? '' : ` (predicted expanded uncertainty ${quantity(predicted, 'µm')}, k\u00a0=\u00a02)`;
+  const interval = predicted === undefined ? '' : ` (predicted expanded uncertainty${errors.uncertainty_covers ? ` of the ${errors.uncertainty_covers}` : ''} ${quantity(predicted, 'µm')}, k\u00a0=\u00a02)`;
   return `Mean volumetric error ${quantity(before, 'µm')} before, ${quantity(after, 'µm')} after correction ${where}${interval}.`;
 }
 
@@ -91,7 +91,8 @@ function smallTiles(summary: Summary, errors: PoseErrors | undefined, key: strin
   if (errors) {
     add('Remaining error', `${key}.remaining_percent`, errors.remaining_percent, 3, '%', 'of the mean before');
     add('Predicted uncertainty', `${key}.predicted_expanded_uncertainty_um.mean`, errors.predicted_expanded_uncertainty_um?.mean, 3, 'µm',
-        errors.coverage_percent === undefined ? 'k = 2, mean' : `k = 2, mean; covers ${number(errors.coverage_percent)}\u2009% of the coordinates`);
+        [errors.uncertainty_covers && `of the ${errors.uncertainty_covers}`, 'k = 2, mean',
+          errors.coverage_percent !== undefined && `covers ${number(errors.coverage_percent)}\u2009% of the coordinates`].filter(Boolean).join('; '));
   }
   const monte = summary.monte_carlo;
   if (monte?.samples) add('Monte Carlo', 'monte_carlo.samples', monte.samples, 0, '',

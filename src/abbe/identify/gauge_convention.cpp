@@ -161,10 +161,13 @@ void once_per_turn(const Problem& problem, std::size_t axis, std::vector<GaugeCa
   for (const int offset : {0, 3}) {
     const std::string u = error_motion_name(problem.machine, axis, static_cast<Component>((own + 1) % 3 + offset));
     const std::string v = error_motion_name(problem.machine, axis, static_cast<Component>((own + 2) % 3 + offset));
-    for (const double sense : {1.0, -1.0})
+    // A command of a primed axis turns the table the other way, and what is fixed to the table with it.
+    const std::string body = moving.primed ? moving.name + "'" : moving.name;
+    for (const double with : {1.0, -1.0})
       for (const bool quadrature : {false, true}) {
-        // (u, v) = rho (cos, sense sin) turns with (sense = 1) or against the axis; the quadrature part a quarter turn
+        // (u, v) = rho (cos, sense sin) turns with (with = 1) or against the axis; the quadrature part a quarter turn
         // later.
+        const double sense = with * moving.sense();
         const auto weight = [&](double q) {
           const double along_u = quadrature ? -sense * std::sin(q) : std::cos(q);
           const double along_v = quadrature ? std::cos(q) : sense * std::sin(q);
@@ -176,8 +179,8 @@ void once_per_turn(const Problem& problem, std::size_t axis, std::vector<GaugeCa
         };
         add_candidate(list,
                       fmt::format("the once-per-turn part of {} and {} turning {} {} ({}) is zero (axis average line)",
-                                  u, v, sense > 0 ? "with" : "against", moving.name, quadrature ? "sine" : "cosine"),
-                      fmt::format("first harmonic of {} and {} ({}, {})", u, v, sense > 0 ? "forward" : "backward",
+                                  u, v, with > 0 ? "with" : "against", body, quadrature ? "sine" : "cosine"),
+                      fmt::format("first harmonic of {} and {} ({}, {})", u, v, with > 0 ? "forward" : "backward",
                                   quadrature ? "sine" : "cosine"),
                       functionals.integral(weight) * norm);
       }

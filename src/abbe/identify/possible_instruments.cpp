@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/identify/trial_readings.h"
@@ -13,6 +14,7 @@
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/instruments/interferometer.h"
 #include "abbe/instruments/path_plan.h"
+#include "abbe/instruments/polygon_placement.h"
 #include "abbe/instruments/r_test.h"
 #include "abbe/instruments/tracker_observations.h"
 #include "abbe/instruments/tracker_simulation.h"
@@ -27,6 +29,10 @@ constexpr std::size_t kLeastReadings = 6;
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 constexpr double kBar_mm = 100;
 constexpr double kNestOffset_mm = 60;
+// A prism of twelve faces, known as its maker states it (docs/polygon.md).
+constexpr std::size_t kFaces = 12;
+constexpr double kFaceDistance_mm = 48.3, kPrismHeight_mm = 17;
+constexpr double kFaceAzimuth_rad = 5e-6, kFaceTilt_rad = 2.5e-5, kFaceDistanceError_mm = 1e-3;
 
 /// Instruments that stand at a sensible place of a machine and were not there.
 class FurtherInstruments {
@@ -63,6 +69,8 @@ class FurtherInstruments {
     add_ball_bar();
     for (std::size_t i = 0; i < machine_.axes.size(); ++i)
       if (machine_.axes[i].kind == AxisKind::rotary) add_r_test({i});
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i)
+      if (machine_.axes[i].kind == AxisKind::rotary) add_polygon(i);
     for (std::size_t i = 0; i < machine_.axes.size(); ++i)
       if (machine_.axes[i].kind == AxisKind::linear)
         add_interferometer({i},
@@ -228,6 +236,45 @@ class FurtherInstruments {
     add_trial(fmt::format("an R-test (nest on the table, sphere in the spindle) while {} {}", names(turning),
                           turning.size() > 1 ? "turn" : "turns"),
               device, planned);
+  }
+
+  /// On the table, its middle on the axis average line, seen from the bed; put on twice, turned by one face.
+  void add_polygon(std::size_t i) {
+    const Axis& axis = machine_.axes[i];
+    const double step = 2 * std::numbers::pi / static_cast<double>(kFaces);
+    const bool whole_turn = axis.endless || axis.travel_max - axis.travel_min > 2 * std::numbers::pi - 1.01 * step;
+    if (axis.side != ChainSide::workpiece || !whole_turn) return;
+    PolygonGaugeSetup setup;
+    setup.name = "trial prism";
+    setup.polygon = regular_polygon(kFaces, kFaceDistance_mm, kPrismHeight_mm);
+    setup.bench = regular_campaign(kFaces, kFaceDistance_mm, kPrismHeight_mm, {0}).bench;
+    setup.faces.assign(kFaces, {SetupNumber::within(0, kFaceAzimuth_rad), SetupNumber::within(0, kFaceTilt_rad),
+                                SetupNumber::within(kFaceDistance_mm, kFaceDistanceError_mm)});
+    setup.mounts.resize(2);
+    setup.mounts[0].name = "first";
+    setup.mounts[1].name = "second";
+    setup.mounts[1].turned_by = 1;
+    PolygonPlacement placement;
+    placement.axis = i;
+    const Vector3d origin = machine_.bed_from_workpiece.translation;
+    const Vector3d on_axis = axis.point + axis.direction * axis.direction.dot(origin - axis.point);
+    placement.centre = machine_.bed_from_workpiece.inverse() * on_axis;
+    placement.top = axis.direction;
+    placement.toward_x = axis.direction.unitOrthogonal();
+    placement.aligned_at = middle_;
+    std::vector<double> first = middle_;
+    if (!axis.endless) first[i] -= step * std::floor((first[i] - axis.travel_min) / step + 1e-9);
+    try {
+      place_polygon(machine_, placement, setup);
+      const auto gauge = std::make_shared<PolygonGauge>(setup);
+      const InstrumentReadings planned = polygon_plan(machine_, *gauge, i, first);
+      add_trial(fmt::format("a polygon prism on the table, put on twice, with autocollimators and displacement sensors "
+                            "on the bed while {} turns",
+                            axis.name),
+                gauge, planned);
+    } catch (const std::invalid_argument&) {
+      return;  // It cannot stand on this axis.
+    }
   }
 
   void add_tracker() {

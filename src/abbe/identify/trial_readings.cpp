@@ -1,5 +1,6 @@
 #include "abbe/identify/trial_readings.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <numbers>
 
@@ -71,6 +72,25 @@ PossibleMeasurement trial_measurement(const Problem& problem, std::size_t observ
   for (std::size_t k = 0; k < known.size(); ++k)
     measurement.rows(all + static_cast<Index>(k), known[k].first) = 1 / known[k].second;
   return measurement;
+}
+
+Eigen::MatrixXd rows_without_own(const PossibleMeasurement& measurement, Index parameters) {
+  Eigen::MatrixXd rows = measurement.rows.leftCols(parameters);
+  if (measurement.own == 0) return rows;
+  const Eigen::MatrixXd own = measurement.rows.rightCols(static_cast<Index>(measurement.own));
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(own);
+  const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(own.rows(), qr.rank());
+  return rows - basis * (basis.transpose() * rows);
+}
+
+Eigen::VectorXd typical_sizes(const std::vector<EstimatedParameter>& parameters, const AdviceOptions& options) {
+  constexpr double kSetUp = 1e3;  // times that of the machine
+  Eigen::VectorXd sizes(static_cast<Index>(parameters.size()));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double factor = parameters[i].id.is_machine() ? 1 : kSetUp;
+    sizes[static_cast<Index>(i)] = factor * (parameters[i].is_angle ? options.typical_angle : options.typical_length);
+  }
+  return sizes;
 }
 
 std::vector<PossibleMeasurement> possible_measurements(const Problem& problem) {

@@ -37,6 +37,12 @@ struct TrialUnknown {
 PossibleMeasurement trial_measurement(const Problem& problem, std::size_t observations, std::string words,
                                       Observations& trial, const std::vector<TrialUnknown>& unknowns);
 
+/// Rows of the estimates with the measurement's own unknowns taken out: what it says whatever they are. [rows, p]
+Eigen::MatrixXd rows_without_own(const PossibleMeasurement& measurement, Eigen::Index parameters);
+
+/// Size of each estimate that matters, [p] mm or rad. What is known of a set-up beforehand is coarse.
+Eigen::VectorXd typical_sizes(const std::vector<EstimatedParameter>& parameters, const AdviceOptions& options);
+
 /// Errors of a problem with all values zero.
 ErrorSet without_errors(const Problem& problem);
 

@@ -12,6 +12,7 @@
 #include "abbe/geometry/singular_values.h"
 #include "abbe/identify/normal_equations.h"
 #include "abbe/identify/parameter_words.h"
+#include "abbe/identify/trial_readings.h"
 
 namespace abbe {
 namespace {
@@ -28,16 +29,6 @@ constexpr double kHardlyLess = 0.5;
 constexpr double kQuarter = 0.25;
 constexpr double kNamedEntry = 0.2;
 constexpr std::size_t kMostNamed = 4;
-
-/// Rows of the estimates with the measurement's own unknowns taken out: what it says whatever they are.
-Eigen::MatrixXd without_own(const PossibleMeasurement& measurement, Index parameters) {
-  Eigen::MatrixXd rows = measurement.rows.leftCols(parameters);
-  if (measurement.own == 0) return rows;
-  const Eigen::MatrixXd own = measurement.rows.rightCols(static_cast<Index>(measurement.own));
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(own);
-  const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(own.rows(), qr.rank());
-  return rows - basis * (basis.transpose() * rows);
-}
 
 /// The part of the space of `open` (orthonormal columns, scaled parameters) that the rows leave unseen, orthonormal.
 Eigen::MatrixXd left_open(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& open) {
@@ -92,16 +83,9 @@ class Adviser {
         possible_(possible),
         options_(options),
         parameters_(estimated_parameters(problem)),
-        typical_(static_cast<Index>(parameters_.size())) {
-    const Index p = typical_.size();
-    for (Index i = 0; i < p; ++i) {
-      const EstimatedParameter& parameter = parameters_[static_cast<std::size_t>(i)];
-      // What is known of a set-up beforehand is coarse: a weak direction is about the machine.
-      const double factor = parameter.id.is_machine() ? 1 : 1e3;
-      typical_[i] = factor * (parameter.is_angle ? options.typical_angle : options.typical_length);
-    }
+        typical_(typical_sizes(parameters_, options)) {
     for (const PossibleMeasurement& measurement : possible)
-      rows_.push_back(without_own(measurement, p) * typical_.asDiagonal());
+      rows_.push_back(rows_without_own(measurement, typical_.size()) * typical_.asDiagonal());
   }
 
   std::vector<Advice> run() {
