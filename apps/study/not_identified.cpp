@@ -13,6 +13,7 @@ namespace abbe {
 namespace {
 
 constexpr std::size_t kPoses = 250;
+constexpr double kNothing_mm = 1e-6;
 
 /// Poses at which errors are asked for their effect: random over where the identified ones are known.
 PoseList poses_of(const Study& study, const StudyResult& result) {
@@ -185,7 +186,9 @@ std::string not_identified_text(const Study& study, const StudyResult& result) {
       "them. ",
       not_identified_names(study, found));
   if (result.campaign.truth) {
-    text += fmt::format("The true ones make {:.3g} um of it (root mean square), ", 1e3 * found.actual);
+    text += found.actual < kNothing_mm
+                ? std::string("The true ones are zero in this simulation, ")
+                : fmt::format("The true ones make {:.3g} um of it (root mean square), ", 1e3 * found.actual);
   }
   const AdviceOptions usual;
   return text + fmt::format("{} of usual size ({:.0f} um, {:.0f} urad each) {} about {:.2g} um.",

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
 
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/input_error.h"
@@ -28,6 +32,27 @@ const std::vector<CsvColumn>& columns() {
   return all;
 }
 
+/// Rows of a path in another order than it was driven (sorted by value, say) are put in the order of their angles; a
+/// path driven once or several times, either way, stays as it is.
+void put_in_order(CircularReadings& path) {
+  std::size_t back = 0, on = 0;
+  for (std::size_t i = 1; i < path.count(); ++i) {
+    const double step = std::remainder(path.angle[i] - path.angle[i - 1], 2 * std::numbers::pi);
+    ++(step < 0 ? back : on);
+  }
+  // Noise may turn a step of a grid encoder round.
+  if (std::min(back, on) <= path.count() / 10) return;
+  std::vector<std::size_t> order(path.count());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return path.angle[a] < path.angle[b]; });
+  const CircularReadings rows = path;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    path.angle[i] = rows.angle[order[i]];
+    path.radius[i] = rows.radius[order[i]];
+  }
+}
+
 class Reader {
  public:
   Reader(std::string_view text, const std::string& file, double nominal_radius)
@@ -44,6 +69,7 @@ class Reader {
     } else {
       read_lengths();
     }
+    for (CircularReadings& path : result_.paths) put_in_order(path);
     return std::move(result_);
   }
 

@@ -18,6 +18,7 @@ struct CircularFile {
 
 /// Reads a CSV of a circular test: `direction` (cw or ccw) with either `angle` and `deviation` or `radius` of a ball
 /// bar or two of `X`, `Y`, `Z` of a grid encoder, from the centre of the nominal circle; see docs/evaluate-geometry.md.
+/// Rows in no order along the path are put in the order of their angles.
 /// @param nominal_radius  mm; a deviation is added to it
 /// @throws InputError
 CircularFile read_circular(const std::filesystem::path& path, double nominal_radius);

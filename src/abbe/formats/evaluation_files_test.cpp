@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "abbe/formats/evaluation_circular_file.h"
 #include "abbe/formats/evaluation_line_file.h"
@@ -47,6 +50,18 @@ TEST(EvaluationCircularFile, ReadsPointsOfTheThreePlanesWithAnglesFromFirstToSec
   EXPECT_DOUBLE_EQ(zx.paths[0].angle[1], 0);
   EXPECT_EQ(parse_circular("Z_mm,Y_um,direction\n3,4000,ccw\n", "c.csv", 100).plane, "YZ");
   EXPECT_DOUBLE_EQ(parse_circular("X_mm,Y_um,direction\n3,4000,ccw\n", "c.csv", 100).paths[1].radius[0], 5);
+}
+
+TEST(EvaluationCircularFile, RowsInNoOrderArePutInThatOfThePath) {
+  const auto angles = [](const std::string& rows) {
+    return parse_circular("angle_deg,direction,radius_mm\n" + rows, "c.csv", 100).paths[0].angle;
+  };
+  const std::vector<double> sorted = angles("300,cw,100\n0,cw,100\n90,cw,100\n10,cw,100\n200,cw,100\n");
+  EXPECT_TRUE(std::is_sorted(sorted.begin(), sorted.end()));
+  // Driven clockwise from 90 degrees on, past zero: as it is.
+  const std::vector<double> driven = angles("90,cw,100\n10,cw,100\n300,cw,100\n200,cw,100\n100,cw,100\n");
+  EXPECT_GT(driven[0], driven[1]);
+  EXPECT_GT(driven[2], driven[0]);
 }
 
 TEST(EvaluationCircularFile, SaysWhatIsWrongAndWhere) {

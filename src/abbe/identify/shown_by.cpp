@@ -15,6 +15,7 @@ using Eigen::Index;
 // As in unseen.cpp.
 constexpr double kLeftUnseen = 0.1;
 constexpr double kStillZero = 1e-7;
+constexpr int kMostTogether = 3;
 constexpr double kSeenAbove = 1;  // standard uncertainties of all readings together
 
 /// Directions that the readings of a problem leave open, in parameters of typical size: orthonormal columns.
@@ -83,7 +84,7 @@ std::vector<ShownBy> shown_by(const Problem& problem, const std::vector<std::vec
     }
     const bool nothing_shows = part_in(never, asked) > std::sqrt(1 - kLeftUnseen * kLeftUnseen);
     if (unseen.isZero(0)) {
-      shown.by_readings = !nothing_shows;
+      shown.by_readings = shown.shown = !nothing_shows;
       result.push_back(shown);
       continue;
     }
@@ -93,7 +94,7 @@ std::vector<ShownBy> shown_by(const Problem& problem, const std::vector<std::vec
       shown.remedy = possible[k].words;
     }
     Eigen::MatrixXd rest = unseen;
-    for (int step = 0; step < 3 && !shown.shown; ++step) {
+    for (int step = 0; step < kMostTogether && !shown.shown; ++step) {
       std::size_t best = 0;
       double least = rest.norm();
       for (std::size_t k = 0; k < left.size(); ++k) {
@@ -110,7 +111,7 @@ std::vector<ShownBy> shown_by(const Problem& problem, const std::vector<std::vec
       rest = left[best] * (left[best].transpose() * rest).eval();
       shown.shown = rest.norm() <= kLeftUnseen * unseen.norm();
     }
-    if (!shown.shown) shown.remedy.clear();
+    if (!shown.shown) shown.remedy = "only several of the measurements tried, together";
     result.push_back(shown);
   }
   return result;

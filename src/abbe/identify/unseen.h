@@ -50,9 +50,9 @@ struct AdviceOptions {
 
 /// What could be measured additionally, easiest first: with the instruments of the problem where they stand (other
 /// positions of their axes, a bar in other directions or a longer one, another place of a ball, sphere, optic or
-/// reflector, another station), then with further instruments at sensible places of the machine: ball bar, R-test, polygon prism,
-/// level, laser interferometer with and without optical square, laser tracker. Unknowns of what is set up anew are
-/// unknowns of its own. Derivatives at errors of zero and at the present values of the set-up's unknowns.
+/// reflector, another station), then with further instruments at sensible places of the machine: ball bar, R-test,
+/// polygon prism, level, laser interferometer with and without optical square, laser tracker. Unknowns of what is set
+/// up anew are unknowns of its own. Derivatives at errors of zero and at the present values of the set-up's unknowns.
 std::vector<PossibleMeasurement> possible_measurements(const Problem& problem);
 
 /// Says for every direction fixed by the gauge, and for every one that is seen only weakly, which of the possible

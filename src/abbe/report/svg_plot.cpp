@@ -23,6 +23,9 @@ struct Range {
   }
 };
 
+/// Of a dimension beside the plot, with its name in bold letters.
+double column_width(const std::string& label) { return std::max(kColumnWidth, 16 + 1.15 * text_width(label, 13)); }
+
 }  // namespace
 
 double draw_legend(SvgDrawing* drawing, DrawingPoint at, double width, std::span<const LegendEntry> entries) {
@@ -98,16 +101,16 @@ XyPlot::Frame XyPlot::frame() const {
   }
   for (const Level& level : levels_) y.add(level.y);
   for (const double value : included_) y.add(value);
-  std::size_t columns = 0;
+  double columns = 0;
   for (const Dimension& dimension : dimensions_) {
     for (const PlotPoint& point : {dimension.low, dimension.high}) {
       x.add(point.x);
       y.add(point.y);
     }
-    if (dimension.outer) ++columns;
+    if (dimension.outer) columns += column_width(dimension.label);
   }
   Frame frame;
-  frame.right = kWidth - kRight - static_cast<double>(columns) * kColumnWidth;
+  frame.right = kWidth - kRight - columns;
   frame.height = kPlotHeight;
   if (same_scale_) {
     frame.height = frame.right - frame.left;
@@ -173,7 +176,7 @@ void XyPlot::draw_dimensions(SvgDrawing& drawing, const Frame& frame) const {
     drawing.line(high, {column + 5, high.y}, extension);
     drawing.dimension(column, low.y, high.y, dimension.style);
     drawing.text({column + 5, middle}, dimension.label, TextAnchor::start, 13, dimension.style.colour, true);
-    column += kColumnWidth;
+    column += column_width(dimension.label);
   }
 }
 

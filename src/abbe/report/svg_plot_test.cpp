@@ -99,6 +99,23 @@ TEST(XyPlot, DrawsAPointWhereItsValueIs) {
   EXPECT_THAT(plot.svg(), HasSubstr("M74.00 432.00L836.00 432.00L836.00 52.00\" fill=\"none\" stroke=\"var(--s3)\""));
 }
 
+TEST(XyPlot, TheNameOfADimensionBesideThePlotIsNotCutOff) {
+  for (const std::string label : {"A", "1.44 um", "12345.67 arcsec"}) {
+    XyPlot plot("t", "x", "y");
+    plot.line({{0, 0}, {1, 1}}, {PlotColour::first});
+    plot.outer_dimension({0, 0}, {1, 1}, label, {PlotColour::ink});
+    const std::string svg = plot.svg();
+    const auto number_after = [&](const std::string& what, std::size_t from) {
+      return std::stod(svg.substr(svg.find(what, from) + what.size()));
+    };
+    const double width = number_after("viewBox=\"0 0 ", 0);
+    const std::size_t at = svg.rfind("<text", svg.find(">" + label + "<"));
+    ASSERT_NE(at, std::string::npos) << svg;
+    // Bold letters are some 0.6 of their height wide.
+    EXPECT_LT(number_after(" x=\"", at) + 0.6 * 13 * static_cast<double>(label.size()), width) << label;
+  }
+}
+
 TEST(XyPlot, PointsThatAreNotFiniteAreGaps) {
   XyPlot plot("t", "x", "y");
   plot.line({{0, 0}, {5, kNan}, {10, 0}, {10, 10}, {kNan, 3}}, {PlotColour::third});

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace abbe {
 namespace {
@@ -63,6 +64,16 @@ double correlation_length(const std::array<std::vector<double>, 2>& residuals) {
     sum += 2 * correlation;
   }
   return sum;
+}
+
+/// Values in the order of their angles: neighbours along the path, whatever the order of the rows.
+std::vector<double> along_path(const std::vector<double>& angles, const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return angles[a] < angles[b]; });
+  std::vector<double> sorted;
+  for (const std::size_t i : order) sorted.push_back(values[i]);
+  return sorted;
 }
 
 struct Fit {
@@ -156,6 +167,8 @@ CircularDiagnosis circular_diagnosis(const std::array<CircularReadings, 2>& path
   }
   result.residual_rms = std::sqrt(residuals.squaredNorm() / (count - unknowns));
   result.residual_peak_to_peak = residuals.maxCoeff() - residuals.minCoeff();
+  for (std::size_t path = 0; path < 2; ++path)
+    taken_residuals[path] = along_path(paths[path].angle, taken_residuals[path]);
   result.correlation_length = correlation_length(taken_residuals);
   // As many readings as are independent; at least one more than unknowns, else nothing could be said at all.
   const double independent = std::max(count / result.correlation_length, unknowns + 1);

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <random>
+#include <vector>
 
 namespace abbe {
 namespace {
@@ -139,6 +143,33 @@ TEST(CircularDiagnosis, ResidualsThatFollowEachOtherMakeTheUncertaintyLarger) {
   EXPECT_LT(noise.correlation_length, 1.5);
   EXPECT_GT(waves.correlation_length, 20);
   EXPECT_GT(of(waves, CircularCause::squareness).uncertainty, 4 * of(noise, CircularCause::squareness).uncertainty);
+}
+
+TEST(CircularDiagnosis, TheOrderOfTheRowsChangesNothing) {
+  std::mt19937_64 random(12);
+  std::array<CircularReadings, 2> paths = {path(kKnown, CircularAngle::commanded, -1, 0, 360, 180, 1e-4, random),
+                                           path(kKnown, CircularAngle::commanded, 1, 0, 360, 180, 1e-4, random)};
+  // Residuals that follow each other, so that their order along the path matters.
+  for (CircularReadings& readings : paths) {
+    for (std::size_t i = 0; i < readings.count(); ++i) readings.radius[i] += 1e-3 * std::cos(7 * readings.angle[i]);
+  }
+  const CircularDiagnosis in_order = circular_diagnosis(paths, {.nominal_radius = kRadius});
+  EXPECT_GT(in_order.correlation_length, 3);
+  for (CircularReadings& readings : paths) {
+    std::vector<std::size_t> order(readings.count());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::shuffle(order.begin(), order.end(), random);
+    CircularReadings shuffled = readings;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      shuffled.angle[i] = readings.angle[order[i]];
+      shuffled.radius[i] = readings.radius[order[i]];
+    }
+    readings = shuffled;
+  }
+  const CircularDiagnosis mixed = circular_diagnosis(paths, {.nominal_radius = kRadius});
+  EXPECT_NEAR(mixed.correlation_length, in_order.correlation_length, 1e-6);
+  for (std::size_t k = 0; k < kCircularCauses; ++k)
+    EXPECT_NEAR(mixed.causes[k].uncertainty, in_order.causes[k].uncertainty, 1e-6 * in_order.causes[k].uncertainty);
 }
 
 TEST(CircularDiagnosis, AShortArcSaysWhatItCannotTell) {
