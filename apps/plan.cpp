@@ -81,6 +81,10 @@ nlohmann::ordered_json plan_json(const Study& study, const StudyPlan& result) {
   json["readings"] = result.readings.size();
   json["time_s"] = result.time;
   json["predicted_volumetric_uncertainty_um"] = 1e3 * result.uncertainty;
+  if (!result.not_identified.errors.empty()) {
+    json["uncertainty_covers"] = kIdentifiedErrorsOnly;
+    json["not_identified"] = result.not_identified.names;
+  }
   json["largest_unseen_part_of_a_prediction"] = result.unseen_part;
   json["exchanges"] = result.plan.exchanges;
   json["predicted_volumetric_uncertainty_with_prior_um"] = 1e3 * result.with_prior;
@@ -174,6 +178,9 @@ void print_plan(const Study& study, const StudyPlan& result) {
   if (study.planning->time > 0 && result.time > study.planning->time)
     fmt::print("warning: this is more than the {:.0f} min allowed\n", study.planning->time / 60);
   fmt::print("predicted volumetric standard uncertainty (root mean square): {:.3f} um\n", 1e3 * result.uncertainty);
+  if (!result.not_identified.errors.empty())
+    fmt::print("  of the {}: not in the model and not covered are {}\n", kIdentifiedErrorsOnly,
+               not_identified_names(study, result.not_identified));
   fmt::print("\nhow many are enough: {}\n", result.enough_words);
   fmt::print("                  chosen    best grid\n");
   for (std::size_t k = 0; k < result.curve.size(); ++k) {

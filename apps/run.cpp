@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "abbe/formats/json_text.h"
+#include "abbe/formats/results_folder.h"
 #include "abbe/formats/study_file.h"
 #include "command.h"
 #include "study/advice.h"
@@ -28,6 +29,7 @@ void add_run_command(CommandLine& line) {
     line.run = [options]() -> int {
       Study study = read_study(options->study);
       if (!options->output.empty()) study.output = options->output;
+      check_results_folder(study.output);
       StudyResult result;
       {
         Progress progress(study.simulation ? "simulating readings" : "reading measurements");

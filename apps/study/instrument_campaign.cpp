@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "abbe/errors/random_stream.h"
@@ -49,6 +51,25 @@ std::shared_ptr<const Instrument> true_device(const Study& study, std::size_t se
   return device.with_values(values);
 }
 
+/// A dial along its face, a beam past its mirror: nothing could be read there.
+void refuse_unreadable(const Machine& machine, const Instrument& device, const InstrumentReadings& readings,
+                       const std::string& setup) {
+  for (std::size_t c = 0; c < readings.measured.size(); ++c) {
+    for (std::size_t k = 0; k < readings.count(); ++k) {
+      if (std::isfinite(readings.measured[c][k])) continue;
+      std::string pose;
+      for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+        pose += fmt::format("{}{} = {:.6g} {}", i > 0 ? ", " : "", machine.axes[i].name,
+                            readings.poses.axis[i][k] * (rotary ? 180 / std::numbers::pi : 1), rotary ? "deg" : "mm");
+      }
+      throw InputError({.file = setup, .field = device.components()[c].name},
+                       fmt::format("reads nothing at {} ({})", pose, device.items()[readings.item[k]].name),
+                       "an instrument that meets what it measures at all poses of the plan");
+    }
+  }
+}
+
 void simulate(const Study& study, std::size_t setup_index, const ErrorSet& truth, InstrumentCampaign& result) {
   const Setup& setup = study.setups[setup_index];
   const std::shared_ptr<const Instrument> device = true_device(study, setup_index);
@@ -63,6 +84,7 @@ void simulate(const Study& study, std::size_t setup_index, const ErrorSet& truth
     options.outlier_fraction = study.simulation->outliers.fraction;
     options.outlier_mm = study.simulation->outliers.size;
     const SimulatedInstrument simulated = simulate_instrument(study.machine, truth, device, plan, options);
+    refuse_unreadable(study.machine, *device, simulated.readings, setup.name);
     const std::size_t offset = result.readings.count();
     for (const std::uint32_t outlier : simulated.outliers) {
       result.outliers.push_back(static_cast<std::uint32_t>(offset) + outlier);

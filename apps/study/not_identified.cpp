@@ -16,11 +16,9 @@ constexpr std::size_t kPoses = 250;
 constexpr double kNothing_mm = 1e-6;
 
 /// Poses at which errors are asked for their effect: random over where the identified ones are known.
-PoseList poses_of(const Study& study, const StudyResult& result) {
+PoseList poses_of(const Study& study, const ErrorSet& model) {
   std::vector<AxisRange> ranges;
-  for (std::size_t i = 0; i < study.machine.axes.size(); ++i) {
-    ranges.push_back(known_range(study.machine, result.identification.errors, i, 2));
-  }
+  for (std::size_t i = 0; i < study.machine.axes.size(); ++i) ranges.push_back(known_range(study.machine, model, i, 2));
   return random_plan(study.machine, ranges, kPoses, study.seed * 7919);
 }
 
@@ -139,12 +137,10 @@ std::string remedy_text(const NotIdentifiedRemedy& one) {
 
 }  // namespace
 
-NotIdentified find_not_identified(const Study& study, const StudyResult& result) {
+NotIdentified find_not_in_model(const Study& study, const ErrorSet& model) {
   const Machine& machine = study.machine;
-  const PoseList poses = poses_of(study, result);
   NotIdentified found;
-  found.errors = unmodelled_errors(machine, result.model.problem.errors, pose_source(poses));
-  if (found.errors.empty()) return found;
+  found.errors = unmodelled_errors(machine, model, pose_source(poses_of(study, model)));
   double square = 0;
   for (const UnmodelledError& error : found.errors) {
     square += error.effect * error.effect;
@@ -152,9 +148,17 @@ NotIdentified find_not_identified(const Study& study, const StudyResult& result)
                                             : error_motion_name(machine, error.axis, error.component));
   }
   found.usual = std::sqrt(square);
+  return found;
+}
+
+NotIdentified find_not_identified(const Study& study, const StudyResult& result) {
+  const ErrorSet& model = result.model.problem.errors;
+  NotIdentified found = find_not_in_model(study, model);
+  if (found.errors.empty()) return found;
   if (result.campaign.truth) {
     const ErrorSet& truth = *result.campaign.truth;
-    found.actual = volumetric_rms(machine, truth, errors_without(truth, found.errors), poses);
+    const PoseList poses = poses_of(study, model);
+    found.actual = volumetric_rms(study.machine, truth, errors_without(truth, found.errors), poses);
   }
   add_remedies(study, result, found);
   return found;

@@ -28,6 +28,9 @@ struct NotIdentified {
   std::vector<NotIdentifiedRemedy> remedies;
 };
 
+/// Those that a model of errors does not hold, at random poses over where the model is known; without remedies.
+NotIdentified find_not_in_model(const Study& study, const ErrorSet& model);
+
 /// @param result  usable, with its campaign
 NotIdentified find_not_identified(const Study& study, const StudyResult& result);
 

@@ -277,6 +277,7 @@ StudyPlan plan_study(const Study& study, const std::function<void(double)>& prog
   say_what_is_enough(plan, result);
   if (progress) progress(0.85);
   compare_with_grids(model, *space, predictions, result);
+  result.not_identified = find_not_in_model(study, model.errors());
   if (progress) progress(1);
   return result;
 }

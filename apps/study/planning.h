@@ -11,6 +11,7 @@
 #include "abbe/identify/planning.h"
 #include "abbe/identify/problem.h"
 #include "abbe/instruments/tracker.h"
+#include "study/not_identified.h"
 
 namespace abbe {
 
@@ -115,6 +116,7 @@ struct StudyPlan {
   std::optional<GridPoint> equal_grid;      ///< smallest determined grid found that is as good as the plan
   std::size_t random_tried = 0;
   std::optional<PlanPoint> random_poses;  ///< median of choices of as many candidates at random
+  NotIdentified not_identified;           ///< errors of the machine that no predicted uncertainty covers
 };
 
 /// Chooses readings for a study with a [plan] table. @throws InputError

@@ -80,7 +80,7 @@ export function statisticsTable(kind: Quantity, hasUncertainty: boolean, summary
     {name: kind.views.length > 1 ? 'before' : 'as it is', key: `${stem}_before_${kind.key}`, unit: kind.unit},
     {name: 'after', key: `${stem}_after_${kind.key}`, unit: kind.unit},
   ];
-  if (hasUncertainty && kind.id === 'displacement') rows.push({name: 'expanded uncertainty (k = 2)', key: 'predicted_expanded_uncertainty_um', unit: 'µm'});
+  if (hasUncertainty && kind.id === 'displacement') rows.push({name: `expanded uncertainty (k = 2)${summary?.uncertainty_covers ? ` of the ${summary.uncertainty_covers}` : ''}`, key: 'predicted_expanded_uncertainty_um', unit: 'µm'});
   const present = rows.flatMap((row) => {
     const statistics = (summary as unknown as Record<string, Statistics | undefined>)[row.key];
     return statistics ? [{...row, statistics}] : [];

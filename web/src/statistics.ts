@@ -19,7 +19,7 @@ function rowsOf(summary: Summary): {name: string; key: string; unit: string; sta
     const corrected = errors.position_after_um !== undefined;
     add(`Position error, ${words}, ${corrected ? 'before' : 'as it is'}`, `${group}.position_before_um`, 'µm', errors.position_before_um);
     add(`Position error, ${words}, after`, `${group}.position_after_um`, 'µm', errors.position_after_um);
-    add(`Expanded uncertainty (k = 2), ${words}`, `${group}.predicted_expanded_uncertainty_um`, 'µm', errors.predicted_expanded_uncertainty_um);
+    add(`Expanded uncertainty (k = 2)${errors.uncertainty_covers ? ` of the ${errors.uncertainty_covers}` : ''}, ${words}`, `${group}.predicted_expanded_uncertainty_um`, 'µm', errors.predicted_expanded_uncertainty_um);
     add(`Orientation error, ${words}, ${corrected ? 'before' : 'as it is'}`, `${group}.orientation_before_urad`, 'µrad', errors.orientation_before_urad);
     add(`Orientation error, ${words}, after`, `${group}.orientation_after_urad`, 'µrad', errors.orientation_after_urad);
   }

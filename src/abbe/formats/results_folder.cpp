@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPartial = ".partial-";
 constexpr std::string_view kOld = ".old-";
+constexpr const char* kMarker = ".abbe-results";
 
 [[noreturn]] void fail(const fs::path& path, int error) {
   throw InputError({path.string(), 0, 0, ""}, "cannot be written: " + std::generic_category().message(error),
@@ -107,15 +108,26 @@ void remove_partials_of_killed_writers(const fs::path& path) {
   }
 }
 
+void check_results_folder(const fs::path& name) {
+  std::error_code error;
+  const auto status = fs::status(name, error);
+  if (!fs::exists(status)) return;
+  if (!fs::is_directory(status)) throw InputError({name.string(), 0, 0, ""}, "is a file", "a folder for results");
+  for (const char* const own : {kMarker, "summary.json", "evaluation.json"}) {
+    if (fs::exists(name / own, error)) return;
+  }
+  // Results replace a folder as a whole: what somebody else keeps there must not go with it.
+  if (fs::directory_iterator(name, error) != fs::directory_iterator() || error) {
+    throw InputError({name.string(), 0, 0, ""}, "holds files that are no results of abbe",
+                     "a new or empty folder, or one with results, which are replaced");
+  }
+}
+
 ResultsFolder::ResultsFolder(fs::path name) : name_(std::move(name)) {
   if (name_.filename().empty()) name_ = name_.parent_path();
   partial_ = partial_name(name_);
+  check_results_folder(name_);
   std::error_code error;
-  const auto status = fs::status(name_, error);
-  if (fs::exists(status) && !fs::is_directory(status)) {
-    throw InputError({name_.string(), 0, 0, ""}, "is a file", "a folder for results");
-  }
-  error.clear();
   if (!name_.parent_path().empty()) fs::create_directories(name_.parent_path(), error);
   if (error) fail(name_, error.value());
   remove_partials_of_killed_writers(name_);
@@ -138,6 +150,7 @@ void ResultsFolder::write(const fs::path& relative, std::string_view contents) {
 }
 
 void ResultsFolder::commit() {
+  write(kMarker, "Results of abbe: the next ones written here replace this folder as a whole.\n");
   std::error_code error;
   for (fs::recursive_directory_iterator entry(partial_, error), end; !error && entry != end; entry.increment(error)) {
     if (entry->is_directory()) flush_folder(entry->path());

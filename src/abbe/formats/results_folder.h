@@ -5,6 +5,11 @@
 
 namespace abbe {
 
+/// Whether results may be written under a name: a new or an empty folder, or one that holds results already (the file
+/// ".abbe-results" in it says so, or the summary of an earlier version), which the next ones replace as a whole.
+/// For commands that compute for long before they write. @throws InputError for a file, or a folder with other files
+void check_results_folder(const std::filesystem::path& name);
+
 /// A folder of results that appears whole or not at all.
 ///
 /// Everything is written to "<name>.partial-<process>"; commit() flushes it to the disk and exchanges it with an older
@@ -12,7 +17,7 @@ namespace abbe {
 /// destructor removes what was written. What killed processes left behind is removed by the next writer of that name.
 class ResultsFolder {
  public:
-  /// @throws InputError if the folder cannot be made
+  /// @throws InputError if the folder cannot be made, as check_results_folder()
   explicit ResultsFolder(std::filesystem::path name);
   ~ResultsFolder();
   ResultsFolder(const ResultsFolder&) = delete;

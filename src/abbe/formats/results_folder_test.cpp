@@ -157,6 +157,24 @@ TEST(ResultsFolder, SaysWhyItCannotBeMade) {
   EXPECT_NE(message.find("cannot be written: "), std::string::npos) << message;
 }
 
+TEST(ResultsFolder, AFolderWithOtherFilesIsNotReplaced) {
+  const fs::path folder = test_folder("abbe_foreign");
+  fs::create_directories(folder / "r/measured");
+  const std::string refused = (folder / "r").string() +
+                              ": holds files that are no results of abbe; expected a new or empty folder, or one with "
+                              "results, which are replaced";
+  EXPECT_EQ(message_of([&] { write_result(folder / "r", "one"); }), refused);
+  std::ofstream(folder / "r/keep.txt") << "mine";
+  EXPECT_EQ(message_of([&] { write_result(folder / "r/", "one"); }), refused);
+  EXPECT_EQ(contents(folder / "r/keep.txt"), "mine");
+  fs::remove_all(folder / "r");
+  fs::create_directories(folder / "r");
+  write_result(folder / "r", "one");  // empty
+  fs::remove(folder / "r/summary.json");
+  write_result(folder / "r", "two");  // known by its marker
+  EXPECT_EQ(contents(folder / "r/summary.json"), "two");
+}
+
 TEST(AtomicFile, ReplacesOrLeavesTheOldOne) {
   const fs::path folder = test_folder("abbe_atomic");
   write_file_atomically(folder / "a.txt", "one");
