@@ -51,7 +51,7 @@ std::shared_ptr<const Instrument> true_device(const Study& study, std::size_t se
   return device.with_values(values);
 }
 
-/// A dial along its face, a beam past its mirror: nothing could be read there.
+/// A dial along its face, a beam past its mirror: nothing could be read there on the nominal machine.
 void refuse_unreadable(const Machine& machine, const Instrument& device, const InstrumentReadings& readings,
                        const std::string& setup) {
   for (std::size_t c = 0; c < readings.measured.size(); ++c) {
@@ -84,14 +84,15 @@ void simulate(const Study& study, std::size_t setup_index, const ErrorSet& truth
     options.outlier_fraction = study.simulation->outliers.fraction;
     options.outlier_mm = study.simulation->outliers.size;
     const SimulatedInstrument simulated = simulate_instrument(study.machine, truth, device, plan, options);
-    refuse_unreadable(study.machine, *device, simulated.readings, setup.name);
+    options.noise_factor = 0;
+    options.outlier_fraction = 0;
+    refuse_unreadable(study.machine, *device,
+                      simulate_instrument(study.machine, ErrorSet{}, setup.device, plan, options).readings, setup.name);
     const std::size_t offset = result.readings.count();
     for (const std::uint32_t outlier : simulated.outliers) {
       result.outliers.push_back(static_cast<std::uint32_t>(offset) + outlier);
     }
     result.readings.append(simulated.readings);
-    options.noise_factor = 0;
-    options.outlier_fraction = 0;
     result.exact.append(simulate_instrument(study.machine, truth, device, plan, options).readings);
   }
 }

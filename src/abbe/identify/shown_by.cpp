@@ -45,6 +45,12 @@ Eigen::MatrixXd left_open(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& op
   return open * eigen.eigenvectors().leftCols(left);
 }
 
+/// Words of a measurement without the comma of a sentence that was to go on.
+std::string clause(std::string words) {
+  if (words.ends_with(',')) words.pop_back();
+  return words;
+}
+
 /// Largest part of the columns that lies in a space, relative to them.
 double part_in(const Eigen::MatrixXd& space, const Eigen::MatrixXd& directions) {
   double largest = 0;
@@ -91,7 +97,7 @@ std::vector<ShownBy> shown_by(const Problem& problem, const std::vector<std::vec
     for (std::size_t k = 0; k < possible.size() && !shown.shown; ++k) {
       if (part_in(left[k], unseen) > kLeftUnseen) continue;
       shown.shown = true;
-      shown.remedy = possible[k].words;
+      shown.remedy = clause(possible[k].words);
     }
     Eigen::MatrixXd rest = unseen;
     for (int step = 0; step < kMostTogether && !shown.shown; ++step) {
@@ -105,9 +111,7 @@ std::vector<ShownBy> shown_by(const Problem& problem, const std::vector<std::vec
         }
       }
       if (!(least < rest.norm())) break;
-      std::string words = possible[best].words;
-      if (words.ends_with(',')) words.pop_back();  // of a clause that was to go on
-      shown.remedy += (shown.remedy.empty() ? "" : ", together with ") + words;
+      shown.remedy += (shown.remedy.empty() ? "" : ", together with ") + clause(possible[best].words);
       rest = left[best] * (left[best].transpose() * rest).eval();
       shown.shown = rest.norm() <= kLeftUnseen * unseen.norm();
     }
