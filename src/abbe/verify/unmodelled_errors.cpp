@@ -16,6 +16,7 @@ using Index = Eigen::Index;
 constexpr double kBeside = 1e-3;
 // Of unit columns; a direction of the model that is weaker is rounding.
 constexpr double kModelRank = 1e-7;
+constexpr double kNothing = 1e-10;
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kNearlyATurn = 0.9 * kTurn;
 
@@ -164,9 +165,22 @@ std::vector<UnmodelledError> unmodelled_errors(const Machine& machine, const Err
   for (std::size_t k = 0; k < known.size(); ++k) {
     const Eigen::VectorXd column = fields.by_parameter.col(known[k]);
     const double length = column.norm();
-    columns.col(6 + static_cast<Index>(k)) = length > 0 ? Eigen::VectorXd(column / length) : column;
+    // An error that moves nothing leaves rounding, which is no direction.
+    const double scale = length > kNothing * root * std::max(fields.size, 1.0) ? 1 / length : 0.0;
+    columns.col(6 + static_cast<Index>(k)) = scale * column;
   }
   Eigen::MatrixXd span = orthonormal_columns(columns, kModelRank);
+
+  // Linear axes are square to each other whichever way all of them stand together: that is the position of rotary axes.
+  Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(fields.by_parameter.rows(), 3);
+  for (std::size_t l = 0; l < all.locations.size(); ++l) {
+    const LocationError& one = all.locations[l];
+    if (machine.axes[one.axis].kind == AxisKind::linear && is_rotation(one.component))
+      turned.col(static_cast<int>(one.component) - 3) +=
+          fields.by_parameter.col(first_location + static_cast<Index>(l));
+  }
+  Eigen::MatrixXd span_of_linear = span;
+  for (Index k = 0; k < 3; ++k) extend(span_of_linear, turned.col(k));
 
   std::vector<UnmodelledError> result;
   std::size_t motion = model.motions.size();
@@ -177,8 +191,11 @@ std::vector<UnmodelledError> unmodelled_errors(const Machine& machine, const Err
     // What errors of this size can do at most on a machine of this size.
     const double possible = root * (angle ? std::max(fields.size, 1.0) : 1.0);
     if (error.is_location) {
-      const double beside = extend(span, fields.by_parameter.col(location++));
+      const Eigen::VectorXd column = fields.by_parameter.col(location++);
+      const bool linear = machine.axes[error.axis].kind == AxisKind::linear;
+      const double beside = extend(linear ? span_of_linear : span, column);
       if (beside <= kBeside * possible) continue;
+      if (linear) extend(span, column);
       error.effect = size * beside / root;
     } else {
       const Index first = first_of_motion[motion];

@@ -29,10 +29,10 @@ struct UnmodelledErrorOptions {
 /// result does not cover them.
 ///
 /// First the six error motions of every axis that moves, in chain order. Then location errors: of linear axes those
-/// that are independent, from the last of X, Y, Z on (squareness: EA0Z, EB0Z, EC0Y), of rotary axes position and tilt
-/// of the axis average line as far as independent. Zero positions and the tool offset are measured whenever a workpiece
-/// or a tool is set up and are not listed. An error is listed if more than 1e-3 of its effect is left beside rigid
-/// motions and the model. To first order at errors of zero.
+/// that are independent while all of them may turn together, from the last of X, Y, Z on (squareness: EA0Z, EB0Z,
+/// EC0Y), of rotary axes position and tilt of the axis average line as far as independent. Zero positions and the tool
+/// offset are measured whenever a workpiece or a tool is set up and are not listed. An error is listed if more than
+/// 1e-3 of its effect is left beside rigid motions and the model. To first order at errors of zero.
 /// @param model  its ranges decide which poses count
 /// @throws std::invalid_argument if the poses do not fit the machine
 std::vector<UnmodelledError> unmodelled_errors(const Machine& machine, const ErrorSet& model, const PoseSource& poses,
