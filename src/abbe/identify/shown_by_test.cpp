@@ -53,7 +53,8 @@ class LevelStudy {
 TEST(ShownBy, TellsWhatTheReadingsShowFromWhatAnotherInstrumentWould) {
   const Machine machine = test::three_axis_mill();
   const Basis basis{BasisKind::legendre, 3, machine.axes[0].travel_min, machine.axes[0].travel_max};
-  const LevelStudy study(machine, 0, {Component::A, Component::B, Component::C, Component::Y}, basis);
+  const LevelStudy study(machine, 0,
+                         {Component::A, Component::B, Component::C, Component::X, Component::Y, Component::Z}, basis);
   // Second and third order of each: a constant is no more than how the table lies.
   const std::vector<ShownBy> shown =
       shown_by(study.problem, {{2, 3}, {6, 7}, {10, 11}, {14, 15}}, possible_measurements(study.problem));
@@ -81,7 +82,8 @@ TEST(ShownBy, APolygonPrismShowsWhatALevelOnARotaryTableDoesNot) {
   const Machine machine = test::rotary_table();
   Basis basis{BasisKind::fourier, 2, 0, kTurn};
   basis.period = kTurn;
-  const LevelStudy study(machine, 0, {Component::A, Component::B, Component::C, Component::X}, basis);
+  const LevelStudy study(machine, 0,
+                         {Component::A, Component::B, Component::C, Component::X, Component::Y, Component::Z}, basis);
   // Second harmonics. The level turns with the table and sees what it leans to.
   const std::vector<ShownBy> shown =
       shown_by(study.problem, {{3, 4}, {8, 9}, {13, 14}, {18, 19}}, possible_measurements(study.problem));
