@@ -25,7 +25,6 @@ bool narrow_to_known(const ErrorSet& errors, std::size_t axis, AxisRange& range)
   return range.from != from || range.to != to;
 }
 
-
 /// Uncertainties follow from those stated for the readings: residuals that these do not explain make them too small.
 void warn_of_misfit(StudyResult& result) {
   constexpr double kNoChance = 1e-4;
