@@ -71,8 +71,9 @@ async function listsOf(page, data, expect) {
   // The page puts what lacks a measurement first; every entry is there once, whole.
   const said = await page.locator('#advice .advice-list > li').allTextContents();
   for (const [i, entry] of (data.advice ?? []).entries()) {
-    const parts = [entry.text, entry.remedy ?? '', ...(entry.parameters ?? [])];
-    const at = said.findIndex((text) => parts.every((part) => text.includes(part)));
+    const text = entry.text.replace(/(\d) u(m|rad)\b/g, '$1\u202fµ$2');
+    const parts = [text, entry.remedy ?? '', ...(entry.parameters ?? [])];
+    const at = said.findIndex((shown) => parts.every((part) => shown.includes(part)));
     expect(at >= 0, `advice ${i + 1} is not on the page: ${parts.join(' | ')}`);
     if (at >= 0) said.splice(at, 1);
   }
