@@ -26,7 +26,6 @@
 namespace {
 
 constexpr rlim_t kProcessorSeconds = 600;
-constexpr rlim_t kBytes = rlim_t{8} << 30;
 
 void limit(int what, rlim_t most) {
   struct rlimit now {};
@@ -39,8 +38,8 @@ void limit_resources() {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, kProcessorSeconds);
-#ifndef ABBE_SANITIZED
-  limit(RLIMIT_AS, kBytes);
+#ifndef ABBE_SANITIZED  // the sanitizer reserves terabytes of addresses
+  limit(RLIMIT_AS, rlim_t{8} << 30);
 #endif
 }
 
