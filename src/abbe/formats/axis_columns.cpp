@@ -11,20 +11,22 @@ namespace {
 // A command written with few digits may end just outside the travel.
 constexpr double kTravelTolerance = 1e-6;
 
-void check_axis_travel(std::string_view text, const std::string& file, const Axis& axis, const CsvValues& values) {
-  if (axis.endless) return;
-  for (std::size_t row = 0; row < values.numbers.size(); ++row) {
-    const double command = values.numbers[row];
-    if (command >= axis.travel_min - kTravelTolerance && command <= axis.travel_max + kTravelTolerance) continue;
+}  // namespace
+
+std::optional<OutsideTravel> first_outside_travel(const Axis& axis, std::span<const double> commands) {
+  if (axis.endless) return std::nullopt;
+  for (std::size_t row = 0; row < commands.size(); ++row) {
+    if (commands[row] >= axis.travel_min - kTravelTolerance && commands[row] <= axis.travel_max + kTravelTolerance) {
+      continue;
+    }
     const Unit& unit = unit_named(axis_quantity(axis), axis.kind == AxisKind::linear ? "mm" : "deg");
     const double scale = 1 / unit.factor;
-    throw InputError({file, csv_line(text, row), 0, values.header},
-                     fmt::format("{:.9g} {} is outside the travel of axis {}", command * scale, unit.suffix, axis.name),
-                     fmt::format("{:.9g} to {:.9g} {}", axis.travel_min * scale, axis.travel_max * scale, unit.suffix));
+    return OutsideTravel{
+        row, fmt::format("{:.9g} {} is outside the travel of axis {}", commands[row] * scale, unit.suffix, axis.name),
+        fmt::format("{:.9g} to {:.9g} {}", axis.travel_min * scale, axis.travel_max * scale, unit.suffix)};
   }
+  return std::nullopt;
 }
-
-}  // namespace
 
 std::vector<CsvColumn> axis_columns(const Machine& machine) {
   std::vector<CsvColumn> columns;
@@ -39,7 +41,11 @@ PoseList take_poses(std::string_view text, const std::string& file, const Machin
   PoseList list;
   list.axis.resize(machine.axes.size());
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    if (check_travel) check_axis_travel(text, file, machine.axes[i], table.columns[i]);
+    const CsvValues& values = table.columns[i];
+    const auto outside = check_travel ? first_outside_travel(machine.axes[i], values.numbers) : std::nullopt;
+    if (outside) {
+      throw InputError({file, csv_line(text, outside->row), 0, values.header}, outside->problem, outside->expected);
+    }
     list.axis[i] = std::move(table.columns[i].numbers);
   }
   return list;

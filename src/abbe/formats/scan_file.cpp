@@ -24,9 +24,6 @@
 namespace abbe {
 namespace {
 
-// A command written with few digits may end just outside the travel.
-constexpr double kTravelTolerance = 1e-6;
-
 /// One run of lines on its way from text to text; its memory serves the next run.
 class ScanRun {
  public:
@@ -63,18 +60,9 @@ class ScanRun {
 
  private:
   void check_travel(const CsvRows& rows, std::size_t from, const Axis& axis, const CsvValues& values) {
-    if (axis.endless) return;
-    for (std::size_t row = 0; row < values.numbers.size(); ++row) {
-      const double command = values.numbers[row];
-      if (command >= axis.travel_min - kTravelTolerance && command <= axis.travel_max + kTravelTolerance) continue;
-      const Unit& unit = unit_named(axis_quantity(axis), axis.kind == AxisKind::linear ? "mm" : "deg");
-      const double scale = 1 / unit.factor;
-      refusal = TextRefusal{
-          rows.row_offset(from, row), values.header,
-          fmt::format("{:.9g} {} is outside the travel of axis {}", command * scale, unit.suffix, axis.name),
-          fmt::format("{:.9g} to {:.9g} {}", axis.travel_min * scale, axis.travel_max * scale, unit.suffix)};
-      return;
-    }
+    const auto outside = first_outside_travel(axis, values.numbers);
+    if (outside)
+      refusal = TextRefusal{rows.row_offset(from, outside->row), values.header, outside->problem, outside->expected};
   }
 
   /// Closes the gaps of the points that do not count.

@@ -5,17 +5,14 @@
 #include <cmath>
 
 #include "abbe/geometry/singular_values.h"
+#include "abbe/identify/measurements_together.h"
 #include "abbe/identify/normal_equations.h"
-#include "abbe/identify/trial_readings.h"
 
 namespace abbe {
 namespace {
 
 using Eigen::Index;
-// As in unseen.cpp.
-constexpr double kLeftUnseen = 0.1;
 constexpr double kStillZero = 1e-7;
-constexpr int kMostTogether = 3;
 constexpr double kSeenAbove = 1;  // standard uncertainties of all readings together
 
 /// Directions that the readings of a problem leave open, in parameters of typical size: orthonormal columns.
@@ -43,12 +40,6 @@ Eigen::MatrixXd left_open(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& op
   Index left = 0;
   while (left < open.cols() && eigen.eigenvalues()[left] < limit * limit) ++left;
   return open * eigen.eigenvectors().leftCols(left);
-}
-
-/// Words of a measurement without the comma of a sentence that was to go on.
-std::string clause(std::string words) {
-  if (words.ends_with(',')) words.pop_back();
-  return words;
 }
 
 /// Largest part of the columns that lies in a space, relative to them.
@@ -97,25 +88,13 @@ std::vector<ShownBy> shown_by(const Problem& problem, const std::vector<std::vec
     for (std::size_t k = 0; k < possible.size() && !shown.shown; ++k) {
       if (part_in(left[k], unseen) > kLeftUnseen) continue;
       shown.shown = true;
-      shown.remedy = clause(possible[k].words);
+      shown.remedy = clause_of(possible[k]);
     }
-    Eigen::MatrixXd rest = unseen;
-    for (int step = 0; step < kMostTogether && !shown.shown; ++step) {
-      std::size_t best = 0;
-      double least = rest.norm();
-      for (std::size_t k = 0; k < left.size(); ++k) {
-        const double after = (left[k].transpose() * rest).norm();
-        if (after < 0.999 * least) {
-          least = after;
-          best = k;
-        }
-      }
-      if (!(least < rest.norm())) break;
-      shown.remedy += (shown.remedy.empty() ? "" : ", together with ") + clause(possible[best].words);
-      rest = left[best] * (left[best].transpose() * rest).eval();
-      shown.shown = rest.norm() <= kLeftUnseen * unseen.norm();
+    if (!shown.shown) {
+      const MeasurementsTogether together = measurements_together(possible, left, unseen);
+      shown.shown = together.enough;
+      shown.remedy = together.enough ? together.words : "only several of the measurements tried, together";
     }
-    if (!shown.shown) shown.remedy = "only several of the measurements tried, together";
     result.push_back(shown);
   }
   return result;

@@ -10,16 +10,15 @@
 #include <numeric>
 
 #include "abbe/geometry/singular_values.h"
+#include "abbe/identify/measurements_together.h"
 #include "abbe/identify/normal_equations.h"
 #include "abbe/identify/parameter_words.h"
-#include "abbe/identify/trial_readings.h"
 
 namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
 // A direction is separable if less than this part of it is left unseen.
-constexpr double kLeftUnseen = 0.1;
 constexpr double kStillZero = 1e-7;
 constexpr double kSeenAbove = 1;  // standard uncertainties of all trial readings together
 constexpr double kSameDirection = 0.4;
@@ -169,24 +168,7 @@ class Adviser {
 
   /// No single measurement shows all of a direction: the ones that do it one after the other.
   std::string together(const std::vector<Eigen::MatrixXd>& left, const Eigen::VectorXd& direction) const {
-    std::string text;
-    Eigen::VectorXd rest = direction;
-    for (int step = 0; step < 3 && rest.norm() > kLeftUnseen * direction.norm(); ++step) {
-      std::size_t best = 0;
-      double least = rest.norm();
-      for (std::size_t k = 0; k < left.size(); ++k) {
-        const double after = (left[k].transpose() * rest).norm();
-        if (after < 0.999 * least) {
-          least = after;
-          best = k;
-        }
-      }
-      if (!(least < rest.norm())) break;
-      std::string words = possible_[best].words;
-      if (words.ends_with(',')) words.pop_back();  // of a clause that was to go on
-      text += (text.empty() ? "" : ", together with ") + words;
-      rest = left[best] * (left[best].transpose() * rest);
-    }
+    const std::string text = measurements_together(possible_, left, direction).words;
     return text.empty() ? "several of the measurements tried would show it together" : text + " would show it";
   }
 

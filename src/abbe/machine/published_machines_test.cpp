@@ -1,17 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <map>
 #include <numbers>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/inverse_kinematics.h"
 #include "abbe/machine/machines_for_test.h"
+#include "abbe/machine/reference_rows_for_test.h"
 
 /// Nominal kinematics of published machines against numbers computed by others; see tests/golden/*/README.md.
 namespace abbe {
@@ -19,28 +17,10 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// One row of a reference table: text by column name.
-using Row = std::map<std::string, std::string>;
+using Row = test::ReferenceRow;
 
 std::vector<Row> read_rows(const std::string& name) {
-  std::ifstream file(std::string(ABBE_GOLDEN) + "/" + name);
-  std::vector<std::string> columns;
-  std::vector<Row> rows;
-  for (std::string line; std::getline(file, line);) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    std::istringstream cells(line);
-    std::vector<std::string> values;
-    for (std::string cell; std::getline(cells, cell, ',');) values.push_back(cell);
-    if (columns.empty()) {
-      columns = values;
-      continue;
-    }
-    Row row;
-    for (std::size_t i = 0; i < columns.size(); ++i) row[columns[i]] = values.at(i);
-    rows.push_back(row);
-  }
-  EXPECT_FALSE(rows.empty()) << name;
-  return rows;
+  return test::reference_rows(std::string(ABBE_GOLDEN) + "/" + name);
 }
 
 double value(const Row& row, const std::string& column) { return std::stod(row.at(column)); }
