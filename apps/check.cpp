@@ -9,6 +9,7 @@
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/machine/drawing.h"
+#include "abbe/machine/machine_check.h"
 #include "check_geometry.h"
 #include "command.h"
 
@@ -72,6 +73,7 @@ nlohmann::ordered_json machine_json(const Machine& machine) {
     entry["location_errors"] = location_names(machine, i);
     json["axes"].push_back(entry);
   }
+  json["notes"] = find_remarks(machine);
   return json;
 }
 
@@ -95,6 +97,7 @@ void print_machine(const Machine& machine) {
     locations += names.size();
   }
   fmt::print("{} error motions, {} location errors\n", motions, locations);
+  for (const std::string& remark : find_remarks(machine)) fmt::print("note: {}\n", remark);
 }
 
 void refuse_if_given(const CLI::Option* option, const char* why) {

@@ -191,8 +191,10 @@ void write_folder(const std::filesystem::path& output, const std::vector<Populat
     for (std::size_t i = 0; i <= p.histogram.counts.size(); ++i) {
       edges.push_back(for_drawing(1e3 * (p.histogram.from + p.histogram.width * static_cast<double>(i))));
     }
-    histograms.push_back(
-        {{"title", "Integrated error, " + row.name}, {"edges_um", edges}, {"before_counts", p.histogram.counts}});
+    histograms.push_back({{"title", "Integrated error, " + row.name},
+                          {"edges_um", edges},
+                          {"before_counts", p.histogram.counts},
+                          {"before_percentiles_um", {{"median", 1e3 * p.norm.median}, {"p95", 1e3 * p.norm.p95}}}});
   }
   data["histograms"] = histograms;
   data["tables"] = {

@@ -35,6 +35,7 @@ void read_mapping(const PointsOptions& options, ColumnMapping& mapping) {
     }
   }
   mapping.ignore = options.ignore;
+  mapping.ignored_by = "--ignore";
 }
 
 ProbeBeam beam_of(const PointsOptions& options, const Machine& machine) {

@@ -96,6 +96,10 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     selection.seed = study.seed;
     selection.identify = options;
     result.order_selection = select_model(study, result.campaign, selection, result.model);
+    if (!result.order_selection->done) {
+      result.warnings.push_back(
+          "orders: no model of the range could be identified with poses held out; the largest orders are used");
+    }
   }
   StagedIdentification staged = identify_in_stages(problem, plan.strategy, options);
   result.stages = std::move(staged.stages);

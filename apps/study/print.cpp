@@ -40,7 +40,7 @@ void print_study(const Study& study, const StudyResult& result) {
                result.monte_carlo->samples, figures["smallest_uncertainty_ratio"].get<double>(),
                figures["largest_uncertainty_ratio"].get<double>());
   }
-  if (result.order_selection) {
+  if (result.order_selection && result.order_selection->done) {
     fmt::print("  orders chosen at held-out poses:");
     for (std::size_t g = 0; g < result.order_selection->orders.size(); ++g) {
       fmt::print(" {} {}", result.model.order_groups[g].name, result.order_selection->orders[g]);

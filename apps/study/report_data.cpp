@@ -157,8 +157,14 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
       before.push_back(for_drawing(1e3 * unseen.before[k]));
       after.push_back(for_drawing(1e3 * unseen.after[k]));
     }
-    json["histograms"] = {
-        {{"title", "Volumetric error: " + unseen.description}, {"before_um", before}, {"after_um", after}}};
+    const auto percentiles = [](const SampleStatistics& s) {
+      return nlohmann::ordered_json{{"median", 1e3 * s.median}, {"p95", 1e3 * s.p95}};
+    };
+    json["histograms"] = {{{"title", "Volumetric error: " + unseen.description},
+                           {"before_um", before},
+                           {"after_um", after},
+                           {"before_percentiles_um", percentiles(unseen.before_statistics)},
+                           {"after_percentiles_um", percentiles(unseen.after_statistics)}}};
   }
   if (result.usable()) {
     const std::optional<ErrorSet> truth = truth_in_gauge(study, result);

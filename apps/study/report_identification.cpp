@@ -46,16 +46,17 @@ nlohmann::ordered_json orders_json(const StudyResult& result) {
   const OrderSelection& selection = *result.order_selection;
   nlohmann::ordered_json orders;
   std::vector<std::string> labels;
-  std::vector<double> held_out;
+  nlohmann::ordered_json held_out = nlohmann::ordered_json::array();
   int chosen = -1;
   for (const OrderTrial& trial : selection.trials) {
     std::string label;
     for (std::size_t g = 0; g < trial.orders.size() && g < result.model.order_groups.size(); ++g) {
       label += fmt::format("{}{} {}", g == 0 ? "" : ", ", result.model.order_groups[g].name, trial.orders[g]);
     }
-    if (trial.orders == selection.orders) chosen = static_cast<int>(labels.size());
+    if (selection.done && trial.orders == selection.orders) chosen = static_cast<int>(labels.size());
     labels.push_back(label);
-    held_out.push_back(for_drawing(trial.held_out_rms));
+    held_out.push_back(nullptr);  // not identified
+    if (trial.held_out_rms > 0) held_out.back() = for_drawing(trial.held_out_rms);
   }
   orders["label"] = labels;
   orders["held_out_normalised_rms"] = held_out;

@@ -25,6 +25,16 @@ class FastestReporter : public benchmark::ConsoleReporter {
   std::map<std::string, double> fastest;  ///< s per item
 };
 
+/// Repetitions of all benchmarks in turn instead of one benchmark after the other: what is compared shares the
+/// machine's good and bad moments.
+inline void initialize(int argc, char** argv) {
+  static char interleaved[] = "--benchmark_enable_random_interleaving=true";
+  std::vector<char*> arguments(argv, argv + argc);
+  arguments.insert(arguments.begin() + 1, interleaved);
+  int count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+}
+
 /// One line of the result; says whether the target is met.
 inline bool report(const char* what, double ratio, double target) {
   std::printf("%-58s %7.2f   target %5.1f   %s\n", what, ratio, target, ratio >= target ? "met" : "MISSED");

@@ -172,7 +172,7 @@ void jacobian_one_core(benchmark::State& state) {
 }  // namespace
 
 int run(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
+  initialize(argc, argv);
   for (const auto& [name, function, real_time] : {std::tuple{"eigen_4x4_chain", &eigen_4x4_chain, false},
                                                   {"full_pose_one_core", &full_pose_one_core, false},
                                                   {"by_hand_one_core", &by_hand_one_core, false},

@@ -115,7 +115,7 @@ void gradients(benchmark::State& state) {
 }  // namespace
 
 int run(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
+  initialize(argc, argv);
   benchmark::RegisterBenchmark("rays_one_by_one", &rays_one_by_one)->Repetitions(7)->MinTime(0.05);
   benchmark::RegisterBenchmark("traced_together", &traced_together)->Repetitions(7)->MinTime(0.05);
   benchmark::RegisterBenchmark("gradients", &gradients)->Repetitions(7)->MinTime(0.05);

@@ -117,7 +117,7 @@ TEST_F(BadMeasurements, AreRefusedWithFileLineFieldAndUnit) {
     if (line_end == std::string::npos || at == std::string::npos) break;
   }
   folder.write("r.csv", without);
-  expect_refused("r.csv:1: Z_mm: missing column; expected Z_mm, Z_um or Z_m");
+  expect_refused("r.csv:1: Z: missing column; expected Z_mm, Z_um or Z_m");
 }
 
 TEST_F(BadMeasurements, DecimalCommasAreNotTakenForColumns) {

@@ -2,6 +2,7 @@
 
 import {Axis, Machine} from './data';
 import {svg} from './dom';
+import {keptApart, Label} from './label_places';
 
 type Point = [number, number, number];
 
@@ -119,11 +120,13 @@ export function axesDrawing(machine: Machine, width: number): Element {
   root.append(svg('rect', {x: ox - 5, y: oy - 5, width: 10, height: 10, class: 'workpiece-mark'}));
   root.append(svg('circle', {cx: tx, cy: ty, r: 4.5, class: 'tool-mark'}));
   const apart = Math.hypot(tx - ox, ty - oy) > 40;
-  root.append(svg('text', {x: ox + 10, y: oy + 18, class: 'small'}, apart ? 'workpiece' : 'workpiece, tool'));
-  if (apart) root.append(svg('text', {x: tx + 10, y: ty + 4, class: 'small'}, 'tool'));
-  for (const word of words) {
+  const labels: Label[] = words.map((word) => {
     const [x, y] = place(word.at);
-    root.append(svg('text', {x, y: y + 5, class: `${word.style} middle`}, word.text));
-  }
+    return {x, y: y + 5, text: word.text, style: `${word.style} middle`, size: 15, middle: true};
+  });
+  labels.push({x: ox + 10, y: oy + 18, text: apart ? 'workpiece' : 'workpiece, tool', style: 'small', size: 12, middle: false});
+  if (apart) labels.push({x: tx + 10, y: ty + 4, text: 'tool', style: 'small', size: 12, middle: false});
+  for (const label of keptApart(labels, [[ox, oy, 6], [tx, ty, 5]]))
+    root.append(svg('text', {x: Math.round(10 * label.x) / 10, y: Math.round(10 * label.y) / 10, class: label.style}, label.text));
   return root;
 }

@@ -1,6 +1,6 @@
 // Distributions before and after, on one logarithmic axis so that both can be read.
 
-import {ErrorMap, Histogram, Summary, Vectors} from './data';
+import {ErrorMap, Histogram, Statistics, Summary, Vectors} from './data';
 import {figure, html, responsive, section, svg} from './dom';
 import {count, quantity} from './format';
 import {plot, Plot, rule} from './plot';
@@ -112,6 +112,12 @@ function one(entry: Histogram): HTMLElement | undefined {
       if (beforeCounts) sets.push({style: 'before', name: afterCounts ? 'before' : 'as it is', data: fromCounts(edges, beforeCounts)});
       if (afterCounts) sets.push({style: 'after', name: 'after', data: fromCounts(edges, afterCounts)});
     }
+    // Percentiles of all poses, where the drawing has some of them or counts.
+    for (const set of sets) {
+      const exact = entry[`${set.style}_percentiles_${suffix}`] as Statistics | undefined;
+      if (exact?.median !== undefined) set.data.median = exact.median;
+      if (exact?.p95 !== undefined) set.data.p95 = exact.p95;
+    }
     if (!sets.length || sets.some((set) => set.data.total === 0)) continue;
     const caption = `${entry.title ?? 'Distribution'}. ${sets
       .map((set) => `${set.name[0].toUpperCase()}${set.name.slice(1)}: 95\u2009% of ${count(set.data.total)} poses below ${quantity(set.data.p95, unit)}`)
@@ -124,7 +130,8 @@ function one(entry: Histogram): HTMLElement | undefined {
 export function histogramSection(entries: Histogram[] | undefined, map: ErrorMap | undefined, summary: Summary | undefined): HTMLElement | undefined {
   let list = entries ?? [];
   if (!list.length && map)
-    list = [{title: 'Volumetric error at the points of the map', before_um: lengths(map.before_um), after_um: map.after_um && lengths(map.after_um)}];
+    list = [{title: 'Volumetric error at the points of the map', before_um: lengths(map.before_um), after_um: map.after_um && lengths(map.after_um),
+      before_percentiles_um: summary?.map?.position_before_um, after_percentiles_um: summary?.map?.position_after_um}];
   const figures = list.map(one).filter((f): f is HTMLElement => f !== undefined);
   const table = summary && statisticsTable(summary);
   if (!figures.length && !table) return undefined;

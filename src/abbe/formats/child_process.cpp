@@ -17,8 +17,6 @@
 
 #include "abbe/formats/input_error.h"
 
-extern char** environ;
-
 namespace abbe {
 namespace {
 

@@ -9,10 +9,7 @@
 namespace abbe {
 namespace {
 
-std::string first_name(const CsvColumn& column) {
-  if (column.is_text || column.quantity == Quantity::dimensionless) return column.base;
-  return fmt::format("{}_{}", column.base, units_of(column.quantity)[0].suffix);
-}
+constexpr std::size_t kMostListed = 12;
 
 std::string names(const CsvColumn& column) {
   return column.is_text ? column.base : accepted_names(column.base, column.quantity);
@@ -49,8 +46,23 @@ std::size_t find_wanted(std::string_view name, const std::vector<CsvColumn>& wan
   return kUnreadColumn;
 }
 
+/// "one of X, Y, station", without the units.
+std::string known_columns(const std::vector<std::string>& known) {
+  std::string text = "one of ";
+  std::size_t listed = 0;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (std::find(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(i), known[i]) !=
+        known.begin() + static_cast<std::ptrdiff_t>(i)) {
+      continue;
+    }
+    if (listed == kMostListed) return text + ", ...";
+    text.append(listed++ == 0 ? "" : ", ").append(known[i]);
+  }
+  return text;
+}
+
 [[noreturn]] void refuse_unknown(const InputError::Place& place, const std::string& name,
-                                 const std::vector<CsvColumn>& wanted) {
+                                 const std::vector<CsvColumn>& wanted, const std::string& ignored_by) {
   std::vector<std::string> known;
   const CsvColumn* longest = nullptr;
   for (const CsvColumn& column : wanted) {
@@ -72,7 +84,7 @@ std::size_t find_wanted(std::string_view name, const std::vector<CsvColumn>& wan
   throw InputError(place,
                    near.empty() ? "unknown column"
                                 : fmt::format("unknown column, did you mean {}{}?", near, name.substr(base.size())),
-                   "a known column, or its name under `ignore`");
+                   known_columns(known) + (ignored_by.empty() ? "" : "; or its name under " + ignored_by));
 }
 
 }  // namespace
@@ -151,7 +163,7 @@ std::vector<CsvFileColumn> csv_match_header(std::string_view header, const std::
     if (!ignored) {
       const std::string& ours = mapped == mapping.columns.end() ? column.name : mapped->first;
       column.wanted = find_wanted(ours, wanted, column.unit);
-      if (column.wanted == kUnreadColumn) refuse_unknown(place, ours, wanted);
+      if (column.wanted == kUnreadColumn) refuse_unknown(place, ours, wanted, mapping.ignored_by);
       std::string& earlier = found_as[column.wanted];
       if (!earlier.empty()) throw InputError(place, fmt::format("says the same as column {}", earlier));
       earlier = column.name;
@@ -166,7 +178,7 @@ std::vector<CsvFileColumn> csv_match_header(std::string_view header, const std::
   }
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (!wanted[i].required || !found_as[i].empty()) continue;
-    throw InputError({file, line, 0, first_name(wanted[i])}, "missing column", names(wanted[i]));
+    throw InputError({file, line, 0, wanted[i].base}, "missing column", names(wanted[i]));
   }
   return columns;
 }

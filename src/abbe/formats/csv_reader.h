@@ -14,6 +14,7 @@ namespace abbe {
 struct ColumnMapping {
   std::map<std::string, std::string> columns;  ///< our name with unit -> name in the file: {"C_deg", "c_deg"}
   std::vector<std::string> ignore;             ///< names in the file
+  std::string ignored_by = {};  ///< how the user has a column ignored, for messages: "`ignore`"; empty: he cannot
 };
 
 /// A column that is wanted, by its base name; the header says the unit.

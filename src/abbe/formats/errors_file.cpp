@@ -52,6 +52,7 @@ void read_table_file(TomlTable& table, const std::filesystem::path& folder, cons
   const Quantity quantity = error_quantity(motion.component);
   ColumnMapping mapping;
   mapping.ignore = table.texts_or_none("ignore");
+  mapping.ignored_by = "`ignore`";
   const std::vector<CsvColumn> wanted = {{axis.name, axis_quantity(axis)},
                                          {error, quantity},
                                          {"u_" + error, quantity, false, false, CsvColumn::Range::not_negative}};

@@ -140,5 +140,12 @@ TEST(MachineFile, RefusesNumbersThatAreNoNumbers) {
             "m.toml:9:17: axis.X.travel_mm[2]: 1e308 is too large; expected a length in mm, at most 1e9 mm");
 }
 
+TEST(MachineFile, RefusesTravelThatNoMachineHas) {
+  EXPECT_EQ(wrong("[0, 1400]", "[0, 2e7]"), "m.toml:8:7: axis.X: reaches 2e+07 mm; a machine has less than 1e+07 mm");
+  EXPECT_EQ(
+      wrong("endless = true", "travel_deg = [0, 2e9]"),
+      "m.toml:4:7: axis.C: reaches 3.49066e+07 rad, more than 20000; mark a rotary axis without limits as endless");
+}
+
 }  // namespace
 }  // namespace abbe

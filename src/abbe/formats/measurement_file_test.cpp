@@ -140,9 +140,10 @@ TEST(MeasurementFile, RefusesPosesOutsideTheTravel) {
 
 TEST(MeasurementFile, RefusesMissingAndContradictoryColumns) {
   EXPECT_EQ(wrong("X_mm,C_deg,measured_x_mm,measured_y_mm,measured_z_mm\n1,2,3,4,5\n"),
-            "r.csv:1: Z_mm: missing column; expected Z_mm, Z_um or Z_m");
+            "r.csv:1: Z: missing column; expected Z_mm, Z_um or Z_m");
   EXPECT_EQ(wrong("X_mm,Y_mm,Z_mm,C_deg,measured_x_mm,measured_y_mm,measured_z_mm\n1,2,3,4,5,6,7\n"),
-            "r.csv:1:6: Y_mm: unknown column; expected a known column, or its name under `ignore`");
+            "r.csv:1:6: Y_mm: unknown column; expected one of C, X, Z, station, reflector, offset_x, offset_y, "
+            "offset_z, measured_x, measured_y, measured_z, range, ...");
   EXPECT_EQ(wrong("X_mm,Z_mm,C_deg,measured_x_mm,measured_y_mm\n1,2,3,4,5\n"),
             "r.csv: measured_z: missing column; expected measured_z_mm, measured_z_um or measured_z_m");
   EXPECT_EQ(wrong("X_mm,Z_mm,C_deg\n1,2,3\n"),

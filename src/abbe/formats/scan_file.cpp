@@ -198,7 +198,7 @@ ScanSummary scan_points(const std::filesystem::path& readings, const Machine& ma
   MappedFile file(readings);
   StreamedFile points(output);
   if (format == ScanFormat::ply) points.append(scan_ply_header(0));
-  const ScanSummary summary = scan_points(
+  ScanSummary summary = scan_points(
       file.text(), readings.string(), machine, scan, format, options,
       [&](std::string_view text) { points.append(text); }, [&](std::size_t end) { file.forget(end); });
   if (format == ScanFormat::ply) points.overwrite(0, scan_ply_header(summary.points));

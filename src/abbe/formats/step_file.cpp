@@ -39,7 +39,7 @@ void require_positive(double value, const char* field, const char* expected) {
 }
 
 std::filesystem::path require_program(const InputError::Place& place) {
-  const std::filesystem::path program = step_program();
+  std::filesystem::path program = step_program();
   if (program.empty()) {
     throw InputError(place, "STEP files cannot be read here: this Abbe was built without OpenCASCADE",
                      "Abbe built where the Debian package libocct-data-exchange-dev is installed, or the part as STL");

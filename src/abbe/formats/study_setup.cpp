@@ -117,6 +117,7 @@ SetupData read_data(TomlTable& table, const std::filesystem::path& folder) {
   SetupData data;
   data.file = folder / table.text("file");
   data.mapping.ignore = table.texts_or_none("ignore");
+  data.mapping.ignored_by = "`ignore`";
   if (auto columns = table.optional_table("columns")) {
     for (const std::string& ours : columns->keys()) data.mapping.columns.emplace(ours, columns->text(ours));
   }

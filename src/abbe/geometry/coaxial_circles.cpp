@@ -117,7 +117,7 @@ struct Reached {
   bool converged = false;
 };
 
-Reached refine(Axis axis, const std::vector<Matrix3Xd>& circles, const std::vector<Index>& free, double size) {
+Reached refine(const Axis& axis, const std::vector<Matrix3Xd>& circles, const std::vector<Index>& free, double size) {
   Reached reached{axis, sums_at(axis, circles), 0, false};
   double damping = 0;
   int at_rest = 0;

@@ -143,7 +143,8 @@ void constants(const Problem& problem, std::size_t axis, std::vector<GaugeCandid
     else
       add_candidate(
           list,
-          fmt::format("{} is zero at its reference position {}", name, position_text(functionals.reference(), rotary)),
+          fmt::format("{} is zero at its reference position {}{}", name, position_text(functionals.reference(), rotary),
+                      functionals.reference() == 0 ? "" : ", the end of its range nearest to zero"),
           fmt::format("constant of {}", name), functionals.at(functionals.reference(), single(component)));
   }
 }

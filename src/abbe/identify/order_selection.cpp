@@ -62,9 +62,26 @@ Partition partition_by_pose(const Problem& problem, int folds, std::uint64_t see
   return result;
 }
 
+// With a robust loss a gross error counts by its size and not by its square: it must not hide what the others say.
+// Growing without end all the same, for a model of too low an order makes every reading an outlier. Huber's loss.
+double compressed(double square, double limit) {
+  return square <= limit ? square : 2 * std::sqrt(limit * square) - limit;
+}
+
+// Trials with a convex loss: of a redescending one, residuals that are large everywhere leave no single optimum. What a
+// model of too low an order leaves is its noise: by that, not by that of the readings, outliers are told.
+IdentifyOptions options_of_trials(IdentifyOptions options) {
+  if (options.loss == LossKind::none) return options;
+  options.loss = LossKind::huber;
+  options.loss_tuning = 0;
+  options.scale_from_residuals = true;
+  return options;
+}
+
 class Selection {
  public:
-  Selection(const ProblemAtOrders& at, const OrderSelectionOptions& options) : at_(at), options_(options) {}
+  Selection(const ProblemAtOrders& at, const OrderSelectionOptions& options)
+      : at_(at), options_(options), trials_(options_of_trials(options.identify)) {}
 
   /// Mean squared residual of every pose when it was held out; empty if a fold could not be identified.
   std::vector<double> held_out_squares(const std::vector<int>& orders, IdentifyStatus& status) {
@@ -99,7 +116,7 @@ class Selection {
         (held_out ? test : training).observations[o].use[i] = 1;
       }
     }
-    const Identification identified = identify(training, options_.identify);
+    const Identification identified = identify(training, trials_);
     status = identified.status;
     if (identified.estimates.size() == 0 || status != IdentifyStatus::converged) return false;
     test.errors = training.errors;
@@ -109,9 +126,8 @@ class Selection {
         if (norms[o][i] < 0) continue;
         const int rows = whole.observations[o].observations->rows();
         double square = norms[o][i] * norms[o][i];
-        // With a robust loss a gross error counts as an outlier just does: it must not hide what the others say.
         if (options_.identify.loss != LossKind::none) {
-          square = std::min(square, chi_square_quantile(options_.identify.outlier_norm_quantile, rows));
+          square = compressed(square, chi_square_quantile(options_.identify.outlier_norm_quantile, rows));
         }
         sums[partition_.pose[o][i]] += square;
         counts[partition_.pose[o][i]] += rows;
@@ -121,6 +137,7 @@ class Selection {
 
   const ProblemAtOrders& at_;
   const OrderSelectionOptions& options_;
+  IdentifyOptions trials_;
   Partition partition_;
 };
 
@@ -151,6 +168,8 @@ class Search {
   bool start() {
     for (const OrderGroup& group : groups_) result.orders.push_back(std::min(group.start_order, group.largest_order));
     best_ = tried(result.orders, "");
+    // Where the lowest orders cannot be identified, all are raised together: the first model to compare with.
+    while (best_.empty() && raise_all()) best_ = tried(result.orders, "all");
     if (best_.empty()) return false;
     result.trials.back().accepted = true;
     result.done = true;
@@ -202,6 +221,16 @@ class Search {
   OrderSelection result;
 
  private:
+  bool raise_all() {
+    bool raised = false;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (result.orders[g] >= groups_[g].largest_order) continue;
+      ++result.orders[g];
+      raised = true;
+    }
+    return raised;
+  }
+
   std::vector<double> tried(const std::vector<int>& orders, const std::string& raised) {
     OrderTrial trial;
     trial.orders = orders;

@@ -90,6 +90,45 @@ TEST(OrderSelection, finds_the_number_of_intervals_of_splines_and_tables) {
   EXPECT_GE(found, tried - 1);
 }
 
+TEST(OrderSelection, gross_errors_and_a_start_far_too_low_do_not_hide_the_order) {
+  constexpr int kDegree = 4;
+  const auto legendre = [](int degree) {
+    return Basis{.kind = BasisKind::legendre, .order = degree, .from = 0, .to = 1};
+  };
+  for (const LossKind loss : {LossKind::huber, LossKind::cauchy, LossKind::tukey}) {
+    std::vector<double> data = readings(legendre(kDegree), 5);
+    for (std::size_t i = 3; i < data.size(); i += 30) data[i] += 100 * kNoise;
+    Splines polynomials(BasisKind::legendre, data);
+    OrderGroup group{.name = "X", .motions = {0}, .start_order = 1, .largest_order = 7};
+    OrderSelectionOptions options;
+    options.identify.loss = loss;
+    const OrderSelection selection =
+        select_orders([&](const std::vector<int>& orders) { return polynomials.at(orders); }, {group}, options);
+    ASSERT_TRUE(selection.done);
+    EXPECT_EQ(selection.orders[0], kDegree);
+    EXPECT_GT(selection.trials.front().held_out_rms, 3 * selection.trials.back().held_out_rms);
+  }
+}
+
+TEST(OrderSelection, orders_that_cannot_be_identified_are_passed_over) {
+  constexpr int kDegree = 3;
+  const std::vector<double> data =
+      readings(Basis{.kind = BasisKind::legendre, .order = kDegree, .from = 0, .to = 1}, 11);
+  Splines polynomials(BasisKind::legendre, data);
+  OrderGroup group{.name = "X", .motions = {0}, .start_order = 1, .largest_order = 5};
+  // The first model has no readings left to be identified from.
+  const ProblemAtOrders at = [&](const std::vector<int>& orders) {
+    Problem problem = polynomials.at(orders);
+    if (orders[0] < 2) problem.observations[0].use.assign(kReadings, 0);
+    return problem;
+  };
+  const OrderSelection selection = select_orders(at, {group});
+  ASSERT_TRUE(selection.done);
+  EXPECT_EQ(selection.orders[0], kDegree);
+  EXPECT_EQ(selection.trials[0].status != IdentifyStatus::converged, true);
+  EXPECT_EQ(selection.trials[1].raised, "all");
+}
+
 TEST(OrderSelection, splines_and_tables_are_groups_of_their_own) {
   Machine machine;
   machine.axes = {Axis{.name = "C", .kind = AxisKind::rotary}, Axis{.name = "X"}};

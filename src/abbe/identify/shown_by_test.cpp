@@ -22,7 +22,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 /// A relative level on the body that moves, read over the travel of one axis; error motions of that axis.
 class LevelStudy {
  public:
-  LevelStudy(const Machine& machine, std::size_t axis, const std::vector<Component>& components, Basis basis) {
+  LevelStudy(const Machine& machine, std::size_t axis, const std::vector<Component>& components, const Basis& basis) {
     ElectronicLevelSetup setup;
     setup.relative = true;
     setup.axes = {{"along_x", Vector3d::UnitX(), SetupNumber::open(0)},

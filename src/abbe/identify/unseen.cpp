@@ -168,8 +168,8 @@ class Adviser {
 
   /// No single measurement shows all of a direction: the ones that do it one after the other.
   std::string together(const std::vector<Eigen::MatrixXd>& left, const Eigen::VectorXd& direction) const {
-    const std::string text = measurements_together(possible_, left, direction).words;
-    return text.empty() ? "several of the measurements tried would show it together" : text + " would show it";
+    const MeasurementsTogether together = measurements_together(possible_, left, direction);
+    return (together.enough ? together.words : "only several of the measurements tried, together,") + " would show it";
   }
 
   void weak() {

@@ -2,12 +2,18 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 namespace abbe {
 namespace {
 
 constexpr double kUnitTolerance = 1e-9;
+constexpr double kDependent = 1e-3;  // sine of an angle: directions count as the same
+// Sine and cosine keep their digits up to here; a travel beyond it, or of more than 10 km, is a wrong unit.
+constexpr double kLargestAngle = 20000;   // rad
+constexpr double kLargestPosition = 1e7;  // mm
 
 std::string number(double value) { return fmt::format("{:.10g}", value); }
 
@@ -77,6 +83,16 @@ class Checker {
     }
   }
 
+  void check_size(const Axis& axis) {
+    const bool linear = axis.kind == AxisKind::linear;
+    const double largest = std::max(std::abs(axis.travel_min), std::abs(axis.travel_max));
+    if (largest <= (linear ? kLargestPosition : kLargestAngle)) return;
+    report(axis.name, "travel",
+           linear ? fmt::format("reaches {:g} mm; a machine has less than {:g} mm", largest, kLargestPosition)
+                  : fmt::format("reaches {:g} rad, more than {:g}; mark a rotary axis without limits as endless",
+                                largest, kLargestAngle));
+  }
+
   void check_axis(const Axis& axis) {
     check_name(axis);
     check_unit(axis.name, "direction", axis.direction);
@@ -87,6 +103,8 @@ class Checker {
       report(axis.name, "travel",
              "minimum " + number(axis.travel_min) + " exceeds maximum " + number(axis.travel_max) +
                  (axis.kind == AxisKind::linear ? " (mm)" : " (rad)"));
+    } else {
+      check_size(axis);
     }
     if (axis.endless && axis.kind == AxisKind::linear)
       report(axis.name, "endless", "only a rotary axis can be endless");
@@ -117,5 +135,33 @@ std::string MachineProblem::text() const {
 }
 
 std::vector<MachineProblem> find_problems(const Machine& machine) { return Checker(machine).check(); }
+
+std::vector<std::string> find_remarks(const Machine& machine) {
+  std::vector<const Axis*> linear;
+  for (const Axis& axis : machine.axes) {
+    if (axis.kind == AxisKind::linear) linear.push_back(&axis);
+  }
+  std::vector<std::string> remarks;
+  for (std::size_t i = 0; i < linear.size(); ++i) {
+    for (std::size_t k = i + 1; k < linear.size(); ++k) {
+      const Eigen::Vector3d normal = linear[i]->direction.cross(linear[k]->direction);
+      if (normal.norm() < kDependent) {
+        remarks.push_back(
+            fmt::format("{} and {} move along the same line: a pose leaves open how far each of them moves",
+                        linear[i]->name, linear[k]->name));
+        continue;
+      }
+      for (std::size_t m = k + 1; m < linear.size(); ++m) {
+        const Eigen::Vector3d& third = linear[m]->direction;
+        const bool pair = third.cross(linear[i]->direction).norm() < kDependent ||
+                          third.cross(linear[k]->direction).norm() < kDependent;
+        if (pair || std::abs(normal.dot(third)) >= kDependent) continue;
+        remarks.push_back(fmt::format("{}, {} and {} move in one plane: together they do not reach all places of space",
+                                      linear[i]->name, linear[k]->name, linear[m]->name));
+      }
+    }
+  }
+  return remarks;
+}
 
 }  // namespace abbe

@@ -19,8 +19,11 @@ struct MachineProblem {
 /// Everything that makes a machine unusable; empty if it is sound.
 ///
 /// Names (ISO 841 letter with optional number, unique), kinds that fit the letter, finite numbers, unit directions (to
-/// 1e-9), travel_min <= travel_max, at least one axis, workpiece-side axes before tool-side ones, primes on the
-/// workpiece side only, a proper rotation in bed_from_workpiece.
+/// 1e-9), travel_min <= travel_max within 10 km or 20,000 rad, at least one axis, workpiece-side axes before tool-side
+/// ones, primes on the workpiece side only, a proper rotation in bed_from_workpiece.
 std::vector<MachineProblem> find_problems(const Machine& machine);
+
+/// What is allowed and seldom meant, in words: linear axes in one line or one plane (to 1e-3 rad).
+std::vector<std::string> find_remarks(const Machine& machine);
 
 }  // namespace abbe

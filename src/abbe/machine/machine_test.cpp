@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+#include "abbe/machine/machine_check.h"
+
 namespace abbe {
 namespace {
 
@@ -35,6 +37,22 @@ TEST(Machine, PrimedRotaryTableTurnsTheToolInThePositiveSenseOnTheWorkpiece) {
   const Eigen::Vector3d turned =
       nominal_workpiece_from_tool(machine, {std::numbers::pi / 2, 800, 0}).translation - machine.axes[0].point;
   EXPECT_LE((turned - Eigen::Vector3d(-start.y(), start.x(), start.z())).norm(), 1e-10);
+}
+
+TEST(Machine, LinearAxesInOneLineOrPlaneAreRemarkedOn) {
+  Machine machine;
+  machine.axes = {Axis{.name = "X", .direction = Eigen::Vector3d::UnitX()},
+                  Axis{.name = "Z", .direction = -Eigen::Vector3d::UnitX()},
+                  Axis{.name = "Y", .direction = Eigen::Vector3d::UnitY()}};
+  EXPECT_EQ(
+      find_remarks(machine),
+      std::vector<std::string>{"X and Z move along the same line: a pose leaves open how far each of them moves"});
+  machine.axes[1].direction = Eigen::Vector3d(3, 4, 0) / 5;
+  EXPECT_EQ(find_remarks(machine),
+            std::vector<std::string>{"X, Z and Y move in one plane: together they do not reach all "
+                                     "places of space"});
+  machine.axes[1].direction = Eigen::Vector3d(3, 0, 4) / 5;
+  EXPECT_TRUE(find_remarks(machine).empty());
 }
 
 }  // namespace

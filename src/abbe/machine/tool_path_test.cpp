@@ -123,7 +123,7 @@ TEST(ToolPath, SaysWhichPointCannotBeReached) {
   const ToolPath path = plan_tool_path(machine, curve);
   EXPECT_EQ(path.status, ToolPathStatus::outside_travel);
   EXPECT_EQ(path.failed_point, 0U);
-  EXPECT_NE(path.message.find("A"), std::string::npos) << path.message;
+  EXPECT_NE(path.message.find('A'), std::string::npos) << path.message;
   EXPECT_EQ(plan_tool_path(machine, {}).status, ToolPathStatus::invalid_options);
 }
 
