@@ -78,7 +78,7 @@ std::vector<double> held_radii(const FitCommand& command, std::size_t count) {
   if (command.radii.empty()) return {};
   const std::string expected = count == 1 ? std::string("a number of mm above zero")
                                           : fmt::format("{} numbers of mm above zero, one per file", count);
-  const std::vector<double> radii = numbers(command.radii, "--fixed-radius-mm", expected);
+  std::vector<double> radii = numbers(command.radii, "--fixed-radius-mm", expected);
   const bool positive = std::all_of(radii.begin(), radii.end(), [](double r) { return r > 0; });
   if (radii.size() != count || !positive) {
     throw InputError({.field = "--fixed-radius-mm"}, fmt::format("'{}' is not that", command.radii.substr(0, 60)),

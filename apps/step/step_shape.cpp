@@ -68,9 +68,9 @@ bool makes_the_shape(const Handle(Standard_Transient) & entity) {
 void require_sound_entities(const StepData_StepModel& model, std::vector<std::string>& notes) {
   int others = 0;
   for (int i = 1; i <= model.NbEntities(); ++i) {
-    const Handle(Interface_Check) check = model.Check(i, Standard_True);
+    const Handle(Interface_Check)& check = model.Check(i, Standard_True);
     if (!model.IsErrorEntity(i) && (check.IsNull() || check->NbFails() == 0)) continue;
-    const Handle(Standard_Transient) entity = model.Value(i);
+    const Handle(Standard_Transient)& entity = model.Value(i);
     if (!makes_the_shape(entity)) {
       ++others;
       continue;

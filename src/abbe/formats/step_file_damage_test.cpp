@@ -40,7 +40,7 @@ class TemporaryFile {
 
 std::string message(const std::string& contents) {
   const TemporaryFile file(contents, ".step");
-  const std::string text = message_of([&] { read_mesh(file.path()); });
+  std::string text = message_of([&] { read_mesh(file.path()); });
   EXPECT_THAT(text, testing::StartsWith(file.path().string()));
   return text;
 }

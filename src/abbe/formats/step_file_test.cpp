@@ -14,6 +14,7 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "abbe/formats/message_of.h"
 #include "abbe/formats/text_file.h"
@@ -75,14 +76,14 @@ struct Exact {
 };
 
 /// Distance to a segment of the half plane (radius, height), which makes the surface when it turns about z.
-double distance_to_line(double r, double z, Eigen::Vector2d from, Eigen::Vector2d to) {
+double distance_to_line(double r, double z, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   const Eigen::Vector2d along = to - from, at(r - from.x(), z - from.y());
   return (at - along * std::clamp(at.dot(along) / along.squaredNorm(), 0.0, 1.0)).norm();
 }
 
 /// Distance to a surface that turns about z, whose half section has these corners.
-std::function<double(const Eigen::Vector3d&)> turned(std::vector<Eigen::Vector2d> corners) {
-  return [corners](const Eigen::Vector3d& p) {
+std::function<double(const Eigen::Vector3d&)> turned(std::vector<Eigen::Vector2d> section) {
+  return [corners = std::move(section)](const Eigen::Vector3d& p) {
     double nearest = 1e300;
     for (std::size_t i = 1; i < corners.size(); ++i) {
       nearest = std::min(nearest, distance_to_line(std::hypot(p.x(), p.y()), p.z(), corners[i - 1], corners[i]));
