@@ -1,0 +1,311 @@
+#include "abbe/compensate/compensated_inverse.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "abbe/compensate/correction_step.h"
+#include "abbe/machine/machine_check.h"
+
+namespace abbe {
+namespace {
+
+constexpr std::size_t kBlock = kCorrectionBlock;
+constexpr int kRefresh = 6;  // iterations after which the derivative is taken anew
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+using Block = CorrectionBlock;
+using Lanes = CorrectionBlock::Lanes;
+
+PointArrays pointers(std::array<Lanes, 3>& lanes) { return {lanes[0].data(), lanes[1].data(), lanes[2].data()}; }
+
+}  // namespace
+
+const char* correction_status_text(CorrectionStatus status) {
+  switch (status) {
+    case CorrectionStatus::not_run:
+      return "not run";
+    case CorrectionStatus::reached:
+      return "reached";
+    case CorrectionStatus::orientation_left:
+      return "orientation left";
+    case CorrectionStatus::turn_limited:
+      return "turn limited";
+    case CorrectionStatus::position_left:
+      return "position left";
+    case CorrectionStatus::outside_travel:
+      return "outside travel";
+    case CorrectionStatus::not_covered:
+      return "not covered";
+    case CorrectionStatus::not_converged:
+      return "not converged";
+    case CorrectionStatus::not_finite:
+      return "not finite";
+  }
+  return "";
+}
+
+struct CompensatedInverse::Implementation {
+  Implementation(const Machine& given, const ErrorSet& errors, const CorrectionOptions& wanted,
+                 std::span<const std::size_t> held)
+      : machine(given), options(wanted) {
+    const std::vector<MachineProblem> problems = find_problems(machine);
+    if (!problems.empty()) {
+      problem = problems.front().text();
+      return;
+    }
+    std::vector<HeldAxis> kept;
+    for (const std::size_t axis : held) {
+      if (axis >= machine.axes.size()) {
+        problem = "an axis to be held does not exist";
+        return;
+      }
+      kept.push_back({axis, 0});
+    }
+    stepper = std::make_unique<CorrectionStep>(machine, options, kept);
+    actual = std::make_unique<ChainPlan>(machine, errors, Body::tool, Body::workpiece);
+    nominal = std::make_unique<ChainPlan>(machine, ErrorSet{}, Body::tool, Body::workpiece);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Index e = static_cast<Eigen::Index>(i);
+      nominal_tool[i].fill(machine.tool_offset[e]);
+      actual_tool[i].fill(machine.tool_offset[e] + errors.tool_offset_error[e]);
+    }
+    zeros.fill(0);
+    ones.fill(1);
+  }
+
+  /// Where the tool is by now, and what of the wanted pose is missing.
+  void evaluate(Block& block) const {
+    std::array<const double*, kMaxAxes> axes;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) axes[i] = block.position[i].data();
+    RotationArrays rotation;
+    for (std::size_t i = 0; i < 9; ++i) rotation.r[i] = block.rotation[i].data();
+    actual->transform({{axes.data(), machine.axes.size()}, block.count},
+                      {actual_tool[0].data(), actual_tool[1].data(), actual_tool[2].data()}, pointers(block.point),
+                      rotation, block.covered.data());
+  }
+
+  /// Derivatives of point and orientation by all commands, where the block stands.
+  void differentiate(Block& block) const {
+    std::array<const double*, kMaxAxes> axes;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) axes[i] = block.position[i].data();
+    const ConstPointArrays none{zeros.data(), zeros.data(), zeros.data()};
+    const ConstPointArrays unit[3] = {{ones.data(), zeros.data(), zeros.data()},
+                                      {zeros.data(), ones.data(), zeros.data()},
+                                      {zeros.data(), zeros.data(), ones.data()}};
+    std::array<RowArrays, kMostCorrectionRows> rows;
+    for (std::size_t i = 0; i < 3; ++i) rows[i] = {unit[i], none};
+    for (std::size_t i = 0; i < stepper->orientation_rows(); ++i) {
+      const PointArrays across = stepper->orientation_rows() == 2 ? pointers(block.across[i]) : PointArrays{};
+      rows[3 + i] = {none, stepper->orientation_rows() == 2 ? ConstPointArrays{across.x, across.y, across.z} : unit[i]};
+    }
+    const PointArrays seen = pointers(block.point);
+    actual->differentiate({{axes.data(), machine.axes.size()}, block.count},
+                          {actual_tool[0].data(), actual_tool[1].data(), actual_tool[2].data()},
+                          {seen.x, seen.y, seen.z}, {rows.data(), 3 + stepper->orientation_rows()}, {}, nullptr, 0,
+                          nullptr, block.by_command.data());
+    stepper->take_derivative(block);
+  }
+
+  /// Commands kept within travel; true if one had to be.
+  bool keep_within_travel(Block& block, std::size_t k) const {
+    bool kept = false;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      const Axis& axis = machine.axes[i];
+      double& position = block.position[i][k];
+      if (axis.endless || (position >= axis.travel_min && position <= axis.travel_max)) continue;
+      position = std::clamp(position, axis.travel_min, axis.travel_max);
+      kept = true;
+    }
+    return kept;
+  }
+
+  void as_they_came(Block& block, std::size_t k) const {
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) block.position[i][k] = block.command[i][k];
+  }
+
+  static bool any_active(const Block& block) {
+    return std::any_of(block.active.begin(), block.active.begin() + static_cast<std::ptrdiff_t>(block.count),
+                       [](std::uint8_t active) { return active != 0; });
+  }
+
+  void solve(Block& block) const {
+    evaluate(block);
+    for (std::size_t k = 0; k < block.count; ++k) {
+      if (block.active[k] == 0) continue;
+      if (block.covered[k] == 0) {
+        CorrectionStep::finish(block, k, CorrectionStatus::not_covered);
+        block.position_residual[k] = block.orientation_residual[k] = kUnknown;
+      }
+    }
+    for (int i = 0; i < options.largest_iterations; ++i) {
+      if (!any_active(block)) break;
+      if (i % kRefresh == 0) differentiate(block);
+      for (std::size_t k = 0; k < block.count; ++k) {
+        if (block.active[k] != 0) stepper->step(block, k);
+      }
+      if (!any_active(block)) break;
+      evaluate(block);
+    }
+    bool again = false;
+    std::array<std::uint8_t, kBlock> moved{};
+    for (std::size_t k = 0; k < block.count; ++k) {
+      if (block.active[k] != 0) {
+        CorrectionStep::finish(block, k, CorrectionStatus::not_converged);
+        as_they_came(block, k);
+        moved[k] = 1;
+      } else if (block.status[k] != CorrectionStatus::not_covered && block.status[k] != CorrectionStatus::not_finite &&
+                 keep_within_travel(block, k)) {
+        block.status[k] = CorrectionStatus::outside_travel;
+        moved[k] = 1;
+      }
+      again = again || moved[k] != 0;
+    }
+    if (!again) return;
+    evaluate(block);
+    for (std::size_t k = 0; k < block.count; ++k) {
+      if (moved[k] != 0) stepper->state_residuals(block, k);
+    }
+  }
+
+  /// Marks poses without numbers; their places are filled with harmless ones.
+  void load(Block& block, PositionArrays commands, std::size_t first) const {
+    for (std::size_t k = 0; k < block.count; ++k) {
+      block.status[k] = CorrectionStatus::not_run;
+      block.active[k] = 1;
+      block.position_residual[k] = block.orientation_residual[k] = kUnknown;
+    }
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      for (std::size_t k = 0; k < block.count; ++k) {
+        const double value = commands.axis[i][first + k];
+        block.command[i][k] = value;
+        block.position[i][k] = std::isfinite(value) ? value : 0;
+        if (!std::isfinite(value)) CorrectionStep::finish(block, k, CorrectionStatus::not_finite);
+      }
+    }
+  }
+
+  void load_goals(Block& block) const {
+    for (std::size_t k = 0; k < block.count; ++k) {
+      Eigen::Vector3d direction = vector_at(block.goal_direction, k);
+      if (options.target == TargetKind::full_pose)
+        direction = matrix_at(block.goal_rotation, k) * machine.tool_direction;
+      if (!vector_at(block.goal_point, k).allFinite() || !direction.allFinite()) {
+        CorrectionStep::finish(block, k, CorrectionStatus::not_finite);
+        direction = Eigen::Vector3d::UnitZ();
+      }
+      const Eigen::Vector3d first = direction.unitOrthogonal();
+      const Eigen::Vector3d second = direction.cross(first);
+      for (std::size_t i = 0; i < 3; ++i) {
+        block.across[0][i][k] = first[static_cast<Eigen::Index>(i)];
+        block.across[1][i][k] = second[static_cast<Eigen::Index>(i)];
+      }
+    }
+  }
+
+  void store(const Block& block, const CorrectedArrays& corrected, std::size_t first) const {
+    for (std::size_t k = 0; k < block.count; ++k) {
+      const bool as_came = block.status[k] == CorrectionStatus::not_finite;
+      for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        corrected.axis[i][first + k] = as_came ? block.command[i][k] : block.position[i][k];
+      }
+      if (corrected.status != nullptr) corrected.status[first + k] = block.status[k];
+      if (corrected.position_residual != nullptr) corrected.position_residual[first + k] = block.position_residual[k];
+      if (corrected.orientation_residual != nullptr)
+        corrected.orientation_residual[first + k] = block.orientation_residual[k];
+    }
+  }
+
+  /// The poses that the nominal machine has at the commands.
+  void nominal_goals(Block& block) const {
+    std::array<const double*, kMaxAxes> axes;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) axes[i] = block.position[i].data();
+    RotationArrays rotation;
+    for (std::size_t i = 0; i < 9; ++i) rotation.r[i] = block.goal_rotation[i].data();
+    nominal->transform({{axes.data(), machine.axes.size()}, block.count},
+                       {nominal_tool[0].data(), nominal_tool[1].data(), nominal_tool[2].data()},
+                       pointers(block.goal_point), rotation);
+    const Eigen::Vector3d& tool = machine.tool_direction;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < block.count; ++k) {
+        block.goal_direction[i][k] = block.goal_rotation[3 * i][k] * tool[0] +
+                                     block.goal_rotation[3 * i + 1][k] * tool[1] +
+                                     block.goal_rotation[3 * i + 2][k] * tool[2];
+      }
+    }
+  }
+
+  void given_goals(Block& block, const TargetArrays& targets, std::size_t first) const {
+    const double* point[3] = {targets.point.x, targets.point.y, targets.point.z};
+    const double* direction[3] = {targets.direction.x, targets.direction.y, targets.direction.z};
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::copy_n(point[i] + first, block.count, block.goal_point[i].begin());
+      if (options.target == TargetKind::point_and_direction) {
+        std::copy_n(direction[i] + first, block.count, block.goal_direction[i].begin());
+      } else {
+        block.goal_direction[i].fill(i == 2 ? 1 : 0);
+      }
+    }
+    if (options.target != TargetKind::full_pose) return;
+    for (std::size_t i = 0; i < 9; ++i)
+      std::copy_n(targets.rotation[i] + first, block.count, block.goal_rotation[i].begin());
+  }
+
+  Machine machine;
+  CorrectionOptions options;
+  std::string problem;
+  std::unique_ptr<CorrectionStep> stepper;
+  std::unique_ptr<ChainPlan> actual, nominal;
+  std::array<Lanes, 3> actual_tool, nominal_tool;
+  Lanes zeros, ones;
+};
+
+CompensatedInverse::CompensatedInverse(const Machine& machine, const ErrorSet& errors, const CorrectionOptions& options,
+                                       std::span<const std::size_t> held)
+    : implementation_(std::make_unique<Implementation>(machine, errors, options, held)) {}
+CompensatedInverse::~CompensatedInverse() = default;
+CompensatedInverse::CompensatedInverse(CompensatedInverse&&) noexcept = default;
+CompensatedInverse& CompensatedInverse::operator=(CompensatedInverse&&) noexcept = default;
+
+void CompensatedInverse::correct(PositionArrays commands, const CorrectedArrays& corrected) const {
+  const Implementation& work = *implementation_;
+  if (!work.problem.empty()) {
+    if (corrected.status != nullptr) std::fill_n(corrected.status, commands.count, CorrectionStatus::not_run);
+    return;
+  }
+  Block block;
+  for (std::size_t first = 0; first < commands.count; first += kBlock) {
+    block.count = std::min(kBlock, commands.count - first);
+    work.load(block, commands, first);
+    work.nominal_goals(block);
+    work.load_goals(block);
+    work.solve(block);
+    work.store(block, corrected, first);
+  }
+}
+
+void CompensatedInverse::reach(PositionArrays start, const TargetArrays& targets,
+                               const CorrectedArrays& corrected) const {
+  const Implementation& work = *implementation_;
+  if (!work.problem.empty()) {
+    if (corrected.status != nullptr) std::fill_n(corrected.status, start.count, CorrectionStatus::not_run);
+    return;
+  }
+  Block block;
+  for (std::size_t first = 0; first < start.count; first += kBlock) {
+    block.count = std::min(kBlock, start.count - first);
+    work.load(block, start, first);
+    work.given_goals(block, targets, first);
+    work.load_goals(block);
+    work.solve(block);
+    work.store(block, corrected, first);
+  }
+}
+
+const std::string& CompensatedInverse::problem() const { return implementation_->problem; }
+
+}  // namespace abbe

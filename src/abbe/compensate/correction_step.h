@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "abbe/compensate/bounded_least_squares.h"
+#include "abbe/compensate/compensated_inverse.h"
+
+namespace abbe {
+
+inline constexpr std::size_t kCorrectionBlock = ChainPlan::kBlockSize;
+inline constexpr std::size_t kMostCorrectionRows = 6;
+
+/// Poses of one block while they are worked on.
+struct CorrectionBlock {
+  using Lanes = std::array<double, kCorrectionBlock>;
+
+  std::size_t count = 0;
+  std::array<Lanes, kMaxAxes> command;           // as they came
+  std::array<Lanes, kMaxAxes> position;          // as they are by now
+  std::array<Lanes, 3> point, goal_point;        // mm
+  std::array<Lanes, 9> rotation, goal_rotation;  // row-major
+  std::array<Lanes, 3> goal_direction;           // unit
+  std::array<Lanes, 3> across[2];                // unit vectors at right angles to the goal's direction
+  std::array<double, kMaxAxes * kMostCorrectionRows * kCorrectionBlock> by_command;
+  // Where two axes turn and three reach, which is the rule: inverses of the derivative, row-major, and values that the
+  // smallest singular values are surely not below (0: take the general way).
+  std::array<Lanes, 4> turn_inverse;
+  std::array<Lanes, 9> reach_inverse;
+  Lanes turn_spread, reach_spread;
+  std::array<std::uint8_t, kCorrectionBlock> covered, active;
+  std::array<CorrectionStatus, kCorrectionBlock> status;
+  Lanes position_residual, orientation_residual;
+};
+
+inline Eigen::Index entry(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+template <std::size_t N>
+Eigen::Vector3d vector_at(const std::array<CorrectionBlock::Lanes, N>& lanes, std::size_t k) {
+  return {lanes[0][k], lanes[1][k], lanes[2][k]};
+}
+
+/// Matrix of row-major elements.
+Eigen::Matrix3d matrix_at(const std::array<CorrectionBlock::Lanes, 9>& lanes, std::size_t k);
+
+/// Newton steps of single poses of a block from what is missing and the derivative by the commands.
+class CorrectionStep {
+ public:
+  /// @param kept  axes that keep their command
+  CorrectionStep(const Machine& machine, const CorrectionOptions& options, const std::vector<HeldAxis>& kept);
+
+  /// Rows of the derivative beyond the three of the point: 0, 2 (across the wanted direction) or 3.
+  std::size_t orientation_rows() const { return orientation_rows_; }
+
+  /// Prepares steps with the derivative CorrectionBlock::by_command[(axis * rows + row) * count + k].
+  void take_derivative(CorrectionBlock& block) const;
+  /// One step of one pose, or its end.
+  void step(CorrectionBlock& block, std::size_t k) const;
+  void state_residuals(CorrectionBlock& block, std::size_t k) const;
+  static void finish(CorrectionBlock& block, std::size_t k, CorrectionStatus status);
+
+ private:
+  void choose_axes(const std::vector<HeldAxis>& kept);
+  Eigen::Vector3d orientation_error(const CorrectionBlock& block, std::size_t k) const;
+  double derivative(const CorrectionBlock& block, std::size_t axis, std::size_t row, std::size_t k) const {
+    return block.by_command[(axis * (3 + orientation_rows_) + row) * block.count + k];
+  }
+  void load_turns(const CorrectionBlock& block, std::size_t k, SmallMatrix& a, SmallVector& b,
+                  SmallVector& turned) const;
+  void load_shifts(const CorrectionBlock& block, std::size_t k, SmallMatrix& a, SmallVector& shifted,
+                   SmallVector& scale) const;
+  SmallVector missing_after(const CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing,
+                            const SmallVector& by_turn) const;
+  double part_that_can_be_followed(const SmallMatrix& a, const SmallVector& rest) const;
+  bool usual_step(CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing,
+                  const Eigen::Vector3d& turn) const;
+  void general_step(CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing) const;
+
+  Machine machine_;
+  CorrectionOptions options_;
+  std::vector<std::size_t> turning_, reaching_;
+  std::size_t orientation_rows_ = 0;
+  bool usual_ = false;  // two turning and three linear axes, tool direction wanted
+};
+
+}  // namespace abbe
