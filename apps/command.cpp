@@ -22,7 +22,7 @@ CommandLine::CommandLine()
       "  abbe run examples/aguado/aguado.study.toml     the whole job, from readings to the report\n"
       "  abbe check examples/machines/trunnion-mill.machine.toml\n"
       "  abbe reproduce wang                            a published study, recomputed\n\n"
-      "Exit codes: 0 done, 1 the computation says no, 2 bad input, 3 internal error.");
+      "Exit codes: 0 done, 1 the computation says no, 2 bad input, 3 internal error, 130 interrupted.");
   app.set_version_flag("--version", "abbe " ABBE_VERSION);
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Help of all subcommands");

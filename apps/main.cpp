@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <exception>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/interruption.h"
 #include "command.h"
 #include "scan/scan.h"
 
@@ -55,4 +57,10 @@ int run_command(int argc, char** argv) {
 }  // namespace
 }  // namespace abbe
 
-int main(int argc, char** argv) { return abbe::run_command(argc, argv); }
+int main(int argc, char** argv) {
+  abbe::end_cleanly_when_interrupted([](int /*signal*/) {
+    fmt::print(stderr, "{}abbe: interrupted; what was not finished is removed\n",
+               isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "");
+  });
+  return abbe::run_command(argc, argv);
+}

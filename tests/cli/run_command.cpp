@@ -7,11 +7,15 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <system_error>
+#include <thread>
 
 namespace abbe {
 namespace {
@@ -79,10 +83,10 @@ std::vector<std::string> merged_environment(const std::vector<std::string>& adde
   return result;
 }
 
-}  // namespace
-
-CommandResult run_program(const std::string& program, const std::vector<std::string>& arguments,
-                          const std::filesystem::path& working_directory, const std::vector<std::string>& environment) {
+/// @param meanwhile  called with the running program, on a thread of its own; told when to end
+CommandResult run(const std::string& program, const std::vector<std::string>& arguments,
+                  const std::filesystem::path& working_directory, const std::vector<std::string>& environment,
+                  const std::function<void(pid_t, const std::atomic<bool>&)>& meanwhile) {
   std::vector<std::string> words{program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<std::string> settings = merged_environment(environment);
@@ -94,6 +98,8 @@ CommandResult run_program(const std::string& program, const std::vector<std::str
   const pid_t child = fork();
   if (child < 0) fail("fork");
   if (child == 0) {
+    // Tests that run in the background of a shell would hand on an ignored SIGINT.
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::signal(signal, SIG_DFL);
     const int nothing = open("/dev/null", O_RDONLY);
     if (chdir(working_directory.c_str()) == 0 && nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 &&
         dup2(out.writing(), STDOUT_FILENO) >= 0 && dup2(err.writing(), STDERR_FILENO) >= 0) {
@@ -107,7 +113,14 @@ CommandResult run_program(const std::string& program, const std::vector<std::str
   err.close_end(1);
   started.close_end(1);
   CommandResult result;
+  std::atomic<bool> over = false;
+  std::thread other([&] {
+    if (meanwhile) meanwhile(child, over);
+  });
   read_both(out, err, result);
+  // Not a signal to a process that took the number of the one that has ended: it is waited for afterwards.
+  over = true;
+  other.join();
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -117,6 +130,27 @@ CommandResult run_program(const std::string& program, const std::vector<std::str
   }
   result.exit_code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
   return result;
+}
+
+}  // namespace
+
+CommandResult run_program(const std::string& program, const std::vector<std::string>& arguments,
+                          const std::filesystem::path& working_directory, const std::vector<std::string>& environment) {
+  return run(program, arguments, working_directory, environment, {});
+}
+
+CommandResult run_and_signal(const std::string& program, const std::vector<std::string>& arguments,
+                             const std::filesystem::path& working_directory, int signal,
+                             const std::function<bool(pid_t)>& is_time) {
+  return run(program, arguments, working_directory, {}, [&](pid_t child, const std::atomic<bool>& over) {
+    while (!over) {
+      if (is_time(child)) {
+        ::kill(child, signal);
+        return;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +27,11 @@ struct CommandResult {
 CommandResult run_program(const std::string& program, const std::vector<std::string>& arguments,
                           const std::filesystem::path& working_directory,
                           const std::vector<std::string>& environment = {});
+
+/// The same, but sends the program a signal as soon as `is_time` says so, which is asked every millisecond.
+CommandResult run_and_signal(const std::string& program, const std::vector<std::string>& arguments,
+                             const std::filesystem::path& working_directory, int signal,
+                             const std::function<bool(pid_t)>& is_time);
 
 /// An empty folder of its own for one test, removed at the end.
 class TemporaryFolder {

@@ -55,8 +55,13 @@ void flush_folder(const fs::path& path) {
   if (folder.number() < 0 || (::fsync(folder.number()) != 0 && errno != EINVAL)) fail(path, errno);
 }
 
+int made(const fs::path& path) {
+  const UninterruptedSteps steps;
+  return ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+}
+
 void write_and_flush(const fs::path& path, std::string_view contents) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  Descriptor file(made(path));
   if (file.number() < 0) fail(path, errno);
   while (!contents.empty()) {
     const ssize_t written = ::write(file.number(), contents.data(), contents.size());
@@ -131,6 +136,8 @@ ResultsFolder::ResultsFolder(fs::path name) : name_(std::move(name)) {
   if (!name_.parent_path().empty()) fs::create_directories(name_.parent_path(), error);
   if (error) fail(name_, error.value());
   remove_partials_of_killed_writers(name_);
+  unfinished_.emplace(partial_);
+  const UninterruptedSteps steps;
   fs::remove_all(partial_, error);
   fs::create_directory(partial_, error);
   if (error) fail(partial_, error.value());
@@ -144,7 +151,10 @@ ResultsFolder::~ResultsFolder() {
 void ResultsFolder::write(const fs::path& relative, std::string_view contents) {
   const fs::path path = partial_ / relative;
   std::error_code error;
-  fs::create_directories(path.parent_path(), error);
+  {
+    const UninterruptedSteps steps;
+    fs::create_directories(path.parent_path(), error);
+  }
   if (error) fail(path.parent_path(), error.value());
   write_and_flush(path, contents);
 }
@@ -158,6 +168,7 @@ void ResultsFolder::commit() {
   if (error) fail(partial_, error.value());
   flush_folder(partial_);
 
+  const UninterruptedSteps steps;
   fs::path aside;
   if (!fs::exists(name_, error)) {
     if (::rename(partial_.c_str(), name_.c_str()) != 0) fail(name_, errno);
@@ -180,8 +191,10 @@ void ResultsFolder::commit() {
 void write_file_atomically(const fs::path& path, std::string_view contents) {
   const fs::path partial = partial_name(path);
   remove_partials_of_killed_writers(path);
+  const UnfinishedPath unfinished(partial);
   try {
     write_and_flush(partial, contents);
+    const UninterruptedSteps steps;
     if (::rename(partial.c_str(), path.c_str()) != 0) fail(path, errno);
   } catch (...) {
     ::unlink(partial.c_str());

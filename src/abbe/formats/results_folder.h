@@ -1,7 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
+
+#include "abbe/formats/interruption.h"
 
 namespace abbe {
 
@@ -14,7 +17,8 @@ void check_results_folder(const std::filesystem::path& name);
 ///
 /// Everything is written to "<name>.partial-<process>"; commit() flushes it to the disk and exchanges it with an older
 /// result in one step, so that after a full disk or a killed process the older one is intact. Without commit() the
-/// destructor removes what was written. What killed processes left behind is removed by the next writer of that name.
+/// destructor removes what was written, as an interruption does (interruption.h). What killed processes left behind is
+/// removed by the next writer of that name.
 class ResultsFolder {
  public:
   /// @throws InputError if the folder cannot be made, as check_results_folder()
@@ -36,6 +40,7 @@ class ResultsFolder {
  private:
   std::filesystem::path name_;
   std::filesystem::path partial_;
+  std::optional<UnfinishedPath> unfinished_;
   bool committed_ = false;
 };
 

@@ -27,6 +27,8 @@ StreamedFile::StreamedFile(fs::path path) : path_(std::move(path)), partial_(par
   remove_partials_of_killed_writers(path_);
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) fail(path_, EISDIR);
+  unfinished_.emplace(partial_);
+  const UninterruptedSteps steps;
   const fs::path folder = path_.parent_path().empty() ? fs::path(".") : path_.parent_path();
 #ifdef O_TMPFILE
   file_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
@@ -64,6 +66,7 @@ void StreamedFile::overwrite(std::size_t offset, std::string_view contents) {
 
 void StreamedFile::commit() {
   if (::fsync(file_) != 0) fail(path_, errno);
+  const UninterruptedSteps steps;
   if (!is_named_) {
     // A file without a name cannot take the place of another one: it gets a name first.
     ::unlink(partial_.c_str());

@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "abbe/formats/interruption.h"
 
 namespace abbe {
 
@@ -29,6 +32,7 @@ class StreamedFile {
 
  private:
   std::filesystem::path path_, partial_;
+  std::optional<UnfinishedPath> unfinished_;
   int file_ = -1;
   bool is_named_ = false;  ///< `partial_` exists
 };
