@@ -15,6 +15,7 @@
 #include "evaluate/number_option.h"
 #include "scan/deviation_colours.h"
 #include "scan/scan_files.h"
+#include "scan/surface_picture.h"
 
 namespace abbe {
 namespace {
@@ -161,7 +162,8 @@ int run_deviate(DeviateCommand command) {
     options.region_of_triangle = faces.face_of_triangle;
     options.regions = faces.count();
   }
-  const SurfaceDeviation deviation = surface_deviation(finder.closest(points, command.files.threads), options);
+  const std::vector<SurfacePoint> closest = finder.closest(points, command.files.threads);
+  const SurfaceDeviation deviation = surface_deviation(closest, options);
   const Counted counted = counted_points(points, deviation);
   const double range = command.colour_mm > 0 ? command.colour_mm : colour_range_mm(counted.deviation_mm);
 
@@ -207,6 +209,7 @@ int run_deviate(DeviateCommand command) {
                                        ply_bytes({.points = counted.cloud.points,
                                                   .colours = deviation_colours(counted.deviation_mm, range),
                                                   .deviation = counted.deviation_mm}));
+    report.page = deviation_page(part.mesh, closest, deviation, range, command.files.threads);
   }
   const int code = finish_evaluation(report, command.options);
   return deviation.all.sample.count == 0 ? kNegative : code;
@@ -236,7 +239,7 @@ void add_deviate_command(CommandLine& line) {
              "Deviation of the full colour (default: by the 98th percentile)");
   app->add_option("-o,--output", command->options.output,
                   "Results folder to write: evaluation.json, deviation.csv, deviation.ply (coloured), plot.svg, "
-                  "report.html");
+                  "report.html (part in three dimensions, sections)");
   app->add_option("--tolerance", command->options.tolerances,
                   "Largest permitted amount of a figure, such as maximum_um=50; may be given again. Exit code 1 if "
                   "exceeded")

@@ -13,6 +13,7 @@
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
 #include "fit/fit_report.h"
+#include "fit/fit_surface.h"
 
 namespace abbe {
 namespace {
@@ -203,6 +204,12 @@ int run_fit(const FitCommand& command) {
   }
   EvaluationReport report = fit_report(request, fit, points, deviations);
   if (!note.empty()) report.notes.push_back(note);
+  if (fit.ok() && !command.options.output.empty()) {
+    std::vector<std::uint8_t> counted(deviations.size(), 1);
+    for (std::size_t i = 0; i < fit.weights.size(); ++i) counted[i] = fit.weights[i] < 1e-3 ? 0 : 1;
+    const nlohmann::json page = fit_page(fit.shape, points, deviations, counted, command.threads);
+    if (!page.empty()) report.page = page;
+  }
   const int code = finish_evaluation(report, command.options);
   if (fit.ok() && !command.residuals.empty()) {
     write_file_atomically(command.residuals, point_cloud_csv(read.cloud, deviations));

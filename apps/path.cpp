@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 
 #include "abbe/errors/calibrated_machine.h"
 #include "abbe/formats/curve_file.h"
@@ -12,6 +13,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/machine_file.h"
+#include "abbe/formats/mesh_file.h"
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/path_program.h"
 #include "abbe/formats/placement_file.h"
@@ -19,6 +21,8 @@
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/tool_path.h"
 #include "command.h"
+#include "path/path_page.h"
+#include "scan/surface_picture.h"
 
 namespace abbe {
 namespace {
@@ -26,7 +30,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 struct PathCommand {
-  std::string machine, curve, errors, placement;
+  std::string machine, curve, errors, placement, part, report;
   std::vector<std::string> hold, start, words, outputs;
   double feed_mm_per_min = 0, retract_mm = 0, tolerance_um = 0;
   int decimals = 6;
@@ -144,6 +148,21 @@ nlohmann::ordered_json path_json(const Machine& machine, const ToolPath& path, c
   return json;
 }
 
+void write_page(const PathCommand& command, const Machine& machine, const ToolPath& path,
+                const std::vector<std::vector<double>>& commands) {
+  std::optional<SurfacePicture> part;
+  if (!command.part.empty()) part = part_picture(read_mesh(command.part).mesh, 0, 0);
+  const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
+  std::vector<std::pair<std::string, std::string>> facts{
+      {"curve", name(command.curve)},
+      {"moves", fmt::format("{} in {} region{}", path.steps.size(), path.regions, path.regions == 1 ? "" : "s")},
+      {"at work", fmt::format("{:.3f} mm, {:.2f} s at the feeds", path.working_length, path.working_time)},
+      {"off the straight lines", fmt::format("at most {:.3f} \xC2\xB5m", 1e3 * path.largest_deviation)}};
+  if (part) facts.emplace_back("part", fmt::format("{}, {} triangles", name(command.part), part->triangles_of_part));
+  write_file_atomically(command.report, path_page("Tool path of " + name(command.curve), machine, facts,
+                                                  path_picture(machine, path, commands), part));
+}
+
 int run_path(const PathCommand& command) {
   const Machine nominal = read_machine(command.machine);
   CalibratedMachine calibrated{nominal, std::vector<double>(nominal.axes.size(), 0.0), {}};
@@ -212,6 +231,7 @@ int run_path(const PathCommand& command) {
                        "a name ending in .ngc, .nc, .tap, .mpf or .csv");
     }
   }
+  if (!command.report.empty()) write_page(command, machine, path, commands);
   const Miss miss = largest_miss(machine, curve, path);
   if (command.json) {
     fmt::print("{}\n", json_text(path_json(machine, path, miss)));
@@ -232,7 +252,7 @@ void add_path_command(CommandLine& line) {
   CLI::App* command = line.add(
       "path", "Axis commands and NC program for a curve on the workpiece, by the calibrated machine",
       "  abbe path examples/machines/yin-engraver-u.machine.toml examples/laser_engraver/table-a4.csv --placement "
-      "examples/laser_engraver/part.placement.toml -o program.ngc -o commands.csv\n"
+      "examples/laser_engraver/part.placement.toml -o program.ngc -o commands.csv --report path.html\n"
       "  abbe path examples/machines/yin-engraver-u.machine.toml examples/laser_engraver/regions.ngc --errors "
       "examples/laser_engraver/linkage.errors.toml --retract-mm 20 --tolerance-um 1 --word C1=C --word C2=B\n\n"
       "The curve: CSV with x_mm, y_mm, z_mm, i, j, k (direction from the tool to the spindle or source), optional\n"
@@ -261,6 +281,9 @@ void add_path_command(CommandLine& line) {
   command->add_flag("--feed-per-minute", options->feed_per_minute,
                     "Write F in mm/min (G94) instead of inverse time (G93)");
   command->add_option("-o,--output", options->outputs, "File to write: .ngc, .nc, .tap, .mpf or .csv; repeatable");
+  command->add_option("--report", options->report, "Page to write (.html): the tool on its path, played, on the part");
+  command->add_option("--part", options->part, "Mesh of the workpiece for that page (.stl .ply .obj .step), mm")
+      ->needs("--report");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options]() -> int { return run_path(*options); }; });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -11,7 +12,10 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/transform_file.h"
 #include "abbe/geometry/registration.h"
+#include "abbe/report/evaluation_data.h"
+#include "abbe/report/report.h"
 #include "evaluate/number_option.h"
+#include "scan/registration_page.h"
 #include "scan/registration_words.h"
 #include "scan/scan_files.h"
 
@@ -53,9 +57,9 @@ int run_register(const RegisterCommand& command) {
   const PointCloudFile scan = command.files.read_scan();
   const MeshFile part = command.files.read_part();
   Registration result;
+  const RegistrationTarget target(part.mesh, options);
   {
     Progress progress("registering");
-    const RegistrationTarget target(part.mesh, options);
     result = target.register_scan(scan.cloud, progress.callback());
   }
   nlohmann::ordered_json json;
@@ -69,6 +73,14 @@ int run_register(const RegisterCommand& command) {
     folder.write("registration.json", json_text(json));
     folder.write("transform.csv", transform_csv(result.fine.mesh_from_scan));
     folder.write("registered.ply", ply_bytes({.points = placed.points, .normals = placed.normals}));
+    const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
+    EvaluationReport page =
+        registration_page(fmt::format("Registration of {} on {}", name(command.files.scan), name(command.files.part)),
+                          result, placed, part.mesh, target.surface(), command.files.threads);
+    const auto facts = facts_of(scan, part);
+    page.facts.insert(page.facts.begin(), facts.begin(), facts.end());
+    for (const std::string& note : part.notes) page.notes.push_back(name(command.files.part) + ": " + note);
+    folder.write("report.html", report_page(evaluation_data(page)));
     folder.commit();
   }
   if (command.json) {
@@ -108,7 +120,7 @@ void add_register_command(CommandLine& line) {
   app->add_flag("--uncertainty", command->uncertainty, "Print the covariance of the pose too");
   app->add_option("-o,--output", command->output,
                   "Results folder to write: registered.ply (the scan in the frame of the part), transform.csv, "
-                  "registration.json");
+                  "registration.json, report.html (deviations on the part)");
   app->add_flag("--json", command->json, "Print JSON for programs");
   app->callback([&line, command] { line.run = [command] { return run_register(*command); }; });
 }

@@ -8,6 +8,8 @@
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/report/evaluation_data.h"
+#include "abbe/report/report.h"
 
 namespace abbe {
 namespace {
@@ -72,7 +74,7 @@ void write_report(const EvaluationReport& report, const nlohmann::ordered_json& 
   ResultsFolder folder(options.output);
   folder.write("evaluation.json", json_text(json));
   for (const EvaluationPlot& plot : report.plots) folder.write(plot.name + ".svg", plot.svg);
-  folder.write("report.html", evaluation_page(report));
+  folder.write("report.html", report.page.is_object() ? report_page(evaluation_data(report)) : evaluation_page(report));
   for (const auto& [name, contents] : options.files) folder.write(name, contents);
   folder.commit();
 }

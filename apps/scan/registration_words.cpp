@@ -13,30 +13,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-std::string words_of(const Registration& result) {
-  switch (result.status) {
-    case RegistrationStatus::ok:
-      return "the pose is determined";
-    case RegistrationStatus::too_few_points:
-      return "too few points for a pose: at least six that are not all at one place";
-    case RegistrationStatus::no_start:
-      return "no pose brings the scan near the part: is it the same part, in the same unit, with normals to the same "
-             "side?";
-    case RegistrationStatus::not_converged:
-      return "not converged: the pose below is where the iteration stopped";
-    case RegistrationStatus::undetermined:
-      return "undetermined: motions of the scan along the surface change nothing, so the pose below is one of many";
-    case RegistrationStatus::ambiguous:
-      return fmt::format("ambiguous: {} fits as well, and the scan does not tell which is right",
-                         result.alternatives.size() == 1
-                             ? "another pose"
-                             : fmt::format("each of {} other poses", result.alternatives.size()));
-    case RegistrationStatus::not_run:
-      break;
-  }
-  return "not run";
-}
-
 std::string words_of(const UndeterminedMotion& motion) {
   if (!motion.rotation) return fmt::format("shift along {}", triple_text(motion.direction));
   const std::string line =
@@ -57,11 +33,6 @@ nlohmann::ordered_json json_of(const RigidTransform& transform) {
 
 double standard_uncertainty(const FineRegistration& fine, int k) {
   return std::sqrt(std::max(0.0, fine.covariance(k, k)));
-}
-
-bool has_pose(const Registration& result) {
-  return result.status != RegistrationStatus::not_run && result.status != RegistrationStatus::too_few_points &&
-         result.status != RegistrationStatus::no_start;
 }
 
 std::string pose_text(const RigidTransform& pose) {
@@ -93,11 +64,46 @@ std::string covariance_text(const FineRegistration& fine) {
 
 }  // namespace
 
+std::string registration_words(const Registration& result) {
+  switch (result.status) {
+    case RegistrationStatus::ok:
+      return "the pose is determined";
+    case RegistrationStatus::too_few_points:
+      return "too few points for a pose: at least six that are not all at one place";
+    case RegistrationStatus::no_start:
+      return "no pose brings the scan near the part: is it the same part, in the same unit, with normals to the same "
+             "side?";
+    case RegistrationStatus::not_converged:
+      return "not converged: the pose below is where the iteration stopped";
+    case RegistrationStatus::undetermined:
+      return "undetermined: motions of the scan along the surface change nothing, so the pose below is one of many";
+    case RegistrationStatus::ambiguous:
+      return fmt::format("ambiguous: {} fits as well, and the scan does not tell which is right",
+                         result.alternatives.size() == 1
+                             ? "another pose"
+                             : fmt::format("each of {} other poses", result.alternatives.size()));
+    case RegistrationStatus::not_run:
+      break;
+  }
+  return "not run";
+}
+
+bool has_pose(const Registration& result) {
+  return result.status != RegistrationStatus::not_run && result.status != RegistrationStatus::too_few_points &&
+         result.status != RegistrationStatus::no_start;
+}
+
+std::vector<std::string> undetermined_words(const FineRegistration& fine) {
+  std::vector<std::string> words;
+  for (const UndeterminedMotion& motion : fine.undetermined) words.push_back(words_of(motion));
+  return words;
+}
+
 nlohmann::ordered_json registration_json(const Registration& result) {
   const FineRegistration& fine = result.fine;
   nlohmann::ordered_json json;
   json["status"] = registration_status_name(result.status);
-  json["words"] = words_of(result);
+  json["words"] = registration_words(result);
   if (!has_pose(result)) return json;
   json["part_from_scan"] = json_of(fine.mesh_from_scan);
   json["iterations"] = fine.iterations;
@@ -141,7 +147,7 @@ nlohmann::ordered_json registration_json(const Registration& result) {
 
 std::string registration_text(const Registration& result, Eigen::Index points, bool covariance) {
   const FineRegistration& fine = result.fine;
-  std::string text = words_of(result) + "\n";
+  std::string text = registration_words(result) + "\n";
   if (!has_pose(result)) return text;
   text += "\npart from scan: rotation, translation\n" + pose_text(fine.mesh_from_scan);
   text += fmt::format("\n{:.1f} % of the points lie on the surface, {} of {} count, {} lie beyond its border\n",

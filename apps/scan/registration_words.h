@@ -2,10 +2,18 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "abbe/geometry/registration.h"
 
 namespace abbe {
+
+/// The status in words.
+std::string registration_words(const Registration& result);
+/// Whether there is a pose at all, be it one of many.
+bool has_pose(const Registration& result);
+/// Motions that the scan does not show: "turn about the line along (0, 0, 1) through (0, 0, 0) mm".
+std::vector<std::string> undetermined_words(const FineRegistration& fine);
 
 /// What a registration found, for programs: status, part_from_scan, standard uncertainties, covariance, undetermined
 /// motions and alternative poses; units in the keys.

@@ -49,6 +49,7 @@ TEST_F(Scan, TheBracketIsFoundFromAnywhereWithItsUncertainty) {
   const PlyContents placed = parse_ply(folder.read("out/registered.ply"), "registered.ply");
   EXPECT_EQ(placed.points.cols(), 2000);
   EXPECT_EQ(nlohmann::json::parse(folder.read("out/registration.json")), found);
+  EXPECT_THAT(folder.read("out/report.html"), HasSubstr("Registration of bracket-scan.csv on bracket.stl"));
 }
 
 TEST_F(Scan, EveryLossAndStartFindsTheSamePose) {

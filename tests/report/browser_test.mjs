@@ -7,6 +7,8 @@ import {basename, join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
 
 import {contentOf, mapChoicesOf} from './content_checks.mjs';
+import {motionOf} from './path_checks.mjs';
+import {scanOf} from './scan_checks.mjs';
 import {until} from './until.mjs';
 import {keyboardOf, paperOf} from './use_checks.mjs';
 
@@ -87,7 +89,8 @@ async function inspect(browser, file) {
 
   const sections = await page.$$eval('main > section', (all) => all.map((e) => e.id));
   const wanted = {map: data.map, machine: data.machine?.axes?.length, motions: data.error_motions?.length, parameters: data.parameters,
-    residuals: data.residuals?.setups?.length, assumptions: data.assumptions?.length};
+    residuals: data.residuals?.setups?.length, assumptions: data.assumptions?.length, figures: data.evaluation?.figures?.length,
+    surface: data.surface?.values, section: data.surface?.values, path: data.path?.time_s?.length, contour: data.contour};
   for (const [id, present] of Object.entries(wanted))
     check(sections.includes(id) === Boolean(present), problems(`section ${id} is ${present ? 'missing' : 'there without data'}`));
   if (data.error_motions) {
@@ -152,6 +155,8 @@ async function inspect(browser, file) {
     check(await until(async () => (await stills()).every((n) => n > 2000)), problems('no still image of the map for printing'));
   }
 
+  await scanOf(page, data, expect, shot, parse);
+  await motionOf(page, data, expect, shot, parse);
   if (data.map) await mapChoicesOf(page, data, expect, shot, compareFigures);
   if (data.summary?.monte_carlo) await shot(page.locator('#monte-carlo'), 'monte-carlo');
 

@@ -27,7 +27,8 @@ export async function paperOf(page, data, expect) {
   expect(sheet.inner <= sheet.outer, `${sheet.inner} px wide on a sheet of ${sheet.outer} px`);
   expect(sheet.cut.length === 0, `cut on paper: ${sheet.cut}`);
   expect(sheet.canvases === 0, `${sheet.canvases} canvases instead of images on paper`);
-  expect(sheet.stills.length === (data.map ? (data.map.after_um ? 2 : 1) : 0) && sheet.stills.every(Boolean), `images of the map on paper: ${sheet.stills}`);
+  const stills = (data.map ? (data.map.after_um ? 2 : 1) : 0) + (data.surface?.values ? 1 : 0) + (data.path?.time_s?.length ? 1 : 0);
+  expect(sheet.stills.length === stills && sheet.stills.every(Boolean), `images of the map on paper: ${sheet.stills}`);
   expect(sheet.controls === 0, `${sheet.controls} controls on paper`);
   expect(!data.parameters || (sheet.heads.length > 3 && sheet.heads.every((text) => text.length > 0)), `heads of the parameters on paper: ${sheet.heads}`);
   expect(sheet.shrunk === 0, `${sheet.shrunk} drawings not made for the sheet`);

@@ -1,5 +1,8 @@
 // Data of a report, as docs/report-data.md describes it. Everything but format and title is optional.
 
+import {PathBlock} from './path_data';
+import {SurfaceBlock} from './surface_data';
+
 export type Column = (number | null)[];
 
 export interface Statistics {
@@ -193,10 +196,39 @@ export interface DataTable {
   note?: string;
 }
 
+/// An evaluation by a standard or of a scan; values carry their units in the keys: value_um, tolerance_um.
+export type EvaluationFigure = {symbol: string; name?: string; decimals?: number; verdict?: string; not_evaluated?: string} & Record<string, unknown>;
+
+export interface Evaluation {
+  kind?: string;
+  facts?: {name: string; text: string}[];
+  figures?: EvaluationFigure[];
+  drawings?: {caption?: string; svg: string}[];
+}
+
+/// Contour error over the length of a curve; u is the standard uncertainty.
+export interface ContourBlock {
+  title?: string;
+  points?: number;
+  s_mm: number[];
+  error_um: number[];
+  u_um?: number[];
+  /// Lower and upper, or one.
+  limits_um?: number[];
+  mean_um?: number;
+  largest_um?: number;
+  standard_deviation_um?: number;
+  note?: string;
+}
+
 export interface Report {
   format: string;
   title: string;
   subtitle?: string;
+  evaluation?: Evaluation;
+  surface?: SurfaceBlock;
+  path?: PathBlock;
+  contour?: ContourBlock | ContourBlock[];
   generator?: string;
   created?: string;
   study?: {name?: string; file?: string; seed?: number};
@@ -246,6 +278,7 @@ const kUnits: [string, string][] = [
   ['_arcsec', '″'],
   ['_s', 's'],
   ['_percent', '%'],
+  ['_um_per_m', 'µm/m'],
 ];
 
 /// A unit as it is written in data, as it is written for people.

@@ -63,7 +63,7 @@ function bars(target: Plot, distribution: Distribution, style: string): void {
   target.layer.append(svg('path', {d: path, class: `bars ${style}`}));
 }
 
-function drawing(unit: string, sets: {style: string; name: string; data: Distribution}[], log: boolean): HTMLElement {
+function drawing(unit: string, sets: {style: string; name: string; data: Distribution}[], log: boolean, quantityName: string, of: string): HTMLElement {
   const box = html('div', {class: 'drawing'});
   const from = Math.min(...sets.map((set) => set.data.edges[0]));
   const to = Math.max(...sets.map((set) => set.data.edges[set.data.edges.length - 1]));
@@ -72,13 +72,13 @@ function drawing(unit: string, sets: {style: string; name: string; data: Distrib
     const target = plot({
       width,
       height: 250,
-      x: {label: `length of the error / ${unit}`, range: [from, to], log},
-      y: {label: 'share of the poses / %', range: [0, highest * 1.22], nice: false},
+      x: {label: `${quantityName} / ${unit}`, range: [from, to], log},
+      y: {label: `share of the ${of} / %`, range: [0, highest * 1.22], nice: false},
       description: sets.map((set) => `${set.name}: median ${quantity(set.data.median, unit)}, 95 percent below ${quantity(set.data.p95, unit)}`).join('; '),
     });
     sets.forEach((set, i) => {
       bars(target, set.data, set.style);
-      rule(target, set.data.median, 'x', set.style, `${set.name}, median ${quantity(set.data.median, unit)}`, i);
+      rule(target, set.data.median, 'x', set.style, `${set.name && `${set.name}, `}median ${quantity(set.data.median, unit)}`, i);
     });
     return target.root;
   });
@@ -92,6 +92,19 @@ function logEdges(values: number[]): number[] {
   const to = Math.pow(10, Math.ceil(Math.log10(positive[positive.length - 1]) * 4) / 4);
   const bins = Math.max(12, Math.round(Math.log10(to / from) * 18));
   return Array.from({length: bins + 1}, (_, i) => from * Math.pow(to / from, i / bins));
+}
+
+/// Counts of one signed quantity, with how many lie outside of the classes.
+function signedCounts(entry: Histogram, edges: number[], unit: string): HTMLElement | undefined {
+  const counts = entry.counts as number[];
+  const inside = counts.reduce((a, b) => a + b, 0);
+  if (!inside) return undefined;
+  const outside = (Number(entry.below) || 0) + (Number(entry.above) || 0);
+  const of = typeof entry.of === 'string' ? entry.of : 'values';
+  const data = fromCounts(edges, counts);
+  data.share = counts.map((c) => (100 * c) / (inside + outside));
+  const caption = `${entry.title ?? 'Distribution'} of ${count(inside + outside)} ${of}.${outside ? ` ${count(Number(entry.below))} lie below and ${count(Number(entry.above))} above the classes.` : ''}`;
+  return figure(caption, drawing(unit, [{style: 'after', name: '', data}], false, typeof entry.quantity === 'string' ? entry.quantity : 'value', of));
 }
 
 function one(entry: Histogram): HTMLElement | undefined {
@@ -118,11 +131,12 @@ function one(entry: Histogram): HTMLElement | undefined {
       if (exact?.median !== undefined) set.data.median = exact.median;
       if (exact?.p95 !== undefined) set.data.p95 = exact.p95;
     }
+    if (edges && entry.counts) return signedCounts(entry, edges, unit);
     if (!sets.length || sets.some((set) => set.data.total === 0)) continue;
     const caption = `${entry.title ?? 'Distribution'}. ${sets
       .map((set) => `${set.name[0].toUpperCase()}${set.name.slice(1)}: 95\u2009% of ${count(set.data.total)} poses below ${quantity(set.data.p95, unit)}`)
       .join('. ')}.${log ? ' Logarithmic axis.' : ''}`;
-    return figure(caption, drawing(unit, sets, log));
+    return figure(caption, drawing(unit, sets, log, 'length of the error', 'poses'));
   }
   return undefined;
 }
@@ -135,7 +149,7 @@ export function histogramSection(entries: Histogram[] | undefined, map: ErrorMap
   const figures = list.map(one).filter((f): f is HTMLElement => f !== undefined);
   const table = summary && statisticsTable(summary);
   if (!figures.length && !table) return undefined;
-  const part = section('distribution', 'Distribution of the error');
+  const part = section('distribution', list.some((entry) => entry.counts) ? 'Distribution' : 'Distribution of the error');
   if (figures.length) part.append(html('div', {class: figures.length > 1 ? 'columns' : ''}, ...figures));
   if (table) part.append(table);
   return part;

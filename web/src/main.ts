@@ -2,8 +2,10 @@
 
 import {adviceSection} from './advice';
 import {machineSection} from './chain';
+import {contourSection} from './contour';
 import {Report} from './data';
 import {html, section} from './dom';
+import {evaluationSection} from './evaluation';
 import {micro} from './format';
 import {histogramSection} from './histogram';
 import {identificationSection} from './identification';
@@ -11,15 +13,19 @@ import {mapSection} from './map';
 import {monteCarloSection} from './monte_carlo';
 import {locationSection, motionSection} from './motions';
 import {overview} from './overview';
+import {pathSection} from './path';
 import {preparePrint} from './print';
 import {residualSection} from './residuals';
+import {surfaceSections} from './surface';
 import {parameterSection, tablesSection} from './table';
 import {themeButton} from './theme';
 
 const kShort: Record<string, string> = {
-  map: 'Map', distribution: 'Distribution', machine: 'Machine', motions: 'Error motions', locations: 'Location errors', tables: 'Comparison',
+  figures: 'Figures', surface: 'Deviation', section: 'Section', path: 'Path', contour: 'Contour error', map: 'Map', distribution: 'Distribution', machine: 'Machine', motions: 'Error motions', locations: 'Location errors', tables: 'Comparison',
   identification: 'Observability', advice: 'Unseen', 'monte-carlo': 'Monte Carlo', residuals: 'Residuals', parameters: 'Parameters', assumptions: 'Assumptions', references: 'References',
 };
+
+const kShortEvaluation: Record<string, string> = {tables: 'Details', assumptions: 'Notes'};
 
 function listSection(id: string, title: string, lines: string[]): HTMLElement {
   const part = section(id, title);
@@ -36,23 +42,27 @@ function build(report: Report): void {
   print.addEventListener('click', () => window.print());
 
   const sections = [
+    report.evaluation?.figures?.length ? evaluationSection(report.evaluation) : undefined,
+    ...surfaceSections(report),
+    pathSection(report),
+    report.contour && contourSection([report.contour].flat()),
     report.map && mapSection(report.map, report.summary?.map),
     histogramSection(report.histograms, report.map, report.summary),
     report.machine && machineSection(report.machine),
     report.error_motions?.length ? motionSection(report.error_motions, report.machine) : undefined,
     report.location_errors?.length ? locationSection(report.location_errors) : undefined,
-    report.tables?.length ? tablesSection(report.tables) : undefined,
+    report.tables?.length ? tablesSection(report.tables, report.evaluation ? 'Details' : 'Comparison') : undefined,
     report.identification && identificationSection(report.identification, report.summary ?? {}),
     report.advice?.length || report.not_identified ? adviceSection(report.advice ?? [], report.not_identified) : undefined,
     report.residuals && residualSection(report.residuals),
     monteCarloSection(report.parameters, report.summary?.monte_carlo),
     report.parameters?.name?.length ? parameterSection(report.parameters) : undefined,
-    report.assumptions?.length ? listSection('assumptions', 'What was assumed', report.assumptions) : undefined,
+    report.assumptions?.length ? listSection('assumptions', report.evaluation ? 'Notes' : 'What was assumed', report.assumptions) : undefined,
     report.references?.length ? listSection('references', 'References', report.references) : undefined,
   ].filter((part): part is HTMLElement => Boolean(part));
 
   const links = html('nav', {'aria-label': 'Sections'}, ...sections.map((part) =>
-    html('a', {href: `#${part.id}`}, kShort[part.id] ?? part.id)));
+    html('a', {href: `#${part.id}`}, (report.evaluation && kShortEvaluation[part.id]) ?? kShort[part.id] ?? part.id)));
   page.append(
     html('a', {class: 'skip', href: '#content'}, 'Skip to the report'),
     html('div', {class: 'bar'}, html('span', {class: 'brand'}, 'Abbe'), links, html('div', {class: 'actions'}, print, toggle)),

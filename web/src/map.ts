@@ -1,11 +1,12 @@
 // The map of error vectors: before and after side by side, one camera, one colour scale.
 
-import {isDark, cssColour, rampColour} from './colour';
+import {cssColour, rampColour} from './colour';
 import {ErrorMap, PoseErrors, splitUnit} from './data';
 import {field, html, responsive, section, svg} from './dom';
 import {count, micro, number, quantity as withUnit} from './format';
 import {Colour, colours, exaggeration, quantities, range, roundFactor, statisticsTable} from './map_choices';
-import {Camera, View} from './map_view';
+import {Camera} from './camera';
+import {View} from './map_view';
 import {linearScale, logScale} from './scale';
 import {onThemeChange} from './theme';
 
@@ -133,7 +134,7 @@ export function mapSection(map: ErrorMap, summary: PoseErrors | undefined): HTML
       view.caption.textContent = `${slice ? `${positionValue.textContent}; ` : ''}arrows ${exaggeration(kind, scale)}`;
       view.describe(`${kind.what} in three dimensions, ${exaggeration(kind, scale)}, coloured by ${scaling.colour.legend}`);
       view.update({...entry.vectors, length: entry.length, colour: scaling.colour.values(i)}, scale * kind.millimetres, visible,
-        (value) => rampColour(fraction(value, scaling), isDark()), (value) => rampColour(fraction(value, scaling), false));
+        (value, dark) => rampColour(fraction(value, scaling), dark));
     });
     sliderValue.textContent = exaggeration(kind, common * factor);
     slider.setAttribute('aria-valuetext', sliderValue.textContent);

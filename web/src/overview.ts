@@ -2,6 +2,7 @@
 
 import {PoseErrors, Report, Statistics, Summary} from './data';
 import {html} from './dom';
+import {evaluationFacts} from './evaluation';
 import {count, micro, number, quantity} from './format';
 
 /// The errors a reader asks for first: at unseen poses if there are any, else over the map.
@@ -151,7 +152,7 @@ export function overview(report: Report): HTMLElement {
     {class: 'overview'},
     html('h1', {}, report.title),
     report.subtitle && html('p', {class: 'subtitle'}, report.subtitle),
-    facts(report),
+    report.evaluation?.facts?.length ? evaluationFacts(report.evaluation) : facts(report),
     sentence && html('p', {class: 'verdict', 'data-key': 'verdict'}, sentence),
     warnings(report),
   );

@@ -5,7 +5,8 @@ import {field, html, section} from './dom';
 import {alike, count, number, withUncertainty} from './format';
 
 export function dataTable(caption: string, columns: string[], rows: (string | number | boolean | null)[][]): HTMLElement {
-  const isNumber = columns.map((_, i) => rows.some((row) => typeof row[i] === 'number'));
+  const isNumeric = (cell: unknown) => typeof cell === 'number' || (typeof cell === 'string' && /^-?\d[\d.]*$/.test(cell));
+  const isNumber = columns.map((_, i) => rows.some((row) => typeof row[i] === 'number') || (rows.length > 0 && rows.every((row) => isNumeric(row[i]))));
   return html(
     'div',
     {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption},
@@ -19,15 +20,15 @@ export function dataTable(caption: string, columns: string[], rows: (string | nu
         {},
         ...rows.map((row) =>
           html('tr', {}, ...row.map((cell, i) =>
-            html('td', {class: isNumber[i] ? 'number' : ''}, typeof cell === 'number' ? (Number.isInteger(cell) ? count(cell) : number(cell, 5)) : cell === null ? '\u2013' : String(cell)))),
+            html('td', {class: isNumber[i] ? 'number' : ''}, typeof cell === 'number' ? (Number.isInteger(cell) ? count(cell) : number(cell, 5)) : cell === null ? '\u2013' : isNumber[i] ? cell.toString().replace('-', '\u2212') : String(cell)))),
         ),
       ),
     ),
   );
 }
 
-export function tablesSection(tables: DataTable[]): HTMLElement {
-  const part = section('tables', 'Comparison');
+export function tablesSection(tables: DataTable[], title: string): HTMLElement {
+  const part = section('tables', title);
   for (const table of tables) {
     part.append(dataTable(table.title, table.columns, table.rows));
     if (table.note) part.append(html('p', {class: 'note'}, table.note));

@@ -57,6 +57,7 @@ struct EvaluationReport {
   std::vector<EvaluationPlot> plots;
   std::vector<std::string> notes;  ///< what a reader must know to judge the figures
   nlohmann::ordered_json details;  ///< for programs, beside the figures; units in the keys; an object or null
+  nlohmann::json page;  ///< more sections of the interactive page (docs/report-data.md), or null: a page without script
 
   bool exceeds_tolerance() const;
 };

@@ -1,0 +1,68 @@
+// Made-up pages of scans for the page's test: a ball with coverage, a probe's path and a contour error; and everything that can be
+// empty or single. The same bytes every time.
+//   node sample/make_scan_sample.mjs PAGE.html TEMPLATE.html
+import {readFileSync, writeFileSync} from 'node:fs';
+
+const packed = (numbers, size, write) => {
+  const raw = Buffer.alloc(numbers.length * size);
+  numbers.forEach((n, i) => raw[write](n, size * i));
+  return raw.toString('base64');
+};
+const uint16 = (numbers) => packed(numbers, 2, 'writeUInt16LE');
+const int16 = (numbers) => packed(numbers, 2, 'writeInt16LE');
+const int8 = (numbers) => packed(numbers, 1, 'writeInt8');
+const uint8 = (numbers) => packed(numbers, 1, 'writeUInt8');
+
+// A ball of radius 10 mm about (0, 0, 20).
+const rings = 40;
+const vertices = [];
+for (let i = 0; i <= rings; ++i)
+  for (let k = 0; k < 2 * rings; ++k) {
+    const [t, p] = [(Math.PI * i) / rings, (Math.PI * k) / rings];
+    vertices.push([10 * Math.sin(t) * Math.cos(p), 10 * Math.sin(t) * Math.sin(p), 20 + 10 * Math.cos(t)]);
+  }
+const triangles = [];
+for (let i = 0; i < rings; ++i)
+  for (let k = 0; k < 2 * rings; ++k) {
+    const [a, b, c, d] = [[i, k], [i + 1, k], [i + 1, k + 1], [i, k + 1]].map(([r, m]) => r * 2 * rings + (m % (2 * rings)));
+    if (i > 0) triangles.push([a, c, d]);
+    if (i < rings - 1) triangles.push([a, b, c]);
+  }
+const lower = [-10, -10, 10];
+const step = 20 / 65535;
+const ball = {frame: 'workpiece', triangles_of_part: triangles.length, lower_mm: lower, step_mm: step, vertex_count: vertices.length, triangle_count: triangles.length,
+  vertices: uint16(vertices.flat().map((v, i) => Math.round((v - lower[i % 3]) / step))), triangles: uint16(triangles.flat())};
+const height = (t) => triangles[t].reduce((sum, v) => sum + vertices[v][2] / 3, 0) - 20;
+const coverage = {reasons: ['covered', 'angle of the beam', 'collision with the probe'], of_triangle: uint8(triangles.map((_, t) => (height(t) > -3 ? 0 : height(t) > -7 ? 1 : 2)))};
+
+const n = 400;
+const path = {title: 'Scan path', moves: 12000, time_s: [], working: [], axes: ['C_deg', 'X_mm', 'Z_mm'], commands: {C_deg: [], X_mm: [], Z_mm: []}, travel: {X_mm: [-50, 50], Z_mm: [0, 60]},
+  point_mm: {x: [], y: [], z: []}, direction: {x: [], y: [], z: []}, feed_mm_per_min: [], length_mm: [],
+  tool: {kind: 'probe', radius_mm: 1.5, length_mm: 12, working_distance_mm: 4}, note: 'Made up.'};
+for (let i = 0; i < n; ++i) {
+  const t = 0.1 + (1.7 * i) / n;
+  const p = 0.5 * i;
+  const d = [Math.sin(t) * Math.cos(p), Math.sin(t) * Math.sin(p), Math.cos(t)];
+  const working = i % 50 === 0 ? 0 : 1;
+  path.time_s.push(0.25 * i); path.working.push(working); path.feed_mm_per_min.push(working ? 120 : 0); path.length_mm.push(0.5 * i);
+  path.commands.C_deg.push(((p * 180) / Math.PI)); path.commands.X_mm.push(10 * Math.sin(t)); path.commands.Z_mm.push(20 + 10 * Math.cos(t));
+  ['x', 'y', 'z'].forEach((k, m) => { path.point_mm[k].push((m === 2 ? 20 : 0) + (working ? 10 : 14) * d[m]); path.direction[k].push(d[m]); });
+}
+const s = Array.from({length: 30}, (_, i) => 2.5 * i);
+const contour = {title: 'Engraved curve', s_mm: s, error_um: s.map((v, i) => 15 + 6 * Math.sin(0.3 * v) + (i === 20 ? 12 : 0)), u_um: s.map(() => 2), limits_um: [-25, 25]};
+const scan = {format: 'abbe-report/1', title: 'A probe on a ball', evaluation: {kind: 'scan', facts: [{name: 'part', text: 'a ball'}],
+  figures: [{symbol: 'covered', name: 'part of the surface', value_percent: 71.25, decimals: 2, tolerance_percent: 95, verdict: 'exceeded'},
+    {symbol: 'time', name: 'of the path', value_s: 100, decimals: 1}, {symbol: 'none', name: 'nothing known', not_evaluated: 'no point counts', decimals: 3}]},
+surface: {...ball, coverage}, path, contour, assumptions: ['A probe of 1.5 mm.']};
+
+const one = {...ball, vertex_count: 3, triangle_count: 1, triangles_of_part: 1, vertices: uint16([0, 0, 0, 65535, 0, 0, 0, 65535, 0]), triangles: uint16([0, 1, 2]), limit_um: 1e-3, value_step_um: 5e-7};
+const edge = {format: 'abbe-report/1', title: 'One triangle, no point near it', evaluation: {facts: [], figures: []},
+  surface: {...one, values: int16([-32768, -32768, -32768]), points: {measured: 5, counted: 1, drawn: 1, foot: uint16([100, 100, 0]), normal: int8([0, 0, 127]), values: int16([32767])}},
+  histograms: [{title: 'Distribution', edges_um: [-1, 0, 1], counts: [0, 0], below: 0, above: 1}],
+  contour: [{s_mm: [0], error_um: [0]}, {s_mm: [], error_um: []}],
+  path: {time_s: [0], working: [1], commands: {X_mm: [0]}, point_mm: {x: [0], y: [0], z: [0]}, direction: {x: [0], y: [0], z: [1]}}};
+
+const [, , pageFile, templateFile] = process.argv;
+const template = readFileSync(templateFile, 'utf8');
+for (const [name, content] of [['', scan], ['-edge', edge]])
+  writeFileSync(pageFile.replace(/\.html$/, `${name}.html`), template.replace('@@ABBE_DATA@@', () => JSON.stringify(content).replace(/</g, '\\u003c')));

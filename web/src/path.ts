@@ -1,0 +1,142 @@
+// The tool along its path: play, slider, axis positions, time and feed.
+
+import {Camera} from './camera';
+import {cssColour} from './colour';
+import {Report, splitUnit} from './data';
+import {field, html, section} from './dom';
+import {count, number, plain, quantity} from './format';
+import {animationTimes, momentAt, PathBlock, valueAt} from './path_data';
+import {kCoverage, PathView} from './path_view';
+import {Surface, SurfaceBlock, unpackSurface} from './surface_data';
+import {thinningWords} from './surface';
+import {onThemeChange} from './theme';
+
+const kSteps = 2000;
+const kSeconds = 20;
+
+function cameraOf(path: PathBlock, part: Surface | undefined): Camera {
+  const column = (k: 0 | 1 | 2) => {
+    const values = [...path.point_mm[(['x', 'y', 'z'] as const)[k]]];
+    if (part) for (let i = k; i < part.vertices.length; i += 3) values.push(part.vertices[i]);
+    return values;
+  };
+  return new Camera({x: column(0), y: column(1), z: column(2)}, 1e-6);
+}
+
+/// A row for each axis: name, position, where it is in its travel.
+function axisTable(path: PathBlock): {table: HTMLElement; show: (value: (column: number[]) => number) => void} {
+  const rows = (path.axes ?? Object.keys(path.commands)).map((key) => {
+    const column = path.commands[key];
+    const {name, unit} = splitUnit(key);
+    const travel = path.travel?.[key];
+    let [low, high] = travel ?? [Infinity, -Infinity];
+    if (!travel) for (const v of column) [low, high] = [Math.min(low, v), Math.max(high, v)];
+    const cell = html('td', {class: 'number', 'data-axis': key});
+    const meter = html('meter', {min: low, max: high > low ? high : low + 1, 'aria-label': `${name} within its ${travel ? 'travel' : 'range'}`});
+    const row = html('tr', {}, html('th', {scope: 'row'}, name), cell, html('td', {}, unit), html('td', {class: 'number'}, plain(low)), html('td', {}, meter), html('td', {class: 'number'}, plain(high)));
+    return {row, column, cell, meter};
+  });
+  const table = html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Axis positions'}, html('table', {class: 'axis-positions'},
+    html('caption', {}, 'Axis positions'),
+    html('thead', {}, html('tr', {}, ...['Axis', 'Position', 'Unit', 'from', 'within', 'to'].map((name, i) => html('th', {scope: 'col', class: [1, 3, 5].includes(i) ? 'number' : ''}, name)))),
+    html('tbody', {}, ...rows.map(({row}) => row))));
+  return {table, show: (value) => {
+    for (const {column, cell, meter} of rows) {
+      const at = value(column);
+      cell.textContent = (at < 0 ? '\u2212' : '') + Math.abs(at).toFixed(3);
+      meter.value = at;
+    }
+  }};
+}
+
+function coverageLegend(block: SurfaceBlock, surface: Surface): HTMLElement | undefined {
+  const coverage = surface.coverage;
+  if (!coverage) return undefined;
+  const counts = new Array<number>(coverage.reasons.length).fill(0);
+  coverage.ofTriangle.forEach((reason) => counts[reason] += 1);
+  return html('p', {class: 'legend coverage'}, ...coverage.reasons.flatMap((reason, i) => counts[i]
+    ? [html('span', {class: 'key', 'data-reason': i}, html('span', {class: 'dot', style: `background: ${cssColour(kCoverage[Math.min(i, kCoverage.length - 1)])}`}),
+      `${reason}: ${number((100 * counts[i]) / block.triangle_count)}\u2009% of the triangles`)] : []));
+}
+
+export function pathSection(report: Report): HTMLElement | undefined {
+  const path = report.path;
+  if (!path?.time_s?.length) return undefined;
+  const n = path.time_s.length;
+  const surface = report.surface && unpackSurface(report.surface);
+  const part = section('path', path.title ?? 'Path', 'The tool on its path, seen from the workpiece. Path at work: done in colour, ahead in black; rapid moves paler.');
+  const camera = cameraOf(path, surface);
+  const view = new PathView('Path', path, surface, camera);
+  camera.onChange(() => view.render());
+  const times = animationTimes(path);
+  const end = times[n - 1];
+  const play = html('button', {type: 'button', id: 'path-play'}, 'Play');
+  const slider = html('input', {type: 'range', min: 0, max: kSteps, step: 1, value: kSteps / 2, id: 'path-position'});
+  const speed = html('select', {id: 'path-speed'}, ...[['fit', `whole path in ${kSeconds} s`], ['1', 'as the machine'], ['10', '10 times as fast'], ['100', '100 times as fast']]
+    .map(([value, text]) => html('option', {value}, text)));
+  const words = html('output', {id: 'path-words', for: 'path-position'});
+  const axes = axisTable(path);
+  const reset = html('button', {type: 'button'}, 'Reset view');
+  reset.addEventListener('click', () => camera.reset());
+  let at = end / 2;
+  let playing = false;
+  let last = 0;
+
+  const show = () => {
+    const moment = momentAt(path, times, at);
+    view.moveTo(moment);
+    axes.show((column) => valueAt(column, moment));
+    const feed = path.feed_mm_per_min?.[moment.move];
+    words.textContent = [`${quantity(moment.time, 's', 4)} of ${quantity(path.time_s[n - 1], 's', 4)}`, path.working[moment.move] ? 'at work' : 'rapid',
+      feed ? `feed ${quantity(feed, 'mm/min', 4)}` : '', path.length_mm ? `${quantity(valueAt(path.length_mm, moment), 'mm', 5)} done` : ''].filter(Boolean).join(', ');
+    slider.setAttribute('aria-valuetext', words.textContent);
+    view.caption.textContent = words.textContent;
+  };
+  const stop = () => {
+    playing = false;
+    play.textContent = 'Play';
+  };
+  const step = (now: number) => {
+    if (!playing) return;
+    at += ((now - last) / 1000) * (speed.value === 'fit' ? end / kSeconds : Number(speed.value));
+    last = now;
+    if (at >= end) {
+      at = end;
+      stop();
+    }
+    slider.value = String(Math.round((kSteps * at) / (end || 1)));
+    show();
+    if (playing) requestAnimationFrame(step);
+  };
+  play.addEventListener('click', () => {
+    if (playing) return stop();
+    playing = true;
+    play.textContent = 'Pause';
+    if (at >= end) at = 0;
+    last = performance.now();
+    requestAnimationFrame(step);
+  });
+  slider.addEventListener('input', () => {
+    stop();
+    at = (end * Number(slider.value)) / kSteps;
+    show();
+  });
+  onThemeChange(() => {
+    view.update('points', 1, 0);
+    show();
+  });
+  view.describe(`tool path of ${count(path.moves ?? n)} moves on the part`);
+
+  const drawn = `${(path.moves ?? n) > n ? `${count(n)} of ${count(path.moves)} moves are drawn; between them the tool goes straight.` : `All ${count(n)} moves are drawn.`}` +
+    (report.surface ? ` ${thinningWords(report.surface)}` : '');
+  part.append(
+    html('div', {class: 'views one'}, view.box),
+    html('div', {class: 'controls'}, play, field('Position', slider), words, field('Speed', speed), reset),
+    ...[report.surface && surface && coverageLegend(report.surface, surface)].filter((e): e is HTMLElement => Boolean(e)),
+    axes.table,
+    html('p', {class: 'note'}, drawn, path.note && ` ${path.note}`),
+    html('p', {class: 'note screen-only'}, 'Drag to rotate, wheel or + and − to zoom, arrow keys to turn.'),
+  );
+  show();
+  return part;
+}
