@@ -42,7 +42,7 @@ TEST(EvaluationData, HoldsTheFiguresOfTheEvaluationInTheirOrder) {
   ASSERT_EQ(evaluation.at("figures").size(), 2U);
   const nlohmann::json& rms = evaluation.at("figures").at(0);
   EXPECT_EQ(rms.at("symbol"), "rms");
-  EXPECT_EQ(rms.at("value_um"), evaluation_json(report)["figures"]["rms"]["value_um"]);
+  EXPECT_EQ(rms.at("value_um").get<double>(), evaluation_json(report)["figures"]["rms"]["value_um"].get<double>());
   EXPECT_EQ(rms.at("value_um"), 12.5);
   EXPECT_EQ(rms.at("verdict"), "exceeded");
   EXPECT_EQ(evaluation.at("figures").at(1).at("not_evaluated"), "no point counts");
