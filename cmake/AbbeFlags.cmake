@@ -20,6 +20,7 @@ if(ABBE_SANITIZE OR ABBE_FUZZ OR CMAKE_CXX_CLANG_TIDY)
   target_compile_definitions(abbe_flags INTERFACE HWY_COMPILE_ONLY_STATIC)
 endif()
 if(ABBE_COVERAGE)
-  target_compile_options(abbe_flags INTERFACE --coverage)
+  # Counters of threads are added up, not overwritten: else lines of parallel loops get negative counts.
+  target_compile_options(abbe_flags INTERFACE --coverage -fprofile-update=atomic)
   target_link_options(abbe_flags INTERFACE --coverage)
 endif()
