@@ -78,7 +78,7 @@ bench:
 	@.ci/set-up bench
 	$(call build_preset,bench)
 	@for program in closest_point compensated_inverse forward_pose five_instruments identification identification_memory planning polygon_trace read_csv \
-	  registration scan_points; do \
+	  read_mesh registration scan_points; do \
 	  echo "== $$program"; build/bench/bin/$$program; done
 
 fuzz:

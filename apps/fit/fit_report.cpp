@@ -178,6 +178,20 @@ void add_notes(EvaluationReport& report, const FitRequest& request, const ShapeF
     report.notes.emplace_back(
         "The points lie on the shape to rounding: no point decides it, the least-squares shape is given.");
   }
+  if (!fit.rivals.empty()) {
+    const ShapeRival& next = fit.rivals.front();
+    const std::string what = request.method == FitMethod::robust
+                                 ? fmt::format("with {:.0f} % of the points near it", 100 * next.value)
+                             : request.method == FitMethod::minimum_zone
+                                 ? fmt::format("with a form deviation of {:.6g} \xC2\xB5m", 1e3 * next.value)
+                                 : fmt::format("of radius {:.6f} mm", next.value);
+    const Eigen::Vector3d& at = next.shape.point;
+    report.notes.push_back(
+        fmt::format("{} other shape{} the best among {} neighbours; the next one, {}, has its point at ({:.4f}, "
+                    "{:.4f}, {:.4f}) mm.",
+                    fit.rivals.size(), fit.rivals.size() == 1 ? " is" : "s are",
+                    fit.rivals.size() == 1 ? "its" : "their", what, at.x(), at.y(), at.z()));
+  }
   if (request.method == FitMethod::robust) {
     report.notes.push_back(
         fmt::format("{} of {} points were left out (weight below 0.001); form, peak and valley are "

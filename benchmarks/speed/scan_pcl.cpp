@@ -22,13 +22,16 @@ Outcome pcl_distances(const TriangleMesh& mesh, const Eigen::Matrix3Xd& points, 
   outcome.prepare_s = now_s() - start;
   start = now_s();
   distances->resize(static_cast<std::size_t>(points.cols()));
-#pragma omp parallel for
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3f p = points.col(i).cast<float>();
+#pragma omp parallel
+  {
     std::vector<int> index(1);
     std::vector<float> square(1);
-    tree.nearestKSearch(pcl::PointXYZ(p.x(), p.y(), p.z()), 1, index, square);
-    (*distances)[static_cast<std::size_t>(i)] = std::sqrt(static_cast<double>(square[0]));
+#pragma omp for
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const Eigen::Vector3f p = points.col(i).cast<float>();
+      tree.nearestKSearch(pcl::PointXYZ(p.x(), p.y(), p.z()), 1, index, square);
+      (*distances)[static_cast<std::size_t>(i)] = std::sqrt(static_cast<double>(square[0]));
+    }
   }
   outcome.run_s = now_s() - start;
   return outcome;

@@ -1,9 +1,11 @@
 #include "abbe/geometry/closest_point.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
+#include "abbe/geometry/hilbert_order.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/surface_normals.h"
 #include "abbe/geometry/surface_tree.h"
@@ -13,50 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-Vector3d column(const std::array<surface::Leaf::Row, 3>& rows, std::size_t lane) {
-  return {rows[0][lane], rows[1][lane], rows[2][lane]};
-}
-
-/// Where on a triangle the closest point lies.
-struct OnTriangle {
-  SurfaceFeature feature = SurfaceFeature::face;
-  std::size_t which = 0;  ///< edge ab, bc, ca or vertex a, b, c
-  Vector3d rest;          ///< from the closest point to the point
-  double height = 0;      ///< over the plane
-};
-
-/// As triangle_squares() of the search, with the place.
-OnTriangle on_triangle(const surface::Leaf& leaf, std::size_t lane, const Vector3d& point) {
-  const Vector3d normal = column(leaf.normal, lane), ab = column(leaf.edge_ab, lane), ac = column(leaf.edge_ac, lane);
-  const Vector3d bc = ac - ab, ap = point - column(leaf.corner, lane), bp = ap - ab;
-  struct Edge {
-    const Vector3d& from_start;
-    const Vector3d& edge;
-    double inverse_square;
-    std::size_t which, start, end;
-  };
-  const Edge edges[] = {{ap, ab, leaf.inverse_square[0][lane], 0, 0, 1},
-                        {ap, ac, leaf.inverse_square[1][lane], 2, 0, 2},
-                        {bp, bc, leaf.inverse_square[2][lane], 1, 1, 2}};
-  OnTriangle result;
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Edge& e : edges) {
-    const double t = std::min(std::max(e.from_start.dot(e.edge) * e.inverse_square, 0.0), 1.0);
-    const Vector3d rest = e.from_start - t * e.edge;
-    if (rest.squaredNorm() >= nearest) continue;
-    nearest = rest.squaredNorm();
-    result.rest = rest;
-    result.feature = t > 0 && t < 1 ? SurfaceFeature::edge : SurfaceFeature::vertex;
-    result.which = t > 0 && t < 1 ? e.which : (t > 0 ? e.end : e.start);
-  }
-  if (normal.squaredNorm() > 0.5 && normal.dot(ab.cross(ap)) >= 0 && normal.dot(ap.cross(ac)) >= 0 &&
-      normal.dot(bc.cross(bp)) >= 0) {
-    result.feature = SurfaceFeature::face;
-    result.height = normal.dot(result.rest);
-    result.rest = result.height * normal;
-  }
-  return result;
-}
+Vector3d vector_of(const surface::Coordinates& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
@@ -64,51 +23,73 @@ struct ClosestPointFinder::Inside {
   surface::Tree tree;
   surface::Normals normals;
 
-  SurfacePoint finish(const surface::Found& found, const Vector3d& point, const Vector3d& centred) const {
-    const OnTriangle on = on_triangle(tree.leaves[found.slot.leaf], found.slot.lane, centred);
+  SurfacePoint finish(const surface::Found& found, const Vector3d& point) const {
+    const surface::Place& place = found.place;
+    const Vector3d rest = vector_of(place.rest);
     SurfacePoint result;
     result.triangle = found.triangle;
-    result.feature = on.feature;
-    result.point = point - on.rest;
-    const std::array<std::uint32_t, 3>& corners = normals.welded[found.triangle];
-    switch (on.feature) {
+    result.feature = place.feature;
+    result.point = point - rest;
+    switch (place.feature) {
       case SurfaceFeature::face:
         result.normal = normals.face[found.triangle];
-        result.distance = on.height;
+        result.distance = place.height;
         return result;
       case SurfaceFeature::edge:
-        result.normal = normals.edge(found.triangle, on.which);
-        result.on_border = normals.is_border(found.triangle, on.which);
+        result.normal = normals.edge(found.triangle, place.which);
+        result.on_border = normals.is_border(found.triangle, place.which);
         break;
-      case SurfaceFeature::vertex:
-        result.normal = normals.vertex[corners[on.which]];
-        result.on_border = normals.border_vertex[corners[on.which]] != 0;
+      case SurfaceFeature::vertex: {
+        const std::uint32_t vertex = normals.welded[found.triangle][place.which];
+        result.normal = normals.vertex[vertex];
+        result.on_border = normals.border_vertex[vertex] != 0;
         break;
+      }
     }
-    result.distance = on.rest.dot(result.normal) < 0 ? -on.rest.norm() : on.rest.norm();
+    result.distance = rest.dot(result.normal) < 0 ? -rest.norm() : rest.norm();
     return result;
   }
 
+  /// @param take  called with the number of each point and what was found
   template <class Take>
   void search(const Eigen::Ref<const Eigen::Matrix3Xd>& points, std::uint32_t* hints, const Take& take) const {
-    constexpr std::uint32_t kLanes = static_cast<std::uint32_t>(surface::kWidth);
-    constexpr Eigen::Index kSome = 256;
-    surface::Slot starts[kSome];
+    constexpr Eigen::Index kSome = 128;
     Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kSome> centred;
     surface::Found found[kSome];
     for (Eigen::Index first = 0; first < points.cols(); first += kSome) {
       const Eigen::Index count = std::min(kSome, points.cols() - first);
       centred = points.middleCols(first, count).colwise() - tree.centre;
-      bool known = hints != nullptr;
-      for (Eigen::Index i = 0; known && i < count; ++i) {
-        known = hints[first + i] != kNoHint;
-        starts[i] = {hints[first + i] / kLanes, hints[first + i] % kLanes};
-      }
-      surface::search_block(tree, centred.data(), static_cast<std::size_t>(count), known ? starts : nullptr, found);
+      const bool known =
+          hints != nullptr && std::find(hints + first, hints + first + count, kNoHint) == hints + first + count;
+      surface::search_block(tree, centred.data(), static_cast<std::size_t>(count), known ? hints + first : nullptr,
+                            found);
       for (Eigen::Index i = 0; i < count; ++i) {
-        if (hints != nullptr) hints[first + i] = found[i].slot.leaf * kLanes + found[i].slot.lane;
-        take(first + i, finish(found[i], points.col(first + i), centred.col(i)));
+        if (hints != nullptr) hints[first + i] = found[i].leaf;
+        take(first + i, finish(found[i], points.col(first + i)));
       }
+    }
+  }
+
+  /// All points, many of them in an order in which neighbours follow each other.
+  template <class Take>
+  void search_all(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int threads, const Take& take) const {
+    // A part of very many points keeps the numbers small and the memory for them bounded.
+    constexpr Eigen::Index kPart = Eigen::Index{1} << 23;
+    for (Eigen::Index from = 0; from < points.cols(); from += kPart) {
+      const auto part = points.middleCols(from, std::min(kPart, points.cols() - from));
+      const std::size_t blocks = static_cast<std::size_t>((part.cols() + kBlock - 1) / kBlock);
+      if (blocks == 1) return search(part, nullptr, [&](Eigen::Index i, const SurfacePoint& p) { take(from + i, p); });
+      const Vector3d half = (tree.high - tree.low) / 2;
+      const std::vector<std::uint32_t> order =
+          hilbert_order(part, part.rowwise().minCoeff().cwiseMax(tree.low - half),
+                        part.rowwise().maxCoeff().cwiseMin(tree.high + half), threads);
+      for_each_block(blocks, threads, [&](std::size_t block) {
+        const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
+        Eigen::Matrix3Xd some(3, std::min(kBlock, part.cols() - first));
+        const std::uint32_t* number = order.data() + first;
+        for (Eigen::Index i = 0; i < some.cols(); ++i) some.col(i) = part.col(number[i]);
+        search(some, nullptr, [&](Eigen::Index i, const SurfacePoint& p) { take(from + number[i], p); });
+      });
     }
   }
 };
@@ -132,10 +113,8 @@ void ClosestPointFinder::closest_block(const Eigen::Ref<const Eigen::Matrix3Xd>&
 std::vector<SurfacePoint> ClosestPointFinder::closest(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                                       int threads) const {
   std::vector<SurfacePoint> found(static_cast<std::size_t>(points.cols()));
-  for_each_block(static_cast<std::size_t>((points.cols() + kBlock - 1) / kBlock), threads, [&](std::size_t block) {
-    const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
-    closest_block(points.middleCols(first, std::min(kBlock, points.cols() - first)), found.data() + first);
-  });
+  inside_->search_all(points, threads,
+                      [&](Eigen::Index i, const SurfacePoint& point) { found[static_cast<std::size_t>(i)] = point; });
   return found;
 }
 
@@ -148,11 +127,8 @@ SurfacePoint ClosestPointFinder::closest_to(const Vector3d& point) const {
 Eigen::VectorXd ClosestPointFinder::signed_distances(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                                      int threads) const {
   Eigen::VectorXd distances(points.cols());
-  for_each_block(static_cast<std::size_t>((points.cols() + kBlock - 1) / kBlock), threads, [&](std::size_t block) {
-    const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
-    inside_->search(points.middleCols(first, std::min(kBlock, points.cols() - first)), nullptr,
-                    [&](Eigen::Index i, const SurfacePoint& point) { distances[first + i] = point.distance; });
-  });
+  inside_->search_all(points, threads,
+                      [&](Eigen::Index i, const SurfacePoint& point) { distances[i] = point.distance; });
   return distances;
 }
 

@@ -42,8 +42,8 @@ class ClosestPointFinder {
   ClosestPointFinder(ClosestPointFinder&&) noexcept;
   ClosestPointFinder& operator=(ClosestPointFinder&&) noexcept;
 
-  /// @param points  [3, n] mm, finite, frame of the mesh. Fastest in the order of a scan, where each point is near the
-  ///                one before; the result does not depend on the order
+  /// @param points  [3, n] mm, finite, frame of the mesh, in any order: more than kBlock of them are searched in an
+  ///                order of their own, in which neighbours follow each other
   /// @return [n]
   std::vector<SurfacePoint> closest(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int threads = 0) const;
   SurfacePoint closest_to(const Eigen::Vector3d& point) const;
@@ -51,7 +51,8 @@ class ClosestPointFinder {
   /// Same points, distances only. @return [n] mm, signed
   Eigen::VectorXd signed_distances(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int threads = 0) const;
 
-  /// Closest points of a few thousand points on the calling thread, for callers that make blocks of their own.
+  /// Closest points of a few thousand points on the calling thread, for callers that make blocks of their own; fastest
+  /// where each point is near the one before (`hilbert_order`). The result does not depend on the order.
   /// @param found  [points] filled
   /// @param hints  null, or [points] kNoHint at first: remembers where the points were found, which makes the next
   ///               search of the same points, moved a little, faster; the result does not depend on it

@@ -104,7 +104,7 @@ TEST(ExtremeFit, FindsTheMinimumZoneThatIsKnownByConstruction) {
       ASSERT_EQ(fit.status, FitStatus::ok) << shape_name(kind) << ": " << fit.reason;
       const test::ShapeDifference off = test::difference(fit.shape, known.shape);
       EXPECT_LT(off.length, 1e-7) << shape_name(kind);
-      EXPECT_LT(off.angle, 2e-9) << shape_name(kind);
+      EXPECT_LT(off.angle, 1e-9) << shape_name(kind);
       EXPECT_NEAR(fit.form, 2 * kZone, 1e-9 + 1e-15 * far) << shape_name(kind);
       EXPECT_LE(fit.form, least_squares_fit(kind, known.points).form) << shape_name(kind);
     }
@@ -340,7 +340,7 @@ TEST(ExtremeFit, CylinderAroundAndWithinThatAreKnownByConstruction) {
     ASSERT_EQ(fit.status, FitStatus::ok) << fit.reason;
     const test::ShapeDifference off = test::difference(fit.shape, patch.shape);
     EXPECT_LT(off.length, 1e-7);
-    EXPECT_LT(off.angle, 2e-9);
+    EXPECT_LT(off.angle, 1e-9);
     EXPECT_GE(side * fit.smallest, side > 0 ? -1e-9 : 0.009);
   }
 }

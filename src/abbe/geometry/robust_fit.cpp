@@ -22,7 +22,18 @@ double middle(std::vector<double>& values) {
   return *half;
 }
 
-/// The frame with the smallest median distance of a few points.
+/// Different shapes as far as rough candidates tell.
+bool unlike(ShapeKind kind, ShapeFrame a, ShapeFrame b, const Survey& survey) {
+  settle(a, survey.centroid.mean);
+  settle(b, survey.centroid.mean);
+  constexpr double kLimit = 0.05;
+  const double size = survey.size;
+  if ((a.origin - b.origin).norm() > kLimit * size || std::abs(a.radius - b.radius) > kLimit * size) return true;
+  if (kind == ShapeKind::line2) return std::abs(a.axes.col(0).dot(b.axes.col(0))) < std::cos(2 * kLimit);
+  return has_axis(kind) && std::abs(a.axes.col(2).dot(b.axes.col(2))) < std::cos(2 * kLimit);
+}
+
+/// The frames with the smallest median distance of a few points.
 class LeastMedian {
  public:
   LeastMedian(ShapeKind kind, const Survey& survey, const FitConstraints& constraints, std::uint64_t seed)
@@ -32,14 +43,16 @@ class LeastMedian {
         scored_(spread_sample(survey.sample, Vector3d::Zero(), 200)),
         generator_(seed) {}
 
-  bool search(ShapeFrame& best) {
+  /// The best that differ from each other, best first.
+  std::vector<ShapeFrame> search() {
     if (kind_ == ShapeKind::cylinder || kind_ == ShapeKind::cone) {
       along_all_directions();
     } else {
       for (int trial = 0; trial < 200; ++trial) try_subset(subset_size());
     }
-    best = best_;
-    return std::isfinite(lowest_);
+    std::vector<ShapeFrame> frames;
+    for (const Scored& candidate : best_) frames.push_back(candidate.frame);
+    return frames;
   }
 
  private:
@@ -70,11 +83,21 @@ class LeastMedian {
       d[static_cast<std::size_t>(i)] = std::abs(point_slopes(frame, scored_.col(i)).distance);
     }
     const double value = middle(d);
-    if (!(value < lowest_)) return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+    if (!std::isfinite(value)) return std::numeric_limits<double>::infinity();
+    if (best_.size() == kKept && !(value < best_.back().value)) return value;
     // Huge circles come near everything that is small: a radius has to be of the data's order.
     if (has_radius(kind_) && !(frame.radius > 0 && frame.radius < 1e4 * survey_.size)) return value;
-    lowest_ = value;
-    best_ = frame;
+    // Of those that are nearly the same only the best one.
+    const auto same = std::find_if(best_.begin(), best_.end(),
+                                   [&](const Scored& other) { return !unlike(kind_, other.frame, frame, survey_); });
+    if (same != best_.end()) {
+      if (!(value < same->value)) return value;
+      best_.erase(same);
+    }
+    const auto place =
+        std::find_if(best_.begin(), best_.end(), [&](const Scored& other) { return value < other.value; });
+    best_.insert(place, {value, frame});
+    if (best_.size() > kKept) best_.pop_back();
     return value;
   }
   void try_subset(Index count) {
@@ -137,8 +160,12 @@ class LeastMedian {
   const FitConstraints& constraints_;
   Matrix3Xd scored_;
   std::mt19937_64 generator_;
-  double lowest_ = std::numeric_limits<double>::infinity();
-  ShapeFrame best_;
+  static constexpr std::size_t kKept = 5;
+  struct Scored {
+    double value = 0;
+    ShapeFrame frame;
+  };
+  std::vector<Scored> best_;  // best first
 };
 
 /// Weight w = psi(u) / u, and the slope of psi(u) = u w, at a distance of u tuned scales.
@@ -169,6 +196,129 @@ double change(const ShapeFrame& a, const ShapeFrame& b, double size) {
   return std::max({(a.origin - b.origin).norm() / size, radius / size, angle, (a.axes - b.axes).norm()});
 }
 
+/// What the reweighting needs to know.
+struct Setting {
+  RobustKind kind = RobustKind::tukey;
+  double tuning = 1;
+  double median_of_normal = 1;  ///< of the distance of normal points, in standard deviations of one residual
+  double least_scale = 0;       ///< that of rounding, mm
+  double size = 1;              ///< mm
+  std::vector<int> free;
+};
+
+struct Reweighted {
+  ShapeFrame frame;
+  double scale = 0;  ///< mm
+  bool rested = false;
+  int iterations = 0;
+};
+
+/// Iteratively reweighted least squares until shape and scale rest.
+Reweighted reweigh(const ShapeFrame& start, const FitPoints& points, const Setting& setting, int most, int threads) {
+  Reweighted result;
+  result.frame = start;
+  std::vector<double> d(static_cast<std::size_t>(points.cols())), sorted(d.size()), weights(d.size());
+  for (int step = 0; step < most && !result.rested; ++step) {
+    distances(result.frame, points, d, threads);
+    std::transform(d.begin(), d.end(), sorted.begin(), [](double x) { return std::abs(x); });
+    const double next = std::max(middle(sorted) / setting.median_of_normal, setting.least_scale);
+    // Late steps keep the scale, which could go to and fro with the middle point.
+    const double before = result.scale;
+    if (step < 60) result.scale = next;
+    for (std::size_t i = 0; i < d.size(); ++i) {
+      weights[i] = influence(setting.kind, std::abs(d[i]) / (setting.tuning * result.scale)).weight;
+    }
+    const Refined refined = refine(result.frame, points, weights, setting.free, setting.size, 2, threads);
+    ++result.iterations;
+    const double moved_by = change(refined.frame, result.frame, setting.size);
+    result.frame = refined.frame;
+    if (!std::isfinite(moved_by)) break;
+    result.rested = moved_by < 1e-12 && std::abs(result.scale - before) <= 1e-9 * result.scale;
+    // With the scale at rounding there is nothing more to weigh.
+    result.rested = result.rested || (moved_by < 1e-10 && result.scale <= 2 * setting.least_scale);
+  }
+  return result;
+}
+
+/// Losses of the sample's points, 0 on the shape to 1 beyond its reach (Tukey's, whatever the weights).
+std::vector<double> losses(const ShapeFrame& frame, const Matrix3Xd& sample, double reach) {
+  std::vector<double> loss;
+  for (Index i = 0; i < sample.cols(); ++i) {
+    const double u = std::min(1.0, std::abs(point_slopes(frame, sample.col(i)).distance) / reach);
+    loss.push_back(1 - std::pow(1 - u * u, 3));
+  }
+  return loss;
+}
+
+/// Other shapes of the sample: what the other candidates lead to, and the best shape of the points that the answer
+/// leaves out. One whose mean loss is not larger by more than three times its uncertainty and 0.005 is as good.
+void add_rivals(ShapeFit& fit, const ShapeFrame& answer, double scale, const std::vector<ShapeFrame>& candidates,
+                const Survey& survey, const Setting& setting, const FitConstraints& constraints, std::uint64_t seed) {
+  constexpr double kLeftOut = 0.25, kWorthNaming = 0.35;
+  const double reach = setting.tuning * std::max(scale, setting.least_scale);
+  const double count = static_cast<double>(survey.sample.cols());
+  ShapeFrame own = answer;
+  own.centre.setZero();
+  const std::vector<double> own_loss = losses(own, survey.sample, reach);
+  const auto share_of = [&](const std::vector<double>& loss) {
+    return static_cast<double>(std::count_if(loss.begin(), loss.end(), [](double x) { return x < 1; })) / count;
+  };
+  const double own_share = share_of(own_loss);
+  std::vector<ShapeFrame> others;
+  for (const ShapeFrame& candidate : candidates) {
+    if (unlike(own.kind, candidate, own, survey)) {
+      others.push_back(reweigh(candidate, survey.sample, setting, 30, 1).frame);
+    }
+  }
+  const auto left = static_cast<Index>(std::llround((1 - own_share) * count));
+  if (static_cast<double>(left) >= kLeftOut * count && left > 2 * static_cast<Index>(setting.free.size())) {
+    Survey rest = survey;
+    rest.sample.resize(3, left);
+    Index next = 0;
+    for (Index i = 0; i < survey.sample.cols(); ++i) {
+      if (own_loss[static_cast<std::size_t>(i)] >= 1) rest.sample.col(next++) = survey.sample.col(i);
+    }
+    const std::vector<ShapeFrame> found = LeastMedian(own.kind, rest, constraints, seed).search();
+    if (!found.empty()) others.push_back(reweigh(found.front(), rest.sample, setting, 30, 1).frame);
+  }
+  // Another one if it lies elsewhere, or if most of its points are others.
+  struct Known {
+    ShapeFrame frame;
+    std::vector<double> loss;
+  };
+  std::vector<Known> known{{own, own_loss}};
+  for (const ShapeFrame& other : others) {
+    if (!std::isfinite(other.origin.sum())) continue;
+    const std::vector<double> loss = losses(other, survey.sample, reach);
+    const double share = share_of(loss);
+    const bool is_new = std::none_of(known.begin(), known.end(), [&](const Known& one) {
+      double both = 0;
+      for (std::size_t i = 0; i < loss.size(); ++i) both += loss[i] < 1 && one.loss[i] < 1 ? 1 : 0;
+      return both > 0.5 * share * count && !unlike(own.kind, one.frame, other, survey);
+    });
+    if (!is_new || share < kWorthNaming * own_share) continue;
+    known.push_back({other, loss});
+    double sum = 0, squares = 0;
+    for (std::size_t i = 0; i < loss.size(); ++i) {
+      sum += loss[i] - own_loss[i];
+      squares += std::pow(loss[i] - own_loss[i], 2);
+    }
+    const double mean = sum / count, uncertainty = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
+    ShapeRival rival;
+    ShapeFrame placed = other;
+    placed.centre = survey.centre;
+    rival.shape = shape_of(placed, survey.centroid.mean);
+    rival.value = share;
+    fit.rivals.push_back(rival);
+    if (mean <= 3 * uncertainty + 0.005 && fit.ok()) {
+      fit.status = FitStatus::ambiguous;
+      fit.reason = "another shape explains nearly as many points";
+    }
+  }
+  std::stable_sort(fit.rivals.begin(), fit.rivals.end(),
+                   [](const ShapeRival& a, const ShapeRival& b) { return a.value > b.value; });
+}
+
 }  // namespace
 
 ShapeFit robust_fit(ShapeKind kind, const FitPoints& points, const RobustOptions& robust, const FitOptions& options) {
@@ -183,44 +333,30 @@ ShapeFit robust_fit(ShapeKind kind, const FitPoints& points, const RobustOptions
   fit.status = survey.status;
   fit.reason = survey.reason;
   if (!fit.ok()) return fit;
-  ShapeFrame frame;
-  if (!LeastMedian(kind, survey, options.constraints, robust.seed).search(frame)) {
+  const std::vector<ShapeFrame> candidates = LeastMedian(kind, survey, options.constraints, robust.seed).search();
+  if (candidates.empty()) {
     fit.status = FitStatus::no_consensus;
     fit.reason = "no such shape comes near half of the points";
     return fit;
   }
+  ShapeFrame frame = candidates.front();
   settle(frame, survey.centroid.mean);
   frame.centre = survey.centre;
 
-  const double tuning = robust.tuning > 0 ? robust.tuning : default_tuning(robust.kind);
-  // Median of the distance of normal points, in standard deviations of one residual.
-  const double median_of_normal = rows == 2 ? 1.1774100225154747 : 0.6744897501960817;
-  const double least_scale = 1e-14 * (survey.size + survey.centre.cwiseAbs().maxCoeff());
-  std::vector<double> d(fit.points), sorted;
-  fit.weights.resize(fit.points);
-  double scale = 0;
-  bool rested = false;
-  for (int step = 0; step < 200 && !rested; ++step) {
-    distances(frame, points, d, options.threads);
-    sorted.resize(d.size());
-    std::transform(d.begin(), d.end(), sorted.begin(), [](double x) { return std::abs(x); });
-    const double next = std::max(middle(sorted) / median_of_normal, least_scale);
-    // Late steps keep the scale, which could go to and fro with the middle point.
-    const double before = scale;
-    if (step < 60) scale = next;
-    for (std::size_t i = 0; i < d.size(); ++i) {
-      fit.weights[i] = influence(robust.kind, std::abs(d[i]) / (tuning * scale)).weight;
-    }
-    const Refined refined = refine(frame, points, fit.weights, free, survey.size, 2, options.threads);
-    ++fit.iterations;
-    const double moved_by = change(refined.frame, frame, survey.size);
-    frame = refined.frame;
-    if (!std::isfinite(moved_by)) break;
-    rested = moved_by < 1e-12 && std::abs(scale - before) <= 1e-9 * scale;
-    // With the scale at rounding there is nothing more to weigh.
-    rested = rested || (moved_by < 1e-10 && scale <= 2 * least_scale);
-  }
+  Setting setting;
+  setting.kind = robust.kind;
+  setting.tuning = robust.tuning > 0 ? robust.tuning : default_tuning(robust.kind);
+  setting.median_of_normal = rows == 2 ? 1.1774100225154747 : 0.6744897501960817;
+  setting.least_scale = 1e-14 * (survey.size + survey.centre.cwiseAbs().maxCoeff());
+  setting.size = survey.size;
+  setting.free = free;
+  const Reweighted rest = reweigh(frame, points, setting, 200, options.threads);
+  fit.iterations = rest.iterations;
+  frame = rest.frame;
+  const double scale = rest.scale, tuning = setting.tuning;
 
+  std::vector<double> d(fit.points);
+  fit.weights.resize(fit.points);
   distances(frame, points, d, options.threads);
   std::vector<double> used(fit.points);
   double psi_squares = 0, psi_slopes = 0, squares = 0, weight = 0, count = 0;
@@ -242,7 +378,7 @@ ShapeFit robust_fit(ShapeKind kind, const FitPoints& points, const RobustOptions
   }
   fit.rejected = fit.points - static_cast<std::size_t>(count);
   fit.rms = weight > 0 ? std::sqrt(squares / weight) : 0;
-  if (!rested) {
+  if (!rest.rested) {
     fit.status = FitStatus::not_converged;
     fit.reason = "weights and shape did not come to rest";
   }
@@ -250,6 +386,7 @@ ShapeFit robust_fit(ShapeKind kind, const FitPoints& points, const RobustOptions
     fit.status = FitStatus::no_consensus;
     fit.reason = "no such shape explains half of the points";
   }
+  add_rivals(fit, frame, scale, candidates, survey, setting, options.constraints, robust.seed);
   // Huber (1981), 7.6: variance of an M-estimate.
   const double freedom = count * rows - static_cast<double>(free.size());
   const double mean_slope = psi_slopes / std::max(count, 1.0);

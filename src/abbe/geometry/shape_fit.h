@@ -38,6 +38,14 @@ struct FitOptions {
   int threads = 0;   ///< as for_each_block(); does not change the result
 };
 
+/// Another shape that is the best one among its neighbours.
+struct ShapeRival {
+  Shape shape;
+  /// Minimum zone: form deviation, mm. Circumscribed, inscribed: radius, mm. Robust: share of the points that take
+  /// part.
+  double value = 0;
+};
+
 /// A fitted shape with what is needed to judge it.
 struct ShapeFit {
   FitStatus status = FitStatus::not_run;
@@ -66,6 +74,9 @@ struct ShapeFit {
   std::vector<std::size_t> contacts;
   std::vector<double> multipliers;
   double optimality = 0;  ///< length of the convex combination of the contacts' gradients: 0 at the optimum
+
+  /// Minimum zone and the like, and robust: others that were found, best first; `ambiguous` where one is as good.
+  std::vector<ShapeRival> rivals;
 
   std::vector<double> weights;  ///< robust: [points] last weights
   std::size_t rejected = 0;     ///< robust: points with weight below 1e-3

@@ -119,7 +119,8 @@ std::vector<ShapeFrame> axis_starts(ShapeKind kind, const Survey& survey, const 
   return starts;
 }
 
-/// Different answers, not the same one twice.
+}  // namespace
+
 bool differ(ShapeFrame a, ShapeFrame b, const Survey& survey) {
   settle(a, survey.centroid.mean);
   settle(b, survey.centroid.mean);
@@ -128,8 +129,6 @@ bool differ(ShapeFrame a, ShapeFrame b, const Survey& survey) {
   if (std::abs(a.radius - b.radius) > limit * (survey.size + a.radius)) return true;
   return has_axis(a.kind) && a.axes.col(2).cross(b.axes.col(2)).norm() > limit;
 }
-
-}  // namespace
 
 bool algebraic_sphere(const MatrixXd& points, VectorXd& centre, double& radius) {
   const Index d = points.rows();

@@ -30,6 +30,9 @@ struct BestStart {
 };
 BestStart best_start(ShapeKind kind, const Survey& survey, const FitConstraints& constraints);
 
+/// Different answers, not the same one twice. Both with the same centre.
+bool differ(ShapeFrame a, ShapeFrame b, const Survey& survey);
+
 /// A cone or cylinder with that axis direction; false if there is none.
 bool frame_along(ShapeKind kind, const Eigen::Matrix3d& axes, const Eigen::Matrix3Xd& points,
                  const FitConstraints& constraints, ShapeFrame& frame);

@@ -20,4 +20,9 @@ struct SurfaceFaces {
 /// @param crease_angle  triangles that meet at a larger angle belong to different faces, rad
 SurfaceFaces surface_faces(const TriangleMesh& mesh, double crease_angle, int threads = 0);
 
+/// Faces as a file states them, whether connected or not.
+/// @param face_of_triangle  [triangles] below `faces`
+SurfaceFaces stated_faces(const TriangleMesh& mesh, const std::vector<std::uint32_t>& face_of_triangle,
+                          std::size_t faces);
+
 }  // namespace abbe

@@ -15,6 +15,8 @@ constexpr std::size_t kBins = 32;
 constexpr std::size_t kLastNode = kWidth * kWidth;
 /// Sets below this size are built by one thread each.
 constexpr std::size_t kTask = 8192;
+/// Heights of triangles over their longest sides below which they are needles.
+constexpr double kThin = 1e-5;
 /// Below this level sets are halved by number, so that no arrangement of triangles makes a tree deeper than 40 levels.
 constexpr int kLastFreeLevel = 28;
 
@@ -68,6 +70,8 @@ class Builder {
   struct Part {
     std::vector<Node> nodes;
     std::vector<Leaf> leaves;
+    std::vector<std::array<std::uint32_t, 3>> corners;
+    std::vector<std::pair<std::uint32_t, Coordinates>> needle_normals;  ///< by the place in `corners`
   };
 
   /// Appends the node of `items`, and below it everything that is not left to a task.
@@ -213,30 +217,53 @@ class Builder {
     return parts;
   }
 
-  std::uint32_t leaf(const Items& items, Part* part) const {
-    Leaf& leaf = part->leaves.emplace_back();
-    for (std::size_t lane = 0; lane < kWidth; ++lane) {
-      const std::uint32_t triangle = items_[items.first + std::min(lane, size_of(items) - 1)].triangle;
-      const Vector3d a = mesh_.corner(triangle, 0) - centre_, b = mesh_.corner(triangle, 1) - centre_,
-                     c = mesh_.corner(triangle, 2) - centre_;
-      // In extended precision, so that the normal of a needle is as good as that of any other triangle.
-      const Eigen::Matrix<long double, 3, 1> u = b.cast<long double>() - a.cast<long double>(),
-                                             v = c.cast<long double>() - a.cast<long double>();
+  /// Appends a triangle with the numbers of its vertices in the mesh; of a needle its normal too.
+  void add_corners(std::uint32_t triangle, const std::array<Vector3d, 3>& corner, Part* part) const {
+    std::array<std::uint32_t, 3> numbers{};
+    for (std::size_t k = 0; k < 3; ++k) numbers[k] = mesh_.triangles(static_cast<Eigen::Index>(k), triangle);
+    const Vector3d ab = corner[1] - corner[0], ac = corner[2] - corner[0];
+    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+    const double area = ab.cross(ac).norm();
+    // Of a triangle this thin the normal is rounded so far that it counts; very small ones have squares near zero.
+    if (!(area > kThin * longest) || !(longest > 1e-120) || !(longest < 1e120)) {
+      const Eigen::Matrix<long double, 3, 1> u = corner[1].cast<long double>() - corner[0].cast<long double>(),
+                                             v = corner[2].cast<long double>() - corner[0].cast<long double>();
       const Eigen::Matrix<long double, 3, 1> across = u.cross(v);
       const long double length = across.norm();
       const Vector3d normal = length > 0 ? Vector3d((across / length).cast<double>()) : Vector3d(Vector3d::Zero());
-      const Vector3d ab = b - a, ac = c - a, bc = c - b;
-      const auto inverse = [](double square) { return square > 0 && std::isfinite(1 / square) ? 1 / square : 0.0; };
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Eigen::Index i = static_cast<Eigen::Index>(k);
-        leaf.corner[k][lane] = a[i];
-        leaf.edge_ab[k][lane] = ab[i];
-        leaf.edge_ac[k][lane] = ac[i];
-        leaf.normal[k][lane] = normal[i];
-      }
-      leaf.inverse_square[0][lane] = inverse(ab.squaredNorm());
-      leaf.inverse_square[1][lane] = inverse(ac.squaredNorm());
-      leaf.inverse_square[2][lane] = inverse(bc.squaredNorm());
+      part->needle_normals.emplace_back(static_cast<std::uint32_t>(part->corners.size()),
+                                        Coordinates{normal.x(), normal.y(), normal.z()});
+    }
+    part->corners.push_back(numbers);
+  }
+
+  std::uint32_t leaf(const Items& items, Part* part) const {
+    Leaf& leaf = part->leaves.emplace_back();
+    leaf.first = static_cast<std::uint32_t>(part->corners.size());
+    leaf.count = static_cast<std::uint32_t>(size_of(items));
+    Box box;
+    for (std::size_t i = items.first; i < items.second; ++i) box.include(items_[i].box);
+    double extent = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      leaf.centre[k] = 0.5 * static_cast<double>(box.low[k]) + 0.5 * static_cast<double>(box.high[k]);
+      extent = std::max(extent, 0.5 * (static_cast<double>(box.high[k]) - static_cast<double>(box.low[k])));
+    }
+    // A triangle without any extent needs no scale.
+    leaf.inverse_scale = extent > 1e-30 ? std::exp2(-std::ceil(std::log2(extent))) : 1;
+    const Vector3d centre(leaf.centre[0], leaf.centre[1], leaf.centre[2]);
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+      const std::uint32_t triangle = items_[items.first + std::min(lane, size_of(items) - 1)].triangle;
+      std::array<Vector3d, 3> corner;
+      for (int k = 0; k < 3; ++k) corner[static_cast<std::size_t>(k)] = mesh_.corner(triangle, k) - centre_;
+      if (lane < size_of(items)) add_corners(triangle, corner, part);
+      const auto scaled = [&](std::array<Leaf::Row, 3>& rows, const Vector3d& vector) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          rows[k][lane] = static_cast<float>(vector[static_cast<Eigen::Index>(k)] * leaf.inverse_scale);
+        }
+      };
+      scaled(leaf.corner, corner[0] - centre);
+      scaled(leaf.edge_ab, corner[1] - corner[0]);
+      scaled(leaf.edge_ac, corner[2] - corner[0]);
       leaf.index[lane] = triangle;
     }
     return static_cast<std::uint32_t>(part->leaves.size() - 1);
@@ -249,6 +276,24 @@ class Builder {
   std::vector<TaskChild> task_children_;
 };
 
+/// Vertices in the order in which the leaves name them first.
+void number_vertices(const TriangleMesh& mesh, Tree* tree) {
+  constexpr std::uint32_t kNew = 0xffffffffu;
+  std::vector<std::uint32_t> number(static_cast<std::size_t>(mesh.vertices.cols()), kNew);
+  tree->vertices.reserve(number.size());
+  for (std::array<std::uint32_t, 3>& corners : tree->corners) {
+    for (std::uint32_t& corner : corners) {
+      if (number[corner] == kNew) {
+        number[corner] = static_cast<std::uint32_t>(tree->vertices.size());
+        const Vector3d vertex = mesh.vertices.col(corner) - tree->centre;
+        tree->vertices.push_back({vertex.x(), vertex.y(), vertex.z()});
+      }
+      corner = number[corner];
+    }
+  }
+  for (const auto& [triangle, normal] : tree->needle_normals) tree->corners[triangle][0] |= Tree::kNeedle;
+}
+
 /// Appends a part behind the others and corrects its references.
 void append(const Builder::Part& part, Tree* tree) {
   const std::uint32_t nodes = static_cast<std::uint32_t>(tree->nodes.size());
@@ -259,7 +304,13 @@ void append(const Builder::Part& part, Tree* tree) {
     }
     tree->nodes.push_back(node);
   }
-  tree->leaves.insert(tree->leaves.end(), part.leaves.begin(), part.leaves.end());
+  const std::uint32_t triangles = static_cast<std::uint32_t>(tree->corners.size());
+  for (Leaf leaf : part.leaves) {
+    leaf.first += triangles;
+    tree->leaves.push_back(leaf);
+  }
+  tree->corners.insert(tree->corners.end(), part.corners.begin(), part.corners.end());
+  for (const auto& [place, normal] : part.needle_normals) tree->needle_normals.emplace(triangles + place, normal);
 }
 
 }  // namespace
@@ -275,6 +326,8 @@ Tree build_tree(const TriangleMesh& mesh, int threads) {
       high = high.cwiseMax(mesh.corner(t, k));
     }
   }
+  tree.low = low;
+  tree.high = high;
   tree.centre = centre_of(low, high);
   tree.largest =
       rounded_up(std::max((low - tree.centre).cwiseAbs().maxCoeff(), (high - tree.centre).cwiseAbs().maxCoeff()));
@@ -310,6 +363,7 @@ Tree build_tree(const TriangleMesh& mesh, int threads) {
   }
   tree.nodes.reserve(nodes);
   tree.leaves.reserve(leaves);
+  tree.corners.reserve(count);
   append(upper, &tree);
   for (std::size_t task = 0; task < tasks.size(); ++task) {
     const Builder::TaskChild& child = top.task_children()[task];
@@ -317,6 +371,7 @@ Tree build_tree(const TriangleMesh& mesh, int threads) {
     append(parts[task], &tree);
     parts[task] = {};
   }
+  number_vertices(mesh, &tree);
   return tree;
 }
 

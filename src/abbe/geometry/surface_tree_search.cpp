@@ -2,6 +2,7 @@
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "abbe/geometry/surface_tree.h"
@@ -19,80 +20,120 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Doubles = hn::CappedTag<double, kWidth>;
 using Floats = hn::CappedTag<float, kWidth>;
-using Vector = hn::Vec<Doubles>;
+using Vector = hn::Vec<Floats>;
 
-struct Vector3 {
+constexpr std::size_t kMostLanes = 16;  ///< of boxes of a list
+
+struct Vectors {
   Vector x, y, z;
 };
-HWY_INLINE Vector3 load(const std::array<Leaf::Row, 3>& rows, std::size_t lane) {
-  const Doubles d;
-  return {hn::Load(d, rows[0].data() + lane), hn::Load(d, rows[1].data() + lane), hn::Load(d, rows[2].data() + lane)};
+HWY_INLINE Vectors load(const std::array<Leaf::Row, 3>& rows, std::size_t lane) {
+  const Floats f;
+  return {hn::Load(f, rows[0].data() + lane), hn::Load(f, rows[1].data() + lane), hn::Load(f, rows[2].data() + lane)};
 }
-HWY_INLINE Vector3 minus(const Vector3& a, const Vector3& b) {
+HWY_INLINE Vectors minus(const Vectors& a, const Vectors& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
-HWY_INLINE Vector dot(const Vector3& a, const Vector3& b) {
+HWY_INLINE Vector dot(const Vectors& a, const Vectors& b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
-HWY_INLINE Vector3 cross(const Vector3& a, const Vector3& b) {
+HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
   return {hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)), hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)),
           hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y))};
 }
 
 /// From the nearest point of an edge to a point that is given from the beginning of the edge.
-HWY_INLINE Vector3 from_edge(const Vector3& from_start, const Vector3& edge, Vector inverse_square) {
-  const Doubles d;
-  const Vector along = hn::Mul(dot(from_start, edge), inverse_square);
-  const Vector t = hn::Min(hn::Max(along, hn::Zero(d)), hn::Set(d, 1.0));
+HWY_INLINE Vectors from_edge(const Vectors& from_start, const Vectors& edge) {
+  const Floats f;
+  // An edge without length is where it begins.
+  const Vector along = hn::Div(dot(from_start, edge), hn::Max(dot(edge, edge), hn::Set(f, 1e-30f)));
+  const Vector t = hn::Min(hn::Max(along, hn::Zero(f)), hn::Set(f, 1.0f));
   return {hn::NegMulAdd(t, edge.x, from_start.x), hn::NegMulAdd(t, edge.y, from_start.y),
           hn::NegMulAdd(t, edge.z, from_start.z)};
 }
 template <class Mask>
-HWY_INLINE Vector3 choose(Mask mask, const Vector3& yes, const Vector3& no) {
+HWY_INLINE Vectors choose(Mask mask, const Vectors& yes, const Vectors& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-/// Squared distances of a point to the triangles of a leaf from `lane` on, as many as a vector holds.
-///
-/// The distance to the plane where the point lies over the triangle, else that to the nearest edge. The first is
-/// measured from the nearest edge: the normal of a needle is least sure in the direction of its length, in which
-/// nothing is left from there.
-HWY_INLINE Vector triangle_squares(const Leaf& leaf, std::size_t lane, const double* point) {
-  const Doubles d;
-  const Vector3 p = {hn::Set(d, point[0]), hn::Set(d, point[1]), hn::Set(d, point[2])};
-  const Vector3 ap = minus(p, load(leaf.corner, lane)), ab = load(leaf.edge_ab, lane), ac = load(leaf.edge_ac, lane),
-                normal = load(leaf.normal, lane);
-  const Vector3 bp = minus(ap, ab), bc = minus(ac, ab);
-  const Vector zero = hn::Zero(d);
-  Vector3 nearest = from_edge(ap, ab, hn::Load(d, leaf.inverse_square[0].data() + lane));
+/// Squared distances of a point to the triangles of a leaf from `lane` on, in the unit of the leaf, as nearest_place()
+/// has them in double precision. Too large by no more than kSlack: where a needle is so thin that its normal is not
+/// known in single precision, its edges are as near as its face.
+/// @param point  in the unit of the leaf, about its centre
+HWY_INLINE Vector triangle_squares(const Leaf& leaf, std::size_t lane, const float* point) {
+  const Floats f;
+  const Vectors p = {hn::Set(f, point[0]), hn::Set(f, point[1]), hn::Set(f, point[2])};
+  const Vectors ap = minus(p, load(leaf.corner, lane)), ab = load(leaf.edge_ab, lane), ac = load(leaf.edge_ac, lane);
+  const Vectors bp = minus(ap, ab), bc = minus(ac, ab), normal = cross(ab, ac);
+  Vectors nearest = from_edge(ap, ab);
   Vector square = dot(nearest, nearest);
-  const auto take = [&](const Vector3& rest) HWY_ATTR {
+  const auto take = [&](const Vectors& rest) HWY_ATTR {
     const Vector its_square = dot(rest, rest);
     nearest = choose(hn::Lt(its_square, square), rest, nearest);
     square = hn::Min(square, its_square);
   };
-  take(from_edge(ap, ac, hn::Load(d, leaf.inverse_square[1].data() + lane)));
-  take(from_edge(bp, bc, hn::Load(d, leaf.inverse_square[2].data() + lane)));
+  take(from_edge(ap, ac));
+  take(from_edge(bp, bc));
   const Vector over_ab = dot(normal, cross(ab, ap)), over_ac = dot(normal, cross(ap, ac)),
-               over_bc = dot(normal, cross(bc, bp));
+               over_bc = dot(normal, cross(bc, bp)), length = dot(normal, normal);
   const auto inside =
-      hn::And(hn::Ge(hn::Min(hn::Min(over_ab, over_ac), over_bc), zero), hn::Gt(dot(normal, normal), hn::Set(d, 0.5)));
+      hn::And(hn::Ge(hn::Min(hn::Min(over_ab, over_ac), over_bc), hn::Zero(f)), hn::Gt(length, hn::Set(f, 1e-30f)));
   const Vector height = dot(normal, nearest);
-  return hn::IfThenElse(inside, hn::Min(hn::Mul(height, height), square), square);
+  return hn::IfThenElse(inside, hn::Min(hn::Div(hn::Mul(height, height), length), square), square);
 }
 
+/// Bit of each lane from `lane` on.
+template <class D>
+HWY_INLINE std::uint64_t bits_of(D d, hn::Mask<D> mask, std::size_t lane) {
+  std::array<std::uint8_t, 8> bytes{};
+  hn::StoreMaskBits(d, mask, bytes.data());
+  return static_cast<std::uint64_t>(bytes[0] | bytes[1] << 8) << lane;
+}
+
+/// More than the rounding of triangle_squares(), per extent of the leaf and distance from its centre.
+constexpr double kSlack = 64 * 0x1p-23;
+
+/// Looks at all triangles in single precision, at those that may be nearest in double precision.
 void visit_leaf(const Tree& tree, std::uint32_t number, const double* point, Found* best) {
-  const Doubles d;
+  const Floats f;
   const Leaf& leaf = tree.leaves[number];
-  HWY_ALIGN double squares[kWidth];
-  for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(d)) {
-    hn::Store(triangle_squares(leaf, lane, point), d, squares + lane);
+  float local[3];
+  double away = 2;
+  for (std::size_t k = 0; k < 3; ++k) {
+    // Farther coordinates would overflow; nearer ones are only more cautious.
+    const double scaled = std::min(std::max((point[k] - leaf.centre[k]) * leaf.inverse_scale, -1e17), 1e17);
+    local[k] = static_cast<float>(scaled);
+    away += std::abs(scaled);
   }
-  for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
-    if (squares[lane] < best->square || (squares[lane] == best->square && leaf.index[lane] < best->triangle)) {
-      *best = {{number, lane}, leaf.index[lane], squares[lane]};
+  const double slack = kSlack * away;
+  const auto limit = [&] {
+    const double reach = std::sqrt(best->place.square) * leaf.inverse_scale + slack;
+    return static_cast<float>(std::min(reach * reach * 1.000002, 3e38));
+  };
+  float bound = limit();
+  HWY_ALIGN float squares[kWidth];
+  std::uint64_t near = 0;
+  for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(f)) {
+    const Vector some = triangle_squares(leaf, lane, local);
+    hn::Store(some, f, squares + lane);
+    near |= bits_of(f, hn::Le(some, hn::Set(f, bound)), lane);
+  }
+  near &= (std::uint64_t{1} << leaf.count) - 1;
+  while (near != 0) {
+    // The nearest first, so that most others need not be looked at.
+    std::uint32_t lane = static_cast<std::uint32_t>(std::countr_zero(near));
+    for (std::uint64_t rest = near & (near - 1); rest != 0; rest &= rest - 1) {
+      const std::uint32_t other = static_cast<std::uint32_t>(std::countr_zero(rest));
+      if (squares[other] < squares[lane]) lane = other;
+    }
+    if (squares[lane] > bound) return;
+    near &= ~(std::uint64_t{1} << lane);
+    const Place place = nearest_place(tree, leaf.first + lane, point);
+    if (place.square < best->place.square ||
+        (place.square == best->place.square && leaf.index[lane] < best->triangle)) {
+      *best = {place, leaf.index[lane], number};
+      bound = limit();
     }
   }
 }
@@ -101,72 +142,245 @@ void visit_leaf(const Tree& tree, std::uint32_t number, const double* point, Fou
 /// single precision is below 2^-20 of it.
 HWY_INLINE float bound_of(double square) { return static_cast<float>(std::min(square * 1.000002, 3e38)); }
 
+/// A box in single precision; a point is a box without extent.
+struct Region {
+  std::array<float, 3> low, high;
+};
+Region region_of(const double* point) {
+  Region region;
+  // Farther coordinates would overflow; nearer ones are only more cautious.
+  for (std::size_t k = 0; k < 3; ++k) region.low[k] = static_cast<float>(std::min(std::max(point[k], -1e18), 1e18));
+  region.high = region.low;
+  return region;
+}
+
+/// Squared distances of a region from boxes, [axis] their low and high sides. It does not fall when the region shrinks,
+/// roundings included.
+template <class D>
+HWY_INLINE hn::Vec<D> box_squares(D f, const std::array<const float*, 3>& low, const std::array<const float*, 3>& high,
+                                  const Region& region) {
+  const auto outside = [&](std::size_t axis) HWY_ATTR {
+    return hn::Max(hn::Max(hn::Sub(hn::Load(f, low[axis]), hn::Set(f, region.high[axis])),
+                           hn::Sub(hn::Set(f, region.low[axis]), hn::Load(f, high[axis]))),
+                   hn::Zero(f));
+  };
+  const auto x = outside(0), y = outside(1), z = outside(2);
+  return hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+}
+
+/// Children of a node within reach.
+/// @param bounds  [kWidth] filled, aligned
+HWY_INLINE std::uint64_t near_children(const Node& node, const Region& region, float limit, float* bounds) {
+  const Floats f;
+  std::uint64_t near = 0;
+  for (std::size_t i = 0; i < kWidth; i += hn::Lanes(f)) {
+    const auto squares = box_squares(f, {&node.low[0][i], &node.low[1][i], &node.low[2][i]},
+                                     {&node.high[0][i], &node.high[1][i], &node.high[2][i]}, region);
+    hn::Store(squares, f, bounds + i);
+    near |= bits_of(f, hn::Le(squares, hn::Set(f, limit)), i);
+  }
+  return near;
+}
+
 struct Waiting {
   std::uint32_t child;
   float bound;
 };
 
-void search_point(const Tree& tree, const double* point, double start, Found* best) {
-  const Floats f;
-  // Farther coordinates would overflow; nearer ones are only more cautious.
-  float single[3];
-  for (int k = 0; k < 3; ++k) single[k] = static_cast<float>(std::min(std::max(point[k], -1e18), 1e18));
-  const auto px = hn::Set(f, single[0]), py = hn::Set(f, single[1]), pz = hn::Set(f, single[2]);
-  const auto zero = hn::Zero(f);
-  float limit = bound_of(start);
-  Waiting stack[8 * 64];  // at most seven more per level, of which there are fewer than 64
-  std::size_t waiting = 1;
-  stack[0] = {0, 0};
+/// Puts the nearest on top of those from `first` on.
+HWY_INLINE void wait(const Waiting& next, std::size_t first, Waiting* stack, std::size_t* waiting) {
+  std::size_t at = (*waiting)++;
+  for (; at > first && stack[at - 1].bound < next.bound; --at) stack[at] = stack[at - 1];
+  stack[at] = next;
+}
+
+/// Searches what waits on the stack and everything below.
+/// @param visited  a leaf that need not be visited
+void search_stack(const Tree& tree, const double* point, const Region& region, float limit, std::uint32_t visited,
+                  Waiting* stack, std::size_t waiting, Found* best) {
+  limit = std::min(limit, bound_of(best->place.square));
   while (waiting > 0) {
     const Waiting next = stack[--waiting];
     if (next.bound > limit) continue;
     if ((next.child & kLeaf) != 0) {
+      if (next.child == visited) continue;
       visit_leaf(tree, next.child & ~kLeaf, point, best);
-      limit = std::min(limit, bound_of(best->square));
+      limit = std::min(limit, bound_of(best->place.square));
       continue;
     }
     const Node& node = tree.nodes[next.child];
     HWY_ALIGN float bounds[kWidth];
-    for (std::size_t i = 0; i < kWidth; i += hn::Lanes(f)) {
-      const auto outside = [&](std::size_t axis, hn::Vec<Floats> p) HWY_ATTR {
-        return hn::Max(hn::Max(hn::Sub(hn::Load(f, node.low[axis].data() + i), p),
-                               hn::Sub(p, hn::Load(f, node.high[axis].data() + i))),
-                       zero);
-      };
-      const auto x = outside(0, px), y = outside(1, py), z = outside(2, pz);
-      hn::Store(hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z))), f, bounds + i);
-    }
-    // Nearest on top of the stack.
     const std::size_t first = waiting;
-    for (std::size_t i = 0; i < kWidth; ++i) {
-      if (bounds[i] > limit || node.child[i] == kNoChild) continue;
-      std::size_t at = waiting++;
-      for (; at > first && stack[at - 1].bound < bounds[i]; --at) stack[at] = stack[at - 1];
-      stack[at] = {node.child[i], bounds[i]};
+    for (std::uint64_t near = near_children(node, region, limit, bounds); near != 0; near &= near - 1) {
+      const std::size_t i = static_cast<std::size_t>(std::countr_zero(near));
+      wait({node.child[i], bounds[i]}, first, stack, &waiting);
     }
   }
 }
 
-/// Squared distance to one triangle, rounded up: the point before this one was nearest to it.
-double square_from(const Tree& tree, const Slot& slot, const double* point) {
-  const Doubles d;
-  HWY_ALIGN double squares[kWidth];
-  const std::size_t lane = slot.lane / hn::Lanes(d) * hn::Lanes(d);
-  hn::Store(triangle_squares(tree.leaves[slot.leaf], lane, point), d, squares);
-  return squares[slot.lane - lane];
+constexpr std::size_t kListed = 64;     ///< nodes and leaves that a list holds
+constexpr std::size_t kStack = 8 * 64;  ///< at most seven more per level, of which there are fewer than 56
+
+void search_point(const Tree& tree, const double* point, std::uint32_t visited, Found* best) {
+  Waiting stack[kStack];
+  stack[0] = {0, 0};
+  search_stack(tree, point, region_of(point), bound_of(best->place.square), visited, stack, 1, best);
 }
 
-void search_block(const Tree& tree, const double* points, std::size_t count, const Slot* hints, Found* found) {
-  double start = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < count; ++i) {
-    const double* point = points + 3 * i;
-    if (hints != nullptr) {
-      start = square_from(tree, hints[i], point);
-    } else if (i > 0) {
-      start = square_from(tree, found[i - 1].slot, point);
+/// Nodes and leaves with all that is within reach of a group of points.
+struct List {
+  alignas(64) std::array<std::array<float, kListed>, 3> low, high;  ///< [axis][entry] mm, about Tree::centre
+  std::array<std::uint32_t, kListed> child;
+  std::size_t size = 0;  ///< filled up to whole vectors with boxes that nothing is near to
+};
+
+/// As deep in the tree as they fit into the list.
+void list_near(const Tree& tree, const Region& region, float limit, List* list) {
+  struct Entry {
+    std::uint32_t child, node, lane;
+  };
+  const auto append_children = [&](std::uint32_t number, Entry* to) HWY_ATTR {
+    const Node& node = tree.nodes[number];
+    HWY_ALIGN float bounds[kWidth];
+    std::size_t count = 0;
+    for (std::uint64_t near = near_children(node, region, limit, bounds); near != 0; near &= near - 1) {
+      const std::uint32_t i = static_cast<std::uint32_t>(std::countr_zero(near));
+      to[count++] = {node.child[i], number, i};
     }
+    return count;
+  };
+  std::array<Entry, kListed> these, below;
+  std::size_t size = append_children(0, these.data());
+  for (bool deeper = true; deeper;) {
+    deeper = false;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      if ((these[i].child & kLeaf) != 0 || next + kWidth + (size - i - 1) > kListed) {
+        below[next++] = these[i];
+      } else {
+        next += append_children(these[i].child, below.data() + next);
+        deeper = true;
+      }
+    }
+    std::swap(these, below);
+    size = next;
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    const Node& node = tree.nodes[these[i].node];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      list->low[axis][i] = node.low[axis][these[i].lane];
+      list->high[axis][i] = node.high[axis][these[i].lane];
+    }
+    list->child[i] = these[i].child;
+    if ((these[i].child & kLeaf) == 0) continue;
+    // What is not in the cache comes while the first points are searched.
+    const char* const leaf = reinterpret_cast<const char*>(&tree.leaves[these[i].child & ~kLeaf]);
+    for (std::size_t byte = 0; byte < sizeof(Leaf); byte += 64) __builtin_prefetch(leaf + byte);
+  }
+  for (; size % kMostLanes != 0; ++size) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      list->low[axis][size] = std::numeric_limits<float>::infinity();
+      list->high[axis][size] = -std::numeric_limits<float>::infinity();
+    }
+  }
+  list->size = size;
+}
+
+void search_list(const Tree& tree, const List& list, const double* point, float limit, std::uint32_t visited,
+                 Found* best) {
+  const hn::CappedTag<float, kMostLanes> f;
+  const Region region = region_of(point);
+  limit = std::min(limit, bound_of(best->place.square));
+  HWY_ALIGN float bounds[kMostLanes];
+  Waiting stack[kStack];
+  std::size_t waiting = 0;
+  for (std::size_t i = 0; i < list.size; i += hn::Lanes(f)) {
+    const auto squares = box_squares(f, {&list.low[0][i], &list.low[1][i], &list.low[2][i]},
+                                     {&list.high[0][i], &list.high[1][i], &list.high[2][i]}, region);
+    std::uint64_t near = bits_of(f, hn::Le(squares, hn::Set(f, limit)), 0);
+    if (near == 0) continue;
+    hn::Store(squares, f, bounds);
+    for (; near != 0; near &= near - 1) {
+      const std::size_t lane = static_cast<std::size_t>(std::countr_zero(near));
+      if (list.child[i + lane] != visited) wait({list.child[i + lane], bounds[lane]}, 0, stack, &waiting);
+    }
+  }
+  search_stack(tree, point, region, limit, visited, stack, waiting, best);
+}
+
+constexpr std::size_t kGroup = 32;  ///< points that share a list
+constexpr std::size_t kAlone = 4;   ///< points for which no list is made
+
+/// Neighbours. Nothing that is nearer to one of them than its bound is missing in the list, so that each finds the
+/// triangle that it would find alone.
+/// @param previous  a leaf that may be near, or kNoChild
+void search_group(const Tree& tree, const double* points, std::size_t count, const std::uint32_t* hints,
+                  std::uint32_t previous, Found* found) {
+  const auto begin = [&](std::size_t i, std::uint32_t leaf) HWY_ATTR {
     found[i] = {};
-    search_point(tree, point, start, &found[i]);
+    if (leaf != kNoChild) visit_leaf(tree, leaf, points + 3 * i, &found[i]);
+  };
+  if (count < kAlone) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (hints != nullptr) previous = hints[i];
+      begin(i, previous);
+      search_point(tree, points + 3 * i, previous == kNoChild ? kNoChild : kLeaf + previous, &found[i]);
+      previous = found[i].leaf;
+    }
+    return;
+  }
+  double reach = 0;  // square of the farthest that any of them has to look
+  const std::size_t middle = count / 2;
+  if (hints != nullptr) {
+    for (std::size_t i = 0; i < count; ++i) {
+      begin(i, hints[i]);
+      reach = std::max(reach, found[i].place.square);
+    }
+  } else {
+    begin(middle, previous);
+    search_point(tree, points + 3 * middle, previous == kNoChild ? kNoChild : kLeaf + previous, &found[middle]);
+    for (std::size_t i = 0; i < count; ++i) {
+      double square = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double away = points[3 * i + k] - points[3 * middle + k];
+        square += away * away;
+      }
+      reach = std::max(reach, square);
+    }
+    const double sum = std::sqrt(reach) + std::sqrt(found[middle].place.square);
+    reach = sum * sum;
+  }
+  Region region = region_of(points);
+  for (std::size_t i = 1; i < count; ++i) {
+    const Region point = region_of(points + 3 * i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      region.low[k] = std::min(region.low[k], point.low[k]);
+      region.high[k] = std::max(region.high[k], point.low[k]);
+    }
+  }
+  List list;
+  const float limit = bound_of(reach);
+  list_near(tree, region, limit, &list);
+  previous = found[middle].leaf;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (hints != nullptr) {
+      previous = hints[i];
+    } else if (i != middle) {
+      begin(i, previous);
+    }
+    if (hints != nullptr || i != middle) {
+      search_list(tree, list, points + 3 * i, limit, kLeaf + previous, &found[i]);
+    }
+    previous = found[i].leaf;
+  }
+}
+
+void search_block(const Tree& tree, const double* points, std::size_t count, const std::uint32_t* hints, Found* found) {
+  std::uint32_t previous = kNoChild;
+  for (std::size_t first = 0; first < count; first += kGroup) {
+    const std::size_t some = std::min(kGroup, count - first);
+    search_group(tree, points + 3 * first, some, hints == nullptr ? nullptr : hints + first, previous, found + first);
+    previous = found[first + some - 1].leaf;
   }
 }
 
@@ -180,7 +394,7 @@ namespace abbe::surface {
 
 HWY_EXPORT(search_block);
 
-void search_block(const Tree& tree, const double* points, std::size_t count, const Slot* hints, Found* found) {
+void search_block(const Tree& tree, const double* points, std::size_t count, const std::uint32_t* hints, Found* found) {
   HWY_DYNAMIC_DISPATCH(search_block)(tree, points, count, hints, found);
 }
 
