@@ -32,6 +32,7 @@ void add_plan_command(CommandLine& line);
 void add_identify_command(CommandLine& line);
 void add_map_command(CommandLine& line);
 void add_path_command(CommandLine& line);
+void add_position_command(CommandLine& line);
 void add_run_command(CommandLine& line);
 void add_fit_command(CommandLine& line);
 void add_evaluate_command(CommandLine& line);

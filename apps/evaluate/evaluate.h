@@ -41,5 +41,6 @@ void add_evaluate_circular(CLI::App& evaluate, CommandLine& line);
 void add_evaluate_rotation(CLI::App& evaluate, CommandLine& line);
 void add_evaluate_straightness(CLI::App& evaluate, CommandLine& line);
 void add_evaluate_squareness(CLI::App& evaluate, CommandLine& line);
+void add_evaluate_contour(CLI::App& evaluate, CommandLine& line);
 
 }  // namespace abbe

@@ -3,54 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <random>
 
+#include "abbe/geometry/engraver_part_for_test.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
 namespace {
 
-/// A cylinder segment between two planes: as the part of a laser engraver.
-std::vector<Shape> part() {
-  Shape cylinder, top, side;
-  cylinder.kind = ShapeKind::cylinder;
-  cylinder.point = {75, -506, 0};
-  cylinder.direction = Eigen::Vector3d::UnitZ();
-  cylinder.radius = 528;
-  top.kind = side.kind = ShapeKind::plane;
-  top.point = {0, 0, 205};
-  top.direction = Eigen::Vector3d::UnitZ();
-  side.point = {155, 0, 0};
-  side.direction = Eigen::Vector3d::UnitX();
-  return {cylinder, top, side};
-}
-
-struct Scan {
-  Eigen::Matrix3Xd points;
-  std::vector<std::size_t> labels;
-};
-
-Scan scan_of(const RigidTransform& part_from_scan, double noise, double outliers, unsigned seed) {
-  std::mt19937 generator(seed);
-  std::normal_distribution<double> normal(0, noise > 0 ? noise : 1);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  Scan scan;
-  scan.points.resize(3, 450);
-  const RigidTransform back = part_from_scan.inverse();
-  for (int i = 0; i < 450; ++i) {
-    const std::size_t label = static_cast<std::size_t>(i % 3);
-    const double x = 80 + 70 * uniform(generator), z = 130 + 70 * uniform(generator), depth = 30 * uniform(generator);
-    const double y = -506 + std::sqrt(528.0 * 528.0 - (x - 75) * (x - 75));
-    Eigen::Vector3d p = label == 0   ? Eigen::Vector3d(x, y, z)
-                        : label == 1 ? Eigen::Vector3d(x, y - depth, 205)
-                                     : Eigen::Vector3d(155, y - depth, z);
-    if (noise > 0) p += Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
-    if (uniform(generator) < outliers) p.y() += 0.2 + 2 * uniform(generator);
-    scan.points.col(i) = back * p;
-    scan.labels.push_back(label);
-  }
-  return scan;
-}
+using engraver::part;
+using engraver::Scan;
+using engraver::scan_of;
 
 const RigidTransform kTruth = {rotation_from_vector({0.7, -0.4, 2.1}), {-614, 6, 551}};
 RigidTransform beside() {

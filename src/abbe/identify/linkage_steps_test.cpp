@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "abbe/errors/random_stream.h"
@@ -21,56 +20,6 @@ SwingHeadLinkage published() { return {240.745, 209.476, -0.265, -0.145, {-197.2
 
 LinkageReadings published_commands(LinkageConvention convention) {
   return linkage_commands(published(), convention, 120, 4);
-}
-
-nlohmann::json reference() {
-  std::ifstream file(std::string(ABBE_GOLDEN) + "/yin/linkage_five_steps.json");
-  return nlohmann::json::parse(file);
-}
-
-LinkageReadings readings_of(const nlohmann::json& raw, LinkageConvention convention) {
-  LinkageReadings r;
-  r.convention = convention;
-  const nlohmann::json &two = raw["step2"], &three = raw["step3"], &four = raw["step4"], &five = raw["step5"];
-  r.exit_z = two["z1"];
-  r.focus_z = two["z"].get<std::vector<double>>();
-  r.focus_width = two["width"].get<std::vector<double>>();
-  r.exit_to_axis = two["d"];
-  r.board_thickness = two["h"];
-  r.height_first = three["height_l1"];
-  r.height_second = three["height_l2"];
-  r.x_first = four["x1"];
-  r.x_second = four["x2"];
-  r.line3_x = four["l3_x"];
-  r.line5_x = four["l5_x"];
-  r.line4_y = four["l4_y"];
-  r.line6_y = four["l6_y"];
-  r.circle_x = five["x3"];
-  r.circle_y = five["y3"];
-  r.circle_z = five["z3"];
-  return r;
-}
-
-void expect_linkage(const SwingHeadLinkage& linkage, const nlohmann::json& expected, double tolerance) {
-  const auto values = linkage.values();
-  const char* names[] = {"R_A", "R_C1", "L_tA", "L_AC1", "x0", "y0", "z0"};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    EXPECT_NEAR(values[i], expected[names[i]].get<double>(), tolerance) << names[i];
-  }
-}
-
-TEST(LinkageSteps, ReproduceTheReferenceCorrectedAndAsPrintedInBothConventions) {
-  const nlohmann::json json = reference();
-  for (const LinkageConvention convention : kConventions) {
-    const nlohmann::json& part = json[convention == LinkageConvention::table_moves ? "U" : "P"];
-    const LinkageEvaluation found = evaluate_linkage(readings_of(part["raw"], convention), {});
-    ASSERT_EQ(found.status, LinkageStatus::ok) << found.reason;
-    expect_linkage(found.linkage, part["recovered"], 1e-9);
-    expect_linkage(found.printed, part["printed"], 1e-9);
-    EXPECT_NEAR(found.waist, 2 * json["assumptions"]["w0"].get<double>(), 1e-9);
-    EXPECT_NEAR(found.divergence, found.waist / json["assumptions"]["zR"].get<double>(), 1e-9);
-    EXPECT_GT(std::abs(found.thinnest_z - found.focus_z), 0.03);  // a step of 0.1 mm is what the thinnest line knows
-  }
 }
 
 TEST(LinkageSteps, FocusAndBeamAreThoseOfTheMachine) {
@@ -175,12 +124,55 @@ TEST(LinkageSteps, UncertaintiesWithTheAccuraciesOfTableOne) {
   double sum = 0;
   for (const LinkageShare& share : found.shares) sum += share.variance[0];
   EXPECT_NEAR(sum, found.covariance(0, 0), 1e-15);
+  EXPECT_NEAR(found.standard_uncertainty(0), 12.4e-3, 0.1e-3);
   // A zero error of A moves L_tA and is hardly seen anywhere else: 1.17 um per arcsec.
   LinkageAccuracy zero;
   zero.zero_a = kDegree / 3600;
   const LinkageEvaluation turned = evaluate_linkage(
       simulate_linkage(published(), published_commands(LinkageConvention::table_moves), 0.03, 0.05), zero);
   EXPECT_NEAR(turned.standard_uncertainty(2), 1.17e-3, 0.005e-3);
+}
+
+/// Standard uncertainty of the focus by a parabola through width squared, from the formula: a linear combination of the
+/// squares, each of standard uncertainty 2 w u(w).
+double focus_uncertainty(const LinkageReadings& commands, double focus, double u_width, bool weighted) {
+  const auto n = static_cast<Eigen::Index>(commands.focus_z.size());
+  Eigen::MatrixXd rows(n, 3);
+  Eigen::VectorXd u(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double t = commands.focus_z[static_cast<std::size_t>(i)] - focus, width = std::hypot(0.03, 0.05 * t);
+    rows.row(i) << 1, t, t * t;
+    u[i] = 2 * width * u_width;
+  }
+  const Eigen::VectorXd weight = weighted ? Eigen::VectorXd(u.cwiseAbs2().cwiseInverse()) : Eigen::VectorXd::Ones(n);
+  const Eigen::MatrixXd from_squares =
+      (rows.transpose() * weight.asDiagonal() * rows).inverse() * rows.transpose() * weight.asDiagonal();
+  // Lowest point of c0 + c2 t^2: its shift is -dc1 / (2 c2), c2 = 0.05^2.
+  return (from_squares.row(1).transpose().cwiseProduct(u)).norm() / (2 * 0.05 * 0.05);
+}
+
+TEST(LinkageSteps, WhatTheFocusAndZ0AreKnownToDependsOnHowTheyAreRead) {
+  const LinkageReadings commands = published_commands(LinkageConvention::table_moves);
+  const LinkageReadings readings = simulate_linkage(published(), commands, 0.03, 0.05);
+  LinkageAccuracy accuracy = LinkageAccuracy::published();
+  constexpr double kFocus = -284.251, kZ = 3.55e-3;
+  // Widths as good as positions of lines, 2 um: R_A 12.4 um, by the formula too.
+  const LinkageEvaluation found = evaluate_linkage(readings, accuracy);
+  const double focus = focus_uncertainty(commands, kFocus, 2e-3, true);
+  EXPECT_NEAR(found.standard_uncertainty(0), std::hypot(focus, kZ), 0.1e-3);
+  // 7.3 um is what an unweighted parabola gives if widths are known to 1 um, half of what a position of a line is.
+  EXPECT_NEAR(std::hypot(focus_uncertainty(commands, kFocus, 1e-3, false), kZ), 7.3e-3, 0.1e-3);
+  accuracy.width = 1e-3;
+  EXPECT_NEAR(evaluate_linkage(readings, accuracy).standard_uncertainty(0), 6.9e-3, 0.1e-3);
+  // z0 = z1 - d + (z3 - z2): the error of the focus is in R_A and in z3 alike and drops out, whatever the widths.
+  EXPECT_NEAR(found.standard_uncertainty(6), std::sqrt(2.0) * kZ, 2e-5);
+  EXPECT_NEAR(evaluate_linkage(readings, accuracy).standard_uncertainty(6), std::sqrt(2.0) * kZ, 2e-5);
+  // 8.1 um counts it once: as if step 5 knew the focus without error where step 2 does not.
+  EXPECT_NEAR(std::hypot(7.3e-3, kZ), 8.1e-3, 0.05e-3);
+  // What the height of the focus at A = 0 needs is z0 + R_A, in which the focus counts once.
+  const auto& c = found.covariance;
+  EXPECT_NEAR(std::sqrt(c(0, 0) + c(6, 6) + 2 * c(0, 6)), std::hypot(focus, kZ), 0.1e-3);
+  EXPECT_LT(c(0, 6), 0);
 }
 
 TEST(LinkageSteps, ParabolaFindsTheFocusTenTimesBetterThanTheThinnestLine) {

@@ -1,0 +1,141 @@
+#include <cmath>
+#include <numbers>
+
+#include "reproduce/yin_results.h"
+
+namespace abbe {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+ordered_json parameters_json(const SwingHeadLinkage& linkage) {
+  ordered_json json;
+  const auto values = linkage.values();
+  for (std::size_t i = 0; i < values.size(); ++i) json[std::string(linkage_name(i)) + "_mm"] = values[i];
+  return json;
+}
+
+ordered_json figures_json(const YinFigures& f) {
+  return {{"mean_um", f.mean}, {"max_um", f.largest}, {"standard_deviation_um", f.deviation}};
+}
+
+ordered_json position_json(const PositioningParameters& p) {
+  ordered_json json;
+  const char* names[] = {"x_mm", "y_mm", "z_mm", "alpha_deg", "beta_deg", "gamma_deg"};
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    json[names[i]] = i < 3 ? p.translation[i] : p.angles[i - 3] / kDegree;
+    json["u_" + std::string(names[i])] = std::sqrt(p.covariance(i, i)) / (i < 3 ? 1 : kDegree);
+  }
+  return json;
+}
+
+ordered_json linkage_json(const YinResults& r) {
+  ordered_json json;
+  for (const auto* steps : {&r.table_moves, &r.head_moves}) {
+    ordered_json& part = json[steps == &r.table_moves ? "U" : "P"];
+    part["corrected"] = parameters_json(steps->found.linkage);
+    part["printed"] = parameters_json(steps->found.printed);
+    for (std::size_t i = 0; i < SwingHeadLinkage::kCount; ++i) {
+      part["standard_uncertainty_um"][linkage_name(i)] = 1e3 * steps->found.standard_uncertainty(i);
+    }
+  }
+  ordered_json& joint = json["joint_fit"];
+  joint["converged"] = r.joint.converged;
+  if (!r.joint.converged) {
+    joint["message"] = r.joint.message;
+    return json;
+  }
+  joint["readings"] = r.joint.readings;
+  joint["chi_square"] = r.joint.chi_square;
+  joint["degrees_of_freedom"] = r.joint.degrees_of_freedom;
+  joint["found"] = parameters_json(r.joint.found);
+  joint["truth"] = parameters_json(r.joint.truth);
+  for (std::size_t i = 0; i < SwingHeadLinkage::kCount; ++i) {
+    joint["standard_uncertainty_um"][linkage_name(i)] = 1e3 * r.joint.standard_uncertainty(i);
+  }
+  joint["focus_rms_um"] = 1e3 * r.joint.focus;
+  joint["focus_rms_by_five_steps_um"] = 1e3 * r.joint.focus_by_steps;
+  joint["focus_rms_by_five_steps_without_correlations_um"] = 1e3 * r.joint.focus_without_correlations;
+  return json;
+}
+
+ordered_json scans_json(const YinResults& r) {
+  const YinPositioning& p = r.located.positioning;
+  return {{"targets_placed", r.scans.targets_placed},
+          {"targets_seen", r.scans.targets_seen},
+          {"surface_points_placed", r.scans.surface_placed},
+          {"surface_points_seen", r.scans.surface_seen},
+          {"table_to_workpiece", position_json(p.table_to_workpiece)},
+          {"workpiece_to_table", position_json(p.workpiece_to_table)},
+          {"off_the_truth_um", 1e3 * p.largest_difference},
+          {"chi_square_of_six", r.located.chi_square}};
+}
+
+ordered_json budget_figure_json(const BudgetFigure& f) {
+  return {{"by_sensitivity_um", 1e3 * f.by_sensitivity},
+          {"by_monte_carlo_um", 1e3 * f.by_monte_carlo},
+          {"u_monte_carlo_um", 1e3 * f.monte_carlo_uncertainty}};
+}
+
+ordered_json contour_json(const YinResults& r) {
+  const YinContour& c = r.contour;
+  ordered_json json = {{"paper", figures_json(kYinMeasured)},
+                       {"across_the_curve", figures_json(c.across)},
+                       {"in_the_surface", figures_json(c.in_surface)},
+                       {"across_95_percent", figures_json(c.upper)},
+                       {"rms_by_sensitivity_um", 1e3 * c.budget.total[0].by_sensitivity},
+                       {"rms_by_monte_carlo_um", 1e3 * c.budget.total[0].by_monte_carlo},
+                       {"u_rms_by_monte_carlo_um", 1e3 * c.budget.total[0].monte_carlo_uncertainty},
+                       {"L_tA_as_printed_um", c.printed_l_ta}};
+  json["inputs"] = c.budget.inputs;
+  json["runs"] = c.budget.runs;
+  json["runs_per_cause"] = c.budget.runs_per_cause;
+  json["largest_disagreement_in_standard_uncertainties"] = c.budget.largest_disagreement();
+  json["total"] = {{"across", budget_figure_json(c.budget.total[0])}, {"along", budget_figure_json(c.budget.total[1])}};
+  for (const BudgetLine& line : c.budget.lines) {
+    json["budget"].push_back({{"cause", line.cause},
+                              {"inputs", line.inputs},
+                              {"share", line.share},
+                              {"across", budget_figure_json(line.kinds[0])},
+                              {"along", budget_figure_json(line.kinds[1])}});
+  }
+  return json;
+}
+
+ordered_json sections_json(const YinSections& s) {
+  ordered_json json = {{"edge_radius_um", 1e3 * s.radius},
+                       {"contour_error", figures_json(s.found)},
+                       {"contour_error_true", figures_json(s.truth)},
+                       {"P1_P2", figures_json(s.rounding)},
+                       {"largest_miss_um", 1e3 * s.largest_miss}};
+  for (std::size_t i = 0; i < s.fits.size(); ++i) {
+    const EdgeFit& fit = s.fits[i];
+    json["points"].push_back({{"number", i + 1},
+                              {"along_mm", *s.sections[i].along},
+                              {"true_um", 1e3 * s.edge[i]},
+                              {"contour_error_um", 1e3 * fit.corner.x()},
+                              {"u_contour_error_um", 1e3 * fit.corner_uncertainty()},
+                              {"P1_P2_um", 1e3 * fit.rounding},
+                              {"u_P1_P2_um", 1e3 * fit.rounding_uncertainty},
+                              {"scanned_points", s.sections[i].points.cols()}});
+  }
+  return json;
+}
+
+}  // namespace
+
+ordered_json yin_json(const YinResults& r) {
+  ordered_json json;
+  json["linkage"] = linkage_json(r);
+  json["positioning"] = {{"table_to_workpiece", position_json(r.positioning.table_to_workpiece)},
+                         {"workpiece_to_table", position_json(r.positioning.workpiece_to_table)},
+                         {"simulated_scans", scans_json(r)}};
+  json["contour"] = contour_json(r);
+  json["sections"] = sections_json(r.sections);
+  json["agrees_with_reference"] = r.agrees;
+  return json;
+}
+
+}  // namespace abbe

@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "abbe/report/svg_plot.h"
+#include "reproduce/yin_results.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+EvaluationFigure figure(const std::string& symbol, const std::string& name, double value_um) {
+  EvaluationFigure result;
+  result.symbol = symbol;
+  result.name = name;
+  result.value = 1e-3 * value_um;
+  return result;
+}
+
+void add_figures(EvaluationReport& report, const std::string& symbol, const std::string& name, const YinFigures& f) {
+  report.figures.push_back(figure(symbol + "_mean", name + ", mean", f.mean));
+  report.figures.push_back(figure(symbol + "_max", name + ", largest", f.largest));
+  report.figures.push_back(figure(symbol + "_s", name + ", standard deviation", f.deviation));
+}
+
+EvaluationTable linkage_table(const YinResults& r) {
+  EvaluationTable table{"Linkage parameters by the five steps, and by one fit of marks at many poses",
+                        {"parameter", "corrected in mm", "printed, U in mm", "printed, P in mm",
+                         "u by five steps in \xC2\xB5m", "u by joint fit in \xC2\xB5m"},
+                        {}};
+  for (std::size_t i = 0; i < SwingHeadLinkage::kCount; ++i) {
+    table.rows.push_back({linkage_name(i), fmt::format("{:.3f}", r.table_moves.found.linkage.values()[i]),
+                          fmt::format("{:.3f}", r.table_moves.found.printed.values()[i]),
+                          fmt::format("{:.3f}", r.head_moves.found.printed.values()[i]),
+                          fmt::format("{:.1f}", 1e3 * r.table_moves.found.standard_uncertainty(i)),
+                          r.joint.converged ? fmt::format("{:.1f}", 1e3 * r.joint.standard_uncertainty(i)) : "-"});
+  }
+  return table;
+}
+
+EvaluationTable positioning_table(const YinResults& r) {
+  EvaluationTable table{
+      "Positioning parameters in both readings of Table 3, with standard uncertainties",
+      {"", "x in mm", "y in mm", "z in mm", "alpha in \xC2\xB0", "beta in \xC2\xB0", "gamma in \xC2\xB0"},
+      {}};
+  const auto add = [&](const char* words, const PositioningParameters& p) {
+    std::vector<std::string> row = {words};
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      const double value = i < 3 ? p.translation[i] : p.angles[i - 3] / kDegree;
+      row.push_back(
+          fmt::format("{:.4f} \xC2\xB1 {:.4f}", value, std::sqrt(p.covariance(i, i)) / (i < 3 ? 1 : kDegree)));
+    }
+    table.rows.push_back(std::move(row));
+  };
+  add("p_workpiece = D p_table", r.positioning.table_to_workpiece);
+  add("p_table = D p_workpiece", r.positioning.workpiece_to_table);
+  add("simulated scanner with occlusion, first reading", r.located.positioning.table_to_workpiece);
+  return table;
+}
+
+EvaluationTable budget_table(const ErrorBudget& budget) {
+  EvaluationTable table{"Error budget: standard uncertainty in \xC2\xB5m, root mean square over the points",
+                        {"cause", "inputs", "across, by sensitivity", "across, by Monte Carlo", "along, by sensitivity",
+                         "along, by Monte Carlo", "share"},
+                        {}};
+  const auto add = [&](const std::string& cause, std::size_t inputs, const std::vector<BudgetFigure>& kinds,
+                       double share) {
+    std::vector<std::string> row = {cause, fmt::format("{}", inputs)};
+    for (const BudgetFigure& f : kinds) {
+      row.push_back(fmt::format("{:.2f}", 1e3 * f.by_sensitivity));
+      row.push_back(fmt::format("{:.2f} \xC2\xB1 {:.2f}", 1e3 * f.by_monte_carlo, 1e3 * f.monte_carlo_uncertainty));
+    }
+    row.push_back(fmt::format("{:.1f} %", 100 * share));
+    table.rows.push_back(std::move(row));
+  };
+  for (const BudgetLine& line : budget.lines) add(line.cause, line.inputs, line.kinds, line.share);
+  add("all", budget.inputs, budget.total, 1);
+  return table;
+}
+
+EvaluationPlot contour_plot(const YinResults& r) {
+  XyPlot plot("Contour error along the curve of Table A4", "along the curve in mm", "\xC2\xB5m");
+  std::vector<PlotPoint> truth, found, rounding;
+  for (std::size_t i = 0; i < r.sections.fits.size(); ++i) {
+    const double along = *r.sections.sections[i].along;
+    truth.push_back({along, 1e3 * r.sections.edge[i]});
+    found.push_back({along, 1e3 * r.sections.fits[i].corner.x()});
+    rounding.push_back({along, 1e3 * r.sections.fits[i].rounding});
+  }
+  const double u = 1e3 * r.contour.budget.total[0].by_sensitivity;
+  plot.level(0, "", {PlotColour::soft, 1});
+  plot.level(2 * u, "two standard uncertainties", {PlotColour::limit, 1, true, 1});
+  plot.level(-2 * u, "", {PlotColour::limit, 1, true, 1});
+  plot.line(truth, {PlotColour::first, 1.6}, "edge of one simulated part");
+  plot.points(found, Marker::circle, {PlotColour::first}, "found from its sections (P2)");
+  plot.points(rounding, Marker::cross, {PlotColour::second}, "P1 P2: the rounding");
+  return {"contour", "One part, engraved by a machine with errors drawn from the budget, and what its sections show.",
+          plot.svg()};
+}
+
+EvaluationPlot budget_plot(const ErrorBudget& budget) {
+  XyPlot plot("Causes of the contour error across the curve", "rank", "standard uncertainty in \xC2\xB5m");
+  std::vector<PlotPoint> linear, drawn;
+  for (std::size_t i = 0; i < budget.lines.size(); ++i) {
+    const BudgetFigure& f = budget.lines[i].kinds[0];
+    const auto rank = static_cast<double>(i + 1);
+    linear.push_back({rank, 1e3 * f.by_sensitivity});
+    drawn.push_back({rank, 1e3 * f.by_monte_carlo});
+  }
+  plot.include_y(0);
+  plot.points(linear, Marker::circle, {PlotColour::first, 1.6}, "by sensitivity");
+  plot.points(drawn, Marker::cross, {PlotColour::second, 1.6}, "by Monte Carlo");
+  return {"budget", "In the order of the table below.", plot.svg()};
+}
+
+}  // namespace
+
+EvaluationReport yin_report(const YinResults& r) {
+  EvaluationReport report;
+  report.kind = "reproduce yin";
+  report.title = "Multi-axis laser engraver: linkage, workpiece, contour error";
+  report.standard = "Yin, Liu, Sun, Ding, Machines 9 (2021) 237, recomputed";
+  report.facts = {{"reference (golden/yin)", r.agrees ? "met to 1e-9 mm" : "NOT met"},
+                  {"simulated campaigns", fmt::format("{}", r.contour.budget.runs)},
+                  {"inputs", fmt::format("{}", r.contour.budget.inputs)}};
+  add_figures(report, "paper", "contour error as the paper measured it", kYinMeasured);
+  add_figures(report, "predicted", "predicted contour error across the curve", r.contour.across);
+  add_figures(report, "below95", "95 % of machines stay below", r.contour.upper);
+  add_figures(report, "sections", "contour error from the sections of one simulated part", r.sections.found);
+  add_figures(report, "P1P2", "P1 P2 of the same sections", r.sections.rounding);
+  report.plots = {contour_plot(r), budget_plot(r.contour.budget)};
+  report.tables = {budget_table(r.contour.budget), linkage_table(r), positioning_table(r)};
+  report.notes = {
+      "P1 P2, which the paper calls the contour error, is the rounding of the edge and does not depend on where the "
+      "edge is; the contour error is the distance of P2 from the commanded curve.",
+      fmt::format("Both budgets differ by at most {:.1f} standard uncertainties of Monte Carlo.",
+                  r.contour.budget.largest_disagreement())};
+  return report;
+}
+
+}  // namespace abbe

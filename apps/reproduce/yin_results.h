@@ -1,0 +1,34 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "abbe/report/evaluation_report.h"
+#include "reproduce/yin_contour.h"
+#include "reproduce/yin_marks.h"
+#include "reproduce/yin_scans.h"
+
+namespace abbe {
+
+/// What the paper measured, um.
+inline constexpr YinFigures kYinMeasured = {15.1, 29.5, 6.8};
+
+/// All of the study.
+struct YinResults {
+  YinSteps table_moves, head_moves;
+  YinJointFit joint;
+  YinPositioning positioning;
+  YinScans scans;
+  YinScansFound located;
+  YinContour contour;
+  YinSections sections;
+  bool agrees = false;  ///< with the reference to 1e-9 mm
+};
+
+/// For programs; units in the keys.
+nlohmann::ordered_json yin_json(const YinResults& results);
+/// For people, on stdout.
+void print_yin(const YinResults& results);
+/// Figures, plots and tables for the page of a results folder.
+EvaluationReport yin_report(const YinResults& results);
+
+}  // namespace abbe

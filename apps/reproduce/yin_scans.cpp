@@ -1,0 +1,267 @@
+#include "reproduce/yin_scans.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "abbe/geometry/rotation.h"
+#include "abbe/instruments/triangulation.h"
+
+namespace abbe {
+namespace {
+
+using Eigen::Index;
+using Eigen::Vector3d;
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kTargetNoise = 0.010, kSurfaceNoise = 0.020, kHeightNoise = 0.005;  // mm
+constexpr double kSphereRadius = 12.7, kSphereHeight = 95;                           // mm, as in the reference
+const Vector3d kMoved(150, -60, 0);
+const Vector3d kSphere(40, 150, kSphereHeight);
+const Vector3d kTarget(-120, 40, 14);  // of X and Y
+const std::array<Vector3d, 2> kTurning = {Vector3d(150, 60, 10), Vector3d(-90, 70, 45)};
+
+/// Bodies made of triangles, one after the other.
+class Scene {
+ public:
+  /// A convex polygon drawn up from one height to another. @param outline  anticlockwise seen from above
+  void add_prism(const std::vector<Eigen::Vector2d>& outline, double from, double to) {
+    const std::size_t n = outline.size(), first = vertices_.size();
+    for (const double z : {from, to}) {
+      for (const Eigen::Vector2d& p : outline) vertices_.emplace_back(p.x(), p.y(), z);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t next = (i + 1) % n;
+      triangles_.push_back({first + i, first + next, first + n + next});
+      triangles_.push_back({first + i, first + n + next, first + n + i});
+      if (i == 0 || next == 0) continue;
+      triangles_.push_back({first, first + next, first + i});
+      triangles_.push_back({first + n, first + n + i, first + n + next});
+    }
+  }
+  void add_ball(const Vector3d& centre, double radius) {
+    constexpr std::size_t kAround = 48, kUp = 24;
+    const std::size_t first = vertices_.size();
+    for (std::size_t i = 0; i <= kUp; ++i) {
+      for (std::size_t k = 0; k < kAround; ++k) {
+        const double up = std::numbers::pi * (static_cast<double>(i) / kUp - 0.5);
+        const double around = 2 * std::numbers::pi * static_cast<double>(k) / kAround;
+        vertices_.push_back(
+            centre + radius * Vector3d(std::cos(up) * std::cos(around), std::cos(up) * std::sin(around), std::sin(up)));
+      }
+    }
+    for (std::size_t i = 0; i < kUp; ++i) {
+      for (std::size_t k = 0; k < kAround; ++k) {
+        const std::size_t a = first + i * kAround + k, b = first + i * kAround + (k + 1) % kAround;
+        triangles_.push_back({a, b, b + kAround});
+        triangles_.push_back({a, b + kAround, a + kAround});
+      }
+    }
+  }
+  void move(std::size_t from, const RigidTransform& motion) {
+    for (std::size_t i = from; i < vertices_.size(); ++i) vertices_[i] = motion * vertices_[i];
+  }
+  std::size_t size() const { return vertices_.size(); }
+  TriangleMesh mesh() const {
+    TriangleMesh mesh;
+    mesh.vertices.resize(3, static_cast<Index>(vertices_.size()));
+    mesh.triangles.resize(3, static_cast<Index>(triangles_.size()));
+    for (std::size_t i = 0; i < vertices_.size(); ++i) mesh.vertices.col(static_cast<Index>(i)) = vertices_[i];
+    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        mesh.triangles(k, static_cast<Index>(i)) =
+            static_cast<std::uint32_t>(triangles_[i][static_cast<std::size_t>(k)]);
+      }
+    }
+    return mesh;
+  }
+
+ private:
+  std::vector<Vector3d> vertices_;
+  std::vector<std::array<std::size_t, 3>> triangles_;
+};
+
+Scene scene_with(const Placement& placement, const Shape& cylinder) {
+  Scene scene;
+  std::vector<Eigen::Vector2d> disc, post;
+  for (int i = 0; i < 72; ++i) {
+    const Eigen::Vector2d around(std::cos(5 * i * kDegree), std::sin(5 * i * kDegree));
+    disc.push_back(260 * around);
+    post.push_back(kSphere.head<2>() + 4 * around);
+  }
+  scene.add_prism(disc, -30, 0);
+  scene.add_prism(post, 0, kSphereHeight - 12);
+  scene.add_ball(kSphere, kSphereRadius);
+  const std::size_t part = scene.size();
+  std::vector<Eigen::Vector2d> outline = {{70, -20}, {155, -20}};
+  for (int i = 0; i <= 40; ++i) {
+    const double x = 155 - 85.0 * i / 40, off = x - cylinder.point.x();
+    outline.emplace_back(x, cylinder.point.y() + std::sqrt(cylinder.radius * cylinder.radius - off * off));
+  }
+  scene.add_prism(outline, 120, 205);
+  scene.move(part, placement.table_from_workpiece);
+  return scene;
+}
+
+/// A scanner that stands there and looks at a place, its baseline level.
+RigidTransform looking_at(const Vector3d& from, const Vector3d& at) {
+  const Vector3d z = (at - from).normalized(), x = z.cross(Vector3d::UnitZ()).normalized();
+  RigidTransform t;
+  t.rotation << x, z.cross(x), z;
+  t.translation = from;
+  return t;
+}
+
+std::vector<Vector3d> list_of(const Eigen::Matrix3Xd& points) {
+  std::vector<Vector3d> list;
+  for (Index i = 0; i < points.cols(); ++i) list.emplace_back(points.col(i));
+  return list;
+}
+
+}  // namespace
+
+YinScans yin_simulated_scans(std::uint64_t seed) {
+  const std::vector<Shape> part = yin_part();
+  YinScans result;
+  // Table 3 by the paper's words: p_workpiece = D p_table.
+  result.placement.table_from_workpiece =
+      RigidTransform{rotation_xyz(kDegree * Vector3d(-0.103, -0.034, -0.097)), {-73.896, 94.924, 33.385}}.inverse();
+  result.table_from_scanner = looking_at({820, 420, 740}, {120, -20, 100});
+  const RayTracer scene(scene_with(result.placement, part[0]).mesh());
+  RandomStream random(seed);
+  AreaScanner scanner;
+  scanner.noise = kTargetNoise;
+  // The table carries everything: seen from it, the scanner moves the other way.
+  const auto target = [&](const Vector3d& place, const RigidTransform& table_moves, std::vector<Vector3d>& points) {
+    const Eigen::Matrix3Xd seen = scan_places(scanner, scene, table_moves.inverse() * result.table_from_scanner, place,
+                                              Vector3d::UnitZ(), random);
+    ++result.targets_placed;
+    if (seen.cols() == 0) return;
+    ++result.targets_seen;
+    points.emplace_back(seen.col(0));
+  };
+  PositioningScans& scans = result.scans;
+  for (int i = 0; i <= 10; ++i) {
+    target(kTarget, RigidTransform::translate(Vector3d(20.0 * i, 0, 0)), scans.along_x);
+    target(kTarget, RigidTransform::translate(Vector3d(0, -20.0 * i, 0)), scans.along_y);
+  }
+  // Moved back towards +Y: the list is in the positive sense.
+  std::reverse(scans.along_y.begin(), scans.along_y.end());
+  scans.circles.resize(kTurning.size());
+  for (std::size_t k = 0; k < kTurning.size(); ++k) {
+    for (int i = 0; i < 18; ++i) {
+      target(kTurning[k], RigidTransform::rotate(rotation_about(Vector3d::UnitZ(), 20 * i * kDegree)),
+             scans.circles[k]);
+    }
+  }
+  scans.sphere_radius = kSphereRadius;
+  scans.sphere_height = kSphereHeight + kHeightNoise * random.normal();
+  scans.moved_since = kMoved;
+  scans.target_noise = kTargetNoise;
+  scans.sphere_noise = kSurfaceNoise;
+  scans.height_noise = kHeightNoise;
+
+  scanner.noise = kSurfaceNoise;
+  Eigen::Matrix3Xd places(3, 300), normals(3, 300);
+  for (Index i = 0; i < places.cols(); ++i) {
+    normals.col(i) = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    places.col(i) = kSphere + kSphereRadius * normals.col(i);
+  }
+  scans.sphere = list_of(scan_places(scanner, scene, result.table_from_scanner, places, normals, random));
+  result.surface_placed = 300;
+  result.surface_seen = scans.sphere.size();
+
+  // The workpiece is scanned with the table moved on: the scanner's place on the table is another one.
+  const RigidTransform later = RigidTransform::translate(-kMoved) * result.table_from_scanner;
+  const RigidTransform table_from_workpiece = result.placement.table_from_workpiece;
+  std::vector<Eigen::Matrix3Xd> surfaces;
+  for (std::size_t f = 0; f < part.size(); ++f) {
+    places.resize(3, 180);
+    normals.resize(3, 180);
+    for (Index i = 0; i < places.cols(); ++i) {
+      const double x = random.uniform(75, 152), z = random.uniform(125, 203), back = random.uniform(1, 30);
+      const double off = x - part[0].point.x();
+      const double y = part[0].point.y() + std::sqrt(part[0].radius * part[0].radius - off * off);
+      const Vector3d place = f == 0   ? Vector3d(x, y, z)
+                             : f == 1 ? Vector3d(x, y - back, 205)
+                                      : Vector3d(155, y - back - 5, z);
+      const Vector3d normal =
+          f == 0 ? Vector3d((place - part[0].point).cwiseProduct(Vector3d(1, 1, 0)).normalized()) : part[f].direction;
+      places.col(i) = table_from_workpiece * place;
+      normals.col(i) = table_from_workpiece.rotation * normal;
+    }
+    surfaces.push_back(scan_places(scanner, scene, later, places, normals, random));
+    result.surface_placed += 180;
+    result.surface_seen += static_cast<std::size_t>(surfaces.back().cols());
+    result.labels.insert(result.labels.end(), static_cast<std::size_t>(surfaces.back().cols()), f);
+  }
+  result.surface.resize(3, static_cast<Index>(result.labels.size()));
+  result.surface << surfaces[0], surfaces[1], surfaces[2];
+  result.table_from_scanner = later;
+  const RigidTransform truth = table_from_workpiece.inverse() * later;
+  result.start = {rotation_from_vector({0.006, -0.004, 0.005}) * truth.rotation,
+                  truth.translation + Vector3d(3, -4, 2)};
+  result.targets = {{"X", scans.along_x},           {"Y", scans.along_y},          {"circle 1", scans.circles[0]},
+                    {"circle 2", scans.circles[1]}, {"sphere", scans.sphere},      {"cylinder", list_of(surfaces[0])},
+                    {"top", list_of(surfaces[1])},  {"side", list_of(surfaces[2])}};
+  return result;
+}
+
+YinScansFound yin_locate(const YinScans& scans) {
+  YinScansFound found;
+  YinPositioning& p = found.positioning;
+  p.scanner = locate_scanner(scans.scans);
+  FeatureRegistrationOptions options;
+  options.noise_mm = kSurfaceNoise;
+  p.registration = register_to_features(scans.surface, yin_part(), scans.labels, scans.start, options);
+  if (p.scanner.status != PositioningStatus::ok || p.registration.status != FineRegistrationStatus::ok) return found;
+  p.placement = locate_workpiece(p.scanner, p.registration);
+  p.table_to_workpiece = positioning_parameters(p.placement, true);
+  p.workpiece_to_table = positioning_parameters(p.placement, false);
+  const PositioningParameters truth = positioning_parameters(scans.placement, true);
+  Eigen::Matrix<double, 6, 1> off;
+  off << p.table_to_workpiece.translation - truth.translation, p.table_to_workpiece.angles - truth.angles;
+  found.chi_square = off.dot(p.table_to_workpiece.covariance.ldlt().solve(off));
+  p.largest_difference = off.head<3>().norm();
+  return found;
+}
+
+std::string yin_positioning_text(const YinScans& scans, const std::string& points) {
+  const auto triple = [](const Vector3d& v) { return fmt::format("[{:.6f}, {:.6f}, {:.6f}]", v.x(), v.y(), v.z()); };
+  std::string text = fmt::format(
+      "# A structured-light scanner beside Yin's engraver: targets while X and Y carry the table and while it turns, "
+      "a\n"
+      "# standard sphere, and the clamped part. Simulated: what is hidden from projector or camera is not there.\n"
+      "#\n#   abbe position scanner.positioning.toml -o part.placement.toml\n"
+      "points = \"{}\"                 # target, x_mm, y_mm, z_mm in the scanner's frame\n"
+      "along_x = \"X\"                         # while X carries it in its positive sense\n"
+      "along_y = \"Y\"\n"
+      "circles = [\"circle 1\", \"circle 2\"]   # while the table turns, in order\n"
+      "turned = \"positively\"                 # by the right-hand rule about the table's Z; or \"negatively\"\n"
+      "sphere = \"sphere\"\n"
+      "sphere_radius_mm = {}\n"
+      "sphere_height_mm = {:.4f}             # of its centre above the table, by a height gauge\n"
+      "moved_since_mm = {}   # by X and Y, between the sphere and the workpiece\n"
+      "noise = {{ target_um = {:g}, sphere_um = {:g}, height_um = {:g} }}\n\n"
+      "[workpiece]\n"
+      "noise_um = {:g}\n"
+      "start_translation_mm = {}   # workpiece from scanner, roughly\n",
+      points, kSphereRadius, scans.scans.sphere_height, triple(kMoved), 1e3 * kTargetNoise, 1e3 * kSurfaceNoise,
+      1e3 * kHeightNoise, 1e3 * kSurfaceNoise, triple(scans.start.translation));
+  text += fmt::format("start_angles_deg = {}   # of Rx Ry Rz\n", triple(angles_xyz(scans.start.rotation) / kDegree));
+  const std::vector<Shape> part = yin_part();
+  const char* const names[] = {"cylinder", "top", "side"};
+  for (std::size_t f = 0; f < part.size(); ++f) {
+    text += fmt::format("\n[[workpiece.feature]]\ntarget = \"{}\"\nkind = \"{}\"\npoint_mm = {}\ndirection = {}\n",
+                        names[f], shape_name(part[f].kind), triple(part[f].point), triple(part[f].direction));
+    if (part[f].radius > 0) text += fmt::format("radius_mm = {:.6f}\n", part[f].radius);
+  }
+  return text;
+}
+
+}  // namespace abbe

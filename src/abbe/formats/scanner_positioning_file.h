@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "abbe/geometry/shapes.h"
+#include "abbe/identify/scanner_positioning.h"
+
+namespace abbe {
+
+/// The scan of a clamped workpiece: to be laid on features of its drawing, or on a mesh.
+struct WorkpieceScan {
+  std::vector<Shape> features;       ///< frame of the workpiece; empty: by the mesh
+  Eigen::Matrix3Xd points;           ///< [3, n] mm, scanner's frame; of the features
+  std::vector<std::size_t> labels;   ///< [n] feature of each point
+  RigidTransform start;              ///< workpiece from scanner, roughly; of the features
+  std::filesystem::path part, scan;  ///< mesh and point cloud, to be read by whoever wants them; empty: by features
+  double noise = 0;                  ///< standard uncertainty of a point along the normal, mm; 0: from the residuals
+};
+
+/// What a `*.positioning.toml` file says: a scanner's view of targets on a table, and of the workpiece.
+struct ScannerPositioningFile {
+  PositioningScans scans;
+  std::optional<WorkpieceScan> workpiece;
+};
+
+/// Reads such a file and the CSV of points it names; see docs/workpiece-position.md. @throws InputError
+ScannerPositioningFile read_scanner_positioning(const std::filesystem::path& path);
+
+/// The same from texts. @param file, points_file  names for messages
+ScannerPositioningFile parse_scanner_positioning(const std::string& text, const std::string& file,
+                                                 std::string_view points, const std::string& points_file);
+
+/// Points of a scan, by target.
+struct TargetPoints {
+  std::string target;
+  std::vector<Eigen::Vector3d> points;  ///< mm, scanner's frame
+};
+/// Contents of the CSV: `target`, `x`, `y`, `z`; to a nanometre.
+std::string target_points_csv(const std::vector<TargetPoints>& targets);
+
+}  // namespace abbe

@@ -1,0 +1,101 @@
+#include "abbe/formats/section_file.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <numbers>
+
+#include "abbe/formats/csv_reader.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/text_file.h"
+
+namespace abbe {
+namespace {
+
+enum Column { kSection, kAcross, kHeight, kAlong, kBeamTilt };
+
+const std::vector<CsvColumn>& columns() {
+  static const std::vector<CsvColumn> wanted = {{"section", Quantity::dimensionless, true},
+                                                {"across", Quantity::length},
+                                                {"height", Quantity::length},
+                                                {"along", Quantity::length, false, false},
+                                                {"beam_tilt", Quantity::angle, false, false}};
+  return wanted;
+}
+
+/// What a whole section has in common: the first row says it, the others repeat it.
+void enter_common(std::string_view text, const std::string& file, const CsvValues& column, std::size_t row,
+                  const std::string& section, std::optional<double>& value) {
+  if (!column.present) return;
+  const double here = column.numbers[row];
+  if (value && *value != here) {
+    throw InputError({file, csv_line(text, row), 0, column.header},
+                     "not that of the rows of section '" + section.substr(0, 40) + "' before",
+                     "the same on all rows of a section");
+  }
+  value = here;
+}
+
+}  // namespace
+
+std::vector<SectionReadings> read_sections(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  return parse_sections(file.text(), path.string());
+}
+
+std::vector<SectionReadings> parse_sections(std::string_view text, const std::string& file) {
+  const CsvTable csv = read_csv(text, file, columns());
+  const CsvValues& names = csv.columns[kSection];
+  std::vector<SectionReadings> sections(names.names.size());
+  std::vector<Eigen::Index> count(sections.size(), 0);
+  for (const std::uint32_t word : names.words) ++count[word];
+  for (std::size_t s = 0; s < sections.size(); ++s) {
+    sections[s].name = names.names[s];
+    sections[s].points.resize(2, count[s]);
+    count[s] = 0;
+  }
+  for (std::size_t row = 0; row < csv.rows; ++row) {
+    const std::size_t s = names.words[row];
+    SectionReadings& section = sections[s];
+    section.points.col(count[s]++) << csv.columns[kAcross].numbers[row], csv.columns[kHeight].numbers[row];
+    enter_common(text, file, csv.columns[kAlong], row, section.name, section.along);
+    enter_common(text, file, csv.columns[kBeamTilt], row, section.name, section.beam_tilt);
+  }
+  if (sections.empty()) throw InputError({.file = file}, "there is no section", "rows with section, across, height");
+  return sections;
+}
+
+std::string sections_csv(const std::vector<SectionReadings>& sections) {
+  const bool along = !sections.empty() && sections.front().along, tilt = along && sections.front().beam_tilt;
+  std::string text =
+      std::string("section,across_mm,height_mm") + (along ? ",along_mm" : "") + (tilt ? ",beam_tilt_deg" : "") + "\n";
+  for (const SectionReadings& section : sections) {
+    std::string common;
+    if (along) common += fmt::format(",{:.6f}", section.along.value_or(0));
+    if (tilt) common += fmt::format(",{:.9f}", section.beam_tilt.value_or(0) * 180 / std::numbers::pi);
+    for (Eigen::Index i = 0; i < section.points.cols(); ++i) {
+      fmt::format_to(std::back_inserter(text), "{},{:.6f},{:.6f}{}\n", csv_field(section.name), section.points(0, i),
+                     section.points(1, i), common);
+    }
+  }
+  return text;
+}
+
+Eigen::Matrix3Xd read_contour_points(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  return parse_contour_points(file.text(), path.string());
+}
+
+Eigen::Matrix3Xd parse_contour_points(std::string_view text, const std::string& file) {
+  const CsvTable csv =
+      read_csv(text, file, {{"x", Quantity::length}, {"y", Quantity::length}, {"z", Quantity::length}});
+  if (csv.rows == 0) throw InputError({.file = file}, "there are no points", "rows with x, y, z");
+  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(csv.rows));
+  for (std::size_t row = 0; row < csv.rows; ++row) {
+    points.col(static_cast<Eigen::Index>(row)) << csv.columns[0].numbers[row], csv.columns[1].numbers[row],
+        csv.columns[2].numbers[row];
+  }
+  return points;
+}
+
+}  // namespace abbe

@@ -1,0 +1,42 @@
+#include "abbe/formats/section_file.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "abbe/formats/message_of.h"
+
+namespace abbe {
+namespace {
+
+TEST(SectionFile, SectionsComeInOrderOfAppearanceWithTheirPointsInOrder) {
+  const std::vector<SectionReadings> sections = parse_sections(
+      "section,along_mm,across_um,height_um,beam_tilt_deg\n"
+      "b,4,10,1,0.5\na,8,20,2,-0.5\nb,4,30,3,0.5\n",
+      "x.csv");
+  ASSERT_EQ(sections.size(), 2U);
+  EXPECT_EQ(sections[0].name, "b");
+  ASSERT_EQ(sections[0].points.cols(), 2);
+  EXPECT_DOUBLE_EQ(sections[0].points(0, 1), 0.03);
+  EXPECT_DOUBLE_EQ(sections[0].points(1, 1), 0.003);
+  EXPECT_EQ(sections[0].along, 4.0);
+  EXPECT_DOUBLE_EQ(*sections[1].beam_tilt, -0.5 * std::numbers::pi / 180);
+  const std::vector<SectionReadings> again = parse_sections(sections_csv(sections), "again.csv");
+  ASSERT_EQ(again.size(), 2U);
+  EXPECT_LT((again[0].points - sections[0].points).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_NEAR(*again[1].beam_tilt, *sections[1].beam_tilt, 1e-10);
+}
+
+TEST(SectionFile, WhatIsWrongIsNamedWithItsLine) {
+  EXPECT_EQ(
+      message_of([] { parse_sections("section,along_mm,across_mm,height_mm\nA,1,0,0\nA,2,1,0\n", "x.csv"); }),
+      "x.csv:3: along_mm: not that of the rows of section 'A' before; expected the same on all rows of a section");
+  EXPECT_NE(message_of([] { parse_sections("section,across_mm\nA,1\n", "x.csv"); }).find("height"), std::string::npos);
+  EXPECT_NE(message_of([] { parse_sections("section,across_mm,height_mm\n", "x.csv"); }).find("no section"),
+            std::string::npos);
+  EXPECT_NE(message_of([] { parse_contour_points("x_mm,y_mm,z_mm\n", "p.csv"); }).find("no points"), std::string::npos);
+  EXPECT_EQ(parse_contour_points("x_mm,y_mm,z_um\n1,2,3000\n", "p.csv").col(0), Eigen::Vector3d(1, 2, 3));
+}
+
+}  // namespace
+}  // namespace abbe
