@@ -237,7 +237,7 @@ std::string yin_positioning_text(const YinScans& scans, const std::string& point
       "# A structured-light scanner beside Yin's engraver: targets while X and Y carry the table and while it turns, "
       "a\n"
       "# standard sphere, and the clamped part. Simulated: what is hidden from projector or camera is not there.\n"
-      "#\n#   abbe position scanner.positioning.toml -o part.placement.toml\n"
+      "#\n#   abbe position examples/laser_engraver/scanner.positioning.toml -o part.placement.toml\n"
       "points = \"{}\"                 # target, x_mm, y_mm, z_mm in the scanner's frame\n"
       "along_x = \"X\"                         # while X carries it in its positive sense\n"
       "along_y = \"Y\"\n"
