@@ -166,28 +166,41 @@ ScanSummary scan_points(std::string_view text, const std::string& file, const Ma
   text = rows.text();
   ScanSummary sum;
   const int threads = options.threads > 0 ? options.threads : default_thread_count();
-  // Two runs per thread: one that takes longer does not keep the others waiting.
-  std::vector<ScanRun> runs(2 * static_cast<std::size_t>(threads));
+  // Two runs per thread: one that takes longer does not keep the others waiting. Two sets of runs: while one is
+  // computed the other is written, as one more piece of work.
+  std::array<std::vector<ScanRun>, 2> sets;
+  for (std::vector<ScanRun>& runs : sets) runs.resize(2 * static_cast<std::size_t>(threads));
+  std::array<std::size_t, 2> used{};
   std::vector<std::pair<std::size_t, std::size_t>> places;
+  const auto write_set = [&](std::size_t set) {
+    for (std::size_t i = 0; i < used[set]; ++i) write(sets[set][i].text);
+  };
   if (format == ScanFormat::csv) write("x_mm,y_mm,z_mm\n");
-  for (std::size_t at = rows.first(); at < text.size();) {
+  std::size_t now = 0;
+  for (std::size_t at = rows.first(); at < text.size(); now = 1 - now) {
+    std::vector<ScanRun>& runs = sets[now];
     places.clear();
     while (at < text.size() && places.size() < runs.size()) {
       const std::size_t end = text_block_end(text, at);
       places.emplace_back(at, end);
       at = end;
     }
-    for_each_block(places.size(), threads, [&](std::size_t i) {
-      runs[i].pass(rows, places[i].first, places[i].second, machine, scan, format, options);
+    for_each_block(places.size() + 1, threads, [&](std::size_t i) {
+      if (i == 0) {
+        write_set(1 - now);
+      } else {
+        runs[i - 1].pass(rows, places[i - 1].first, places[i - 1].second, machine, scan, format, options);
+      }
     });
     for (std::size_t i = 0; i < places.size(); ++i) {
       if (runs[i].refusal) throw_refusal(text, file, *runs[i].refusal);
       add(runs[i].summary, sum);
-      write(runs[i].text);
     }
+    used[now] = places.size();
     if (passed) passed(at);
     if (options.progress) options.progress(at, text.size());
   }
+  write_set(1 - now);
   if (sum.readings == 0) throw InputError({file, 0, 0, ""}, "there are no rows below the header", "at least one row");
   return sum;
 }

@@ -50,7 +50,9 @@ struct ScanSummary {
 ScanSummary scan_points(const std::filesystem::path& readings, const Machine& machine, const PointScan& scan,
                         const std::filesystem::path& output, const ScanOptions& options = {});
 
-/// The same from text to pieces of the output, as often as there is one. @param file  name for messages
+/// The same from text to pieces of the output, as often as there is one.
+/// @param file   name for messages
+/// @param write  called with one piece after the other, from any of the threads
 ScanSummary scan_points(std::string_view text, const std::string& file, const Machine& machine, const PointScan& scan,
                         ScanFormat format, const ScanOptions& options,
                         const std::function<void(std::string_view)>& write,

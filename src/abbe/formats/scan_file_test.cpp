@@ -130,6 +130,7 @@ TEST(ScanFile, NamesLineAndFieldOfWhatIsWrong) {
   EXPECT_NE(message(header + "0,60,0,0\n").find("outside the travel of axis X"), std::string::npos);
   EXPECT_NE(message(header + "0,0,0,nan\n").find("not a finite number"), std::string::npos);
   EXPECT_NE(message(header + "0,0,0\n").find("3 fields"), std::string::npos) << message(header + "0,0,0\n");
+  EXPECT_NE(message(header + "0,0,0,0\n0,0,0,1e12\n").find("r.csv:3"), std::string::npos);
   EXPECT_NE(message(header).find("no rows"), std::string::npos);
   EXPECT_NE(message("C_deg,X_mm,Z_mm\n0,0,0\n").find("indication_mm"), std::string::npos);
   EXPECT_THROW(scan_format("points.xyz"), InputError);
