@@ -15,5 +15,5 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/abbe-config-version
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/abbe-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/abbe-config-version.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/abbe)
 # The published readings that `abbe reproduce` recomputes.
-install(DIRECTORY tests/golden/aguado tests/golden/ma tests/golden/yin DESTINATION ${CMAKE_INSTALL_DATADIR}/abbe/golden)
+install(DIRECTORY tests/golden/aguado tests/golden/liu tests/golden/ma tests/golden/yin DESTINATION ${CMAKE_INSTALL_DATADIR}/abbe/golden)
 install(FILES examples/laser_engraver/table-a4.csv DESTINATION ${CMAKE_INSTALL_DATADIR}/abbe/examples/laser_engraver)

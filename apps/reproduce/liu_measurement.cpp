@@ -13,7 +13,6 @@
 #include "abbe/identify/identify.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/surface_probe.h"
-#include "abbe/machine/inverse_kinematics.h"
 
 namespace abbe {
 namespace {
@@ -145,36 +144,22 @@ LiuCalibration liu_calibrate(const Machine& machine, const LiuScanner& scanner) 
   return result;
 }
 
-PoseList liu_positions(const Machine& machine, const LiuPart& part) {
-  const InverseKinematics inverse(machine);
-  PoseList poses;
-  InverseResult result;
-  std::vector<double> last(machine.axes.size(), 0.0);
-  for (const SurfacePlace& place : part.places) {
-    inverse.solve(PoseTarget::at(place.point, place.normal), last.data(), result);
-    // Every direction is within reach of C and A.
-    const InverseSolution& solution = result.solutions.empty() ? result.closest : result.solutions.front();
-    last.assign(solution.position.begin(), solution.position.begin() + static_cast<std::ptrdiff_t>(last.size()));
-    poses.append(last);
-  }
-  return poses;
-}
-
 LiuMeasurement liu_measure(const Machine& machine, const LiuScanner& scanner, const ErrorSet& calibrated,
-                           const LiuPart& scanned, const TriangleMesh& model) {
+                           const LiuPart& model, const TriangleMesh& scanned, const ScanPlan& plan) {
   LiuMeasurement result;
-  result.part = scanned.name;
-  const PoseList planned = liu_positions(machine, scanned);
+  result.part = model.name;
+  const PoseList planned = measuring_positions(plan);
   VirtualScanSetup setup = scan_setup(machine, scanner, 31);
   setup.workpiece_from_part = liu_clamping(scanner.unit);
-  const VirtualScan scan = scan_part(machine, truth_of(machine, scanner), RayTracer(scanned.mesh), planned, setup);
+  const VirtualScan scan = scan_part(machine, truth_of(machine, scanner), RayTracer(scanned), planned, setup);
   result.planned = planned.count();
   result.lost = scan.no_surface;
   result.too_steep = scan.too_steep;
-  const ClosestPointFinder surface(model);
-  const SmoothSurface smooth(model);
+  const ClosestPointFinder surface(model.mesh);
+  const SmoothSurface smooth(model.mesh);
   FineRegistrationOptions registration;
   registration.loss = RegistrationLoss::least_squares;  // the deviations of the paper are all of them
+  registration.iterations = 1000;
   const RigidTransform part_from_workpiece = setup.workpiece_from_part.inverse();
   const auto evaluate = [&](const ErrorSet& errors) {
     Eigen::Matrix3Xd points = scanned_points(machine, errors, setup.beam, scan);
@@ -191,9 +176,10 @@ LiuMeasurement liu_measure(const Machine& machine, const LiuScanner& scanner, co
         fit.status == FineRegistrationStatus::ok || fit.status == FineRegistrationStatus::undetermined;
     const RigidTransform& pose = fit.mesh_from_scan;
     points = ((pose.rotation * points).colwise() + pose.translation).eval();
-    const Eigen::VectorXd distances = surface.signed_distances(points);
-    deviation.rms = std::sqrt(distances.squaredNorm() / static_cast<double>(distances.size()));
-    deviation.largest = distances.cwiseAbs().maxCoeff();
+    deviation.distances = surface.signed_distances(points);
+    deviation.rms = std::sqrt(deviation.distances.squaredNorm() / static_cast<double>(deviation.distances.size()));
+    deviation.largest = deviation.distances.cwiseAbs().maxCoeff();
+    deviation.registered_points = std::move(points);
     return deviation;
   };
   result.before = evaluate({});

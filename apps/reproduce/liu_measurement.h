@@ -9,6 +9,7 @@
 #include "abbe/instruments/virtual_scan.h"
 #include "reproduce/liu_machine.h"
 #include "reproduce/liu_parts.h"
+#include "reproduce/liu_plan.h"
 
 namespace abbe {
 
@@ -32,16 +33,15 @@ struct LiuCalibration {
 };
 LiuCalibration liu_calibrate(const Machine& machine, const LiuScanner& scanner);
 
-/// Commands that bring the beam to the places along their normals; places out of reach are left out of the part.
-PoseList liu_positions(const Machine& machine, const LiuPart& part);
-
 /// Deviations of a measured part from its model, after registration by least squares.
 struct LiuDeviation {
   bool registered = false;
   std::size_t points = 0;
-  double rms = 0;            ///< mm, equation (16): about zero
-  double largest = 0;        ///< mm, absolute
-  double fitted_radius = 0;  ///< mm, sphere and cylinder by least squares; 0: others
+  double rms = 0;                      ///< mm, equation (16): about zero
+  double largest = 0;                  ///< mm, absolute
+  double fitted_radius = 0;            ///< mm, sphere and cylinder by least squares; 0: others
+  Eigen::Matrix3Xd registered_points;  ///< [3, points] mm, frame of the part
+  Eigen::VectorXd distances;           ///< [points] mm, signed
 };
 
 struct LiuMeasurement {
@@ -50,10 +50,10 @@ struct LiuMeasurement {
   LiuDeviation before, after;
 };
 
-/// Scans a part and evaluates the readings with the nominal machine and with the calibrated one.
-/// @param scanned    what lies on the machine: the part as it is
-/// @param model      what it is compared with
+/// Scans a part along its planned path and evaluates the readings with the nominal machine and with the calibrated one.
+/// @param model    the drawing: what the path was planned on, where it is clamped, and what it is compared with
+/// @param scanned  what lies on the machine: the part as it is
 LiuMeasurement liu_measure(const Machine& machine, const LiuScanner& scanner, const ErrorSet& calibrated,
-                           const LiuPart& scanned, const TriangleMesh& model);
+                           const LiuPart& model, const TriangleMesh& scanned, const ScanPlan& plan);
 
 }  // namespace abbe

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "abbe/geometry/vertex_welder.h"
@@ -76,17 +77,6 @@ void add_ring(PatchMesh& mesh, double radius_from, double y_from, double radius_
       around, along);
 }
 
-/// Scans a patch line by line, to and fro.
-void scan(std::vector<SurfacePlace>& places, int lines, int per_line,
-          const std::function<SurfacePlace(double along, double line)>& place) {
-  for (int j = 0; j < lines; ++j) {
-    for (int i = 0; i < per_line; ++i) {
-      const int k = j % 2 == 0 ? i : per_line - 1 - i;
-      places.push_back(place((k + 0.5) / per_line, lines == 1 ? 0.5 : static_cast<double>(j) / (lines - 1)));
-    }
-  }
-}
-
 }  // namespace
 
 TriangleMesh cylinder_mesh(double radius, double taper, double length, const Eigen::Vector3d& axis) {
@@ -105,13 +95,10 @@ TriangleMesh cylinder_mesh(double radius, double taper, double length, const Eig
 }
 
 LiuPart liu_cylinder(double radius, double taper) {
-  LiuPart part{"standard cylinder", cylinder_mesh(radius, taper, 30, Eigen::Vector3d::UnitY()), {}};
-  scan(part.places, 25, 180, [&](double along, double line) {
-    const Eigen::Vector3d normal(std::sin(2 * pi * along), 0, std::cos(2 * pi * along));
-    const double y = 23.5 * (line - 0.5);
-    return SurfacePlace{(radius + taper * y) * normal + Eigen::Vector3d(0, y, 0), normal};
-  });
-  return part;
+  constexpr double kScanned = 23.5;
+  return {"standard cylinder",
+          cylinder_mesh(radius, taper, 30, Eigen::Vector3d::UnitY()),
+          {{Eigen::Vector3d::UnitY(), -kScanned / 2}, {-Eigen::Vector3d::UnitY(), -kScanned / 2}}};
 }
 
 LiuPart liu_cross_cylinder() {
@@ -174,23 +161,7 @@ LiuPart liu_cross_cylinder() {
           kSteps, 1);
     }
   }
-  LiuPart part{"cross cylinder", patches.mesh(), {}};
-  for (const double side : {1.0, -1.0}) {
-    scan(part.places, 14, 120, [&](double along, double line) {
-      const Eigen::Vector3d normal(std::sin(2 * pi * along), 0, std::cos(2 * pi * along));
-      return SurfacePlace{kMain * normal + Eigen::Vector3d(0, side * (17 - 16.5 * line), 0), normal};
-    });
-    scan(part.places, 10, 100, [&](double along, double line) {
-      const Eigen::Vector3d normal(0, std::sin(2 * pi * along), std::cos(2 * pi * along));
-      return SurfacePlace{kCross * normal + Eigen::Vector3d(side * (13 - 7 * line), 0, 0), normal};
-    });
-  }
-  // What lies inside the other cylinder is no surface.
-  std::erase_if(part.places, [](const SurfacePlace& place) {
-    const Eigen::Vector3d& p = place.point;
-    return std::hypot(p.y(), p.z()) < kCross - 1e-6 || std::hypot(p.x(), p.z()) < kMain - 1e-6;
-  });
-  return part;
+  return {"cross cylinder", patches.mesh(), {}};
 }
 
 LiuPart liu_pyramid() {
@@ -208,28 +179,14 @@ LiuPart liu_pyramid() {
     };
   };
   PatchMesh patches;
-  LiuPart part{"triangular pyramid", {}, {}};
-  for (int k = 0; k < 6; k += 2) {
-    const auto face = bilinear(apex, corner(k), corner(k + 1), corner((k + 2) % 6));
-    patches.add(face, 1, 1);
-    const Eigen::Vector3d normal = (corner(k) - apex).cross(Eigen::Vector3d(corner((k + 2) % 6) - apex)).normalized();
-    scan(part.places, 30, 30, [&](double along, double line) {
-      return SurfacePlace{face(0.02 + 0.96 * along, 0.02 + 0.96 * line), normal};
-    });
-  }
+  for (int k = 0; k < 6; k += 2) patches.add(bilinear(apex, corner(k), corner(k + 1), corner((k + 2) % 6)), 1, 1);
   for (int k = 0; k < 6; ++k) {
     const Eigen::Vector3d a = corner(k), b = corner((k + 1) % 6);
     const Eigen::Vector3d a_low(a.x(), kBottom, a.z()), b_low(b.x(), kBottom, b.z());
-    const auto face = bilinear(a_low, b_low, b, a);
-    patches.add(face, 1, 1);
+    patches.add(bilinear(a_low, b_low, b, a), 1, 1);
     patches.add(bilinear(Eigen::Vector3d(0, kBottom, 0), b_low, a_low, Eigen::Vector3d(0, kBottom, 0)), 1, 1);
-    const Eigen::Vector3d normal = (b_low - a_low).cross(Eigen::Vector3d(a - a_low)).normalized();
-    scan(part.places, 16, 12, [&](double along, double line) {
-      return SurfacePlace{face(0.04 + 0.92 * along, 0.45 + 0.53 * line), normal};
-    });
   }
-  part.mesh = patches.mesh();
-  return part;
+  return {"triangular pyramid", patches.mesh(), {}};
 }
 
 LiuPart liu_sphere(double share) {
@@ -243,17 +200,10 @@ LiuPart liu_sphere(double share) {
                                -kRadius * ring * std::sin(angle));
       },
       480, 240);  // chord error 0.3 um
-  LiuPart part{"sphere, " + std::to_string(static_cast<int>(std::lround(100 * share))) + " %", patches.mesh(), {}};
-  // Circles of equal height: equal areas between them.
-  const int circles = 40;
-  for (int j = 0; j < circles; ++j) {
-    const double y = 1 - 2 * share * (j + 0.5) / circles, ring = std::sqrt(1 - y * y);
-    scan(part.places, 1, 120, [&](double along, double) {
-      const Eigen::Vector3d normal(ring * std::sin(2 * pi * along), y, ring * std::cos(2 * pi * along));
-      return SurfacePlace{kRadius * normal, normal};
-    });
-  }
-  return part;
+  // The area of a cap is in proportion to its height.
+  return {"sphere, " + std::to_string(static_cast<int>(std::lround(100 * share))) + " %",
+          patches.mesh(),
+          {{Eigen::Vector3d::UnitY(), kRadius * (1 - 2 * share)}}};
 }
 
 LiuPart liu_blade() {
@@ -268,15 +218,7 @@ LiuPart liu_blade() {
   patches.add([&](double u, double v) { return point(-turn(u), kHalf * (2 * v - 1), 1); }, 720, 96);
   patches.add([&](double u, double v) { return point(-turn(u), -kHalf, v); }, 720, 1);
   patches.add([&](double u, double v) { return point(-turn(u), kHalf, 1 - v); }, 720, 1);
-  LiuPart part{"twisted blade", patches.mesh(), {}};
-  scan(part.places, 40, 160, [&](double along, double line) {
-    // Steps of the parameter that are even along the section, nearly.
-    const double angle = 2 * pi * along, y = 22 * (line - 0.5), step = 1e-5;
-    const Eigen::Vector3d du = point(angle + step, y, 1) - point(angle - step, y, 1),
-                          dv = point(angle, y + step, 1) - point(angle, y - step, 1);
-    return SurfacePlace{point(angle, y, 1), dv.cross(du).normalized()};
-  });
-  return part;
+  return {"twisted blade", patches.mesh(), {}};
 }
 
 }  // namespace abbe

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "abbe/errors/actual_pose.h"
-#include "reproduce/liu_measurement.h"
 #include "reproduce/liu_parts.h"
+#include "reproduce/liu_plan.h"
 
 namespace abbe {
 namespace {
@@ -34,8 +34,12 @@ double found_size(const Machine& machine, const LocationError& location) {
 }  // namespace
 
 LiuSensitivity liu_sensitivity(const Machine& machine) {
-  const LiuPart part = liu_cross_cylinder();
-  const PoseList poses = liu_positions(machine, part);
+  const ScanPlan plan = liu_plan(machine, liu_cross_cylinder(), {});
+  const PoseList poses = measuring_positions(plan);
+  std::vector<PlannedMove> places;
+  for (const PlannedMove& move : plan.moves) {
+    if (move.measures) places.push_back(move);
+  }
   const auto count = static_cast<Eigen::Index>(poses.count());
 
   LiuSensitivity result;
@@ -81,7 +85,7 @@ LiuSensitivity liu_sensitivity(const Machine& machine) {
   Eigen::MatrixXd change(count, static_cast<Eigen::Index>(result.terms.size()));
   Eigen::Matrix<double, Eigen::Dynamic, 6> rigid(count, 6);
   for (Eigen::Index k = 0; k < count; ++k) {
-    const SurfacePlace& place = part.places[static_cast<std::size_t>(k)];
+    const PlannedMove& place = places[static_cast<std::size_t>(k)];
     Deviation deviation;
     Eigen::MatrixXd by_parameters, by_positions;
     tool_deviation(machine, errors, poses.pose(static_cast<std::size_t>(k)), deviation, &by_parameters, &by_positions);

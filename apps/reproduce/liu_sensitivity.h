@@ -31,7 +31,7 @@ struct LiuSensitivity {
   std::array<LiuGroup, 6> groups;
 };
 
-/// Sensitivities of a scan of the standard cylinder and of a sphere, from the exact derivatives of the chain.
+/// Sensitivities of a scan of the cross cylinder, from the exact derivatives of the chain.
 LiuSensitivity liu_sensitivity(const Machine& machine);
 
 }  // namespace abbe

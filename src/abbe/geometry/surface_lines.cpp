@@ -92,13 +92,18 @@ std::vector<Chain> chains_of(const std::vector<Piece>& pieces, std::vector<bool>
   return chains;
 }
 
-SurfaceLine spaced(const std::vector<Piece>& pieces, const Chain& chain, const SmoothSurface& smooth, double along) {
+SurfaceLine spaced(const std::vector<Piece>& pieces, const Chain& chain, const SmoothSurface& smooth, double along,
+                   double largest_turn) {
+  // In steps: of length, or of turning where the surface turns faster than that.
   std::vector<double> length(chain.size() + 1, 0.0);
   for (std::size_t i = 0; i < chain.size(); ++i) {
     const Piece& piece = pieces[chain[i].first];
-    length[i + 1] = length[i] + (piece.end[1] - piece.end[0]).norm();
+    const Eigen::Vector3d from = smooth.normal(piece.triangle, piece.end[0]),
+                          to = smooth.normal(piece.triangle, piece.end[1]);
+    const double turn = std::atan2(from.cross(to).norm(), from.dot(to));
+    length[i + 1] = length[i] + std::max((piece.end[1] - piece.end[0]).norm() / along, turn / largest_turn);
   }
-  const auto count = static_cast<Eigen::Index>(std::max(1.0, std::ceil(length.back() / along)));
+  const auto count = static_cast<Eigen::Index>(std::max(1.0, std::ceil(length.back() - 1e-9)));
   SurfaceLine line;
   line.points.resize(3, count);
   line.normals.resize(3, count);
@@ -119,7 +124,7 @@ SurfaceLine spaced(const std::vector<Piece>& pieces, const Chain& chain, const S
 
 std::vector<SurfaceLine> surface_lines(const TriangleMesh& mesh, const SmoothSurface& smooth,
                                        std::span<const std::uint32_t> triangles, const Eigen::Vector3d& direction,
-                                       double along, double between) {
+                                       double along, double between, double largest_turn) {
   constexpr double kSteepest = 0.05;
   struct Extent {
     double low, high, slope;  ///< slope: sine of the angle between the triangle's normal and the direction
@@ -155,7 +160,7 @@ std::vector<SurfaceLine> surface_lines(const TriangleMesh& mesh, const SmoothSur
     std::vector<bool> closed;
     const std::vector<Chain> chains = chains_of(pieces, closed);
     for (std::size_t i = 0; i < chains.size(); ++i) {
-      lines.push_back(spaced(pieces, chains[i], smooth, along));
+      lines.push_back(spaced(pieces, chains[i], smooth, along, largest_turn));
       lines.back().is_closed = closed[i];
       lines.back().height = height;
     }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace abbe {
 
 /// Points along a line in which a plane meets a surface.
 struct SurfaceLine {
-  Eigen::Matrix3Xd points;   ///< [3, n] mm, even along the line, half a step away from its ends
+  Eigen::Matrix3Xd points;   ///< [3, n] mm, even along the line where it is hardly bent, half a step away from its ends
   Eigen::Matrix3Xd normals;  ///< [3, n] unit, of the smooth surface
   bool is_closed = false;    ///< the last point is followed by the first
   double height = 0;         ///< mm, of the plane along its normal
@@ -25,8 +26,10 @@ struct SurfaceLine {
 /// @param triangles  the triangles of one face
 /// @param direction  unit normal of the planes
 /// @param along, between  mm, > 0: distance of points along a line and of lines on the surface
+/// @param largest_turn    rad, > 0: of the normal from point to point; where it turns faster, points are closer
 std::vector<SurfaceLine> surface_lines(const TriangleMesh& mesh, const SmoothSurface& smooth,
                                        std::span<const std::uint32_t> triangles, const Eigen::Vector3d& direction,
-                                       double along, double between);
+                                       double along, double between,
+                                       double largest_turn = std::numeric_limits<double>::infinity());
 
 }  // namespace abbe

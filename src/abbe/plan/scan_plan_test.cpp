@@ -1,4 +1,4 @@
-#include "abbe/instruments/scan_plan.h"
+#include "abbe/plan/scan_plan.h"
 
 #include <gtest/gtest.h>
 
@@ -108,18 +108,22 @@ TEST(ScanPlan, WhatTheStageHidesIsNotPromised) {
   const ScanPlan plan = plan_scan(machine, prism(5, 8, -6, 6), options);
   expect_sound(machine, plan, options);
   std::size_t bottom = 0;
+  const auto missed = [](const PlannedFace& face, ScanObstacle obstacle) {
+    return face.missed[static_cast<std::size_t>(obstacle)];
+  };
   for (const PlannedFace& face : plan.faces) {
     if (face.points > 0) continue;
     ++bottom;
-    EXPECT_GT(face.hidden, 20U);
+    EXPECT_GT(missed(face, ScanObstacle::hidden), 20U);
     EXPECT_EQ(face.covered, 0);
+    EXPECT_NEAR(face.uncovered[static_cast<std::size_t>(ScanObstacle::hidden)], face.area, 1e-9);
   }
   EXPECT_EQ(bottom, 1U);
   // A rod of 3 mm beside a stage of 30 mm: near the stage the sides are seen from above only, or not.
   std::size_t tilted = 0, collision = 0;
   for (const PlannedFace& face : plan.faces) {
     tilted += face.tilted;
-    collision += face.collision;
+    collision += missed(face, ScanObstacle::collision) + missed(face, ScanObstacle::working_distance);
   }
   EXPECT_GT(tilted + collision, 0U);
   EXPECT_LT(plan.covered_share(), 0.9);
@@ -136,7 +140,8 @@ TEST(ScanPlan, StaysWithinTravel) {
   const ScanPlan plan = plan_scan(machine, prism(5, 8, -6, 6), options);
   expect_sound(machine, plan, options);
   std::size_t out_of_travel = 0;
-  for (const PlannedFace& face : plan.faces) out_of_travel += face.travel;
+  for (const PlannedFace& face : plan.faces)
+    out_of_travel += face.missed[static_cast<std::size_t>(ScanObstacle::travel)];
   // The lower end would need A at -90 degrees; the upper one, at +90 degrees, is reached with a tilted beam.
   EXPECT_GT(out_of_travel, 20U);
   EXPECT_LT(plan.covered_share(), 0.95);

@@ -1,4 +1,4 @@
-#include "abbe/instruments/scan_coverage.h"
+#include "abbe/plan/scan_coverage.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -19,23 +19,33 @@ Cell cell_of(const Eigen::Vector3d& point, double size) {
 }  // namespace
 
 std::vector<CoveredPlace> covered_places(const TriangleMesh& mesh, const std::vector<std::uint32_t>& face_of_triangle,
-                                         const std::vector<MeasuredPlace>& measured, double radius) {
-  std::map<Cell, std::vector<MeasuredPlace>> cells;
-  for (const MeasuredPlace& place : measured) cells[cell_of(place.point, radius)].push_back(place);
-  const auto is_near = [&](const Eigen::Vector3d& point, std::uint32_t face) {
+                                         const std::vector<ScannedPlace>& scanned,
+                                         const std::function<bool(const Eigen::Vector3d&)>& wanted, double radius) {
+  std::map<Cell, std::vector<ScannedPlace>> cells;
+  for (const ScannedPlace& place : scanned) cells[cell_of(place.point, radius)].push_back(place);
+  const auto obstacle_at = [&](const Eigen::Vector3d& point, std::uint32_t face) {
     const Cell cell = cell_of(point, radius);
-    for (long i = -1; i <= 1; ++i) {
-      for (long j = -1; j <= 1; ++j) {
-        for (long k = -1; k <= 1; ++k) {
+    ScanObstacle nearest = ScanObstacle::spacing;
+    double least = 4 * radius * radius;
+    for (long i = -2; i <= 2; ++i) {
+      for (long j = -2; j <= 2; ++j) {
+        for (long k = -2; k <= 2; ++k) {
           const auto found = cells.find({cell[0] + i, cell[1] + j, cell[2] + k});
           if (found == cells.end()) continue;
-          for (const MeasuredPlace& other : found->second) {
-            if (other.face == face && (other.point - point).squaredNorm() <= radius * radius) return true;
+          for (const ScannedPlace& other : found->second) {
+            if (other.face != face) continue;
+            const double square = (other.point - point).squaredNorm();
+            if (other.obstacle == ScanObstacle::none) {
+              if (square <= radius * radius) return ScanObstacle::none;
+            } else if (square < least) {
+              least = square;
+              nearest = other.obstacle;
+            }
           }
         }
       }
     }
-    return false;
+    return nearest;
   };
   std::vector<CoveredPlace> places;
   struct Triangle {
@@ -67,8 +77,9 @@ std::vector<CoveredPlace> covered_places(const TriangleMesh& mesh, const std::ve
         continue;
       }
       const Eigen::Vector3d point = (t.a + t.b + t.c) / 3;
+      if (!wanted(point)) continue;
       places.push_back({point, static_cast<std::uint32_t>(i), 0.5 * (t.b - t.a).cross(t.c - t.a).norm(),
-                        is_near(point, face_of_triangle[static_cast<std::size_t>(i)])});
+                        obstacle_at(point, face_of_triangle[static_cast<std::size_t>(i)])});
     }
   }
   return places;

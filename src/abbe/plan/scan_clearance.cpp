@@ -1,4 +1,4 @@
-#include "abbe/instruments/scan_clearance.h"
+#include "abbe/plan/scan_clearance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,11 +14,12 @@ ScanClearance::ScanClearance(const TriangleMesh& part, const std::optional<Trian
   if (stage) stage_.emplace(Obstacle{ClosestPointFinder(*stage), RayTracer(*stage)});
 }
 
-bool ScanClearance::rod_is_clear(const Eigen::Vector3d& point, const Eigen::Vector3d& beam, double from) const {
+bool ScanClearance::rod_is_clear(const Eigen::Vector3d& point, const Eigen::Vector3d& beam, double from,
+                                 double to) const {
   // Sphere tracing: nothing is nearer to the axis of the rod than the distance found, so that much of it is clear. A
   // hundredth of the radius decides where the rod just touches.
-  const double end = working_distance_ + length_, least = 0.01 * radius_;
-  for (double at = from; at <= end;) {
+  const double least = 0.01 * radius_;
+  for (double at = from; at <= to;) {
     const Eigen::Vector3d place = point + at * beam;
     double distance = std::abs(part_.surface.closest_to(place).distance);
     if (stage_) distance = std::min(distance, std::abs(stage_->surface.closest_to(place).distance));
@@ -29,19 +30,28 @@ bool ScanClearance::rod_is_clear(const Eigen::Vector3d& point, const Eigen::Vect
   return true;
 }
 
-ScanClearance::Verdict ScanClearance::measuring(const Eigen::Vector3d& point, const Eigen::Vector3d& beam) const {
+bool ScanClearance::sees(const Eigen::Vector3d& point, const Eigen::Vector3d& beam) const {
   constexpr double kOffTheSurface = 0.02;  // mm, beyond the chord error of meshes
   const double far = working_distance_ + length_;
-  if (part_.tracer.first(point, beam, kOffTheSurface, far) || (stage_ && stage_->tracer.first(point, beam, 0, far))) {
-    return Verdict::beam_hidden;
-  }
-  return rod_is_clear(point, beam, working_distance_) ? Verdict::free : Verdict::probe_too_near;
+  return !part_.tracer.first(point, beam, kOffTheSurface, far) &&
+         !(stage_ && stage_->tracer.first(point, beam, 0, far));
+}
+
+bool ScanClearance::probe_fits(const Eigen::Vector3d& point, const Eigen::Vector3d& beam) const {
+  return rod_is_clear(point, beam, working_distance_, working_distance_ + length_);
+}
+
+ScanClearance::Verdict ScanClearance::measuring(const Eigen::Vector3d& point, const Eigen::Vector3d& beam) const {
+  if (!sees(point, beam)) return Verdict::beam_hidden;
+  if (probe_fits(point, beam)) return Verdict::free;
+  return rod_is_clear(point, beam, 2 * working_distance_, 2 * working_distance_ + length_) ? Verdict::working_distance
+                                                                                           : Verdict::probe_too_near;
 }
 
 bool ScanClearance::passing(const Eigen::Vector3d& point, const Eigen::Vector3d& beam) const {
   const double far = working_distance_ + length_;
   return !part_.tracer.first(point, beam, 0, far) && !(stage_ && stage_->tracer.first(point, beam, 0, far)) &&
-         rod_is_clear(point, beam, working_distance_);
+         probe_fits(point, beam);
 }
 
 }  // namespace abbe

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "reproduce/liu_measurement.h"
+#include "reproduce/liu_sensitivity.h"
+
+namespace abbe {
+
+/// A part with its path and what the paper says of it, um.
+struct LiuMeasuredPart {
+  LiuPart model;
+  ScanPlan plan;
+  LiuMeasurement measurement;
+  double paper_before = 0, paper_after = 0;  // 0: none
+};
+
+/// All parts with the shifts of Table 3 in one unit.
+struct LiuUnitResults {
+  LiuUnit unit = LiuUnit::micrometre;
+  LiuCalibration calibration;
+  std::vector<LiuMeasuredPart> parts;
+};
+
+/// A calibration and what the standard cylinder and the sphere show with it.
+struct LiuVariant {
+  std::string words;
+  LiuCalibration calibration;
+  LiuMeasurement cylinder;
+  std::vector<LiuMeasurement> spheres;  ///< 25, 50, 70 %
+};
+
+struct LiuResults {
+  Machine machine;
+  std::array<double, 3> reference{};  ///< mm, largest difference: nominal, mm, um
+  std::array<double, 2> recursion{};  ///< mm, largest difference to the closed form: as worded, corrected
+  LiuSensitivity sensitivity;
+  std::vector<LiuUnitResults> units;
+  std::vector<LiuVariant> variants;
+  bool agrees = true;
+};
+
+inline constexpr double kLiuAgreement = 1e-9;  ///< mm, against the reference
+
+nlohmann::ordered_json liu_json(const LiuResults& results);
+void print_liu(const LiuResults& results);
+
+}  // namespace abbe
