@@ -49,14 +49,14 @@ TEST_F(ContourTest, GivesTheDistanceOfTheEdgeFromItsCommandAndTheRoundingApart) 
   for (const char* name : {"evaluation.json", "plot.svg", "section.svg", "report.html"}) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / name)) << name;
   }
-  json({"contour", file, "--tolerance", "contour_max_um=20"}, ExitCode::negative);
+  json({"contour", file, "--tolerance", "contour_max_um=20"}, computation_says_no);
 }
 
 TEST_F(ContourTest, ASectionWithoutACornerIsNamedAndMakesTheAnswerNo) {
   std::string csv = header;
   add_section(csv, "A", 0, 5);
   for (int i = 0; i < 40; ++i) csv += "flat,4," + std::to_string(3 * i) + ",0\n";
-  const nlohmann::json result = json({"contour", folder.write("sections.csv", csv)}, ExitCode::negative);
+  const nlohmann::json result = json({"contour", folder.write("sections.csv", csv)}, computation_says_no);
   EXPECT_EQ(result["facts"]["sections"], "1 of 2 evaluated");
   EXPECT_NE(result["sections"][1]["not_evaluated"].get<std::string>().find("deeper"), std::string::npos);
   EXPECT_NEAR(result["figures"]["contour_max"]["value_um"].get<double>(), 5, 1e-4);
@@ -78,13 +78,13 @@ TEST_F(ContourTest, TheExampleIsThatOfASimulatedPart) {
 
 TEST_F(ContourTest, WhatIsWrongIsSaid) {
   const std::string file = folder.write("sections.csv", header);
-  EXPECT_EQ(abbe({"evaluate", "contour", file}).exit_code, ExitCode::bad_input);
+  EXPECT_EQ(abbe({"evaluate", "contour", file}).exit_code, bad_input);
   std::string csv = header;
   add_section(csv, "A", 0, 5);
   const std::string good = folder.write("good.csv", csv);
-  EXPECT_EQ(abbe({"evaluate", "contour", good, "--closed"}).exit_code, ExitCode::bad_input);
-  EXPECT_EQ(abbe({"evaluate", "contour", good, "--curve", engraver + "table-a4.csv"}).exit_code, ExitCode::bad_input);
-  EXPECT_EQ(abbe({"evaluate", "contour", good, "--surface", "up"}).exit_code, ExitCode::bad_input);
+  EXPECT_EQ(abbe({"evaluate", "contour", good, "--closed"}).exit_code, bad_input);
+  EXPECT_EQ(abbe({"evaluate", "contour", good, "--curve", engraver + "table-a4.csv"}).exit_code, bad_input);
+  EXPECT_EQ(abbe({"evaluate", "contour", good, "--surface", "up"}).exit_code, bad_input);
 }
 
 }  // namespace

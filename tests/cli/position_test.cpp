@@ -73,7 +73,7 @@ void expect_matrix(const nlohmann::json& found, const nlohmann::json& expected) 
 
 TEST_F(PositionTest, MeetsTheReferenceInBothReadings) {
   const CommandResult result = abbe({"position", write_reference(), "--json"});
-  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  ASSERT_EQ(result.exit_code, done) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out), exact = reference()["exact"];
   EXPECT_EQ(json["status"], "ok");
   expect_matrix(json["scanner"]["table_from_scanner"], exact["DMB"]);
@@ -97,24 +97,24 @@ TEST_F(PositionTest, MeetsTheReferenceInBothReadings) {
 TEST_F(PositionTest, ThePlacementIsWhatAPathTakes) {
   const std::string placement = (folder.path() / "part.placement.toml").string();
   const CommandResult found = abbe({"position", engraver + "scanner.positioning.toml", "-o", placement});
-  ASSERT_EQ(found.exit_code, ExitCode::done) << found.err;
+  ASSERT_EQ(found.exit_code, done) << found.err;
   EXPECT_NE(found.out.find("p_workpiece = D p_table (BCS to WCS)"), std::string::npos);
   const CommandResult path =
       abbe({"path", std::string(ABBE_SOURCE_DIR) + "/examples/machines/yin-engraver-u.machine.toml",
             engraver + "table-a4.csv", "--placement", placement});
-  EXPECT_EQ(path.exit_code, ExitCode::done) << path.err;
+  EXPECT_EQ(path.exit_code, done) << path.err;
 }
 
 TEST_F(PositionTest, WhatTheScansDoNotShowIsSaid) {
   // The table turned the other way: its axis would point down.
   const CommandResult turned = abbe({"position", write_reference("turned = \"negatively\"\n"), "--json"});
-  EXPECT_EQ(turned.exit_code, ExitCode::negative);
+  EXPECT_EQ(turned.exit_code, computation_says_no);
   EXPECT_EQ(nlohmann::json::parse(turned.out)["status"], "no_position");
   EXPECT_NE(turned.err.find("degree"), std::string::npos);
-  EXPECT_EQ(abbe({"position", write_reference("spheer = \"sphere\"\n")}).exit_code, ExitCode::bad_input);
+  EXPECT_EQ(abbe({"position", write_reference("spheer = \"sphere\"\n")}).exit_code, bad_input);
   folder.write("scans.csv", "target,x_mm,y_mm,z_mm\nX,1,2,3\n");
   const CommandResult missing = abbe({"position", (folder.path() / "reference.positioning.toml").string()});
-  EXPECT_EQ(missing.exit_code, ExitCode::bad_input);
+  EXPECT_EQ(missing.exit_code, bad_input);
 }
 
 }  // namespace
