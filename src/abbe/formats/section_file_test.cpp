@@ -32,9 +32,9 @@ TEST(SectionFile, WhatIsWrongIsNamedWithItsLine) {
       message_of([] { parse_sections("section,along_mm,across_mm,height_mm\nA,1,0,0\nA,2,1,0\n", "x.csv"); }),
       "x.csv:3: along_mm: not that of the rows of section 'A' before; expected the same on all rows of a section");
   EXPECT_NE(message_of([] { parse_sections("section,across_mm\nA,1\n", "x.csv"); }).find("height"), std::string::npos);
-  EXPECT_NE(message_of([] { parse_sections("section,across_mm,height_mm\n", "x.csv"); }).find("no section"),
+  EXPECT_NE(message_of([] { parse_sections("section,across_mm,height_mm\n", "x.csv"); }).find("no rows"),
             std::string::npos);
-  EXPECT_NE(message_of([] { parse_contour_points("x_mm,y_mm,z_mm\n", "p.csv"); }).find("no points"), std::string::npos);
+  EXPECT_NE(message_of([] { parse_contour_points("x_mm,y_mm,z_mm\n", "p.csv"); }).find("no rows"), std::string::npos);
   EXPECT_EQ(parse_contour_points("x_mm,y_mm,z_um\n1,2,3000\n", "p.csv").col(0), Eigen::Vector3d(1, 2, 3));
 }
 
