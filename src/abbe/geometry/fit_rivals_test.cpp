@@ -38,9 +38,11 @@ TEST(FitRivals, TheStripAcrossABoxIsNamedBesideTheNarrowerOne) {
   ASSERT_FALSE(fit.rivals.empty());
   EXPECT_NEAR(fit.rivals[0].value, 10, 1e-9);
   EXPECT_NEAR(fit.rivals[0].shape.direction.dot(fit.shape.direction), 0, 1e-9);
-  const ShapeFit square =
-      extreme_fit(ShapeKind::line2, ExtremeKind::minimum_zone, box_of_points({10, 10, 0}, 3000, numbers));
-  EXPECT_EQ(square.status, FitStatus::ambiguous);
+  // Corners of a square around the same points, whose least-squares line is well determined.
+  Matrix3Xd in_a_square = points;
+  in_a_square.leftCols(8) = box_of_points({10, 10 - 1e-6, 0}, 8, numbers);
+  const ShapeFit square = extreme_fit(ShapeKind::line2, ExtremeKind::minimum_zone, in_a_square);
+  EXPECT_EQ(square.status, FitStatus::ambiguous) << square.reason;
 }
 
 TEST(FitRivals, TheNarrowestSlabIsFoundWhereLeastSquaresBeginsInAnotherValley) {
