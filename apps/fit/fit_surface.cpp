@@ -66,7 +66,7 @@ Vector3d normal_at(const Shape& shape, const Vector3d& point) {
   const Vector3d from = point - shape.point;
   if (shape.kind == ShapeKind::plane) return shape.direction;
   if (shape.kind == ShapeKind::sphere) return from.normalized();
-  const Vector3d radial = (from - from.dot(shape.direction) * shape.direction).normalized();
+  Vector3d radial = (from - from.dot(shape.direction) * shape.direction).normalized();
   if (shape.kind == ShapeKind::cylinder) return radial;
   return std::cos(shape.half_angle) * radial - std::sin(shape.half_angle) * shape.direction;
 }

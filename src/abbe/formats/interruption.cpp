@@ -61,7 +61,7 @@ void end_cleanly_when_interrupted(std::function<void(int signal)> before) {
 
 UninterruptedSteps::UninterruptedSteps() : held_(unfinished().steps) {}
 
-UnfinishedPath::UnfinishedPath(std::filesystem::path path) : path_(std::filesystem::absolute(path)) {
+UnfinishedPath::UnfinishedPath(const std::filesystem::path& path) : path_(std::filesystem::absolute(path)) {
   const std::lock_guard<std::mutex> lock(unfinished().list);
   unfinished().paths.push_back(path_);
 }

@@ -28,7 +28,7 @@ class UninterruptedSteps {
 /// to remove otherwise.
 class UnfinishedPath {
  public:
-  explicit UnfinishedPath(std::filesystem::path path);
+  explicit UnfinishedPath(const std::filesystem::path& path);
   ~UnfinishedPath();
   UnfinishedPath(const UnfinishedPath&) = delete;
   UnfinishedPath& operator=(const UnfinishedPath&) = delete;

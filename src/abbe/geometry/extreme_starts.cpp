@@ -65,7 +65,7 @@ std::vector<Vector3d> roomiest_places(const Survey& survey, bool flat) {
     const Vector3d share(x / (kSteps - 1.0), y / (kSteps - 1.0), flat ? 0 : z / (kSteps - 1.0));
     return low + share.cwiseProduct(high - low);
   };
-  std::vector<double> room(static_cast<std::size_t>(kSteps * kSteps * layers));
+  std::vector<double> room(static_cast<std::size_t>(kSteps) * kSteps * static_cast<std::size_t>(layers));
   const auto at = [&](int x, int y, int z) -> double& {
     return room[static_cast<std::size_t>((z * kSteps + y) * kSteps + x)];
   };

@@ -69,7 +69,8 @@ TEST(FitRivals, TheLargerOfTwoRoomsIsInscribedAndTheOtherNamed) {
   // Two round rooms with rough walls and a door between them.
   for (Index i = 0; i < 800; ++i) {
     const bool large = i % 2 == 0;
-    const double t = 0.4 + (2 * std::numbers::pi - 0.8) * static_cast<double>(i / 2) / 399;
+    const Index place = i / 2;
+    const double t = 0.4 + (2 * std::numbers::pi - 0.8) * static_cast<double>(place) / 399;
     const double radius = (large ? 5 : 4.5) + numbers.uniform(0, 0.01);
     points.col(i) << (large ? 4.6 - radius * std::cos(t) : -4.3 + radius * std::cos(t)), radius * std::sin(t), 0;
   }

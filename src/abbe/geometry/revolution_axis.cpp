@@ -57,7 +57,7 @@ std::vector<RevolutionAxis> revolution_axes(const TriangleMesh& mesh, std::span<
     sum += weight / area * line * line.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(sum);  // ascending
-  const Matrix6 motions = solver.eigenvectors();
+  const Matrix6& motions = solver.eigenvectors();
   std::vector<RevolutionAxis> axes;
   for (Eigen::Index count = 1; count <= 2; ++count) {
     // Of all mixtures of these motions the one that turns most.

@@ -35,8 +35,8 @@ class CommandCurve {
   const std::vector<double>& along() const { return along_; }
 
  private:
-  Eigen::Vector3d at(std::size_t piece, double t, Eigen::Vector3d* first, Eigen::Vector3d* second) const;
-  double arc(std::size_t piece, double to) const;
+  Eigen::Vector3d at(std::size_t i, double t, Eigen::Vector3d* first, Eigen::Vector3d* second) const;
+  double arc(std::size_t i, double to) const;
 
   std::vector<Eigen::Vector3d> points_;            // closed: with the first again behind the last
   std::vector<Eigen::Vector3d> leaving_, coming_;  // [pieces] derivatives by t = 0 .. 1 at both ends of a piece

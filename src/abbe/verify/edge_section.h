@@ -73,7 +73,7 @@ struct EdgeFit {
 /// groove. The bottom says one thing: the wall is not to the right of where it is seen.
 /// @param points  [2, n] mm, in their order along the section from either end; the outer quarter on the surface's side
 ///                has to be surface
-EdgeFit fit_edge(const Eigen::Ref<const Eigen::Matrix2Xd>& points, const EdgeOptions& options = {});
+EdgeFit fit_edge(const Eigen::Ref<const Eigen::Matrix2Xd>& points, const EdgeOptions& given = {});
 
 /// A groove: both of its edges and its middle.
 struct GrooveFit {

@@ -175,8 +175,9 @@ TEST(EdgeSection, StrayPointsDoNotMoveIt) {
   edge.corner = {-0.01, 0};
   Eigen::Matrix2Xd points = scanned(edge, 11);
   RandomStream random(12);
+  const Eigen::Index half = points.cols() / 2;
   for (int i = 0; i < 12; ++i) {
-    const auto at = static_cast<Eigen::Index>(random.uniform() * static_cast<double>(points.cols() / 2));
+    const auto at = static_cast<Eigen::Index>(random.uniform() * static_cast<double>(half));
     points(1, at) += random.uniform(0.02, 0.06);  // debris on the surface
   }
   const EdgeFit fit = fit_edge(points, published_noise());
@@ -193,7 +194,7 @@ TEST(EdgeSection, AGrooveGivesItsMiddleWithoutWhatTheEdgesHaveInCommon) {
   double squares = 0;
   constexpr int kRuns = 30;
   for (int run = 0; run < kRuns; ++run) {
-    const GrooveFit fit = fit_groove(scanned(groove, static_cast<std::uint64_t>(run + 100)), published_noise());
+    const GrooveFit fit = fit_groove(scanned(groove, static_cast<std::uint64_t>(run) + 100), published_noise());
     ASSERT_TRUE(fit.ok()) << fit.left.reason << fit.right.reason;
     EXPECT_NEAR(fit.width, 0.1, 5e-3);
     squares += std::pow((fit.middle - 0.007) / fit.middle_uncertainty, 2) / kRuns;
