@@ -48,7 +48,7 @@ struct CorrectedArrays {
   std::span<double* const> axis;
   CorrectionStatus* status = nullptr;      ///< [count]
   double* position_residual = nullptr;     ///< [count] mm, actual against wanted point; null: not wanted
-  double* orientation_residual = nullptr;  ///< [count] rad; null: not wanted
+  double* orientation_residual = nullptr;  ///< [count] rad, of a direction the angle; 0 for a point; null: not wanted
 };
 
 /// Where the tool shall be, in the workpiece frame: functional point (mm), direction from it to the spindle (unit), or

@@ -83,7 +83,8 @@ std::vector<std::vector<double>> random_poses(const Machine& machine, std::size_
 double missed_point(const RigidTransform& a, const RigidTransform& b) { return (a.translation - b.translation).norm(); }
 
 double missed_direction(const Machine& machine, const RigidTransform& a, const RigidTransform& b) {
-  return (a.rotation * machine.tool_direction).cross(b.rotation * machine.tool_direction).norm();
+  const Eigen::Vector3d one = a.rotation * machine.tool_direction, other = b.rotation * machine.tool_direction;
+  return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
 TEST(CompensatedInverse, BringsTheActualToolToTheNominalPoseOfEveryMachine) {
@@ -305,6 +306,21 @@ TEST(CompensatedInverse, GivenPosesAreReachedInFullOrientationWhereTheMachineCan
                   2e-11);
   }
   EXPECT_GE(reached, 190);
+}
+
+TEST(CompensatedInverse, AnOppositeDirectionIsNotTakenForTheWantedOne) {
+  const Machine machine = test::trunnion_mill();
+  std::vector<double> pose(machine.axes.size(), 0.0);
+  pose[machine.find_axis("A")] = 0.5;
+  Corrections poses(machine, {pose});
+  const RigidTransform there = nominal_workpiece_from_tool(machine, pose);
+  const Eigen::Vector3d opposite = -(there.rotation * machine.tool_direction);
+  const TargetArrays targets{{&there.translation[0], &there.translation[1], &there.translation[2]},
+                             {&opposite[0], &opposite[1], &opposite[2]},
+                             {}};
+  CompensatedInverse(machine, {}).reach({poses.in, poses.count}, targets, poses.arrays());
+  EXPECT_NE(poses.status[0], CorrectionStatus::reached);
+  EXPECT_GT(poses.orientation_residual[0], std::numbers::pi - 0.1);
 }
 
 TEST(CompensatedInverse, AnUnsoundMachineIsSaidToBe) {

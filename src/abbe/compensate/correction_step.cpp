@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/rotation.h"
+
 namespace abbe {
 namespace {
 
 constexpr double kStandingTurn = 1e-13;  // rad; a step below this is rounding
 constexpr double kStandingPart = 0.1;    // of the tolerance: a step of the point below this gains nothing
+constexpr double kSmallSine = 1e-3;      // below, the first two terms of its series give the angle to rounding
 constexpr double kWellSpread = 1e-3;     // determinant against the squares above which an inverse keeps its digits
 
 }  // namespace
@@ -45,13 +48,18 @@ void CorrectionStep::choose_axes(const std::vector<HeldAxis>& kept) {
   for (const std::size_t axis : reaching_) usual_ = usual_ && machine_.axes[axis].kind == AxisKind::linear;
 }
 
+/// Rotation vector that turns the tool to where it is wanted: about its length the shortest, for a direction.
 Eigen::Vector3d CorrectionStep::orientation_error(const CorrectionBlock& block, std::size_t k) const {
   if (options_.target == TargetKind::full_pose) {
-    const Eigen::Matrix3d e = matrix_at(block.goal_rotation, k) * matrix_at(block.rotation, k).transpose();
-    return 0.5 * Eigen::Vector3d(e(2, 1) - e(1, 2), e(0, 2) - e(2, 0), e(1, 0) - e(0, 1));
+    return rotation_vector(matrix_at(block.goal_rotation, k) * matrix_at(block.rotation, k).transpose());
   }
   const Eigen::Vector3d direction = matrix_at(block.rotation, k) * machine_.tool_direction;
-  return direction.cross(vector_at(block.goal_direction, k));
+  const Eigen::Vector3d goal = vector_at(block.goal_direction, k);
+  const Eigen::Vector3d axis = direction.cross(goal);
+  const double square = axis.squaredNorm(), cosine = direction.dot(goal);
+  if (cosine > 0 && square < kSmallSine * kSmallSine) return axis * (1 + square / 6);
+  const double sine = std::sqrt(square), angle = std::atan2(sine, cosine);
+  return sine > 0 ? Eigen::Vector3d(axis * (angle / sine)) : Eigen::Vector3d(angle * vector_at(block.across[0], k));
 }
 
 void CorrectionStep::take_derivative(CorrectionBlock& block) const {
@@ -96,11 +104,10 @@ void CorrectionStep::finish(CorrectionBlock& block, std::size_t k, CorrectionSta
 
 void CorrectionStep::state_residuals(CorrectionBlock& block, std::size_t k) const {
   block.position_residual[k] = (vector_at(block.goal_point, k) - vector_at(block.point, k)).norm();
-  block.orientation_residual[k] =
-      options_.target == TargetKind::point ? 0 : std::min(1.0, orientation_error(block, k).norm());
+  block.orientation_residual[k] = options_.target == TargetKind::point ? 0 : orientation_error(block, k).norm();
 }
 
-/// Orientation by the turning_ axes, what is missing of it, and how far they have turned.
+/// Orientation by the turning axes, what is missing of it, and how far they have turned.
 void CorrectionStep::load_turns(const CorrectionBlock& block, std::size_t k, SmallMatrix& a, SmallVector& b,
                                 SmallVector& turned) const {
   const Eigen::Vector3d turn = orientation_error(block, k);
@@ -115,7 +122,7 @@ void CorrectionStep::load_turns(const CorrectionBlock& block, std::size_t k, Sma
     turned[entry(c)] = block.position[turning_[c]][k] - block.command[turning_[c]][k];
 }
 
-/// Point by the reaching_ axes, and how far they have gone. The rotary axis of a polar machine_ counts in units that
+/// Point by the reaching axes, and how far they have gone. The rotary axis of a polar machine counts in units that
 /// make its bound that of turns.
 void CorrectionStep::load_shifts(const CorrectionBlock& block, std::size_t k, SmallMatrix& a, SmallVector& shifted,
                                  SmallVector& scale) const {
@@ -132,7 +139,7 @@ void CorrectionStep::load_shifts(const CorrectionBlock& block, std::size_t k, Sm
   }
 }
 
-/// What is missing of the point once the turning_ axes have gone on.
+/// What is missing of the point once the turning axes have gone on.
 SmallVector CorrectionStep::missing_after(const CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing,
                                           const SmallVector& by_turn) const {
   SmallVector rest = missing;
