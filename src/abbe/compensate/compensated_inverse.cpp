@@ -1,7 +1,6 @@
 #include "abbe/compensate/compensated_inverse.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,6 +21,19 @@ using Block = CorrectionBlock;
 using Lanes = CorrectionBlock::Lanes;
 
 PointArrays pointers(std::array<Lanes, 3>& lanes) { return {lanes[0].data(), lanes[1].data(), lanes[2].data()}; }
+
+using AxisPointers = std::array<const double*, kMaxAxes>;
+AxisPointers pointers(const std::array<Lanes, kMaxAxes>& lanes) {
+  AxisPointers axes;
+  for (std::size_t i = 0; i < kMaxAxes; ++i) axes[i] = lanes[i].data();
+  return axes;
+}
+
+RotationArrays pointers(std::array<Lanes, 9>& lanes) {
+  RotationArrays rotation;
+  for (std::size_t i = 0; i < 9; ++i) rotation.r[i] = lanes[i].data();
+  return rotation;
+}
 
 }  // namespace
 
@@ -80,34 +92,34 @@ struct CompensatedInverse::Implementation {
 
   /// Where the tool is by now, and what of the wanted pose is missing.
   void evaluate(Block& block) const {
-    std::array<const double*, kMaxAxes> axes;
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) axes[i] = block.position[i].data();
-    RotationArrays rotation;
-    for (std::size_t i = 0; i < 9; ++i) rotation.r[i] = block.rotation[i].data();
+    const AxisPointers axes = pointers(block.position);
     actual->transform({{axes.data(), machine.axes.size()}, block.count},
                       {actual_tool[0].data(), actual_tool[1].data(), actual_tool[2].data()}, pointers(block.point),
-                      rotation, block.covered.data());
+                      pointers(block.rotation), block.covered.data());
   }
 
   /// Derivatives of point and orientation by all commands, where the block stands.
   void differentiate(Block& block) const {
-    std::array<const double*, kMaxAxes> axes;
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) axes[i] = block.position[i].data();
+    const AxisPointers axes = pointers(block.position);
     const ConstPointArrays none{zeros.data(), zeros.data(), zeros.data()};
     const ConstPointArrays unit[3] = {{ones.data(), zeros.data(), zeros.data()},
                                       {zeros.data(), ones.data(), zeros.data()},
                                       {zeros.data(), zeros.data(), ones.data()}};
     std::array<RowArrays, kMostCorrectionRows> rows;
     for (std::size_t i = 0; i < 3; ++i) rows[i] = {unit[i], none};
-    for (std::size_t i = 0; i < stepper->orientation_rows(); ++i) {
-      const PointArrays across = stepper->orientation_rows() == 2 ? pointers(block.across[i]) : PointArrays{};
-      rows[3 + i] = {none, stepper->orientation_rows() == 2 ? ConstPointArrays{across.x, across.y, across.z} : unit[i]};
+    const std::size_t orientation_rows = stepper->orientation_rows();
+    for (std::size_t i = 0; i < orientation_rows; ++i) {
+      if (orientation_rows == 3) {
+        rows[3 + i] = {none, unit[i]};
+      } else {
+        rows[3 + i] = {none, {block.across[i][0].data(), block.across[i][1].data(), block.across[i][2].data()}};
+      }
     }
     const PointArrays seen = pointers(block.point);
     actual->differentiate({{axes.data(), machine.axes.size()}, block.count},
                           {actual_tool[0].data(), actual_tool[1].data(), actual_tool[2].data()},
-                          {seen.x, seen.y, seen.z}, {rows.data(), 3 + stepper->orientation_rows()}, {}, nullptr, 0,
-                          nullptr, block.by_command.data());
+                          {seen.x, seen.y, seen.z}, {rows.data(), 3 + orientation_rows}, {}, nullptr, 0, nullptr,
+                          block.by_command.data());
     stepper->take_derivative(block);
   }
 
@@ -222,13 +234,10 @@ struct CompensatedInverse::Implementation {
 
   /// The poses that the nominal machine has at the commands.
   void nominal_goals(Block& block) const {
-    std::array<const double*, kMaxAxes> axes;
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) axes[i] = block.position[i].data();
-    RotationArrays rotation;
-    for (std::size_t i = 0; i < 9; ++i) rotation.r[i] = block.goal_rotation[i].data();
+    const AxisPointers axes = pointers(block.position);
     nominal->transform({{axes.data(), machine.axes.size()}, block.count},
                        {nominal_tool[0].data(), nominal_tool[1].data(), nominal_tool[2].data()},
-                       pointers(block.goal_point), rotation);
+                       pointers(block.goal_point), pointers(block.goal_rotation));
     const Eigen::Vector3d& tool = machine.tool_direction;
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < block.count; ++k) {
@@ -255,6 +264,24 @@ struct CompensatedInverse::Implementation {
       std::copy_n(targets.rotation[i] + first, block.count, block.goal_rotation[i].begin());
   }
 
+  /// @param goals  called as goals(block, first pose): fills in where the tool shall be
+  template <typename Goals>
+  void run(PositionArrays commands, const CorrectedArrays& corrected, const Goals& goals) const {
+    if (!problem.empty()) {
+      if (corrected.status != nullptr) std::fill_n(corrected.status, commands.count, CorrectionStatus::not_run);
+      return;
+    }
+    Block block;
+    for (std::size_t first = 0; first < commands.count; first += kBlock) {
+      block.count = std::min(kBlock, commands.count - first);
+      load(block, commands, first);
+      goals(block, first);
+      load_goals(block);
+      solve(block);
+      store(block, corrected, first);
+    }
+  }
+
   Machine machine;
   CorrectionOptions options;
   std::string problem;
@@ -272,38 +299,14 @@ CompensatedInverse::CompensatedInverse(CompensatedInverse&&) noexcept = default;
 CompensatedInverse& CompensatedInverse::operator=(CompensatedInverse&&) noexcept = default;
 
 void CompensatedInverse::correct(PositionArrays commands, const CorrectedArrays& corrected) const {
-  const Implementation& work = *implementation_;
-  if (!work.problem.empty()) {
-    if (corrected.status != nullptr) std::fill_n(corrected.status, commands.count, CorrectionStatus::not_run);
-    return;
-  }
-  Block block;
-  for (std::size_t first = 0; first < commands.count; first += kBlock) {
-    block.count = std::min(kBlock, commands.count - first);
-    work.load(block, commands, first);
-    work.nominal_goals(block);
-    work.load_goals(block);
-    work.solve(block);
-    work.store(block, corrected, first);
-  }
+  implementation_->run(commands, corrected,
+                       [this](Block& block, std::size_t) { implementation_->nominal_goals(block); });
 }
 
 void CompensatedInverse::reach(PositionArrays start, const TargetArrays& targets,
                                const CorrectedArrays& corrected) const {
-  const Implementation& work = *implementation_;
-  if (!work.problem.empty()) {
-    if (corrected.status != nullptr) std::fill_n(corrected.status, start.count, CorrectionStatus::not_run);
-    return;
-  }
-  Block block;
-  for (std::size_t first = 0; first < start.count; first += kBlock) {
-    block.count = std::min(kBlock, start.count - first);
-    work.load(block, start, first);
-    work.given_goals(block, targets, first);
-    work.load_goals(block);
-    work.solve(block);
-    work.store(block, corrected, first);
-  }
+  implementation_->run(start, corrected,
+                       [&](Block& block, std::size_t first) { implementation_->given_goals(block, targets, first); });
 }
 
 const std::string& CompensatedInverse::problem() const { return implementation_->problem; }

@@ -102,9 +102,14 @@ void CorrectionStep::finish(CorrectionBlock& block, std::size_t k, CorrectionSta
   block.active[k] = 0;
 }
 
+void CorrectionStep::state_residuals(CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing,
+                                     const Eigen::Vector3d& turn) const {
+  block.position_residual[k] = missing.norm();
+  block.orientation_residual[k] = options_.target == TargetKind::point ? 0 : turn.norm();
+}
+
 void CorrectionStep::state_residuals(CorrectionBlock& block, std::size_t k) const {
-  block.position_residual[k] = (vector_at(block.goal_point, k) - vector_at(block.point, k)).norm();
-  block.orientation_residual[k] = options_.target == TargetKind::point ? 0 : orientation_error(block, k).norm();
+  state_residuals(block, k, vector_at(block.goal_point, k) - vector_at(block.point, k), orientation_error(block, k));
 }
 
 /// Orientation by the turning axes, what is missing of it, and how far they have turned.
@@ -226,9 +231,9 @@ void CorrectionStep::general_step(CorrectionBlock& block, std::size_t k, const E
 void CorrectionStep::step(CorrectionBlock& block, std::size_t k) const {
   const Eigen::Vector3d missing = vector_at(block.goal_point, k) - vector_at(block.point, k);
   const Eigen::Vector3d turn = orientation_error(block, k);
-  state_residuals(block, k);
-  const bool at_point = missing.norm() <= options_.position_tolerance;
-  if (at_point && (orientation_rows_ == 0 || turn.norm() <= options_.orientation_tolerance)) {
+  state_residuals(block, k, missing, turn);
+  const bool at_point = block.position_residual[k] <= options_.position_tolerance;
+  if (at_point && (orientation_rows_ == 0 || block.orientation_residual[k] <= options_.orientation_tolerance)) {
     finish(block, k, CorrectionStatus::reached);
     return;
   }

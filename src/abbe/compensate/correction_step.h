@@ -11,9 +11,9 @@
 namespace abbe {
 
 inline constexpr std::size_t kCorrectionBlock = ChainPlan::kBlockSize;
-inline constexpr std::size_t kMostCorrectionRows = 6;
+inline constexpr std::size_t kMostCorrectionRows = 6;  ///< of the point and of the orientation
 
-/// Poses of one block while they are worked on.
+/// Poses of one block while they are worked on: positions in mm and rad, points in mm, in the workpiece frame.
 struct CorrectionBlock {
   using Lanes = std::array<double, kCorrectionBlock>;
 
@@ -62,6 +62,8 @@ class CorrectionStep {
   static void finish(CorrectionBlock& block, std::size_t k, CorrectionStatus status);
 
  private:
+  void state_residuals(CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing,
+                       const Eigen::Vector3d& turn) const;
   void choose_axes(const std::vector<HeldAxis>& kept);
   Eigen::Vector3d orientation_error(const CorrectionBlock& block, std::size_t k) const;
   double derivative(const CorrectionBlock& block, std::size_t axis, std::size_t row, std::size_t k) const {

@@ -48,17 +48,10 @@ std::size_t find_wanted(std::string_view name, const std::vector<CsvColumn>& wan
 
 /// "one of X, Y, station", without the units.
 std::string known_columns(const std::vector<std::string>& known) {
-  std::string text = "one of ";
-  std::size_t listed = 0;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    if (std::find(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(i), known[i]) !=
-        known.begin() + static_cast<std::ptrdiff_t>(i)) {
-      continue;
-    }
-    if (listed == kMostListed) return text + ", ...";
-    text.append(listed++ == 0 ? "" : ", ").append(known[i]);
-  }
-  return text;
+  const std::size_t listed = std::min(known.size(), kMostListed);
+  return "one of " +
+         fmt::format("{}", fmt::join(known.begin(), known.begin() + static_cast<std::ptrdiff_t>(listed), ", ")) +
+         (listed < known.size() ? ", ..." : "");
 }
 
 [[noreturn]] void refuse_unknown(const InputError::Place& place, const std::string& name,
@@ -66,7 +59,8 @@ std::string known_columns(const std::vector<std::string>& known) {
   std::vector<std::string> known;
   const CsvColumn* longest = nullptr;
   for (const CsvColumn& column : wanted) {
-    known.push_back(column.base);
+    // A base may be wanted as a length or as an angle.
+    if (std::find(known.begin(), known.end(), column.base) == known.end()) known.push_back(column.base);
     if (column.is_text || (name != column.base && !name.starts_with(column.base + "_"))) continue;
     if (longest == nullptr || column.base.size() > longest->base.size()) longest = &column;
   }
