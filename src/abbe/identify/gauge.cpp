@@ -19,6 +19,8 @@ constexpr double kOpenPart = 1e-3;
 // Entries of a direction that are named, relative to its largest scaled entry.
 constexpr double kNamedEntry = 0.02;
 constexpr std::size_t kMostNamed = 8;
+// Parameters that lie in a space equally but for rounding: the first is taken.
+constexpr double kAlike = 1e-6;
 
 Eigen::VectorXd usable_scale(const Eigen::VectorXd& column_norms) {
   return column_norms.unaryExpr([](double norm) { return norm > 0 ? norm : 1.0; });
@@ -27,7 +29,9 @@ Eigen::VectorXd usable_scale(const Eigen::VectorXd& column_norms) {
 /// @param quantity  what the functional is; empty: a combination that has no name
 void describe(const std::vector<EstimatedParameter>& parameters, const Eigen::VectorXd& scale,
               const std::string& quantity, GaugeConstraint& constraint) {
-  const Eigen::VectorXd scaled = constraint.direction.cwiseProduct(scale).cwiseAbs();
+  // Equal entries keep their order whatever the rounding.
+  Eigen::VectorXd scaled = constraint.direction.cwiseProduct(scale).cwiseAbs();
+  scaled = (scaled / (kAlike * std::max(scaled.maxCoeff(), 1e-300))).array().round();
   std::vector<std::size_t> order(static_cast<std::size_t>(scaled.size()));
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -51,6 +55,23 @@ void describe(const std::vector<EstimatedParameter>& parameters, const Eigen::Ve
   }
   constraint.inseparable_words = others.empty() ? fmt::format("{} is not seen by the readings", quantity)
                                                 : fmt::format("{} is not separable from {}", quantity, others);
+}
+
+/// An orthonormal basis of the space of the given orthonormal columns that does not depend on which basis was given:
+/// the projection of the parameter that lies in it most, then the same in what is left. An SVD gives any rotation of
+/// it, and another one with every compiler.
+Eigen::MatrixXd nearest_to_parameters(Eigen::MatrixXd space) {
+  Eigen::MatrixXd result(space.rows(), space.cols());
+  for (Index k = 0; k < result.cols(); ++k) {
+    const Eigen::VectorXd part = space.rowwise().squaredNorm();
+    const double most = part.maxCoeff();
+    Index nearest = 0;
+    while (part[nearest] < (1 - kAlike) * most) ++nearest;
+    result.col(k) = space * space.row(nearest).transpose().normalized();
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(space.row(nearest).transpose());
+    space = (space * qr.householderQ()).rightCols(space.cols() - 1).eval();
+  }
+  return result;
 }
 
 }  // namespace
@@ -89,10 +110,10 @@ std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& 
       const Eigen::HouseholderQR<Eigen::MatrixXd> qr(taken);
       left = qr.householderQ() * left;
     }
+    const Eigen::MatrixXd scaled = nearest_to_parameters(open * left.rightCols(rest));
     for (Index i = 0; i < rest; ++i) {
-      const Eigen::VectorXd scaled = open * left.col(q - rest + i);
       GaugeConstraint constraint;
-      constraint.functional = scaled.cwiseProduct(scale);
+      constraint.functional = scaled.col(i).cwiseProduct(scale);
       constraint.value = constraint.functional.dot(start);
       constraint.words = fmt::format("unseen direction {}: smallest change from the start", i + 1);
       constraint.by_convention = choice == GaugeChoice::minimum_norm;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <memory>
 
@@ -218,6 +219,34 @@ TEST(Gauge, a_singular_value_of_1e_minus_13_is_told_from_zero) {
     const double seen = space.singular_values[2];
     EXPECT_NEAR(seen / difference, 0.5, 0.3) << difference;
   }
+}
+
+TEST(Gauge, what_is_left_open_is_told_the_same_in_whichever_basis_it_was_found) {
+  // b0 and b1, b0 and b2, and b3 and b4 are not told apart: three directions, two of them as unseen as each other.
+  FunctionObservations observations(
+      6, 1, std::vector<double>(400, 0.0), 1,
+      [](std::size_t k, std::size_t, const std::vector<FunctionObservations::Complex>& b) {
+        const double t = static_cast<double>(k) / 100;
+        return (b[0] + b[1] + 0.5 * b[2]) * std::cos(t) + (b[3] + 3.0 * b[4]) * t + b[5] * t * t;
+      });
+  observations.start({1, 1, 1, 1, 1, 1});
+  Problem problem = function_problem({&observations});
+  const Eigen::VectorXd start = present_values(problem);
+  NullSpace space = find_null_space(problem, start);
+  ASSERT_EQ(space.basis.cols(), 3);
+  const std::vector<GaugeConstraint> one = fix_gauge(problem, space, start, GaugeChoice::minimum_norm);
+  const Eigen::Matrix3d turn = Eigen::Quaterniond(0.5, -0.3, 0.7, 0.2).normalized().toRotationMatrix();
+  space.basis = (space.basis * turn).eval();
+  const std::vector<GaugeConstraint> other = fix_gauge(problem, space, start, GaugeChoice::minimum_norm);
+  ASSERT_EQ(one.size(), 3u);
+  ASSERT_EQ(other.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(one[i].inseparable_words, other[i].inseparable_words);
+    EXPECT_LT((one[i].functional - other[i].functional).norm(), 1e-12 * one[i].functional.norm());
+    EXPECT_LT((one[i].direction - other[i].direction).norm(), 1e-12 * one[i].direction.norm());
+  }
+  // Each is one combination alone: nothing of the other pair is in it.
+  EXPECT_EQ(one[0].inseparable.size() + one[1].inseparable.size() + one[2].inseparable.size(), 3u + 2u + 2u);
 }
 
 }  // namespace

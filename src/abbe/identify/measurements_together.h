@@ -11,6 +11,12 @@ namespace abbe {
 /// Share of a direction that may stay unseen for it to count as shown.
 inline constexpr double kLeftUnseen = 0.1;
 
+/// The part of the space of `open` that the rows leave unseen, orthonormal columns. A direction counts as seen if
+/// errors of typical size along it change the readings by more than their noise, and by more than rounding.
+/// @param rows  [readings, parameters] in standard uncertainties per typical size
+/// @param open  orthonormal columns [parameters, directions]
+Eigen::MatrixXd left_open(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& open);
+
 /// Words of a measurement without the comma of a sentence that was to go on.
 std::string clause_of(const PossibleMeasurement& measurement);
 
@@ -20,10 +26,12 @@ struct MeasurementsTogether {
   bool enough = false;  ///< no more than kLeftUnseen is left
 };
 
-/// Up to three measurements, each the one that leaves least of what those before it left.
-/// @param left    per possible measurement: what it leaves open, orthonormal columns [parameters, open directions]
+/// Up to four measurements, each the one that leaves least of what those before it left.
+/// @param rows    per possible measurement: its rows as for left_open
+/// @param open    what the readings at hand leave open, orthonormal columns [parameters, open directions]
 /// @param unseen  what is to be shown, columns [parameters, directions], in parameters of typical size
 MeasurementsTogether measurements_together(const std::vector<PossibleMeasurement>& possible,
-                                           const std::vector<Eigen::MatrixXd>& left, const Eigen::MatrixXd& unseen);
+                                           const std::vector<Eigen::MatrixXd>& rows, const Eigen::MatrixXd& open,
+                                           const Eigen::MatrixXd& unseen);
 
 }  // namespace abbe

@@ -1,6 +1,5 @@
 #include "abbe/identify/shown_by.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -31,17 +30,6 @@ Eigen::MatrixXd open_directions(const Problem& problem, const Eigen::VectorXd& t
   return svd.vectors.rightCols(typical.size() - rank);
 }
 
-/// The part of the space of `open` that the rows leave unseen. From sums of products: limits are 1e-7 of the rows.
-Eigen::MatrixXd left_open(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& open) {
-  if (open.cols() == 0 || rows.rows() == 0) return open;
-  const Eigen::MatrixXd seen = rows * open;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(seen.transpose() * seen);
-  const double limit = std::max(kStillZero * rows.norm(), kSeenAbove);
-  Index left = 0;
-  while (left < open.cols() && eigen.eigenvalues()[left] < limit * limit) ++left;
-  return open * eigen.eigenvectors().leftCols(left);
-}
-
 /// Largest part of the columns that lies in a space, relative to them.
 double part_in(const Eigen::MatrixXd& space, const Eigen::MatrixXd& directions) {
   double largest = 0;
@@ -61,12 +49,12 @@ std::vector<ShownBy> shown_by(const Problem& problem, const std::vector<std::vec
   const Eigen::VectorXd typical = typical_sizes(estimated_parameters(problem), options);
   const Index p = typical.size();
   const Eigen::MatrixXd open = open_directions(problem, typical, threads);
-  std::vector<Eigen::MatrixXd> left;
+  std::vector<Eigen::MatrixXd> rows, left;
   Eigen::MatrixXd never = open;
   for (const PossibleMeasurement& measurement : possible) {
-    const Eigen::MatrixXd rows = rows_without_own(measurement, p) * typical.asDiagonal();
-    left.push_back(left_open(rows, open));
-    never = left_open(rows, never);
+    rows.emplace_back(rows_without_own(measurement, p) * typical.asDiagonal());
+    left.push_back(left_open(rows.back(), open));
+    never = left_open(rows.back(), never);
   }
   std::vector<ShownBy> result;
   for (const std::vector<std::size_t>& group : groups) {
@@ -91,7 +79,7 @@ std::vector<ShownBy> shown_by(const Problem& problem, const std::vector<std::vec
       shown.remedy = clause_of(possible[k]);
     }
     if (!shown.shown) {
-      const MeasurementsTogether together = measurements_together(possible, left, unseen);
+      const MeasurementsTogether together = measurements_together(possible, rows, open, unseen);
       shown.shown = together.enough;
       shown.remedy = together.enough ? together.words : "only several of the measurements tried, together";
     }

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "abbe/geometry/singular_values.h"
 #include "abbe/identify/measurements_together.h"
 #include "abbe/identify/normal_equations.h"
 #include "abbe/identify/parameter_words.h"
@@ -18,9 +17,6 @@ namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
-// A direction is separable if less than this part of it is left unseen.
-constexpr double kStillZero = 1e-7;
-constexpr double kSeenAbove = 1;  // standard uncertainties of all trial readings together
 constexpr double kSameDirection = 0.4;
 constexpr double kNoMachinePart = 1e-6;
 constexpr double kPriorShare = 0.9;
@@ -28,17 +24,6 @@ constexpr double kHardlyLess = 0.5;
 constexpr double kQuarter = 0.25;
 constexpr double kNamedEntry = 0.2;
 constexpr std::size_t kMostNamed = 4;
-
-/// The part of the space of `open` (orthonormal columns, scaled parameters) that the rows leave unseen, orthonormal.
-Eigen::MatrixXd left_open(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& open) {
-  if (open.cols() == 0 || rows.rows() == 0) return open;
-  const RightSingular svd = right_singular(rows * open);
-  // Seen: errors of typical size change the readings by more than their noise, and by more than rounding.
-  const double limit = std::max(kStillZero * rows.norm(), kSeenAbove);
-  Index rank = 0;
-  while (rank < svd.values.size() && svd.values[rank] > limit) ++rank;
-  return open * svd.vectors.rightCols(open.cols() - rank);
-}
 
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
   if (columns.cols() == 0) return Eigen::MatrixXd(columns.rows(), 0);
@@ -55,7 +40,8 @@ Eigen::MatrixXd prior_information(const Problem& problem, const Eigen::VectorXd&
 std::vector<std::size_t> largest_entries(const Eigen::VectorXd& scaled) {
   std::vector<std::size_t> order(static_cast<std::size_t>(scaled.size()));
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const Eigen::VectorXd size = scaled.cwiseAbs();
+  // Equal entries keep their order whatever the rounding.
+  const Eigen::VectorXd size = (scaled.cwiseAbs() / (1e-6 * scaled.cwiseAbs().maxCoeff())).array().round();
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return size[static_cast<Index>(a)] > size[static_cast<Index>(b)];
   });
@@ -159,7 +145,7 @@ class Adviser {
         advice.remedy = constraint.by_convention ? "none is needed: it is a convention (" + constraint.words + ")"
                                                  : "none of the measurements tried would show it";
       } else if (!advice.shown) {
-        advice.remedy = tried ? together(left, direction) : "no additional measurement was tried";
+        advice.remedy = tried ? together(open, direction) : "no additional measurement was tried";
         advice.shown = tried;
       }
       result_.push_back(std::move(advice));
@@ -167,8 +153,8 @@ class Adviser {
   }
 
   /// No single measurement shows all of a direction: the ones that do it one after the other.
-  std::string together(const std::vector<Eigen::MatrixXd>& left, const Eigen::VectorXd& direction) const {
-    const MeasurementsTogether together = measurements_together(possible_, left, direction);
+  std::string together(const Eigen::MatrixXd& open, const Eigen::VectorXd& direction) const {
+    const MeasurementsTogether together = measurements_together(possible_, rows_, open, direction);
     return (together.enough ? together.words : "only several of the measurements tried, together,") + " would show it";
   }
 
