@@ -1,8 +1,13 @@
 // Ctrl-C: exit code 130, nothing half done is left, older results stay.
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <fstream>
+#include <map>
+#include <sstream>
 #include <string>
 
 #include "cli/command_test.h"
@@ -21,17 +26,34 @@ class Interruption : public CommandTest {
   }
   std::string example(const std::string& name) const { return std::string(ABBE_SOURCE_DIR) + "/examples/" + name; }
 
+  std::vector<std::string> plan(const std::string& distance_mm) const {
+    return {"scan",
+            "plan",
+            example("cradle_scanner/pyramid.stl"),
+            "--machine",
+            example("machines/liu-scanner.machine.toml"),
+            "--along-mm",
+            distance_mm,
+            "--between-mm",
+            distance_mm,
+            "-o",
+            "path.csv"};
+  }
+
   std::vector<std::string> names() const {
     std::vector<std::string> result;
     for (const auto& entry : fs::directory_iterator(folder.path())) result.push_back(entry.path().filename().string());
     return result;
   }
-  bool has_partial() const {
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(folder.path(), ignored)) {
-      if (entry.path().filename().string().find(".partial-") != std::string::npos) return true;
+
+  /// Bytes of all files in a folder.
+  std::map<std::string, std::string> contents(const std::string& name) const {
+    std::map<std::string, std::string> result;
+    for (const auto& entry : fs::directory_iterator(folder.path() / name)) {
+      const std::string file = entry.path().filename().string();
+      result[file] = folder.read(name + "/" + file);
     }
-    return false;
+    return result;
   }
 };
 
@@ -45,74 +67,119 @@ bool waits_for_signals(pid_t process) {
   return false;
 }
 
-TEST_F(Interruption, WhileItComputesACommandEndsWith130AndWritesNothing) {
-  const std::vector<std::string> plan{"scan",
-                                      "plan",
-                                      example("cradle_scanner/pyramid.stl"),
-                                      "--machine",
-                                      example("machines/liu-scanner.machine.toml"),
-                                      "--along-mm",
-                                      "0.01",
-                                      "--between-mm",
-                                      "0.01",
-                                      "-o",
-                                      "path.csv",
-                                      "--coverage",
-                                      "coverage.ply"};
-  const CommandResult result = interrupted(plan, SIGINT, waits_for_signals);
-  EXPECT_EQ(result.exit_code, 130);
-  EXPECT_THAT(result.err, HasSubstr("abbe: interrupted"));
-  EXPECT_EQ(result.out, "");
-  EXPECT_THAT(names(), testing::IsEmpty());
-  EXPECT_EQ(interrupted(plan, SIGTERM, waits_for_signals).exit_code, 143);
-  EXPECT_THAT(names(), testing::IsEmpty());
+/// Time of the processor that all threads of a process have used, s.
+double used_time(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  // The name of the program, in parentheses, may hold blanks; utime and stime are the 12th and 13th field behind it.
+  const std::size_t name_end = text.rfind(')');
+  if (name_end == std::string::npos) return 0;
+  std::istringstream fields(text.substr(name_end + 1));
+  std::string skipped;
+  for (int i = 0; i < 11; ++i) fields >> skipped;
+  double user = 0, system = 0;
+  fields >> user >> system;
+  return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+/// A pipe with a name stands where a program is going to write a file: it gets no further than what a pipe holds, 64
+/// KiB, because nobody reads more than the first byte.
+class HeldUpWriter {
+ public:
+  HeldUpWriter() = default;
+  ~HeldUpWriter() {
+    if (pipe_ >= 0) ::close(pipe_);
+  }
+  HeldUpWriter(const HeldUpWriter&) = delete;
+  HeldUpWriter& operator=(const HeldUpWriter&) = delete;
+
+  /// Whether something has been written into the pipe. The program waits until this is asked.
+  bool writes_to(const fs::path& pipe) {
+    struct stat status = {};
+    if (::stat(pipe.c_str(), &status) != 0 || !S_ISFIFO(status.st_mode)) return false;
+    if (pipe_ < 0) pipe_ = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    char first = 0;
+    return pipe_ >= 0 && ::read(pipe_, &first, 1) == 1;
+  }
+
+ private:
+  int pipe_ = -1;
+};
+
+TEST_F(Interruption, WhileItComputesACommandEndsWithTheNumberOfTheSignalAndWritesNothing) {
+  // Planning takes a minute. Half a second is more than any start and reading of 24 triangles needs.
+  const auto computes = [](pid_t process) { return used_time(process) > 0.5; };
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const CommandResult result = interrupted(plan("0.02"), signal, computes);
+    ASSERT_TRUE(result.signalled) << "it ended before: exit code " << result.exit_code << ", " << result.err;
+    EXPECT_EQ(result.exit_code, 128 + signal);
+    EXPECT_THAT(result.err, HasSubstr("abbe: interrupted"));
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(names(), testing::IsEmpty());
+  }
 }
 
 TEST_F(Interruption, WhileResultsAreWrittenTheOlderOnesStayWhole) {
   const std::vector<std::string> deviate{"deviate",     example("scan/pin-scan.csv"),      example("scan/pin.stl"),
                                          "--transform", example("scan/pin-transform.csv"), "-o",
                                          "out"};
-  ASSERT_EQ(abbe(deviate).exit_code, ExitCode::done);
-  const std::string older = folder.read("out/evaluation.json");
   std::vector<std::string> other = deviate;
   other.insert(other.end(), {"--largest-mm", "0.001"});
-  int ended = 0;
-  for (int attempt = 0; attempt < 20 && ended < 3; ++attempt) {
-    const CommandResult result = interrupted(other, SIGINT, [&](pid_t) { return has_partial(); });
-    EXPECT_THAT(names(), testing::ElementsAre("out"));
-    EXPECT_TRUE(fs::exists(folder.path() / "out" / "report.html"));
-    if (result.exit_code == 130) {
-      ++ended;
-      // Interrupted before the exchange, or during it: the older result, or the whole new one.
-      EXPECT_TRUE(fs::exists(folder.path() / "out" / ".abbe-results"));
-    } else {
-      EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
-    }
+  bool was_interrupted = false;
+  for (int attempt = 0; attempt < 50 && !was_interrupted; ++attempt) {
     ASSERT_EQ(abbe(deviate).exit_code, ExitCode::done);
-    EXPECT_EQ(folder.read("out/evaluation.json"), older);
+    const std::map<std::string, std::string> older = contents("out");
+    HeldUpWriter writer;
+    bool stands = false;
+    const CommandResult result = interrupted(other, SIGINT, [&](pid_t process) {
+      // Behind the first files and before the page: who comes too late here tries again.
+      const fs::path page = folder.path() / ("out.partial-" + std::to_string(process)) / "report.html";
+      stands = stands || ::mkfifo(page.c_str(), 0600) == 0;
+      return stands && writer.writes_to(page);
+    });
+    EXPECT_THAT(names(), testing::ElementsAre("out"));
+    was_interrupted = result.signalled;
+    if (!was_interrupted) {
+      ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+      EXPECT_NE(contents("out"), older);
+      continue;
+    }
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    EXPECT_TRUE(contents("out") == older) << "not the older result";
   }
-  EXPECT_GT(ended, 0) << "no run was interrupted while it wrote";
+  EXPECT_TRUE(was_interrupted) << "no run was interrupted while it wrote";
 }
 
-TEST_F(Interruption, WhileAFileIsWrittenNothingOfItIsLeft) {
-  const std::vector<std::string> path{
-      "path",        example("machines/yin-engraver-u.machine.toml"), example("laser_engraver/table-a4.csv"),
-      "--placement", example("laser_engraver/part.placement.toml"),   "-o",
-      "program.ngc"};
-  for (int attempt = 0; attempt < 5; ++attempt) {
-    const CommandResult result = interrupted(path, SIGINT, [&](pid_t) { return has_partial(); });
-    EXPECT_THAT(result.exit_code, testing::AnyOf(130, 0)) << result.err;
-    EXPECT_FALSE(has_partial());
-    for (const std::string& name : names()) EXPECT_THAT(folder.read(name), testing::EndsWith("M30\n"));
+TEST_F(Interruption, WhileAFileIsWrittenNothingOfItIsLeftAndTheOlderOneStays) {
+  // The pipe bears the name that the command will write under: exec keeps the number of the process.
+  std::string command = "mkfifo path.csv.partial-$$ && exec " ABBE_COMMAND;
+  for (const std::string& word : plan("0.5")) command += " '" + word + "'";
+  for (const bool has_older : {false, true}) {
+    if (has_older) folder.write("path.csv", "older\n");
+    HeldUpWriter writer;
+    const CommandResult result = run_and_signal("/bin/sh", {"-c", command}, folder.path(), SIGINT, [&](pid_t process) {
+      return writer.writes_to(folder.path() / ("path.csv.partial-" + std::to_string(process)));
+    });
+    ASSERT_TRUE(result.signalled) << "it ended before: exit code " << result.exit_code << ", " << result.err;
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    if (has_older) {
+      EXPECT_THAT(names(), testing::ElementsAre("path.csv"));
+      EXPECT_EQ(folder.read("path.csv"), "older\n");
+    } else {
+      EXPECT_THAT(names(), testing::IsEmpty());
+    }
   }
 }
 
 TEST_F(Interruption, ASignalThatWasIgnoredBeforeStaysIgnored) {
-  // As under nohup, which ignores SIGHUP and starts the command.
-  const CommandResult result = run_and_signal(
-      "/bin/sh", {"-c", "trap '' INT; exec " ABBE_COMMAND " check " + example("machines/liu-scanner.machine.toml")},
-      folder.path(), SIGINT, waits_for_signals);
+  // As under nohup, which ignores SIGHUP and starts the command. Half a second of planning is still to come.
+  std::string command = "trap '' INT; exec " ABBE_COMMAND;
+  for (const std::string& word : plan("0.2")) command += " '" + word + "'";
+  const CommandResult result = run_and_signal("/bin/sh", {"-c", command}, folder.path(), SIGINT, waits_for_signals);
+  ASSERT_TRUE(result.signalled) << "it ended before: exit code " << result.exit_code << ", " << result.err;
   EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
+  EXPECT_THAT(names(), testing::ElementsAre("path.csv"));
 }
 
 }  // namespace

@@ -142,15 +142,19 @@ CommandResult run_program(const std::string& program, const std::vector<std::str
 CommandResult run_and_signal(const std::string& program, const std::vector<std::string>& arguments,
                              const std::filesystem::path& working_directory, int signal,
                              const std::function<bool(pid_t)>& is_time) {
-  return run(program, arguments, working_directory, {}, [&](pid_t child, const std::atomic<bool>& over) {
-    while (!over) {
-      if (is_time(child)) {
-        ::kill(child, signal);
-        return;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-  });
+  bool signalled = false;
+  CommandResult result =
+      run(program, arguments, working_directory, {}, [&](pid_t child, const std::atomic<bool>& over) {
+        while (!over) {
+          if (is_time(child)) {
+            signalled = !over && ::kill(child, signal) == 0;
+            return;
+          }
+          std::this_thread::sleep_for(std::chrono::microseconds(200));
+        }
+      });
+  result.signalled = signalled;
+  return result;
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -12,9 +12,10 @@ namespace abbe {
 
 /// What a finished program left behind.
 struct CommandResult {
-  int exit_code = -1;  ///< 128 + signal number if a signal ended it
-  std::string out;     ///< standard output
-  std::string err;     ///< standard error
+  int exit_code = -1;      ///< 128 + signal number if a signal ended it
+  std::string out;         ///< standard output
+  std::string err;         ///< standard error
+  bool signalled = false;  ///< run_and_signal: it was sent while the program still ran
 };
 
 /// Runs a program without a shell, with empty standard input, and waits for it.
@@ -28,7 +29,8 @@ CommandResult run_program(const std::string& program, const std::vector<std::str
                           const std::filesystem::path& working_directory,
                           const std::vector<std::string>& environment = {});
 
-/// The same, but sends the program a signal as soon as `is_time` says so, which is asked every millisecond.
+/// The same, but sends the program a signal as soon as `is_time` says so, which is asked several times per millisecond.
+/// A program may end before: `signalled` says whether it did.
 CommandResult run_and_signal(const std::string& program, const std::vector<std::string>& arguments,
                              const std::filesystem::path& working_directory, int signal,
                              const std::function<bool(pid_t)>& is_time);
