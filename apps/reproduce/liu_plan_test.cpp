@@ -53,7 +53,7 @@ std::vector<Row> rows_of(const std::string& csv) {
   std::istringstream text(csv);
   std::string line;
   std::getline(text, line);
-  EXPECT_EQ(line, "time_s,C_deg,A_deg,X_mm,Y_mm,Z_mm,measures,face,line,x_mm,y_mm,z_mm,i,j,k");
+  EXPECT_EQ(line, "time_s,C_deg,A_deg,X_mm,Y_mm,Z_mm,measures,blocked,face,line,x_mm,y_mm,z_mm,i,j,k");
   std::vector<Row> rows;
   while (std::getline(text, line)) {
     std::replace(line.begin(), line.end(), ',', ' ');
@@ -61,7 +61,9 @@ std::vector<Row> rows_of(const std::string& csv) {
     Row row;
     fields >> row.time >> row.c >> row.a;
     for (double& x : row.linear) fields >> x;
-    fields >> row.measures >> row.face >> row.line;
+    int blocked = 1;
+    fields >> row.measures >> blocked >> row.face >> row.line;
+    EXPECT_EQ(blocked, 0) << line;
     for (double& x : row.point) fields >> x;
     for (double& x : row.beam) fields >> x;
     EXPECT_TRUE(fields) << line;

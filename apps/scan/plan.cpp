@@ -139,7 +139,12 @@ void print_plan(const Machine& machine, const ScanPlan& plan, const std::string&
     fmt::print("{} moves go around because half way the surface would leave the range: smaller --along-mm\n",
                plan.beyond_range);
   }
-  if (plan.blocked_links > 0) fmt::print("{} ways between lines are blocked\n", plan.blocked_links);
+  if (plan.blocked_links > 0) {
+    fmt::print(
+        "{} ways between lines are not clear: the probe may touch the part or the stage there; the path marks them as "
+        "blocked, the program stops before each (M0)\n",
+        plan.blocked_links);
+  }
 }
 
 int run_plan(const PlanOptions& options) {

@@ -31,7 +31,7 @@ TEST_F(ScanPlanCommand, CoversThePyramidAndWritesPathProgramAndCoverage) {
   std::istringstream path(folder.read("path.csv"));
   std::string line;
   std::getline(path, line);
-  EXPECT_EQ(line, "time_s,C_deg,A_deg,X_mm,Y_mm,Z_mm,measures,face,line,x_mm,y_mm,z_mm,i,j,k");
+  EXPECT_EQ(line, "time_s,C_deg,A_deg,X_mm,Y_mm,Z_mm,measures,blocked,face,line,x_mm,y_mm,z_mm,i,j,k");
   const std::string program = folder.read("path.ngc");
   EXPECT_NE(program.find("\nG93\n"), std::string::npos);
   EXPECT_NE(program.find("(face 10 line 1, raster)"), std::string::npos);
@@ -136,6 +136,55 @@ TEST_F(ScanPlanCommand, WritesAProgramThatKeepsTheGrammarAndSaysWhatTheCsvSays) 
   EXPECT_EQ(data["path"]["time_s"].size(), data["path"]["positions_deg"]["C"].size());
   EXPECT_EQ(data["coverage"]["point_mm"]["x"].size(), data["coverage"]["obstacle"].size());
   for (const nlohmann::json& y : data["coverage"]["point_mm"]["y"]) EXPECT_GE(y.get<double>(), -0.801);
+}
+
+TEST_F(ScanPlanCommand, MarksWaysThatAreNotClearAndStopsTheProgramBeforeThem) {
+  // Z ends 1.2 mm above the upper end of the part: too low to go from line to line.
+  std::string text = folder.read(machine);
+  const std::size_t z = text.find("[axis.Z]\ntravel_mm = [-100, 100]");
+  ASSERT_NE(z, std::string::npos);
+  text.replace(text.find("100]", z), 4, "11.2]");
+  folder.write("low.machine.toml", text);
+  const std::vector<std::string> command{"scan",       "plan",      pyramid,        "--machine", "low.machine.toml",
+                                         "--along-mm", "2",         "--between-mm", "2",         "-o",
+                                         "path.csv",   "--program", "path.ngc"};
+  const CommandResult words = abbe(command);
+  EXPECT_EQ(words.exit_code, ExitCode::computation_says_no) << words.err;
+  EXPECT_NE(words.out.find("0 places not reached"), std::string::npos) << words.out;
+  EXPECT_NE(words.out.find(" ways between lines are not clear: the probe may touch"), std::string::npos) << words.out;
+
+  std::vector<std::string> with_json = command;
+  with_json.emplace_back("--json");
+  const CommandResult result = abbe(with_json);
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no) << result.err;
+  const auto blocked_links = nlohmann::json::parse(result.out)["blocked_links"].get<std::size_t>();
+  EXPECT_GT(blocked_links, 0U);
+
+  // Row by row: the program stops right before the first move of each such way, and nowhere else.
+  const std::vector<Block> blocks = blocks_of(folder.read("path.ngc"));
+  std::istringstream path(folder.read("path.csv"));
+  std::string line;
+  std::getline(path, line);
+  ASSERT_EQ(line.substr(0, 51), "time_s,C_deg,A_deg,X_mm,Y_mm,Z_mm,measures,blocked,");
+  std::size_t at = 0, stops = 0;
+  bool measured_before = true;
+  while (std::getline(path, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream fields(line);
+    double number = 0;
+    for (int i = 0; i < 6; ++i) fields >> number;
+    int measures = 0, blocked = 0;
+    fields >> measures >> blocked;
+    bool stopped = false;
+    for (; at < blocks.size() && blocks[at].words.count('X') == 0; ++at) {
+      stopped = stopped || (blocks[at].words.count('M') == 1 && blocks[at].words.at('M') == 0);
+    }
+    ASSERT_LT(at++, blocks.size());
+    EXPECT_EQ(stopped, blocked == 1 && measured_before) << line;
+    stops += stopped ? 1U : 0U;
+    measured_before = measures == 1;
+  }
+  EXPECT_EQ(stops, blocked_links);
 }
 
 TEST_F(ScanPlanCommand, AsksForWordsOfAxesWithNumbersAndForPlanesThatLeaveSomething) {

@@ -57,7 +57,7 @@ std::string scan_plan_csv(const Machine& machine, const ScanPlan& plan) {
   for (const Axis& axis : machine.axes) {
     fmt::format_to(out, ",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
   }
-  text += ",measures,face,line,x_mm,y_mm,z_mm,i,j,k\n";
+  text += ",measures,blocked,face,line,x_mm,y_mm,z_mm,i,j,k\n";
   double time = 0;
   for (std::size_t n = 0; n < plan.moves.size(); ++n) {
     const PlannedMove& move = plan.moves[n];
@@ -66,9 +66,9 @@ std::string scan_plan_csv(const Machine& machine, const ScanPlan& plan) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
       fmt::format_to(out, ",{:.7f}", shown(machine.axes[i], plan.positions.axis[i][n]));
     }
-    fmt::format_to(out, ",{},{},{},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f}\n", move.measures ? 1 : 0, move.face + 1,
-                   move.line + 1, move.point.x(), move.point.y(), move.point.z(), move.beam.x(), move.beam.y(),
-                   move.beam.z());
+    fmt::format_to(out, ",{},{},{},{},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f}\n", move.measures ? 1 : 0,
+                   move.blocked ? 1 : 0, move.face + 1, move.line + 1, move.point.x(), move.point.y(), move.point.z(),
+                   move.beam.x(), move.beam.y(), move.beam.z());
   }
   return text;
 }
@@ -84,6 +84,10 @@ std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, cons
       face = move.face;
       line = move.line;
       fmt::format_to(out, "(face {} line {}, {})\n", face + 1, line + 1, scan_path_name(plan.faces[face].kind));
+    }
+    // Before the first move of such a way; the one before measures.
+    if (move.blocked && (n == 0 || plan.moves[n - 1].measures)) {
+      text += "(no clear way to the next line: the probe may touch the part or the stage)\nM0\n";
     }
     text += "G1";
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {

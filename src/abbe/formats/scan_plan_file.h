@@ -9,11 +9,12 @@
 
 namespace abbe {
 
-/// CSV of a plan: time_s, the axis commands (X_mm, C_deg), measures (0 or 1), face, line, then point and beam in the
-/// workpiece frame (x_mm, y_mm, z_mm, i, j, k).
+/// CSV of a plan: time_s, the axis commands (X_mm, C_deg), measures (0 or 1), blocked (1: no clear way was found
+/// for this move), face, line, then point and beam in the workpiece frame (x_mm, y_mm, z_mm, i, j, k).
 std::string scan_plan_csv(const Machine& machine, const ScanPlan& plan);
 
-/// NC program (RS-274): linear interpolation of all axes, mm and degrees, inverse time feed (G93), a comment per line.
+/// NC program (RS-274): linear interpolation of all axes, mm and degrees, inverse time feed (G93), a comment per line;
+/// M0, which stops the machine until the operator goes on, before ways that are not clear.
 /// @param title    one line for the first comment
 /// @param options  decimals and the words of axes whose names have numbers
 std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, const std::string& title,

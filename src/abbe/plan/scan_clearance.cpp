@@ -48,6 +48,10 @@ ScanClearance::Verdict ScanClearance::measuring(const Eigen::Vector3d& point, co
                                                                                            : Verdict::probe_too_near;
 }
 
+bool ScanClearance::draws_back(const Eigen::Vector3d& point, const Eigen::Vector3d& beam, double back) const {
+  return rod_is_clear(point, beam, working_distance_, working_distance_ + length_ + back);
+}
+
 bool ScanClearance::passing(const Eigen::Vector3d& point, const Eigen::Vector3d& beam) const {
   const double far = working_distance_ + length_;
   return !part_.tracer.first(point, beam, 0, far) && !(stage_ && stage_->tracer.first(point, beam, 0, far)) &&

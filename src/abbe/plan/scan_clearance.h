@@ -30,6 +30,9 @@ class ScanClearance {
   bool sees(const Eigen::Vector3d& point, const Eigen::Vector3d& beam) const;
   /// The rod alone.
   bool probe_fits(const Eigen::Vector3d& point, const Eigen::Vector3d& beam) const;
+  /// The rod all the way back along the beam from where it measures.
+  /// @param back  mm
+  bool draws_back(const Eigen::Vector3d& point, const Eigen::Vector3d& beam, double back) const;
   /// Probe on its way: rod and beam as far as the working distance stay clear.
   bool passing(const Eigen::Vector3d& point, const Eigen::Vector3d& beam) const;
 

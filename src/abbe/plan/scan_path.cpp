@@ -49,7 +49,7 @@ double ScanPathBuilder::sag_half_way(const std::vector<double>& positions) const
 }
 
 void ScanPathBuilder::measure(PlannedMove move, const std::vector<double>& positions, bool continues) {
-  if (measured_ && !(continues && goes_straight(positions))) link(move, positions);
+  if (measured_ && !(continues && goes_straight(positions))) move.blocked = !link(move, positions);
   move.measures = true;
   step(move, positions);
   last_point_ = move.point;
@@ -57,7 +57,7 @@ void ScanPathBuilder::measure(PlannedMove move, const std::vector<double>& posit
   measured_ = true;
 }
 
-void ScanPathBuilder::link(const PlannedMove& to, const std::vector<double>& positions) {
+bool ScanPathBuilder::link(const PlannedMove& to, const std::vector<double>& positions) {
   const std::vector<double> start = last_;
   std::vector<double> up, over, trial_up, trial_over;
   bool done = false;
@@ -67,15 +67,18 @@ void ScanPathBuilder::link(const PlannedMove& to, const std::vector<double>& pos
     if (!reach_.commands(to.point + back * to.beam, to.beam, positions, trial_over)) continue;
     up = trial_up;
     over = trial_over;
-    done = way_is_clear(up, over);
+    done = clearance_.draws_back(last_point_, last_beam_, back) && clearance_.draws_back(to.point, to.beam, back) &&
+           way_is_clear(up, over);
   }
   if (!done) ++plan_.blocked_links;
-  if (up.empty()) return;
-  PlannedMove move = to;
-  move.beam = last_beam_;
-  move.point = last_point_;
-  step(move, up);
-  step(to, over);
+  if (up.empty()) return false;
+  PlannedMove over_the_place = to, above_the_last = to;
+  over_the_place.blocked = above_the_last.blocked = !done;
+  above_the_last.beam = last_beam_;
+  above_the_last.point = last_point_;
+  step(above_the_last, up);
+  step(over_the_place, over);
+  return done;
 }
 
 bool ScanPathBuilder::way_is_clear(const std::vector<double>& from, const std::vector<double>& to) const {

@@ -31,7 +31,8 @@ class ScanPathBuilder {
  private:
   bool goes_straight(const std::vector<double>& positions);
   double sag_half_way(const std::vector<double>& positions) const;
-  void link(const PlannedMove& to, const std::vector<double>& positions);
+  /// Moves from the last place to near the next one. @returns whether the way is clear
+  bool link(const PlannedMove& to, const std::vector<double>& positions);
   bool way_is_clear(const std::vector<double>& from, const std::vector<double>& to) const;
   void step(const PlannedMove& move, const std::vector<double>& positions);
   RigidTransform half_way(const std::vector<double>& positions) const;

@@ -82,6 +82,7 @@ struct PlannedMove {
   Eigen::Vector3d point, normal, beam;  ///< mm and unit vectors, workpiece frame; beam: from the part to the probe
   std::size_t face = 0, line = 0;
   bool measures = false;  ///< else it goes around, away from the part
+  bool blocked = false;   ///< one of the moves to the next line for which no clear way was found: the probe may touch
   double time = 0;        ///< s, to get here
 };
 
@@ -101,7 +102,7 @@ struct ScanPlan {
   double time = 0;                ///< s
   double largest_sag = 0;         ///< mm, surface from the straight move between neighbours, indication half way
   std::size_t beyond_range = 0;   ///< moves that go around because half way the indication would leave its range
-  std::size_t blocked_links = 0;  ///< ways between lines on which the probe comes too near to something
+  std::size_t blocked_links = 0;  ///< ways between lines on which the probe comes too near; their moves are `blocked`
 
   std::size_t points() const;
   std::size_t missed_places() const;
@@ -118,7 +119,7 @@ struct ScanPlan {
 /// At every point the beam is along the normal (raster: along the mean normal; rotary: along the normal turned as the
 /// axis of the face to that of the machine, so that this one turns alone but for what follows) or, where it or the
 /// probe would meet the part or the stage or an axis its end of travel, tilted by up to the largest angle. Between
-/// lines the probe draws back as far as it has to.
+/// lines the probe draws back as far as it has to; where no way is clear the moves are there and marked.
 /// @param part  closed, vertices shared, frame of the part, mm
 /// @throws std::invalid_argument if an option is not above zero
 ScanPlan plan_scan(const Machine& machine, const TriangleMesh& part, const ScanPlanOptions& options);

@@ -147,6 +147,59 @@ TEST(ScanPlan, StaysWithinTravel) {
   EXPECT_LT(plan.covered_share(), 0.95);
 }
 
+TEST(ScanPlan, MarksTheMovesOfWaysThatAreNotClear) {
+  // The probe cannot draw back as far as the edges between the sides need when C turns the next side up.
+  const ScanPlanOptions options = coarse();
+  const TriangleMesh part = prism(5, 8, -6, 6);
+  for (const double room : {0.4, 1.2}) {  // mm above the sides: for no way back at all, and for one of 1 mm
+    Machine machine = test::liu_scanner();
+    const ScanPlan free = plan_scan(machine, part, options);
+    EXPECT_EQ(free.blocked_links, 0U);
+    double highest = -1e9;
+    const std::size_t z = machine.find_axis("Z");
+    for (std::size_t k = 0; k < free.moves.size(); ++k) {
+      EXPECT_FALSE(free.moves[k].blocked);
+      // The ends, at 6 mm, are lower than the sides, at 6.47 mm.
+      if (free.moves[k].measures) highest = std::max(highest, free.positions.axis[z][k]);
+    }
+    machine.axes[z].travel_max = highest + room;
+    const ScanPlan plan = plan_scan(machine, part, options);
+    expect_sound(machine, plan, options);
+    EXPECT_EQ(plan.points(), free.points());
+    EXPECT_GE(plan.blocked_links, 3U);  // between sides that follow each other
+    std::size_t ways = 0, around = 0;
+    for (std::size_t k = 1; k < plan.moves.size(); ++k) {
+      const PlannedMove &move = plan.moves[k], &before = plan.moves[k - 1];
+      if (!move.blocked) continue;
+      ways += before.measures ? 1U : 0U;
+      around += move.measures ? 0U : 1U;
+      // Only at the beginning of a line, and to its end: all moves of the way.
+      EXPECT_TRUE(before.blocked || (before.measures && (before.line != move.line || before.face != move.face)));
+      EXPECT_TRUE(move.measures || plan.moves.at(k + 1).blocked);
+    }
+    EXPECT_EQ(ways, plan.blocked_links);
+    EXPECT_EQ(around > 0, room > 1) << room;
+  }
+}
+
+TEST(ScanPlan, GoesAroundWhereTheSurfaceWouldLeaveTheRangeBetweenPoints) {
+  const Machine machine = test::liu_scanner();
+  ScanPlanOptions options = coarse();
+  const TriangleMesh part = prism(90, 8, -6, 6);
+  const ScanPlan within = plan_scan(machine, part, options);
+  EXPECT_EQ(within.beyond_range, 0U);
+  // Flat strips of 4 degrees: up to 8 mm (1 - cos 2 deg) = 4.9 um off the circle.
+  options.range = 2 * 0.25 * within.largest_sag;
+  const ScanPlan plan = plan_scan(machine, part, options);
+  expect_sound(machine, plan, options);
+  EXPECT_GT(within.largest_sag, 5e-4);
+  EXPECT_GT(plan.beyond_range, 10U);
+  EXPECT_LE(plan.largest_sag, 0.5 * options.range);
+  EXPECT_EQ(plan.points(), within.points());
+  EXPECT_GT(plan.time, within.time);
+  EXPECT_GE(plan.moves.size(), within.moves.size() + 2 * plan.beyond_range);
+}
+
 TEST(SurfaceLines, AreCirclesOfACylinderEvenlySpaced) {
   const TriangleMesh mesh = prism(360, 8, -6, 6);
   std::vector<std::uint32_t> side;
