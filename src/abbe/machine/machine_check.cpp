@@ -5,6 +5,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "abbe/geometry/rotation.h"
 
 namespace abbe {
 namespace {
@@ -128,6 +132,30 @@ class Checker {
   std::vector<MachineProblem> problems_;
 };
 
+/// Directions of all axes as the workpiece sees them, in chain order.
+using ChainDirections = std::vector<Eigen::Vector3d>;
+
+/// With the rotary axes at zero and at some places of their travels that have nothing in common, so that what depends
+/// on each other there does so everywhere.
+std::vector<ChainDirections> directions_at_some_poses(const Machine& machine) {
+  constexpr int kPoses = 4;
+  std::vector<ChainDirections> poses;
+  for (int pose = 0; pose < kPoses; ++pose) {
+    ChainDirections directions;
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    double share = 0.31 * pose;
+    for (const Axis& axis : machine.axes) {
+      directions.emplace_back(turn * axis.direction);
+      if (axis.kind == AxisKind::linear || pose == 0) continue;
+      share = std::fmod(share + std::numbers::phi, 1.0);
+      const double least = axis.endless ? 0 : axis.travel_min, most = axis.endless ? 2 : axis.travel_max;
+      turn *= rotation_about(axis.direction, least + share * (most - least));
+    }
+    poses.push_back(std::move(directions));
+  }
+  return poses;
+}
+
 }  // namespace
 
 std::string MachineProblem::text() const {
@@ -137,27 +165,34 @@ std::string MachineProblem::text() const {
 std::vector<MachineProblem> find_problems(const Machine& machine) { return Checker(machine).check(); }
 
 std::vector<std::string> find_remarks(const Machine& machine) {
-  std::vector<const Axis*> linear;
-  for (const Axis& axis : machine.axes) {
-    if (axis.kind == AxisKind::linear) linear.push_back(&axis);
+  std::vector<std::size_t> linear;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    if (machine.axes[i].kind == AxisKind::linear) linear.push_back(i);
   }
+  const std::vector<ChainDirections> poses = directions_at_some_poses(machine);
+  const auto in_line = [&poses](std::size_t i, std::size_t k) {
+    return std::all_of(poses.begin(), poses.end(),
+                       [&](const ChainDirections& d) { return d[i].cross(d[k]).norm() < kDependent; });
+  };
+  const auto in_plane = [&poses](std::size_t i, std::size_t k, std::size_t m) {
+    return std::all_of(poses.begin(), poses.end(),
+                       [&](const ChainDirections& d) { return std::abs(d[i].cross(d[k]).dot(d[m])) < kDependent; });
+  };
+  const auto name = [&machine](std::size_t i) { return machine.axes[i].name; };
   std::vector<std::string> remarks;
   for (std::size_t i = 0; i < linear.size(); ++i) {
     for (std::size_t k = i + 1; k < linear.size(); ++k) {
-      const Eigen::Vector3d normal = linear[i]->direction.cross(linear[k]->direction);
-      if (normal.norm() < kDependent) {
-        remarks.push_back(
-            fmt::format("{} and {} move along the same line: a pose leaves open how far each of them moves",
-                        linear[i]->name, linear[k]->name));
+      const std::size_t one = linear[i], two = linear[k];
+      if (in_line(one, two)) {
+        remarks.push_back(fmt::format(
+            "{} and {} move along the same line: a pose leaves open how far each of them moves", name(one), name(two)));
         continue;
       }
       for (std::size_t m = k + 1; m < linear.size(); ++m) {
-        const Eigen::Vector3d& third = linear[m]->direction;
-        const bool pair = third.cross(linear[i]->direction).norm() < kDependent ||
-                          third.cross(linear[k]->direction).norm() < kDependent;
-        if (pair || std::abs(normal.dot(third)) >= kDependent) continue;
+        const std::size_t three = linear[m];
+        if (in_line(one, three) || in_line(two, three) || !in_plane(one, two, three)) continue;
         remarks.push_back(fmt::format("{}, {} and {} move in one plane: together they do not reach all places of space",
-                                      linear[i]->name, linear[k]->name, linear[m]->name));
+                                      name(one), name(two), name(three)));
       }
     }
   }

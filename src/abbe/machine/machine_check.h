@@ -23,7 +23,8 @@ struct MachineProblem {
 /// ones, primes on the workpiece side only, a proper rotation in bed_from_workpiece.
 std::vector<MachineProblem> find_problems(const Machine& machine);
 
-/// What is allowed and seldom meant, in words: linear axes in one line or one plane (to 1e-3 rad).
+/// What is allowed and seldom meant, in words: linear axes in one line or one plane (to 1e-3 rad) wherever the rotary
+/// axes between them stand.
 std::vector<std::string> find_remarks(const Machine& machine);
 
 }  // namespace abbe

@@ -55,5 +55,47 @@ TEST(Machine, LinearAxesInOneLineOrPlaneAreRemarkedOn) {
   EXPECT_TRUE(find_remarks(machine).empty());
 }
 
+/// Linear axes along x, y, z and rotary axes about them by their letters, free to turn by a quarter.
+Machine chain_of(const std::vector<std::string>& names) {
+  Machine machine;
+  for (const std::string& name : names) {
+    Axis axis{.name = name, .direction = direction_from_letter(name[0])};
+    axis_kind_from_letter(name[0], axis.kind);
+    if (axis.kind == AxisKind::rotary) axis.travel_max = std::numbers::pi / 2;
+    machine.axes.push_back(axis);
+  }
+  return machine;
+}
+
+TEST(Machine, LinearAxesThatARotaryAxisTurnsApartAreNotRemarkedOn) {
+  EXPECT_EQ(find_remarks(chain_of({"X", "Y", "Z", "W"})).size(), 1U);
+  EXPECT_TRUE(find_remarks(chain_of({"Z", "B", "W"})).empty());
+  // Across its axis B turns W out of the line of Z, but not out of the plane of X and Z.
+  const std::string plane = "X, Z and W move in one plane: together they do not reach all places of space";
+  EXPECT_EQ(find_remarks(chain_of({"X", "Y", "Z", "B", "W"})), std::vector<std::string>{plane});
+  // A turn about their own direction leaves them parallel, and so does one before or behind both.
+  EXPECT_EQ(find_remarks(chain_of({"X", "Y", "Z", "C", "W"})).size(), 1U);
+  EXPECT_EQ(find_remarks(chain_of({"A", "X", "Y", "Z", "W", "B"})).size(), 1U);
+  // Three in a plane: a turn about its normal or about the first one keeps them there, another one does not.
+  EXPECT_EQ(find_remarks(chain_of({"X", "Y", "C", "U"})).size(), 1U);
+  const auto in_plane = [](const std::string& rotary) {
+    Machine machine = chain_of({"X", rotary, "Y", "W"});
+    machine.axes[3].direction = Eigen::Vector3d(3, 4, 0) / 5;
+    return find_remarks(machine).size();
+  };
+  EXPECT_EQ(in_plane("C"), 1U);
+  EXPECT_EQ(in_plane("A"), 1U);
+  EXPECT_EQ(in_plane("B"), 0U);
+  EXPECT_TRUE(find_remarks(chain_of({"X", "C", "U"})).empty());
+}
+
+TEST(Machine, ARotaryAxisThatCannotTurnLeavesLinearAxesParallel) {
+  Machine machine = chain_of({"Z", "B", "W"});
+  machine.axes[1].travel_max = 0;
+  EXPECT_EQ(find_remarks(machine).size(), 1U);
+  machine.axes[1].endless = true;
+  EXPECT_TRUE(find_remarks(machine).empty());
+}
+
 }  // namespace
 }  // namespace abbe
