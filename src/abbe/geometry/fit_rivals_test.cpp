@@ -45,6 +45,37 @@ TEST(FitRivals, TheStripAcrossABoxIsNamedBesideTheNarrowerOne) {
   EXPECT_EQ(square.status, FitStatus::ambiguous) << square.reason;
 }
 
+/// All places of a grid of so many points, and `more` pairs at the ends of its middle line along y.
+Matrix3Xd grid_with_ends(const Vector3d& size, int count, int more) {
+  Matrix3Xd points(3, count * count + 2 * more);
+  for (Index i = 0; i < points.cols(); ++i) {
+    const Index k = i - count * count;
+    const Vector3d share = k < 0 ? Vector3d(static_cast<double>(i % count) / (count - 1) - 0.5,
+                                            static_cast<double>(i / count) / (count - 1) - 0.5, 0)
+                                 : Vector3d(0, k % 2 == 0 ? 0.5 : -0.5, 0);
+    points.col(i) = share.cwiseProduct(size);
+  }
+  return points;
+}
+
+TEST(FitRivals, StripsOfASymmetricGridAllGoThroughItsMiddleAndAreToldApart) {
+  const ShapeFit fit = extreme_fit(ShapeKind::line2, ExtremeKind::minimum_zone, grid_with_ends({10, 9.5, 0}, 9, 0));
+  ASSERT_EQ(fit.status, FitStatus::ok) << fit.reason;
+  EXPECT_NEAR(fit.form, 9.5, 1e-9);
+  ASSERT_FALSE(fit.rivals.empty());
+  EXPECT_NEAR(fit.rivals[0].value, 10, 1e-9);
+  EXPECT_NEAR(fit.rivals[0].shape.direction.x(), 0, 1e-9);
+  // Points at the ends of the shorter side make that the direction of least squares; the narrowest strip stays.
+  const Matrix3Xd points = grid_with_ends({10, 9.5, 0}, 9, 20);
+  ASSERT_NEAR(least_squares_fit(ShapeKind::line2, points).shape.direction.y(), 1, 1e-9);
+  const ShapeFit across = extreme_fit(ShapeKind::line2, ExtremeKind::minimum_zone, points);
+  ASSERT_EQ(across.status, FitStatus::ok) << across.reason;
+  EXPECT_NEAR(across.form, 9.5, 1e-9);
+  EXPECT_NEAR(across.shape.direction.x(), 1, 1e-9);
+  const ShapeFit square = extreme_fit(ShapeKind::line2, ExtremeKind::minimum_zone, grid_with_ends({10, 10, 0}, 9, 20));
+  EXPECT_EQ(square.status, FitStatus::ambiguous) << square.reason;
+}
+
 TEST(FitRivals, TheNarrowestSlabIsFoundWhereLeastSquaresBeginsInAnotherValley) {
   Numbers numbers(42);
   // Almost all points in a block that is thinnest along z; a few corners make it thinnest along y.

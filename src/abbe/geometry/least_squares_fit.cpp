@@ -27,7 +27,7 @@ ShapeFit least_squares_fit(ShapeKind kind, const FitPoints& points, const FitOpt
   }
   ShapeFrame frame = start.frame;
   // With many points most of the way is gone with some of them.
-  if (points.cols() > 40000) {
+  if (points.cols() > 40000 && !is_straight(kind)) {
     const Eigen::Matrix3Xd sample = spread_sample(points, survey.centre, 8192);
     frame = refine(frame, sample, {}, free, survey.size, 100, options.threads).frame;
   }
@@ -41,7 +41,8 @@ ShapeFit least_squares_fit(ShapeKind kind, const FitPoints& points, const FitOpt
   const double sigma = options.sigma > 0             ? options.sigma
                        : fit.degrees_of_freedom == 0 ? 0
                                                      : std::sqrt(refined.sums.squares / dof);
-  if (!refined.converged) {
+  // Where all directions are equally good, it is rounding whether the iteration rests.
+  if (!refined.converged && !direction_is_open(kind, survey, free)) {
     fit.status = FitStatus::not_converged;
     fit.reason = "the iteration did not come to rest";
   } else if (start.rival) {

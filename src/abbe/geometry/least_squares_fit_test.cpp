@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "abbe/geometry/shape_fit.h"
@@ -239,6 +240,62 @@ TEST(LeastSquaresFit, SaysWhenThePointsDoNotDetermineTheShape) {
   cross << Eigen::Matrix3d::Identity(), -Eigen::Matrix3d::Identity();
   EXPECT_EQ(status(ShapeKind::plane, cross), FitStatus::ambiguous);
   EXPECT_EQ(status(ShapeKind::line3, cross), FitStatus::ambiguous);
+}
+
+/// Every place of a grid, turned and moved.
+Matrix3Xd grid(const Eigen::Array3i& counts, double turn) {
+  Matrix3Xd points(3, counts.prod());
+  for (Index i = 0; i < points.cols(); ++i) {
+    const Index x = i % counts.x(), y = i / counts.x() % counts.y(), z = i / counts.x() / counts.y();
+    points.col(i) << static_cast<double>(x), static_cast<double>(y), static_cast<double>(z);
+  }
+  return (rotation_about(Vector3d::UnitZ(), turn) * points).colwise() + Vector3d(300, -200, 0);
+}
+
+TEST(LeastSquaresFit, TheDirectionOfAFullSquareOrCubeIsSaidToBeOpen) {
+  // More points than the sample holds that the fit begins with; and so many that they are read on several threads.
+  for (const int side : {3, 11, 60, 250}) {
+    for (const double turn : {0., 0.3, 0.785}) {
+      const ShapeFit square = least_squares_fit(ShapeKind::line2, grid({side, side, 1}, turn));
+      EXPECT_EQ(square.status, FitStatus::ambiguous) << side << " " << turn << ": " << square.reason;
+      EXPECT_NE(square.reason.find("no direction is better"), std::string::npos) << square.reason;
+      EXPECT_FALSE(square.has_covariance);
+    }
+  }
+  for (const ShapeKind kind : {ShapeKind::line3, ShapeKind::plane}) {
+    const ShapeFit cube = least_squares_fit(kind, grid({12, 12, 12}, 0.3));
+    EXPECT_EQ(cube.status, FitStatus::ambiguous) << shape_name(kind) << ": " << cube.reason;
+    EXPECT_NE(cube.reason.find("no direction is better"), std::string::npos) << cube.reason;
+  }
+  // What a square determines: the line along a direction that is held, and the plane.
+  FitOptions held;
+  held.constraints.direction = Vector3d(1, 2, 0);
+  EXPECT_EQ(least_squares_fit(ShapeKind::line2, grid({11, 11, 1}, 0.3), held).status, FitStatus::ok);
+  EXPECT_EQ(least_squares_fit(ShapeKind::plane, grid({11, 11, 2}, 0.3)).status, FitStatus::ok);
+}
+
+TEST(LeastSquaresFit, TheLineOfNearlyASquareIsItsPrincipalDirection) {
+  // Far more points than the sample, whose own direction is another one.
+  const ShapeFit fit = least_squares_fit(ShapeKind::line2, grid({251, 250, 1}, 0.3));
+  ASSERT_EQ(fit.status, FitStatus::ok) << fit.reason;
+  EXPECT_LT(fit.shape.direction.cross(Vector3d(std::cos(0.3), std::sin(0.3), 0)).norm(), 1e-9);
+  const ShapeFit plane = least_squares_fit(ShapeKind::plane, grid({31, 31, 30}, 0.3));
+  ASSERT_EQ(plane.status, FitStatus::ok) << plane.reason;
+  EXPECT_LT(plane.shape.direction.cross(Vector3d::UnitZ()).norm(), 1e-9);
+}
+
+TEST(LeastSquaresFit, AConeOfHeldAngleAboutPointsOfACylinderOpensToEitherSide) {
+  Matrix3Xd points(3, 60);
+  for (Index i = 0; i < 60; ++i) {
+    const double turn = 2 * std::numbers::pi * static_cast<double>(i % 20) / 20;
+    points.col(i) << 5 * std::cos(turn), 5 * std::sin(turn), static_cast<double>(i / 20);
+  }
+  FitOptions held;
+  held.constraints.direction = Vector3d::UnitZ();
+  held.constraints.half_angle = 0.1;
+  EXPECT_EQ(least_squares_fit(ShapeKind::cone, points, held).status, FitStatus::ambiguous);
+  for (Index i = 0; i < 60; ++i) points.col(i).head<2>() *= 1 + 0.004 * points(2, i);
+  EXPECT_EQ(least_squares_fit(ShapeKind::cone, points, held).status, FitStatus::ok);
 }
 
 TEST(LeastSquaresFit, SumsOfTheKernelsAreThoseOfTheDerivatives) {

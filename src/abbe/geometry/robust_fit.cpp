@@ -23,14 +23,9 @@ double middle(std::vector<double>& values) {
 }
 
 /// Different shapes as far as rough candidates tell.
-bool unlike(ShapeKind kind, ShapeFrame a, ShapeFrame b, const Survey& survey) {
-  settle(a, survey.centroid.mean);
-  settle(b, survey.centroid.mean);
-  constexpr double kLimit = 0.05;
-  const double size = survey.size;
-  if ((a.origin - b.origin).norm() > kLimit * size || std::abs(a.radius - b.radius) > kLimit * size) return true;
-  if (kind == ShapeKind::line2) return std::abs(a.axes.col(0).dot(b.axes.col(0))) < std::cos(2 * kLimit);
-  return has_axis(kind) && std::abs(a.axes.col(2).dot(b.axes.col(2))) < std::cos(2 * kLimit);
+bool unlike(const ShapeFrame& a, const ShapeFrame& b, const Survey& survey) {
+  constexpr double kLength = 0.05, kAngle = 0.1;  // of the size; rad
+  return apart(a, b, survey.centroid.mean, kLength * survey.size, kAngle);
 }
 
 /// The frames with the smallest median distance of a few points.
@@ -89,7 +84,7 @@ class LeastMedian {
     if (has_radius(kind_) && !(frame.radius > 0 && frame.radius < 1e4 * survey_.size)) return value;
     // Of those that are nearly the same only the best one.
     const auto same = std::find_if(best_.begin(), best_.end(),
-                                   [&](const Scored& other) { return !unlike(kind_, other.frame, frame, survey_); });
+                                   [&](const Scored& other) { return !unlike(other.frame, frame, survey_); });
     if (same != best_.end()) {
       if (!(value < same->value)) return value;
       best_.erase(same);
@@ -266,7 +261,7 @@ void add_rivals(ShapeFit& fit, const ShapeFrame& answer, double scale, const std
   const double own_share = share_of(own_loss);
   std::vector<ShapeFrame> others;
   for (const ShapeFrame& candidate : candidates) {
-    if (unlike(own.kind, candidate, own, survey)) {
+    if (unlike(candidate, own, survey)) {
       others.push_back(reweigh(candidate, survey.sample, setting, 30, 1).frame);
     }
   }
@@ -294,7 +289,7 @@ void add_rivals(ShapeFit& fit, const ShapeFrame& answer, double scale, const std
     const bool is_new = std::none_of(known.begin(), known.end(), [&](const Known& one) {
       double both = 0;
       for (std::size_t i = 0; i < loss.size(); ++i) both += loss[i] < 1 && one.loss[i] < 1 ? 1 : 0;
-      return both > 0.5 * share * count && !unlike(own.kind, one.frame, other, survey);
+      return both > 0.5 * share * count && !unlike(one.frame, other, survey);
     });
     if (!is_new || share < kWorthNaming * own_share) continue;
     known.push_back({other, loss});

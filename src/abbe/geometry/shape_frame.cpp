@@ -82,7 +82,7 @@ Shape shape_of(ShapeFrame frame, const Vector3d& centroid) {
       shape.half_angle *= -1;
       shape.direction *= -1;
     }
-  } else if (has_axis(frame.kind) || frame.kind == ShapeKind::line2) {
+  } else if (has_direction(frame.kind)) {
     int largest = 0;
     shape.direction.cwiseAbs().maxCoeff(&largest);
     if (shape.direction[largest] < 0) shape.direction *= -1;

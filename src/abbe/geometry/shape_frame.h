@@ -42,9 +42,8 @@ std::vector<int> free_parameters(ShapeKind kind, const FitConstraints& constrain
 /// How many residuals a point has: 2 for line3 and circle3, else 1.
 inline int rows_per_point(ShapeKind kind) { return kind == ShapeKind::line3 || kind == ShapeKind::circle3 ? 2 : 1; }
 inline bool has_radius(ShapeKind kind) { return kind >= ShapeKind::circle2; }
-inline bool has_axis(ShapeKind kind) {
-  return kind != ShapeKind::line2 && kind != ShapeKind::circle2 && kind != ShapeKind::sphere;
-}
+inline bool is_straight(ShapeKind kind) { return kind <= ShapeKind::plane; }
+inline bool has_direction(ShapeKind kind) { return kind != ShapeKind::circle2 && kind != ShapeKind::sphere; }
 
 /// Distance of one point and its slopes by the steps. For line3 and circle3 the (not negative) distance.
 struct PointSlopes {

@@ -181,6 +181,12 @@ Survey survey(ShapeKind kind, const FitPoints& points, const FitConstraints& con
   return result;
 }
 
+bool direction_is_open(ShapeKind kind, const Survey& survey, const std::vector<int>& free) {
+  if (!is_straight(kind) || std::find(free.begin(), free.end(), kTilt2) == free.end()) return false;
+  const Index next = kind == ShapeKind::plane ? 2 : 1;
+  return !(survey.extent[next - 1] > survey.extent[next] * (1 + 1e-6));
+}
+
 void report_fit(ShapeFit& fit, const ShapeFrame& frame, const Survey& survey, const FitPoints& points,
                 const std::vector<int>& free, const Eigen::Matrix<double, kParameters, kParameters>& normal,
                 double sigma, int threads) {
@@ -206,15 +212,19 @@ void report_fit(ShapeFit& fit, const ShapeFrame& frame, const Survey& survey, co
   fit.form = rows_per_point(frame.kind) == 2 ? 2 * fit.largest : fit.largest - fit.smallest;
   if (sigma < 0 || free.empty()) return;
 
-  MatrixXd a = chosen(normal, free);
-  const VectorXd scale = a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  a = scale.asDiagonal() * a * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(a);
   const auto ambiguous = [&fit](const std::string& reason) {
     if (!fit.ok()) return;
     fit.status = FitStatus::ambiguous;
     fit.reason = reason;
   };
+  if (direction_is_open(frame.kind, survey, free)) {
+    ambiguous("the points extend equally in all directions: no direction is better than another");
+    return;
+  }
+  MatrixXd a = chosen(normal, free);
+  const VectorXd scale = a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  a = scale.asDiagonal() * a * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(a);
   if (!(eigen.eigenvalues()[0] > 1e-14)) {
     ambiguous("the points do not determine all parameters");
     return;
@@ -223,14 +233,6 @@ void report_fit(ShapeFit& fit, const ShapeFrame& frame, const Survey& survey, co
       eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
   const MatrixXd covariance = sigma * sigma * (scale.asDiagonal() * inverse * scale.asDiagonal());
   fit.covariance = shape_covariance(frame, free, covariance);
-  if (frame.kind == ShapeKind::line2 || frame.kind == ShapeKind::line3 || frame.kind == ShapeKind::plane) {
-    const bool line = frame.kind != ShapeKind::plane;
-    const double along = line ? survey.extent[0] : survey.extent[1],
-                 across = line ? survey.extent[1] : survey.extent[2];
-    if (!(along > across * (1 + 1e-6)) && std::find(free.begin(), free.end(), kTilt2) != free.end()) {
-      ambiguous("the points extend equally in all directions: no direction is better than another");
-    }
-  }
   fit.sigma = sigma;
   fit.has_covariance = true;
   if (has_radius(frame.kind) && frame.kind != ShapeKind::cone && fit.radius_uncertainty() > 0.25 * frame.radius) {

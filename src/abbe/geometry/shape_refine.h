@@ -37,8 +37,11 @@ Survey survey(ShapeKind kind, const FitPoints& points, const FitConstraints& con
 /// Up to `count` points from the centre, one at random (but always the same) of every stretch of the data.
 Eigen::Matrix3Xd spread_sample(const FitPoints& points, const Eigen::Vector3d& centre, std::size_t count);
 
+/// True for a line or plane that may turn: the points extend equally (to 1e-6) along and across its direction.
+bool direction_is_open(ShapeKind kind, const Survey& survey, const std::vector<int>& free);
+
 /// Enters shape, extreme distances, form and, with sigma >= 0, covariance. Changes the status to ambiguous where the
-/// data do not determine the shape.
+/// data do not determine the shape; without a direction there is no covariance.
 /// @param normal  J'J of all steps, so that the covariance is sigma^2 (J'J)^-1
 void report_fit(ShapeFit& fit, const ShapeFrame& frame, const Survey& survey, const FitPoints& points,
                 const std::vector<int>& free, const Eigen::Matrix<double, kParameters, kParameters>& normal,

@@ -121,13 +121,21 @@ std::vector<ShapeFrame> axis_starts(ShapeKind kind, const Survey& survey, const 
 
 }  // namespace
 
-bool differ(ShapeFrame a, ShapeFrame b, const Survey& survey) {
-  settle(a, survey.centroid.mean);
-  settle(b, survey.centroid.mean);
-  const double limit = 1e-4;
-  if ((a.origin - b.origin).norm() > limit * (survey.size + a.radius)) return true;
-  if (std::abs(a.radius - b.radius) > limit * (survey.size + a.radius)) return true;
-  return has_axis(a.kind) && a.axes.col(2).cross(b.axes.col(2)).norm() > limit;
+bool apart(ShapeFrame a, ShapeFrame b, const Vector3d& centroid, double length, double angle) {
+  settle(a, centroid);
+  settle(b, centroid);
+  if ((a.origin - b.origin).norm() > length || std::abs(a.radius - b.radius) > length) return true;
+  if (!has_direction(a.kind)) return false;
+  // For line2 e3 is the normal, which turns with the line.
+  const Vector3d one = a.axes.col(2), other = b.axes.col(2);
+  if (one.cross(other).norm() > std::sin(angle)) return true;
+  // The same cone may be written with its axis the other way round.
+  return std::abs(a.half_angle - std::copysign(1.0, one.dot(other)) * b.half_angle) > angle;
+}
+
+bool differ(const ShapeFrame& a, const ShapeFrame& b, const Survey& survey) {
+  constexpr double kLimit = 1e-4;
+  return apart(a, b, survey.centroid.mean, kLimit * (survey.size + a.radius), kLimit);
 }
 
 bool algebraic_sphere(const MatrixXd& points, VectorXd& centre, double& radius) {
@@ -261,6 +269,14 @@ std::vector<ShapeFrame> start_frames(ShapeKind kind, const Survey& survey, const
 }
 
 BestStart best_start(ShapeKind kind, const Survey& survey, const FitConstraints& constraints) {
+  BestStart best;
+  if (is_straight(kind)) {
+    // The principal directions of all points are the answer but for rounding; those of the sample are others, from
+    // which the way back is long where the extents are nearly the same.
+    best.found = true;
+    best.frame = start_frames(kind, survey, constraints).front();
+    return best;
+  }
   const std::vector<int> free = free_parameters(kind, constraints);
   std::vector<Refined> reached;
   for (const ShapeFrame& start : start_frames(kind, survey, constraints)) {
@@ -269,7 +285,6 @@ BestStart best_start(ShapeKind kind, const Survey& survey, const FitConstraints&
                           std::abs(refined.frame.half_angle) < std::numbers::pi / 2;
     if (possible) reached.push_back(refined);
   }
-  BestStart best;
   if (reached.empty()) return best;
   std::stable_sort(reached.begin(), reached.end(),
                    [](const Refined& a, const Refined& b) { return a.sums.squares < b.sums.squares; });

@@ -22,7 +22,8 @@ std::vector<Eigen::Vector3d> half_sphere(std::size_t count);
 /// algebraic circle or cone; the best dozen that differ.
 std::vector<ShapeFrame> start_frames(ShapeKind kind, const Survey& survey, const FitConstraints& constraints);
 
-/// The frame with the fewest squares to which a start leads, on the survey's sample. `rivals`: others that fit as well.
+/// The frame with the fewest squares to which a start leads, on the survey's sample (lines and planes: of all points).
+/// `rival`: another one fits as well.
 struct BestStart {
   bool found = false;
   bool rival = false;
@@ -30,8 +31,11 @@ struct BestStart {
 };
 BestStart best_start(ShapeKind kind, const Survey& survey, const FitConstraints& constraints);
 
+/// Farther apart than `length` (mm; points beside the centroid, radii) or `angle` (rad; directions as lines, half
+/// angles). Both with the same centre. @param centroid  from it, mm
+bool apart(ShapeFrame a, ShapeFrame b, const Eigen::Vector3d& centroid, double length, double angle);
 /// Different answers, not the same one twice. Both with the same centre.
-bool differ(ShapeFrame a, ShapeFrame b, const Survey& survey);
+bool differ(const ShapeFrame& a, const ShapeFrame& b, const Survey& survey);
 
 /// A cone or cylinder with that axis direction; false if there is none.
 bool frame_along(ShapeKind kind, const Eigen::Matrix3d& axes, const Eigen::Matrix3Xd& points,
