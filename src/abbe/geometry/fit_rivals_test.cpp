@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <map>
+#include <numbers>
+#include <string>
 
 #include "abbe/geometry/extreme_fit.h"
 #include "abbe/geometry/robust_fit.h"
@@ -14,6 +17,7 @@ using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 using test::Numbers;
+using test::PatchOptions;
 
 /// Points anywhere in a box, its corners among them, turned and moved.
 Matrix3Xd box_of_points(const Vector3d& size, Index count, Numbers& numbers) {
@@ -113,6 +117,95 @@ TEST(FitRivals, TheLargerOfTwoRoomsIsInscribedAndTheOtherNamed) {
   EXPECT_NEAR((fit.rivals[0].shape.point - fit.shape.point).norm(), 8.9, 0.02);
 }
 
+/// Twice the largest distance from a shape; circumscribed or inscribed: the radius about its centre or axis.
+double value_of(Shape shape, ExtremeKind extreme, const Matrix3Xd& points) {
+  if (extreme != ExtremeKind::minimum_zone) shape.radius = 0;
+  double largest = 0, smallest = std::numeric_limits<double>::infinity();
+  for (Index i = 0; i < points.cols(); ++i) {
+    const double d = std::abs(distance(shape, points.col(i)));
+    largest = std::max(largest, d);
+    smallest = std::min(smallest, d);
+  }
+  return extreme == ExtremeKind::minimum_zone ? 2 * largest : extreme == ExtremeKind::inscribed ? smallest : largest;
+}
+
+/// The shape moved a little in every way that is free to it.
+Shape beside(Shape shape, const FitConstraints& held, double reach, Numbers& numbers) {
+  const bool in_plane = shape.kind == ShapeKind::line2 || shape.kind == ShapeKind::circle2;
+  const auto any = [&] { return Vector3d(numbers.normal(), numbers.normal(), in_plane ? 0 : numbers.normal()); };
+  shape.point += reach * any();
+  if (shape.kind != ShapeKind::sphere && shape.kind != ShapeKind::circle2) {
+    shape.direction = (shape.direction + 0.05 * reach * any()).normalized();
+  }
+  if (!held.radius && shape.kind >= ShapeKind::circle2) shape.radius += reach * numbers.normal();
+  if (shape.kind == ShapeKind::cone) shape.half_angle += 0.05 * reach * numbers.normal();
+  return shape;
+}
+
+/// @return how many rivals were named
+std::size_t check_rivals(ShapeKind kind, ExtremeKind extreme, const Matrix3Xd& points, const FitConstraints& held,
+                         Numbers& numbers) {
+  FitOptions options;
+  options.constraints = held;
+  const ShapeFit fit = extreme_fit(kind, extreme, points, options);
+  if (fit.status != FitStatus::ok && fit.status != FitStatus::ambiguous) return 0;
+  const double sense = extreme == ExtremeKind::inscribed ? -1 : 1;
+  double before = extreme == ExtremeKind::minimum_zone ? fit.form : fit.shape.radius;
+  for (const ShapeRival& rival : fit.rivals) {
+    EXPECT_GE(sense * (rival.value - before), 0) << shape_name(kind) << ": best first";
+    before = rival.value;
+    EXPECT_NEAR(rival.value, value_of(rival.shape, extreme, points), 1e-9) << shape_name(kind);
+    const test::ShapeDifference off = test::difference(rival.shape, fit.shape);
+    EXPECT_GT(off.length + off.angle, 1e-4) << shape_name(kind);
+    for (int trial = 0; trial < 60; ++trial) {
+      const Shape other = beside(rival.shape, held, std::pow(10, numbers.uniform(-7, -4)), numbers);
+      EXPECT_GE(sense * (value_of(other, extreme, points) - rival.value), -1e-9) << shape_name(kind);
+    }
+  }
+  return fit.rivals.size();
+}
+
+TEST(FitRivals, EveryRivalIsBetterThanAllShapesBesideIt) {
+  Numbers numbers(45);
+  struct Case {
+    ShapeKind kind;
+    ExtremeKind extreme;
+    int parts;
+    bool hold_radius;
+    const char* group;
+  };
+  const ExtremeKind zone = ExtremeKind::minimum_zone, within = ExtremeKind::inscribed;
+  std::map<std::string, std::size_t> rivals;
+  for (const Case& one :
+       {Case{ShapeKind::line2, zone, 20, false, "strips"}, Case{ShapeKind::line3, zone, 4, false, "tubes"},
+        Case{ShapeKind::circle3, zone, 1, false, "tubes"}, Case{ShapeKind::plane, zone, 20, false, "slabs"},
+        Case{ShapeKind::circle2, zone, 50, false, "rings"}, Case{ShapeKind::circle2, zone, 50, true, "held"},
+        Case{ShapeKind::sphere, zone, 15, false, "shells"}, Case{ShapeKind::sphere, zone, 15, true, "held"},
+        Case{ShapeKind::cylinder, zone, 6, false, "cylinders"}, Case{ShapeKind::cone, zone, 6, false, "cones"},
+        Case{ShapeKind::circle2, within, 40, false, "inscribed"},
+        Case{ShapeKind::sphere, within, 10, false, "inscribed"},
+        Case{ShapeKind::cylinder, within, 6, false, "cylinders within"},
+        Case{ShapeKind::cylinder, ExtremeKind::circumscribed, 6, false, "cylinders around"}}) {
+    PatchOptions patch;
+    patch.points = one.kind == ShapeKind::circle2 ? 8 : 14;
+    patch.radius = 10;
+    patch.length = 15;
+    for (int part = 0; part < one.parts; ++part) {
+      const test::Patch known = test::patch(one.kind, patch, numbers);
+      const double roughness = known.shape.radius > 0 ? 4 : 8;
+      Matrix3Xd points = known.feet;
+      for (Index i = 0; i < points.cols(); ++i) {
+        points.col(i) += roughness * numbers.uniform(-1, 1) * known.normals.col(i);
+        points.col(i) += roughness * numbers.uniform(-1, 1) * known.second.col(i);
+      }
+      FitConstraints held;
+      if (one.hold_radius) held.radius = patch.radius;
+      rivals[one.group] += check_rivals(one.kind, one.extreme, points, held, numbers);
+    }
+  }
+  for (const auto& [group, count] : rivals) EXPECT_GT(count, 0u) << group;
+}
+
 /// Points of two parallel planes.
 Matrix3Xd step(double share, Index count, Numbers& numbers) {
   Matrix3Xd points(3, count);
@@ -137,6 +230,55 @@ TEST(FitRivals, ARobustPlaneNamesTheOtherLevelOfAStep) {
   const ShapeFit clear = robust_fit(ShapeKind::plane, step(0.9, 600, numbers));
   ASSERT_EQ(clear.status, FitStatus::ok) << clear.reason;
   EXPECT_TRUE(clear.rivals.empty());
+}
+
+/// Points of two lines that cross in the middle.
+Matrix3Xd crossing(double share, Numbers& numbers) {
+  Matrix3Xd points(3, 400);
+  for (Index i = 0; i < points.cols(); ++i) {
+    const double along = numbers.uniform(-20, 20), across = 0.01 * numbers.normal();
+    if (static_cast<double>(i) < share * 400) {
+      points.col(i) << along, across, 0;
+    } else {
+      points.col(i) << across, along, 0;
+    }
+  }
+  return points;
+}
+
+TEST(FitRivals, ARobustLineNamesTheOneThatCrossesItsMiddle) {
+  Numbers numbers(46);
+  const ShapeFit even = robust_fit(ShapeKind::line2, crossing(0.52, numbers));
+  EXPECT_EQ(even.status, FitStatus::ambiguous) << even.reason;
+  for (const ShapeKind kind : {ShapeKind::line2, ShapeKind::line3}) {
+    const ShapeFit uneven = robust_fit(kind, crossing(0.65, numbers));
+    ASSERT_EQ(uneven.status, FitStatus::ok) << uneven.reason;
+    EXPECT_NEAR(uneven.shape.direction.x(), 1, 1e-4);
+    ASSERT_EQ(uneven.rivals.size(), 1u) << shape_name(kind);
+    EXPECT_NEAR(uneven.rivals[0].value, 0.35, 0.01);
+    EXPECT_NEAR(uneven.rivals[0].shape.direction.y(), 1, 1e-4);
+    EXPECT_NEAR(uneven.rivals[0].shape.point.x(), 0, 0.004);
+  }
+  // A quarter of the points is no rival.
+  const ShapeFit clear = robust_fit(ShapeKind::line2, crossing(0.78, numbers));
+  ASSERT_EQ(clear.status, FitStatus::ok) << clear.reason;
+  EXPECT_TRUE(clear.rivals.empty());
+}
+
+TEST(FitRivals, ARobustCircleNamesAConcentricOne) {
+  Numbers numbers(47);
+  Matrix3Xd points(3, 500);
+  for (Index i = 0; i < points.cols(); ++i) {
+    const double turn = numbers.uniform(0, 6.28), radius = (i % 5 < 3 ? 10 : 14) + 0.005 * numbers.normal();
+    points.col(i) << 3 + radius * std::cos(turn), radius * std::sin(turn), 0;
+  }
+  const ShapeFit fit = robust_fit(ShapeKind::circle2, points);
+  ASSERT_EQ(fit.status, FitStatus::ok) << fit.reason;
+  EXPECT_NEAR(fit.shape.radius, 10, 0.002);
+  ASSERT_EQ(fit.rivals.size(), 1u);
+  EXPECT_NEAR(fit.rivals[0].shape.radius, 14, 0.002);
+  EXPECT_NEAR((fit.rivals[0].shape.point - fit.shape.point).norm(), 0, 0.003);
+  EXPECT_NEAR(fit.rivals[0].value, 0.4, 0.01);
 }
 
 }  // namespace

@@ -198,6 +198,7 @@ struct Setting {
   double median_of_normal = 1;  ///< of the distance of normal points, in standard deviations of one residual
   double least_scale = 0;       ///< that of rounding, mm
   double size = 1;              ///< mm
+  double largest_scale = std::numeric_limits<double>::infinity();  ///< mm
   std::vector<int> free;
 };
 
@@ -216,7 +217,8 @@ Reweighted reweigh(const ShapeFrame& start, const FitPoints& points, const Setti
   for (int step = 0; step < most && !result.rested; ++step) {
     distances(result.frame, points, d, threads);
     std::transform(d.begin(), d.end(), sorted.begin(), [](double x) { return std::abs(x); });
-    const double next = std::max(middle(sorted) / setting.median_of_normal, setting.least_scale);
+    const double next = std::clamp(middle(sorted) / setting.median_of_normal, setting.least_scale,
+                                   std::max(setting.least_scale, setting.largest_scale));
     // Late steps keep the scale, which could go to and fro with the middle point.
     const double before = result.scale;
     if (step < 60) result.scale = next;
@@ -233,6 +235,17 @@ Reweighted reweigh(const ShapeFrame& start, const FitPoints& points, const Setti
     result.rested = result.rested || (moved_by < 1e-10 && result.scale <= 2 * setting.least_scale);
   }
   return result;
+}
+
+/// Where a candidate leads whose points are fewer than half: the median is not theirs, so that the scale comes down to
+/// that of the answer by halves.
+ShapeFrame reweighed_rival(const ShapeFrame& candidate, const Matrix3Xd& points, Setting setting, double scale) {
+  Reweighted rival = reweigh(candidate, points, setting, 30, 1);
+  while (std::isfinite(rival.scale) && rival.scale > std::max(scale, setting.least_scale)) {
+    setting.largest_scale = std::max(scale, rival.scale / 2);
+    rival = reweigh(rival.frame, points, setting, 30, 1);
+  }
+  return rival.frame;
 }
 
 /// Losses of the sample's points, 0 on the shape to 1 beyond its reach (Tukey's, whatever the weights).
@@ -262,7 +275,7 @@ void add_rivals(ShapeFit& fit, const ShapeFrame& answer, double scale, const std
   std::vector<ShapeFrame> others;
   for (const ShapeFrame& candidate : candidates) {
     if (unlike(candidate, own, survey)) {
-      others.push_back(reweigh(candidate, survey.sample, setting, 30, 1).frame);
+      others.push_back(reweighed_rival(candidate, survey.sample, setting, scale));
     }
   }
   const auto left = static_cast<Index>(std::llround((1 - own_share) * count));
@@ -274,7 +287,7 @@ void add_rivals(ShapeFit& fit, const ShapeFrame& answer, double scale, const std
       if (own_loss[static_cast<std::size_t>(i)] >= 1) rest.sample.col(next++) = survey.sample.col(i);
     }
     const std::vector<ShapeFrame> found = LeastMedian(own.kind, rest, constraints, seed).search();
-    if (!found.empty()) others.push_back(reweigh(found.front(), rest.sample, setting, 30, 1).frame);
+    if (!found.empty()) others.push_back(reweighed_rival(found.front(), rest.sample, setting, scale));
   }
   // Another one if it lies elsewhere, or if most of its points are others.
   struct Known {
