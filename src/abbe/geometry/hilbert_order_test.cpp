@@ -55,11 +55,26 @@ TEST(HilbertOrder, IsTheSameForAnyNumberOfThreadsAndKeepsTheOrderOfEqualPoints) 
   EXPECT_TRUE(std::is_sorted(equal.begin(), equal.end()));
 }
 
+TEST(HilbertOrder, PointsOutsideTheBoxCountWhereTheyAreNearestToIt) {
+  parts::Numbers numbers(4);
+  Matrix3Xd points(3, 2000);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) points.col(i) = numbers.normal3();
+  // Not quite to the upper side, whose cells end there.
+  const Matrix3Xd moved = points.cwiseMax(-1).cwiseMin(1 - 1e-9);
+  const Vector3d low(-1, -1, -1), high(1, 1, 1);
+  const std::vector<std::uint32_t> order = hilbert_order(points, low, high, 1);
+  EXPECT_EQ(order, hilbert_order(moved, low, high, 1));
+  std::vector<std::uint32_t> as_they_came(order.size());
+  std::iota(as_they_came.begin(), as_they_came.end(), 0u);
+  EXPECT_NE(order, as_they_came);
+}
+
 TEST(HilbertOrder, TakesPointsFarOutsideABoxWithoutExtent) {
   Matrix3Xd points(3, 3);
   points << 1e300, 0, -1e300, 0, 0, 0, 5, 0, -5;
   EXPECT_EQ(hilbert_order(points, Vector3d::Zero(), Vector3d::Zero(), 1), (std::vector<std::uint32_t>{0, 1, 2}));
-  EXPECT_EQ(hilbert_order(points, Vector3d::Zero(), Vector3d::Ones(), 1).size(), 3u);
+  // The curve begins at the lower corner, where the last two are moved to.
+  EXPECT_EQ(hilbert_order(points, Vector3d::Zero(), Vector3d::Ones(), 1), (std::vector<std::uint32_t>{1, 2, 0}));
   EXPECT_TRUE(hilbert_order(points.leftCols(0), Vector3d::Zero(), Vector3d::Ones(), 1).empty());
 }
 

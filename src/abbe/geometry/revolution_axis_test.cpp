@@ -52,7 +52,9 @@ std::vector<std::uint32_t> all(const TriangleMesh& mesh) {
 std::pair<double, RevolutionAxis> best(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
   std::pair<double, RevolutionAxis> result{std::numeric_limits<double>::infinity(), {}};
   const std::vector<Eigen::Vector3d> directions = {Eigen::Vector3d::UnitY()};
-  for (const RevolutionAxis& axis : revolution_axes(mesh, triangles, directions)) {
+  const std::vector<RevolutionAxis> candidates = revolution_axes(mesh, triangles, directions);
+  EXPECT_FALSE(candidates.empty());
+  for (const RevolutionAxis& axis : candidates) {
     const double deviation = revolution_deviation(mesh, triangles, axis);
     if (deviation < result.first) result = {deviation, axis};
   }
@@ -116,7 +118,10 @@ TEST(RevolutionAxis, OfACylinderOfLongStripsIsNotThatOfTheSphereThroughItsCorner
       tube(90, 1, [](double a, double h) { return Eigen::Vector3d(5 * std::cos(a), 5 * std::sin(a), 10 * h); });
   // Askew to the cylinder's own axis.
   const std::vector<Eigen::Vector3d> directions = {Eigen::Vector3d::UnitY()};
-  for (const RevolutionAxis& axis : revolution_axes(part.mesh, all(part.mesh), directions)) {
+  const std::vector<RevolutionAxis> axes = revolution_axes(part.mesh, all(part.mesh), directions);
+  ASSERT_FALSE(axes.empty());
+  for (const RevolutionAxis& axis : axes) {
+    expect_axis(axis, part.axis, 1e-3, 5e-3);
     EXPECT_LT(axis.direction.cross(part.axis.direction).norm(), 1e-3);
   }
 }
@@ -124,13 +129,17 @@ TEST(RevolutionAxis, OfACylinderOfLongStripsIsNotThatOfTheSphereThroughItsCorner
 TEST(RevolutionAxis, IsNotOneOfAnEllipticTubeNorOfATwistedOne) {
   const Tube ellipse =
       tube(180, 10, [](double a, double h) { return Eigen::Vector3d(5 * std::cos(a), 4.5 * std::sin(a), 10 * h); });
-  EXPECT_GT(best(ellipse.mesh, all(ellipse.mesh)).first, 0.1);
+  // Normals of the ellipse miss its middle by up to 5 - 4.5; half a strip is 0.087 wide.
+  EXPECT_NEAR(revolution_deviation(ellipse.mesh, all(ellipse.mesh), ellipse.axis), 0.5, 0.09);
+  EXPECT_GT(best(ellipse.mesh, all(ellipse.mesh)).first, 0.35);
   // A motion of a screw keeps it, no rotation does.
   const Tube twisted = tube(180, 40, [](double a, double h) {
     const Eigen::Vector3d section(7 * std::cos(a), 1.5 * std::sin(a), 10 * h);
     return Eigen::Vector3d(rotation_about(Eigen::Vector3d::UnitZ(), 0.7 * h) * section);
   });
-  EXPECT_GT(best(twisted.mesh, all(twisted.mesh)).first, 1.0);
+  // Of the untwisted section they miss it by up to 7 - 1.5.
+  EXPECT_NEAR(revolution_deviation(twisted.mesh, all(twisted.mesh), twisted.axis), 5.5, 0.6);
+  EXPECT_GT(best(twisted.mesh, all(twisted.mesh)).first, 4.0);
 }
 
 }  // namespace
