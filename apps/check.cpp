@@ -158,7 +158,7 @@ void add_check_command(CommandLine& line) {
                           {"covariance", errors.covariance.size() > 0}};
       }
       if (options->json) {
-        fmt::print("{}\n", json_text(json));
+        fmt::print("{}", json_text(json));
         return kDone;
       }
       print_machine(machine);

@@ -168,7 +168,7 @@ int check_cloud(const PointCloudFile& file, bool json_wanted) {
     json["lower_mm"] = triple(lower);
     json["upper_mm"] = triple(upper);
     json["centroid_mm"] = triple(centroid);
-    fmt::print("{}\n", json_text(json));
+    fmt::print("{}", json_text(json));
     return kDone;
   }
   fmt::print("point cloud, {}; unit of the file: {}\n\n", file.format, unit_words(file.unit));
@@ -207,7 +207,7 @@ int check_geometry(const GeometryCheckOptions& options) {
   mesh.check = check_mesh(mesh.file.mesh);
   mesh.repeated = repeated_points(mesh.file.mesh.vertices);
   if (options.json) {
-    fmt::print("{}\n", json_text(mesh_json(mesh)));
+    fmt::print("{}", json_text(mesh_json(mesh)));
   } else {
     print_mesh(mesh);
   }

@@ -22,7 +22,8 @@ CommandLine::CommandLine()
       "  abbe run examples/aguado/aguado.study.toml     the whole job, from readings to the report\n"
       "  abbe check examples/machines/trunnion-mill.machine.toml\n"
       "  abbe reproduce wang                            a published study, recomputed\n\n"
-      "Exit codes: 0 done, 1 the computation says no, 2 bad input, 3 internal error, 130 interrupted.");
+      "Exit codes: 0 done, 1 the computation says no, 2 bad input, 3 internal error;\n"
+      "interrupted: 130 by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.");
   app.set_version_flag("--version", "abbe " ABBE_VERSION);
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Help of all subcommands");

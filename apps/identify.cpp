@@ -53,7 +53,7 @@ void add_identify_command(CommandLine& line) {
       if (options->json) {
         nlohmann::ordered_json json = study_summary(study, result);
         if (result.usable()) json["parameter_table"] = report_parameters(study.machine, result, nullptr);
-        fmt::print("{}\n", json_text(json));
+        fmt::print("{}", json_text(json));
         return result.usable() ? kDone : kNegative;
       }
       print_study(study, result);

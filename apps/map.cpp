@@ -77,7 +77,7 @@ void print_json(const Machine& machine, const ErrorMap& before, const ErrorMap* 
       json["standard_uncertainty_um"] = statistics_um(sample_statistics(before.norm_uncertainty, before.covered));
     }
   }
-  fmt::print("{}\n", json_text(json));
+  fmt::print("{}", json_text(json));
 }
 
 void print_text(const Machine& machine, const ErrorMap& before, const ErrorMap* after) {

@@ -58,23 +58,7 @@ PathProgramOptions program_options(const PathCommand& command, const Machine& ma
   PathProgramOptions options;
   options.decimals = command.decimals;
   options.inverse_time = !command.feed_per_minute;
-  for (const std::string& text : command.words) {
-    const std::size_t equals = text.find('=');
-    const std::string name = text.substr(0, equals);
-    if (equals == std::string::npos || equals + 1 == text.size() || machine.find_axis(name) == Machine::npos) {
-      throw InputError({.field = "--word " + text}, "not an axis of this machine and its word",
-                       "AXIS=WORD, such as C1=C");
-    }
-    options.words[name] = text.substr(equals + 1);
-  }
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      if (axis_word(machine.axes[i].name, options) == axis_word(machine.axes[k].name, options)) {
-        throw InputError({.field = "--word"}, "two axes have the word " + axis_word(machine.axes[i].name, options),
-                         "a word of its own for each axis");
-      }
-    }
-  }
+  options.words = axis_words(machine, command.words, "--word");
   options.comments = {"tool path of " + std::filesystem::path(command.curve).filename().string() + " on " +
                       machine.name};
   return options;
@@ -234,7 +218,7 @@ int run_path(const PathCommand& command) {
   if (!command.report.empty()) write_page(command, machine, path, commands);
   const Miss miss = largest_miss(machine, curve, path);
   if (command.json) {
-    fmt::print("{}\n", json_text(path_json(machine, path, miss)));
+    fmt::print("{}", json_text(path_json(machine, path, miss)));
   } else {
     print_path(machine, path, miss, command);
   }

@@ -224,7 +224,7 @@ void add_plan_command(CommandLine& line) {
       if (done && !options->output.empty()) write_file_atomically(options->output, plan_csv(study, result));
       if (done && !options->plot.empty()) write_file_atomically(options->plot, plan_svg(study, result));
       if (options->json) {
-        fmt::print("{}\n", json_text(plan_json(study, result)));
+        fmt::print("{}", json_text(plan_json(study, result)));
       } else {
         print_plan(study, result);
         if (done && !options->output.empty()) fmt::print("\n{} written\n", options->output);

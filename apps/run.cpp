@@ -49,7 +49,7 @@ void add_run_command(CommandLine& line) {
       }
       const nlohmann::ordered_json summary = write_results(study, result);
       if (options->json) {
-        fmt::print("{}\n", json_text(summary));
+        fmt::print("{}", json_text(summary));
       } else {
         print_study(study, result);
         fmt::print("\nresults in {}\n", study.output.string());

@@ -150,11 +150,11 @@ int reproduce_aguado(const ReproduceOptions& options) {
   }
   if (!options.output.empty()) {
     ResultsFolder folder(options.output);
-    folder.write("summary.json", json_text(json) + "\n");
+    folder.write("summary.json", json_text(json));
     folder.commit();
   }
   if (options.json) {
-    fmt::print("{}\n", json_text(json));
+    fmt::print("{}", json_text(json));
     return agrees ? kDone : kNegative;
   }
 

@@ -131,7 +131,7 @@ int reproduce_liu(const ReproduceOptions& options) {
   const LiuResults results = compute();
   if (!options.output.empty()) write_liu_folder(results, options.output);
   if (options.json) {
-    fmt::print("{}\n", json_text(liu_json(results)));
+    fmt::print("{}", json_text(liu_json(results)));
   } else {
     print_liu(results);
   }

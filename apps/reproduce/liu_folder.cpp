@@ -41,7 +41,7 @@ std::string mesh_ply(const TriangleMesh& mesh) {
 
 void write_liu_folder(const LiuResults& results, const std::filesystem::path& folder) {
   ResultsFolder out(folder);
-  out.write("summary.json", json_text(liu_json(results)) + "\n");
+  out.write("summary.json", json_text(liu_json(results)));
   for (const LiuUnitResults& unit : results.units) {
     if (unit.unit != LiuUnit::micrometre) continue;
     for (const LiuMeasuredPart& part : unit.parts) {
@@ -52,7 +52,7 @@ void write_liu_folder(const LiuResults& results, const std::filesystem::path& fo
       out.write(place / "path.ngc",
                 scan_plan_program(results.machine, part.plan, "scan of " + name + " on " + results.machine.name));
       out.write(place / "coverage.ply", scan_coverage_ply(part.plan));
-      out.write(place / "plan.json", json_text(scan_plan_data(results.machine, part.plan, part.model.name)) + "\n");
+      out.write(place / "plan.json", json_text(scan_plan_data(results.machine, part.plan, part.model.name)));
       out.write(place / "before.ply", points_ply(part.measurement.before));
       out.write(place / "after.ply", points_ply(part.measurement.after));
     }

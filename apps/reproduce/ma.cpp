@@ -226,7 +226,7 @@ int reproduce_ma(const ReproduceOptions& options) {
   }
   const Results r = compute();
   if (options.json) {
-    fmt::print("{}\n", json_text(json_of(r)));
+    fmt::print("{}", json_text(json_of(r)));
     return r.agrees ? kDone : kNegative;
   }
   fmt::print("Ma, Li, Feng, He, Ding, Cui (2021), Applied Sciences 11, 3960\n");

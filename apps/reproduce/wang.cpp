@@ -235,7 +235,7 @@ void write_folder(const std::filesystem::path& output, const std::vector<Populat
   const ErrorMap map_decoupled = error_map(machine, decoupled.errors, nullptr, pose_source(poses), options);
   folder.write("maps/decoupled_errors.csv",
                map_csv(map_data(machine, poses, counts, map_decoupled, nullptr, &map_decoupled)));
-  folder.write("summary.json", json_text(summary) + "\n");
+  folder.write("summary.json", json_text(summary));
   folder.write("report.html", report_page(nlohmann::json(data)));
   folder.commit();
 }
@@ -269,7 +269,7 @@ int reproduce_wang(const ReproduceOptions& options) {
     json["dials"] = wang_dials_json(dials);
     json["ball_bar_circular_deviation_um"] = wang_ball_bar_json(dials.study);
     for (const PopulationRow& row : populations) json["populations_um"][row.name] = population_json(row.population);
-    fmt::print("{}\n", json_text(json));
+    fmt::print("{}", json_text(json));
     return kDone;
   }
 

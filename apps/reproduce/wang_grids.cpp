@@ -189,7 +189,7 @@ int decouple_wang_grids(const ReproduceOptions& options) {
   if (options.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const GridFile& file : files) json.push_back(json_of(machine, file));
-    fmt::print("{}\n", json_text(json));
+    fmt::print("{}", json_text(json));
   } else {
     fmt::print("Grinder {}; probes without u_um: dials u = {:.3g} um, along the axis u = {:.3g} um\n\n",
                machine.chain(), 1e3 * kWangDialUncertainty, 1e3 * kWangLaserUncertainty);

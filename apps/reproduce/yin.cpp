@@ -63,7 +63,7 @@ int reproduce_yin(const ReproduceOptions& options) {
   const YinResults r = compute();
   if (!options.output.empty()) write_folder(r, options.output);
   if (options.json) {
-    fmt::print("{}\n", json_text(yin_json(r)));
+    fmt::print("{}", json_text(yin_json(r)));
   } else {
     print_yin(r);
     if (!options.output.empty()) fmt::print("results in {}\n", options.output.string());

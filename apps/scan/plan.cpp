@@ -12,11 +12,13 @@
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/mesh_file.h"
+#include "abbe/formats/number_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/scan_plan_file.h"
 #include "abbe/geometry/mesh_check.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/vertex_welder.h"
+#include "abbe/plan/wanted_area.h"
 #include "scan/scan.h"
 
 namespace abbe {
@@ -77,19 +79,6 @@ TriangleMesh read_part(const std::string& file) {
   return mesh;
 }
 
-/// "C1=C": the word of an axis in the program.
-PathProgramOptions program_words(const Machine& machine, const std::vector<std::string>& words) {
-  PathProgramOptions program;
-  for (const std::string& text : words) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos || machine.find_axis(text.substr(0, equals)) == Machine::npos) {
-      throw InputError({.field = "--word " + text}, "not understood", "AXIS=WORD, such as C1=C");
-    }
-    program.words[text.substr(0, equals)] = text.substr(equals + 1);
-  }
-  return program;
-}
-
 ScanPlanOptions scan_options(const PlanOptions& options) {
   ScanPlanOptions scan = options.scan;
   if (!options.stage.empty()) scan.stage = read_mesh(options.stage).mesh;
@@ -99,9 +88,10 @@ ScanPlanOptions scan_options(const PlanOptions& options) {
   for (const std::vector<double>& plane : options.beyond) {
     const Eigen::Vector3d normal(plane[0], plane[1], plane[2]);
     if (!(normal.norm() > 1e-12) || !std::isfinite(normal.norm()) || !std::isfinite(plane[3])) {
-      throw InputError({.field = "--beyond-plane-mm"}, "the normal has no length", "NX NY NZ and a distance in mm");
+      throw InputError({.field = "--beyond-plane-mm"}, "the normal has no length",
+                       "NX NY NZ and D in mm: NX x + NY y + NZ z >= D");
     }
-    scan.wanted.push_back({normal.normalized(), plane[3]});
+    scan.wanted.push_back({normal.normalized(), plane[3] / normal.norm()});
   }
   scan.crease_angle = options.crease_deg * kDegree;
   scan.largest_angle = options.angle_deg * kDegree;
@@ -147,15 +137,35 @@ void print_plan(const Machine& machine, const ScanPlan& plan, const std::string&
   }
 }
 
+/// "--range-um" -> "um"
+std::string unit_in(const std::string& option) {
+  for (const char* rate : {"mm-per-s", "deg-per-s", "per-second"}) {
+    if (option.ends_with(rate)) return rate;
+  }
+  return option.substr(option.rfind('-') + 1);
+}
+
+/// A number from low to high; the error states the unit.
+CLI::Validator within(double low, double high, const std::string& unit) {
+  return {[=](const std::string& text) {
+            double value = 0;
+            if (parse_number(text, 0, value) == NumberProblem::none && value >= low && value <= high)
+              return std::string{};
+            return fmt::format("{} is not a number from {} to {} {}", text, low, high, unit);
+          },
+          fmt::format("{} to {} {}", low, high, unit)};
+}
+
 int run_plan(const PlanOptions& options) {
   const Machine machine = read_machine(options.machine);
-  const PathProgramOptions words = program_words(machine, options.words);
+  PathProgramOptions program;
+  program.words = axis_words(machine, options.words, "--word");
   const TriangleMesh part = read_part(options.part);
   ScanPlanOptions scan = scan_options(options);
-  const double most = check_mesh(part).area / (scan.along * scan.between);
+  const double most = wanted_area(part, scan.wanted) / (scan.along * scan.between);
   if (most > 5e6) {
     throw InputError({.field = "--along-mm"}, fmt::format("{:.0f} points", most),
-                     "at most 5,000,000: larger distances");
+                     "at most 5,000,000: larger distances, or a part of the surface (--beyond-plane-mm)");
   }
   Progress progress("planning the scan");
   scan.progress = progress.callback();
@@ -168,12 +178,12 @@ int run_plan(const PlanOptions& options) {
   if (!options.output.empty()) write_file_atomically(options.output, scan_plan_csv(machine, plan));
   if (!options.program.empty()) {
     write_file_atomically(options.program,
-                          scan_plan_program(machine, plan, "scan of " + name + " on " + machine.name, words));
+                          scan_plan_program(machine, plan, "scan of " + name + " on " + machine.name, program));
   }
   if (!options.coverage.empty()) write_file_atomically(options.coverage, scan_coverage_ply(plan));
-  if (!options.data.empty()) write_file_atomically(options.data, json_text(scan_plan_data(machine, plan, name)) + "\n");
+  if (!options.data.empty()) write_file_atomically(options.data, json_text(scan_plan_data(machine, plan, name)));
   if (options.json) {
-    fmt::print("{}\n", json_text(scan_plan_summary(machine, plan, name)));
+    fmt::print("{}", json_text(scan_plan_summary(machine, plan, name)));
   } else {
     print_plan(machine, plan, name);
   }
@@ -214,22 +224,18 @@ void add_scan_plan(CLI::App& scan, CommandLine& line) {
   command->add_option("--position-mm", options->position, "Where the part stands in the workpiece frame")->expected(3);
   command->add_option("--turn-deg", options->turn, "How it is turned: about x, then y, then z")->expected(3);
   command->add_option("--stage", options->stage, "Mesh of what turns with the part, workpiece frame");
+  const auto ranged = [&](const std::string& name, double& value, double low, double high, const char* words) {
+    command->add_option(name, value, words)->check(within(low, high, unit_in(name)))->capture_default_str();
+  };
   const auto positive = [&](const char* name, double& value, const char* words) {
-    command->add_option(name, value, words)->check(CLI::Range(1e-9, 1e6))->capture_default_str();
+    ranged(name, value, 1e-9, 1e6, words);
   };
   positive("--along-mm", options->scan.along, "Distance of points along a line");
   positive("--between-mm", options->scan.between, "Distance of lines");
-  command
-      ->add_option("--turn-between-deg", options->turn_between_deg,
-                   "Largest turn of the normal from point to point: points are closer where it turns faster")
-      ->check(CLI::Range(0.1, 20.0))
-      ->capture_default_str();
-  command->add_option("--crease-deg", options->crease_deg, "Faces end where triangles meet at more")
-      ->check(CLI::Range(1.0, 90.0))
-      ->capture_default_str();
-  command->add_option("--largest-angle-deg", options->angle_deg, "Largest angle between beam and normal")
-      ->check(CLI::Range(2.0, 85.0))
-      ->capture_default_str();
+  ranged("--turn-between-deg", options->turn_between_deg, 0.1, 20,
+         "Largest turn of the normal from point to point: points are closer where it turns faster");
+  ranged("--crease-deg", options->crease_deg, 1, 90, "Faces end where triangles meet at more");
+  ranged("--largest-angle-deg", options->angle_deg, 2, 85, "Largest angle between beam and normal");
   positive("--range-um", options->range_um, "Range of the probe about its middle, the functional point");
   positive("--working-distance-mm", options->scan.working_distance, "From the measured point to the probe");
   positive("--probe-radius-mm", options->scan.probe_radius, "Radius of the probe behind it");

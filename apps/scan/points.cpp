@@ -83,7 +83,7 @@ int run_points(PointsOptions options) {
       json["highest_mm"] = {summary.highest[0], summary.highest[1], summary.highest[2]};
     }
     json["output"] = options.output;
-    fmt::print("{}\n", json_text(json));
+    fmt::print("{}", json_text(json));
   } else {
     fmt::print("{} readings on {}, {}\n", summary.readings, machine.name,
                options.errors.empty() ? "machine without errors" : "errors of " + options.errors);

@@ -103,7 +103,7 @@ std::string residuals_csv(const Study& study, const StudyResult& result) {
 nlohmann::ordered_json write_results(const Study& study, const StudyResult& result) {
   nlohmann::ordered_json summary = study_summary(study, result);
   ResultsFolder folder(study.output);
-  folder.write("summary.json", json_text(summary) + "\n");
+  folder.write("summary.json", json_text(summary));
   if (result.campaign.truth) {
     for (const std::unique_ptr<CampaignSetup>& setup : result.campaign.setups) {
       folder.write("readings/" + setup->name + ".csv", setup->readings_text(study.machine));

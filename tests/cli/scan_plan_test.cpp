@@ -197,6 +197,69 @@ TEST_F(ScanPlanCommand, AsksForWordsOfAxesWithNumbersAndForPlanesThatLeaveSometh
   EXPECT_NE(result.err.find("--word W=C"), std::string::npos) << result.err;
 }
 
+TEST_F(ScanPlanCommand, RefusesWordsThatAProgramWouldMistake) {
+  const auto refused = [&](const std::vector<std::string>& words, const std::string& why) {
+    std::vector<std::string> command{"scan", "plan",         pyramid, "--machine", machine,   "--along-mm",
+                                     "2",    "--between-mm", "2",     "--program", "path.ngc"};
+    for (const std::string& word : words) command.insert(command.end(), {"--word", word});
+    const CommandResult result = abbe(command);
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input) << result.out;
+    EXPECT_NE(result.err.find(why), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "path.ngc"));
+  };
+  refused({"C=A"}, "two axes have the word A");
+  refused({"C=U", "A=U"}, "two axes have the word U");
+  refused({"C="}, "--word C=: not an axis of this machine and its word");
+  refused({"C=F"}, "--word C=F: no word of an axis");
+  refused({"C=C1"}, "--word C=C1: no word of an axis");
+  refused({"C=U", "C=V"}, "--word C=V: this axis has a word already");
+}
+
+/// A block as OBJ text. @param first  number of vertices written before
+std::string block_obj(double low, double high, int first) {
+  std::ostringstream text;
+  for (int i = 0; i < 8; ++i) {
+    text << "v " << ((i & 1) != 0 ? high : low) << ' ' << ((i & 2) != 0 ? high : low) << ' '
+         << ((i & 4) != 0 ? high : low) << '\n';
+  }
+  for (const char* quad : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"}) {
+    std::istringstream corners(quad);
+    text << 'f';
+    for (int corner = 0; corners >> corner;) text << ' ' << first + corner;
+    text << '\n';
+  }
+  return text.str();
+}
+
+TEST_F(ScanPlanCommand, CountsThePointsOfWhatIsWantedOnly) {
+  // 60,000 mm2 that nobody asks for, and a cube of 1 mm above them.
+  folder.write("blocks.obj", block_obj(-100, 0, 0) + block_obj(20, 21, 8));
+  std::vector<std::string> command{"scan",       "plan", "blocks.obj",   "--machine", machine,
+                                   "--along-mm", "0.1",  "--between-mm", "0.1",       "--json"};
+  const CommandResult all = abbe(command);
+  EXPECT_EQ(all.exit_code, ExitCode::bad_input) << all.out;
+  EXPECT_NE(all.err.find("--along-mm: 6000600 points; expected at most 5,000,000"), std::string::npos) << all.err;
+  command.insert(command.end(), {"--beyond-plane-mm", "0", "2", "0", "30"});  // y >= 15
+  const CommandResult small = abbe(command);
+  ASSERT_NE(small.exit_code, ExitCode::bad_input) << small.err;
+  const nlohmann::json json = nlohmann::json::parse(small.out);
+  EXPECT_NEAR(json["area_mm2"].get<double>(), 6, 1e-6);
+  EXPECT_GT(json["points"].get<int>(), 400);
+  EXPECT_TRUE(small.out.ends_with("}\n") && !small.out.ends_with("\n\n"));
+}
+
+TEST_F(ScanPlanCommand, RefusesAnglesOutOfTheirRangeWithTheirUnit) {
+  const auto refused = [&](const std::string& option, const std::string& value, const std::string& why) {
+    const CommandResult result = abbe({"scan", "plan", pyramid, "--machine", machine, option, value});
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input) << result.out;
+    EXPECT_NE((result.out + result.err).find(why), std::string::npos) << result.err;
+  };
+  refused("--largest-angle-deg", "86", "--largest-angle-deg: 86 is not a number from 2 to 85 deg");
+  refused("--crease-deg", "0.5", "--crease-deg: 0.5 is not a number from 1 to 90 deg");
+  refused("--range-um", "-400", "-400 is not a number from 1e-09 to 1000000 um");
+  refused("--linear-speed-mm-per-s", "nan", "nan is not a number from 1e-09 to 1000000 mm-per-s");
+}
+
 TEST_F(ScanPlanCommand, SaysWhatItDoesNotReach) {
   // The probe is as thick as the part is long, and the part stands on a plate.
   folder.write("plate.obj", "v -60 -20.1 -60\nv 60 -20.1 -60\nv 60 -20.1 60\nv -60 -20.1 60\nf 1 4 3\nf 1 3 2\n");

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
+#include "abbe/formats/input_error.h"
 #include "abbe/formats/number_text.h"
 
 namespace abbe {
@@ -27,6 +30,15 @@ std::string comment(std::string text) {
     if (c == '(' || c == ')' || static_cast<unsigned char>(c) < ' ') c = ' ';
   }
   return "(" + text + ")\n";
+}
+
+/// Letters and digits only where "=" keeps them from the number behind: C112.5 would be an axis C or an axis C1.
+bool is_axis_word(const std::string& word) {
+  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  if (word.empty() || !is_letter(word[0])) return false;
+  if (word.size() == 1) return std::string_view("FGMNOPSTfgmnopst").find(word[0]) == std::string_view::npos;
+  return word.back() == '=' && std::all_of(word.begin(), word.end() - 1,
+                                           [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 class ProgramWriter {
@@ -122,6 +134,35 @@ std::string axis_word(const std::string& name, const PathProgramOptions& options
   const auto word = options.words.find(name);
   if (word != options.words.end()) return word->second;
   return name.size() == 1 ? name : name + "=";
+}
+
+std::map<std::string, std::string> axis_words(const Machine& machine, const std::vector<std::string>& texts,
+                                              const std::string& option) {
+  PathProgramOptions options;
+  for (const std::string& text : texts) {
+    const InputError::Place place{.field = option + " " + text};
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals);
+    if (equals == std::string::npos || equals + 1 == text.size() || machine.find_axis(name) == Machine::npos) {
+      throw InputError(place, "not an axis of this machine and its word", "AXIS=WORD, such as C1=C");
+    }
+    const std::string word = text.substr(equals + 1);
+    if (!is_axis_word(word)) {
+      throw InputError(
+          place, "no word of an axis",
+          "a letter other than F, G, M, N, O, P, S, T, or a name that ends in '=', such as C1=C or C1=C1=");
+    }
+    if (!options.words.emplace(name, word).second) throw InputError(place, "this axis has a word already");
+  }
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (axis_word(machine.axes[i].name, options) == axis_word(machine.axes[k].name, options)) {
+        throw InputError({.field = option}, "two axes have the word " + axis_word(machine.axes[i].name, options),
+                         "a word of its own for each axis");
+      }
+    }
+  }
+  return options.words;
 }
 
 std::string path_program(const Machine& machine, const ToolPath& path, const std::vector<std::vector<double>>& commands,

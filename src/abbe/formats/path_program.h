@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "abbe/machine/tool_path.h"
 
@@ -17,6 +18,14 @@ struct PathProgramOptions {
 
 /// The word of an axis: its letter; "C1=" where the name has a number and no other word is given.
 std::string axis_word(const std::string& name, const PathProgramOptions& options);
+
+/// Words of axes as a user gives them, "C1=C": the name of an axis and its word in the program: a letter, or a name
+/// that ends in "=" ("C1="). F, G, M, N, O, P, S and T mean something else in a program.
+/// @param option  how the user calls them, for the error: "--word"
+/// @throws InputError for another text, an axis that the machine does not have or that is named twice, and if two axes
+///                    would have the same word
+std::map<std::string, std::string> axis_words(const Machine& machine, const std::vector<std::string>& texts,
+                                              const std::string& option);
 
 /// NC program of a tool path: G21 G90, rapid moves G0, moves at work G1 between M3 and M5, dwells G4 P, M30.
 /// @param commands  [steps][axes] mm or rad, as the control is to have them

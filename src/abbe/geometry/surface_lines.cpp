@@ -125,6 +125,15 @@ SurfaceLine spaced(const std::vector<Piece>& pieces, const Chain& chain, const S
 std::vector<SurfaceLine> surface_lines(const TriangleMesh& mesh, const SmoothSurface& smooth,
                                        std::span<const std::uint32_t> triangles, const Eigen::Vector3d& direction,
                                        double along, double between, double largest_turn) {
+  std::vector<SurfaceLine> lines;
+  for_each_surface_line(mesh, smooth, triangles, direction, along, between, largest_turn,
+                        [&](const SurfaceLine& line) { lines.push_back(line); });
+  return lines;
+}
+
+void for_each_surface_line(const TriangleMesh& mesh, const SmoothSurface& smooth,
+                           std::span<const std::uint32_t> triangles, const Eigen::Vector3d& direction, double along,
+                           double between, double largest_turn, const std::function<void(const SurfaceLine&)>& visit) {
   constexpr double kSteepest = 0.05;
   struct Extent {
     double low, high, slope;  ///< slope: sine of the angle between the triangle's normal and the direction
@@ -146,8 +155,7 @@ std::vector<SurfaceLine> surface_lines(const TriangleMesh& mesh, const SmoothSur
     low = std::min(low, extent.low);
     high = std::max(high, extent.high);
   }
-  std::vector<SurfaceLine> lines;
-  if (!(high > low)) return lines;
+  if (!(high > low)) return;
   const auto step_at = [&](double height) {
     double slope = 1;
     for (const Extent& extent : extents) {
@@ -160,9 +168,10 @@ std::vector<SurfaceLine> surface_lines(const TriangleMesh& mesh, const SmoothSur
     std::vector<bool> closed;
     const std::vector<Chain> chains = chains_of(pieces, closed);
     for (std::size_t i = 0; i < chains.size(); ++i) {
-      lines.push_back(spaced(pieces, chains[i], smooth, along, largest_turn));
-      lines.back().is_closed = closed[i];
-      lines.back().height = height;
+      SurfaceLine line = spaced(pieces, chains[i], smooth, along, largest_turn);
+      line.is_closed = closed[i];
+      line.height = height;
+      visit(line);
     }
   };
   // Half a step from both ends; a face lower than that has one line in its middle.
@@ -171,7 +180,6 @@ std::vector<SurfaceLine> surface_lines(const TriangleMesh& mesh, const SmoothSur
     add(height);
     height += step_at(height);
   }
-  return lines;
 }
 
 }  // namespace abbe

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -31,5 +32,10 @@ std::vector<SurfaceLine> surface_lines(const TriangleMesh& mesh, const SmoothSur
                                        std::span<const std::uint32_t> triangles, const Eigen::Vector3d& direction,
                                        double along, double between,
                                        double largest_turn = std::numeric_limits<double>::infinity());
+
+/// The same, one line after the other: only one of them is kept in memory.
+void for_each_surface_line(const TriangleMesh& mesh, const SmoothSurface& smooth,
+                           std::span<const std::uint32_t> triangles, const Eigen::Vector3d& direction, double along,
+                           double between, double largest_turn, const std::function<void(const SurfaceLine&)>& visit);
 
 }  // namespace abbe

@@ -20,6 +20,7 @@ Cell cell_of(const Eigen::Vector3d& point, double size) {
 
 std::vector<CoveredPlace> covered_places(const TriangleMesh& mesh, const std::vector<std::uint32_t>& face_of_triangle,
                                          const std::vector<ScannedPlace>& scanned,
+                                         const std::vector<std::uint32_t>& triangles,
                                          const std::function<bool(const Eigen::Vector3d&)>& wanted, double radius) {
   std::map<Cell, std::vector<ScannedPlace>> cells;
   for (const ScannedPlace& place : scanned) cells[cell_of(place.point, radius)].push_back(place);
@@ -52,7 +53,7 @@ std::vector<CoveredPlace> covered_places(const TriangleMesh& mesh, const std::ve
     Eigen::Vector3d a, b, c;
   };
   std::vector<Triangle> waiting;
-  for (Eigen::Index i = 0; i < mesh.size(); ++i) {
+  for (const std::uint32_t i : triangles) {
     waiting.push_back({mesh.corner(i, 0), mesh.corner(i, 1), mesh.corner(i, 2)});
     while (!waiting.empty()) {
       const Triangle t = waiting.back();
@@ -78,8 +79,7 @@ std::vector<CoveredPlace> covered_places(const TriangleMesh& mesh, const std::ve
       }
       const Eigen::Vector3d point = (t.a + t.b + t.c) / 3;
       if (!wanted(point)) continue;
-      places.push_back({point, static_cast<std::uint32_t>(i), 0.5 * (t.b - t.a).cross(t.c - t.a).norm(),
-                        obstacle_at(point, face_of_triangle[static_cast<std::size_t>(i)])});
+      places.push_back({point, i, 0.5 * (t.b - t.a).cross(t.c - t.a).norm(), obstacle_at(point, face_of_triangle[i])});
     }
   }
   return places;

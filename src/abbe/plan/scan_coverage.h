@@ -30,10 +30,12 @@ struct ScannedPlace {
 /// their face within twice the radius that was not measured, or `spacing` if there is none.
 /// @param face_of_triangle  [triangles]
 /// @param scanned           mm, frame of the mesh
+/// @param triangles         those that are divided
 /// @param wanted            of a point of the mesh; what is not wanted is left out
 /// @param radius            mm, > 0
 std::vector<CoveredPlace> covered_places(const TriangleMesh& mesh, const std::vector<std::uint32_t>& face_of_triangle,
                                          const std::vector<ScannedPlace>& scanned,
+                                         const std::vector<std::uint32_t>& triangles,
                                          const std::function<bool(const Eigen::Vector3d&)>& wanted, double radius);
 
 }  // namespace abbe

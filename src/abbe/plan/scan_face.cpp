@@ -16,7 +16,6 @@ namespace abbe {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kAngleMargin = 1 * kDegree;
 constexpr double kRevolutionTolerance = 0.02;  // mm, of a normal from the axis that it should meet
 
 /// Area-weighted middle of a face, its mean normal, and how it spreads.
@@ -63,7 +62,7 @@ bool try_raster(const FaceExtent& extent, double largest_angle, ScanFace& face) 
   for (const Eigen::Vector3d& normal : extent.normals) {
     least_cosine = std::min(least_cosine, normal.dot(face.mean_normal));
   }
-  if (!(least_cosine >= std::cos(largest_angle - kAngleMargin))) return false;
+  if (!(least_cosine >= std::cos(largest_angle - kScanAngleMargin))) return false;
   face.kind = ScanPathKind::raster;
   const double widest = std::acos(std::min(1.0, least_cosine));
   face.why = widest < 1e-3 ? "flat" : "normals within " + degrees(widest) + " of their mean";
@@ -88,7 +87,7 @@ void try_rotary(const Machine& machine, const TriangleMesh& mesh, std::span<cons
     face.why = "the machine has no rotary axis";
     return;
   }
-  const double largest_tilt = 0.5 * largest_angle - kAngleMargin;
+  const double largest_tilt = 0.5 * largest_angle - kScanAngleMargin;
   std::optional<TurningAxis> nearest;
   RevolutionAxis found{};
   for (const RevolutionAxis& axis : revolution_axes(mesh, triangles, directions)) {

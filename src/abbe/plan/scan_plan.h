@@ -25,6 +25,14 @@ struct HalfSpace {
   bool holds(const Eigen::Vector3d& point) const { return normal.dot(point) >= offset; }
 };
 
+/// Kept from the largest angle where directions are chosen, rad: normals of a mesh are not those of the part.
+inline constexpr double kScanAngleMargin = 1 * std::numbers::pi / 180;
+/// Range of ScanPlanOptions::largest_angle: less leaves nothing beside the margin, and along the surface nothing is
+/// seen.
+inline constexpr double kSmallestScanAngle = 2 * kScanAngleMargin, kLargestScanAngle = 85 * std::numbers::pi / 180;
+/// Range of ScanPlanOptions::crease_angle.
+inline constexpr double kSmallestCrease = 1 * std::numbers::pi / 180, kLargestCrease = 90 * std::numbers::pi / 180;
+
 /// What the probe and the axes can do, and how densely the part is to be seen.
 struct ScanPlanOptions {
   RigidTransform workpiece_from_part;                  ///< where the part stands
@@ -121,7 +129,7 @@ struct ScanPlan {
 /// probe would meet the part or the stage or an axis its end of travel, tilted by up to the largest angle. Between
 /// lines the probe draws back as far as it has to; where no way is clear the moves are there and marked.
 /// @param part  closed, vertices shared, frame of the part, mm
-/// @throws std::invalid_argument if an option is not above zero
+/// @throws std::invalid_argument if an option is not above zero, or an angle out of its range
 ScanPlan plan_scan(const Machine& machine, const TriangleMesh& part, const ScanPlanOptions& options);
 
 }  // namespace abbe

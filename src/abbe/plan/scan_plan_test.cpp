@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
 #include "abbe/geometry/surface_lines.h"
 #include "abbe/machine/machines_for_test.h"
@@ -198,6 +200,30 @@ TEST(ScanPlan, GoesAroundWhereTheSurfaceWouldLeaveTheRangeBetweenPoints) {
   EXPECT_EQ(plan.points(), within.points());
   EXPECT_GT(plan.time, within.time);
   EXPECT_GE(plan.moves.size(), within.moves.size() + 2 * plan.beyond_range);
+}
+
+TEST(ScanPlan, RefusesAnglesOutOfTheirRangeAndNamesThemWithTheirUnit) {
+  const Machine machine = test::liu_scanner();
+  const auto refusal = [&](double ScanPlanOptions::*option, double degrees) -> std::string {
+    ScanPlanOptions options = coarse();
+    options.along = options.between = 4;
+    options.*option = degrees * pi / 180;
+    try {
+      plan_scan(machine, prism(5, 8, -6, 6), options);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(&ScanPlanOptions::largest_angle, 1.9),
+            "largest angle of the scan: 1.9 degrees, not from 2 to 85 degrees");
+  EXPECT_EQ(refusal(&ScanPlanOptions::crease_angle, 91),
+            "crease angle of the scan: 91 degrees, not from 1 to 90 degrees");
+  EXPECT_NE(refusal(&ScanPlanOptions::largest_angle, 86), "");
+  EXPECT_NE(refusal(&ScanPlanOptions::largest_angle, std::nan("")), "");
+  EXPECT_NE(refusal(&ScanPlanOptions::crease_angle, 0.5), "");
+  for (const double degrees : {2.0, 85.0}) EXPECT_EQ(refusal(&ScanPlanOptions::largest_angle, degrees), "");
+  for (const double degrees : {1.0, 90.0}) EXPECT_EQ(refusal(&ScanPlanOptions::crease_angle, degrees), "");
 }
 
 TEST(SurfaceLines, AreCirclesOfACylinderEvenlySpaced) {

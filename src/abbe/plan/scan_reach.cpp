@@ -10,8 +10,6 @@ namespace abbe {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-/// Between the largest angle and the directions that are used: normals of a mesh are not those of the part.
-constexpr double kAngleMargin = 1 * kDegree;
 constexpr int kAzimuths = 12;
 
 /// A direction beside the normal.
@@ -94,8 +92,8 @@ ScanReach ScanReachFinder::find(const Eigen::Vector3d& point, const Eigen::Vecto
   beams[0] = normal;
   for (int k = 0; k < kAzimuths; ++k) {
     const auto which = static_cast<std::size_t>(k);
-    beams[1 + which] = tilts.at(0.5 * (largest_angle_ - kAngleMargin), k);
-    beams[1 + kAzimuths + which] = tilts.at(largest_angle_ - kAngleMargin, k);
+    beams[1 + which] = tilts.at(0.5 * (largest_angle_ - kScanAngleMargin), k);
+    beams[1 + kAzimuths + which] = tilts.at(largest_angle_ - kScanAngleMargin, k);
   }
   std::stable_sort(beams.begin(), beams.end(), [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return a.dot(before) > b.dot(before) + 1e-9;
