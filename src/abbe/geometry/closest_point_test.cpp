@@ -69,7 +69,7 @@ double distance_by_trying_all(const TriangleMesh& mesh, const Vector3d& point) {
   return nearest;
 }
 
-/// Triangles anywhere: a third of them small, some needles, some without area.
+/// Triangles anywhere: a third of them small, some needles of all degrees, some without area.
 TriangleMesh soup(Eigen::Index triangles, std::uint64_t seed) {
   Numbers numbers(seed);
   TriangleMesh mesh;
@@ -84,6 +84,7 @@ TriangleMesh soup(Eigen::Index triangles, std::uint64_t seed) {
     mesh.vertices.col(3 * t + 2) = t % 7 == 0   ? Vector3d(a + 0.4 * u + 1e-9 * v)
                                    : t % 7 == 1 ? Vector3d(a + 2 * u)
                                    : t % 7 == 2 ? a
+                                   : t % 7 == 3 ? Vector3d(a + 0.4 * u + std::pow(10, numbers.uniform(-6, 0)) * v)
                                                 : Vector3d(a + v);
     for (int k = 0; k < 3; ++k) mesh.triangles(k, t) = static_cast<std::uint32_t>(3 * t + k);
   }

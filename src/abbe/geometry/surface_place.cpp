@@ -12,10 +12,13 @@ Coordinates cross(const Coordinates& a, const Coordinates& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// Square of the height of a triangle over its longest side from which on its normal is as sure as its corners.
+constexpr double kStout = 0.05 * 0.05;
+
 }  // namespace
 
-/// The distance to the plane where the point lies over the triangle, else that to the nearest edge. The first is
-/// measured from the nearest edge: the normal of a needle is least sure in the direction of its length, in which
+/// The distance to the plane where the point lies over the triangle, else that to the nearest edge. Of a thin triangle
+/// the first is measured from the nearest edge: its normal is least sure in the direction of its length, in which
 /// nothing is left from there.
 Place nearest_place(const Tree& tree, std::uint32_t triangle, const double* point) {
   const std::array<std::uint32_t, 3>& corners = tree.corners[triangle];
@@ -24,7 +27,23 @@ Place nearest_place(const Tree& tree, std::uint32_t triangle, const double* poin
   const Coordinates ab = minus(tree.vertices[corners[1]], a), ac = minus(tree.vertices[corners[2]], a),
                     bc = minus(ac, ab);
   const Coordinates ap = minus({point[0], point[1], point[2]}, a), bp = minus(ap, ab);
+  Coordinates normal = cross(ab, ac);
+  double square_of_normal = dot(normal, normal);
+  if (needle) {
+    normal = tree.needle_normals.at(triangle);
+    square_of_normal = dot(normal, normal) > 0.5 ? 1 : 0;
+  }
+  // In one comparison, since any of the three may be the one that fails.
+  const bool over = std::min({dot(normal, cross(ab, ap)), dot(normal, cross(ap, ac)), dot(normal, cross(bc, bp))}) >= 0;
+  const double longest = std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)});
   Place place;
+  if (over && !needle && square_of_normal > kStout * longest * longest) {
+    const double share = dot(normal, ap) / square_of_normal;
+    place.height = share * std::sqrt(square_of_normal);
+    place.square = place.height * place.height;
+    place.rest = {share * normal.x, share * normal.y, share * normal.z};
+    return place;
+  }
   double place_t = 0;
   const auto take = [&](const Coordinates& from_start, const Coordinates& edge, std::uint8_t which) {
     const double square_of_edge = dot(edge, edge);
@@ -43,16 +62,8 @@ Place nearest_place(const Tree& tree, std::uint32_t triangle, const double* poin
   take(ap, ab, 0);
   take(ap, ac, 2);
   take(bp, bc, 1);
-  Coordinates normal = cross(ab, ac);
-  double length = 1;
-  if (needle) {
-    normal = tree.needle_normals.at(triangle);
-  } else {
-    length = std::sqrt(dot(normal, normal));
-  }
-  const bool has_area = !needle || dot(normal, normal) > 0.5;
-  if (has_area && dot(normal, cross(ab, ap)) >= 0 && dot(normal, cross(ap, ac)) >= 0 &&
-      dot(normal, cross(bc, bp)) >= 0) {
+  if (over && square_of_normal > 0) {
+    const double length = std::sqrt(square_of_normal);
     place.height = dot(normal, place.rest) / length;
     place.square = std::min(place.square, place.height * place.height);
     const double share = place.height / length;

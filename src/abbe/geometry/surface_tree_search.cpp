@@ -43,6 +43,9 @@ HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
           hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y))};
 }
 
+/// Square of the height of a triangle over its longest side from which on its normal is sure in single precision.
+constexpr float kStout = 0.2f * 0.2f;
+
 /// From the nearest point of an edge to a point that is given from the beginning of the edge.
 HWY_INLINE Vectors from_edge(const Vectors& from_start, const Vectors& edge) {
   const Floats f;
@@ -57,11 +60,17 @@ HWY_INLINE Vectors choose(Mask mask, const Vectors& yes, const Vectors& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-/// Squared distances of a point to the triangles of a leaf from `lane` on, in the unit of the leaf, as nearest_place()
-/// has them in double precision. Too large by no more than kSlack: where a needle is so thin that its normal is not
-/// known in single precision, its edges are as near as its face.
+/// Squared distances of a point to triangles, in the unit of a leaf. The roots of the first are too large, those of the
+/// second too small, by no more than the slack of visit_leaf().
+struct Squares {
+  Vector lowest, highest;
+};
+
+/// Of the triangles of a leaf from `lane` on, for the distances that nearest_place() has in double precision. They
+/// differ only where a triangle is so thin that its normal is not sure in single precision: it may be as near as its
+/// plane seems, and is no farther than its edges.
 /// @param point  in the unit of the leaf, about its centre
-HWY_INLINE Vector triangle_squares(const Leaf& leaf, std::size_t lane, const float* point) {
+HWY_INLINE Squares triangle_squares(const Leaf& leaf, std::size_t lane, const float* point) {
   const Floats f;
   const Vectors p = {hn::Set(f, point[0]), hn::Set(f, point[1]), hn::Set(f, point[2])};
   const Vectors ap = minus(p, load(leaf.corner, lane)), ab = load(leaf.edge_ab, lane), ac = load(leaf.edge_ac, lane);
@@ -80,7 +89,10 @@ HWY_INLINE Vector triangle_squares(const Leaf& leaf, std::size_t lane, const flo
   const auto inside =
       hn::And(hn::Ge(hn::Min(hn::Min(over_ab, over_ac), over_bc), hn::Zero(f)), hn::Gt(length, hn::Set(f, 1e-30f)));
   const Vector height = dot(normal, nearest);
-  return hn::IfThenElse(inside, hn::Min(hn::Div(hn::Mul(height, height), length), square), square);
+  const Vector lowest = hn::IfThenElse(inside, hn::Min(hn::Div(hn::Mul(height, height), length), square), square);
+  const Vector longest = hn::Max(hn::Max(dot(ab, ab), dot(ac, ac)), dot(bc, bc));
+  const auto stout = hn::Gt(length, hn::Mul(hn::Set(f, kStout), hn::Mul(longest, longest)));
+  return {lowest, hn::IfThenElse(stout, lowest, square)};
 }
 
 /// Bit of each lane from `lane` on.
@@ -94,53 +106,111 @@ HWY_INLINE std::uint64_t bits_of(D d, hn::Mask<D> mask, std::size_t lane) {
 /// More than the rounding of triangle_squares(), per extent of the leaf and distance from its centre.
 constexpr double kSlack = 64 * 0x1p-23;
 
-/// Looks at all triangles in single precision, at those that may be nearest in double precision.
-void visit_leaf(const Tree& tree, std::uint32_t number, const double* point, Found* best) {
+/// Largest single-precision bound that may still hold something as near as `square`: the rounding of the search in
+/// single precision is below 2^-20 of it.
+HWY_INLINE float bound_of(double square) { return static_cast<float>(std::min(square * 1.000002, 3e38)); }
+
+/// A triangle that may be the nearest.
+struct Candidate {
+  double lowest;  ///< it is no nearer than this, mm
+  std::uint32_t leaf, lane;
+};
+
+/// What is known of the triangle nearest to a point while it is searched. Most of the work is done in single precision;
+/// what may be the nearest after that is looked at in double precision.
+struct Search {
+  static constexpr std::size_t kMost = 12;
+  double reach = std::numeric_limits<double>::infinity();  ///< the nearest is no farther than this, mm
+  std::uint32_t leaf = kNoChild;                           ///< that says so
+  std::uint32_t count = 0;
+  std::array<Candidate, kMost> candidates;
+  Found best;  ///< of those that were candidates
+
+  void restart() {
+    reach = std::numeric_limits<double>::infinity();
+    leaf = kNoChild;
+    count = 0;
+    best.place.square = std::numeric_limits<double>::infinity();
+  }
+};
+
+/// Looks at the candidates in double precision.
+void settle(const Tree& tree, const double* point, Search* search) {
+  Found& best = search->best;
+  while (search->count > 0) {
+    // The nearest first, so that most others need not be looked at.
+    std::size_t next = 0;
+    for (std::size_t i = 1; i < search->count; ++i) {
+      if (search->candidates[i].lowest < search->candidates[next].lowest) next = i;
+    }
+    const Candidate candidate = search->candidates[next];
+    if (candidate.lowest > search->reach) break;
+    search->candidates[next] = search->candidates[--search->count];
+    const Leaf& leaf = tree.leaves[candidate.leaf];
+    const Place place = nearest_place(tree, leaf.first + candidate.lane, point);
+    const std::uint32_t triangle = leaf.index[candidate.lane];
+    if (place.square < best.place.square || (place.square == best.place.square && triangle < best.triangle)) {
+      best = {place, triangle, candidate.leaf};
+      const double distance = std::sqrt(place.square) * (1 + 1e-9);
+      if (distance < search->reach) {
+        search->reach = distance;
+        search->leaf = candidate.leaf;
+      }
+    }
+  }
+  search->count = 0;
+}
+
+/// Looks at all triangles of a leaf in single precision.
+void visit_leaf(const Tree& tree, std::uint32_t number, const double* point, Search* search) {
+  // Farther coordinates would overflow; nearer ones are only more cautious.
+  constexpr double kFar = 1e17;
   const Floats f;
   const Leaf& leaf = tree.leaves[number];
   float local[3];
   double away = 2;
   for (std::size_t k = 0; k < 3; ++k) {
-    // Farther coordinates would overflow; nearer ones are only more cautious.
-    const double scaled = std::min(std::max((point[k] - leaf.centre[k]) * leaf.inverse_scale, -1e17), 1e17);
+    const double scaled = std::min(std::max((point[k] - leaf.centre[k]) * leaf.inverse_scale, -kFar), kFar);
     local[k] = static_cast<float>(scaled);
     away += std::abs(scaled);
   }
-  const double slack = kSlack * away;
-  const auto limit = [&] {
-    const double reach = std::sqrt(best->place.square) * leaf.inverse_scale + slack;
-    return static_cast<float>(std::min(reach * reach * 1.000002, 3e38));
-  };
-  float bound = limit();
-  HWY_ALIGN float squares[kWidth];
+  // What the candidates are made of comes while they are found.
+  __builtin_prefetch(&tree.corners[leaf.first]);
+  __builtin_prefetch(&tree.corners[leaf.first + leaf.count - 1]);
+  const double slack = kSlack * away, scale = 1 / leaf.inverse_scale;
+  HWY_ALIGN float lowest[kWidth];
+  const std::uint64_t filled = (std::uint64_t{1} << leaf.count) - 1;
+  Vector highest = hn::Set(f, 3e38f);
+  // Lanes beyond the last repeat one.
+  for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(f)) {
+    const Squares some = triangle_squares(leaf, lane, local);
+    hn::Store(some.lowest, f, lowest + lane);
+    highest = hn::Min(highest, some.highest);
+  }
+  if (away < kFar) {
+    const double root = std::sqrt(hn::GetLane(hn::MinOfLanes(f, highest)));
+    const double farthest = (root + slack) * scale;
+    if (farthest < search->reach) {
+      search->reach = farthest;
+      search->leaf = number;
+    }
+  }
+  const double reach = search->reach * leaf.inverse_scale + slack;
+  const Vector bound = hn::Set(f, bound_of(reach * reach));
   std::uint64_t near = 0;
   for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(f)) {
-    const Vector some = triangle_squares(leaf, lane, local);
-    hn::Store(some, f, squares + lane);
-    near |= bits_of(f, hn::Le(some, hn::Set(f, bound)), lane);
+    near |= bits_of(f, hn::Le(hn::Load(f, lowest + lane), bound), lane);
   }
-  near &= (std::uint64_t{1} << leaf.count) - 1;
-  while (near != 0) {
-    // The nearest first, so that most others need not be looked at.
-    std::uint32_t lane = static_cast<std::uint32_t>(std::countr_zero(near));
-    for (std::uint64_t rest = near & (near - 1); rest != 0; rest &= rest - 1) {
-      const std::uint32_t other = static_cast<std::uint32_t>(std::countr_zero(rest));
-      if (squares[other] < squares[lane]) lane = other;
-    }
-    if (squares[lane] > bound) return;
-    near &= ~(std::uint64_t{1} << lane);
-    const Place place = nearest_place(tree, leaf.first + lane, point);
-    if (place.square < best->place.square ||
-        (place.square == best->place.square && leaf.index[lane] < best->triangle)) {
-      *best = {place, leaf.index[lane], number};
-      bound = limit();
+  for (near &= filled; near != 0; near &= near - 1) {
+    if (search->count == Search::kMost) settle(tree, point, search);
+    const std::uint32_t lane = static_cast<std::uint32_t>(std::countr_zero(near));
+    const double root = std::sqrt(lowest[lane]);
+    search->candidates[search->count++] = {(root - slack) * scale, number, lane};
+    for (const std::uint32_t corner : tree.corners[leaf.first + lane]) {
+      __builtin_prefetch(&tree.vertices[corner & ~Tree::kNeedle]);
     }
   }
 }
-
-/// Largest single-precision bound that may still hold something as near as `square`: the rounding of the search in
-/// single precision is below 2^-20 of it.
-HWY_INLINE float bound_of(double square) { return static_cast<float>(std::min(square * 1.000002, 3e38)); }
 
 /// A box in single precision; a point is a box without extent.
 struct Region {
@@ -197,15 +267,15 @@ HWY_INLINE void wait(const Waiting& next, std::size_t first, Waiting* stack, std
 /// Searches what waits on the stack and everything below.
 /// @param visited  a leaf that need not be visited
 void search_stack(const Tree& tree, const double* point, const Region& region, float limit, std::uint32_t visited,
-                  Waiting* stack, std::size_t waiting, Found* best) {
-  limit = std::min(limit, bound_of(best->place.square));
+                  Waiting* stack, std::size_t waiting, Search* search) {
+  limit = std::min(limit, bound_of(search->reach * search->reach));
   while (waiting > 0) {
     const Waiting next = stack[--waiting];
     if (next.bound > limit) continue;
     if ((next.child & kLeaf) != 0) {
       if (next.child == visited) continue;
-      visit_leaf(tree, next.child & ~kLeaf, point, best);
-      limit = std::min(limit, bound_of(best->place.square));
+      visit_leaf(tree, next.child & ~kLeaf, point, search);
+      limit = std::min(limit, bound_of(search->reach * search->reach));
       continue;
     }
     const Node& node = tree.nodes[next.child];
@@ -221,10 +291,13 @@ void search_stack(const Tree& tree, const double* point, const Region& region, f
 constexpr std::size_t kListed = 64;     ///< nodes and leaves that a list holds
 constexpr std::size_t kStack = 8 * 64;  ///< at most seven more per level, of which there are fewer than 56
 
-void search_point(const Tree& tree, const double* point, std::uint32_t visited, Found* best) {
+/// @param hint  a leaf that may be near, or kNoChild
+void search_point(const Tree& tree, const double* point, std::uint32_t hint, Search* search) {
   Waiting stack[kStack];
   stack[0] = {0, 0};
-  search_stack(tree, point, region_of(point), bound_of(best->place.square), visited, stack, 1, best);
+  if (hint != kNoChild) visit_leaf(tree, hint, point, search);
+  search_stack(tree, point, region_of(point), std::numeric_limits<float>::max(),
+               hint == kNoChild ? kNoChild : kLeaf + hint, stack, 1, search);
 }
 
 /// Nodes and leaves with all that is within reach of a group of points.
@@ -286,100 +359,122 @@ void list_near(const Tree& tree, const Region& region, float limit, List* list) 
   list->size = size;
 }
 
+/// @param limit    bound of the reach for which the list was made
+/// @param visited  a leaf that need not be visited
 void search_list(const Tree& tree, const List& list, const double* point, float limit, std::uint32_t visited,
-                 Found* best) {
+                 Search* search) {
   const hn::CappedTag<float, kMostLanes> f;
   const Region region = region_of(point);
-  limit = std::min(limit, bound_of(best->place.square));
-  HWY_ALIGN float bounds[kMostLanes];
+  alignas(64) std::array<float, kListed> squares;
+  auto least = hn::Set(f, std::numeric_limits<float>::max());
+  for (std::size_t i = 0; i < list.size; i += hn::Lanes(f)) {
+    const auto some = box_squares(f, {&list.low[0][i], &list.low[1][i], &list.low[2][i]},
+                                  {&list.high[0][i], &list.high[1][i], &list.high[2][i]}, region);
+    hn::Store(some, f, squares.data() + i);
+    least = hn::Min(least, some);
+  }
+  const auto within = [&](float bound) HWY_ATTR {
+    std::uint64_t near = 0;
+    for (std::size_t i = 0; i < list.size; i += hn::Lanes(f)) {
+      near |= bits_of(f, hn::Le(hn::Load(f, squares.data() + i), hn::Set(f, bound)), i);
+    }
+    return near;
+  };
   Waiting stack[kStack];
   std::size_t waiting = 0;
-  for (std::size_t i = 0; i < list.size; i += hn::Lanes(f)) {
-    const auto squares = box_squares(f, {&list.low[0][i], &list.low[1][i], &list.low[2][i]},
-                                     {&list.high[0][i], &list.high[1][i], &list.high[2][i]}, region);
-    std::uint64_t near = bits_of(f, hn::Le(squares, hn::Set(f, limit)), 0);
-    if (near == 0) continue;
-    hn::Store(squares, f, bounds);
-    for (; near != 0; near &= near - 1) {
-      const std::size_t lane = static_cast<std::size_t>(std::countr_zero(near));
-      if (list.child[i + lane] != visited) wait({list.child[i + lane], bounds[lane]}, 0, stack, &waiting);
-    }
+  limit = std::min(limit, bound_of(search->reach * search->reach));
+  // The nearest box first: after it few others are within reach.
+  const float nearest = hn::GetLane(hn::MinOfLanes(f, least));
+  if (nearest > limit) return;
+  const std::size_t first = static_cast<std::size_t>(std::countr_zero(within(nearest)));
+  if (list.child[first] != visited) {
+    stack[waiting++] = {list.child[first], nearest};
+    search_stack(tree, point, region, limit, visited, stack, waiting, search);
+    limit = std::min(limit, bound_of(search->reach * search->reach));
   }
-  search_stack(tree, point, region, limit, visited, stack, waiting, best);
+  waiting = 0;
+  for (std::uint64_t near = within(limit) & ~(std::uint64_t{1} << first); near != 0; near &= near - 1) {
+    const std::size_t i = static_cast<std::size_t>(std::countr_zero(near));
+    if (list.child[i] != visited) wait({list.child[i], squares[i]}, 0, stack, &waiting);
+  }
+  search_stack(tree, point, region, limit, visited, stack, waiting, search);
 }
 
 constexpr std::size_t kGroup = 32;  ///< points that share a list
 constexpr std::size_t kAlone = 4;   ///< points for which no list is made
 
-/// Neighbours. Nothing that is nearer to one of them than its bound is missing in the list, so that each finds the
-/// triangle that it would find alone.
-/// @param previous  a leaf that may be near, or kNoChild
-void search_group(const Tree& tree, const double* points, std::size_t count, const std::uint32_t* hints,
-                  std::uint32_t previous, Found* found) {
-  const auto begin = [&](std::size_t i, std::uint32_t leaf) HWY_ATTR {
-    found[i] = {};
-    if (leaf != kNoChild) visit_leaf(tree, leaf, points + 3 * i, &found[i]);
-  };
-  if (count < kAlone) {
-    for (std::size_t i = 0; i < count; ++i) {
-      if (hints != nullptr) previous = hints[i];
-      begin(i, previous);
-      search_point(tree, points + 3 * i, previous == kNoChild ? kNoChild : kLeaf + previous, &found[i]);
-      previous = found[i].leaf;
+/// Distance in which all of a group have something, from that of one of them.
+double common_reach(const double* points, std::size_t count, std::size_t one, double its_reach) {
+  double farthest = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    double square = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double away = points[3 * i + k] - points[3 * one + k];
+      square += away * away;
     }
-    return;
+    farthest = std::max(farthest, square);
   }
-  double reach = 0;  // square of the farthest that any of them has to look
-  const std::size_t middle = count / 2;
-  if (hints != nullptr) {
-    for (std::size_t i = 0; i < count; ++i) {
-      begin(i, hints[i]);
-      reach = std::max(reach, found[i].place.square);
-    }
-  } else {
-    begin(middle, previous);
-    search_point(tree, points + 3 * middle, previous == kNoChild ? kNoChild : kLeaf + previous, &found[middle]);
-    for (std::size_t i = 0; i < count; ++i) {
-      double square = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double away = points[3 * i + k] - points[3 * middle + k];
-        square += away * away;
-      }
-      reach = std::max(reach, square);
-    }
-    const double sum = std::sqrt(reach) + std::sqrt(found[middle].place.square);
-    reach = sum * sum;
-  }
-  Region region = region_of(points);
+  return std::sqrt(farthest) + its_reach;
+}
+
+Region box_of(const double* points, std::size_t count) {
+  Region box = region_of(points);
   for (std::size_t i = 1; i < count; ++i) {
     const Region point = region_of(points + 3 * i);
     for (std::size_t k = 0; k < 3; ++k) {
-      region.low[k] = std::min(region.low[k], point.low[k]);
-      region.high[k] = std::max(region.high[k], point.low[k]);
+      box.low[k] = std::min(box.low[k], point.low[k]);
+      box.high[k] = std::max(box.high[k], point.low[k]);
     }
   }
+  return box;
+}
+
+/// Neighbours. Nothing that is nearer to one of them than its bound is missing in the list, so that each finds the
+/// triangle that it would find alone.
+/// @param previous  a leaf that may be near, or kNoChild
+/// @param searches  [count] new
+void search_group(const Tree& tree, const double* points, std::size_t count, const std::uint32_t* hints,
+                  std::uint32_t previous, Search* searches) {
+  if (count < kAlone) {
+    for (std::size_t i = 0; i < count; ++i) {
+      search_point(tree, points + 3 * i, hints == nullptr ? previous : hints[i], &searches[i]);
+      previous = searches[i].leaf;
+    }
+    return;
+  }
+  double reach = 0;  // the farthest that any of them has to look
+  std::size_t done = count;
+  if (hints != nullptr) {
+    for (std::size_t i = 0; i < count; ++i) {
+      visit_leaf(tree, hints[i], points + 3 * i, &searches[i]);
+      reach = std::max(reach, searches[i].reach);
+    }
+  } else {
+    done = count / 2;
+    search_point(tree, points + 3 * done, previous, &searches[done]);
+    reach = common_reach(points, count, done, searches[done].reach);
+  }
+  const float limit = bound_of(reach * reach);
   List list;
-  const float limit = bound_of(reach);
-  list_near(tree, region, limit, &list);
-  previous = found[middle].leaf;
+  list_near(tree, box_of(points, count), limit, &list);
   for (std::size_t i = 0; i < count; ++i) {
-    if (hints != nullptr) {
-      previous = hints[i];
-    } else if (i != middle) {
-      begin(i, previous);
-    }
-    if (hints != nullptr || i != middle) {
-      search_list(tree, list, points + 3 * i, limit, kLeaf + previous, &found[i]);
-    }
-    previous = found[i].leaf;
+    if (i == done) continue;
+    const std::uint32_t visited = hints == nullptr ? kNoChild : kLeaf + hints[i];
+    search_list(tree, list, points + 3 * i, limit, visited, &searches[i]);
   }
 }
 
 void search_block(const Tree& tree, const double* points, std::size_t count, const std::uint32_t* hints, Found* found) {
   std::uint32_t previous = kNoChild;
+  std::array<Search, kGroup> searches;
   for (std::size_t first = 0; first < count; first += kGroup) {
     const std::size_t some = std::min(kGroup, count - first);
-    search_group(tree, points + 3 * first, some, hints == nullptr ? nullptr : hints + first, previous, found + first);
+    for (std::size_t i = 0; i < some; ++i) searches[i].restart();
+    search_group(tree, points + 3 * first, some, hints == nullptr ? nullptr : hints + first, previous, searches.data());
+    for (std::size_t i = 0; i < some; ++i) {
+      settle(tree, points + 3 * (first + i), &searches[i]);
+      found[first + i] = searches[i].best;
+    }
     previous = found[first + some - 1].leaf;
   }
 }
