@@ -1,9 +1,16 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
-#include <numbers>
+#include <initializer_list>
+#include <regex>
+#include <string>
+#include <vector>
 
 #include "abbe/formats/curve_file.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/machine_file.h"
+#include "abbe/machine/tool_path.h"
 #include "evaluate/contour_report.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
@@ -13,12 +20,97 @@ namespace {
 
 struct ContourCommand {
   EvaluationOptions options;
-  std::string feature = "edge", surface = "left", curve;
+  std::string feature = "edge", surface = "left", curve, machine;
   double beam_tilt = 0, surface_radius = 0, across = 0, height = 0, origin = 0;
   bool free_wall = false, closed = false;
+  std::vector<std::string> given;  ///< options of the command line: "--curve"
+
+  bool has(const std::string& option) const { return std::find(given.begin(), given.end(), option) != given.end(); }
+  /// @throws InputError if one of them was given
+  void refuse(std::initializer_list<const char*> names, const std::string& why, const std::string& expected) const {
+    for (const char* const name : names) {
+      if (has(name)) throw InputError({.field = name}, why, expected);
+    }
+  }
 };
 
+/// "C2=12", "C30", "C2_deg": a command of an axis in a program or a column of one.
+bool names_axis(const std::string& field) {
+  static const std::regex axis("[A-EQ-RU-W][0-9]*([=_.+-].*)?");
+  return std::regex_match(field, axis);
+}
+
+Curve commanded_curve(const ContourCommand& command) {
+  if (!command.machine.empty()) return read_curve(command.curve, read_machine(command.machine));
+  try {
+    return read_curve(command.curve, Machine{});
+  } catch (const InputError& error) {
+    if (!names_axis(error.place().field)) throw;
+    throw InputError(error.place(), "the command of an axis, and no machine is given",
+                     "--machine with the machine file");
+  }
+}
+
+/// What the tool leaves of a curve on the workpiece.
+std::vector<CommandPiece> commanded_pieces(const ContourCommand& command) {
+  const Curve curve = commanded_curve(command);
+  const std::vector<WorkingRun> runs = working_runs(curve);
+  if (runs.empty()) {
+    throw InputError({.file = command.curve}, "the tool works on the way to none of its points",
+                     "a curve of two points or more between which it works");
+  }
+  if (command.closed && runs.size() > 1) {
+    throw InputError({.field = "--closed"}, fmt::format("the tool works on {} pieces of the curve", runs.size()),
+                     "a curve of one piece");
+  }
+  std::vector<CommandPiece> pieces;
+  for (const WorkingRun& run : runs) {
+    const auto apart = [&](std::size_t a, std::size_t b) {
+      return (curve.points[a].point - curve.points[b].point).norm() >= 1e-9;
+    };
+    for (std::size_t i = run.first; i < run.last; ++i) {
+      if (apart(i, i + 1)) continue;
+      throw InputError({.file = command.curve}, fmt::format("point {} and the next one coincide", i + 1),
+                       "neighbours apart from each other");
+    }
+    // A piece that comes back to its first point is closed, and has this point once.
+    const bool comes_back = run.last - run.first > 2 && !apart(run.first, run.last);
+    const auto n = static_cast<Eigen::Index>(run.last - run.first + (comes_back ? 0 : 1));
+    Eigen::Matrix3Xd points(3, n), normals(3, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const CurvePoint& at = curve.points[run.first + static_cast<std::size_t>(i)];
+      points.col(i) = at.point;
+      normals.col(i) = at.direction;
+    }
+    pieces.push_back({CommandCurve(points, command.closed || comes_back), normals});
+  }
+  return pieces;
+}
+
+void refuse_without_effect(const ContourCommand& command) {
+  if (command.has("--curve")) {
+    command.refuse({"--feature", "--surface", "--beam-tilt-deg", "--free-wall", "--surface-radius-mm", "--u-across-um",
+                    "--u-height-um"},
+                   "has no effect on points against a curve", "sections, without --curve");
+    return;
+  }
+  command.refuse({"--closed", "--machine"}, "there is no curve that it could be said of", "with --curve");
+  if (command.feature == "groove") {
+    command.refuse({"--surface"}, "has no effect on a groove, which has both sides", "--feature edge, or without it");
+  }
+}
+
+std::vector<SectionReadings> stated_sections(const ContourCommand& command) {
+  std::vector<SectionReadings> sections = read_sections(command.options.file);
+  if (std::all_of(sections.begin(), sections.end(), [](const SectionReadings& s) { return s.beam_tilt.has_value(); })) {
+    command.refuse({"--beam-tilt-deg"}, "has no effect: the file states the beam's tilt of every section",
+                   "a file without the column beam_tilt");
+  }
+  return sections;
+}
+
 int run(const ContourCommand& command) {
+  refuse_without_effect(command);
   ContourRequest request;
   request.title = "Contour error of " + std::filesystem::path(command.options.file).filename().string();
   request.groove = command.feature == "groove";
@@ -29,22 +121,13 @@ int run(const ContourCommand& command) {
   request.edge.across_noise = command.across;
   request.edge.height_noise = command.height;
   request.origin_uncertainty = command.origin;
-  if (!command.curve.empty()) {
-    const Curve curve = read_curve(command.curve, Machine{});
-    if (curve.points.size() < 2) throw InputError({.file = command.curve}, "a single point", "a curve of two or more");
-    for (std::size_t i = 0; i + (command.closed ? 0 : 1) < curve.points.size(); ++i) {
-      if ((curve.points[(i + 1) % curve.points.size()].point - curve.points[i].point).norm() < 1e-9) {
-        throw InputError({.file = command.curve}, "point " + std::to_string(i + 1) + " and the next one coincide",
-                         "neighbours apart from each other");
-      }
-    }
-    EvaluationReport report =
-        contour_points_report(request, curve, command.closed, read_contour_points(command.options.file));
+  if (command.has("--curve")) {
+    const std::vector<CommandPiece> pieces = commanded_pieces(command);
+    EvaluationReport report = contour_points_report(request, pieces, read_contour_points(command.options.file));
     return finish_evaluation(report, command.options);
   }
-  if (command.closed) throw InputError({.field = "--closed"}, "there is no curve to be closed", "with --curve");
   std::size_t refused = 0;
-  EvaluationReport report = section_report(request, read_sections(command.options.file), refused);
+  EvaluationReport report = section_report(request, stated_sections(command), refused);
   const int code = finish_evaluation(report, command.options);
   // A mean that some of the sections have no part in is not the one that was asked for.
   return refused > 0 ? std::max<int>(code, kNegative) : code;
@@ -61,10 +144,13 @@ void add_evaluate_contour(CLI::App& evaluate, CommandLine& line) {
       "                           commanded curve\n"
       "  along_mm                 where on the curve, optional\n"
       "  beam_tilt_deg            direction of the laser from the height towards across, optional\n"
-      "With --curve: x_mm, y_mm, z_mm, points of the engraved curve in the frame of the commanded one.",
+      "With --curve: x_mm, y_mm, z_mm, points of the engraved curve in the frame of the commanded one. Moves on which\n"
+      "the tool does not work are no part of that curve.",
       "  abbe evaluate contour examples/laser_engraver/sections.csv --u-height-um 2 --u-across-um 1\n"
       "  abbe evaluate contour examples/laser_engraver/engraved.csv --curve examples/laser_engraver/table-a4.csv "
-      "--tolerance contour_max_um=50\n\n"
+      "--tolerance contour_max_um=50\n"
+      "  abbe evaluate contour examples/laser_engraver/engraved.csv --curve examples/laser_engraver/regions.ngc "
+      "--machine examples/machines/yin-engraver-u.machine.toml\n\n"
       "Exit code 1: a tolerance is exceeded, or a section could not be evaluated.",
       command->options);
   app->add_option("--feature", command->feature, "edge (default), or groove: the middle between its two edges")
@@ -83,10 +169,17 @@ void add_evaluate_contour(CLI::App& evaluate, CommandLine& line) {
   add_number(app, "--u-height-um", Quantity::length, "um", {0, 1e6}, command->height,
              "Standard uncertainty of a point along `height`");
   add_number(app, "--u-origin-um", Quantity::length, "um", {0, 1e6}, command->origin,
-             "Standard uncertainty, common to all sections, of their origins against the commanded curve");
+             "Standard uncertainty, common to all sections or points, of their place against the commanded curve");
   app->add_option("--curve", command->curve, "Commanded curve (as for abbe path): the file holds points instead");
   app->add_flag("--closed", command->closed, "The last point of the curve is followed by the first");
-  app->callback([&line, command] { line.run = [command] { return run(*command); }; });
+  app->add_option("--machine", command->machine,
+                  "Machine file (*.machine.toml) whose axes the curve sets beforehand; needed where it names them");
+  app->callback([&line, app, command] {
+    for (const CLI::Option* const option : app->get_options()) {
+      if (option->count() > 0) command->given.push_back(option->get_name());
+    }
+    line.run = [command] { return run(*command); };
+  });
 }
 
 }  // namespace abbe

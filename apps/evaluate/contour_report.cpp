@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "abbe/report/svg_plot.h"
-#include "evaluate/thinned.h"
 
 namespace abbe {
 namespace {
@@ -45,37 +44,6 @@ SectionAnswer answer_of(const ContourRequest& request, const SectionReadings& se
     answer.error_uncertainty = answer.first.corner_uncertainty();
   }
   return answer;
-}
-
-EvaluationFigure figure(std::string symbol, std::string name, double value, double uncertainty) {
-  EvaluationFigure result;
-  result.symbol = std::move(symbol);
-  result.name = std::move(name);
-  result.value = value;
-  if (uncertainty > 0) result.uncertainty = 2 * uncertainty;
-  return result;
-}
-
-/// Mean, largest and standard deviation of one kind of amount, or the reason why there are none.
-void add_figures(EvaluationReport& report, const std::string& symbol, const std::string& name,
-                 const ContourFigures& figures, const std::string& missing) {
-  report.figures.push_back(
-      figure(symbol + "_mean", name + ", mean amount", figures.amounts.mean, figures.mean_uncertainty));
-  report.figures.push_back(
-      figure(symbol + "_max", name + ", largest amount", figures.amounts.maximum, figures.largest_uncertainty));
-  report.figures.push_back(figure(symbol + "_s", name + ", standard deviation of the amounts",
-                                  figures.amounts.deviation, figures.deviation_uncertainty));
-  if (figures.amounts.count < 2) {
-    report.figures.back().value.reset();
-    report.figures.back().uncertainty.reset();
-    report.figures.back().missing = "one section";
-  }
-  if (missing.empty()) return;
-  for (std::size_t i = report.figures.size() - 3; i < report.figures.size(); ++i) {
-    report.figures[i].value.reset();
-    report.figures[i].uncertainty.reset();
-    report.figures[i].missing = missing;
-  }
 }
 
 nlohmann::ordered_json edge_json(const EdgeFit& fit) {
@@ -215,21 +183,16 @@ EvaluationReport section_report(const ContourRequest& request, const std::vector
   report.facts = {{"feature", request.groove ? "groove: middle between its edges" : "edge"},
                   {"sections", fmt::format("{} of {} evaluated", errors.size(), sections.size())}};
   const std::string missing = errors.empty() ? "no section could be evaluated" : "";
-  add_figures(report, "contour", "contour error", contour_figures(errors, uncertainties, request.origin_uncertainty),
-              missing);
+  const ContourFigures figures = contour_figures(errors, uncertainties, request.origin_uncertainty);
+  add_contour_figures(report, "contour", "contour error", figures, missing);
   if (!errors.empty()) {
-    double bias = 0, square = 0;
-    for (std::size_t i = 0; i < errors.size(); ++i) {
-      bias += errors[i] / static_cast<double>(errors.size());
-      square += uncertainties[i] * uncertainties[i];
-    }
     report.figures.push_back(
-        figure("bias", "mean of the signed contour errors", bias,
-               std::hypot(std::sqrt(square) / static_cast<double>(errors.size()), request.origin_uncertainty)));
+        contour_figure("bias", "mean of the signed contour errors", figures.bias, figures.bias_uncertainty));
   }
-  add_figures(report, "rounding", "rounding P1 P2", contour_figures(roundings, rounding_uncertainties), missing);
+  add_contour_figures(report, "rounding", "rounding P1 P2", contour_figures(roundings, rounding_uncertainties),
+                      missing);
   if (!radii.empty()) {
-    report.figures.push_back(figure("radius", "mean radius of the edge", sample_statistics(radii).mean, 0));
+    report.figures.push_back(contour_figure("radius", "mean radius of the edge", sample_statistics(radii).mean, 0));
   }
   report.tables.push_back(std::move(table));
   report.notes.emplace_back(
@@ -252,74 +215,6 @@ EvaluationReport section_report(const ContourRequest& request, const std::vector
     plot.points(along_rounding, Marker::cross, {PlotColour::second}, "rounding P1 P2");
     report.plots.push_back({"plot", "", plot.svg()});
     report.plots.push_back(section_plot(request, sections[largest], answers[largest]));
-  }
-  return report;
-}
-
-EvaluationReport contour_points_report(const ContourRequest& request, const Curve& curve, bool closed,
-                                       const Eigen::Matrix3Xd& points) {
-  const auto n = static_cast<Eigen::Index>(curve.points.size());
-  Eigen::Matrix3Xd commanded(3, n);
-  for (Eigen::Index i = 0; i < n; ++i) commanded.col(i) = curve.points[static_cast<std::size_t>(i)].point;
-  const CommandCurve command(commanded, closed);
-  Eigen::Matrix3Xd normals(3, points.cols());
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    Eigen::Index nearest = 0;
-    (commanded.colwise() - points.col(i)).colwise().squaredNorm().minCoeff(&nearest);
-    normals.col(i) = curve.points[static_cast<std::size_t>(nearest)].direction;
-  }
-  const std::vector<ContourDeviation> deviations = contour_deviations(command, points, normals);
-  EvaluationReport report;
-  report.kind = "contour";
-  report.title = request.title;
-  report.standard = "Distances of measured points from the commanded curve";
-  std::vector<double> distances, across, off;
-  std::vector<PlotPoint> plotted, height;
-  std::size_t beyond = 0;
-  for (std::size_t i = 0; i < deviations.size(); ++i) {
-    const ContourDeviation& d = deviations[i];
-    nlohmann::ordered_json json = {{"along_mm", d.along},
-                                   {"across_um", 1e3 * d.across},
-                                   {"out_of_surface_um", 1e3 * d.off},
-                                   {"distance_um", 1e3 * d.distance}};
-    if (d.beyond_end) json["beyond_end"] = true;
-    report.details["points"].push_back(std::move(json));
-    beyond += d.beyond_end ? 1 : 0;
-    if (d.beyond_end) continue;  // no distance across the curve
-    distances.push_back(d.distance);
-    across.push_back(d.across);
-    off.push_back(d.off);
-  }
-  std::vector<double> amounts;
-  for (const ContourDeviation& d : deviations) amounts.push_back(d.across);
-  for (const std::size_t i : thinned(amounts)) {
-    if (deviations[i].beyond_end) continue;
-    plotted.push_back({deviations[i].along, 1e3 * deviations[i].across});
-    height.push_back({deviations[i].along, 1e3 * deviations[i].off});
-  }
-  report.facts = {
-      {"points", fmt::format("{}", deviations.size())},
-      {"commanded curve", fmt::format("{} points, {:.3f} mm{}", n, command.length(), closed ? ", closed" : "")}};
-  const std::string missing = across.empty() ? "no point lies beside the curve" : "";
-  add_figures(report, "contour", "contour error across the curve",
-              contour_figures(across, {}, request.origin_uncertainty), missing);
-  add_figures(report, "height", "deviation out of the surface", contour_figures(off), missing);
-  add_figures(report, "distance", "distance in space", contour_figures(distances, {}, request.origin_uncertainty),
-              missing);
-  if (beyond > 0) {
-    report.notes.push_back(
-        fmt::format("{} beyond an end of the curve, without a part in the figures.",
-                    beyond == 1 ? std::string("1 point lies") : fmt::format("{} points lie", beyond)));
-  }
-  report.notes.emplace_back(
-      "Between its points the commanded curve is smooth (cubic pieces with the tangents of circles), except where its "
-      "sides turn by more than 20 degrees.");
-  if (!plotted.empty()) {
-    XyPlot plot(request.title, "along the curve in mm", "\xC2\xB5m");
-    plot.level(0, "", {PlotColour::soft, 1});
-    plot.points(plotted, Marker::circle, {PlotColour::first}, "across the curve");
-    plot.points(height, Marker::cross, {PlotColour::second}, "out of the surface");
-    report.plots.push_back({"plot", "", plot.svg()});
   }
   return report;
 }

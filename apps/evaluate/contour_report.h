@@ -1,10 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "abbe/formats/section_file.h"
-#include "abbe/machine/tool_path.h"
 #include "abbe/report/evaluation_report.h"
 #include "abbe/verify/contour_error.h"
 #include "abbe/verify/edge_section.h"
@@ -24,8 +24,16 @@ struct ContourRequest {
 EvaluationReport section_report(const ContourRequest& request, const std::vector<SectionReadings>& sections,
                                 std::size_t& refused);
 
-/// Measured points against a commanded curve; its directions are taken as normals of the surface.
-EvaluationReport contour_points_report(const ContourRequest& request, const Curve& curve, bool closed,
+/// Measured points against a commanded curve in pieces, with the surface's normals at its points.
+EvaluationReport contour_points_report(const ContourRequest& request, const std::vector<CommandPiece>& pieces,
                                        const Eigen::Matrix3Xd& points);
+
+/// A length with its expanded uncertainty, if it has one. @param uncertainty  standard, mm
+EvaluationFigure contour_figure(std::string symbol, std::string name, double value, double uncertainty);
+
+/// Figures SYMBOL_mean, SYMBOL_max, SYMBOL_s: of amounts, with their uncertainties.
+/// @param missing  why there are none; empty: there are
+void add_contour_figures(EvaluationReport& report, const std::string& symbol, const std::string& name,
+                         const ContourFigures& figures, const std::string& missing);
 
 }  // namespace abbe

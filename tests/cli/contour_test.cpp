@@ -76,15 +76,108 @@ TEST_F(ContourTest, TheExampleIsThatOfASimulatedPart) {
   EXPECT_LT(points["figures"]["height_max"]["value_um"].get<double>(), 1.2);  // as exact as the cylinder is round
 }
 
+TEST_F(ContourTest, AProgramIsReadWithItsMachineAndComparedWhereTheToolWorks) {
+  // Two regions, C2 turned between them: the way to the first point of the second is no part of the curve.
+  const std::string program = engraver + "regions.ngc";
+  const std::string machine = std::string(ABBE_SOURCE_DIR) + "/examples/machines/yin-engraver-u.machine.toml";
+  const nlohmann::json found = json({"contour", engraver + "engraved.csv", "--curve", program, "--machine", machine});
+  EXPECT_NE(found["facts"]["commanded curve"].get<std::string>().find("in 2 pieces"), std::string::npos);
+  EXPECT_LT(found["figures"]["contour_max"]["value_um"].get<double>(), 60);
+  const CommandResult without = abbe({"evaluate", "contour", engraver + "engraved.csv", "--curve", program});
+  EXPECT_EQ(without.exit_code, bad_input);
+  EXPECT_NE(without.err.find("regions.ngc:3: C2=0"), std::string::npos) << without.err;
+  EXPECT_NE(without.err.find("--machine"), std::string::npos) << without.err;
+  // The same of a column.
+  const std::string column = folder.write("column.csv", "x_mm,y_mm,z_mm,i,j,k,C2_deg\n0,0,0,0,0,1,0\n9,0,0,0,0,1,0\n");
+  const CommandResult bare = abbe({"evaluate", "contour", engraver + "engraved.csv", "--curve", column});
+  EXPECT_NE(bare.err.find("C2_deg"), std::string::npos) << bare.err;
+  EXPECT_NE(bare.err.find("--machine"), std::string::npos) << bare.err;
+}
+
+TEST_F(ContourTest, RapidMovesAreNoPartOfTheCurve) {
+  // Two lines of 10 mm, 5 mm apart; a point half way between their ends lies 2.4 mm beside the second one. On the
+  // rapid move between them it would lie on the curve.
+  const std::string curve = folder.write("two.ngc",
+                                         "G21 G90\nF600\nG0 X0 Y0 Z0 I0 J0 K1\nM3\nG1 X10\nM5\nG0 X10 Y5\nM3\nG1 X0\n"
+                                         "M5\nG0 X0 Y50\nM30\n");
+  const std::string points = folder.write("points.csv", "x_mm,y_mm,z_mm\n2,0.01,0\n10,2.6,0\n8,4.98,0\n3,20,0\n");
+  const nlohmann::json found = json({"contour", points, "--curve", curve});
+  ASSERT_EQ(found["points"].size(), 4U);
+  EXPECT_NEAR(found["points"][0]["across_um"].get<double>(), 10, 1e-6);
+  EXPECT_NEAR(found["points"][1]["distance_um"].get<double>(), 2400, 1e-6);
+  EXPECT_NEAR(found["points"][2]["across_um"].get<double>(), 20, 1e-6);  // to the left, as it goes back
+  EXPECT_NEAR(found["points"][2]["along_mm"].get<double>(), 12, 1e-9);
+  EXPECT_NEAR(found["points"][3]["distance_um"].get<double>(), 15000, 1e-6);
+  // The same by the column `beam`.
+  const std::string csv = folder.write("two.csv",
+                                       "x_mm,y_mm,z_mm,i,j,k,beam\n0,0,0,0,0,1,1\n10,0,0,0,0,1,1\n10,5,0,0,0,1,0\n"
+                                       "0,5,0,0,0,1,1\n0,50,0,0,0,1,0\n");
+  EXPECT_EQ(json({"contour", points, "--curve", csv})["points"], found["points"]);
+  const std::string idle = folder.write("idle.ngc", "G0 X0 Y0 Z0 I0 J0 K1\nG0 X10\n");
+  const CommandResult nothing = abbe({"evaluate", "contour", points, "--curve", idle});
+  EXPECT_EQ(nothing.exit_code, bad_input);
+  EXPECT_NE(nothing.err.find("works on the way to none of its points"), std::string::npos) << nothing.err;
+}
+
+TEST_F(ContourTest, ACurveThatComesBackIsClosed) {
+  std::string curve = "x_mm,y_mm,z_mm,i,j,k\n", points = "x_mm,y_mm,z_mm\n";
+  const auto place = [](double radius, double turn) {
+    return std::to_string(radius * std::cos(turn)) + "," + std::to_string(radius * std::sin(turn)) + ",0";
+  };
+  for (int i = 0; i < 40; ++i) {
+    curve += place(20, std::numbers::pi * i / 20) + ",0,0,1\n";
+    points += place(20.03, std::numbers::pi * (i + 0.5) / 20) + "\n";
+  }
+  const std::string measured = folder.write("points.csv", points);
+  const nlohmann::json closed = json({"contour", measured, "--curve", folder.write("ring.csv", curve), "--closed"});
+  const nlohmann::json back =
+      json({"contour", measured, "--curve", folder.write("back.csv", curve + place(20, 0) + ",0,0,1\n")});
+  for (const nlohmann::json& found : {closed, back}) {
+    EXPECT_NE(found["facts"]["commanded curve"].get<std::string>().find("40 points, 125.66"), std::string::npos);
+    EXPECT_NEAR(found["figures"]["contour_max"]["value_um"].get<double>(), 30, 2);
+    EXPECT_NEAR(found["figures"]["contour_mean"]["value_um"].get<double>(), 30, 1);
+  }
+}
+
 TEST_F(ContourTest, WhatIsWrongIsSaid) {
-  const std::string file = folder.write("sections.csv", header);
-  EXPECT_EQ(abbe({"evaluate", "contour", file}).exit_code, bad_input);
+  const auto refused = [&](std::vector<std::string> words, const std::string& what) {
+    words.insert(words.begin(), {"evaluate", "contour"});
+    const CommandResult result = abbe(words);
+    EXPECT_EQ(result.exit_code, bad_input);
+    EXPECT_NE(result.err.find(what), std::string::npos) << result.err << "does not say: " << what;
+  };
+  refused({folder.write("sections.csv", header)}, "no rows");
   std::string csv = header;
   add_section(csv, "A", 0, 5);
   const std::string good = folder.write("good.csv", csv);
-  EXPECT_EQ(abbe({"evaluate", "contour", good, "--closed"}).exit_code, bad_input);
-  EXPECT_EQ(abbe({"evaluate", "contour", good, "--curve", engraver + "table-a4.csv"}).exit_code, bad_input);
-  EXPECT_EQ(abbe({"evaluate", "contour", good, "--surface", "up"}).exit_code, bad_input);
+  refused({good, "--curve", engraver + "table-a4.csv"}, "good.csv");
+  refused({good, "--surface", "up"}, "--surface");
+}
+
+TEST_F(ContourTest, OptionsWithoutEffectAreRefused) {
+  const std::string points = engraver + "engraved.csv", curve = engraver + "table-a4.csv";
+  const auto refused = [&](const std::string& file, const std::vector<std::string>& options, const std::string& what) {
+    std::vector<std::string> words = {"evaluate", "contour", file};
+    words.insert(words.end(), options.begin(), options.end());
+    const CommandResult result = abbe(words);
+    EXPECT_EQ(result.exit_code, bad_input) << options.back();
+    EXPECT_NE(result.err.find(what), std::string::npos) << result.err << "does not say: " << what;
+  };
+  const std::vector<std::vector<std::string>> of_sections = {
+      {"--feature", "groove"},       {"--surface", "left"},  {"--beam-tilt-deg", "1"}, {"--free-wall"},
+      {"--surface-radius-mm", "50"}, {"--u-across-um", "1"}, {"--u-height-um", "1"}};
+  for (std::vector<std::string> options : of_sections) {
+    const std::string name = options[0];
+    options.insert(options.end(), {"--curve", curve});
+    refused(points, options, name + ": has no effect");
+  }
+  std::string csv = "section,across_um,height_um,beam_tilt_deg\n";
+  for (int i = 0; i < 40; ++i) csv += "A," + std::to_string(i) + "," + std::to_string(i > 20 ? -50 : 0) + ",0.5\n";
+  const std::string tilted = folder.write("tilted.csv", csv);
+  refused(tilted, {"--closed"}, "--closed: there is no curve");
+  refused(tilted, {"--machine", "x.machine.toml"}, "--machine: there is no curve");
+  refused(tilted, {"--feature", "groove", "--surface", "right"}, "--surface: has no effect");
+  refused(tilted, {"--beam-tilt-deg", "1"}, "--beam-tilt-deg: has no effect");
 }
 
 }  // namespace

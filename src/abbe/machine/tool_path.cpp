@@ -204,6 +204,18 @@ class Planner {
 
 }  // namespace
 
+std::vector<WorkingRun> working_runs(const Curve& curve) {
+  std::vector<WorkingRun> runs;
+  bool working = false;
+  for (std::size_t i = 1; i < curve.points.size(); ++i) {
+    const bool was_working = working;
+    working = curve.points[i].working && curve.points[i].indexed == curve.points[i - 1].indexed;
+    if (working && !was_working) runs.push_back({i - 1, i});
+    if (working) runs.back().last = i;
+  }
+  return runs;
+}
+
 ToolPath plan_tool_path(const Machine& machine, const Curve& curve, const ToolPathOptions& options) {
   return Planner(machine, curve, options).run();
 }

@@ -26,6 +26,17 @@ struct Curve {
   std::vector<std::size_t> indexed;  ///< axes of the machine
 };
 
+/// Points of a curve, one behind the other, between which the tool works.
+struct WorkingRun {
+  std::size_t first = 0, last = 0;  ///< of Curve::points; last > first
+};
+
+/// The parts of a curve that the tool leaves on the workpiece, in order.
+///
+/// It does not work on the way to a point that says so, nor to the first one of a region (plan_tool_path() retracts
+/// there). A point where it only dwells is no part.
+std::vector<WorkingRun> working_runs(const Curve& curve);
+
 struct ToolPathOptions {
   PathOptions path;      ///< held axes, start, weights; indexed axes are added to those held
   double retract = 0;    ///< mm along the direction, before the first and behind the last point of each region; 0: none

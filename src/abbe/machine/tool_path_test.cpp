@@ -112,6 +112,35 @@ TEST(ToolPath, RegionsAreIndexedWithTheToolRetracted) {
   }
 }
 
+TEST(ToolPath, OnTheWorkpieceItLeavesWhatItWorksOnWithinARegion) {
+  Curve curve = arc(12);
+  EXPECT_EQ(working_runs(curve).size(), 1U);
+  EXPECT_EQ(working_runs(curve)[0].last, 11U);
+  const Machine machine = test::yin_engraver('U');
+  curve.indexed = {machine.find_axis("C2")};
+  for (CurvePoint& point : curve.points) point.indexed = {0};
+  for (std::size_t i = 6; i < 12; ++i) curve.points[i].indexed = {1};  // the tool retracts on the way to the seventh
+  for (const std::size_t rapid : {3, 9, 10, 11}) curve.points[rapid].working = false;
+  const std::vector<WorkingRun> runs = working_runs(curve);
+  ASSERT_EQ(runs.size(), 3U);
+  const std::size_t expected[][2] = {{0, 2}, {3, 5}, {6, 8}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(runs[i].first, expected[i][0]);
+    EXPECT_EQ(runs[i].last, expected[i][1]);
+  }
+  // The planned path agrees: a move at work ends at each point of a run but its first.
+  std::size_t working = 0;
+  ToolPathOptions options;
+  options.retract = 5;
+  const ToolPath path = plan_tool_path(machine, curve, options);
+  ASSERT_EQ(path.status, ToolPathStatus::followed) << path.message;
+  for (const ToolPathStep& step : path.steps) working += step.working ? 1 : 0;
+  EXPECT_EQ(working, 6U);
+  for (CurvePoint& point : curve.points) point.working = false;
+  EXPECT_TRUE(working_runs(curve).empty());
+  EXPECT_TRUE(working_runs(Curve{}).empty());
+}
+
 TEST(ToolPath, SaysWhichPointCannotBeReached) {
   Machine machine = test::yin_engraver('U');
   const Curve curve = arc(6);

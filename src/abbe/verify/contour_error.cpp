@@ -5,11 +5,14 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace abbe {
 namespace {
 
 using Eigen::Vector3d;
+
+constexpr double kAlongCurve = 1e-3;  // sine of the angle of a normal that points along the curve
 
 /// Unit tangents at the middle one of three points of the circle through them, or of the line.
 Vector3d circle_tangent(const Vector3d& before, const Vector3d& here, const Vector3d& after) {
@@ -24,9 +27,21 @@ Vector3d mirrored(const Vector3d& side, const Vector3d& other_end) {
   return 2 * s.dot(other_end) * s - other_end;
 }
 
+/// Unit vector to the left of the curve in the surface, or none where the surface's normal does not say it.
+std::optional<Vector3d> left_of(const CommandPiece& piece, const CommandCurve::Foot& foot) {
+  if (piece.normals.cols() == 0) return std::nullopt;
+  const auto before = static_cast<Eigen::Index>(foot.before);
+  const Vector3d first = piece.normals.col(before), second = piece.normals.col((before + 1) % piece.normals.cols());
+  const Vector3d normal = (1 - foot.share) * first.normalized() + foot.share * second.normalized();
+  const Vector3d left = normal.cross(foot.tangent);
+  if (!(left.norm() > kAlongCurve)) return std::nullopt;
+  return left.normalized();
+}
+
 }  // namespace
 
-CommandCurve::CommandCurve(const Eigen::Matrix3Xd& points, bool closed, double corner) {
+CommandCurve::CommandCurve(const Eigen::Matrix3Xd& points, bool closed, double corner)
+    : size_(points.cols()), closed_(closed) {
   for (Eigen::Index i = 0; i < points.cols(); ++i) points_.emplace_back(points.col(i));
   if (points_.size() < 2) throw std::invalid_argument("a curve has two points at least");
   if (closed) points_.push_back(points_.front());
@@ -114,6 +129,8 @@ CommandCurve::Foot CommandCurve::nearest(const Vector3d& point) const {
       best.tangent = first.normalized();
       best.along = along_[i] + arc(i, t);
       best.distance = distance;
+      best.before = i;
+      best.share = t;
       const bool open = !(points_.front() - points_.back()).isZero(0);
       const double past = (point - place).dot(best.tangent);
       const bool at_start = i == 0 && t == 0 && past < 0, at_end = i + 2 == points_.size() && t == 1 && past > 0;
@@ -124,17 +141,34 @@ CommandCurve::Foot CommandCurve::nearest(const Vector3d& point) const {
   return best;
 }
 
-std::vector<ContourDeviation> contour_deviations(const CommandCurve& curve, const Eigen::Matrix3Xd& points,
-                                                 const Eigen::Matrix3Xd& normals) {
+std::vector<ContourDeviation> contour_deviations(std::span<const CommandPiece> pieces, const Eigen::Matrix3Xd& points) {
+  if (pieces.empty()) throw std::invalid_argument("deviations from no curve");
+  for (const CommandPiece& piece : pieces) {
+    if (piece.normals.cols() != 0 && piece.normals.cols() != piece.curve.size()) {
+      throw std::invalid_argument("a curve has " + std::to_string(piece.curve.size()) + " points and " +
+                                  std::to_string(piece.normals.cols()) + " normals");
+    }
+  }
   std::vector<ContourDeviation> result;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const CommandCurve::Foot foot = curve.nearest(points.col(i));
-    ContourDeviation deviation{foot.along, 0, 0, foot.distance, foot.beyond_end};
-    if (i < normals.cols()) {
-      const Vector3d normal = normals.col(i).normalized();
-      const Vector3d left = normal.cross(foot.tangent).normalized();
-      deviation.across = left.dot(points.col(i) - foot.point);
-      deviation.off = foot.tangent.cross(left).dot(points.col(i) - foot.point);
+    CommandCurve::Foot foot;
+    ContourDeviation deviation;
+    double before = 0;  // mm, length of the pieces before
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      const CommandCurve::Foot here = pieces[k].curve.nearest(points.col(i));
+      if (k == 0 || here.distance < foot.distance) {
+        foot = here;
+        deviation.piece = k;
+        deviation.along = before + here.along;
+      }
+      before += pieces[k].curve.length();
+    }
+    deviation.distance = foot.distance;
+    deviation.beyond_end = foot.beyond_end;
+    const CommandPiece& piece = pieces[deviation.piece];
+    if (const std::optional<Vector3d> left = left_of(piece, foot)) {
+      deviation.across = left->dot(points.col(i) - foot.point);
+      deviation.off = foot.tangent.cross(*left).dot(points.col(i) - foot.point);
     }
     result.push_back(deviation);
   }
@@ -154,11 +188,13 @@ ContourFigures contour_figures(std::span<const double> errors, std::span<const d
     const double u = uncertainties.empty() ? 0 : uncertainties[i], sign = errors[i] < 0 ? -1 : 1;
     const double share = s.deviation > 0 && s.count > 1 ? (amounts[i] - s.mean) / (s.deviation * (n - 1)) : 0;
     mean_square += u * u / (n * n);
+    figures.bias += errors[i] / n;
     deviation_square += share * share * u * u;
     signs += sign / n;
     signed_part += share * sign;
   }
   figures.mean_uncertainty = std::sqrt(mean_square + signs * signs * common * common);
+  figures.bias_uncertainty = std::sqrt(mean_square + common * common);
   figures.deviation_uncertainty = std::sqrt(deviation_square + signed_part * signed_part * common * common);
   figures.largest_uncertainty = std::hypot(uncertainties.empty() ? 0 : uncertainties[s.maximum_at], common);
   return figures;

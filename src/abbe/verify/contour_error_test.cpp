@@ -87,19 +87,69 @@ TEST(ContourError, NearestIsTheNearestOfAllPlacesOfAWindingCurve) {
   }
 }
 
+/// Unit vectors from the axis of a circle to its points.
+Eigen::Matrix3Xd outwards(const Eigen::Matrix3Xd& points) {
+  Eigen::Matrix3Xd out = points;
+  out.row(2).setZero();
+  out.colwise().normalize();
+  return out;
+}
+
 TEST(ContourError, DeviationsAreSplitIntoAcrossAndOutOfTheSurface) {
-  const CommandCurve curve(circle(50, 0, 1, 41));
-  Eigen::Matrix3Xd points(3, 1), normals(3, 1);
-  const double a = 0.4321;
-  const Vector3d out(std::cos(a), std::sin(a), 0), tangent(-std::sin(a), std::cos(a), 0);
-  // Seen from outside, along the curve, left is n x t = +z.
-  points.col(0) = 50 * out + Vector3d(0, 0, 7.02) + 0.005 * out;
-  normals.col(0) = 3 * (out + 0.1 * tangent);  // of any length, and not quite across the curve
-  const ContourDeviation d = contour_deviations(curve, points, normals).at(0);
-  EXPECT_NEAR(d.across, 0.02, 1e-9);
-  EXPECT_NEAR(d.off, 0.005, 1e-9);
-  EXPECT_NEAR(d.distance, std::hypot(0.02, 0.005), 1e-9);
-  EXPECT_NEAR(d.along, 50 * a, 1e-7);
+  // Twelve points on the whole circle: their own normals are up to 15 degrees off that of a place between them.
+  const Eigen::Matrix3Xd around = circle(50, 0, 2 * std::numbers::pi * 11 / 12, 12);
+  const std::vector<CommandPiece> pieces = {{CommandCurve(around, true, 1), 3 * outwards(around)}};
+  RandomStream random(4);
+  for (int i = 0; i < 30; ++i) {
+    const double a = random.uniform(0, 2 * std::numbers::pi);
+    const Vector3d out(std::cos(a), std::sin(a), 0);
+    // Seen from outside, along the curve, left is n x t = +z.
+    const Vector3d place = pieces[0].curve.nearest(50 * out + Vector3d(0, 0, 7)).point;
+    const Eigen::Matrix3Xd point = place + Vector3d(0, 0, 0.02) + 0.005 * out;
+    const ContourDeviation d = contour_deviations(pieces, point).at(0);
+    ASSERT_TRUE(d.across && d.off);
+    EXPECT_NEAR(*d.across, 0.02, 1e-6);
+    EXPECT_NEAR(*d.off, 0.005, 1e-5);
+    EXPECT_NEAR(d.distance, std::hypot(0.02, 0.005), 1e-5);
+    EXPECT_NEAR(d.along, 50 * a, 0.02);
+  }
+}
+
+TEST(ContourError, WithoutANormalNothingIsAcross) {
+  const Eigen::Matrix3Xd around = circle(50, 0, 1, 41);
+  const Eigen::Matrix3Xd point = Vector3d(50.01 * std::cos(0.5), 50.01 * std::sin(0.5), 7.02);
+  const auto deviation = [&](const Eigen::Matrix3Xd& normals) {
+    return contour_deviations(std::vector<CommandPiece>{{CommandCurve(around), normals}}, point).at(0);
+  };
+  const ContourDeviation bare = deviation({});
+  EXPECT_FALSE(bare.across || bare.off);
+  EXPECT_NEAR(bare.distance, std::hypot(0.01, 0.02), 1e-9);
+  // A tool that points along the curve says nothing of the surface.
+  Eigen::Matrix3Xd along = outwards(around);
+  for (Eigen::Index i = 0; i < along.cols(); ++i) along.col(i) = Vector3d::UnitZ().cross(Vector3d(along.col(i)));
+  EXPECT_FALSE(deviation(along).across);
+  EXPECT_TRUE(deviation(outwards(around)).across);
+  // Normals for some of the points only are a mistake.
+  EXPECT_THROW(deviation(outwards(around).leftCols(40)), std::invalid_argument);
+  EXPECT_THROW(contour_deviations({}, point), std::invalid_argument);
+}
+
+TEST(ContourError, EachPointIsComparedWithThePieceNearestToIt) {
+  Eigen::Matrix3Xd first(3, 2), second(3, 2), up(3, 2), points(3, 4);
+  first << 0, 10, 0, 0, 0, 0;
+  second << 0, 10, 5, 5, 0, 0;
+  up << 0, 0, 0, 0, 1, 1;
+  const std::vector<CommandPiece> pieces = {{CommandCurve(first), up}, {CommandCurve(second), up}};
+  points << 4, 4, 10, 12, 0.01, 4.98, 2.4, 5, 0, 0, 0, 0;
+  const std::vector<ContourDeviation> d = contour_deviations(pieces, points);
+  EXPECT_EQ(d[0].piece, 0U);
+  EXPECT_NEAR(*d[0].across, 0.01, 1e-12);
+  EXPECT_EQ(d[1].piece, 1U);
+  EXPECT_NEAR(*d[1].across, -0.02, 1e-12);
+  EXPECT_NEAR(d[1].along, 14, 1e-12);
+  EXPECT_NEAR(*d[2].across, 2.4, 1e-12);  // of the way from one to the other nothing is engraved
+  EXPECT_FALSE(d[2].beyond_end);
+  EXPECT_TRUE(d[3].beyond_end);
 }
 
 TEST(ContourError, FiguresHaveTheUncertaintyOfRepeatedMeasurements) {
@@ -110,13 +160,16 @@ TEST(ContourError, FiguresHaveTheUncertaintyOfRepeatedMeasurements) {
   EXPECT_NEAR(stated.amounts.mean, 0.017, 1e-15);
   EXPECT_NEAR(stated.amounts.maximum, 0.025, 1e-15);
   RandomStream random(5);
-  double mean = 0, largest = 0, deviation = 0;
+  EXPECT_NEAR(stated.bias, (0.012 - 0.02 + 0.018 + 0.025 - 0.011 + 0.016) / 6, 1e-15);
+  double mean = 0, largest = 0, deviation = 0, bias = 0;
   constexpr int kRuns = 4000;
   for (int run = 0; run < kRuns; ++run) {
     std::vector<double> measured = truth;
     const double shift = kCommon * random.normal();
     for (std::size_t i = 0; i < u.size(); ++i) measured[i] += shift + u[i] * random.normal();
-    const SampleStatistics s = contour_figures(measured).amounts;
+    const ContourFigures figures = contour_figures(measured);
+    const SampleStatistics& s = figures.amounts;
+    bias += std::pow(figures.bias - stated.bias, 2) / kRuns;
     mean += std::pow(s.mean - stated.amounts.mean, 2) / kRuns;
     largest += std::pow(s.maximum - stated.amounts.maximum, 2) / kRuns;
     deviation += std::pow(s.deviation - stated.amounts.deviation, 2) / kRuns;
@@ -125,6 +178,7 @@ TEST(ContourError, FiguresHaveTheUncertaintyOfRepeatedMeasurements) {
   EXPECT_NEAR(std::sqrt(mean) / stated.mean_uncertainty, 1, 0.04);
   EXPECT_NEAR(std::sqrt(largest) / stated.largest_uncertainty, 1, 0.04);
   EXPECT_NEAR(std::sqrt(deviation) / stated.deviation_uncertainty, 1, 0.04);
+  EXPECT_NEAR(std::sqrt(bias) / stated.bias_uncertainty, 1, 0.04);
   EXPECT_EQ(contour_figures({}).amounts.count, 0U);
 }
 
