@@ -354,7 +354,7 @@ EdgeFit fit_edge(const Eigen::Ref<const Eigen::Matrix2Xd>& points, const EdgeOpt
   for (Index i = 0; i < points.cols(); ++i) {
     const double u = points(0, i);
     const Eigen::Vector2d p(mirror * u, points(1, i) + options.surface_curvature * u * u / 2);
-    if (!p.allFinite()) return refused(EdgeStatus::too_few_points, "coordinates that are not finite");
+    if (!p.allFinite()) return refused(EdgeStatus::not_finite, "coordinates that are not finite");
     straight.push_back(p);
   }
   Start start;
@@ -412,6 +412,10 @@ EdgeFit fit_edge(const Eigen::Ref<const Eigen::Matrix2Xd>& points, const EdgeOpt
   if (fit.on_wall < 3 && fit.turn_seen < kLeastTurn) {
     return refused(EdgeStatus::undetermined, "the wall is not seen, and of the rounding less than 45 degrees");
   }
+  const double unknowns = 3 + (round ? 1 : 0) + (options.free_wall ? 1 : 0);
+  if (!(used > unknowns)) {
+    return refused(EdgeStatus::undetermined, "no more points on the curve than it has unknowns");
+  }
   // A sharp edge has no radius to be uncertain of: fewer than four points say nothing of it.
   const Matrix5 information = problem.sums(best, problem.uncertainties(best), scale, round, false).normal;
   const Eigen::Matrix<double, 5, 1> size = information.diagonal().cwiseSqrt().cwiseMax(1e-300);
@@ -420,7 +424,7 @@ EdgeFit fit_edge(const Eigen::Ref<const Eigen::Matrix2Xd>& points, const EdgeOpt
   if (!(eigen.eigenvalues()[0] > 1e-9)) {
     return refused(EdgeStatus::undetermined, "the points do not separate corner, radius and wall");
   }
-  const double variance = problem.noise_is_known() ? scale * scale : squares / std::max(1.0, used - 4);
+  const double variance = problem.noise_is_known() ? scale * scale : squares / (used - unknowns);
   fit.covariance = size.cwiseInverse().asDiagonal() * scaled.inverse() * size.cwiseInverse().asDiagonal();
   fit.covariance *= variance / kEfficiency;
   for (const int k : {static_cast<int>(kRadius), static_cast<int>(kTilt)}) {
@@ -435,7 +439,7 @@ EdgeFit fit_edge(const Eigen::Ref<const Eigen::Matrix2Xd>& points, const EdgeOpt
   fit.status = EdgeStatus::ok;
   fit.rounding = best[kRadius] * tangent;
   fit.rounding_uncertainty = std::sqrt(std::max(0.0, slope.dot(fit.covariance * slope)));
-  fit.noise = std::sqrt(squares / std::max(1.0, used));
+  fit.noise = std::sqrt(squares / used);
   fit.printed = as_printed(problem, best);
   fit.radius = best[kRadius];
   fit.surface_slope = mirror * (best[kSlope] - options.surface_curvature * best[kCornerU]);

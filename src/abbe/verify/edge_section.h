@@ -20,6 +20,7 @@ struct EdgeOptions {
 enum class EdgeStatus {
   not_run,
   ok,
+  not_finite,  ///< a coordinate is no number
   too_few_points,
   no_surface,    ///< the outer quarter of the section on the surface's side is no line
   no_edge,       ///< nowhere deeper than the scatter
