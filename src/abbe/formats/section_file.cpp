@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <numbers>
+#include <stdexcept>
 
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/input_error.h"
@@ -65,13 +67,25 @@ std::vector<SectionReadings> parse_sections(std::string_view text, const std::st
 }
 
 std::string sections_csv(const std::vector<SectionReadings>& sections) {
-  const bool along = !sections.empty() && sections.front().along, tilt = along && sections.front().beam_tilt;
+  // A column is there for all sections or for none: an empty field would be read as an error, and zero is a value.
+  const auto column = [&](std::optional<double> SectionReadings::*value, const char* name) {
+    const auto stated =
+        static_cast<std::size_t>(std::count_if(sections.begin(), sections.end(), [&](const SectionReadings& section) {
+          return (section.*value).has_value();
+        }));
+    if (stated != 0 && stated != sections.size()) {
+      throw std::invalid_argument(fmt::format("{} of {} sections state their {}", stated, sections.size(), name));
+    }
+    return stated != 0;
+  };
+  const bool along = column(&SectionReadings::along, "place along the curve");
+  const bool tilt = column(&SectionReadings::beam_tilt, "beam's tilt");
   std::string text =
       std::string("section,across_mm,height_mm") + (along ? ",along_mm" : "") + (tilt ? ",beam_tilt_deg" : "") + "\n";
   for (const SectionReadings& section : sections) {
     std::string common;
-    if (along) common += fmt::format(",{:.6f}", section.along.value_or(0));
-    if (tilt) common += fmt::format(",{:.9f}", section.beam_tilt.value_or(0) * 180 / std::numbers::pi);
+    if (along) common += fmt::format(",{:.6f}", *section.along);
+    if (tilt) common += fmt::format(",{:.9f}", *section.beam_tilt * 180 / std::numbers::pi);
     for (Eigen::Index i = 0; i < section.points.cols(); ++i) {
       fmt::format_to(std::back_inserter(text), "{},{:.6f},{:.6f}{}\n", csv_field(section.name), section.points(0, i),
                      section.points(1, i), common);

@@ -23,7 +23,8 @@ std::vector<SectionReadings> read_sections(const std::filesystem::path& path);
 /// The same from text. @param file  name for messages
 std::vector<SectionReadings> parse_sections(std::string_view text, const std::string& file);
 
-/// The file; coordinates to a nanometre.
+/// The file; coordinates to a nanometre. What is optional is stated by all sections or by none.
+/// @throws std::invalid_argument where only some of them state it
 std::string sections_csv(const std::vector<SectionReadings>& sections);
 
 /// Reads measured points of a contour: `x`, `y`, `z`; [3, n] mm. @throws InputError

@@ -27,6 +27,27 @@ TEST(SectionFile, SectionsComeInOrderOfAppearanceWithTheirPointsInOrder) {
   EXPECT_NEAR(*again[1].beam_tilt, *sections[1].beam_tilt, 1e-10);
 }
 
+TEST(SectionFile, WhatIsOptionalIsWrittenOnItsOwnAndNeverAsZero) {
+  std::vector<SectionReadings> sections(2);
+  for (SectionReadings& section : sections) {
+    section.name = &section == &sections[0] ? "A" : "B";
+    section.points = Eigen::Matrix2Xd::Constant(2, 3, 0.5);
+    section.beam_tilt = 0.125;
+  }
+  const std::vector<SectionReadings> tilted = parse_sections(sections_csv(sections), "tilted.csv");
+  ASSERT_EQ(tilted.size(), 2U);
+  EXPECT_FALSE(tilted[0].along);
+  ASSERT_TRUE(tilted[1].beam_tilt);
+  EXPECT_NEAR(*tilted[1].beam_tilt, 0.125, 1e-10);
+  sections[1].beam_tilt.reset();
+  EXPECT_THROW(sections_csv(sections), std::invalid_argument);
+  sections[0].beam_tilt.reset();
+  sections[1].along = 4;
+  EXPECT_THROW(sections_csv(sections), std::invalid_argument);
+  sections[1].along.reset();
+  EXPECT_EQ(sections_csv(sections).substr(0, 28), "section,across_mm,height_mm\n");
+}
+
 TEST(SectionFile, WhatIsWrongIsNamedWithItsLine) {
   EXPECT_EQ(
       message_of([] { parse_sections("section,along_mm,across_mm,height_mm\nA,1,0,0\nA,2,1,0\n", "x.csv"); }),
