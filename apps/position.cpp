@@ -20,7 +20,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 struct PositionCommand {
-  std::string file, output, maps = "table-to-workpiece";
+  std::string file, output, maps;  ///< maps: "table-to-workpiece" if empty
   bool json = false;
 };
 
@@ -137,6 +137,9 @@ int run_position(const PositionCommand& command) {
     throw InputError({.field = "--output"}, "there is no workpiece to be placed",
                      "a table [workpiece] in " + command.file);
   }
+  if (command.output.empty() && !command.maps.empty()) {
+    throw InputError({.field = "--maps"}, "there is no placement whose matrix maps that way", "with --output");
+  }
   const ScannerPosition scanner = locate_scanner(file.scans);
   nlohmann::ordered_json json;
   json["file"] = command.file;
@@ -167,7 +170,7 @@ int run_position(const PositionCommand& command) {
     json["workpiece"]["workpiece_to_table"] = reading_json(placement, false);
   }
   if (!command.output.empty()) {
-    write_file_atomically(command.output, placement_text(placement, command.maps == "table-to-workpiece"));
+    write_file_atomically(command.output, placement_text(placement, command.maps != "workpiece-to-table"));
   }
   if (command.json) {
     fmt::print("{}", json_text(json));
@@ -211,7 +214,7 @@ void add_position_command(CommandLine& line) {
   app->add_option("file", command->file, "Scans and what they show (*.positioning.toml)")->required();
   app->add_option("-o,--output", command->output, "Placement to write (*.placement.toml), as abbe path takes it");
   app->add_option("--maps", command->maps,
-                  "Which way the placement's matrix maps: table-to-workpiece (default) or "
+                  "Which way the matrix of the placement that is written maps: table-to-workpiece (default) or "
                   "workpiece-to-table")
       ->check(CLI::IsMember({"table-to-workpiece", "workpiece-to-table"}));
   app->add_flag("--json", command->json, "Print JSON for programs");

@@ -105,6 +105,24 @@ TEST_F(PositionTest, ThePlacementIsWhatAPathTakes) {
   EXPECT_EQ(path.exit_code, done) << path.err;
 }
 
+TEST_F(PositionTest, ThePlacementMapsTheWayThatIsAskedFor) {
+  const std::string file = engraver + "scanner.positioning.toml";
+  const auto written = [&](const std::vector<std::string>& options) {
+    const std::string placement = (folder.path() / "asked.placement.toml").string();
+    std::vector<std::string> words = {"position", file, "-o", placement};
+    words.insert(words.end(), options.begin(), options.end());
+    EXPECT_EQ(abbe(words).exit_code, done);
+    std::ifstream text(placement);
+    return std::string(std::istreambuf_iterator<char>(text), {});
+  };
+  EXPECT_NE(written({}).find("maps = \"table-to-workpiece\""), std::string::npos);
+  EXPECT_NE(written({"--maps", "workpiece-to-table"}).find("maps = \"workpiece-to-table\""), std::string::npos);
+  // Without a placement to be written it says nothing.
+  const CommandResult result = abbe({"position", file, "--maps", "workpiece-to-table"});
+  EXPECT_EQ(result.exit_code, bad_input);
+  EXPECT_NE(result.err.find("--maps: there is no placement"), std::string::npos) << result.err;
+}
+
 TEST_F(PositionTest, WhatTheScansDoNotShowIsSaid) {
   // The table turned the other way: its axis would point down.
   const CommandResult turned = abbe({"position", write_reference("turned = \"negatively\"\n"), "--json"});
