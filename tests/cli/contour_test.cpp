@@ -1,5 +1,7 @@
 // `abbe evaluate contour`: sections of a line scanner, and points against a commanded curve.
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 
 #include "cli/evaluate_for_test.h"
@@ -50,6 +52,36 @@ TEST_F(ContourTest, GivesTheDistanceOfTheEdgeFromItsCommandAndTheRoundingApart) 
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / name)) << name;
   }
   json({"contour", file, "--tolerance", "contour_max_um=20"}, computation_says_no);
+}
+
+TEST_F(ContourTest, AGrooveShowsBothOfItsEdges) {
+  // Edges with roundings of 20 and 8 um at -50 and 60 um: the middle is 5 um off.
+  std::string csv = "section,across_um,height_um\n";
+  const auto add = [&](double u, double v) { csv += "A," + std::to_string(u) + "," + std::to_string(v) + "\n"; };
+  const auto edge = [&](double corner, double r, double side, bool down) {
+    for (int n = 0; n < 130; ++n) {
+      const int k = down ? n : 129 - n;
+      if (k < 60) add(corner - side * (r + 120 - 2 * k), 0);
+      const double a = (k - 60 + 0.5) * std::numbers::pi / 80;
+      if (k >= 60 && k < 100) add(corner - side * (r - r * std::sin(a)), r * std::cos(a) - r);
+      if (k >= 100) add(corner, -r - 2 * (k - 100));
+    }
+  };
+  edge(-50, 20, 1, true);
+  for (int i = 0; i < 20; ++i) add(-40 + 4 * i, -79);
+  edge(60, 8, -1, false);
+  const std::string out = (folder.path() / "out").string();
+  const nlohmann::json found = json({"contour", folder.write("groove.csv", csv), "--feature", "groove", "-o", out});
+  EXPECT_NEAR(found["figures"]["contour_max"]["value_um"].get<double>(), 5, 0.05);
+  EXPECT_NEAR(found["sections"][0]["width_um"].get<double>(), 110, 0.1);
+  EXPECT_NEAR(found["sections"][0]["left"]["radius_um"].get<double>(), 20, 0.1);
+  EXPECT_NEAR(found["sections"][0]["right"]["radius_um"].get<double>(), 8, 0.1);
+  std::ifstream file(folder.path() / "out" / "report.html");
+  const std::string page(std::istreambuf_iterator<char>(file), {});
+  for (const char* const words :
+       {"radius in \xC2\xB5m, left edge", "radius in \xC2\xB5m, right edge", "20.00", "8.00"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  }
 }
 
 TEST_F(ContourTest, ASectionWithoutACornerIsNamedAndMakesTheAnswerNo) {
