@@ -31,22 +31,6 @@ struct OnWorkpiece {
   std::string status;
 };
 
-const char* status_name(FineRegistrationStatus status) {
-  switch (status) {
-    case FineRegistrationStatus::not_run:
-      return "not run";
-    case FineRegistrationStatus::ok:
-      return "ok";
-    case FineRegistrationStatus::too_few_points:
-      return "too few points";
-    case FineRegistrationStatus::not_converged:
-      return "not converged";
-    case FineRegistrationStatus::undetermined:
-      return "the scan does not determine the pose";
-  }
-  return "";
-}
-
 OnWorkpiece lay_on_workpiece(const WorkpieceScan& workpiece) {
   OnWorkpiece result;
   if (workpiece.part.empty()) {
@@ -55,7 +39,7 @@ OnWorkpiece lay_on_workpiece(const WorkpieceScan& workpiece) {
     result.fine =
         register_to_features(workpiece.points, workpiece.features, workpiece.labels, workpiece.start, options);
     result.ok = result.fine.status == FineRegistrationStatus::ok;
-    result.status = status_name(result.fine.status);
+    result.status = registration_status_name(result.fine.status);
     return result;
   }
   RegistrationOptions options;

@@ -12,30 +12,13 @@ namespace abbe {
 namespace {
 
 constexpr std::uint64_t kSeed = 2021;
-constexpr double kAgreement = 1e-9;  // mm
-
-YinResults compute() {
-  YinResults r;
-  r.table_moves = yin_steps(LinkageConvention::table_moves);
-  r.head_moves = yin_steps(LinkageConvention::head_moves);
-  r.joint = yin_joint_fit(r.table_moves.found);
-  r.positioning = yin_positioning();
-  r.agrees = r.table_moves.largest_difference < kAgreement && r.head_moves.largest_difference < kAgreement &&
-             r.positioning.largest_difference < kAgreement;
-  r.scans = yin_simulated_scans(kSeed);
-  r.located = yin_locate(r.scans);
-  BudgetOptions options;
-  options.seed = kSeed;
-  r.contour = yin_contour(r.positioning, options);
-  r.sections = yin_sections(r.positioning, kSeed);
-  return r;
-}
 
 /// The edge that the sections have found, as points in the frame of the workpiece.
 std::string engraved_csv(const YinSections& sections) {
   const std::vector<YinPoint> curve = yin_curve();
   std::string text = "x_mm,y_mm,z_mm\n";
-  for (std::size_t i = 0; i < curve.size(); ++i) {
+  for (std::size_t i = 0; i < sections.fits.size(); ++i) {
+    if (sections.fits[i].status != EdgeStatus::ok) continue;
     const YinPoint& at = curve[i];
     const Eigen::Vector3d p = at.point + sections.fits[i].corner.x() * at.normal.cross(at.tangent);
     text += fmt::format("{:.6f},{:.6f},{:.6f}\n", p.x(), p.y(), p.z());
@@ -60,7 +43,7 @@ void write_folder(const YinResults& r, const std::filesystem::path& output) {
 
 int reproduce_yin(const ReproduceOptions& options) {
   if (!options.output.empty()) check_results_folder(options.output);
-  const YinResults r = compute();
+  const YinResults r = yin_results(kSeed);
   if (!options.output.empty()) write_folder(r, options.output);
   if (options.json) {
     fmt::print("{}", json_text(yin_json(r)));

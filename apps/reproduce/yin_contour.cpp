@@ -122,6 +122,10 @@ class Engraving {
   Eigen::MatrixXd placement_root_;
 };
 
+YinFigures figures_of(const Eigen::VectorXd& amounts) {
+  return yin_figures({amounts.data(), static_cast<std::size_t>(amounts.size())});
+}
+
 void add(YinFigures& sum, const YinFigures& one, double share) {
   sum.mean += share * one.mean;
   sum.largest += share * one.largest;
@@ -130,8 +134,8 @@ void add(YinFigures& sum, const YinFigures& one, double share) {
 
 }  // namespace
 
-YinFigures yin_figures(const Eigen::VectorXd& amounts) {
-  const SampleStatistics s = sample_statistics({amounts.data(), static_cast<std::size_t>(amounts.size())});
+YinFigures yin_figures(std::span<const double> amounts) {
+  const SampleStatistics s = sample_statistics(amounts);
   return {1e3 * s.mean, 1e3 * s.maximum, 1e3 * s.deviation};
 }
 
@@ -145,9 +149,9 @@ YinContour yin_contour(const YinPositioning& positioning, const BudgetOptions& o
   result.budget =
       error_budget([&](const std::vector<double>& x) { return engraving.marks(x); }, engraving.inputs(), options,
                    [&](const Eigen::MatrixXd& marks) {
-                     const YinFigures across = yin_figures(marks.row(0).cwiseAbs().transpose());
+                     const YinFigures across = figures_of(marks.row(0).cwiseAbs().transpose());
                      add(result.across, across, share);
-                     add(result.in_surface, yin_figures(marks.colwise().norm().transpose()), share);
+                     add(result.in_surface, figures_of(marks.colwise().norm().transpose()), share);
                      means.push_back(across.mean);
                      largest.push_back(across.largest);
                      deviations.push_back(across.deviation);
@@ -172,9 +176,7 @@ YinSections yin_sections(const YinPositioning& positioning, std::uint64_t seed) 
   LineScanner scanner = LineScanner::published();
   result.options.across_noise = scanner.across_noise;
   result.options.height_noise = scanner.height_noise;
-  const auto n = static_cast<Eigen::Index>(engraving.curve().size());
-  Eigen::VectorXd found(n), rounding(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (Eigen::Index i = 0; i < marks.cols(); ++i) {
     const YinPoint& point = engraving.curve()[static_cast<std::size_t>(i)];
     EngravedEdge edge;
     edge.corner = {marks(0, i), -point.curvature * marks(0, i) * marks(0, i) / 2};
@@ -189,19 +191,36 @@ YinSections yin_sections(const YinPositioning& positioning, std::uint64_t seed) 
     section.along = point.along;
     section.points = scan_section(scanner, part, {}, random).points;
     section.points.row(0).array() += kSectionPlace * random.normal();
-    EdgeOptions options = result.options;
-    options.surface_curvature = point.curvature;
-    result.fits.push_back(fit_edge(section.points, options));
-    found[i] = result.fits.back().corner.x();
-    rounding[i] = result.fits.back().rounding;
     result.edge.push_back(marks(0, i));
+    result.curvature.push_back(point.curvature);
     result.sections.push_back(std::move(section));
   }
-  result.truth = yin_figures(marks.row(0).cwiseAbs().transpose());
-  result.found = yin_figures(found.cwiseAbs());
-  result.rounding = yin_figures(rounding);
-  result.largest_miss = (found - marks.row(0).transpose()).cwiseAbs().maxCoeff();
+  evaluate_sections(result);
   return result;
+}
+
+void evaluate_sections(YinSections& sections) {
+  sections.fits.clear();
+  sections.refused = 0;
+  sections.largest_miss = 0;
+  std::vector<double> truth, found, rounding;
+  for (std::size_t i = 0; i < sections.sections.size(); ++i) {
+    EdgeOptions options = sections.options;
+    options.surface_curvature = sections.curvature[i];
+    sections.fits.push_back(fit_edge(sections.sections[i].points, options));
+    const EdgeFit& fit = sections.fits.back();
+    if (fit.status != EdgeStatus::ok) {
+      ++sections.refused;
+      continue;
+    }
+    truth.push_back(std::abs(sections.edge[i]));
+    found.push_back(std::abs(fit.corner.x()));
+    rounding.push_back(fit.rounding);
+    sections.largest_miss = std::max(sections.largest_miss, std::abs(fit.corner.x() - sections.edge[i]));
+  }
+  sections.truth = yin_figures(truth);
+  sections.found = yin_figures(found);
+  sections.rounding = yin_figures(rounding);
 }
 
 }  // namespace abbe

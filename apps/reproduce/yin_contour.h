@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "abbe/formats/section_file.h"
@@ -16,7 +18,7 @@ struct YinFigures {
   double mean = 0, largest = 0, deviation = 0;
 };
 /// Figures of amounts in mm.
-YinFigures yin_figures(const Eigen::VectorXd& amounts);
+YinFigures yin_figures(std::span<const double> amounts);
 
 /// What Table 1, the microscope and the scanners let expect of the contour error.
 struct YinContour {
@@ -32,13 +34,18 @@ YinContour yin_contour(const YinPositioning& positioning, const BudgetOptions& o
 struct YinSections {
   std::vector<SectionReadings> sections;
   EdgeOptions options;
-  std::vector<double> edge;  ///< [points] mm, where the edges really are, across the curve
-  std::vector<EdgeFit> fits;
-  YinFigures truth, found;  ///< contour error
-  YinFigures rounding;      ///< P1 P2, which the paper calls so
-  double radius = 0;        ///< mm, of the edges
-  double largest_miss = 0;  ///< mm, of the edges found from the edges
+  std::vector<double> edge;       ///< [points] mm, where the edges really are, across the curve
+  std::vector<double> curvature;  ///< [points] 1/mm, of the surface across the curve
+  std::vector<EdgeFit> fits;      ///< [points]
+  std::size_t refused = 0;        ///< fits without an edge: no part in what follows
+  YinFigures truth, found;        ///< contour error
+  YinFigures rounding;            ///< P1 P2, which the paper calls so
+  double radius = 0;              ///< mm, of the edges
+  double largest_miss = 0;        ///< mm, of the edges found from the edges
 };
 YinSections yin_sections(const YinPositioning& positioning, std::uint64_t seed);
+
+/// Finds the edges in the sections and takes the figures over those that are found.
+void evaluate_sections(YinSections& sections);
 
 }  // namespace abbe

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "reproduce/yin_results.h"
 
@@ -29,6 +30,12 @@ ordered_json position_json(const PositioningParameters& p) {
     json["u_" + std::string(names[i])] = std::sqrt(p.covariance(i, i)) / (i < 3 ? 1 : kDegree);
   }
   return json;
+}
+
+ordered_json positions_json(const YinPositioning& p) {
+  if (!p.failure.empty()) return {{"not_found", p.failure}};
+  return {{"table_to_workpiece", position_json(p.table_to_workpiece)},
+          {"workpiece_to_table", position_json(p.workpiece_to_table)}};
 }
 
 ordered_json linkage_json(const YinResults& r) {
@@ -63,14 +70,15 @@ ordered_json linkage_json(const YinResults& r) {
 
 ordered_json scans_json(const YinResults& r) {
   const YinPositioning& p = r.located.positioning;
-  return {{"targets_placed", r.scans.targets_placed},
-          {"targets_seen", r.scans.targets_seen},
-          {"surface_points_placed", r.scans.surface_placed},
-          {"surface_points_seen", r.scans.surface_seen},
-          {"table_to_workpiece", position_json(p.table_to_workpiece)},
-          {"workpiece_to_table", position_json(p.workpiece_to_table)},
-          {"off_the_truth_um", 1e3 * p.largest_difference},
-          {"chi_square_of_six", r.located.chi_square}};
+  ordered_json json = {{"targets_placed", r.scans.targets_placed},
+                       {"targets_seen", r.scans.targets_seen},
+                       {"surface_points_placed", r.scans.surface_placed},
+                       {"surface_points_seen", r.scans.surface_seen}};
+  json.update(positions_json(p));
+  if (!p.failure.empty()) return json;
+  json["off_the_truth_um"] = 1e3 * p.largest_difference;
+  json["chi_square_of_six"] = r.located.chi_square;
+  return json;
 }
 
 ordered_json budget_figure_json(const BudgetFigure& f) {
@@ -109,17 +117,21 @@ ordered_json sections_json(const YinSections& s) {
                        {"contour_error", figures_json(s.found)},
                        {"contour_error_true", figures_json(s.truth)},
                        {"P1_P2", figures_json(s.rounding)},
-                       {"largest_miss_um", 1e3 * s.largest_miss}};
+                       {"largest_miss_um", 1e3 * s.largest_miss},
+                       {"without_an_edge", s.refused}};
   for (std::size_t i = 0; i < s.fits.size(); ++i) {
     const EdgeFit& fit = s.fits[i];
-    json["points"].push_back({{"number", i + 1},
-                              {"along_mm", *s.sections[i].along},
-                              {"true_um", 1e3 * s.edge[i]},
-                              {"contour_error_um", 1e3 * fit.corner.x()},
-                              {"u_contour_error_um", 1e3 * fit.corner_uncertainty()},
-                              {"P1_P2_um", 1e3 * fit.rounding},
-                              {"u_P1_P2_um", 1e3 * fit.rounding_uncertainty},
-                              {"scanned_points", s.sections[i].points.cols()}});
+    ordered_json point = {{"number", i + 1}, {"along_mm", *s.sections[i].along}, {"true_um", 1e3 * s.edge[i]}};
+    if (fit.status == EdgeStatus::ok) {
+      point["contour_error_um"] = 1e3 * fit.corner.x();
+      point["u_contour_error_um"] = 1e3 * fit.corner_uncertainty();
+      point["P1_P2_um"] = 1e3 * fit.rounding;
+      point["u_P1_P2_um"] = 1e3 * fit.rounding_uncertainty;
+    } else {
+      point["not_evaluated"] = fit.reason;
+    }
+    point["scanned_points"] = s.sections[i].points.cols();
+    json["points"].push_back(std::move(point));
   }
   return json;
 }
@@ -129,11 +141,13 @@ ordered_json sections_json(const YinSections& s) {
 ordered_json yin_json(const YinResults& r) {
   ordered_json json;
   json["linkage"] = linkage_json(r);
-  json["positioning"] = {{"table_to_workpiece", position_json(r.positioning.table_to_workpiece)},
-                         {"workpiece_to_table", position_json(r.positioning.workpiece_to_table)},
-                         {"simulated_scans", scans_json(r)}};
-  json["contour"] = contour_json(r);
-  json["sections"] = sections_json(r.sections);
+  json["positioning"] = positions_json(r.positioning);
+  json["positioning"]["simulated_scans"] = scans_json(r);
+  if (r.positioning.failure.empty()) {
+    json["contour"] = contour_json(r);
+    json["sections"] = sections_json(r.sections);
+  }
+  json["failures"] = r.failures;
   json["agrees_with_reference"] = r.agrees;
   return json;
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "reproduce/yin_results.h"
 
@@ -10,16 +11,21 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
+/// A fit that did not converge has no uncertainty.
+std::string joint_uncertainty_text(const YinJointFit& joint, std::size_t parameter) {
+  return joint.converged ? fmt::format("{:.1f}", 1e3 * joint.standard_uncertainty(parameter)) : "-";
+}
+
 void print_linkage(const YinResults& r) {
   fmt::print("Linkage parameters by the five steps, exact readings of the machine of Table 2 / mm\n");
   fmt::print("  {:<8}{:>12}{:>14}{:>16}{:>16}{:>12}{:>16}\n", "", "Table 2", "corrected", "printed, U", "printed, P",
              "u / um", "joint fit, u");
   const auto table = yin_linkage().values();
   for (std::size_t i = 0; i < SwingHeadLinkage::kCount; ++i) {
-    fmt::print("  {:<8}{:>12.3f}{:>14.3f}{:>16.3f}{:>16.3f}{:>12.1f}{:>16.1f}\n", linkage_name(i), table[i],
+    fmt::print("  {:<8}{:>12.3f}{:>14.3f}{:>16.3f}{:>16.3f}{:>12.1f}{:>16}\n", linkage_name(i), table[i],
                r.table_moves.found.linkage.values()[i], r.table_moves.found.printed.values()[i],
                r.head_moves.found.printed.values()[i], 1e3 * r.table_moves.found.standard_uncertainty(i),
-               1e3 * r.joint.standard_uncertainty(i));
+               joint_uncertainty_text(r.joint, i));
   }
   fmt::print(
       "  Wrong in print: (9) sign of h; step 3 takes 2 L_tA for L_tA; (10), (11) lose signs; (12) holds in convention "
@@ -42,7 +48,12 @@ void print_linkage(const YinResults& r) {
 }
 
 void print_positioning(const YinResults& r) {
-  const auto row = [](const char* words, const PositioningParameters& q) {
+  const auto row = [](const char* words, const YinPositioning& positioning, bool to_workpiece) {
+    if (!positioning.failure.empty()) {
+      fmt::print("  {:<42} {}\n", words, positioning.failure);
+      return;
+    }
+    const PositioningParameters& q = to_workpiece ? positioning.table_to_workpiece : positioning.workpiece_to_table;
     fmt::print("  {:<42}{:>10.3f}{:>10.3f}{:>10.3f}{:>9.3f}{:>9.3f}{:>9.3f}\n", words, q.translation[0],
                q.translation[1], q.translation[2], q.angles[0] / kDegree, q.angles[1] / kDegree, q.angles[2] / kDegree);
     fmt::print("  {:<42}{:>10.4f}{:>10.4f}{:>10.4f}{:>9.4f}{:>9.4f}{:>9.4f}\n", "  standard uncertainty",
@@ -51,20 +62,24 @@ void print_positioning(const YinResults& r) {
                std::sqrt(q.covariance(5, 5)) / kDegree);
   };
   fmt::print("Positioning parameters, x y z / mm, alpha beta gamma / deg (Table 3)\n");
-  row("p_workpiece = D p_table (the paper's words)", r.positioning.table_to_workpiece);
-  row("p_table = D p_workpiece (the other reading)", r.positioning.workpiece_to_table);
-  row("from a simulated scanner with occlusion", r.located.positioning.table_to_workpiece);
+  row("p_workpiece = D p_table (the paper's words)", r.positioning, true);
+  row("p_table = D p_workpiece (the other reading)", r.positioning, false);
+  row("from a simulated scanner with occlusion", r.located.positioning, true);
   fmt::print(
       "  Wrong in print: (15) orients by heights; (17) t_z; (18) signs; (19) order; step 5 is D_M^W (D_M^B)^-1.\n"
       "  Targets 10 um, sphere and workpiece 20 um per point. Simulated scanner: {} of {} target positions and {} of "
       "{} "
       "places\n"
-      "  seen, {:.1f} um off the truth, chi-square {:.1f} of 6.\n\n",
+      "  seen{}.\n\n",
       r.scans.targets_seen, r.scans.targets_placed, r.scans.surface_seen, r.scans.surface_placed,
-      1e3 * r.located.positioning.largest_difference, r.located.chi_square);
+      r.located.positioning.failure.empty()
+          ? fmt::format(", {:.1f} um off the truth, chi-square {:.1f} of 6",
+                        1e3 * r.located.positioning.largest_difference, r.located.chi_square)
+          : "");
 }
 
 void print_contour(const YinResults& r) {
+  if (!r.positioning.failure.empty()) return;  // there is none
   const YinContour& c = r.contour;
   fmt::print("Contour error at the 30 points of Table A4 / um ({} runs, {} inputs)\n", c.budget.runs, c.budget.inputs);
   fmt::print("  {:<58}{:>8}{:>8}{:>8}\n", "", "mean", "max", "s");
@@ -75,6 +90,10 @@ void print_contour(const YinResults& r) {
   row("predicted, across the curve in the surface", c.across);
   row("  95 % of machines stay below", c.upper);
   row("predicted, whole distance in the surface", c.in_surface);
+  if (r.sections.refused > 0) {
+    fmt::print("  of {} of {} sections, the others have no edge:\n", r.sections.fits.size() - r.sections.refused,
+               r.sections.fits.size());
+  }
   row("one simulated part, its edges", r.sections.truth);
   row("  from its sections: commanded curve to P2", r.sections.found);
   row("  from its sections: P1 P2, called contour error", r.sections.rounding);
@@ -108,6 +127,7 @@ void print_yin(const YinResults& r) {
   print_linkage(r);
   print_positioning(r);
   print_contour(r);
+  for (const std::string& failure : r.failures) fmt::print("NOT FOUND: {}\n", failure);
   fmt::print("{} with the reference to 1e-9 mm\n", r.agrees ? "agrees" : "DOES NOT AGREE");
 }
 

@@ -45,8 +45,14 @@ EvaluationTable positioning_table(const YinResults& r) {
       "Positioning parameters in both readings of Table 3, with standard uncertainties",
       {"", "x in mm", "y in mm", "z in mm", "alpha in \xC2\xB0", "beta in \xC2\xB0", "gamma in \xC2\xB0"},
       {}};
-  const auto add = [&](const char* words, const PositioningParameters& p) {
+  const auto add = [&](const char* words, const YinPositioning& positioning, bool to_workpiece) {
     std::vector<std::string> row = {words};
+    if (!positioning.failure.empty()) {
+      row.resize(table.headers.size(), "-");
+      table.rows.push_back(std::move(row));
+      return;
+    }
+    const PositioningParameters& p = to_workpiece ? positioning.table_to_workpiece : positioning.workpiece_to_table;
     for (Eigen::Index i = 0; i < 6; ++i) {
       const double value = i < 3 ? p.translation[i] : p.angles[i - 3] / kDegree;
       row.push_back(
@@ -54,9 +60,9 @@ EvaluationTable positioning_table(const YinResults& r) {
     }
     table.rows.push_back(std::move(row));
   };
-  add("p_workpiece = D p_table", r.positioning.table_to_workpiece);
-  add("p_table = D p_workpiece", r.positioning.workpiece_to_table);
-  add("simulated scanner with occlusion, first reading", r.located.positioning.table_to_workpiece);
+  add("p_workpiece = D p_table", r.positioning, true);
+  add("p_table = D p_workpiece", r.positioning, false);
+  add("simulated scanner with occlusion, first reading", r.located.positioning, true);
   return table;
 }
 
@@ -86,6 +92,7 @@ EvaluationPlot contour_plot(const YinResults& r) {
   for (std::size_t i = 0; i < r.sections.fits.size(); ++i) {
     const double along = *r.sections.sections[i].along;
     truth.push_back({along, 1e3 * r.sections.edge[i]});
+    if (r.sections.fits[i].status != EdgeStatus::ok) continue;
     found.push_back({along, 1e3 * r.sections.fits[i].corner.x()});
     rounding.push_back({along, 1e3 * r.sections.fits[i].rounding});
   }
@@ -125,18 +132,21 @@ EvaluationReport yin_report(const YinResults& r) {
   report.facts = {{"reference (golden/yin)", r.agrees ? "met to 1e-9 mm" : "NOT met"},
                   {"simulated campaigns", fmt::format("{}", r.contour.budget.runs)},
                   {"inputs", fmt::format("{}", r.contour.budget.inputs)}};
+  for (const std::string& failure : r.failures) report.notes.push_back("Not found: " + failure + ".");
   add_figures(report, "paper", "contour error as the paper measured it", kYinMeasured);
+  report.tables = {linkage_table(r), positioning_table(r)};
+  if (!r.positioning.failure.empty()) return report;
   add_figures(report, "predicted", "predicted contour error across the curve", r.contour.across);
   add_figures(report, "below95", "95 % of machines stay below", r.contour.upper);
   add_figures(report, "sections", "contour error from the sections of one simulated part", r.sections.found);
   add_figures(report, "P1P2", "P1 P2 of the same sections", r.sections.rounding);
   report.plots = {contour_plot(r), budget_plot(r.contour.budget)};
-  report.tables = {budget_table(r.contour.budget), linkage_table(r), positioning_table(r)};
-  report.notes = {
+  report.tables.insert(report.tables.begin(), budget_table(r.contour.budget));
+  report.notes.emplace_back(
       "P1 P2, which the paper calls the contour error, is the rounding of the edge and does not depend on where the "
-      "edge is; the contour error is the distance of P2 from the commanded curve.",
-      fmt::format("Both budgets differ by at most {:.1f} standard uncertainties of Monte Carlo.",
-                  r.contour.budget.largest_disagreement())};
+      "edge is; the contour error is the distance of P2 from the commanded curve.");
+  report.notes.push_back(fmt::format("Both budgets differ by at most {:.1f} standard uncertainties of Monte Carlo.",
+                                     r.contour.budget.largest_disagreement()));
   return report;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "abbe/report/evaluation_report.h"
 #include "reproduce/yin_contour.h"
@@ -21,8 +24,14 @@ struct YinResults {
   YinScansFound located;
   YinContour contour;
   YinSections sections;
-  bool agrees = false;  ///< with the reference to 1e-9 mm
+  std::vector<std::string> failures;  ///< what was to be found and is not, in words
+  bool agrees = false;                ///< with the reference to 1e-9 mm, and nothing failed
 };
+
+/// All of it. Without a position of the workpiece there is no contour: its parts stay empty.
+YinResults yin_results(std::uint64_t seed);
+/// Fills failures and agrees from the rest.
+void judge(YinResults& results);
 
 /// For programs; units in the keys.
 nlohmann::ordered_json yin_json(const YinResults& results);

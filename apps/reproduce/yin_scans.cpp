@@ -219,10 +219,8 @@ YinScansFound yin_locate(const YinScans& scans) {
   FeatureRegistrationOptions options;
   options.noise_mm = kSurfaceNoise;
   p.registration = register_to_features(scans.surface, yin_part(), scans.labels, scans.start, options);
-  if (p.scanner.status != PositioningStatus::ok || p.registration.status != FineRegistrationStatus::ok) return found;
-  p.placement = locate_workpiece(p.scanner, p.registration);
-  p.table_to_workpiece = positioning_parameters(p.placement, true);
-  p.workpiece_to_table = positioning_parameters(p.placement, false);
+  place_workpiece(p);
+  if (!p.failure.empty()) return found;
   const PositioningParameters truth = positioning_parameters(scans.placement, true);
   Eigen::Matrix<double, 6, 1> off;
   off << p.table_to_workpiece.translation - truth.translation, p.table_to_workpiece.angles - truth.angles;

@@ -21,10 +21,25 @@ YinSteps yin_steps(LinkageConvention convention) {
   for (std::size_t i = 0; i < SwingHeadLinkage::kCount; ++i) {
     for (const double off : {steps.found.linkage.values()[i] - reference.recovered[i],
                              steps.found.printed.values()[i] - reference.printed[i]}) {
-      steps.largest_difference = std::max(steps.largest_difference, std::abs(off));
+      // Of what is no number too: no comparison with it is true.
+      if (!(std::abs(off) <= steps.largest_difference)) steps.largest_difference = std::abs(off);
     }
   }
   return steps;
+}
+
+void place_workpiece(YinPositioning& p) {
+  p.failure.clear();
+  if (p.scanner.status != PositioningStatus::ok) {
+    p.failure = "the scanner's position is not found: " + p.scanner.reason;
+  } else if (p.registration.status != FineRegistrationStatus::ok) {
+    p.failure =
+        std::string("the workpiece's position is not found: ") + registration_status_name(p.registration.status);
+  }
+  if (!p.failure.empty()) return;
+  p.placement = locate_workpiece(p.scanner, p.registration);
+  p.table_to_workpiece = positioning_parameters(p.placement, true);
+  p.workpiece_to_table = positioning_parameters(p.placement, false);
 }
 
 YinPositioning yin_positioning() {
@@ -36,13 +51,14 @@ YinPositioning yin_positioning() {
   FeatureRegistrationOptions options;
   options.noise_mm = kSurfaceNoise;
   result.registration = register_to_features(reference.surface, yin_part(), reference.labels, reference.start, options);
-  result.placement = locate_workpiece(result.scanner, result.registration);
-  result.table_to_workpiece = positioning_parameters(result.placement, true);
-  result.workpiece_to_table = positioning_parameters(result.placement, false);
-  result.largest_difference =
-      std::max({difference(result.scanner.table_from_scanner, reference.table_from_scanner),
-                difference(result.registration.mesh_from_scan, reference.workpiece_from_scanner),
-                difference(result.placement.table_from_workpiece.inverse(), reference.workpiece_from_table)});
+  place_workpiece(result);
+  if (!result.failure.empty()) return result;
+  for (const double off :
+       {difference(result.scanner.table_from_scanner, reference.table_from_scanner),
+        difference(result.registration.mesh_from_scan, reference.workpiece_from_scanner),
+        difference(result.placement.table_from_workpiece.inverse(), reference.workpiece_from_table)}) {
+    if (!(off <= result.largest_difference)) result.largest_difference = off;
+  }
   return result;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "reproduce/yin_reference.h"
 
 namespace abbe {
@@ -18,7 +20,11 @@ struct YinPositioning {
   Placement placement;
   PositioningParameters table_to_workpiece, workpiece_to_table;  ///< both readings of Table 3
   double largest_difference = 0;                                 ///< mm (directions: as vectors), from the reference
+  std::string failure;                                           ///< why there are no parameters; empty: there are
 };
+/// The parameters from scanner and registration, or the failure. Needs nothing else.
+void place_workpiece(YinPositioning& positioning);
+
 /// From the reference's scans. Standard uncertainties: targets 10 um, sphere and workpiece 20 um.
 YinPositioning yin_positioning();
 

@@ -5,9 +5,7 @@
 #include <numbers>
 
 #include "abbe/geometry/rotation.h"
-#include "reproduce/yin_contour.h"
-#include "reproduce/yin_marks.h"
-#include "reproduce/yin_scans.h"
+#include "reproduce/yin_results.h"
 
 namespace abbe {
 namespace {
@@ -56,15 +54,18 @@ TEST(YinReference, PositioningMeetsItInEveryStep) {
     EXPECT_NEAR(all.table_to_workpiece.translation[i], exact.parameters[k], 1e-9);
     EXPECT_NEAR(all.table_to_workpiece.angles[i] * 180 / std::numbers::pi, exact.parameters[k + 3], 1e-10);
   }
-  // The other reading of Table 3 is another set of numbers.
+  // The other reading of Table 3 is another set of numbers: the inverse of the reference's matrix.
   expect_near({rotation_xyz(all.workpiece_to_table.angles), all.workpiece_to_table.translation},
-              all.placement.table_from_workpiece, 1e-9);
-  EXPECT_GT((all.workpiece_to_table.translation + all.table_to_workpiece.translation).norm(), 0.1);
-  // As printed: (17) with t_z = z_sR - z_p, (18) with + (x1 - x0).
-  const Eigen::Vector3d& o = exact.on_axis_turned;
-  const Eigen::Vector3d printed(150 - o.x(), -60 - o.y(), o.z() - 95);
-  EXPECT_LT((printed - exact.table_from_scanner.translation - Eigen::Vector3d(300, -120, 2 * (o.z() - 95))).norm(),
-            1e-6);
+              exact.workpiece_from_table.inverse(), 1e-9);
+  EXPECT_GT((all.workpiece_to_table.translation - all.table_to_workpiece.translation).norm(), 100);
+  // What is found is off the printed equations, (17) with t_z = z_sR - z_p and (18) with + (x1 - x0), by twice their
+  // wrong terms.
+  const Eigen::Vector3d o = found.table_from_scanner.rotation * found.on_axis;
+  const Eigen::Vector3d moved = exact.scans.moved_since,
+                        printed(moved.x() - o.x(), moved.y() - o.y(), o.z() - exact.scans.sphere_height);
+  const Eigen::Vector3d wrong(moved.x(), moved.y(), o.z() - exact.scans.sphere_height);
+  EXPECT_LT((printed - found.table_from_scanner.translation - 2 * wrong).norm(), 1e-9);
+  EXPECT_GT(wrong.cwiseAbs().minCoeff(), 10);
 }
 
 TEST(YinScans, WhatIsHiddenIsMissingAndTheRestLocatesTheWorkpieceWithinItsCovariance) {
@@ -119,8 +120,23 @@ TEST(YinContour, BudgetsBySensitivityAndByMonteCarloAgreeAndPredictWhatThePaperM
   EXPECT_NEAR(contour.printed_l_ta, 217, 15);
 }
 
+/// The sections of one part; seconds under the sanitizers, therefore once for all tests.
+const YinSections& part_sections() {
+  static const YinSections sections = yin_sections(yin_positioning(), 5);
+  return sections;
+}
+
+/// The first of them, not yet evaluated.
+YinSections first_sections(std::size_t count) {
+  YinSections few = part_sections();
+  few.sections.resize(count);
+  few.edge.resize(count);
+  few.curvature.resize(count);
+  return few;
+}
+
 TEST(YinSections, ShowWhereTheEdgesAreWhateverTheirRounding) {
-  const YinSections sections = yin_sections(yin_positioning(), 5);
+  const YinSections& sections = part_sections();
   ASSERT_EQ(sections.fits.size(), 30U);
   double squares = 0;
   for (std::size_t i = 0; i < 30; ++i) {
@@ -131,9 +147,119 @@ TEST(YinSections, ShowWhereTheEdgesAreWhateverTheirRounding) {
   }
   EXPECT_NEAR(squares, 1, 0.78);  // three times sqrt(2 / 30)
   EXPECT_NEAR(sections.found.mean, sections.truth.mean, 2);
-  // The radius, and nothing of the machine; noise of 2 um makes a rounding that 15 rays meet look 2.4 um smaller.
+  // The radius; noise of 2 um makes a rounding that 15 rays meet look 2.4 um smaller.
   EXPECT_NEAR(sections.rounding.mean, 15, 3);
-  EXPECT_GT(std::abs(sections.truth.mean - 15) + sections.truth.largest, 5);
+  // And nothing of the machine: had it engraved all of it 50 um beside, P1 P2 would be the same.
+  YinSections beside = first_sections(6);
+  for (std::size_t i = 0; i < 6; ++i) {
+    Eigen::Matrix2Xd& points = beside.sections[i].points;
+    const double k = beside.curvature[i];
+    // Along the surface, which falls away by k u^2 / 2.
+    points.row(1).array() -= k * (0.05 * points.row(0).array() + 0.05 * 0.05 / 2);
+    points.row(0).array() += 0.05;
+  }
+  evaluate_sections(beside);
+  ASSERT_EQ(beside.refused, 0U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(beside.fits[i].corner.x() - sections.fits[i].corner.x(), 0.05, 1e-6);
+    EXPECT_NEAR(beside.fits[i].rounding, sections.fits[i].rounding, 1e-6);
+  }
+  EXPECT_GT(beside.found.mean, 30);
+}
+
+TEST(YinSections, WithoutAnEdgeHaveNoPartInTheFigures) {
+  EXPECT_EQ(part_sections().refused, 0U);
+  YinSections sections = first_sections(5);
+  // The others stay as they are; a zero for this one would take a fifth of the mean away.
+  sections.sections[3].points = Eigen::Matrix2Xd(sections.sections[3].points.leftCols(12));
+  evaluate_sections(sections);
+  EXPECT_EQ(sections.refused, 1U);
+  EXPECT_EQ(sections.fits[3].status, EdgeStatus::too_few_points);
+  double found = 0, truth = 0;
+  for (const std::size_t i : {0U, 1U, 2U, 4U}) {
+    EXPECT_EQ(sections.fits[i].corner, part_sections().fits[i].corner);
+    found += 1e3 * std::abs(sections.fits[i].corner.x()) / 4;
+    truth += 1e3 * std::abs(sections.edge[i]) / 4;
+  }
+  EXPECT_NEAR(sections.found.mean, found, 1e-9);
+  EXPECT_NEAR(sections.truth.mean, truth, 1e-9);
+  EXPECT_LT(sections.largest_miss, 0.01);
+}
+
+/// Results in which everything was found.
+YinResults whole_results() {
+  YinResults r;
+  r.table_moves = yin_steps(LinkageConvention::table_moves);
+  r.head_moves = yin_steps(LinkageConvention::head_moves);
+  r.positioning = yin_positioning();
+  r.scans = yin_simulated_scans(2);
+  r.located = yin_locate(r.scans);
+  r.sections = first_sections(5);
+  evaluate_sections(r.sections);
+  BudgetOptions options;
+  options.runs = options.runs_per_cause = 10;
+  r.contour = yin_contour(r.positioning, options);
+  r.joint.converged = true;
+  judge(r);
+  return r;
+}
+
+TEST(YinResults, WhatIsNotFoundIsSaidAndDoesNotAgree) {
+  const YinResults whole = whole_results();
+  ASSERT_TRUE(whole.agrees) << whole.failures.at(0);
+  const auto expect_failure = [&](YinResults r, const std::string& words) {
+    judge(r);
+    EXPECT_FALSE(r.agrees) << words;
+    ASSERT_EQ(r.failures.size(), 1U) << words;
+    EXPECT_NE(r.failures[0].find(words), std::string::npos) << r.failures[0];
+    EXPECT_EQ(yin_json(r)["failures"][0], r.failures[0]);
+    EXPECT_FALSE(yin_json(r)["agrees_with_reference"]);
+    EXPECT_NE(yin_report(r).notes[0].find(words), std::string::npos);
+    testing::internal::CaptureStdout();
+    print_yin(r);
+    const std::string printed = testing::internal::GetCapturedStdout();
+    EXPECT_NE(printed.find("NOT FOUND: " + r.failures[0]), std::string::npos) << printed;
+    EXPECT_NE(printed.find("DOES NOT AGREE"), std::string::npos);
+  };
+  YinResults r = whole;
+  r.sections.sections[3].points = Eigen::Matrix2Xd(r.sections.sections[3].points.leftCols(12));
+  evaluate_sections(r.sections);
+  expect_failure(r, "edge of section 4: fewer than 20 points");
+  EXPECT_EQ(yin_json(r)["sections"]["points"][3].count("contour_error_um"), 0U);
+
+  r = whole;
+  r.joint = {};
+  r.joint.message = "not converged after 50 steps";
+  expect_failure(r, "joint fit of marks: not converged after 50 steps");
+  testing::internal::CaptureStdout();
+  print_yin(r);
+  // No uncertainty of zero in the last column of the table.
+  EXPECT_NE(testing::internal::GetCapturedStdout().find("               -\n"), std::string::npos);
+
+  r = whole;
+  r.scans.scans.along_x.resize(1);
+  r.located = yin_locate(r.scans);
+  expect_failure(r, "simulated scanner: the scanner's position is not found");
+  const nlohmann::ordered_json scans = yin_json(r)["positioning"]["simulated_scans"];
+  EXPECT_EQ(scans.count("table_to_workpiece") + scans.count("chi_square_of_six"), 0U);
+  EXPECT_EQ(scans.count("not_found"), 1U);
+
+  r = whole;
+  r.positioning.registration.status = FineRegistrationStatus::undetermined;
+  place_workpiece(r.positioning);
+  r.contour = {};
+  r.sections = {};
+  expect_failure(r, "the scan does not determine the pose");
+
+  r = whole;
+  r.head_moves.found.status = LinkageStatus::not_run;
+  expect_failure(r, "five steps, P");
+
+  // A difference that is no number is no agreement.
+  r = whole;
+  r.positioning.largest_difference = std::nan("");
+  judge(r);
+  EXPECT_FALSE(r.agrees);
 }
 
 TEST(YinMarks, OneFitOfMarksDeterminesAllSevenParametersBetterThanTheFiveSteps) {

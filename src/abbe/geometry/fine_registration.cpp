@@ -340,4 +340,20 @@ FineRegistration register_finely(const Matrix3Xd& points, const ClosestPointFind
   return result;
 }
 
+const char* registration_status_name(FineRegistrationStatus status) {
+  switch (status) {
+    case FineRegistrationStatus::not_run:
+      return "not run";
+    case FineRegistrationStatus::ok:
+      return "ok";
+    case FineRegistrationStatus::too_few_points:
+      return "too few points";
+    case FineRegistrationStatus::not_converged:
+      return "not converged";
+    case FineRegistrationStatus::undetermined:
+      return "the scan does not determine the pose";
+  }
+  return "";
+}
+
 }  // namespace abbe

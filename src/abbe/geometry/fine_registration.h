@@ -28,6 +28,8 @@ struct FineRegistrationOptions {
 };
 
 enum class FineRegistrationStatus { not_run, ok, too_few_points, not_converged, undetermined };
+/// In words: "the scan does not determine the pose".
+const char* registration_status_name(FineRegistrationStatus status);
 
 /// Rigid motion that lays a scan on a surface.
 struct FineRegistration {

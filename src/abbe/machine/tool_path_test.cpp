@@ -120,7 +120,7 @@ TEST(ToolPath, OnTheWorkpieceItLeavesWhatItWorksOnWithinARegion) {
   curve.indexed = {machine.find_axis("C2")};
   for (CurvePoint& point : curve.points) point.indexed = {0};
   for (std::size_t i = 6; i < 12; ++i) curve.points[i].indexed = {1};  // the tool retracts on the way to the seventh
-  for (const std::size_t rapid : {3, 9, 10, 11}) curve.points[rapid].working = false;
+  for (const std::size_t rapid : {3U, 9U, 10U, 11U}) curve.points[rapid].working = false;
   const std::vector<WorkingRun> runs = working_runs(curve);
   ASSERT_EQ(runs.size(), 3U);
   const std::size_t expected[][2] = {{0, 2}, {3, 5}, {6, 8}};
