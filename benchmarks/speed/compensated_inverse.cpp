@@ -32,7 +32,7 @@ struct Setting {
     }
     status.resize(kPoses);
   }
-  std::size_t correct(std::size_t first, std::size_t count) {
+  void correct(std::size_t first, std::size_t count) {
     std::array<const double*, 5> in;
     std::array<double*, 5> out;
     for (std::size_t i = 0; i < 5; ++i) {
@@ -40,7 +40,6 @@ struct Setting {
       out[i] = corrected[i].data() + first;
     }
     inverse.correct({in, count}, {out, status.data() + first, nullptr, nullptr});
-    return count;
   }
   FiveAxisCase five_axis;
   CompensatedInverse inverse;

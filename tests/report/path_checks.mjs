@@ -37,7 +37,9 @@ async function pathOf(page, data, expect, shot, parse) {
     expect(await until(async () => (await inkOf(page, canvas)).sum !== first.sum), 'the tool does not move');
     const words = await page.textContent('#path-words');
     expect(Math.abs(parse(words.split('\u2009s')[0]) - path.time_s[n - 1]) < 1e-3 * path.time_s[n - 1], `time at the end: ${words}`);
-    expect((await page.textContent('#path')).includes('are drawn') , 'how many moves are drawn is not said');
+    const said = (await page.$$eval('#path .note', (all) => all.map((e) => e.textContent).join(' '))).match(/(?:All ([\d\u202f]+) moves|([\d\u202f]+) of ([\d\u202f]+) moves) are drawn/);
+    const [drawn, moves] = [parse(said?.[1] ?? said?.[2] ?? 'none'), parse(said?.[1] ?? said?.[3] ?? 'none')];
+    expect(drawn === n && moves === (path.moves ?? n), `${drawn} of ${moves} moves said to be drawn, ${n} of ${path.moves ?? n} are`);
     await page.fill('#path-position', '1200');
     await page.waitForTimeout(400);
     await shot(page.locator('#path'), 'path');

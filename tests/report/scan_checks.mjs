@@ -54,6 +54,22 @@ const readingOf = (text, parse) => {
   return match && {value: parse(match[1].replace('+', '')), at: match[2].split(', ').map(parse)};
 };
 
+/// How far a place is from the nearest triangle that it lies over, mm.
+function awayFromPart(data, at) {
+  let least = Infinity;
+  for (let t = 0; t < data.triangles.length; t += 3) {
+    const [a, b, c] = [0, 1, 2].map((k) => data.vertices.slice(3 * data.triangles[t + k], 3 * data.triangles[t + k] + 3));
+    const minus = (p, q) => p.map((v, k) => v - q[k]);
+    const dot = (p, q) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    const cross = (p, q) => [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+    const normal = cross(minus(b, a), minus(c, a));
+    const length = Math.hypot(...normal);
+    const inside = [[a, b], [b, c], [c, a]].every(([from, to]) => dot(normal, cross(minus(to, from), minus(at, from))) >= -1e-3 * length * length);
+    if (length > 0 && inside) least = Math.min(least, Math.abs(dot(normal, minus(at, a))) / length);
+  }
+  return least;
+}
+
 /// Moves the pointer over the drawing until something is read.
 async function sweep(page, selector, output, parse) {
   const box = await page.locator(selector).first().boundingBox();
@@ -108,11 +124,12 @@ async function surfaceOf(page, block, expect, shot, parse) {
 
   // Another limit colours other places, exaggeration moves them, and both can be undone.
   await until(async () => (await inkOf(page, canvas)).sum === first.sum);
-  const change = async (selector, value, what) => {
+  const change = async (selector, value, what, look) => {
     const old = await page.inputValue(selector);
     await page.fill(selector, String(value));
     expect(await until(async () => (await inkOf(page, canvas)).sum !== first.sum), `${what} changes nothing`);
     await shot(page.locator('#surface'), what);
+    await look?.();
     await page.fill(selector, old);
     expect(await until(async () => (await inkOf(page, canvas)).sum === first.sum), `${what} cannot be undone`);
   };
@@ -121,7 +138,46 @@ async function surfaceOf(page, block, expect, shot, parse) {
   const ticks = await page.$$eval('#surface .colour-bar .tick', (all) => all.map((e) => e.textContent));
   expect(ticks.includes('below') && ticks.includes('above'), 'the colour scale does not show what lies beyond it');
   const last = await page.getAttribute('#surface-exaggeration', 'max');
-  await change('#surface-exaggeration', Math.max(1, Number(last) - 6), 'exaggeration');
+  await change('#surface-exaggeration', Math.max(1, Number(last) - 6), 'exaggeration', async () => {
+    const far = await sweep(page, canvas, '#surface-reading', parse);
+    expect(far !== undefined, 'nothing is read on the exaggerated surface');
+    if (far) expect(awayFromPart(data, far.at) < 2e-4 * block.step_mm * 65535, `under exaggeration the reading is at ${far.at}, which is not on the part`);
+  });
+}
+
+const dotsOf = (page) => page.$eval('.section-drawing', (e) => ({scale: Number(e.dataset.scale),
+  dots: ['below', 'above'].flatMap((side) => [...(e.querySelector(`.dots.${side}`).getAttribute('d') ?? '').matchAll(/M([-\d.]+) ([-\d.]+)/g)].map((m) => [Number(m[1]), Number(m[2])]))}));
+
+/// Points are moved out by their deviation times the magnification, and the one under the pointer is read.
+async function sectionReading(page, data, axis, expect, parse, step) {
+  const steps = Number(await page.getAttribute('#section-factor', 'max'));
+  const old = await page.inputValue('#section-factor');
+  const at = async (value) => {
+    await page.fill('#section-factor', String(value));
+    await page.waitForTimeout(100);
+    const words = await page.textContent('label:has(#section-factor) output, output[for=section-factor]');
+    return {factor: words === 'none' ? 0 : parse(words.replace('×', '')), ...await dotsOf(page)};
+  };
+  const [none, some] = [await at(0), await at(steps - 2)];
+  expect(none.factor === 0 && some.factor > 0, `magnifications ${none.factor}, ${some.factor}`);
+  const largest = Math.max(...data.readings.map(Math.abs));
+  const moved = some.dots.map(([x, y], i) => Math.hypot(x - none.dots[i][0], y - none.dots[i][1]) / some.scale / some.factor * 1e3);
+  const most = Math.max(...moved);
+  expect(most <= largest * 1.01 + 0.02 / some.scale / some.factor * 1e3, `section across ${axis}: moved by ${most} um, the largest deviation is ${largest}`);
+  await page.fill('#section-factor', old);
+  await page.waitForTimeout(100);
+  const now = await dotsOf(page);
+  const box = await page.locator('.section-drawing').boundingBox();
+  const shownWidth = await page.$eval('.section-drawing', (e) => e.viewBox.baseVal.width);
+  const [x, y] = now.dots[Math.floor(now.dots.length / 2)];
+  await page.mouse.move(box.x + (x * box.width) / shownWidth, box.y + (y * box.width) / shownWidth);
+  await page.waitForTimeout(60);
+  const read = readingOf(await page.textContent('#section-reading'), parse);
+  expect(read !== null, `section across ${axis}: nothing is read at a point`);
+  if (!read) return;
+  const match = data.readings.some((value, i) => Math.abs(value - read.value) <= 1.01 * step &&
+    [0, 1, 2].every((k) => Math.abs(data.feet[3 * i + k] - read.at[k]) <= 1e-5 * Math.abs(read.at[k]) + 1e-6));
+  expect(match, `section across ${axis}: ${read.value} at ${read.at} is no point of the scan`);
 }
 
 async function sectionOf(page, block, expect, shot, parse) {
@@ -156,6 +212,7 @@ async function sectionOf(page, block, expect, shot, parse) {
     const stated = words.match(/([\d\u202f]+) points within/);
     expect(drawn.dots === (stated ? parse(stated[1]) : 0), `section across ${axis}: ${drawn.dots} dots, ${stated?.[1]} stated`);
     if (axis === 'z') await shot(page.locator('#section'), 'section');
+    if (drawn.dots) await sectionReading(page, data, axis, expect, parse, block.value_step_um);
   }
   const before = await page.$eval('.section-drawing .outline', (e) => e.getAttribute('d'));
   await page.selectOption('#section-direction', 'free');

@@ -2,7 +2,10 @@
 //
 // Small errors recede towards the background, large ones stand out, so lightness runs the other way in the dark theme.
 
-function srgbFromOklch(lightness: number, chroma: number, hueDegrees: number): [number, number, number] {
+/// Red, green, blue, each 0..1.
+export type Rgb = [number, number, number];
+
+function srgbFromOklch(lightness: number, chroma: number, hueDegrees: number): Rgb {
   const hue = (hueDegrees * Math.PI) / 180;
   const a = chroma * Math.cos(hue);
   const b = chroma * Math.sin(hue);
@@ -17,11 +20,11 @@ function srgbFromOklch(lightness: number, chroma: number, hueDegrees: number): [
   return linear.map((v) => {
     const c = Math.min(1, Math.max(0, v));
     return c <= 0.0031308 ? 12.92 * c : 1.055 * Math.pow(c, 1 / 2.4) - 0.055;
-  }) as [number, number, number];
+  }) as Rgb;
 }
 
 /// Colour of a fraction 0..1 as sRGB, each 0..1.
-export function rampColour(fraction: number, dark: boolean): [number, number, number] {
+export function rampColour(fraction: number, dark: boolean): Rgb {
   const t = Math.min(1, Math.max(0, fraction));
   const chroma = 0.1 + 0.08 * Math.sin(Math.PI * t);
   return dark
@@ -29,7 +32,7 @@ export function rampColour(fraction: number, dark: boolean): [number, number, nu
     : srgbFromOklch(0.83 - 0.5 * t, chroma, 130 + 165 * t);
 }
 
-export function cssColour(rgb: [number, number, number]): string {
+export function cssColour(rgb: Rgb): string {
   return `rgb(${rgb.map((v) => Math.round(v * 255)).join(' ')})`;
 }
 

@@ -36,10 +36,11 @@ function drawing(block: ContourBlock): HTMLElement {
   return box;
 }
 
-export function contourSection(blocks: ContourBlock[]): HTMLElement {
+export function contourSection(all: ContourBlock | ContourBlock[] | undefined): HTMLElement | undefined {
+  const blocks = [all ?? []].flat().filter((block) => block.error_um?.length);
+  if (!blocks.length) return undefined;
   const part = section('contour', 'Contour error along the curve');
   for (const block of blocks) {
-    if (!block.error_um?.length) continue;
     const stated = figures(block);
     const beyond = block.limits_um?.length === 2 ? block.error_um.filter((e) => e < block.limits_um![0] || e > block.limits_um![1]).length : undefined;
     const words = `${block.title ? `${block.title}. ` : ''}${count(block.points ?? block.error_um.length)} points` +

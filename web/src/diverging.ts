@@ -1,7 +1,7 @@
 // Colours of signed values: blue below zero, light grey at zero, red above, both ends equally dark; blue and red are told apart with
 // any colour vision. Beyond the limits a light cyan and a light yellow, which nothing within them has.
 
-export type Rgb = [number, number, number];
+import {Rgb} from './colour';
 
 const kBelow: Rgb = [33 / 255, 102 / 255, 172 / 255];
 const kZero: Rgb = [225 / 255, 225 / 255, 225 / 255];

@@ -3,16 +3,12 @@
 import {Evaluation, EvaluationFigure, findQuantity} from './data';
 import {html, section} from './dom';
 import {drawing} from './drawings';
-import {grouped} from './format';
+import {fixed} from './format';
 
-const kVerdicts: Record<string, string> = {exceeded: 'differs', 'cannot be judged': 'differs', within: 'agrees'};
-
-/// A value with the decimals of its figure.
-function text(value: number | undefined, decimals: number): string {
-  if (value === undefined) return '';
-  const plain = Math.abs(value).toFixed(decimals);
-  return (value < 0 && Number(plain) !== 0 ? '\u2212' : '') + grouped(plain);
-}
+/// As evaluation_report.cpp names them; "not proven": the tolerance lies within the uncertainty.
+const kVerdicts: Record<string, string> = {
+  within: 'agrees', 'within, not proven': 'undecided', 'exceeded, not proven': 'exceeded', exceeded: 'exceeded', 'cannot be judged': 'exceeded',
+};
 
 export function evaluationFacts(evaluation: Evaluation): HTMLElement {
   return html('dl', {class: 'facts'}, ...(evaluation.facts ?? []).map((fact) => html('div', {}, html('dt', {}, fact.name), html('dd', {}, fact.text))));
@@ -30,18 +26,19 @@ export function evaluationSection(evaluation: Evaluation): HTMLElement {
   const tolerance = any('tolerance');
   const heads = ['', 'Figure', 'Value', uncertainty && 'U (k = 2)', 'Unit', tolerance && 'Tolerance', tolerance && 'Verdict'].filter((name): name is string => name !== false);
   const numeric = new Set(['Value', 'U (k = 2)', 'Tolerance']);
-  const number = (figure: EvaluationFigure, name: string) => html('td', {class: 'number'}, text(find(figure, name)?.value, figure.decimals ?? 3));
+  const text = (figure: EvaluationFigure, value: number | undefined) => (value === undefined ? '' : fixed(value, figure.decimals ?? 3));
+  const number = (figure: EvaluationFigure, name: string) => html('td', {class: 'number'}, text(figure, find(figure, name)?.value));
   const rows = figures.map((figure) => {
     const value = find(figure, 'value');
     const verdict = figure.verdict ?? '';
     return html('tr', {},
       html('th', {scope: 'row'}, figure.symbol), html('td', {}, figure.name ?? ''),
-      value ? html('td', {class: 'number'}, html('span', {'data-figure': figure.symbol}, text(value.value, figure.decimals ?? 3)))
+      value ? html('td', {class: 'number'}, html('span', {'data-figure': figure.symbol}, text(figure, value.value)))
         : html('td', {}, `not evaluated: ${figure.not_evaluated ?? ''}`),
       uncertainty && number(figure, 'expanded_uncertainty'), html('td', {}, value?.unit ?? ''),
       tolerance && number(figure, 'tolerance'), tolerance && html('td', {class: kVerdicts[verdict] ?? ''}, verdict));
   });
-  part.append(html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Figures'}, html('table', {class: 'figures'},
+  part.append(html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Figures'}, html('table', {},
     html('caption', {class: 'unseen'}, 'Figures'),
     html('thead', {}, html('tr', {}, ...heads.map((name) => html('th', {scope: 'col', class: numeric.has(name) ? 'number' : ''}, name || html('span', {class: 'unseen'}, 'Symbol'))))),
     html('tbody', {}, ...rows))));

@@ -23,6 +23,12 @@ export function count(value: number | null | undefined): string {
   return (value < 0 ? kMinus : '') + grouped(String(Math.round(Math.abs(value))));
 }
 
+/// With a number of decimals; what rounds to zero has no sign.
+export function fixed(value: number, decimals: number): string {
+  const text = Math.abs(value).toFixed(decimals);
+  return (value < 0 && Number(text) !== 0 ? kMinus : '') + grouped(text);
+}
+
 /// Thousands apart from five digits on.
 export function grouped(text: string): string {
   const [whole, fraction] = text.split('.');
@@ -47,8 +53,7 @@ export function withUncertainty(value: number | null, uncertainty: number | null
   const decimals = 1 - Math.floor(Math.log10(uncertainty));
   if (decimals > 6 || decimals < -4) return [number(value, 4), number(uncertainty, 2)];
   const places = Math.max(0, decimals);
-  const text = Math.abs(value).toFixed(places);
-  return [(value < 0 && Number(text) !== 0 ? kMinus : '') + grouped(text), grouped(uncertainty.toFixed(places))];
+  return [fixed(value, places), fixed(uncertainty, places)];
 }
 
 /// Value with unit; the degree sign stands close.
@@ -66,8 +71,7 @@ export function alike(value: number | null | undefined, printed: string): string
   if (value === null || value === undefined) return '\u2013';
   const decimals = printed.includes('·') || !/\d/.test(printed) ? -1 : (printed.split('.')[1] ?? '').length;
   if (decimals < 0) return number(value, 4);
-  const text = Math.abs(value).toFixed(decimals);
-  return (value < 0 && Number(text) !== 0 ? kMinus : '') + grouped(text);
+  return fixed(value, decimals);
 }
 
 /// Text of a producer without Greek letters, as people write it.

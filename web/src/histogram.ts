@@ -18,7 +18,7 @@ export function lengths(v: Vectors): number[] {
   return v.x.map((x, i) => Math.hypot(x, v.y[i], v.z[i]));
 }
 
-function fromValues(values: number[], edges: number[]): Distribution {
+export function fromValues(values: number[], edges: number[]): Distribution {
   const counts = new Array<number>(edges.length - 1).fill(0);
   const low = Math.log(edges[0]);
   const step = Math.log(edges[1]) - low;
@@ -36,11 +36,12 @@ function fromValues(values: number[], edges: number[]): Distribution {
   return {edges, share: counts.map((c) => (100 * c) / values.length), median: at(0.5), p95: at(0.95), total: values.length};
 }
 
-/// Counted data come with their own linear bins; shares are per factor of the axis so that areas stay comparable.
-function fromCounts(edges: number[], counts: number[]): Distribution {
-  const total = counts.reduce((a, b) => a + b, 0);
+/// Counted data come with their own linear bins; quantiles are linear within them, and at their ends where they lie outside.
+export function fromCounts(edges: number[], counts: number[], below = 0, above = 0): Distribution {
+  const total = counts.reduce((a, b) => a + b, below + above);
   const quantile = (q: number) => {
-    let sum = 0;
+    let sum = below;
+    if (sum >= q * total && below) return edges[0];
     for (let i = 0; i < counts.length; ++i) {
       if (sum + counts[i] >= q * total) return edges[i] + ((q * total - sum) / Math.max(1, counts[i])) * (edges[i + 1] - edges[i]);
       sum += counts[i];
@@ -74,7 +75,7 @@ function drawing(unit: string, sets: {style: string; name: string; data: Distrib
       height: 250,
       x: {label: `${quantityName} / ${unit}`, range: [from, to], log},
       y: {label: `share of the ${of} / %`, range: [0, highest * 1.22], nice: false},
-      description: sets.map((set) => `${set.name}: median ${quantity(set.data.median, unit)}, 95 percent below ${quantity(set.data.p95, unit)}`).join('; '),
+      description: sets.map((set) => `${set.name && `${set.name}: `}median ${quantity(set.data.median, unit)}, 95 percent below ${quantity(set.data.p95, unit)}`).join('; '),
     });
     sets.forEach((set, i) => {
       bars(target, set.data, set.style);
@@ -99,11 +100,12 @@ function signedCounts(entry: Histogram, edges: number[], unit: string): HTMLElem
   const counts = entry.counts as number[];
   const inside = counts.reduce((a, b) => a + b, 0);
   if (!inside) return undefined;
-  const outside = (Number(entry.below) || 0) + (Number(entry.above) || 0);
+  const below = Number(entry.below) || 0;
+  const above = Number(entry.above) || 0;
+  const all = inside + below + above;
   const of = typeof entry.of === 'string' ? entry.of : 'values';
-  const data = fromCounts(edges, counts);
-  data.share = counts.map((c) => (100 * c) / (inside + outside));
-  const caption = `${entry.title ?? 'Distribution'} of ${count(inside + outside)} ${of}.${outside ? ` ${count(Number(entry.below))} lie below and ${count(Number(entry.above))} above the classes.` : ''}`;
+  const data = fromCounts(edges, counts, below, above);
+  const caption = `${entry.title ?? 'Distribution'} of ${count(all)} ${of}.${all > inside ? ` ${count(below)} lie below and ${count(above)} above the classes.` : ''}`;
   return figure(caption, drawing(unit, [{style: 'after', name: '', data}], false, typeof entry.quantity === 'string' ? entry.quantity : 'value', of));
 }
 

@@ -1,6 +1,6 @@
 // Factors of exaggeration: none, then 1, 2, 5, 10, ... about one that suits the drawing.
 
-import {roundFactor} from './map_choices';
+import {roundFactor} from './scale';
 
 export interface Ladder {
   factors: number[];

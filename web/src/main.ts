@@ -45,7 +45,7 @@ function build(report: Report): void {
     report.evaluation?.figures?.length ? evaluationSection(report.evaluation) : undefined,
     ...surfaceSections(report),
     pathSection(report),
-    report.contour && contourSection([report.contour].flat()),
+    contourSection(report.contour),
     report.map && mapSection(report.map, report.summary?.map),
     histogramSection(report.histograms, report.map, report.summary),
     report.machine && machineSection(report.machine),

@@ -4,10 +4,10 @@ import {cssColour, rampColour} from './colour';
 import {ErrorMap, PoseErrors, splitUnit} from './data';
 import {field, html, responsive, section, svg} from './dom';
 import {count, micro, number, quantity as withUnit} from './format';
-import {Colour, colours, exaggeration, quantities, range, roundFactor, statisticsTable} from './map_choices';
+import {Colour, colours, exaggeration, quantities, range, statisticsTable} from './map_choices';
 import {Camera} from './camera';
 import {View} from './map_view';
-import {linearScale, logScale} from './scale';
+import {linearScale, logScale, roundFactor} from './scale';
 import {onThemeChange} from './theme';
 
 interface Scaling {

@@ -61,12 +61,6 @@ export function range(values: number[]): {low: number; high: number} {
   return {low: Math.max(small, high * 1e-4), high};
 }
 
-/// 1, 2, 5, 10, ... nearest below.
-export function roundFactor(value: number): number {
-  const power = Math.pow(10, Math.floor(Math.log10(value)));
-  return (value / power >= 5 ? 5 : value / power >= 2 ? 2 : 1) * power;
-}
-
 /// "× 200" for a displacement; a rotation has no length of its own: "100 µrad drawn as 40 mm".
 export function exaggeration(kind: Quantity, factor: number): string {
   return kind.id === 'displacement' ? `× ${count(factor)}` : `100\u2009µrad = ${quantity(factor * 0.1, 'mm', 2)}`;

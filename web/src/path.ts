@@ -4,7 +4,7 @@ import {Camera} from './camera';
 import {cssColour} from './colour';
 import {Report, splitUnit} from './data';
 import {field, html, section} from './dom';
-import {count, number, plain, quantity} from './format';
+import {count, fixed, number, plain, quantity} from './format';
 import {animationTimes, momentAt, PathBlock, valueAt} from './path_data';
 import {kCoverage, PathView} from './path_view';
 import {Surface, SurfaceBlock, unpackSurface} from './surface_data';
@@ -43,7 +43,7 @@ function axisTable(path: PathBlock): {table: HTMLElement; show: (value: (column:
   return {table, show: (value) => {
     for (const {column, cell, meter} of rows) {
       const at = value(column);
-      cell.textContent = (at < 0 ? '\u2212' : '') + Math.abs(at).toFixed(3);
+      cell.textContent = fixed(at, 3);
       meter.value = at;
     }
   }};

@@ -11,7 +11,7 @@ export interface PathBlock {
   /// Keys of the commands in the order of the chain.
   axes?: string[];
   commands: Record<string, number[]>;
-  travel?: Record<string, [number, number] | null>;
+  travel?: Record<string, [number, number]>;
   point_mm: Vectors;
   /// Unit, from the functional point to the spindle, source or probe.
   direction: Vectors;

@@ -5,7 +5,7 @@ import {
 } from 'three';
 
 import {Camera} from './camera';
-import {Rgb} from './diverging';
+import {Rgb} from './colour';
 import {Moment, PathBlock, valueAt} from './path_data';
 import {Surface} from './surface_data';
 import {SurfaceView} from './surface_view';

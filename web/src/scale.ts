@@ -1,6 +1,6 @@
 // Axes of drawings: from numbers to pixels, and the numbers worth writing.
 
-import {grouped, superscript} from './format';
+import {fixed, grouped, superscript} from './format';
 
 export interface Scale {
   (value: number): number;
@@ -28,6 +28,12 @@ function niceStep(span: number, wanted: number): number {
   return 10 * power;
 }
 
+/// 1, 2, 5, 10, ... nearest below.
+export function roundFactor(value: number): number {
+  const power = Math.pow(10, Math.floor(Math.log10(value)));
+  return (value / power >= 5 ? 5 : value / power >= 2 ? 2 : 1) * power;
+}
+
 export function niceTicks(from: number, to: number, wanted: number): number[] {
   const step = niceStep(to - from, wanted);
   // Too close to tell apart in double precision, or not numbers at all.
@@ -51,9 +57,7 @@ function angleTicks(from: number, to: number, wanted: number): number[] {
 
 function plain(step: number): (value: number) => string {
   const decimals = Math.min(8, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
-  return (value) => {
-    return (value < 0 && Number(value.toFixed(decimals)) !== 0 ? '\u2212' : '') + grouped(Math.abs(value).toFixed(decimals));
-  };
+  return (value) => fixed(value, decimals);
 }
 
 export function linearScale(

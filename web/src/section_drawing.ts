@@ -2,7 +2,7 @@
 
 import {svg} from './dom';
 import {quantity} from './format';
-import {roundFactor} from './map_choices';
+import {roundFactor} from './scale';
 import {Cut, NearPoint} from './section_geometry';
 
 export interface SectionDrawing {
@@ -46,7 +46,7 @@ export function sectionDrawing(cut: Cut, points: NearPoint[], options: SectionOp
   for (const point of points) dots[point.value < 0 ? 'below' : 'above'] += `M${moved(point).join(' ')}h0`;
 
   const root = svg('svg', {viewBox: `0 0 ${width} ${height}`, width, height, class: 'section-drawing', role: 'img', 'aria-label': options.description,
-    'data-scale': scale, 'data-left': left, 'data-top': margin, 'data-low': low[0], 'data-high': high[1]});
+    'data-scale': scale});
   root.append(
     svg('path', {d: outline, class: 'outline'}),
     svg('path', {d: deviation, class: 'deviation'}),

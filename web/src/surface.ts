@@ -12,7 +12,7 @@ import {Shown, SurfaceView} from './surface_view';
 import {signed} from './surface_words';
 import {onThemeChange} from './theme';
 
-export function cameraOf(surface: Surface): Camera {
+function cameraOf(surface: Surface): Camera {
   const column = (k: number) => Array.from({length: surface.vertices.length / 3}, (_, i) => surface.vertices[3 * i + k]);
   return new Camera({x: column(0), y: column(1), z: column(2)}, 1e-6);
 }

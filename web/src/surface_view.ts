@@ -6,7 +6,8 @@ import {
 } from 'three';
 
 import {Camera} from './camera';
-import {divergingColour, Rgb} from './diverging';
+import {isDark, Rgb} from './colour';
+import {divergingColour} from './diverging';
 import {Stage} from './stage';
 import {Surface} from './surface_data';
 
@@ -103,7 +104,7 @@ export class SurfaceView extends Stage {
   }
 
   protected repaint(): void {
-    this.paint(document.documentElement.dataset.theme === 'dark');
+    this.paint(isDark());
   }
 
   protected paint(dark: boolean): void {
@@ -137,13 +138,12 @@ export class SurfaceView extends Stage {
     const hit = this.ray.intersectObject(this.mesh, false)[0];
     if (this.shown === 'surface') {
       if (!hit?.face || !this.surface.values) return undefined;
-      // Linear in the triangle, as the colours are.
-      const place = this.mesh.geometry.getAttribute('position');
+      // Linear in the triangle, as the colours are; the place is that on the part, not on its exaggerated picture.
+      const {vertices, values} = this.surface;
       const corners = [hit.face.a, hit.face.b, hit.face.c];
-      const [a, b, c] = corners.map((i) => new Vector3().fromBufferAttribute(place, i));
-      const weights = barycentric(hit.point, a, b, c);
-      const value = corners.reduce((sum, i, k) => sum + weights[k] * this.surface.values![i], 0);
-      return {value, at: hit.point.toArray(), isPoint: false};
+      const weights = (hit.barycoord ?? new Vector3(1 / 3, 1 / 3, 1 / 3)).toArray();
+      const mean = (of: (corner: number) => number) => corners.reduce((sum, corner, k) => sum + weights[k] * of(corner), 0);
+      return {value: mean((i) => values[i]), at: [0, 1, 2].map((k) => mean((i) => vertices[3 * i + k])) as Reading['at'], isPoint: false};
     }
     return this.nearestPoint(x, y, width, height, hit ? hit.distance : Infinity);
   }
@@ -183,13 +183,4 @@ export class SurfaceView extends Stage {
     this.canvas.addEventListener('click', (event) => tell(event as PointerEvent));
     this.canvas.addEventListener('pointerleave', () => listener(undefined));
   }
-}
-
-function barycentric(p: Vector3, a: Vector3, b: Vector3, c: Vector3): [number, number, number] {
-  const [u, v, w] = [b.clone().sub(a), c.clone().sub(a), p.clone().sub(a)];
-  const [uu, uv, vv, wu, wv] = [u.dot(u), u.dot(v), v.dot(v), w.dot(u), w.dot(v)];
-  const determinant = uu * vv - uv * uv || 1;
-  const s = (vv * wu - uv * wv) / determinant;
-  const t = (uu * wv - uv * wu) / determinant;
-  return [1 - s - t, s, t];
 }

@@ -13,7 +13,7 @@ namespace abbe {
 
 /// A part as a page draws it; already thinned, see docs/report-data.md.
 struct SurfacePicture {
-  std::string frame = "part";
+  std::string frame = "part";          ///< of the coordinates, as the page names it
   TriangleMesh mesh;                   ///< mm, vertices separate at the edges of the part
   std::size_t triangles_of_part = 0;   ///< before thinning and refining
   double thinned_cell_mm = 0;          ///< edge of the cubes in which vertices became one; 0: none did
@@ -38,6 +38,7 @@ inline constexpr std::int16_t kNoDeviation = -32768;
 inline constexpr std::uint32_t kFewestReadings = 3;
 
 /// Block "surface" of the data of a page. @param deviation  null: the part alone
+/// @throws std::invalid_argument  sizes that do not belong together, a limit that is not above zero
 nlohmann::json surface_data(const SurfacePicture& part, const DeviationPicture* deviation);
 
 }  // namespace abbe
