@@ -138,7 +138,7 @@ ScannerPositioningFile positioning_of(TomlTable root, Targets targets) {
 
 ScannerPositioningFile read_scanner_positioning(const std::filesystem::path& path) {
   TomlTable root = TomlTable::parse(read_text_file(path), path.string());
-  const std::filesystem::path points = path.parent_path() / root.text("points");
+  const std::filesystem::path points = root.file("points", path.parent_path(), "a CSV file of points");
   const MappedFile file(points);
   ScannerPositioningFile result = positioning_of(root, Targets(file.text(), points.string()));
   if (!result.workpiece || result.workpiece->part.empty()) return result;

@@ -161,14 +161,31 @@ Study parse_study(const std::string& text, const std::filesystem::path& path, co
   return study;
 }
 
+namespace {
+
+/// Files that a study reads later, refused where it names them.
+void require_files(TomlTable& root, const std::filesystem::path& folder) {
+  const auto require = [&](std::optional<TomlTable> table, const char* key, const char* expected) {
+    if (table && table->has(key)) table->file(key, folder, expected);
+  };
+  for (TomlTable& setup : root.tables("setup")) {
+    for (TomlTable& data : setup.tables("data")) data.file("file", folder, "a CSV file of readings");
+  }
+  require(root.optional_table("simulate"), "errors", "a file of errors");
+  require(root.optional_table("identify"), "initial", "a file of errors");
+  require(root.optional_table("identify"), "held_out_file", "a CSV file of readings");
+  require(root.optional_table("map"), "poses", "a CSV file of poses");
+}
+
+}  // namespace
+
 Study read_study(const std::filesystem::path& path) {
   const std::string text = read_text_file(path);
   TomlTable root = TomlTable::parse(text, path.string());
-  const std::filesystem::path machine_file = path.parent_path() / root.text("machine");
-  if (!std::filesystem::exists(machine_file)) {
-    root.fail("machine", fmt::format("there is no file {}", machine_file.string()), "a machine file beside the study");
-  }
-  return parse_study(text, path, read_machine(machine_file));
+  const std::filesystem::path folder = path.parent_path();
+  Study study = parse_study(text, path, read_machine(root.file("machine", folder, "a machine file beside the study")));
+  require_files(root, folder);
+  return study;
 }
 
 }  // namespace abbe

@@ -160,6 +160,11 @@ columns = { X_mm = "x", C_deg = "c" }
 [identify]
 locations = "EC0X"
 )";
+  std::filesystem::remove(folder / "readings.csv");
+  EXPECT_EQ(message_of([&] { read_study(folder / "a.study.toml"); }),
+            (folder / "a.study.toml").string() + ":9:1: setup[1].data[1].file: there is no file " +
+                (folder / "readings.csv").string() + "; expected a CSV file of readings");
+  std::ofstream(folder / "readings.csv") << "x\n";
   const Study study = read_study(folder / "a.study.toml");
   EXPECT_EQ(study.name, "a");
   EXPECT_EQ(study.output, folder / "out");

@@ -206,6 +206,14 @@ std::string TomlTable::text(std::string_view key) {
   return state_->string(state_->need(key, "a text in quotes"), full_name(key));
 }
 
+std::filesystem::path TomlTable::file(std::string_view key, const std::filesystem::path& folder,
+                                      const std::string& expected) {
+  std::filesystem::path path = folder / text(key);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) fail(key, fmt::format("there is no file {}", path.string()), expected);
+  return path;
+}
+
 std::string TomlTable::text_or(std::string_view key, std::string otherwise) {
   const toml::node* node = state_->look(key);
   return node == nullptr ? std::move(otherwise) : state_->string(*node, full_name(key));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <initializer_list>
 #include <memory>
 #include <optional>
@@ -36,6 +37,8 @@ class TomlTable {
 
   std::string text(std::string_view key);
   std::string text_or(std::string_view key, std::string otherwise);
+  /// Name of a file, resolved against a folder. @throws InputError  none of that name is there
+  std::filesystem::path file(std::string_view key, const std::filesystem::path& folder, const std::string& expected);
   bool boolean_or(std::string_view key, bool otherwise);
   std::int64_t integer(std::string_view key, std::int64_t smallest, std::int64_t largest);
   std::int64_t integer_or(std::string_view key, std::int64_t otherwise, std::int64_t smallest, std::int64_t largest);
