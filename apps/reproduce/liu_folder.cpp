@@ -7,6 +7,8 @@
 #include "abbe/formats/ply_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/scan_plan_file.h"
+#include "reproduce/liu_machine.h"
+#include "scan/plan_page.h"
 
 namespace abbe {
 namespace {
@@ -52,7 +54,10 @@ void write_liu_folder(const LiuResults& results, const std::filesystem::path& fo
       out.write(place / "path.ngc",
                 scan_plan_program(results.machine, part.plan, "scan of " + name + " on " + results.machine.name));
       out.write(place / "coverage.ply", scan_coverage_ply(part.plan));
-      out.write(place / "plan.json", json_text(scan_plan_data(results.machine, part.plan, part.model.name)));
+      out.write(place / "plan.json", json_text(scan_plan_summary(results.machine, part.plan, part.model.name)));
+      out.write(place / "plan.html",
+                scan_plan_page(results.machine, part.model.mesh, part.plan,
+                               liu_plan_options(part.model, liu_clamping(unit.unit)), part.model.name));
       out.write(place / "before.ply", points_ply(part.measurement.before));
       out.write(place / "after.ply", points_ply(part.measurement.after));
     }

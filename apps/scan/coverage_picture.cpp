@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numeric>
 
 #include "abbe/geometry/closest_point.h"
 #include "scan/surface_picture.h"
@@ -33,22 +34,37 @@ SurfacePicture coverage_picture(const TriangleMesh& part, const PlacesOfASurface
   for (std::size_t i = 0; i < closest.size(); ++i) readings.normal.col(static_cast<Index>(i)) = closest[i].normal;
   const double radius = radius_of_readings(readings);
   SurfacePicture picture = part_picture(part, radius, threads);
-  const auto [middle, normal] = middles_of(picture.mesh);
+  const std::pair<Eigen::Matrix3Xd, Eigen::Matrix3Xd> triangle_places = middles_of(picture.mesh);
+  const Eigen::Matrix3Xd &middle = triangle_places.first, &normal = triangle_places.second;
   const auto triangles = static_cast<std::size_t>(picture.mesh.size());
   picture.reasons = places.reasons;
   picture.reasons.emplace_back("not looked at");
   picture.coverage.assign(triangles, static_cast<std::uint8_t>(places.reasons.size()));
-  std::vector<double> largest(triangles, 0.0);
-  // The share of the places of one reason is the mean of ones and zeros.
-  for (std::size_t reason = 0; reason < places.reasons.size(); ++reason) {
-    readings.deviation_mm.clear();
-    for (const std::uint8_t said : places.reason) readings.deviation_mm.push_back(said == reason ? 1 : 0);
-    const SurfaceAverage share = surface_average(readings, middle, normal, 1.5 * radius, threads);
-    for (std::size_t t = 0; t < triangles; ++t) {
-      if (share.mean_mm[t] <= largest[t]) continue;
-      largest[t] = share.mean_mm[t];
-      picture.coverage[t] = static_cast<std::uint8_t>(reason);
+  const auto colour = [&](const std::vector<std::size_t>& which, const Eigen::Matrix3Xd& sides, double within) {
+    Eigen::Matrix3Xd at(3, static_cast<Index>(which.size())), side(3, static_cast<Index>(which.size()));
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      at.col(static_cast<Index>(i)) = middle.col(static_cast<Index>(which[i]));
+      side.col(static_cast<Index>(i)) = sides.col(static_cast<Index>(which[i]));
     }
+    std::vector<double> largest(which.size(), 0.0);
+    // The share of the places of one reason is the mean of ones and zeros.
+    for (std::size_t reason = 0; reason < places.reasons.size(); ++reason) {
+      readings.deviation_mm.clear();
+      for (const std::uint8_t said : places.reason) readings.deviation_mm.push_back(said == reason ? 1 : 0);
+      const SurfaceAverage share = surface_average(readings, at, side, within, threads);
+      for (std::size_t i = 0; i < which.size(); ++i) {
+        if (share.mean_mm[i] <= largest[i]) continue;
+        largest[i] = share.mean_mm[i];
+        picture.coverage[which[i]] = static_cast<std::uint8_t>(reason);
+      }
+    }
+  };
+  std::vector<std::size_t> which(triangles);
+  std::iota(which.begin(), which.end(), std::size_t{0});
+  colour(which, normal, 1.5 * radius);
+  if (picture.thinned_cell_mm > 0) {
+    std::erase_if(which, [&](std::size_t t) { return picture.coverage[t] < places.reasons.size(); });
+    colour(which, Eigen::Matrix3Xd::Zero(3, normal.cols()), std::max(1.5 * radius, picture.thinned_cell_mm));
   }
   return picture;
 }

@@ -17,7 +17,8 @@ struct PlacesOfASurface {
 };
 
 /// A part for a page, each of its triangles with what is said of most of the places about it on its side; triangles
-/// without a place near get a reason of their own.
+/// without a place near get a reason of their own, but those of a thinned part, which may look another way than the
+/// part does, take that of the places on whatever side.
 /// @param part  the surface on which the places lie
 SurfacePicture coverage_picture(const TriangleMesh& part, const PlacesOfASurface& places, int threads);
 

@@ -19,6 +19,8 @@
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/vertex_welder.h"
 #include "abbe/plan/wanted_area.h"
+#include "scan/plan_page.h"
+#include "scan/plan_words.h"
 #include "scan/scan.h"
 
 namespace abbe {
@@ -27,7 +29,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 struct PlanOptions {
-  std::string part, machine, stage, output, program, coverage, data;
+  std::string part, machine, stage, output, program, coverage, report;
   std::vector<double> position = {0, 0, 0}, turn = {0, 0, 0};
   std::vector<std::vector<double>> beyond;
   std::vector<std::string> words;
@@ -45,23 +47,6 @@ TriangleMesh welded(const TriangleMesh& mesh) {
   result.vertices = welder.vertices();
   result.triangles = mesh.triangles.unaryExpr([&](std::uint32_t vertex) { return index[vertex]; });
   return result;
-}
-
-const char* obstacle_words(ScanObstacle obstacle) {
-  switch (obstacle) {
-    case ScanObstacle::angle:
-      return "seen only at more than the largest angle from the normal";
-    case ScanObstacle::hidden:
-      return "hidden by the part or the stage from everywhere";
-    case ScanObstacle::working_distance:
-      return "the probe would touch, with twice its working distance it would not";
-    case ScanObstacle::collision:
-      return "the probe would touch the part or the stage";
-    case ScanObstacle::travel:
-      return "out of the travel of the axes";
-    default:
-      return "between lines: smaller than their distance";
-  }
 }
 
 TriangleMesh read_part(const std::string& file) {
@@ -99,42 +84,6 @@ ScanPlanOptions scan_options(const PlanOptions& options) {
   scan.range = 1e-3 * options.range_um;
   scan.rotary_speed = options.rotary_speed_deg * kDegree;
   return scan;
-}
-
-void print_plan(const Machine& machine, const ScanPlan& plan, const std::string& name) {
-  fmt::print("{} on {}: {} faces\n", name, machine.name, plan.faces.size());
-  fmt::print("  {:>4} {:<7}{:>12}{:>10}{:>7}{:>9}{:>9}{:>8}{:>8}  {}\n", "face", "path", "area mm2", "covered", "lines",
-             "points", "per mm2", "tilted", "missed", "because");
-  constexpr std::size_t kMost = 60;
-  for (std::size_t i = 0; i < plan.faces.size() && i < kMost; ++i) {
-    const PlannedFace& f = plan.faces[i];
-    fmt::print("  {:>4} {:<7}{:>12.3f}{:>8.1f} %{:>7}{:>9}{:>9.2f}{:>8}{:>8}  {}\n", i + 1, scan_path_name(f.kind),
-               f.area, f.area > 0 ? 100 * f.covered / f.area : 0, f.lines, f.points, f.points_per_mm2(), f.tilted,
-               f.missed_places(), f.why);
-  }
-  if (plan.faces.size() > kMost) fmt::print("  ... {} more; --json has all\n", plan.faces.size() - kMost);
-  fmt::print("{} points, {} places not reached, {:.1f} % of {:.1f} mm2 covered\n", plan.points(), plan.missed_places(),
-             100 * plan.covered_share(), plan.area());
-  for (std::size_t k = 1; k < kScanObstacleCount; ++k) {
-    double area = 0;
-    for (const PlannedFace& face : plan.faces) area += face.uncovered[k];
-    if (area > 0) {
-      fmt::print("  not covered {:>6.2f} %: {}\n", 100 * area / plan.area(),
-                 obstacle_words(static_cast<ScanObstacle>(k)));
-    }
-  }
-  fmt::print("time {:.0f} s; surface at most {:.1f} um from the middle of the range half way between points\n",
-             plan.time, 1e3 * plan.largest_sag);
-  if (plan.beyond_range > 0) {
-    fmt::print("{} moves go around because half way the surface would leave the range: smaller --along-mm\n",
-               plan.beyond_range);
-  }
-  if (plan.blocked_links > 0) {
-    fmt::print(
-        "{} ways between lines are not clear: the probe may touch the part or the stage there; the path marks them as "
-        "blocked, the program stops before each (M0)\n",
-        plan.blocked_links);
-  }
 }
 
 /// "--range-um" -> "um"
@@ -181,7 +130,9 @@ int run_plan(const PlanOptions& options) {
                           scan_plan_program(machine, plan, "scan of " + name + " on " + machine.name, program));
   }
   if (!options.coverage.empty()) write_file_atomically(options.coverage, scan_coverage_ply(plan));
-  if (!options.data.empty()) write_file_atomically(options.data, json_text(scan_plan_data(machine, plan, name)));
+  if (!options.report.empty()) {
+    write_file_atomically(options.report, scan_plan_page(machine, part, plan, scan, name));
+  }
   if (options.json) {
     fmt::print("{}", json_text(scan_plan_summary(machine, plan, name)));
   } else {
@@ -203,7 +154,7 @@ void add_scan_plan(CLI::App& scan, CommandLine& line) {
       "Examples:\n"
       "  abbe scan plan examples/cradle_scanner/pyramid.stl --machine examples/machines/liu-scanner.machine.toml -o "
       "path.csv "
-      "--program path.ngc --coverage coverage.ply --data plan.json\n"
+      "--program path.ngc --coverage coverage.ply --report plan.html\n"
       "  abbe scan plan examples/cradle_scanner/pyramid.stl --machine examples/machines/liu-scanner.machine.toml "
       "--beyond-plane-mm 0 1 0 -0.8");
   command
@@ -215,7 +166,8 @@ void add_scan_plan(CLI::App& scan, CommandLine& line) {
   command->add_option("--program", options->program, "Path as NC program (G1, inverse time feed)");
   command->add_option("--word", options->words, "Word of an axis in the program, such as C1=C");
   command->add_option("--coverage", options->coverage, "Coverage as coloured points (.ply)");
-  command->add_option("--data", options->data, "Path and coverage for pages and programs (.json)");
+  command->add_option("--report", options->report,
+                      "Page to write (.html): the path played on the part, coverage in colour, figures");
   command
       ->add_option("--beyond-plane-mm", options->beyond,
                    "Only what lies beyond a plane: NX x + NY y + NZ z >= D, frame of the part; more than once")

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -97,10 +99,11 @@ std::vector<Block> blocks_of(const std::string& program) {
 }
 
 TEST_F(ScanPlanCommand, WritesAProgramThatKeepsTheGrammarAndSaysWhatTheCsvSays) {
-  const CommandResult result = abbe({"scan",   "plan",         pyramid, "--machine",         machine,     "--along-mm",
-                                     "2",      "--between-mm", "2",     "--beyond-plane-mm", "0",         "1",
-                                     "0",      "-0.8",         "-o",    "path.csv",          "--program", "path.ngc",
-                                     "--data", "plan.json"});
+  const CommandResult result =
+      abbe({"scan",     "plan",         pyramid, "--machine",         machine,     "--along-mm",
+            "2",        "--between-mm", "2",     "--beyond-plane-mm", "0",         "1",
+            "0",        "-0.8",         "-o",    "path.csv",          "--program", "path.ngc",
+            "--report", "plan.html"});
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   const std::vector<Block> blocks = blocks_of(folder.read("path.ngc"));
   ASSERT_GT(blocks.size(), 50U);
@@ -129,13 +132,104 @@ TEST_F(ScanPlanCommand, WritesAProgramThatKeepsTheGrammarAndSaysWhatTheCsvSays) 
     ++at;
   }
   while (at < blocks.size()) EXPECT_EQ(blocks[at++].words.count('X'), 0U);
-  const nlohmann::json data = nlohmann::json::parse(folder.read("plan.json"));
-  EXPECT_EQ(data["format"], "abbe-scan-plan/1");
-  // Three squares of 5 mm, and of six sides of the handle what lies between the corners of the squares.
-  EXPECT_NEAR(data["area_mm2"].get<double>(), 75 + 3 * std::sqrt(50.0 / 3) * 5 / std::sqrt(3.0), 1.5);
-  EXPECT_EQ(data["path"]["time_s"].size(), data["path"]["positions_deg"]["C"].size());
-  EXPECT_EQ(data["coverage"]["point_mm"]["x"].size(), data["coverage"]["obstacle"].size());
-  for (const nlohmann::json& y : data["coverage"]["point_mm"]["y"]) EXPECT_GE(y.get<double>(), -0.801);
+}
+
+/// The data in a page.
+nlohmann::json data_of(const std::string& page) {
+  const std::string begin = "id=\"abbe-data\">";
+  const std::size_t from = page.find(begin);
+  if (from == std::string::npos) return {};
+  return nlohmann::json::parse(page.substr(from + begin.size(), page.find("</script>", from) - from - begin.size()));
+}
+
+TEST_F(ScanPlanCommand, ThePageHoldsPathAndCoverageWithTheFiguresOfTheSummary) {
+  // Turned and moved, what is asked for cut by a plane, and a thick probe over a plate: several reasons.
+  folder.write("plate.obj", "v -60 -20.1 -60\nv 60 -20.1 -60\nv 60 -20.1 60\nv -60 -20.1 60\nf 1 4 3\nf 1 3 2\n");
+  std::vector<std::string> command{"scan",    "plan",      pyramid,    "--machine", machine,
+                                   "--stage", "plate.obj", "--report", "plan.html"};
+  for (const char* text : {"--along-mm",
+                           "2",
+                           "--between-mm",
+                           "2",
+                           "--probe-radius-mm",
+                           "9",
+                           "--largest-angle-deg",
+                           "15",
+                           "--position-mm",
+                           "3",
+                           "0",
+                           "1",
+                           "--turn-deg",
+                           "0",
+                           "20",
+                           "0",
+                           "--beyond-plane-mm",
+                           "0",
+                           "1",
+                           "0",
+                           "-19"}) {
+    command.emplace_back(text);
+  }
+  const CommandResult words = abbe(command);
+  ASSERT_EQ(words.exit_code, ExitCode::computation_says_no) << words.err;
+  command.emplace_back("--json");
+  const nlohmann::json summary = nlohmann::json::parse(abbe(command).out);
+  const nlohmann::json page = data_of(folder.read("plan.html"));
+  ASSERT_TRUE(page.is_object());
+
+  const nlohmann::json& coverage = page["surface"]["coverage"];
+  std::map<std::string, double> uncovered;
+  for (const nlohmann::json& face : summary["faces"]) {
+    for (const auto& [reason, area] : face["uncovered_mm2"].items()) uncovered[reason] += area.get<double>();
+  }
+  ASSERT_GE(uncovered.size(), 2U);
+  ASSERT_EQ(coverage["percent"].size(), 1 + uncovered.size());
+  ASSERT_EQ(coverage["reasons"].size(), 2 + uncovered.size());
+  EXPECT_EQ(coverage["reasons"].back(), "not asked for");
+  double sum = 0;
+  for (const nlohmann::json& share : coverage["percent"]) sum += share.get<double>();
+  EXPECT_NEAR(sum, 100, 1e-9);
+  EXPECT_NEAR(coverage["percent"][0].get<double>(), summary["covered_percent"].get<double>(), 1e-12);
+  std::map<std::string, double> figures;
+  for (const nlohmann::json& figure : page["evaluation"]["figures"]) {
+    for (const char* key : {"value_percent", "value_s", "value_um", "value"}) {
+      if (figure.contains(key)) figures[figure["symbol"].get<std::string>()] = figure[key].get<double>();
+    }
+  }
+  EXPECT_EQ(figures.at("points"), summary["points"].get<double>());
+  EXPECT_EQ(figures.at("missed"), summary["missed"].get<double>());
+  EXPECT_EQ(figures.at("blocked"), summary["blocked_links"].get<double>());
+  EXPECT_NEAR(figures.at("time"), summary["time_s"].get<double>(), 1e-9);
+  EXPECT_NEAR(figures.at("covered"), summary["covered_percent"].get<double>(), 1e-12);
+  const double area = summary["area_mm2"].get<double>();
+  for (const auto& [reason, part] : uncovered) {
+    EXPECT_NEAR(figures.at(reason), 100 * part / area, 1e-9) << reason;
+    // As printed for people.
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "not covered %6.2f %%: ", figures.at(reason));
+    EXPECT_NE(words.out.find(text.data()), std::string::npos) << words.out;
+  }
+  std::array<char, 32> covered{};
+  std::snprintf(covered.data(), covered.size(), "%.1f %% of %.1f mm2", figures.at("covered"), area);
+  EXPECT_NE(words.out.find(covered.data()), std::string::npos) << words.out;
+
+  // The path is where the part is: both in the workpiece frame, the points at work on the part's box.
+  EXPECT_EQ(page["surface"]["frame"], "workpiece");
+  const nlohmann::json& path = page["path"];
+  ASSERT_GT(path["time_s"].size(), 50U);
+  EXPECT_EQ(path["tool"]["kind"], "probe");
+  EXPECT_EQ(path["tool"]["radius_mm"], 9);
+  std::size_t at_work = 0;
+  for (std::size_t i = 0; i < path["time_s"].size(); ++i) {
+    if (path["working"][i] == 0) continue;
+    ++at_work;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double low = page["surface"]["lower_mm"][k], at = path["point_mm"][std::string(1, "xyz"[k])][i];
+      EXPECT_GE(at, low - 1e-3);
+      EXPECT_LE(at, low + 65535 * page["surface"]["step_mm"].get<double>() + 1e-3);
+    }
+  }
+  EXPECT_GT(at_work, 30U);
 }
 
 TEST_F(ScanPlanCommand, MarksWaysThatAreNotClearAndStopsTheProgramBeforeThem) {

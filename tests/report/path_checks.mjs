@@ -7,9 +7,21 @@ async function coverageOf(page, block, expect, parse) {
   expect(reasons.length === block.triangle_count, 'coverage is not one number for each triangle');
   const shown = new Map(await page.$$eval('#path .coverage [data-reason]', (all) => all.map((e) => [Number(e.dataset.reason), e.textContent])));
   for (const [i, reason] of block.coverage.reasons.entries()) {
-    const share = (100 * reasons.filter((r) => r === i).length) / reasons.length;
-    expect(shown.has(i) === share > 0, `coverage: ${reason} is ${share > 0 ? 'missing' : 'there without a triangle'}`);
+    const drawn = (100 * reasons.filter((r) => r === i).length) / reasons.length;
+    // Shares of the area where the producer states them; the colour of the legend is that of the data.
+    const shares = block.coverage.percent;
+    const share = shares ? shares[i] : drawn;
+    expect(shown.has(i) === (drawn > 0 || share > 0), `coverage: ${reason} is ${drawn > 0 ? 'missing' : 'there without a triangle'}`);
     if (!shown.has(i)) continue;
+    if (block.coverage.colours) {
+      const colour = await page.$eval(`#path .coverage [data-reason="${i}"] .dot`, (e) => getComputedStyle(e).backgroundColor);
+      const wanted = [1, 3, 5].map((at) => parseInt(block.coverage.colours[i].slice(at, at + 2), 16));
+      expect(colour === `rgb(${wanted.join(', ')})`, `coverage: ${reason} is ${colour}, data ${wanted}`);
+    }
+    if (share === undefined) {
+      expect(shown.get(i) === reason, `coverage: ${shown.get(i)} without a share`);
+      continue;
+    }
     const stated = parse(shown.get(i).match(/: (.*?)\u2009%/)[1]);
     expect(shown.get(i).startsWith(reason) && Math.abs(stated - share) < 0.006 * share, `coverage: ${shown.get(i)} for ${share}`);
   }
@@ -40,6 +52,13 @@ async function pathOf(page, data, expect, shot, parse) {
     const said = (await page.$$eval('#path .note', (all) => all.map((e) => e.textContent).join(' '))).match(/(?:All ([\d\u202f]+) moves|([\d\u202f]+) of ([\d\u202f]+) moves) are drawn/);
     const [drawn, moves] = [parse(said?.[1] ?? said?.[2] ?? 'none'), parse(said?.[1] ?? said?.[3] ?? 'none')];
     expect(drawn === n && moves === (path.moves ?? n), `${drawn} of ${moves} moves said to be drawn, ${n} of ${path.moves ?? n} are`);
+    // Rapid moves can be hidden: where there are many, they hide the part.
+    if (await page.locator('#path-rapid').count()) {
+      const all = (await inkOf(page, canvas)).sum;
+      await page.uncheck('#path-rapid');
+      expect(await until(async () => (await inkOf(page, canvas)).sum !== all), 'rapid moves are not hidden');
+      await page.check('#path-rapid');
+    }
     await page.fill('#path-position', '1200');
     await page.waitForTimeout(400);
     await shot(page.locator('#path'), 'path');

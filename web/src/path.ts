@@ -6,7 +6,7 @@ import {Report, splitUnit} from './data';
 import {field, html, section} from './dom';
 import {count, fixed, number, plain, quantity} from './format';
 import {animationTimes, momentAt, PathBlock, valueAt} from './path_data';
-import {kCoverage, PathView} from './path_view';
+import {coverageColour, PathView} from './path_view';
 import {Surface, SurfaceBlock, unpackSurface} from './surface_data';
 import {thinningWords} from './surface';
 import {onThemeChange} from './theme';
@@ -15,8 +15,10 @@ const kSteps = 2000;
 const kSeconds = 20;
 
 function cameraOf(path: PathBlock, part: Surface | undefined): Camera {
+  // The part and what is done on it: ways around may lead far away.
+  const kept = part && path.working.some(Boolean) ? path.working.map(Boolean) : path.working.map(() => true);
   const column = (k: 0 | 1 | 2) => {
-    const values = [...path.point_mm[(['x', 'y', 'z'] as const)[k]]];
+    const values = path.point_mm[(['x', 'y', 'z'] as const)[k]].filter((_, i) => kept[i]);
     if (part) for (let i = k; i < part.vertices.length; i += 3) values.push(part.vertices[i]);
     return values;
   };
@@ -54,9 +56,15 @@ function coverageLegend(block: SurfaceBlock, surface: Surface): HTMLElement | un
   if (!coverage) return undefined;
   const counts = new Array<number>(coverage.reasons.length).fill(0);
   coverage.ofTriangle.forEach((reason) => counts[reason] += 1);
-  return html('p', {class: 'legend coverage'}, ...coverage.reasons.flatMap((reason, i) => counts[i]
-    ? [html('span', {class: 'key', 'data-reason': i}, html('span', {class: 'dot', style: `background: ${cssColour(kCoverage[Math.min(i, kCoverage.length - 1)])}`}),
-      `${reason}: ${number((100 * counts[i]) / block.triangle_count)}\u2009% of the triangles`)] : []));
+  // Shares of the area are the producer's; triangles are only what is drawn.
+  const shares = block.coverage?.percent;
+  const words = (i: number) => {
+    if (!shares) return `: ${number((100 * counts[i]) / block.triangle_count)}\u2009% of the triangles`;
+    return shares[i] === undefined ? '' : `: ${number(shares[i])}\u2009% of the area`;
+  };
+  return html('p', {class: 'legend coverage'}, ...coverage.reasons.flatMap((reason, i) => counts[i] || (shares?.[i] ?? 0) > 0
+    ? [html('span', {class: 'key', 'data-reason': i}, html('span', {class: 'dot', style: `background: ${cssColour(coverageColour(i, coverage.colours))}`}),
+      `${reason}${words(i)}`)] : []));
 }
 
 export function pathSection(report: Report): HTMLElement | undefined {
@@ -64,7 +72,7 @@ export function pathSection(report: Report): HTMLElement | undefined {
   if (!path?.time_s?.length) return undefined;
   const n = path.time_s.length;
   const surface = report.surface && unpackSurface(report.surface);
-  const part = section('path', path.title ?? 'Path', 'The tool on its path, seen from the workpiece. Path at work: done in colour, ahead in black; rapid moves paler.');
+  const part = section('path', path.title ?? 'Path', `The tool on its path, seen from the workpiece. Path at work: done ${surface?.coverage ? 'pale' : 'in colour'}, ahead in black; rapid moves paler.`);
   const camera = cameraOf(path, surface);
   const view = new PathView('Path', path, surface, camera);
   camera.onChange(() => view.render());
@@ -76,6 +84,8 @@ export function pathSection(report: Report): HTMLElement | undefined {
     .map(([value, text]) => html('option', {value}, text)));
   const words = html('output', {id: 'path-words', for: 'path-position'});
   const axes = axisTable(path);
+  const rapid = html('input', {type: 'checkbox', id: 'path-rapid', checked: ''});
+  rapid.addEventListener('change', () => view.showRapid(rapid.checked));
   const reset = html('button', {type: 'button'}, 'Reset view');
   reset.addEventListener('click', () => camera.reset());
   let at = end / 2;
@@ -131,7 +141,7 @@ export function pathSection(report: Report): HTMLElement | undefined {
     (report.surface ? ` ${thinningWords(report.surface)}` : '');
   part.append(
     html('div', {class: 'views one'}, view.box),
-    html('div', {class: 'controls'}, play, field('Position', slider), words, field('Speed', speed), reset),
+    html('div', {class: 'controls'}, play, field('Position', slider), words, field('Speed', speed), ...(view.hasRapid ? [html('label', {}, rapid, ' rapid moves')] : []), reset),
     ...[report.surface && surface && coverageLegend(report.surface, surface)].filter((e): e is HTMLElement => Boolean(e)),
     axes.table,
     html('p', {class: 'note'}, drawn, path.note && ` ${path.note}`),

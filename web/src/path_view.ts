@@ -11,7 +11,14 @@ import {Surface} from './surface_data';
 import {SurfaceView} from './surface_view';
 
 /// Covered, then reasons why not: told apart by lightness too.
-export const kCoverage: Rgb[] = [[0.36, 0.66, 0.62], [0.85, 0.37, 0.1], [0.48, 0.2, 0.58], [0.99, 0.78, 0.28], [0.16, 0.16, 0.2], [0.9, 0.55, 0.75]];
+const kCoverage: Rgb[] = [[0.36, 0.66, 0.62], [0.85, 0.37, 0.1], [0.48, 0.2, 0.58], [0.99, 0.78, 0.28], [0.16, 0.16, 0.2], [0.9, 0.55, 0.75]];
+
+/// Of a reason: as the data say, else one of those above.
+export function coverageColour(reason: number, colours?: string[]): Rgb {
+  const text = colours?.[reason];
+  if (text && /^#[0-9a-f]{6}$/i.test(text)) return [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16) / 255) as Rgb;
+  return kCoverage[Math.min(reason, kCoverage.length - 1)];
+}
 
 const kEmpty: Surface = {frame: 'workpiece', vertices: new Float32Array(), normals: new Float32Array(), triangles: new Uint16Array(), limit: 1, step: 1};
 
@@ -22,6 +29,8 @@ export class PathView extends SurfaceView {
   private readonly rapid = new LineSegments(new BufferGeometry(), new LineBasicMaterial({transparent: true, opacity: 0.45}));
   private readonly beam: LineSegments<BufferGeometry, LineBasicMaterial>;
   private reasonOfVertex: Uint8Array | undefined;
+  private readonly colours: string[] | undefined;
+  private readonly hasPart: boolean;
 
   constructor(
     title: string,
@@ -31,6 +40,8 @@ export class PathView extends SurfaceView {
   ) {
     super(title, coloured(part) ?? kEmpty, camera);
     this.reasonOfVertex = part?.coverage && reasons(part);
+    this.colours = part?.coverage?.colours;
+    this.hasPart = part !== undefined;
     this.beam = this.makeTool();
     for (const line of [this.done, this.ahead, this.rapid]) line.frustumCulled = false;
     this.layLines();
@@ -62,10 +73,20 @@ export class PathView extends SurfaceView {
     return [p.x[i], p.y[i], p.z[i]];
   }
 
+  /// Towards the tool: a line in the surface, drawn in triangles, would be hidden by half of them.
+  private lifted(i: number): number[] {
+    const d = this.path.direction;
+    const lift = this.hasPart ? 0.004 * this.shared.size : 0;
+    return this.point(i).map((v, k) => v + lift * d[(['x', 'y', 'z'] as const)[k]][i]);
+  }
+
   private layLines(): void {
     const working: number[] = [];
     const rapid: number[] = [];
-    for (let i = 1; i < this.path.time_s.length; ++i) (this.path.working[i] ? working : rapid).push(...this.point(i - 1), ...this.point(i));
+    for (let i = 1; i < this.path.time_s.length; ++i) {
+      if (this.path.working[i]) working.push(...this.lifted(i - 1), ...this.lifted(i));
+      else rapid.push(...this.point(i - 1), ...this.point(i));
+    }
     this.ahead.geometry.setAttribute('position', new BufferAttribute(new Float32Array(working), 3));
     this.done.geometry.setAttribute('position', new BufferAttribute(new Float32Array(working), 3));
     this.rapid.geometry.setAttribute('position', new BufferAttribute(new Float32Array(rapid), 3));
@@ -84,15 +105,26 @@ export class PathView extends SurfaceView {
     this.render();
   }
 
+  get hasRapid(): boolean {
+    return this.rapid.geometry.getAttribute('position').count > 0;
+  }
+
+  showRapid(shown: boolean): void {
+    this.rapid.visible = shown;
+    this.render();
+  }
+
   protected vertexColour(vertex: number, dark: boolean): Rgb {
-    if (this.reasonOfVertex) return kCoverage[Math.min(this.reasonOfVertex[vertex], kCoverage.length - 1)];
+    if (this.reasonOfVertex) return coverageColour(this.reasonOfVertex[vertex], this.colours);
     return super.vertexColour(vertex, dark);
   }
 
   protected paint(dark: boolean): void {
     super.paint(dark);
-    (this.done.material as LineBasicMaterial).color.set(dark ? 0x5cc3c9 : 0x0b6e75);
-    (this.ahead.material as LineBasicMaterial).color.set(dark ? 0xe6eaed : 0x1a2127);
+    // On the colours of a coverage, which are the same in both themes: light and dark.
+    const onColours = Boolean(this.reasonOfVertex);
+    (this.done.material as LineBasicMaterial).color.set(onColours ? 0xfff2a8 : dark ? 0x5cc3c9 : 0x0b6e75);
+    (this.ahead.material as LineBasicMaterial).color.set(dark && !onColours ? 0xe6eaed : 0x1a2127);
     (this.rapid.material as LineBasicMaterial).color.set(dark ? 0xe9965b : 0xb4551d);
     this.beam.material.color.set(dark ? 0xff8a80 : 0xb3261e);
   }

@@ -18,7 +18,7 @@ export interface SurfaceBlock {
   averaging_radius_mm?: number;
   values?: string;
   points?: {measured: number; counted: number; drawn: number; foot: string; normal: string; values: string};
-  coverage?: {reasons: string[]; of_triangle: string};
+  coverage?: {reasons: string[]; of_triangle: string; percent?: number[]; colours?: string[]};
 }
 
 export interface Surface {
@@ -32,7 +32,7 @@ export interface Surface {
   /// [vertices] um, NaN where no point lies near; undefined: the part alone
   values?: Float32Array;
   points?: SurfacePoints;
-  coverage?: {reasons: string[]; ofTriangle: Uint8Array};
+  coverage?: {reasons: string[]; ofTriangle: Uint8Array; colours?: string[]};
   limit: number;
   /// um, of the numbers in the data: what is beyond their range is written as its end
   step: number;
@@ -83,6 +83,6 @@ export function unpackSurface(block: SurfaceBlock): Surface {
   return {
     frame: block.frame ?? 'part', vertices, triangles, normals: vertexNormals(vertices, triangles), limit: block.limit_um ?? 1, step,
     values: block.values === undefined ? undefined : values(block.values), points,
-    coverage: block.coverage && {reasons: block.coverage.reasons, ofTriangle: bytes(block.coverage.of_triangle)},
+    coverage: block.coverage && {reasons: block.coverage.reasons, ofTriangle: bytes(block.coverage.of_triangle), colours: block.coverage.colours},
   };
 }

@@ -16,28 +16,9 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// Colours of ScanObstacle: green where it is covered, a colour of its own for every cause.
+/// By ScanObstacle.
 constexpr std::array<std::array<std::uint8_t, 3>, kScanObstacleCount> kColours = {
     {{40, 160, 70}, {230, 160, 0}, {110, 110, 110}, {0, 115, 200}, {205, 45, 40}, {150, 70, 170}, {240, 220, 60}}};
-
-/// Columns of rounded numbers by name.
-class Columns {
- public:
-  explicit Columns(const std::vector<std::string>& names) : names_(names), values_(names.size()) {}
-  /// @param per_unit  rounded to 1 / per_unit
-  void add(const std::vector<double>& row, double per_unit) {
-    for (std::size_t i = 0; i < row.size(); ++i) values_[i].push_back(std::round(row[i] * per_unit) / per_unit + 0.0);
-  }
-  nlohmann::ordered_json json() const {
-    nlohmann::ordered_json object = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < names_.size(); ++i) object[names_[i]] = values_[i];
-    return object;
-  }
-
- private:
-  std::vector<std::string> names_;
-  std::vector<std::vector<double>> values_;
-};
 
 double shown(const Axis& axis, double command) { return axis.kind == AxisKind::rotary ? command / kDegree : command; }
 
@@ -104,6 +85,10 @@ std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, cons
   return text;
 }
 
+std::array<std::uint8_t, 3> scan_obstacle_colour(ScanObstacle obstacle) {
+  return kColours[static_cast<std::size_t>(obstacle)];
+}
+
 std::string scan_coverage_ply(const ScanPlan& plan) {
   static_assert(std::endian::native == std::endian::little);
   std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment unit mm\ncomment obstacle:";
@@ -163,71 +148,6 @@ nlohmann::ordered_json scan_plan_summary(const Machine& machine, const ScanPlan&
     }
     json["faces"].push_back(entry);
   }
-  return json;
-}
-
-nlohmann::ordered_json scan_plan_data(const Machine& machine, const ScanPlan& plan, const std::string& part,
-                                      std::size_t most_places, std::size_t most_moves) {
-  nlohmann::ordered_json json = {{"format", "abbe-scan-plan/1"}};
-  json.update(scan_plan_summary(machine, plan, part));
-  nlohmann::ordered_json legend = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < kScanObstacleCount; ++i) {
-    legend.push_back({{"name", scan_obstacle_name(static_cast<ScanObstacle>(i))},
-                      {"colour", fmt::format("#{:02x}{:02x}{:02x}", kColours[i][0], kColours[i][1], kColours[i][2])}});
-  }
-  Columns place({"x", "y", "z"});
-  std::vector<std::size_t> face;
-  std::vector<int> obstacle;
-  const std::size_t stride = 1 + plan.coverage.size() / std::max<std::size_t>(1, most_places);
-  for (std::size_t i = 0; i < plan.coverage.size(); i += stride) {
-    const CoverageSample& sample = plan.coverage[i];
-    place.add({sample.point.x(), sample.point.y(), sample.point.z()}, 1e3);
-    face.push_back(sample.face);
-    obstacle.push_back(static_cast<int>(sample.obstacle));
-  }
-  json["coverage"] = {{"frame", "part"},     {"places", plan.coverage.size()},
-                      {"obstacles", legend}, {"point_mm", place.json()},
-                      {"face", face},        {"obstacle", obstacle}};
-
-  std::vector<std::string> mm, deg;
-  for (const Axis& axis : machine.axes) (axis.kind == AxisKind::rotary ? deg : mm).push_back(axis.name);
-  Columns time({"time_s"}), linear(mm), rotary(deg), point({"x", "y", "z"}), beam({"i", "j", "k"});
-  std::vector<std::size_t> on_face, line;
-  std::vector<int> measures;
-  const std::size_t step = 1 + plan.moves.size() / std::max<std::size_t>(1, most_moves);
-  double at = 0;
-  for (std::size_t i = 0; i < plan.moves.size(); ++i) {
-    const PlannedMove& move = plan.moves[i];
-    at += move.time;
-    const auto ends = [&](std::size_t other) {
-      return other >= plan.moves.size() || plan.moves[other].measures != move.measures ||
-             plan.moves[other].line != move.line || plan.moves[other].face != move.face;
-    };
-    if (i % step != 0 && !ends(i + 1) && !ends(i - 1)) continue;
-    time.add({at}, 1e4);
-    std::vector<double> lengths, angles;
-    for (std::size_t k = 0; k < machine.axes.size(); ++k) {
-      (machine.axes[k].kind == AxisKind::rotary ? angles : lengths)
-          .push_back(shown(machine.axes[k], plan.positions.axis[k][i]));
-    }
-    linear.add(lengths, 1e4);
-    rotary.add(angles, 1e4);
-    point.add({move.point.x(), move.point.y(), move.point.z()}, 1e3);
-    beam.add({move.beam.x(), move.beam.y(), move.beam.z()}, 1e4);
-    on_face.push_back(move.face);
-    line.push_back(move.line);
-    measures.push_back(move.measures ? 1 : 0);
-  }
-  json["path"] = {{"frame", "workpiece"},
-                  {"moves", plan.moves.size()},
-                  {"time_s", time.json()["time_s"]},
-                  {"positions_mm", linear.json()},
-                  {"positions_deg", rotary.json()},
-                  {"point_mm", point.json()},
-                  {"beam", beam.json()},
-                  {"face", on_face},
-                  {"line", line},
-                  {"measures", measures}};
   return json;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cstddef>
+#include <array>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -20,16 +21,14 @@ std::string scan_plan_csv(const Machine& machine, const ScanPlan& plan);
 std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, const std::string& title,
                               const PathProgramOptions& options = {});
 
+/// Colour of what became of a place (red, green, blue): green where it is covered, one of its own for every cause.
+std::array<std::uint8_t, 3> scan_obstacle_colour(ScanObstacle obstacle);
+
 /// Binary PLY of places of the surface in the frame of the part: colour, face (from 0) and obstacle (a number of
 /// ScanObstacle, 0 where it is covered).
 std::string scan_coverage_ply(const ScanPlan& plan);
 
 /// Figures of a plan and of its faces, as `abbe scan plan --json` prints them; docs/scan.md.
 nlohmann::ordered_json scan_plan_summary(const Machine& machine, const ScanPlan& plan, const std::string& part);
-
-/// Everything that a page needs to draw a plan: the summary, places of the surface with what became of them, the path.
-/// Thinned out evenly to that many places and moves; the ends of lines stay. Format abbe-scan-plan/1, docs/scan.md.
-nlohmann::ordered_json scan_plan_data(const Machine& machine, const ScanPlan& plan, const std::string& part,
-                                      std::size_t most_places = 20000, std::size_t most_moves = 5000);
 
 }  // namespace abbe

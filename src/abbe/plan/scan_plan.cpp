@@ -212,6 +212,12 @@ double ScanPlan::covered_share() const {
   return area() > 0 ? covered / area() : 0;
 }
 
+double ScanPlan::uncovered(ScanObstacle obstacle) const {
+  return std::accumulate(faces.begin(), faces.end(), 0.0, [&](double sum, const PlannedFace& face) {
+    return sum + face.uncovered[static_cast<std::size_t>(obstacle)];
+  });
+}
+
 ScanPlan plan_scan(const Machine& machine, const TriangleMesh& part, const ScanPlanOptions& options) {
   for (const double value : {options.along, options.between, options.largest_turn, options.range,
                              options.working_distance, options.probe_radius, options.probe_length, options.clearance,

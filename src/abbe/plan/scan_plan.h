@@ -116,6 +116,7 @@ struct ScanPlan {
   std::size_t missed_places() const;
   double area() const;  ///< mm^2, of what is wanted
   double covered_share() const;
+  double uncovered(ScanObstacle obstacle) const;  ///< mm^2
 };
 
 /// Paths over all faces of a part for a displacement probe along the tool's direction.

@@ -96,6 +96,10 @@ nlohmann::json surface_data(const SurfacePicture& part, const DeviationPicture* 
   if (!part.coverage.empty() && part.coverage.size() != triangles) {
     throw std::invalid_argument("surface: coverage is not one number for each triangle");
   }
+  if (part.percent.size() > part.reasons.size() ||
+      (!part.colours.empty() && part.colours.size() != part.reasons.size())) {
+    throw std::invalid_argument("surface: shares or colours do not match the reasons");
+  }
   if (deviation != nullptr && (deviation->average.mean_mm.size() != vertices || !(deviation->limit_mm > 0))) {
     throw std::invalid_argument("surface: deviations are not one for each vertex, or without a limit");
   }
@@ -113,6 +117,8 @@ nlohmann::json surface_data(const SurfacePicture& part, const DeviationPicture* 
   if (!part.coverage.empty()) {
     json["coverage"] = {{"reasons", part.reasons},
                         {"of_triangle", packed(std::span<const std::uint8_t>(part.coverage))}};
+    if (!part.percent.empty()) json["coverage"]["percent"] = part.percent;
+    if (!part.colours.empty()) json["coverage"]["colours"] = part.colours;
   }
   if (deviation != nullptr) add_deviation(*deviation, steps, json);
   return json;

@@ -19,6 +19,8 @@ struct SurfacePicture {
   double thinned_cell_mm = 0;          ///< edge of the cubes in which vertices became one; 0: none did
   std::vector<std::uint8_t> coverage;  ///< [triangles] index into `reasons`, or empty
   std::vector<std::string> reasons;    ///< "covered" first, then why not
+  std::vector<double> percent;         ///< of the first reasons: share of the area, or empty
+  std::vector<std::string> colours;    ///< [reasons] "#28a046", or empty: those of the page
 };
 
 /// Signed deviations on it.
