@@ -93,7 +93,7 @@ struct Read {
   std::string format, unit;
 };
 
-Read read_points(const FitCommand& command, const std::string& file) {
+Read read_points(const FitCommand& command, const std::string& file, bool in_plane = false) {
   std::optional<FileLength> unit;
   if (!command.unit.empty()) unit = file_length_named(command.unit);
   const std::string extension = std::filesystem::path(file).extension().string();
@@ -101,7 +101,7 @@ Read read_points(const FitCommand& command, const std::string& file) {
     MeshFile mesh = read_mesh(file, {unit, command.threads});
     return {{std::move(mesh.mesh.vertices), Eigen::Matrix3Xd(3, 0)}, mesh.format + ", corners", unit_words(mesh.unit)};
   }
-  PointCloudFile read = read_point_cloud(file, {unit, {}, command.threads});
+  PointCloudFile read = read_point_cloud(file, {unit, {}, command.threads, in_plane});
   return {std::move(read.cloud), read.format, unit_words(read.unit)};
 }
 
@@ -181,11 +181,11 @@ int run_fit(const FitCommand& command) {
   if (command.half_angle > 0) request.fit.constraints.half_angle = command.half_angle;
   check_request(command, request);
   const std::string& file = command.files[0];
-  Read read = read_points(command, file);
+  const bool in_plane = request.kind == ShapeKind::line2 || request.kind == ShapeKind::circle2;
+  Read read = read_points(command, file, in_plane);
   request.title = "Fit of " + std::filesystem::path(file).filename().string();
   request.facts = {{"file", read.format + ", " + read.unit}};
   Eigen::Matrix3Xd flat;
-  const bool in_plane = request.kind == ShapeKind::line2 || request.kind == ShapeKind::circle2;
   std::string note;
   if (in_plane) {
     flat = read.cloud.points;

@@ -118,6 +118,10 @@ TEST_F(Fit, UnitsCornersOfMeshesAndPlanarShapes) {
   const auto ring = json({"inch.xyz", "--shape", "circle2", "--unit", "inch"});
   EXPECT_NEAR(ring.at("radius_mm").get<double>(), 25.4, 1e-12);
   EXPECT_THAT(ring.at("notes").dump(), HasSubstr("z, from 177.8 to 203.2 mm, was left out"));
+  folder.write("flat.csv", "x_mm,y_mm\n0,1\n10,3\n20,5\n30,7\n");
+  EXPECT_NEAR(json({"flat.csv", "--shape", "line2"}).at("figures").at("direction_y").at("value").get<double>(),
+              1 / std::sqrt(26), 1e-12);
+  EXPECT_THAT(abbe({"fit", "flat.csv", "--shape", "line"}).err, HasSubstr("flat.csv:1: z: missing column"));
   folder.write(
       "t.stl",
       "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 0 0\nvertex 0 4 0\nendloop\nendfacet\n"

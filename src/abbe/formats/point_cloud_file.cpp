@@ -20,7 +20,8 @@ namespace {
 
 PointCloudFile parse_csv_cloud(std::string_view contents, const std::string& file, const PointCloudOptions& options) {
   std::vector<CsvColumn> wanted;
-  for (const char* name : {"x", "y", "z"}) wanted.push_back({name, Quantity::length});
+  for (const char* name : {"x", "y"}) wanted.push_back({name, Quantity::length});
+  wanted.push_back({"z", Quantity::length, false, !options.in_plane});
   for (const char* name : {"nx", "ny", "nz"}) wanted.push_back({name, Quantity::dimensionless, false, false});
   wanted.push_back({"deviation", Quantity::length, false, false});
   CsvTable table = read_csv(contents, file, wanted, options.mapping, options.threads);
@@ -37,6 +38,10 @@ PointCloudFile parse_csv_cloud(std::string_view contents, const std::string& fil
   const auto rows = static_cast<Eigen::Index>(table.rows);
   result.cloud.points.resize(3, rows);
   for (std::size_t k = 0; k < 3; ++k) {
+    if (!table.columns[k].present) {
+      result.cloud.points.row(static_cast<Eigen::Index>(k)).setZero();
+      continue;
+    }
     result.cloud.points.row(static_cast<Eigen::Index>(k)) =
         Eigen::Map<const Eigen::RowVectorXd>(table.columns[k].numbers.data(), rows);
   }

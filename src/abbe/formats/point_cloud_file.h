@@ -16,6 +16,7 @@ struct PointCloudOptions {
   std::optional<FileLength> unit;  ///< of files that state none; without it mm, which the result says
   ColumnMapping mapping;           ///< of CSV files that Abbe did not write
   int threads = 0;                 ///< 0: all
+  bool in_plane = false;           ///< a CSV file need not have z, which is then zero
 };
 
 /// A point cloud as read, and what a reader of the result has to know about it.

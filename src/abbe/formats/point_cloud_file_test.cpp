@@ -45,6 +45,12 @@ TEST(PointCloudFile, CsvColumnsHaveTheirOwnUnits) {
   EXPECT_EQ(file.cloud.points.col(0), Eigen::Vector3d(3, 2.5, 1));
   EXPECT_FALSE(file.cloud.has_normals());
   PointCloudOptions options;
+  options.in_plane = true;
+  EXPECT_EQ(parse_point_cloud("y_um,x_mm\n2500,3\n", "scan.csv", options).cloud.points.col(0),
+            Eigen::Vector3d(3, 2.5, 0));
+  EXPECT_EQ(parse_point_cloud("y_um,x_mm,z_mm\n2500,3,4\n", "scan.csv", options).cloud.points(2, 0), 4);
+  EXPECT_EQ(message_of([] { parse_point_cloud("y_um,x_mm\n2500,3\n", "scan.csv"); }),
+            "scan.csv:1: z: missing column; expected z_mm, z_um or z_m");
   options.unit = FileLength::inch;
   EXPECT_EQ(message_of([&] { parse_point_cloud("x_mm,y_mm,z_mm\n1,2,3\n", "a.csv", options); }),
             "a.csv: unit: a CSV file states the unit of each column in its header; expected no unit");
