@@ -1,5 +1,6 @@
 #include "abbe/formats/mesh_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -12,6 +13,7 @@
 #include "abbe/formats/obj_file.h"
 #include "abbe/formats/ply_file.h"
 #include "abbe/formats/stl_file.h"
+#include "abbe/formats/text_blocks.h"
 #include "abbe/formats/text_file.h"
 #include "abbe/geometry/mesh_check.h"
 #include "abbe/geometry/meshes_for_test.h"
@@ -115,6 +117,58 @@ TEST(StlFile, ASphereSurvivesWritingAndReading) {
     }
   }
   EXPECT_TRUE(check_mesh(file.mesh).encloses_volume());
+}
+
+TEST(StlFile, DoesNotDependOnTheNumberOfThreads) {
+  // Several blocks of both forms; the text in two solids, words in capitals, one with the name of a word.
+  const TriangleMesh sphere = sphere_for_test({10, -20, 30}, 12.703, 100);
+  std::string text = ascii_stl(sphere), second = ascii_stl(block_for_test(kLower, kUpper));
+  second.replace(0, 5, "SOLID facet normal\t");
+  for (std::size_t at = second.find("outer"); at != std::string::npos; at = second.find("outer", at)) {
+    second.replace(at, 5, "OUTER");
+  }
+  text += second + ascii_stl(sphere);
+  ASSERT_GT(text.size(), std::size_t{3} << 20);
+  MeshFileOptions one, three;
+  one.threads = 1;
+  three.threads = 3;
+  const MeshFile ascii = parse_mesh(text, "a.stl", one), again = parse_mesh(text, "a.stl", three);
+  EXPECT_EQ(ascii.mesh.size(), 2 * sphere.size() + 12);
+  EXPECT_EQ(ascii.mesh.vertices.cols(), sphere.vertices.cols() + 8);
+  EXPECT_EQ(again.mesh.vertices, ascii.mesh.vertices);
+  EXPECT_EQ(again.mesh.triangles, ascii.mesh.triangles);
+  // The same triangles as in the file, in its order.
+  for (Eigen::Index i = 0; i < sphere.size(); ++i) {
+    ASSERT_EQ(ascii.mesh.triangles.col(i), ascii.mesh.triangles.col(sphere.size() + 12 + i)) << i;
+    for (int k = 0; k < 3; ++k) ASSERT_LT((ascii.mesh.corner(i, k) - sphere.corner(i, k)).norm(), 1e-6) << i;
+  }
+  std::string bytes = stl_bytes(sphere);
+  const MeshFile binary = parse_mesh(bytes, "a.stl", one), binary_again = parse_mesh(bytes, "a.stl", three);
+  EXPECT_EQ(binary.mesh.vertices.cols(), sphere.vertices.cols());
+  EXPECT_EQ(binary_again.mesh.vertices, binary.mesh.vertices);
+  EXPECT_EQ(binary_again.mesh.triangles, binary.mesh.triangles);
+  // Two things wrong in different blocks: the first one is said, with its place in the file.
+  const std::size_t late = text.rfind("endloop"), early = text.rfind("vertex", text.size() / 2);
+  std::string broken = text;
+  broken[late] = 'x';
+  const std::string at_late = fmt::format("a.stl:{}:5: 'xndloop'; expected 'endloop'", text_line(text, late));
+  EXPECT_EQ(message_of([&] { parse_mesh(broken, "a.stl", three); }), at_late);
+  broken[early] = 'x';
+  EXPECT_EQ(message_of([&] { parse_mesh(broken, "a.stl", three); }),
+            fmt::format("a.stl:{}:7: 'xertex'; expected 'vertex'", text_line(text, early)));
+  const float wrong = 3e9F;
+  for (const std::size_t facet : {std::size_t{38000}, std::size_t{20000}}) {
+    std::memcpy(bytes.data() + 84 + 50 * facet + 16, &wrong, sizeof wrong);
+    EXPECT_EQ(message_of([&] { parse_mesh(bytes, "a.stl", three); }),
+              fmt::format("a.stl: corner 1 y: at byte {}: triangle {}: 3e+09 is too large; expected a coordinate of at "
+                          "most 1e+09 mm",
+                          84 + 50 * facet + 16, facet));
+  }
+  // A solid that ends where the next block would begin, and goes on without a new one.
+  const std::size_t gap = text.find("  facet", std::size_t{1} << 20);
+  broken = text.substr(0, gap) + "endsolid\n" + text.substr(gap);
+  EXPECT_EQ(message_of([&] { parse_mesh(broken, "a.stl", three); }),
+            fmt::format("a.stl:{}:3: 'facet'; expected 'solid'", text_line(text, gap) + 1));
 }
 
 TEST(PlyFile, BinaryReadsBackToTheSameBits) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "abbe/formats/decimal_text.h"
 #include "abbe/formats/unit.h"
 
 namespace abbe {
@@ -63,6 +65,36 @@ TEST(NumberText, ParsesAsTheStandardLibraryDoes) {
     ++compared;
   }
   EXPECT_EQ(compared, 50000);
+}
+
+TEST(NumberText, TheShortWayGivesTheBitsOfTheLongOneOrLeavesTheNumberToIt) {
+  std::mt19937_64 random(12);
+  int taken = 0;
+  for (int i = 0; i < 200000; ++i) {
+    std::string text = random() % 3 == 0 ? "-" : "";
+    const std::uint64_t before = random() % 12, behind = random() % 12;
+    for (std::uint64_t k = 0; k < before; ++k) text += static_cast<char>('0' + random() % 10);
+    if (random() % 4 != 0) text += '.';
+    for (std::uint64_t k = 0; k < behind; ++k) text += static_cast<char>('0' + random() % 10);
+    if (random() % 2 == 0) {
+      text += random() % 2 == 0 ? 'e' : 'E';
+      text += std::array<const char*, 3>{"", "-", "+"}[random() % 3];
+      const std::uint64_t exponent = random() % 4;
+      for (std::uint64_t k = 0; k < exponent; ++k) text += static_cast<char>('0' + random() % (k == 0 ? 3 : 10));
+    }
+    double quick = 0, known = 0;
+    const int shift = static_cast<int>(random() % 13) - 6;
+    const char* const behind_it = read_short_decimal(text.data(), text.data() + text.size(), shift, quick);
+    if (behind_it != text.data() + text.size()) continue;
+    ++taken;
+    ASSERT_EQ(parse_number(text, shift, known), NumberProblem::none) << text;
+    ASSERT_EQ(std::bit_cast<std::uint64_t>(quick), std::bit_cast<std::uint64_t>(known)) << text;
+  }
+  EXPECT_GT(taken, 80000);
+  double value = 0;
+  const std::string_view usual = "-1.234567e+01 ";
+  EXPECT_EQ(read_short_decimal(usual.data(), usual.data() + usual.size(), 0, value), usual.data() + 13);
+  EXPECT_EQ(value, -12.34567);
 }
 
 TEST(NumberText, RefusesWhatIsNoDecimalNumber) {

@@ -5,13 +5,17 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/number_text.h"
+#include "abbe/formats/text_blocks.h"
 #include "abbe/formats/text_cursor.h"
+#include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/vertex_welder.h"
 
 namespace abbe {
@@ -21,26 +25,45 @@ static_assert(std::endian::native == std::endian::little, "STL files are little-
 
 constexpr std::size_t kHeader = 84;  // 80 bytes of text, then the number of triangles
 constexpr std::size_t kFacet = 50;
-constexpr std::size_t kTogether = 1024;  // facets
+constexpr std::size_t kTogether = 8192;  // facets
 constexpr std::array<const char*, 12> kFields = {"normal x",   "normal y",   "normal z",   "corner 1 x",
                                                  "corner 1 y", "corner 1 z", "corner 2 x", "corner 2 y",
                                                  "corner 2 z", "corner 3 x", "corner 3 y", "corner 3 z"};
 
-/// Collects facets; welds, and counts normals that point to the other side.
-class Facets {
- public:
-  explicit Facets(std::size_t expected) : welder_(expected / 2 + 3) { corners_.reserve(9 * kTogether); }
+/// Facets of a stretch of the file.
+struct FacetBlock {
+  std::vector<double> corners;  ///< 9 per facet
+  std::size_t turned = 0;       ///< facets whose normal points to the other side
 
+  std::size_t size() const { return corners.size() / 9; }
+  void clear() {
+    corners.clear();
+    turned = 0;
+  }
   /// @param facet  normal and three corners, finite
   void add(const double* facet) {
     const Eigen::Map<const Eigen::Vector3d> normal(facet), a(facet + 3), b(facet + 6), c(facet + 9);
-    if ((b - a).cross(c - a).dot(normal) < 0) ++turned_;
-    corners_.insert(corners_.end(), facet + 3, facet + 12);
-    if (corners_.size() == 9 * kTogether) flush();
+    if ((b - a).cross(c - a).dot(normal) < 0) ++turned;
+    corners.insert(corners.end(), facet + 3, facet + 12);
+  }
+};
+
+/// Puts blocks together in the order of the file, equal corners becoming one vertex.
+class WeldedFacets {
+ public:
+  /// @param expected  facets, about
+  explicit WeldedFacets(std::size_t expected) : welder_(expected / 2 + 3, 3 * expected) {
+    indices_.reserve(3 * expected);
   }
 
-  MeshFile mesh(const FileUnit& unit, const char* format) {
-    flush();
+  void add(const FacetBlock& block) {
+    const std::size_t before = indices_.size();
+    indices_.resize(before + 3 * block.size());
+    welder_.add(block.corners, indices_.data() + before);
+    turned_ += block.turned;
+  }
+
+  MeshFile mesh(const FileUnit& unit, const char* format) const {
     MeshFile result;
     result.format = format;
     result.unit = unit;
@@ -54,22 +77,39 @@ class Facets {
     return result;
   }
 
-  std::size_t size() const { return indices_.size() / 3 + corners_.size() / 9; }
-  void reserve(std::size_t facets) { indices_.reserve(3 * facets); }
+  std::size_t size() const { return indices_.size() / 3; }
 
  private:
-  void flush() {
-    const std::size_t before = indices_.size();
-    indices_.resize(before + corners_.size() / 3);
-    welder_.add(corners_, indices_.data() + before);
-    corners_.clear();
-  }
-
   VertexWelder welder_;
-  std::vector<double> corners_;
   std::vector<std::uint32_t> indices_;
   std::size_t turned_ = 0;
 };
+
+/// Reads blocks on several threads, some at a time; while one lot is read, that before it is put together.
+/// @param read  fills an empty block; false: it has to be looked at from the beginning of the file
+/// @return false if a block was not read
+bool read_blocks(std::size_t blocks, int threads, WeldedFacets& facets,
+                 const std::function<bool(std::size_t, FacetBlock&)>& read) {
+  const auto workers = static_cast<std::size_t>(threads > 0 ? threads : default_thread_count());
+  const std::size_t lot = workers == 1 ? 1 : 4 * workers;
+  std::vector<FacetBlock> now(lot), before(lot);
+  std::size_t read_before = 0;
+  std::atomic<bool> good = true;
+  for (std::size_t begin = 0; begin < blocks + lot && good; begin += lot) {
+    const std::size_t count = std::min(lot, blocks - std::min(begin, blocks));
+    for_each_block(count + 1, threads, [&](std::size_t k) {
+      if (k == 0) {
+        for (std::size_t i = 0; i < read_before; ++i) facets.add(before[i]);
+        return;
+      }
+      now[k - 1].clear();
+      if (!read(begin + k - 1, now[k - 1])) good = false;
+    });
+    std::swap(now, before);
+    read_before = count;
+  }
+  return good;
+}
 
 std::uint32_t stated_facets(std::string_view contents) {
   std::uint32_t facets = 0;
@@ -77,7 +117,7 @@ std::uint32_t stated_facets(std::string_view contents) {
   return facets;
 }
 
-MeshFile parse_binary(std::string_view contents, const std::string& file, const FileUnit& unit) {
+MeshFile parse_binary(std::string_view contents, const std::string& file, const FileUnit& unit, int threads) {
   const InputError::Place place{file, 0, 0, ""};
   if (contents.size() < kHeader) {
     throw InputError(place, fmt::format("the file ends at byte {}", contents.size()),
@@ -92,43 +132,55 @@ MeshFile parse_binary(std::string_view contents, const std::string& file, const 
   }
   if (facets == 0) throw InputError(place, "there are no triangles in the file", "at least one");
   const double largest = kLargestInput / millimetres(unit.length);
-  Facets collected(facets);
-  collected.reserve(facets);
-  std::array<float, 12> numbers;
-  std::array<double, 12> facet;
-  for (std::size_t i = 0; i < facets; ++i) {
-    std::memcpy(numbers.data(), contents.data() + kHeader + kFacet * i, sizeof numbers);
+  const auto read = [&](std::size_t facet, std::array<double, 12>& numbers) {
+    std::array<float, 12> stored;
+    std::memcpy(stored.data(), contents.data() + kHeader + kFacet * facet, sizeof stored);
     bool good = true;
     for (std::size_t k = 0; k < 12; ++k) {
-      facet[k] = static_cast<double>(numbers[k]);
+      numbers[k] = static_cast<double>(stored[k]);
       // Normals may be anything: some programs write what 0/0 gives for facets without area.
-      if (k >= 3) good = good && std::abs(facet[k]) <= largest;
+      if (k >= 3) good = good && std::abs(numbers[k]) <= largest;
     }
-    if (!good) {
-      const auto bad = static_cast<std::size_t>(
-          std::find_if(facet.begin() + 3, facet.end(), [&](double v) { return !(std::abs(v) <= largest); }) -
-          facet.begin());
-      throw InputError({file, 0, 0, kFields[bad]},
-                       fmt::format("at byte {}: triangle {}: {}", kHeader + kFacet * i + 4 * bad, i,
-                                   std::isfinite(facet[bad]) ? fmt::format("{:g} is too large", facet[bad])
-                                                             : std::string("not a finite number")),
-                       fmt::format("a coordinate of at most {:g} {}", largest, file_length_name(unit.length)));
+    return good;
+  };
+  WeldedFacets welded(facets);
+  const std::size_t blocks = (facets + kTogether - 1) / kTogether;
+  const bool good = read_blocks(blocks, threads, welded, [&](std::size_t number, FacetBlock& block) {
+    std::array<double, 12> facet;
+    const std::size_t begin = number * kTogether, end = std::min<std::size_t>(begin + kTogether, facets);
+    block.corners.reserve(9 * (end - begin));
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!read(i, facet)) return false;
+      block.add(facet.data());
     }
-    collected.add(facet.data());
-  }
-  return collected.mesh(unit, "STL, binary");
-}
-
-void require_word(TextCursor& cursor, std::string_view found, std::string_view wanted) {
-  const auto same = [](char a, char b) { return (a | 0x20) == b; };
-  if (std::equal(found.begin(), found.end(), wanted.begin(), wanted.end(), same)) return;
-  cursor.fail("", found.empty() ? "the file ends" : fmt::format("'{}'", shown_word(found)),
-              fmt::format("'{}'", wanted));
+    return true;
+  });
+  if (good) return welded.mesh(unit, "STL, binary");
+  std::array<double, 12> facet{};
+  std::size_t i = 0;
+  while (read(i, facet)) ++i;
+  const auto bad = static_cast<std::size_t>(
+      std::find_if(facet.begin() + 3, facet.end(), [&](double v) { return !(std::abs(v) <= largest); }) -
+      facet.begin());
+  throw InputError({file, 0, 0, kFields[bad]},
+                   fmt::format("at byte {}: triangle {}: {}", kHeader + kFacet * i + 4 * bad, i,
+                               std::isfinite(facet[bad]) ? fmt::format("{:g} is too large", facet[bad])
+                                                         : std::string("not a finite number")),
+                   fmt::format("a coordinate of at most {:g} {}", largest, file_length_name(unit.length)));
 }
 
 bool is_word(std::string_view found, std::string_view wanted) {
   return std::equal(found.begin(), found.end(), wanted.begin(), wanted.end(),
                     [](char a, char b) { return (a | 0x20) == b; });
+}
+
+/// The next word, in small or capital letters.
+void require_word(TextCursor& cursor, std::string_view wanted) {
+  if (cursor.take(wanted)) return;
+  const std::string_view found = cursor.word();
+  if (is_word(found, wanted)) return;
+  cursor.fail("", found.empty() ? "the file ends" : fmt::format("'{}'", shown_word(found)),
+              fmt::format("'{}'", wanted));
 }
 
 /// A component of a facet normal: anything that looks like a number, "nan" too.
@@ -150,32 +202,30 @@ double normal_component(TextCursor& cursor, const char* field) {
               "a number");
 }
 
-MeshFile parse_ascii(std::string_view contents, const std::string& file, const FileUnit& unit) {
-  TextCursor cursor(contents, file);
+/// Facets up to the end of the text.
+/// @param inside  of a solid; becomes what it is at the end
+void read_facets(TextCursor& cursor, const FileUnit& unit, bool& inside, FacetBlock& facets) {
   const double largest = kLargestInput / millimetres(unit.length);
-  // A facet in its shortest form takes 67 characters; in its usual form 200 and more.
-  Facets collected(contents.size() / 256);
   std::array<double, 12> facet;
-  bool inside = false;
-  for (std::string_view word = cursor.word(); !word.empty(); word = cursor.word()) {
-    if (!inside) {
-      require_word(cursor, word, "solid");
-      cursor.line();
-      inside = true;
-      continue;
+  while (true) {
+    if (!(inside && cursor.take("facet"))) {
+      const std::string_view word = cursor.word();
+      if (word.empty()) return;
+      if (is_word(word, inside ? "endsolid" : "solid")) {
+        cursor.line();
+        inside = !inside;
+        continue;
+      }
+      if (!inside || !is_word(word, "facet")) {
+        cursor.fail("", fmt::format("'{}'", shown_word(word)), inside ? "'facet'" : "'solid'");
+      }
     }
-    if (is_word(word, "endsolid")) {
-      cursor.line();
-      inside = false;
-      continue;
-    }
-    require_word(cursor, word, "facet");
-    require_word(cursor, cursor.word(), "normal");
+    require_word(cursor, "normal");
     for (std::size_t k = 0; k < 3; ++k) facet[k] = normal_component(cursor, kFields[k]);
-    require_word(cursor, cursor.word(), "outer");
-    require_word(cursor, cursor.word(), "loop");
+    require_word(cursor, "outer");
+    require_word(cursor, "loop");
     for (std::size_t corner = 1; corner <= 3; ++corner) {
-      require_word(cursor, cursor.word(), "vertex");
+      require_word(cursor, "vertex");
       for (std::size_t k = 3 * corner; k < 3 * corner + 3; ++k) {
         facet[k] = cursor.number(kFields[k]);
         if (std::abs(facet[k]) > largest) {
@@ -184,13 +234,57 @@ MeshFile parse_ascii(std::string_view contents, const std::string& file, const F
         }
       }
     }
-    require_word(cursor, cursor.word(), "endloop");
-    require_word(cursor, cursor.word(), "endfacet");
-    collected.add(facet.data());
+    require_word(cursor, "endloop");
+    require_word(cursor, "endfacet");
+    facets.add(facet.data());
   }
-  if (inside) cursor.fail("", "the file ends", "'facet' or 'endsolid'");
-  if (collected.size() == 0) throw InputError({file, 0, 0, ""}, "there are no triangles in the file", "at least one");
-  return collected.mesh(unit, "STL, ascii");
+}
+
+/// Where blocks begin: the first at the beginning of the text, the others at a line whose first word is "facet", which
+/// in a file without errors stands nowhere else at the beginning of a line.
+std::vector<std::size_t> facet_blocks(std::string_view contents) {
+  constexpr std::string_view kWord = "facet";
+  std::vector<std::size_t> begins{0};
+  std::size_t at = text_block_end(contents, 0);
+  while (at < contents.size()) {
+    const std::size_t first = std::min(contents.find_first_not_of(" \t", at), contents.size());
+    if (contents.substr(first, kWord.size()) == kWord) {
+      begins.push_back(first);
+      at = text_block_end(contents, first);
+    } else {
+      at = std::min(contents.find('\n', first), contents.size() - 1) + 1;
+    }
+  }
+  return begins;
+}
+
+MeshFile parse_ascii(std::string_view contents, const std::string& file, const FileUnit& unit, int threads) {
+  const std::vector<std::size_t> begins = facet_blocks(contents);
+  // A facet in its shortest form takes 67 characters; in its usual form 200 and more.
+  WeldedFacets welded(contents.size() / 256);
+  const bool good = read_blocks(begins.size(), threads, welded, [&](std::size_t number, FacetBlock& block) {
+    const bool last = number + 1 == begins.size();
+    TextCursor cursor(contents.substr(0, last ? contents.size() : begins[number + 1]), file, begins[number]);
+    bool inside = number > 0;
+    try {
+      read_facets(cursor, unit, inside, block);
+    } catch (const InputError&) {
+      return false;
+    }
+    return inside != last;
+  });
+  if (!good) {
+    // From the beginning, so that the first thing that is wrong is said.
+    welded = WeldedFacets(contents.size() / 256);
+    TextCursor cursor(contents, file);
+    FacetBlock all;
+    bool inside = false;
+    read_facets(cursor, unit, inside, all);
+    if (inside) cursor.fail("", "the file ends", "'facet' or 'endsolid'");
+    welded.add(all);
+  }
+  if (welded.size() == 0) throw InputError({file, 0, 0, ""}, "there are no triangles in the file", "at least one");
+  return welded.mesh(unit, "STL, ascii");
 }
 
 }  // namespace
@@ -208,8 +302,10 @@ bool is_ascii_stl(std::string_view contents) {
 
 MeshFile parse_stl(std::string_view contents, const std::string& file, const MeshFileOptions& options) {
   const FileUnit unit = agreed_unit(std::nullopt, options.unit, file);
-  if (is_binary_stl(contents) || !is_ascii_stl(contents)) return parse_binary(contents, file, unit);
-  return parse_ascii(contents, file, unit);
+  if (is_binary_stl(contents) || !is_ascii_stl(contents)) {
+    return parse_binary(contents, file, unit, options.threads);
+  }
+  return parse_ascii(contents, file, unit, options.threads);
 }
 
 std::string stl_bytes(const TriangleMesh& mesh) {

@@ -32,6 +32,16 @@ std::string_view TextCursor::word() {
   return text_.substr(word_at_, at_ - word_at_);
 }
 
+bool TextCursor::take(std::string_view word) {
+  std::size_t at = at_;
+  while (at < text_.size() && is_blank(text_[at])) ++at;
+  const std::size_t behind = at + word.size();
+  if (text_.compare(at, word.size(), word) != 0 || (behind < text_.size() && !is_blank(text_[behind]))) return false;
+  word_at_ = at;
+  at_ = behind;
+  return true;
+}
+
 double TextCursor::number(const char* field) {
   skip_blanks();
   double value = 0;

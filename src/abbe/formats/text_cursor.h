@@ -21,6 +21,8 @@ class TextCursor {
 
   /// Next word over blanks and line ends, or empty at the end.
   std::string_view word();
+  /// Goes behind the next word if it is this one. @return false: the cursor stays where it was
+  bool take(std::string_view word);
   /// Next word as a number of at most kLargestInput. @throws InputError naming the field
   double number(const char* field);
   /// Next word as a whole number. @throws InputError

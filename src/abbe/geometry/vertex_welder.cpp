@@ -27,22 +27,33 @@ std::uint64_t hash_of(const double* corner) {
 
 }  // namespace
 
-VertexWelder::VertexWelder(std::size_t expected) {
-  const std::size_t slots = std::bit_ceil(std::max<std::size_t>(2 * expected, 64));
-  slots_.assign(slots, kFree);
-  shift_ = 64 - std::countr_zero(slots);
+VertexWelder::VertexWelder(std::size_t expected, std::size_t corners) : corners_(corners) {
+  rehash(std::bit_ceil(std::max<std::size_t>(2 * expected, 64)));
   coordinates_.reserve(3 * expected);
 }
 
-void VertexWelder::grow() {
-  slots_.assign(2 * slots_.size(), kFree);
-  --shift_;
-  const std::size_t mask = slots_.size() - 1;
+void VertexWelder::rehash(std::size_t slots) {
+  slots_.assign(slots, kFree);
+  shift_ = 64 - std::countr_zero(slots);
+  const std::size_t mask = slots - 1;
   for (std::size_t vertex = 0; vertex < size(); ++vertex) {
     std::size_t slot = static_cast<std::size_t>(hash_of(&coordinates_[3 * vertex]) >> shift_);
     while (slots_[slot] != kFree) slot = (slot + 1) & mask;
     slots_[slot] = static_cast<std::uint32_t>(vertex);
   }
+}
+
+void VertexWelder::make_room() {
+  const std::size_t most = size() + kTogether, room = slots_.size() / 3 * 2;
+  if (most <= room && 3 * most <= coordinates_.capacity()) return;
+  // As many new ones among the corners to come as among those so far.
+  std::size_t likely = 2 * most;
+  if (corners_ > added_ && added_ > 0) {
+    const double share = static_cast<double>(size()) / static_cast<double>(added_);
+    likely = std::clamp(static_cast<std::size_t>(share * static_cast<double>(corners_)), most + most / 4, 8 * most);
+  }
+  if (3 * most > coordinates_.capacity()) coordinates_.reserve(3 * likely);
+  if (most > room) rehash(std::max(2 * slots_.size(), std::bit_ceil(likely + likely / 2)));
 }
 
 void VertexWelder::add(std::span<const double> corners, std::uint32_t* indices) {
@@ -52,7 +63,8 @@ void VertexWelder::add(std::span<const double> corners, std::uint32_t* indices) 
   for (std::size_t begin = 0; begin < count; begin += kTogether) {
     const std::size_t end = std::min(begin + kTogether, count);
     // At most two thirds full afterwards, whatever is new.
-    while (3 * (size() + kTogether) > 2 * slots_.size()) grow();
+    make_room();
+    added_ += end - begin;
     if (size() + kTogether >= kFree) throw std::length_error("more than 2^32 - 2 vertices");
     for (std::size_t i = begin; i < end; ++i) {
       hashes[i - begin] = hash_of(&corners[3 * i]);
@@ -80,8 +92,8 @@ void VertexWelder::add(std::span<const double> corners, std::uint32_t* indices) 
   }
 }
 
-Eigen::Matrix3Xd VertexWelder::vertices() const {
-  return Eigen::Map<const Eigen::Matrix3Xd>(coordinates_.data(), 3, static_cast<Eigen::Index>(size()));
+Eigen::Map<const Eigen::Matrix3Xd> VertexWelder::vertices() const {
+  return {coordinates_.data(), 3, static_cast<Eigen::Index>(size())};
 }
 
 }  // namespace abbe

@@ -34,6 +34,24 @@ TEST(VertexWelder, NumbersCornersLikeASortedMapDoes) {
   }
 }
 
+TEST(VertexWelder, TheNumberOfCornersThatIsSaidBeforehandChangesNothing) {
+  std::mt19937_64 random(8);
+  std::uniform_int_distribution<int> coarse(0, 9), fine(0, 100000);
+  std::vector<double> corners;
+  // First many that come again, then hardly any.
+  for (int i = 0; i < 9000; ++i) corners.push_back(i < 3000 ? coarse(random) : fine(random));
+  std::vector<std::uint32_t> expected(3000);
+  VertexWelder plain(1);
+  plain.add(corners, expected.data());
+  for (const std::size_t said : {std::size_t{1}, std::size_t{100}, std::size_t{3000}, std::size_t{1000000}}) {
+    VertexWelder welder(1, said);
+    std::vector<std::uint32_t> indices(3000);
+    welder.add(corners, indices.data());
+    EXPECT_EQ(indices, expected) << said;
+    EXPECT_EQ(welder.vertices(), plain.vertices()) << said;
+  }
+}
+
 TEST(VertexWelder, MinusZeroIsZeroAndTheLastBitKeepsApart) {
   const std::vector<double> corners = {0, 1, 2, -0.0, 1, 2, 0, std::nextafter(1.0, 2.0), 2};
   VertexWelder welder(3);
