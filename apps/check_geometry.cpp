@@ -99,7 +99,7 @@ void print_mesh(const CheckedMesh& mesh) {
   const auto line = [](const char* name, std::size_t count, const char* remark = "") {
     fmt::print("{:<22} {}{}\n", name, count, count > 0 ? remark : "");
   };
-  if (mesh.file.faces > 0) line("faces", mesh.file.faces);
+  if (mesh.file.faces > 0) line(mesh.file.has_exact_faces() ? "faces" : "groups", mesh.file.faces);
   line("triangles", check.triangles);
   line("vertices", check.vertices);
   line("edges", check.edges);
@@ -115,7 +115,7 @@ void print_mesh(const CheckedMesh& mesh) {
   print_box(check.lower, check.upper);
   fmt::print("{:<22} {:.9g} mm2\n", "area", check.area);
   if (check.encloses_volume()) fmt::print("{:<22} {:.9g} mm3\n", "volume", check.volume);
-  if (mesh.file.faces > 0)
+  if (mesh.file.has_exact_faces())
     fmt::print("{:<22} {:.3g} mm of the exact faces\n", "triangles within", mesh.file.deviation_mm);
   fmt::print("\n{}\n", verdict(mesh));
   for (const std::string& note : mesh.file.notes) fmt::print("note: {}\n", note);
@@ -146,7 +146,11 @@ Json mesh_json(const CheckedMesh& mesh) {
   json["volume_mm3"] = check.encloses_volume() ? Json(check.volume) : Json();
   if (mesh.file.faces > 0) {
     json["faces"] = mesh.file.faces;
-    json["deviation_mm"] = mesh.file.deviation_mm;
+    if (mesh.file.has_exact_faces()) {
+      json["deviation_mm"] = mesh.file.deviation_mm;
+    } else {
+      json["face_names"] = mesh.file.face_names;
+    }
   }
   json["verdict"] = verdict(mesh);
   json["notes"] = mesh.file.notes;

@@ -25,6 +25,7 @@ struct DeviateCommand {
   EvaluationOptions options;
   std::string transform;
   double largest_mm = 0, lower_mm = 0, upper_mm = 0, colour_mm = 0, crease = 0;
+  bool faces_of_file = false;
 };
 
 EvaluationFigure figure(const std::string& symbol, const std::string& name, const DeviationStatistics& all,
@@ -88,7 +89,9 @@ EvaluationPlot distribution(const std::vector<double>& counted, double range_mm,
   return {"plot", caption, plot.svg()};
 }
 
-EvaluationTable faces_table(const SurfaceFaces& faces, const std::vector<DeviationStatistics>& regions) {
+/// @param names  of the faces, or empty
+EvaluationTable faces_table(const SurfaceFaces& faces, const std::vector<std::string>& names,
+                            const std::vector<DeviationStatistics>& regions) {
   EvaluationTable table;
   table.caption = "By faces of the part, in \xC2\xB5m; faces without points are left out";
   table.headers = {"face", "middle in mm", "area in mm\xC2\xB2", "points", "mean", "std", "rms", "least", "largest"};
@@ -96,19 +99,21 @@ EvaluationTable faces_table(const SurfaceFaces& faces, const std::vector<Deviati
     const SampleStatistics& s = regions[i].sample;
     if (s.count == 0) continue;
     const auto um = [](double value) { return fmt::format("{:.2f}", 1e3 * value); };
-    table.rows.push_back({fmt::format("{}", i + 1), triple_text(faces.middle[i]), fmt::format("{:.5g}", faces.area[i]),
-                          fmt::format("{}", s.count), um(s.mean), um(s.deviation), um(s.rms), um(s.minimum),
-                          um(s.maximum)});
+    table.rows.push_back({names.empty() ? fmt::format("{}", i + 1) : names[i], triple_text(faces.middle[i]),
+                          fmt::format("{:.5g}", faces.area[i]), fmt::format("{}", s.count), um(s.mean), um(s.deviation),
+                          um(s.rms), um(s.minimum), um(s.maximum)});
   }
   return table;
 }
 
-nlohmann::ordered_json faces_json(const SurfaceFaces& faces, const std::vector<DeviationStatistics>& regions) {
+nlohmann::ordered_json faces_json(const SurfaceFaces& faces, const std::vector<std::string>& names,
+                                  const std::vector<DeviationStatistics>& regions) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < regions.size(); ++i) {
     const SampleStatistics& s = regions[i].sample;
     nlohmann::ordered_json entry;
     entry["face"] = i + 1;
+    if (!names.empty()) entry["name"] = names[i];
     entry["middle_mm"] = {faces.middle[i].x(), faces.middle[i].y(), faces.middle[i].z()};
     entry["area_mm2"] = faces.area[i];
     entry["points"] = s.count;
@@ -157,8 +162,14 @@ int run_deviate(DeviateCommand command) {
   SurfaceDeviationOptions options;
   options.largest_mm = command.largest_mm;
   if (has_band) options.tolerance = DeviationTolerance{command.lower_mm, command.upper_mm};
-  if (command.crease > 0) {
-    faces = surface_faces(part.mesh, command.crease, command.files.threads);
+  const bool by_faces = command.crease > 0 || command.faces_of_file;
+  if (command.faces_of_file && part.faces == 0) {
+    throw InputError({command.files.part, 0, 0, ""}, "the file states no faces",
+                     "a STEP file, or an OBJ file with o, g or usemtl; --faces-deg finds faces by their edges");
+  }
+  if (by_faces) {
+    faces = command.faces_of_file ? stated_faces(part.mesh, part.face_of_triangle, part.faces)
+                                  : surface_faces(part.mesh, command.crease, command.files.threads);
     options.region_of_triangle = faces.face_of_triangle;
     options.regions = faces.count();
   }
@@ -188,9 +199,10 @@ int run_deviate(DeviateCommand command) {
   report.details["too_far"] = deviation.too_far;
   report.details["colour_range_um"] = 1e3 * range;
   report.figures = figures_of(deviation.all);
-  if (command.crease > 0) {
-    report.tables.push_back(faces_table(faces, deviation.regions));
-    report.details["faces"] = faces_json(faces, deviation.regions);
+  if (by_faces) {
+    const std::vector<std::string> names = command.faces_of_file ? part.face_names : std::vector<std::string>();
+    report.tables.push_back(faces_table(faces, names, deviation.regions));
+    report.details["faces"] = faces_json(faces, names, deviation.regions);
   }
   if (!counted.deviation_mm.empty()) {
     report.plots.push_back(distribution(counted.deviation_mm, range, "Distribution of the deviations"));
@@ -235,6 +247,9 @@ void add_deviate_command(CommandLine& line) {
   add_number(app, "--upper-um", Quantity::length, "um", {-1e9, 1e9}, command->upper_mm, "Its upper end");
   add_number(app, "--faces-deg", Quantity::angle, "deg", {0, 180}, command->crease,
              "Statistics by faces too: surfaces between edges sharper than this angle (default 0: none)");
+  app->add_flag("--faces", command->faces_of_file,
+                "Statistics by the faces of a STEP file, or the objects, groups and materials of an OBJ file")
+      ->excludes("--faces-deg");
   add_number(app, "--colour-um", Quantity::length, "um", {0, 1e9}, command->colour_mm,
              "Deviation of the full colour (default: by the 98th percentile)");
   app->add_option("-o,--output", command->options.output,

@@ -13,6 +13,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const abbe::ObjContents read = abbe::parse_obj(contents, "fuzz.obj", {}, 1);
     require_sound(read.points, read.triangles);
+    if (!read.region_of_triangle.empty() &&
+        read.region_of_triangle.size() != static_cast<std::size_t>(read.triangles.cols())) {
+      std::abort();
+    }
+    for (const std::uint32_t region : read.region_of_triangle) {
+      if (region >= read.regions.size()) std::abort();
+    }
   } catch (const abbe::InputError&) {
   }
   return 0;

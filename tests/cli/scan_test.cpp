@@ -97,6 +97,25 @@ TEST_F(Scan, DeviationsOfTheBracketShowTheStepThatIsTooHigh) {
   EXPECT_THAT(folder.read("out/report.html"), HasSubstr("Deviation of bracket-scan.csv from bracket.stl"));
 }
 
+TEST_F(Scan, GroupsOfAnObjFileAreFacesOfTheDeviation) {
+  folder.write(
+      "steps.obj",
+      "o part\nv 0 0 0\nv 10 0 0\nv 10 10 0\nv 0 10 0\ng left\nf 1 2 3 4\nv 10 0 5\nv 20 0 5\nv 20 10 5\nv 10 10 5\n"
+      "g right\nf 5 6 7 8\n");
+  folder.write("scan.csv", "x_mm,y_mm,z_mm\n2,2,0.01\n3,4,0.03\n15,5,4.99\n16,3,4.97\n");
+  const auto found = json({"deviate", "scan.csv", "steps.obj", "--faces"}, ExitCode::done);
+  ASSERT_EQ(found.at("faces").size(), 2u);
+  EXPECT_EQ(found.at("faces").at(0).at("name"), "part / left");
+  EXPECT_NEAR(found.at("faces").at(0).at("mean_um"), 20, 1e-9);
+  EXPECT_EQ(found.at("faces").at(1).at("name"), "part / right");
+  EXPECT_NEAR(found.at("faces").at(1).at("mean_um"), -20, 1e-9);
+  EXPECT_NEAR(found.at("faces").at(1).at("area_mm2"), 100, 1e-9);
+  const CommandResult none = abbe({"deviate", file("pin-scan.csv"), file("pin.stl"), "--faces"});
+  EXPECT_EQ(none.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(none.err, HasSubstr("pin.stl: the file states no faces"));
+  EXPECT_THAT(abbe({"check", "steps.obj"}).out, HasSubstr("groups                 2"));
+}
+
 TEST_F(Scan, ATolerancePassedIsAnsweredNo) {
   const auto found = json({"deviate", file("pin-scan.csv"), file("pin.stl"), "--transform", file("pin-transform.csv"),
                            "--tolerance", "maximum_um=5"},

@@ -25,13 +25,24 @@ bool is_step_extension(const std::string& extension) { return extension == ".ste
 MeshFile mesh_of_ply(std::string_view contents, const std::string& file, const MeshFileOptions& options) {
   PlyContents ply = parse_ply(contents, file, options.unit);
   if (ply.triangles.cols() == 0) refuse_no_faces(file);
-  return {{std::move(ply.points), std::move(ply.triangles)}, ply.format, ply.unit, {}, 0, {}, 0};
+  MeshFile result;
+  result.mesh = {std::move(ply.points), std::move(ply.triangles)};
+  result.format = ply.format;
+  result.unit = ply.unit;
+  return result;
 }
 
 MeshFile mesh_of_obj(std::string_view contents, const std::string& file, const MeshFileOptions& options) {
   ObjContents obj = parse_obj(contents, file, options.unit, options.threads);
   if (obj.triangles.cols() == 0) refuse_no_faces(file);
-  return {{std::move(obj.points), std::move(obj.triangles)}, "OBJ", obj.unit, {}, 0, {}, 0};
+  MeshFile result;
+  result.mesh = {std::move(obj.points), std::move(obj.triangles)};
+  result.format = "OBJ";
+  result.unit = obj.unit;
+  result.faces = obj.regions.size();
+  result.face_of_triangle = std::move(obj.region_of_triangle);
+  result.face_names = std::move(obj.regions);
+  return result;
 }
 
 }  // namespace

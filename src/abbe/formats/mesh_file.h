@@ -33,10 +33,12 @@ struct MeshFile {
   FileUnit unit;
   std::vector<std::string> notes;  ///< sentences: "the normals of 12 facets contradict the order of their corners"
 
-  // Of files with exact faces (STEP); empty for others.
+  // Of files with exact faces (STEP), or with objects, groups or materials (OBJ); empty for others.
   std::size_t faces = 0;
   std::vector<std::uint32_t> face_of_triangle{};  ///< [triangles] from 0, in the order of the file
-  double deviation_mm = 0;  ///< largest distance measured between triangles and faces, at most StepOptions::chord_mm
+  std::vector<std::string> face_names{};          ///< [faces] of OBJ: "object / group / material"; else empty
+  double deviation_mm = 0;  ///< STEP: largest distance measured between triangles and faces, at most chord_mm
+  bool has_exact_faces() const { return faces > 0 && face_names.empty(); }
 };
 
 /// Reads STL, PLY, OBJ or STEP; see docs/geometry-files.md. The contents decide, the extension where they cannot.

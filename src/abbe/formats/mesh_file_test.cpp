@@ -270,6 +270,35 @@ TEST(ObjFile, ReadsPolygonsAndAllWaysToNameACorner) {
   EXPECT_NEAR(check_mesh(file.mesh).area, 4 + 2 + arrow, 1e-12);
 }
 
+TEST(ObjFile, ObjectsGroupsAndMaterialsAreRegions) {
+  const MeshFile file = parse_mesh(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\no blade\ng suction side \r\nf 1 2 4 3\nusemtl steel\nf 1 2 3\n"
+      "g pressure\ng suction side\ng root\nf 1 3 2\no blade\ng suction side\nf 2 3 4\n",
+      "a.obj");
+  EXPECT_EQ(file.face_of_triangle, (std::vector<std::uint32_t>{0, 1, 1, 2, 3, 2}));
+  EXPECT_EQ(file.face_names, (std::vector<std::string>{"unnamed", "blade / suction side",
+                                                       "blade / suction side / steel", "blade / root / steel"}));
+  EXPECT_EQ(file.faces, 4U);
+  EXPECT_FALSE(file.has_exact_faces());
+  EXPECT_EQ(parse_mesh("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj").faces, 0U);
+}
+
+TEST(ObjFile, NamesOfRegionsAreShortAndWholeCharacters) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n", a(59, 'a');
+  const auto name = [&](const std::string& group) {
+    return parse_mesh(corners + "g " + group + "\nf 1 2 3\n", "a.obj").face_names.at(0);
+  };
+  EXPECT_EQ(name(a + "\xc3\xa4"), a);
+  EXPECT_EQ(name("\xc3\xa4\x1b[2J"), "\xc3\xa4.[2J");
+  EXPECT_EQ(name(std::string(61, '\x80')), "unnamed") << "bytes that are no text";
+  // Names that differ behind the 60th byte are different regions.
+  const MeshFile two = parse_mesh(corners + "g " + a + "xx1\nf 1 2 3\ng " + a + "xx2\nf 1 2 3\n", "a.obj");
+  EXPECT_EQ(two.faces, 2U);
+  // Without a name the group, or the material, ends.
+  const MeshFile ended = parse_mesh(corners + "o a\ng b\nusemtl c\nf 1 2 3\nusemtl\nf 1 2 3\ng \nf 1 2 3\n", "a.obj");
+  EXPECT_EQ(ended.face_names, (std::vector<std::string>{"a / b / c", "a / b", "a"}));
+}
+
 TEST(ObjFile, DoesNotDependOnTheNumberOfThreads) {
   // Several blocks of a megabyte, with references backwards over their borders.
   std::mt19937_64 random(3);
@@ -278,10 +307,18 @@ TEST(ObjFile, DoesNotDependOnTheNumberOfThreads) {
   while (text.size() < (std::size_t{5} << 19)) {
     text += "v " + std::to_string(0.001 * static_cast<double>(random() % 1000000)) + " " +
             std::to_string(random() % 1000) + " " + std::to_string(random() % 1000) + "\n";
+    if (vertices % 1000 == 700) text += "g " + std::to_string(vertices / 3000) + "\n";
     if (++vertices >= 4) text += "f -1 -2 -4 -3\n";
   }
   const ObjContents one = parse_obj(text, "a.obj", {}, 1), three = parse_obj(text, "a.obj", {}, 3);
   EXPECT_EQ(one.points, three.points);
+  EXPECT_EQ(one.region_of_triangle, three.region_of_triangle);
+  EXPECT_EQ(one.regions, three.regions);
+  // Every triangle of the third thousand of vertices and behind it up to the next group.
+  ASSERT_EQ(one.regions.at(1), "0");
+  EXPECT_EQ(one.region_of_triangle.at(2 * (699 - 3)), 0U);
+  EXPECT_EQ(one.region_of_triangle.at(2 * (700 - 3)), 1U);
+  EXPECT_EQ(one.regions.at(one.region_of_triangle.back()), std::to_string((vertices - 701) / 1000 * 1000 / 3000));
   ASSERT_EQ(one.triangles, three.triangles);
   ASSERT_EQ(static_cast<std::size_t>(one.triangles.cols()), 2 * (vertices - 3));
   const Eigen::Index last = one.triangles.cols() - 1;

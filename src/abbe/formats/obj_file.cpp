@@ -11,6 +11,7 @@
 #include "abbe/formats/face_triangles.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/line_numbers.h"
+#include "abbe/formats/obj_regions.h"
 #include "abbe/formats/point_normals.h"
 #include "abbe/formats/text_blocks.h"
 #include "abbe/formats/text_cursor.h"
@@ -20,9 +21,10 @@
 namespace abbe {
 namespace {
 
-constexpr std::array<std::string_view, 18> kPassedOver = {
-    "vt",     "g",   "o",     "s",  "mtllib", "usemtl",   "l",        "p",          "usemap",
-    "maplib", "lod", "bevel", "mg", "call",   "c_interp", "d_interp", "shadow_obj", "trace_obj"};
+constexpr std::array<std::string_view, 15> kPassedOver = {"vt",     "s",        "mtllib",   "l",          "p",
+                                                          "usemap", "maplib",   "lod",      "bevel",      "mg",
+                                                          "call",   "c_interp", "d_interp", "shadow_obj", "trace_obj"};
+constexpr std::array<std::string_view, 3> kScopes = {"o", "g", "usemtl"};
 
 struct Block : TextBlock {
   std::size_t vertices = 0;
@@ -32,6 +34,7 @@ struct Block : TextBlock {
   std::size_t first_normal = 0;
   std::size_t first_texture = 0;
   FaceTriangles faces;
+  std::vector<ObjStatement> statements;
 };
 
 struct Counts {
@@ -87,6 +90,8 @@ class BlockReader {
         good = read_normal(behind);
       } else if (word == "vt") {
         ++texture_;
+      } else if (const auto scope = std::find(kScopes.begin(), kScopes.end(), word); scope != kScopes.end()) {
+        add_statement(static_cast<std::size_t>(scope - kScopes.begin()), behind);
       } else if (std::find(kPassedOver.begin(), kPassedOver.end(), word) == kPassedOver.end()) {
         good = refuse(word.data(), "", fmt::format("'{}'", shown_word(word)),
                       "v, vn, vt, f, g, o, s, mtllib or usemtl: free-form surfaces are not read");
@@ -125,6 +130,14 @@ class BlockReader {
   bool read_normal(const char* at) {
     const std::size_t column = normal_++;
     return read_three(at, result_.normals, column, "vn");
+  }
+
+  /// The name is the rest of the line without the blanks around it; a group may have several.
+  void add_statement(std::size_t scope, const char* at) {
+    at = skip_spaces(at, end_);
+    const char* end = end_;
+    while (end > at && is_blank(end[-1])) --end;
+    block_.statements.push_back({scope, {at, static_cast<std::size_t>(end - at)}, block_.faces.size()});
   }
 
   /// A reference counted from 1, or backwards from the last one so far.
@@ -215,13 +228,21 @@ ObjContents parse_obj(std::string_view contents, const std::string& file, const 
     triangles += block.faces.size();
   }
   faces.reserve(triangles);
-  for (const Block& block : blocks) faces.append(block.faces);
+  ObjRegions regions;
+  for (const Block& block : blocks) {
+    faces.append(block.faces);
+    regions.add(block.statements, block.faces.size());
+  }
   if (const auto offset = faces.cut(result.points)) {
     throw_refusal(contents, file,
                   {*offset, "f", "a polygon that is not convex has too many corners",
                    fmt::format("at most {}", kLargestConcavePolygon)});
   }
   result.triangles = faces.triangles();
+  if (regions.any_statement()) {
+    result.region_of_triangle = std::move(regions.region_of_triangle);
+    result.regions = std::move(regions.names);
+  }
   result.points *= millimetres(result.unit.length);
   if (triangles > 0 || result.normals.cols() != result.points.cols()) result.normals.resize(3, 0);
   for (Eigen::Index i = 0; i < result.normals.cols(); ++i) {
