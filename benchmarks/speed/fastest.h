@@ -20,9 +20,17 @@ class FastestReporter : public benchmark::ConsoleReporter {
       const double seconds = 1.0 / run.counters.at("items_per_second").value;
       const auto [place, inserted] = fastest.emplace(run.run_name.function_name, seconds);
       if (!inserted) place->second = std::min(place->second, seconds);
+      if (!(run.real_accumulated_time > 0) || !(run.cpu_accumulated_time > 0)) continue;
+      const double rated = run.run_name.time_type.empty() ? run.cpu_accumulated_time : run.real_accumulated_time;
+      const double cpu = seconds * run.cpu_accumulated_time / rated;
+      const auto [own, first] = processor.emplace(run.run_name.function_name, cpu);
+      if (!first) own->second = std::min(own->second, cpu);
     }
   }
   std::map<std::string, double> fastest;  ///< s per item
+  /// s of the processor per item: of the first thread, or of all if the benchmark says MeasureProcessCPUTime. It does
+  /// not count what other programs take, but what they throw out of the caches.
+  std::map<std::string, double> processor;
 };
 
 /// Repetitions of all benchmarks in turn instead of one benchmark after the other: what is compared shares the

@@ -9,15 +9,18 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/scan_file.h"
+#include "abbe/geometry/parallel_blocks.h"
 #include "speed/fastest.h"
 
 namespace {
@@ -48,12 +51,13 @@ ErrorSet calibrated(const Machine& machine) {
 }
 
 /// Commands and indications of a rotary scan: chain order C, A, X, Y, Z, then the indication.
-std::vector<std::vector<double>> readings(std::size_t count) {
+/// @param first  number of the first of them
+std::vector<std::vector<double>> readings(std::size_t count, std::size_t first = 0) {
   std::vector<std::vector<double>> columns(6, std::vector<double>(count));
   for (std::size_t k = 0; k < count; ++k) {
     RandomStream random(3, k);
-    columns[0][k] = 0.7 * kDegree * static_cast<double>(k % 100000);
-    columns[1][k] = 20 * kDegree * std::sin(1e-5 * static_cast<double>(k));
+    columns[0][k] = 0.7 * kDegree * static_cast<double>((first + k) % 100000);
+    columns[1][k] = 20 * kDegree * std::sin(1e-5 * static_cast<double>(first + k));
     for (std::size_t i = 2; i < 5; ++i) columns[i][k] = random.uniform(-12, 12);
     columns[5][k] = random.uniform(-0.2, 0.2);
   }
@@ -77,23 +81,55 @@ void one_by_one(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kCount));
 }
 
-void kernel(benchmark::State& state) {
+/// @param threads  each with its share of the points, evenly
+void kernel(benchmark::State& state, int threads, std::size_t first = 0) {
   const auto count = static_cast<std::size_t>(state.range(0));
   const Machine machine = scanner();
   const PointScan scan(machine, calibrated(machine), {});
-  const auto columns = readings(count);
+  const auto columns = readings(count, first);
   std::vector<const double*> axis;
   for (std::size_t i = 0; i < 5; ++i) axis.push_back(columns[i].data());
   std::vector<double> x(count), y(count), z(count);
+  const std::size_t share = count / static_cast<std::size_t>(threads);
   for (auto _ : state) {
-    scan.points({axis, count}, columns[5].data(), {x.data(), y.data(), z.data()});
+    for_each_block(static_cast<std::size_t>(threads), threads, [&](std::size_t i) {
+      std::vector<const double*> from;
+      for (const double* column : axis) from.push_back(column + i * share);
+      scan.points({from, share}, columns[5].data() + i * share,
+                  {x.data() + i * share, y.data() + i * share, z.data() + i * share});
+    });
     benchmark::DoNotOptimize(x.data());
     benchmark::ClobberMemory();
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
 }
-void kernel_in_cache(benchmark::State& state) { kernel(state); }
-void kernel_from_memory(benchmark::State& state) { kernel(state); }
+void kernel_in_cache(benchmark::State& state) { kernel(state, 1); }
+/// C after 140 turns: what the sine of a large angle costs.
+void kernel_in_cache_many_turns(benchmark::State& state) { kernel(state, 1, 72'000); }
+void kernel_from_memory(benchmark::State& state) { kernel(state, 1); }
+void kernel_from_memory_two_threads(benchmark::State& state) { kernel(state, 2); }
+
+/// What the memory allows: six columns are read and three written, and nothing is computed that takes time.
+void memory_limit(benchmark::State& state, int threads) {
+  const auto count = static_cast<std::size_t>(state.range(0));
+  const auto columns = readings(count);
+  std::vector<double> x(count), y(count), z(count);
+  const std::size_t share = count / static_cast<std::size_t>(threads);
+  for (auto _ : state) {
+    for_each_block(static_cast<std::size_t>(threads), threads, [&](std::size_t i) {
+      for (std::size_t k = i * share; k < (i + 1) * share; ++k) {
+        x[k] = columns[0][k] + columns[1][k];
+        y[k] = columns[2][k] + columns[3][k];
+        z[k] = columns[4][k] + columns[5][k];
+      }
+    });
+    benchmark::DoNotOptimize(x.data());
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(count));
+}
+void memory_limit_one_thread(benchmark::State& state) { memory_limit(state, 1); }
+void memory_limit_two_threads(benchmark::State& state) { memory_limit(state, 2); }
 
 std::filesystem::path folder() { return std::filesystem::temp_directory_path(); }
 
@@ -152,6 +188,28 @@ void file_route(benchmark::State& state, const char* output, int threads) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kPoints));
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(std::filesystem::file_size(readings_file())));
 }
+/// The text of the readings becomes that of the points, which is thrown away: no file is read or written.
+void text_route(benchmark::State& state, ScanFormat format, int threads) {
+  const Machine machine = scanner();
+  const PointScan scan(machine, calibrated(machine), {});
+  ScanOptions options;
+  options.threads = threads;
+  std::ifstream file(readings_file(), std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  for (auto _ : state) {
+    std::size_t bytes = 0;
+    const ScanSummary summary = scan_points(
+        text, "readings.csv", machine, scan, format, options, [&](std::string_view part) { bytes += part.size(); },
+        [](std::size_t) {});
+    if (summary.points != kPoints) state.SkipWithError("points lost");
+    benchmark::DoNotOptimize(bytes);
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kPoints));
+}
+void text_to_csv_one_thread(benchmark::State& state) { text_route(state, ScanFormat::csv, 1); }
+void text_to_csv_two_threads(benchmark::State& state) { text_route(state, ScanFormat::csv, 2); }
+void text_to_ply_one_thread(benchmark::State& state) { text_route(state, ScanFormat::ply, 1); }
+void text_to_ply_two_threads(benchmark::State& state) { text_route(state, ScanFormat::ply, 2); }
 void csv_to_csv_one_thread(benchmark::State& state) { file_route(state, "abbe_scan_points_out.csv", 1); }
 void csv_to_csv(benchmark::State& state) { file_route(state, "abbe_scan_points_out.csv", 2); }
 void csv_to_ply_one_thread(benchmark::State& state) { file_route(state, "abbe_scan_points_out.ply", 1); }
@@ -161,12 +219,41 @@ void csv_to_ply(benchmark::State& state) { file_route(state, "abbe_scan_points_o
 
 BENCHMARK(one_by_one)->Repetitions(5);
 BENCHMARK(kernel_in_cache)->Arg(4096)->Repetitions(9);
-BENCHMARK(kernel_from_memory)->Arg(4'000'000)->Repetitions(5);
-BENCHMARK(plain_streams)->Unit(benchmark::kMillisecond)->UseRealTime()->Iterations(1)->Repetitions(2);
-BENCHMARK(csv_to_csv_one_thread)->Unit(benchmark::kMillisecond)->UseRealTime()->Repetitions(3);
-BENCHMARK(csv_to_csv)->Unit(benchmark::kMillisecond)->UseRealTime()->Repetitions(3);
-BENCHMARK(csv_to_ply_one_thread)->Unit(benchmark::kMillisecond)->UseRealTime()->Repetitions(3);
-BENCHMARK(csv_to_ply)->Unit(benchmark::kMillisecond)->UseRealTime()->Repetitions(3);
+BENCHMARK(kernel_in_cache_many_turns)->Arg(4096)->Repetitions(9);
+BENCHMARK(kernel_from_memory)->Arg(4'000'000)->MeasureProcessCPUTime()->UseRealTime()->Repetitions(5);
+BENCHMARK(kernel_from_memory_two_threads)->Arg(4'000'000)->MeasureProcessCPUTime()->UseRealTime()->Repetitions(5);
+BENCHMARK(memory_limit_one_thread)->Arg(4'000'000)->MeasureProcessCPUTime()->UseRealTime()->Repetitions(5);
+BENCHMARK(memory_limit_two_threads)->Arg(4'000'000)->MeasureProcessCPUTime()->UseRealTime()->Repetitions(5);
+BENCHMARK(text_to_csv_one_thread)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Repetitions(5);
+BENCHMARK(text_to_csv_two_threads)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Repetitions(5);
+BENCHMARK(text_to_ply_one_thread)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Repetitions(5);
+BENCHMARK(text_to_ply_two_threads)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Repetitions(5);
+BENCHMARK(plain_streams)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Iterations(1)
+    ->Repetitions(2);
+BENCHMARK(csv_to_csv_one_thread)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()->Repetitions(3);
+BENCHMARK(csv_to_csv)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()->Repetitions(3);
+BENCHMARK(csv_to_ply_one_thread)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()->Repetitions(3);
+BENCHMARK(csv_to_ply)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()->Repetitions(3);
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
@@ -182,6 +269,23 @@ int main(int argc, char** argv) {
   met = benchmarks::report("kernel against one pose at a time", t.at("one_by_one") / t.at("kernel_in_cache"), 5) && met;
   if (t.count("csv_to_csv") != 0 && t.count("plain_streams") != 0) {
     met = benchmarks::report("CSV to CSV against plain streams", t.at("plain_streams") / t.at("csv_to_csv"), 5) && met;
+  }
+  const auto seconds = [&](const char* name) { return t.count(name) != 0 ? t.at(name) : 0; };
+  for (const auto& [name, threads] : {std::pair{"kernel_from_memory", 1},
+                                      {"kernel_from_memory_two_threads", 2},
+                                      {"memory_limit_one_thread", 1},
+                                      {"memory_limit_two_threads", 2},
+                                      {"text_to_csv_one_thread", 1},
+                                      {"text_to_csv_two_threads", 2},
+                                      {"text_to_ply_one_thread", 1},
+                                      {"text_to_ply_two_threads", 2},
+                                      {"csv_to_csv_one_thread", 1},
+                                      {"csv_to_csv", 2},
+                                      {"csv_to_ply_one_thread", 1},
+                                      {"csv_to_ply", 2}}) {
+    if (!(seconds(name) > 0)) continue;
+    std::printf("%-32s %d thread%s %8.2f million/s, %8.2f per second of the processor\n", name, threads,
+                threads == 1 ? " " : "s", 1e-6 / seconds(name), 1e-6 / reporter.processor.at(name));
   }
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
