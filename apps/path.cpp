@@ -18,6 +18,7 @@
 #include "abbe/formats/path_program.h"
 #include "abbe/formats/placement_file.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/geometry/angle.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/tool_path.h"
 #include "command.h"
@@ -77,7 +78,7 @@ Miss largest_miss(const Machine& machine, const Curve& curve, const ToolPath& pa
     const CurvePoint& at = curve.points[step.point];
     const Eigen::Vector3d direction = pose.rotation * machine.tool_direction;
     miss.distance = std::max(miss.distance, (pose.translation - at.point).norm());
-    miss.angle = std::max(miss.angle, std::atan2(direction.cross(at.direction).norm(), direction.dot(at.direction)));
+    miss.angle = std::max(miss.angle, angle_between(direction, at.direction));
   }
   return miss;
 }

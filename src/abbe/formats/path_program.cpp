@@ -4,33 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/number_text.h"
+#include "abbe/formats/program_text.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-
-double in_degrees_or_mm(const Axis& axis, double value) {
-  return axis.kind == AxisKind::rotary ? value / kDegree : value;
-}
-
-/// Fixed digits without a minus before zero.
-std::string fixed(double value, int decimals) {
-  std::string text = fmt::format("{:.{}f}", value, decimals);
-  return text.find_first_not_of("-0.") == std::string::npos && text[0] == '-' ? text.substr(1) : text;
-}
-
-std::string comment(std::string text) {
-  for (char& c : text) {
-    if (c == '(' || c == ')' || static_cast<unsigned char>(c) < ' ') c = ' ';
-  }
-  return "(" + text + ")\n";
-}
 
 /// Letters and digits only where "=" keeps them from the number behind: C112.5 would be an axis C or an axis C1.
 bool is_axis_word(const std::string& word) {
@@ -48,13 +29,13 @@ class ProgramWriter {
   }
 
   std::string write(const ToolPath& path, const std::vector<std::vector<double>>& commands) {
-    for (const std::string& line : options_.comments) text_ += comment(line);
+    for (const std::string& line : options_.comments) text_ += program_comment(line);
     text_ += "G21 G90 G94\n";
     std::size_t region = 0;
     for (std::size_t i = 0; i < path.steps.size(); ++i) {
       const ToolPathStep& step = path.steps[i];
       if (path.regions > 1 && (i == 0 || step.region != region)) {
-        text_ += comment(fmt::format("region {}", step.region + 1));
+        text_ += program_comment(fmt::format("region {}", step.region + 1));
         region = step.region;
       }
       step.working ? work(step, commands[i], i > 0 ? commands[i - 1] : commands[i]) : rapid(commands[i]);
@@ -62,7 +43,7 @@ class ProgramWriter {
       if (step.dwell > 0) {
         mode(false);
         beam(true);
-        text_ += "G4 P" + fixed(step.dwell, 3) + "\n";
+        text_ += "G4 P" + fixed_number(step.dwell, 3) + "\n";
       }
       if (!goes_on) beam(false);
     }
@@ -75,7 +56,7 @@ class ProgramWriter {
   std::string moves(const std::vector<double>& command) {
     std::string words;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-      const std::string value = fixed(in_degrees_or_mm(machine_.axes[i], command[i]), options_.decimals);
+      const std::string value = fixed_number(in_degrees_or_mm(machine_.axes[i], command[i]), options_.decimals);
       if (value == last_[i]) continue;
       last_[i] = value;
       words += " " + axis_word(machine_.axes[i].name, options_) + value;
@@ -107,7 +88,7 @@ class ProgramWriter {
         }
         length = std::max(std::sqrt(squared), 1e-6);
       }
-      text_ += " F" + fixed(60 * step.feed / (options_.inverse_time ? length : 1), 4);
+      text_ += " F" + fixed_number(60 * step.feed / (options_.inverse_time ? length : 1), 4);
     }
     text_ += "\n";
   }

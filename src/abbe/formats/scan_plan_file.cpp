@@ -11,6 +11,8 @@
 #include <numbers>
 #include <vector>
 
+#include "abbe/formats/program_text.h"
+
 namespace abbe {
 namespace {
 
@@ -19,16 +21,6 @@ constexpr double kDegree = std::numbers::pi / 180;
 /// By ScanObstacle.
 constexpr std::array<std::array<std::uint8_t, 3>, kScanObstacleCount> kColours = {
     {{40, 160, 70}, {230, 160, 0}, {110, 110, 110}, {0, 115, 200}, {205, 45, 40}, {150, 70, 170}, {240, 220, 60}}};
-
-double shown(const Axis& axis, double command) { return axis.kind == AxisKind::rotary ? command / kDegree : command; }
-
-/// What a comment in parentheses may hold.
-std::string comment(std::string text) {
-  for (char& c : text) {
-    if (c == '(' || c == ')' || c < ' ') c = ' ';
-  }
-  return text;
-}
 
 }  // namespace
 
@@ -45,7 +37,7 @@ std::string scan_plan_csv(const Machine& machine, const ScanPlan& plan) {
     time += move.time;
     fmt::format_to(out, "{:.4f}", time);
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-      fmt::format_to(out, ",{:.7f}", shown(machine.axes[i], plan.positions.axis[i][n]));
+      fmt::format_to(out, ",{:.7f}", in_degrees_or_mm(machine.axes[i], plan.positions.axis[i][n]));
     }
     fmt::format_to(out, ",{},{},{},{},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f}\n", move.measures ? 1 : 0,
                    move.blocked ? 1 : 0, move.face + 1, move.line + 1, move.point.x(), move.point.y(), move.point.z(),
@@ -56,7 +48,7 @@ std::string scan_plan_csv(const Machine& machine, const ScanPlan& plan) {
 
 std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, const std::string& title,
                               const PathProgramOptions& options) {
-  std::string text = fmt::format("({})\nG21 G90 G94\nG93\n", comment(title));
+  std::string text = program_comment(title) + "G21 G90 G94\nG93\n";
   auto out = std::back_inserter(text);
   std::size_t face = plan.faces.size(), line = 0;
   for (std::size_t n = 0; n < plan.moves.size(); ++n) {
@@ -72,11 +64,8 @@ std::string scan_plan_program(const Machine& machine, const ScanPlan& plan, cons
     }
     text += "G1";
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-      const std::string number =
-          fmt::format("{:.{}f}", shown(machine.axes[i], plan.positions.axis[i][n]), options.decimals);
-      const bool is_zero = number.find_first_not_of("-0.") == std::string::npos;
       fmt::format_to(out, " {}{}", axis_word(machine.axes[i].name, options),
-                     is_zero && number[0] == '-' ? number.substr(1) : number);
+                     fixed_number(in_degrees_or_mm(machine.axes[i], plan.positions.axis[i][n]), options.decimals));
     }
     // The first block has no way before it that could be timed: a minute.
     fmt::format_to(out, " F{:.4f}\n", 60 / (n == 0 ? 60.0 : std::max(move.time, 1e-3)));

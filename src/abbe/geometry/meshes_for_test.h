@@ -51,4 +51,25 @@ inline TriangleMesh sphere_for_test(const Eigen::Vector3d& centre, double radius
   return mesh;
 }
 
+/// Closed prism about y: `sides` flat sides, or a round one if there are many.
+inline TriangleMesh prism_for_test(int sides, double radius, double low, double high) {
+  TriangleMesh mesh;
+  const auto n = static_cast<std::uint32_t>(sides);
+  mesh.vertices.resize(3, 2 * sides + 2);
+  mesh.triangles.resize(3, 4 * sides);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides + 0.3;
+    mesh.vertices.col(i) = Eigen::Vector3d(radius * std::sin(angle), low, radius * std::cos(angle));
+    mesh.vertices.col(n + i) = Eigen::Vector3d(radius * std::sin(angle), high, radius * std::cos(angle));
+    const std::uint32_t j = (i + 1) % n;
+    mesh.triangles.col(4 * i) << i, j, n + j;
+    mesh.triangles.col(4 * i + 1) << i, n + j, n + i;
+    mesh.triangles.col(4 * i + 2) << 2 * n, j, i;
+    mesh.triangles.col(4 * i + 3) << 2 * n + 1, n + i, n + j;
+  }
+  mesh.vertices.col(2 * n) = Eigen::Vector3d(0, low, 0);
+  mesh.vertices.col(2 * n + 1) = Eigen::Vector3d(0, high, 0);
+  return mesh;
+}
+
 }  // namespace abbe

@@ -8,6 +8,8 @@
 #include <map>
 #include <utility>
 
+#include "abbe/geometry/angle.h"
+
 namespace abbe {
 namespace {
 
@@ -100,7 +102,7 @@ SurfaceLine spaced(const std::vector<Piece>& pieces, const Chain& chain, const S
     const Piece& piece = pieces[chain[i].first];
     const Eigen::Vector3d from = smooth.normal(piece.triangle, piece.end[0]),
                           to = smooth.normal(piece.triangle, piece.end[1]);
-    const double turn = std::atan2(from.cross(to).norm(), from.dot(to));
+    const double turn = angle_between(from, to);
     length[i + 1] = length[i] + std::max((piece.end[1] - piece.end[0]).norm() / along, turn / largest_turn);
   }
   const auto count = static_cast<Eigen::Index>(std::max(1.0, std::ceil(length.back() - 1e-9)));

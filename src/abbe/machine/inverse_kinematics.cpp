@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "abbe/geometry/angle.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/machine_check.h"
 #include "abbe/machine/orientation.h"

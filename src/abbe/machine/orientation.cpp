@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/geometry/angle.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
@@ -97,8 +98,6 @@ RotaryAngles nearest_two_turns(const Vector3d& a, const Vector3d& b, const Matri
 }
 
 }  // namespace
-
-double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 double angle_about(const Vector3d& unit_axis, const Vector3d& from, const Vector3d& to) {
   // Of the parts across the axis, so that nothing is lost for vectors almost along it.

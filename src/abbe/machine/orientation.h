@@ -30,9 +30,6 @@ struct RotaryBranches {
 /// Below this angle (rad) of a direction to an axis the axis is treated as free and held.
 inline constexpr double kSingularAngle = 1e-10;
 
-/// Angle between two vectors, rad, [0, pi]; exact to rounding also near 0 and pi. Lengths do not matter.
-double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
-
 /// Angle about a unit axis that turns `from` into the half plane of `to`, rad, (-pi, pi] (Paden-Kahan subproblem 1).
 double angle_about(const Eigen::Vector3d& unit_axis, const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 

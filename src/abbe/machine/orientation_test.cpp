@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "abbe/geometry/angle.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {

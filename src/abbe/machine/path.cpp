@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "abbe/geometry/angle.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/orientation.h"
 

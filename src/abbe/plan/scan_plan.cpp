@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "abbe/geometry/angle.h"
 #include "abbe/geometry/surface_faces.h"
 #include "abbe/geometry/surface_lines.h"
 #include "abbe/plan/scan_clearance.h"
@@ -20,10 +21,6 @@
 
 namespace abbe {
 namespace {
-
-double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
 
 /// Goes over the part face by face.
 class Planner {
@@ -151,7 +148,7 @@ class Planner {
       } else {
         face.uncovered[static_cast<std::size_t>(place.obstacle)] += place.area;
       }
-      plan_.coverage.push_back({part_from_workpiece_ * place.point, number, place.area, place.obstacle});
+      plan_.coverage.push_back({part_from_workpiece_ * place.point, number, place.obstacle});
     }
   }
 

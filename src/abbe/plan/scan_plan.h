@@ -98,7 +98,6 @@ struct PlannedMove {
 struct CoverageSample {
   Eigen::Vector3d point;  ///< mm, frame of the part
   std::size_t face = 0;
-  double area = 0;  ///< mm^2
   ScanObstacle obstacle = ScanObstacle::none;
 };
 

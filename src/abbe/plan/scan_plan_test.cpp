@@ -8,34 +8,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "abbe/geometry/surface_lines.h"
+#include "abbe/geometry/meshes_for_test.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
 namespace {
 
 using std::numbers::pi;
-
-/// Prism about y: `sides` flat sides, or a round one if there are many.
-TriangleMesh prism(int sides, double radius, double low, double high) {
-  TriangleMesh mesh;
-  const auto n = static_cast<std::uint32_t>(sides);
-  mesh.vertices.resize(3, 2 * sides + 2);
-  mesh.triangles.resize(3, 4 * sides);
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const double angle = 2 * pi * i / sides + 0.3;
-    mesh.vertices.col(i) = Eigen::Vector3d(radius * std::sin(angle), low, radius * std::cos(angle));
-    mesh.vertices.col(n + i) = Eigen::Vector3d(radius * std::sin(angle), high, radius * std::cos(angle));
-    const std::uint32_t j = (i + 1) % n;
-    mesh.triangles.col(4 * i) << i, j, n + j;
-    mesh.triangles.col(4 * i + 1) << i, n + j, n + i;
-    mesh.triangles.col(4 * i + 2) << 2 * n, j, i;
-    mesh.triangles.col(4 * i + 3) << 2 * n + 1, n + i, n + j;
-  }
-  mesh.vertices.col(2 * n) = Eigen::Vector3d(0, low, 0);
-  mesh.vertices.col(2 * n + 1) = Eigen::Vector3d(0, high, 0);
-  return mesh;
-}
 
 ScanPlanOptions coarse() {
   ScanPlanOptions options;
@@ -76,7 +55,7 @@ void expect_sound(const Machine& machine, const ScanPlan& plan, const ScanPlanOp
 TEST(ScanPlan, CoversAPrismByRastersAndACylinderByCircles) {
   const Machine machine = test::liu_scanner();
   const ScanPlanOptions options = coarse();
-  const ScanPlan flat = plan_scan(machine, prism(5, 8, -6, 6), options);
+  const ScanPlan flat = plan_scan(machine, prism_for_test(5, 8, -6, 6), options);
   expect_sound(machine, flat, options);
   ASSERT_EQ(flat.faces.size(), 7U);
   for (const PlannedFace& face : flat.faces) EXPECT_EQ(face.kind, ScanPathKind::raster);
@@ -85,7 +64,7 @@ TEST(ScanPlan, CoversAPrismByRastersAndACylinderByCircles) {
   EXPECT_EQ(flat.beyond_range, 0U);
   EXPECT_LT(flat.largest_sag, 1e-9);
 
-  const ScanPlan round = plan_scan(machine, prism(90, 8, -6, 6), options);
+  const ScanPlan round = plan_scan(machine, prism_for_test(90, 8, -6, 6), options);
   expect_sound(machine, round, options);
   ASSERT_EQ(round.faces.size(), 3U);
   std::size_t circles = 0;
@@ -106,8 +85,8 @@ TEST(ScanPlan, CoversAPrismByRastersAndACylinderByCircles) {
 TEST(ScanPlan, WhatTheStageHidesIsNotPromised) {
   const Machine machine = test::liu_scanner();
   ScanPlanOptions options = coarse();
-  options.stage = prism(60, 30, -20, -6.01);  // right below the part
-  const ScanPlan plan = plan_scan(machine, prism(5, 8, -6, 6), options);
+  options.stage = prism_for_test(60, 30, -20, -6.01);  // right below the part
+  const ScanPlan plan = plan_scan(machine, prism_for_test(5, 8, -6, 6), options);
   expect_sound(machine, plan, options);
   std::size_t bottom = 0;
   const auto missed = [](const PlannedFace& face, ScanObstacle obstacle) {
@@ -139,7 +118,7 @@ TEST(ScanPlan, StaysWithinTravel) {
   machine.axes[a].travel_min = -0.2;
   machine.axes[a].travel_max = 1.2;
   const ScanPlanOptions options = coarse();
-  const ScanPlan plan = plan_scan(machine, prism(5, 8, -6, 6), options);
+  const ScanPlan plan = plan_scan(machine, prism_for_test(5, 8, -6, 6), options);
   expect_sound(machine, plan, options);
   std::size_t out_of_travel = 0;
   for (const PlannedFace& face : plan.faces)
@@ -152,7 +131,7 @@ TEST(ScanPlan, StaysWithinTravel) {
 TEST(ScanPlan, MarksTheMovesOfWaysThatAreNotClear) {
   // The probe cannot draw back as far as the edges between the sides need when C turns the next side up.
   const ScanPlanOptions options = coarse();
-  const TriangleMesh part = prism(5, 8, -6, 6);
+  const TriangleMesh part = prism_for_test(5, 8, -6, 6);
   for (const double room : {0.4, 1.2}) {  // mm above the sides: for no way back at all, and for one of 1 mm
     Machine machine = test::liu_scanner();
     const ScanPlan free = plan_scan(machine, part, options);
@@ -187,7 +166,7 @@ TEST(ScanPlan, MarksTheMovesOfWaysThatAreNotClear) {
 TEST(ScanPlan, GoesAroundWhereTheSurfaceWouldLeaveTheRangeBetweenPoints) {
   const Machine machine = test::liu_scanner();
   ScanPlanOptions options = coarse();
-  const TriangleMesh part = prism(90, 8, -6, 6);
+  const TriangleMesh part = prism_for_test(90, 8, -6, 6);
   const ScanPlan within = plan_scan(machine, part, options);
   EXPECT_EQ(within.beyond_range, 0U);
   // Flat strips of 4 degrees: up to 8 mm (1 - cos 2 deg) = 4.9 um off the circle.
@@ -209,7 +188,7 @@ TEST(ScanPlan, RefusesAnglesOutOfTheirRangeAndNamesThemWithTheirUnit) {
     options.along = options.between = 4;
     options.*option = degrees * pi / 180;
     try {
-      plan_scan(machine, prism(5, 8, -6, 6), options);
+      plan_scan(machine, prism_for_test(5, 8, -6, 6), options);
     } catch (const std::invalid_argument& error) {
       return error.what();
     }
@@ -224,29 +203,6 @@ TEST(ScanPlan, RefusesAnglesOutOfTheirRangeAndNamesThemWithTheirUnit) {
   EXPECT_NE(refusal(&ScanPlanOptions::crease_angle, 0.5), "");
   for (const double degrees : {2.0, 85.0}) EXPECT_EQ(refusal(&ScanPlanOptions::largest_angle, degrees), "");
   for (const double degrees : {1.0, 90.0}) EXPECT_EQ(refusal(&ScanPlanOptions::crease_angle, degrees), "");
-}
-
-TEST(SurfaceLines, AreCirclesOfACylinderEvenlySpaced) {
-  const TriangleMesh mesh = prism(360, 8, -6, 6);
-  std::vector<std::uint32_t> side;
-  for (std::uint32_t i = 0; i < 360; ++i) {
-    side.push_back(4 * i);
-    side.push_back(4 * i + 1);
-  }
-  const SmoothSurface smooth(mesh, 0.3);
-  const std::vector<SurfaceLine> lines = surface_lines(mesh, smooth, side, Eigen::Vector3d::UnitY(), 0.5, 1.5);
-  ASSERT_EQ(lines.size(), 8U);
-  for (const SurfaceLine& line : lines) {
-    EXPECT_TRUE(line.is_closed);
-    ASSERT_EQ(line.points.cols(), 101);  // 2 pi 8 / 0.5, rounded up
-    for (Eigen::Index k = 0; k < line.points.cols(); ++k) {
-      const Eigen::Vector3d p = line.points.col(k), next = line.points.col((k + 1) % line.points.cols());
-      EXPECT_NEAR(p.y(), line.height, 1e-12);
-      EXPECT_NEAR(std::hypot(p.x(), p.z()), 8, 4e-4);
-      EXPECT_NEAR((next - p).norm(), 2 * pi * 8 / 101, 1e-3);
-      EXPECT_NEAR(line.normals.col(k).dot(p) / std::hypot(p.x(), p.z()), 1, 1e-4);
-    }
-  }
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/geometry/angle.h"
+
 namespace abbe {
 namespace {
 
@@ -22,10 +24,6 @@ std::optional<double> within_travel(const Axis& axis, double angle) {
     if (!best || std::abs(command) < std::abs(*best)) best = command;
   }
   return best;
-}
-
-double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 /// Turns one of the axes between so that the direction comes nearest to the wanted one or to its opposite.
