@@ -109,6 +109,18 @@ std::vector<SectionReadings> stated_sections(const ContourCommand& command) {
   return sections;
 }
 
+/// The tolerance of the largest contour error as lines in the page's drawing.
+void add_limits(EvaluationReport& report, const EvaluationOptions& options) {
+  if (!report.page.is_object()) return;
+  EvaluationReport judged = report;
+  apply_tolerances(options.tolerances, judged);
+  for (const EvaluationFigure& figure : judged.figures) {
+    if (figure.symbol != "contour_max" || !figure.tolerance) continue;
+    const double limit = 1e3 * *figure.tolerance;
+    report.page["contour"]["limits_um"] = {-limit, limit};
+  }
+}
+
 int run(const ContourCommand& command) {
   refuse_without_effect(command);
   ContourRequest request;
@@ -124,10 +136,12 @@ int run(const ContourCommand& command) {
   if (command.has("--curve")) {
     const std::vector<CommandPiece> pieces = commanded_pieces(command);
     EvaluationReport report = contour_points_report(request, pieces, read_contour_points(command.options.file));
+    add_limits(report, command.options);
     return finish_evaluation(report, command.options);
   }
   std::size_t refused = 0;
   EvaluationReport report = section_report(request, stated_sections(command), refused);
+  add_limits(report, command.options);
   const int code = finish_evaluation(report, command.options);
   // A mean that some of the sections have no part in is not the one that was asked for.
   return refused > 0 ? std::max<int>(code, kNegative) : code;

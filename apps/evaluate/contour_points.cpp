@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "abbe/report/svg_plot.h"
+#include "evaluate/contour_page.h"
 #include "evaluate/contour_report.h"
 #include "evaluate/thinned.h"
 
@@ -130,7 +131,8 @@ EvaluationReport contour_points_report(const ContourRequest& request, const std:
     plot.level(0, "", {PlotColour::soft, 1});
     plot.points(plotted, Marker::circle, {PlotColour::first}, "across the curve");
     plot.points(height, Marker::cross, {PlotColour::second}, "out of the surface");
-    report.plots.push_back({"plot", "", plot.svg()});
+    report.plots.push_back({"plot", "", plot.svg(), true});
+    report.page = {{"contour", contour_points_block(counted, pieces.size() == 1)}};
   }
   return report;
 }

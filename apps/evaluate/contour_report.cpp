@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "abbe/report/svg_plot.h"
+#include "evaluate/contour_page.h"
 #include "evaluate/contour_sections.h"
 
 namespace abbe {
@@ -17,8 +18,7 @@ EvaluationReport section_report(const ContourRequest& request, const std::vector
   report.kind = "contour";
   report.title = request.title;
   report.standard = "Contour error from cross-sections, after Yin et al., Machines 9 (2021) 237";
-  const bool stated_along =
-      std::all_of(sections.begin(), sections.end(), [](const SectionReadings& s) { return s.along.has_value(); });
+  const bool stated_along = along_is_stated(sections);
   std::vector<double> errors, uncertainties, roundings, rounding_uncertainties, radii;
   std::vector<PlotPoint> along_error, along_rounding;
   std::vector<SectionAnswer> answers;
@@ -78,9 +78,10 @@ EvaluationReport section_report(const ContourRequest& request, const std::vector
     plot.line(along_error, {PlotColour::first, 1}, "");
     plot.points(along_error, Marker::circle, {PlotColour::first}, "contour error, across the curve");
     plot.points(along_rounding, Marker::cross, {PlotColour::second}, "rounding P1 P2");
-    report.plots.push_back({"plot", "", plot.svg()});
+    report.plots.push_back({"plot", "", plot.svg(), true});
     report.plots.push_back(section_plot(request, sections[largest], answers[largest]));
   }
+  report.page = {{"contour", contour_sections_block(request, sections, answers)}};
   return report;
 }
 

@@ -135,36 +135,51 @@ EvaluationTable section_table(const std::vector<SectionReadings>& sections, cons
   return table;
 }
 
+bool along_is_stated(const std::vector<SectionReadings>& sections) {
+  return std::all_of(sections.begin(), sections.end(), [](const SectionReadings& s) { return s.along.has_value(); });
+}
+
+SectionPicture section_picture(const ContourRequest& request, const SectionReadings& section,
+                               const SectionAnswer& answer) {
+  SectionPicture picture;
+  double from = -HUGE_VAL, to = HUGE_VAL;
+  if (answer.ok) {
+    const double lowest = section.points.row(1).minCoeff();
+    // Around the corners: of the surface as much as the corner is wide.
+    from = to = answer.first.corner.x();
+    for (const EdgeFit* const edge : answer.edges()) {
+      const double reach = 4 * std::max(edge->rounding, 0.25 * (edge->corner.y() - lowest));
+      from = std::min(from, edge->corner.x() - reach);
+      to = std::max(to, edge->corner.x() + reach);
+    }
+    for (const EdgeFit* const edge : answer.edges()) {
+      const bool left = request.groove ? edge == &answer.first : request.edge.surface == EdgeSide::left;
+      picture.edges.push_back({curve_of(*edge, left ? from : to, lowest, left ? 1 : -1),
+                               {1e3 * edge->onset.x(), 1e3 * edge->onset.y()},
+                               {1e3 * edge->corner.x(), 1e3 * edge->corner.y()}});
+    }
+  }
+  for (Eigen::Index i = 0; i < section.points.cols(); ++i) {
+    const double u = section.points(0, i);
+    if (u >= from && u <= to) picture.scanned.push_back({1e3 * u, 1e3 * section.points(1, i)});
+  }
+  return picture;
+}
+
 EvaluationPlot section_plot(const ContourRequest& request, const SectionReadings& section,
                             const SectionAnswer& answer) {
   XyPlot plot("Section " + section.name, "across the curve in \xC2\xB5m", "out of the surface in \xC2\xB5m");
   plot.keep_the_same_scale();
-  const double lowest = section.points.row(1).minCoeff();
-  // Around the corners: of the surface as much as the corner is wide.
-  double from = answer.first.corner.x(), to = from;
-  const std::vector<const EdgeFit*> edges = answer.edges();
-  for (const EdgeFit* edge : edges) {
-    const double reach = 4 * std::max(edge->rounding, 0.25 * (edge->corner.y() - lowest));
-    from = std::min(from, edge->corner.x() - reach);
-    to = std::max(to, edge->corner.x() + reach);
-  }
-  std::vector<PlotPoint> points;
-  for (Eigen::Index i = 0; i < section.points.cols(); ++i) {
-    const double u = section.points(0, i);
-    if (u >= from && u <= to) points.push_back({1e3 * u, 1e3 * section.points(1, i)});
-  }
-  plot.points(points, Marker::circle, {PlotColour::first, 1, false, 0.6}, "scanned");
-  for (const EdgeFit* edge : edges) {
-    const bool left = request.groove ? edge == edges.front() : request.edge.surface == EdgeSide::left;
-    plot.line(curve_of(*edge, left ? from : to, lowest, left ? 1 : -1), {PlotColour::second, 2},
-              edge == edges.front() ? "surface, rounding, wall" : "");
-    plot.points({{1e3 * edge->onset.x(), 1e3 * edge->onset.y()}}, Marker::up, {PlotColour::third, 2},
-                edge == edges.front() ? "P1" : "");
-    plot.points({{1e3 * edge->corner.x(), 1e3 * edge->corner.y()}}, Marker::cross, {PlotColour::limit, 2},
-                edge == edges.front() ? "P2" : "");
+  const SectionPicture picture = section_picture(request, section, answer);
+  plot.points(picture.scanned, Marker::circle, {PlotColour::first, 1, false, 0.6}, "scanned");
+  for (const SectionPicture::Edge& edge : picture.edges) {
+    const bool first = &edge == picture.edges.data();
+    plot.line(edge.curve, {PlotColour::second, 2}, first ? "surface, rounding, wall" : "");
+    plot.points({edge.onset}, Marker::up, {PlotColour::third, 2}, first ? "P1" : "");
+    plot.points({edge.corner}, Marker::cross, {PlotColour::limit, 2}, first ? "P2" : "");
   }
   plot.points({{0, 0}}, Marker::circle, {PlotColour::ink, 2}, "commanded curve");
-  return {"section", "The section with the largest contour error.", plot.svg()};
+  return {"section", "The section with the largest contour error.", plot.svg(), true};
 }
 
 }  // namespace abbe

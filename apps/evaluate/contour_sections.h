@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/report/svg_plot.h"
 #include "evaluate/contour_report.h"
 
 namespace abbe {
@@ -28,7 +29,23 @@ nlohmann::ordered_json section_json(const SectionReadings& section, const Sectio
 EvaluationTable section_table(const std::vector<SectionReadings>& sections, const std::vector<SectionAnswer>& answers,
                               bool groove);
 
-/// The scanned points around the corners with the fitted curve; of a section that was evaluated.
+/// Whether all sections say where on the curve they are; else their number stands for it.
+bool along_is_stated(const std::vector<SectionReadings>& sections);
+
+/// What a drawing of a section shows, um: across the curve, out of the surface.
+struct SectionPicture {
+  /// What was fitted to an edge.
+  struct Edge {
+    std::vector<PlotPoint> curve;  ///< from the surface through the rounding down the wall
+    PlotPoint onset, corner;       ///< P1, P2
+  };
+  std::vector<PlotPoint> scanned;  ///< around the corners; all of a section without an answer
+  std::vector<Edge> edges;         ///< none without an answer
+};
+SectionPicture section_picture(const ContourRequest& request, const SectionReadings& section,
+                               const SectionAnswer& answer);
+
+/// The same as a plot; of a section that was evaluated.
 EvaluationPlot section_plot(const ContourRequest& request, const SectionReadings& section, const SectionAnswer& answer);
 
 }  // namespace abbe

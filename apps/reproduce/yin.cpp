@@ -4,14 +4,15 @@
 
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/report/evaluation_data.h"
+#include "abbe/report/report.h"
 #include "command.h"
 #include "reproduce/reproduce.h"
+#include "reproduce/yin_constants.h"
 #include "reproduce/yin_results.h"
 
 namespace abbe {
 namespace {
-
-constexpr std::uint64_t kSeed = 2021;
 
 /// The edge that the sections have found, as points in the frame of the workpiece.
 std::string engraved_csv(const YinSections& sections) {
@@ -30,7 +31,7 @@ void write_folder(const YinResults& r, const std::filesystem::path& output) {
   const EvaluationReport report = yin_report(r);
   ResultsFolder folder(output);
   folder.write("summary.json", json_text(yin_json(r)));
-  folder.write("report.html", evaluation_page(report));
+  folder.write("report.html", report.page.is_object() ? report_page(evaluation_data(report)) : evaluation_page(report));
   for (const EvaluationPlot& plot : report.plots) folder.write(plot.name + ".svg", plot.svg);
   folder.write("sections.csv", sections_csv(r.sections.sections));
   folder.write("engraved.csv", engraved_csv(r.sections));
@@ -43,7 +44,7 @@ void write_folder(const YinResults& r, const std::filesystem::path& output) {
 
 int reproduce_yin(const ReproduceOptions& options) {
   if (!options.output.empty()) check_results_folder(options.output);
-  const YinResults r = yin_results(kSeed);
+  const YinResults r = yin_results(yin::kSeed);
   if (!options.output.empty()) write_folder(r, options.output);
   if (options.json) {
     fmt::print("{}", json_text(yin_json(r)));

@@ -10,16 +10,12 @@
 #include "abbe/instruments/triangulation.h"
 #include "abbe/verify/covariance_root.h"
 #include "abbe/verify/statistics.h"
+#include "reproduce/yin_constants.h"
 
 namespace abbe {
 namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-constexpr double kSectionPlace = 0.002;              // mm, of a section's origin across the curve
-constexpr double kExitToAxis = 120, kBoard = 4;      // mm, as in the reference
-constexpr double kWaist = 0.03, kDivergence = 0.05;  // of the beam
-constexpr double kEdgeRadius = 0.015, kDepth = 0.1;  // mm; the paper states neither
 
 /// Commands for a point and a direction in the table's frame, convention U, branch A > 0.
 SwingHeadCommand command_for(const SwingHeadLinkage& linkage, const Eigen::Vector3d& p, const Eigen::Vector3d& v) {
@@ -38,7 +34,7 @@ class Engraving {
  public:
   explicit Engraving(const YinPositioning& positioning) : curve_(yin_curve()), truth_(yin_linkage()) {
     const LinkageAccuracy accuracy = LinkageAccuracy::published();
-    commands_ = linkage_commands(truth_, LinkageConvention::table_moves, kExitToAxis, kBoard);
+    commands_ = linkage_commands(truth_, LinkageConvention::table_moves, yin::kExitToAxis, yin::kBoard);
     for (const LinkageDisturbance& d : linkage_disturbances(commands_, accuracy)) {
       const bool zero = d.cause.starts_with("zero");
       inputs_.push_back({zero ? d.cause : "linkage: " + d.cause, d.standard_uncertainty});
@@ -54,7 +50,7 @@ class Engraving {
       inputs_.push_back({"Z at work", accuracy.z});
       inputs_.push_back({"A at work", accuracy.a});
       inputs_.push_back({"C1 at work", accuracy.c1});
-      inputs_.push_back({"line scanner", kSectionPlace});
+      inputs_.push_back({"line scanner", yin::kSectionPlace});
     }
     exact_ = measured_linkage(std::vector<double>(inputs_.size(), 0.0));
   }
@@ -110,7 +106,7 @@ class Engraving {
  private:
   SwingHeadLinkage measured_linkage(const std::vector<double>& deviations) const {
     const std::span<const double> steps(deviations.data(), linkage_count_);
-    return evaluate_linkage(simulate_linkage(truth_, commands_, kWaist, kDivergence, steps), {}).linkage;
+    return evaluate_linkage(simulate_linkage(truth_, commands_, yin::kWaist, yin::kDivergence, steps), {}).linkage;
   }
 
   std::vector<YinPoint> curve_;
@@ -172,7 +168,7 @@ YinSections yin_sections(const YinPositioning& positioning, std::uint64_t seed) 
   std::vector<double> tilt;
   const Eigen::MatrixXd marks = engraving.marks(deviations, false, &tilt);
   YinSections result;
-  result.radius = kEdgeRadius;
+  result.radius = yin::kEdgeRadius;
   LineScanner scanner = LineScanner::published();
   result.options.across_noise = scanner.across_noise;
   result.options.height_noise = scanner.height_noise;
@@ -180,8 +176,8 @@ YinSections yin_sections(const YinPositioning& positioning, std::uint64_t seed) 
     const YinPoint& point = engraving.curve()[static_cast<std::size_t>(i)];
     EngravedEdge edge;
     edge.corner = {marks(0, i), -point.curvature * marks(0, i) * marks(0, i) / 2};
-    edge.radius = kEdgeRadius;
-    edge.depth = kDepth;
+    edge.radius = yin::kEdgeRadius;
+    edge.depth = yin::kEdgeDepth;
     edge.beam_tilt = tilt[static_cast<std::size_t>(i)];
     edge.surface_curvature = point.curvature;
     const RayTracer part(engraved_mesh(edge, scanner.width, 1));
@@ -190,7 +186,7 @@ YinSections yin_sections(const YinPositioning& positioning, std::uint64_t seed) 
     section.name = std::to_string(i + 1);
     section.along = point.along;
     section.points = scan_section(scanner, part, {}, random).points;
-    section.points.row(0).array() += kSectionPlace * random.normal();
+    section.points.row(0).array() += yin::kSectionPlace * random.normal();
     result.edge.push_back(marks(0, i));
     result.curvature.push_back(point.curvature);
     result.sections.push_back(std::move(section));

@@ -2,8 +2,11 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "abbe/report/svg_plot.h"
+#include "evaluate/contour_page.h"
+#include "reproduce/yin_constants.h"
 #include "reproduce/yin_results.h"
 
 namespace abbe {
@@ -122,6 +125,25 @@ EvaluationPlot budget_plot(const ErrorBudget& budget) {
   return {"budget", "In the order of the table below.", plot.svg()};
 }
 
+/// The sections of the simulated part, as `abbe evaluate contour` shows its own.
+nlohmann::json contour_block(const YinSections& sections) {
+  ContourRequest request;
+  request.edge = sections.options;
+  std::vector<SectionAnswer> answers;
+  for (const EdgeFit& fit : sections.fits) {
+    SectionAnswer answer;
+    answer.first = fit;
+    answer.ok = fit.status == EdgeStatus::ok;
+    answer.reason = fit.reason;
+    answer.error = fit.corner.x();
+    answer.error_uncertainty = std::hypot(fit.corner_uncertainty(), yin::kSectionPlace);
+    answers.push_back(std::move(answer));
+  }
+  nlohmann::json block = contour_sections_block(request, sections.sections, answers);
+  block["title"] = "From the sections of one simulated part";
+  return block;
+}
+
 }  // namespace
 
 EvaluationReport yin_report(const YinResults& r) {
@@ -141,6 +163,7 @@ EvaluationReport yin_report(const YinResults& r) {
   add_figures(report, "sections", "contour error from the sections of one simulated part", r.sections.found);
   add_figures(report, "P1P2", "P1 P2 of the same sections", r.sections.rounding);
   report.plots = {contour_plot(r), budget_plot(r.contour.budget)};
+  report.page = {{"contour", contour_block(r.sections)}};
   report.tables.insert(report.tables.begin(), budget_table(r.contour.budget));
   report.notes.emplace_back(
       "P1 P2, which the paper calls the contour error, is the rounding of the edge and does not depend on where the "

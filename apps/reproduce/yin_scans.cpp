@@ -11,6 +11,7 @@
 
 #include "abbe/geometry/rotation.h"
 #include "abbe/instruments/triangulation.h"
+#include "reproduce/yin_constants.h"
 
 namespace abbe {
 namespace {
@@ -19,10 +20,8 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kTargetNoise = 0.010, kSurfaceNoise = 0.020, kHeightNoise = 0.005;  // mm
-constexpr double kSphereRadius = 12.7, kSphereHeight = 95;                           // mm, as in the reference
 const Vector3d kMoved(150, -60, 0);
-const Vector3d kSphere(40, 150, kSphereHeight);
+const Vector3d kSphere(40, 150, yin::kSphereHeight);
 const Vector3d kTarget(-120, 40, 14);  // of X and Y
 const std::array<Vector3d, 2> kTurning = {Vector3d(150, 60, 10), Vector3d(-90, 70, 45)};
 
@@ -95,8 +94,8 @@ Scene scene_with(const Placement& placement, const Shape& cylinder) {
     post.push_back(kSphere.head<2>() + 4 * around);
   }
   scene.add_prism(disc, -30, 0);
-  scene.add_prism(post, 0, kSphereHeight - 12);
-  scene.add_ball(kSphere, kSphereRadius);
+  scene.add_prism(post, 0, yin::kSphereHeight - 12);
+  scene.add_ball(kSphere, yin::kSphereRadius);
   const std::size_t part = scene.size();
   std::vector<Eigen::Vector2d> outline = {{70, -20}, {155, -20}};
   for (int i = 0; i <= 40; ++i) {
@@ -135,7 +134,7 @@ YinScans yin_simulated_scans(std::uint64_t seed) {
   const RayTracer scene(scene_with(result.placement, part[0]).mesh());
   RandomStream random(seed);
   AreaScanner scanner;
-  scanner.noise = kTargetNoise;
+  scanner.noise = yin::kTargetNoise;
   // The table carries everything: seen from it, the scanner moves the other way.
   const auto target = [&](const Vector3d& place, const RigidTransform& table_moves, std::vector<Vector3d>& points) {
     const Eigen::Matrix3Xd seen = scan_places(scanner, scene, table_moves.inverse() * result.table_from_scanner, place,
@@ -159,18 +158,18 @@ YinScans yin_simulated_scans(std::uint64_t seed) {
              scans.circles[k]);
     }
   }
-  scans.sphere_radius = kSphereRadius;
-  scans.sphere_height = kSphereHeight + kHeightNoise * random.normal();
+  scans.sphere_radius = yin::kSphereRadius;
+  scans.sphere_height = yin::kSphereHeight + yin::kHeightNoise * random.normal();
   scans.moved_since = kMoved;
-  scans.target_noise = kTargetNoise;
-  scans.sphere_noise = kSurfaceNoise;
-  scans.height_noise = kHeightNoise;
+  scans.target_noise = yin::kTargetNoise;
+  scans.sphere_noise = yin::kSurfaceNoise;
+  scans.height_noise = yin::kHeightNoise;
 
-  scanner.noise = kSurfaceNoise;
+  scanner.noise = yin::kSurfaceNoise;
   Eigen::Matrix3Xd places(3, 300), normals(3, 300);
   for (Index i = 0; i < places.cols(); ++i) {
     normals.col(i) = Vector3d(random.normal(), random.normal(), random.normal()).normalized();
-    places.col(i) = kSphere + kSphereRadius * normals.col(i);
+    places.col(i) = kSphere + yin::kSphereRadius * normals.col(i);
   }
   scans.sphere = list_of(scan_places(scanner, scene, result.table_from_scanner, places, normals, random));
   result.surface_placed = 300;
@@ -217,7 +216,7 @@ YinScansFound yin_locate(const YinScans& scans) {
   YinPositioning& p = found.positioning;
   p.scanner = locate_scanner(scans.scans);
   FeatureRegistrationOptions options;
-  options.noise_mm = kSurfaceNoise;
+  options.noise_mm = yin::kSurfaceNoise;
   p.registration = register_to_features(scans.surface, yin_part(), scans.labels, scans.start, options);
   place_workpiece(p);
   if (!p.failure.empty()) return found;
@@ -249,8 +248,8 @@ std::string yin_positioning_text(const YinScans& scans, const std::string& point
       "[workpiece]\n"
       "noise_um = {:g}\n"
       "start_translation_mm = {}   # workpiece from scanner, roughly\n",
-      points, kSphereRadius, scans.scans.sphere_height, triple(kMoved), 1e3 * kTargetNoise, 1e3 * kSurfaceNoise,
-      1e3 * kHeightNoise, 1e3 * kSurfaceNoise, triple(scans.start.translation));
+      points, yin::kSphereRadius, scans.scans.sphere_height, triple(kMoved), 1e3 * yin::kTargetNoise,
+      1e3 * yin::kSurfaceNoise, 1e3 * yin::kHeightNoise, 1e3 * yin::kSurfaceNoise, triple(scans.start.translation));
   text += fmt::format("start_angles_deg = {}   # of Rx Ry Rz\n", triple(angles_xyz(scans.start.rotation) / kDegree));
   const std::vector<Shape> part = yin_part();
   const char* const names[] = {"cylinder", "top", "side"};

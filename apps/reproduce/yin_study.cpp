@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reproduce/yin_constants.h"
+
 namespace abbe {
 namespace {
-
-constexpr double kTargetNoise = 0.010, kSurfaceNoise = 0.020;  // mm
 
 double difference(const RigidTransform& a, const RigidTransform& b) {
   return std::max((a.translation - b.translation).norm(), 1000 * (a.rotation - b.rotation).norm());
@@ -44,12 +44,12 @@ void place_workpiece(YinPositioning& p) {
 
 YinPositioning yin_positioning() {
   YinPositioningReference reference = yin_positioning_reference();
-  reference.scans.target_noise = kTargetNoise;
-  reference.scans.sphere_noise = kSurfaceNoise;
+  reference.scans.target_noise = yin::kTargetNoise;
+  reference.scans.sphere_noise = yin::kSurfaceNoise;
   YinPositioning result;
   result.scanner = locate_scanner(reference.scans);
   FeatureRegistrationOptions options;
-  options.noise_mm = kSurfaceNoise;
+  options.noise_mm = yin::kSurfaceNoise;
   result.registration = register_to_features(reference.surface, yin_part(), reference.labels, reference.start, options);
   place_workpiece(result);
   if (!result.failure.empty()) return result;

@@ -1,5 +1,7 @@
 // `abbe evaluate contour`: sections of a line scanner, and points against a commanded curve.
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <numbers>
@@ -25,6 +27,13 @@ class ContourTest : public EvaluateTest {
       add(corner - r + r * std::sin(a), r * std::cos(a) - r);
     }
     for (int i = 0; i < 30; ++i) add(corner, -r - 2 * i);
+  }
+  /// What the page in a results folder shows.
+  nlohmann::json page_data(const std::string& output) const {
+    std::ifstream file(folder.path() / output / "report.html");
+    const std::string page(std::istreambuf_iterator<char>(file), {}), begin = "id=\"abbe-data\">";
+    const std::size_t from = page.find(begin) + begin.size();
+    return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from), nullptr, false);
   }
   const std::string header = "section,along_mm,across_um,height_um\n";
 };
@@ -52,6 +61,73 @@ TEST_F(ContourTest, GivesTheDistanceOfTheEdgeFromItsCommandAndTheRoundingApart) 
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / name)) << name;
   }
   json({"contour", file, "--tolerance", "contour_max_um=20"}, computation_says_no);
+}
+
+TEST_F(ContourTest, ThePageHoldsTheContourErrorAlongTheCurveAndTheSections) {
+  std::string csv = header;
+  add_section(csv, "B", 4, -25);
+  add_section(csv, "A", 0, 5);
+  for (int i = 0; i < 40; ++i) csv += "flat,8," + std::to_string(3 * i) + ",0\n";
+  const std::string file = folder.write("sections.csv", csv);
+  const nlohmann::json found = json({"contour", file, "--u-origin-um", "3", "--u-across-um", "1", "--u-height-um", "1",
+                                     "--tolerance", "contour_max_um=30", "-o", (folder.path() / "out").string()},
+                                    computation_says_no);
+  const nlohmann::json data = page_data("out"), contour = data["contour"];
+  // In the order of the curve, as the figures have it; uncertainties with that of the origins.
+  EXPECT_EQ(contour["s_mm"], nlohmann::json({0.0, 4.0}));
+  for (const std::size_t i : {0U, 1U}) {
+    const nlohmann::json& section = found["sections"][1 - i];
+    EXPECT_EQ(contour["error_um"][i], section["contour_error_um"]);
+    EXPECT_NEAR(contour["u_um"][i].get<double>(), std::hypot(section["u_contour_error_um"].get<double>(), 3), 1e-9);
+    EXPECT_EQ(contour["also"][0]["value_um"][i], section["P1_P2_um"]);
+  }
+  EXPECT_EQ(contour["limits_um"], nlohmann::json({-30.0, 30.0}));
+  ASSERT_EQ(contour["sections"].size(), 3U);
+  const nlohmann::json& first = contour["sections"][0];
+  EXPECT_EQ(first["name"], "B");
+  for (const char* const end : {"P1", "P2"}) {
+    const double u = found["sections"][0][std::string(end) + "_mm"][0].get<double>();
+    EXPECT_NEAR(first["edges"][0][std::string(end) + "_um"][0].get<double>(), 1e3 * u, 0.006) << end;
+    EXPECT_LT(u, -0.02);
+  }
+  EXPECT_GT(first["across_um"].size(), 80U);
+  EXPECT_EQ(first["across_um"].size(), first["height_um"].size());
+  EXPECT_EQ(contour["sections"][2]["not_evaluated"], found["sections"][2]["not_evaluated"]);
+  EXPECT_EQ(contour["sections"][2]["across_um"].size(), 40U);
+  // The page draws them itself: no second drawing of the same.
+  EXPECT_EQ(data["evaluation"].count("drawings"), 0U);
+}
+
+TEST_F(ContourTest, ThePageOfManyPointsAndSectionsIsThinnedAndKeepsItsPeaks) {
+  std::string points = "x_mm,y_mm,z_mm\n";
+  for (int i = 0; i < 5000; ++i) {
+    points += std::to_string(0.002 * (4999 - i)) + "," +
+              (i == 1234    ? "0.05"
+               : i % 2 == 0 ? "0.01"
+                            : "-0.002") +
+              ",0.001\n";
+  }
+  const std::string curve = folder.write("line.csv", "x_mm,y_mm,z_mm,i,j,k\n0,0,0,0,0,1\n10,0,0,0,0,1\n");
+  json({"contour", folder.write("points.csv", points), "--curve", curve, "-o", (folder.path() / "points").string()});
+  const nlohmann::json line = page_data("points")["contour"];
+  EXPECT_LE(line["error_um"].size(), 2000U);
+  EXPECT_EQ(line["points"], 5000);
+  EXPECT_TRUE(std::is_sorted(line["s_mm"].begin(), line["s_mm"].end()));
+  EXPECT_NEAR(line["largest_um"].get<double>(), 50, 1e-9);
+  EXPECT_NEAR(line["mean_um"].get<double>(), (2499 * 10.0 - 2500 * 2.0 + 50) / 5000, 1e-9);
+  EXPECT_EQ(std::count_if(line["error_um"].begin(), line["error_um"].end(), [](double e) { return e > 49; }), 1);
+  EXPECT_NEAR(line["also"][0]["value_um"][0].get<double>(), 1, 1e-9);
+  std::string csv = "section,across_um,height_um\n";
+  for (int s = 0; s < 150; ++s) {
+    for (int i = 0; i < 30; ++i) csv += "s" + std::to_string(s) + "," + std::to_string(3 * i) + ",0\n";
+  }
+  json({"contour", folder.write("flat.csv", csv), "-o", (folder.path() / "flat").string()}, computation_says_no);
+  const nlohmann::json flat = page_data("flat")["contour"];
+  EXPECT_EQ(flat["sections_in_all"], 150);
+  EXPECT_LE(flat["sections"].size(), 80U);
+  EXPECT_GE(flat["sections"].size(), 50U);
+  EXPECT_EQ(flat["counted"], "section");
+  EXPECT_TRUE(flat["error_um"].empty());
 }
 
 TEST_F(ContourTest, AGrooveShowsBothOfItsEdges) {

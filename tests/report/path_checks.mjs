@@ -74,9 +74,54 @@ async function pathOf(page, data, expect, shot, parse) {
   }
 }
 
+/// Sections: each can be chosen, is drawn with all its points in one scale, and its caption says what the data say.
+async function sectionsOf(page, block, at, expect, shot, parse) {
+  const box = page.locator('.contour-sections').nth(at);
+  const {sections} = block;
+  expect((await box.locator('option').allTextContents()).join() === sections.map((one) => one.name).join(), 'sections to choose from');
+  const largest = sections.reduce((best, one, i) => (Math.abs(one.error_um ?? 0) > Math.abs(sections[best].error_um ?? 0) ? i : best), 0);
+  const chosen = async () => Number(await box.locator('select').inputValue());
+  if (sections.some((one) => one.error_um !== undefined)) expect((await chosen()) === largest, 'the section of the largest contour error is not the first one shown');
+  const check = async (i) => {
+    const one = sections[i];
+    expect((await chosen()) === i, `section ${i} is not chosen`);
+    const caption = await box.locator('figcaption').textContent();
+    expect(caption.startsWith(`Section ${one.name}`), `caption of section ${one.name}: ${caption}`);
+    if (one.error_um === undefined) expect(caption.includes(`not evaluated: ${one.not_evaluated}`), `section ${one.name} is not evaluated: ${caption}`);
+    else expect(Math.abs(parse(caption.match(/contour error (.*?)\u2009µm/)[1]) - one.error_um) <= 6e-4 * Math.abs(one.error_um), `caption of section ${one.name}: ${caption}`);
+    const drawn = await box.locator('svg.plot').evaluate((root) => {
+      const places = (d) => [...d.matchAll(/[ML](-?[\d.]+) (-?[\d.]+)/g)].map((m) => [Number(m[1]), Number(m[2])]);
+      const path = (selector) => places(root.querySelector(selector)?.getAttribute('d') ?? '');
+      const clip = root.querySelector('clipPath rect');
+      return {scanned: path('.dots.scanned'), edges: root.querySelectorAll('.line.edge').length, corners: root.querySelectorAll('.mark-of.corner').length,
+        onsets: root.querySelectorAll('.mark-of.onset').length, command: root.querySelectorAll('.mark-of.command').length,
+        left: Number(clip.getAttribute('x')), right: Number(clip.getAttribute('x')) + Number(clip.getAttribute('width'))};
+    });
+    expect(drawn.scanned.length === one.across_um.length, `section ${one.name}: ${drawn.scanned.length} of ${one.across_um.length} points`);
+    const edges = one.edges?.length ?? 0;
+    expect([drawn.edges, drawn.corners, drawn.onsets].every((n) => n === edges) && drawn.command === 1, `section ${one.name}: ${drawn.edges} edges for ${edges}`);
+    expect(drawn.scanned.every(([x]) => x >= drawn.left && x <= drawn.right), `section ${one.name} is drawn outside of its frame`);
+    const span = (values) => Math.max(...values) - Math.min(...values);
+    const scale = [span(drawn.scanned.map((p) => p[0])) / span(one.across_um), span(drawn.scanned.map((p) => p[1])) / span(one.height_um)];
+    expect(span(one.height_um) < 5 || Math.abs(scale[0] / scale[1] - 1) < 0.02, `section ${one.name}: ${scale[0]} px/µm across, ${scale[1]} out of the surface`);
+  };
+  await check(largest);
+  await shot(box, 'section-of-a-contour');
+  const [back, on] = [box.getByRole('button', {name: 'Previous'}), box.getByRole('button', {name: 'Next'})];
+  for (const i of new Set([0, sections.length - 1, Math.max(0, sections.findIndex((one) => one.error_um === undefined))])) {
+    await box.locator('select').selectOption({index: i});
+    await check(i);
+    if (sections.length < 2) continue;
+    expect((await back.isDisabled()) === (i === 0) && (await on.isDisabled()) === (i === sections.length - 1), `steps from section ${i}`);
+    await (i > 0 ? back : on).click();
+    await check(i > 0 ? i - 1 : i + 1);
+  }
+}
+
 async function contoursOf(page, blocks, expect, shot, parse) {
   const wanted = blocks.filter((block) => block.error_um?.length);
-  const figures = await page.$$eval('#contour figure', (all) => all.map((e) => ({caption: e.querySelector('figcaption').textContent,
+  const figures = await page.$$eval('#contour > figure', (all) => all.map((e) => ({caption: e.querySelector('figcaption').textContent,
+    also: [...e.querySelectorAll('[class*="dots also"]')].map((d) => d.getAttribute('d').split('M').length - 1), lines: e.querySelectorAll('.line.value').length,
     dots: (e.querySelector('.dots.contour')?.getAttribute('d') ?? '').split('M').length - 1, band: e.querySelectorAll('.band').length, rules: e.querySelectorAll('line.rule').length})));
   expect(figures.length === wanted.length, `${figures.length} contours for ${wanted.length}`);
   for (const [i, block] of wanted.entries()) {
@@ -89,7 +134,10 @@ async function contoursOf(page, blocks, expect, shot, parse) {
     if (values.length <= 200) expect(figures[i].dots === values.length, `contour: ${figures[i].dots} dots for ${values.length} points`);
     expect(figures[i].band === (block.u_um ? 1 : 0), 'contour: band of the uncertainty');
     expect(figures[i].rules === (block.limits_um?.length ?? 0), 'contour: limits');
+    expect(String(figures[i].also) === String((block.also ?? []).map((one) => one.value_um.length)), `contour: ${figures[i].also} dots beside it`);
+    expect(figures[i].lines === (block.joined === false ? 0 : 1), 'contour: line through the points');
   }
+  for (const [i, block] of blocks.filter((block) => block.sections?.length).entries()) await sectionsOf(page, block, i, expect, shot, parse);
   await shot(page.locator('#contour'), 'contour');
 }
 

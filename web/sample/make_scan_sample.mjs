@@ -49,7 +49,14 @@ for (let i = 0; i < n; ++i) {
   ['x', 'y', 'z'].forEach((k, m) => { path.point_mm[k].push((m === 2 ? 20 : 0) + (working ? 10 : 14) * d[m]); path.direction[k].push(d[m]); });
 }
 const s = Array.from({length: 30}, (_, i) => 2.5 * i);
-const contour = {title: 'Engraved curve', s_mm: s, error_um: s.map((v, i) => 15 + 6 * Math.sin(0.3 * v) + (i === 20 ? 12 : 0)), u_um: s.map(() => 2), limits_um: [-25, 25]};
+const contour = {title: 'Engraved curve', s_mm: s, error_um: s.map((v, i) => 15 + 6 * Math.sin(0.3 * v) + (i === 20 ? 12 : 0)), u_um: s.map(() => 2), limits_um: [-25, 25],
+  also: [{name: 'rounding P1 P2', s_mm: s, value_um: s.map((v) => 15 + Math.cos(v))}], sections_in_all: 300,
+  sections: [0, 1, 2].map((k) => {
+    const u = Array.from({length: 200}, (_, i) => i - 150);
+    const one = {name: `S${k}`, across_um: u, height_um: u.map((x) => (x < 12 ? Math.sin(9 * x) : -60))};
+    if (k === 1) return {...one, not_evaluated: 'nothing is deeper than eight times the scatter of the surface'};
+    return {...one, s_mm: 10 * k, error_um: 12 - 8 * k, u_um: 1.5, edges: [{across_um: [-150, -3, 12, 12], height_um: [0, 0, -15, -60], P1_um: [-3, 0], P2_um: [12, 0]}]};
+  })};
 const scan = {format: 'abbe-report/1', title: 'A probe on a ball', evaluation: {kind: 'scan', facts: [{name: 'part', text: 'a ball'}],
   figures: [{symbol: 'covered', name: 'part of the surface', value_percent: 71.25, decimals: 2, tolerance_percent: 95, verdict: 'exceeded'},
     {symbol: 'time', name: 'of the path', value_s: 100, decimals: 1}, {symbol: 'none', name: 'nothing known', not_evaluated: 'no point counts', decimals: 3}]},
@@ -59,7 +66,8 @@ const one = {...ball, vertex_count: 3, triangle_count: 1, triangles_of_part: 1, 
 const edge = {format: 'abbe-report/1', title: 'One triangle, no point near it', evaluation: {facts: [], figures: []},
   surface: {...one, values: int16([-32768, -32768, -32768]), points: {measured: 5, counted: 1, drawn: 1, foot: uint16([100, 100, 0]), normal: int8([0, 0, 127]), values: int16([32767])}},
   histograms: [{title: 'Distribution', edges_um: [-1, 0, 1], counts: [0, 0], below: 0, above: 1}],
-  contour: [{s_mm: [0], error_um: [0]}, {s_mm: [], error_um: []}],
+  contour: [{s_mm: [0], error_um: [0]}, {s_mm: [], error_um: []},
+    {s_mm: [], error_um: [], counted: 'section', joined: false, also: [], sections: [{name: 'one', across_um: [3], height_um: [2], not_evaluated: 'fewer than 20 points'}]}],
   path: {time_s: [0], working: [1], commands: {X_mm: [0]}, point_mm: {x: [0], y: [0], z: [0]}, direction: {x: [0], y: [0], z: [1]}}};
 
 const [, , pageFile, templateFile] = process.argv;

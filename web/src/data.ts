@@ -218,7 +218,35 @@ export interface ContourBlock {
   mean_um?: number;
   largest_um?: number;
   standard_deviation_um?: number;
+  /// False: neighbours are not one behind the other on the curve, no line joins them.
+  joined?: boolean;
+  /// What s_mm counts if it is no length: "section".
+  counted?: string;
+  /// Beside the contour error, at places of its own.
+  also?: {name: string; s_mm: number[]; value_um: number[]}[];
+  sections?: ContourSection[];
+  sections_in_all?: number;
   note?: string;
+}
+
+/// A cross-section: across the curve and out of the surface, µm, its origin on the commanded curve.
+export interface ContourSection {
+  name: string;
+  s_mm?: number;
+  error_um?: number;
+  u_um?: number;
+  not_evaluated?: string;
+  across_um: number[];
+  height_um: number[];
+  edges?: EdgeDrawing[];
+}
+
+/// What was fitted to an edge: surface, rounding and wall as one line, where the rounding begins, the corner.
+export interface EdgeDrawing {
+  across_um: number[];
+  height_um: number[];
+  P1_um: number[];
+  P2_um: number[];
 }
 
 export interface Report {

@@ -22,6 +22,7 @@ nlohmann::json evaluation_data(const EvaluationReport& report) {
   // A distribution in the data is drawn by the page itself.
   if (!report.page.is_object() || !report.page.contains("histograms")) {
     for (const EvaluationPlot& plot : report.plots) {
+      if (plot.in_page && report.page.is_object()) continue;
       evaluation["drawings"].push_back({{"caption", plot.caption}, {"svg", plot.svg}});
     }
   }

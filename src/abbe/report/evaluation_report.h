@@ -44,6 +44,7 @@ struct EvaluationPlot {
   std::string name;     ///< of its file, without ".svg": "plot"
   std::string caption;  ///< may be empty
   std::string svg;
+  bool in_page = false;  ///< the interactive page draws it itself, from `page`
 };
 
 /// All that an evaluation by a standard has to say, whatever the standard.
