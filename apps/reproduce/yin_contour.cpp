@@ -143,15 +143,15 @@ YinContour yin_contour(const YinPositioning& positioning, const BudgetOptions& o
   std::vector<double> means, largest, deviations;
   const double share = options.runs > 0 ? 1 / static_cast<double>(options.runs) : 0;
   result.budget =
-      error_budget([&](const std::vector<double>& x) { return engraving.marks(x); }, engraving.inputs(), options,
-                   [&](const Eigen::MatrixXd& marks) {
-                     const YinFigures across = figures_of(marks.row(0).cwiseAbs().transpose());
-                     add(result.across, across, share);
-                     add(result.in_surface, figures_of(marks.colwise().norm().transpose()), share);
-                     means.push_back(across.mean);
-                     largest.push_back(across.largest);
-                     deviations.push_back(across.deviation);
-                   });
+      uncertainty_budget([&](const std::vector<double>& x) { return engraving.marks(x); }, engraving.inputs(), options,
+                         [&](const Eigen::MatrixXd& marks) {
+                           const YinFigures across = figures_of(marks.row(0).cwiseAbs().transpose());
+                           add(result.across, across, share);
+                           add(result.in_surface, figures_of(marks.colwise().norm().transpose()), share);
+                           means.push_back(across.mean);
+                           largest.push_back(across.largest);
+                           deviations.push_back(across.deviation);
+                         });
   result.upper = {percentile(means, 0.95), percentile(largest, 0.95), percentile(deviations, 0.95)};
   return result;
 }

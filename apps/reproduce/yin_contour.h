@@ -8,7 +8,7 @@
 
 #include "abbe/formats/section_file.h"
 #include "abbe/verify/edge_section.h"
-#include "abbe/verify/error_budget.h"
+#include "abbe/verify/uncertainty_budget.h"
 #include "reproduce/yin_study.h"
 
 namespace abbe {
@@ -22,11 +22,11 @@ YinFigures yin_figures(std::span<const double> amounts);
 
 /// What Table 1, the microscope and the scanners let expect of the contour error.
 struct YinContour {
-  ErrorBudget budget;       ///< mm; kinds: across the curve, along it
-  YinFigures across;        ///< mean over the runs, across the curve
-  YinFigures in_surface;    ///< the same for the whole distance in the surface
-  YinFigures upper;         ///< 95 % of the runs stay below, across the curve
-  double printed_l_ta = 0;  ///< um, largest contour error if L_tA is taken as printed, all else exact
+  UncertaintyBudget budget;  ///< mm; kinds: across the curve, along it
+  YinFigures across;         ///< mean over the runs, across the curve
+  YinFigures in_surface;     ///< the same for the whole distance in the surface
+  YinFigures upper;          ///< 95 % of the runs stay below, across the curve
+  double printed_l_ta = 0;   ///< um, largest contour error if L_tA is taken as printed, all else exact
 };
 YinContour yin_contour(const YinPositioning& positioning, const BudgetOptions& options);
 

@@ -103,7 +103,7 @@ void print_contour(const YinResults& r) {
       "  P1 P2 is the rounding of the edge, whatever the machine did; the contour error is that of P2.\n"
       "  L_tA as printed, all else exact: up to {:.0f} um\n\n",
       1e3 * r.sections.radius, 1e3 * r.sections.largest_miss, c.printed_l_ta);
-  fmt::print("Error budget, standard uncertainty, root mean square over the points / um\n");
+  fmt::print("Uncertainty budget, standard uncertainty, root mean square over the points / um\n");
   fmt::print("  {:<30}{:>7}{:>13}{:>22}{:>13}{:>22}{:>8}\n", "", "inputs", "across: lin.", "Monte Carlo", "along: lin.",
              "Monte Carlo", "share");
   const auto line = [](const std::string& words, std::size_t inputs, const std::vector<BudgetFigure>& k, double share) {

@@ -69,8 +69,8 @@ EvaluationTable positioning_table(const YinResults& r) {
   return table;
 }
 
-EvaluationTable budget_table(const ErrorBudget& budget) {
-  EvaluationTable table{"Error budget: standard uncertainty in \xC2\xB5m, root mean square over the points",
+EvaluationTable budget_table(const UncertaintyBudget& budget) {
+  EvaluationTable table{"Uncertainty budget: standard uncertainty in \xC2\xB5m, root mean square over the points",
                         {"cause", "inputs", "across, by sensitivity", "across, by Monte Carlo", "along, by sensitivity",
                          "along, by Monte Carlo", "share"},
                         {}};
@@ -110,7 +110,7 @@ EvaluationPlot contour_plot(const YinResults& r) {
           plot.svg()};
 }
 
-EvaluationPlot budget_plot(const ErrorBudget& budget) {
+EvaluationPlot budget_plot(const UncertaintyBudget& budget) {
   XyPlot plot("Causes of the contour error across the curve", "rank", "standard uncertainty in \xC2\xB5m");
   std::vector<PlotPoint> linear, drawn;
   for (std::size_t i = 0; i < budget.lines.size(); ++i) {

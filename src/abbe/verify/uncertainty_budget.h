@@ -42,7 +42,7 @@ struct BudgetLine {
 };
 
 /// An uncertainty budget, twice: linearly by sensitivity, and by drawing.
-struct ErrorBudget {
+struct UncertaintyBudget {
   std::vector<BudgetLine> lines;    ///< largest share first
   std::vector<BudgetFigure> total;  ///< per kind
   std::size_t inputs = 0, runs = 0, runs_per_cause = 0;
@@ -56,8 +56,8 @@ struct ErrorBudget {
 /// own uncertainty as long as the model is straight over the uncertainties of its inputs.
 /// @param each_run  called with the result of every run of all inputs together, or empty
 /// @throws std::invalid_argument if the model's results have different shapes
-ErrorBudget error_budget(const BudgetModel& model, const std::vector<BudgetInput>& inputs,
-                         const BudgetOptions& options = {},
-                         const std::function<void(const Eigen::MatrixXd&)>& each_run = {});
+UncertaintyBudget uncertainty_budget(const BudgetModel& model, const std::vector<BudgetInput>& inputs,
+                                     const BudgetOptions& options = {},
+                                     const std::function<void(const Eigen::MatrixXd&)>& each_run = {});
 
 }  // namespace abbe

@@ -1,4 +1,4 @@
-#include "abbe/verify/error_budget.h"
+#include "abbe/verify/uncertainty_budget.h"
 
 #include <gtest/gtest.h>
 
@@ -20,16 +20,16 @@ Eigen::MatrixXd model(const std::vector<double>& x, double bend) {
 
 const std::vector<BudgetInput> kInputs = {{"a", 0.1}, {"b", 0.2}, {"a", 0.3}, {"c", 1.0}};
 
-TEST(ErrorBudget, BothWaysGiveWhatTheFormulaSays) {
+TEST(UncertaintyBudget, BothWaysGiveWhatTheFormulaSays) {
   BudgetOptions options;
   options.runs = 4000;
   options.runs_per_cause = 1500;
   std::size_t calls = 0;
-  const ErrorBudget budget = error_budget([](const auto& x) { return model(x, 0); }, kInputs, options,
-                                          [&](const Eigen::MatrixXd& result) {
-                                            ++calls;
-                                            EXPECT_NEAR(result(0, 0), 5, 5);
-                                          });
+  const UncertaintyBudget budget = uncertainty_budget([](const auto& x) { return model(x, 0); }, kInputs, options,
+                                                      [&](const Eigen::MatrixXd& result) {
+                                                        ++calls;
+                                                        EXPECT_NEAR(result(0, 0), 5, 5);
+                                                      });
   EXPECT_EQ(calls, 4000U);
   ASSERT_EQ(budget.lines.size(), 3U);
   // Kind 0: (p + 1) 0.1 and 2 * 0.2 at p = 0, 1, 2; kind 1: 0.3 and p 0.2.
@@ -50,23 +50,24 @@ TEST(ErrorBudget, BothWaysGiveWhatTheFormulaSays) {
               0.1 * std::sqrt(b0) * std::sqrt(2 / 1500.0));
 }
 
-TEST(ErrorBudget, ABentModelShowsAsDisagreement) {
-  const ErrorBudget budget = error_budget([](const auto& x) { return model(x, 0.5); }, kInputs);
+TEST(UncertaintyBudget, ABentModelShowsAsDisagreement) {
+  const UncertaintyBudget budget = uncertainty_budget([](const auto& x) { return model(x, 0.5); }, kInputs);
   EXPECT_GT(budget.largest_disagreement(), 5);
   EXPECT_NEAR(budget.lines.back().kinds[0].by_sensitivity, 0, 1e-12);
   EXPECT_GT(budget.lines.back().kinds[0].by_monte_carlo, 0.5);
 }
 
-TEST(ErrorBudget, SameSeedSameNumbersAndShapesMayNotChange) {
+TEST(UncertaintyBudget, SameSeedSameNumbersAndShapesMayNotChange) {
   const auto straight = [](const std::vector<double>& x) { return model(x, 0); };
   BudgetOptions options;
   options.runs = options.runs_per_cause = 20;
-  const ErrorBudget once = error_budget(straight, kInputs, options), again = error_budget(straight, kInputs, options);
+  const UncertaintyBudget once = uncertainty_budget(straight, kInputs, options),
+                          again = uncertainty_budget(straight, kInputs, options);
   EXPECT_EQ(once.total[0].by_monte_carlo, again.total[0].by_monte_carlo);
   options.seed = 2;
-  EXPECT_NE(once.total[0].by_monte_carlo, error_budget(straight, kInputs, options).total[0].by_monte_carlo);
+  EXPECT_NE(once.total[0].by_monte_carlo, uncertainty_budget(straight, kInputs, options).total[0].by_monte_carlo);
   int calls = 0;
-  EXPECT_THROW(error_budget([&](const auto&) { return Eigen::MatrixXd::Zero(1, ++calls).eval(); }, kInputs),
+  EXPECT_THROW(uncertainty_budget([&](const auto&) { return Eigen::MatrixXd::Zero(1, ++calls).eval(); }, kInputs),
                std::invalid_argument);
 }
 

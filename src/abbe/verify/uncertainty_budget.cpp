@@ -1,4 +1,4 @@
-#include "abbe/verify/error_budget.h"
+#include "abbe/verify/uncertainty_budget.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ double BudgetFigure::disagreement() const {
   return difference > 0 ? HUGE_VAL : 0;
 }
 
-double ErrorBudget::largest_disagreement(double negligible) const {
+double UncertaintyBudget::largest_disagreement(double negligible) const {
   double largest = 0;
   for (std::size_t k = 0; k < total.size(); ++k) {
     largest = std::max(largest, total[k].disagreement());
@@ -58,20 +58,21 @@ double ErrorBudget::largest_disagreement(double negligible) const {
   return largest;
 }
 
-ErrorBudget error_budget(const BudgetModel& model, const std::vector<BudgetInput>& inputs, const BudgetOptions& options,
-                         const std::function<void(const Eigen::MatrixXd&)>& each_run) {
+UncertaintyBudget uncertainty_budget(const BudgetModel& model, const std::vector<BudgetInput>& inputs,
+                                     const BudgetOptions& options,
+                                     const std::function<void(const Eigen::MatrixXd&)>& each_run) {
   std::vector<double> deviations(inputs.size(), 0.0);
   const Eigen::MatrixXd nominal = model(deviations);
   const auto change = [&] {
     Eigen::MatrixXd result = model(deviations);
     if (result.rows() != nominal.rows() || result.cols() != nominal.cols()) {
-      throw std::invalid_argument("the model of an error budget has results of different shapes");
+      throw std::invalid_argument("the model of an uncertainty budget has results of different shapes");
     }
     result -= nominal;
     return result;
   };
   const auto kinds = static_cast<std::size_t>(nominal.rows());
-  ErrorBudget budget;
+  UncertaintyBudget budget;
   budget.inputs = inputs.size();
   budget.runs = options.runs;
   budget.runs_per_cause = options.runs_per_cause;
