@@ -13,6 +13,7 @@
 #include "abbe/formats/scanner_positioning_file.h"
 #include "abbe/geometry/registration.h"
 #include "command.h"
+#include "position/position_json.h"
 
 namespace abbe {
 namespace {
@@ -97,11 +98,7 @@ nlohmann::ordered_json reading_json(const Placement& placement, bool table_to_wo
   json["maps"] = table_to_workpiece ? "p_workpiece = D p_table" : "p_table = D p_workpiece";
   json["D"] =
       matrix_json(table_to_workpiece ? placement.table_from_workpiece.inverse() : placement.table_from_workpiece);
-  const char* const names[] = {"x_mm", "y_mm", "z_mm", "alpha_deg", "beta_deg", "gamma_deg"};
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    json[names[i]] = i < 3 ? p.translation[i] : p.angles[i - 3] / kDegree;
-    json["u_" + std::string(names[i])] = std::sqrt(p.covariance(i, i)) / (i < 3 ? 1 : kDegree);
-  }
+  json.update(position_json(p));
   json["covariance_mm_rad"] = covariance_json(p.covariance);
   return json;
 }

@@ -10,6 +10,7 @@
 #include "abbe/formats/curve_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/machine_file.h"
+#include "abbe/formats/point_cloud_file.h"
 #include "abbe/machine/tool_path.h"
 #include "evaluate/contour_report.h"
 #include "evaluate/evaluate.h"
@@ -135,7 +136,9 @@ int run(const ContourCommand& command) {
   request.origin_uncertainty = command.origin;
   if (command.has("--curve")) {
     const std::vector<CommandPiece> pieces = commanded_pieces(command);
-    EvaluationReport report = contour_points_report(request, pieces, read_contour_points(command.options.file));
+    const PointCloudFile measured = read_point_cloud(command.options.file);
+    EvaluationReport report = contour_points_report(request, pieces, measured.cloud.points);
+    report.facts.front().second += fmt::format(", {}, {}", measured.format, unit_words(measured.unit));
     add_limits(report, command.options);
     return finish_evaluation(report, command.options);
   }
@@ -158,7 +161,8 @@ void add_evaluate_contour(CLI::App& evaluate, CommandLine& line) {
       "                           commanded curve\n"
       "  along_mm                 where on the curve, optional\n"
       "  beam_tilt_deg            direction of the laser from the height towards across, optional\n"
-      "With --curve: x_mm, y_mm, z_mm, points of the engraved curve in the frame of the commanded one. Moves on which\n"
+      "With --curve: x_mm, y_mm, z_mm, points of the engraved curve in the frame of the commanded one; or\n"
+      "a .ply, .obj or .xyz file. Moves on which\n"
       "the tool does not work are no part of that curve.",
       "  abbe evaluate contour examples/laser_engraver/sections.csv --u-height-um 2 --u-across-um 1\n"
       "  abbe evaluate contour examples/laser_engraver/engraved.csv --curve examples/laser_engraver/table-a4.csv "

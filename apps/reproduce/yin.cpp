@@ -35,8 +35,9 @@ void write_folder(const YinResults& r, const std::filesystem::path& output) {
   for (const EvaluationPlot& plot : report.plots) folder.write(plot.name + ".svg", plot.svg);
   folder.write("sections.csv", sections_csv(r.sections.sections));
   folder.write("engraved.csv", engraved_csv(r.sections));
-  folder.write("scans.csv", target_points_csv(r.scans.targets));
-  folder.write("scanner.positioning.toml", yin_positioning_text(r.scans, "scans.csv"));
+  const YinScanFiles files = yin_scan_files(r.scans, "scans.csv");
+  folder.write("scans.csv", files.points);
+  folder.write("scanner.positioning.toml", files.positioning);
   folder.commit();
 }
 

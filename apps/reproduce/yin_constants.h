@@ -7,6 +7,9 @@ namespace abbe::yin {
 
 inline constexpr std::uint64_t kSeed = 2021;
 
+// Table 3: x, y, z in mm, alpha, beta, gamma in degrees.
+inline constexpr double kTable3[] = {-73.896, 94.924, 33.385, -0.103, -0.034, -0.097};
+
 // Standard uncertainties, mm: a target and a point of a surface to the area scanner, the height gauge under the sphere,
 // the place of a section's origin across the curve.
 inline constexpr double kTargetNoise = 0.010, kSurfaceNoise = 0.020, kHeightNoise = 0.005, kSectionPlace = 0.002;

@@ -1,15 +1,12 @@
-#include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "position/position_json.h"
 #include "reproduce/yin_results.h"
 
 namespace abbe {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 ordered_json parameters_json(const SwingHeadLinkage& linkage) {
   ordered_json json;
@@ -20,16 +17,6 @@ ordered_json parameters_json(const SwingHeadLinkage& linkage) {
 
 ordered_json figures_json(const YinFigures& f) {
   return {{"mean_um", f.mean}, {"max_um", f.largest}, {"standard_deviation_um", f.deviation}};
-}
-
-ordered_json position_json(const PositioningParameters& p) {
-  ordered_json json;
-  const char* names[] = {"x_mm", "y_mm", "z_mm", "alpha_deg", "beta_deg", "gamma_deg"};
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    json[names[i]] = i < 3 ? p.translation[i] : p.angles[i - 3] / kDegree;
-    json["u_" + std::string(names[i])] = std::sqrt(p.covariance(i, i)) / (i < 3 ? 1 : kDegree);
-  }
-  return json;
 }
 
 ordered_json positions_json(const YinPositioning& p) {

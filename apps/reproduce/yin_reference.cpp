@@ -33,6 +33,12 @@ std::vector<Eigen::Vector3d> scan(const char* name, std::vector<std::size_t>* la
   return points;
 }
 
+Eigen::Matrix3Xd matrix_of(const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Matrix3Xd matrix(3, static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) matrix.col(static_cast<Eigen::Index>(i)) = points[i];
+  return matrix;
+}
+
 Eigen::Vector3d vector_of(const nlohmann::json& v) {
   return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
 }
@@ -99,9 +105,7 @@ YinPositioningReference yin_positioning_reference() {
   scans.sphere = scan("S");
   scans.sphere_height = setup["ZP"];
   scans.moved_since = vector_of(setup["DEL"]);
-  const std::vector<Eigen::Vector3d> surface = scan("M", &result.labels);
-  result.surface.resize(3, static_cast<Eigen::Index>(surface.size()));
-  for (std::size_t i = 0; i < surface.size(); ++i) result.surface.col(static_cast<Eigen::Index>(i)) = surface[i];
+  result.surface = matrix_of(scan("M", &result.labels));
   result.start = transform_of(setup["initial_DMW"]);
   result.table_from_scanner = transform_of(exact["DMB"]);
   result.workpiece_from_scanner = transform_of(exact["DMW"]);
@@ -135,9 +139,9 @@ std::vector<YinPoint> yin_curve() {
   const Curve curve = read_curve(shared_file("examples/laser_engraver/table-a4.csv"), Machine{});
   const double radius = yin_part().front().radius;
   std::vector<YinPoint> points;
-  Eigen::Matrix3Xd places(3, static_cast<Eigen::Index>(curve.points.size()));
+  std::vector<Eigen::Vector3d> places;
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
-    places.col(static_cast<Eigen::Index>(i)) = curve.points[i].point;
+    places.push_back(curve.points[i].point);
     const Eigen::Vector3d& before = curve.points[i == 0 ? 0 : i - 1].point;
     const Eigen::Vector3d& after = curve.points[std::min(i + 1, curve.points.size() - 1)].point;
     const Eigen::Vector3d normal = curve.points[i].direction;
@@ -147,7 +151,7 @@ std::vector<YinPoint> yin_curve() {
     const double around = normal.cross(tangent).dot(Eigen::Vector3d::UnitZ().cross(normal));
     points.push_back({curve.points[i].point, normal, tangent, 0, around * around / radius});
   }
-  const std::vector<double> along = CommandCurve(places).along();
+  const std::vector<double> along = CommandCurve(matrix_of(places)).along();
   for (std::size_t i = 0; i < points.size(); ++i) points[i].along = along[i];
   return points;
 }

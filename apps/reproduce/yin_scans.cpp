@@ -1,7 +1,5 @@
 #include "reproduce/yin_scans.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -116,6 +114,8 @@ RigidTransform looking_at(const Vector3d& from, const Vector3d& at) {
   return t;
 }
 
+double to_a_nanometre(double mm) { return std::round(1e6 * mm) / 1e6; }
+
 std::vector<Vector3d> list_of(const Eigen::Matrix3Xd& points) {
   std::vector<Vector3d> list;
   for (Index i = 0; i < points.cols(); ++i) list.emplace_back(points.col(i));
@@ -128,8 +128,10 @@ YinScans yin_simulated_scans(std::uint64_t seed) {
   const std::vector<Shape> part = yin_part();
   YinScans result;
   // Table 3 by the paper's words: p_workpiece = D p_table.
-  result.placement.table_from_workpiece =
-      RigidTransform{rotation_xyz(kDegree * Vector3d(-0.103, -0.034, -0.097)), {-73.896, 94.924, 33.385}}.inverse();
+  result.placement.table_from_workpiece = RigidTransform{
+      rotation_xyz(kDegree * Vector3d(yin::kTable3[3], yin::kTable3[4], yin::kTable3[5])),
+      {yin::kTable3[0], yin::kTable3[1],
+       yin::kTable3[2]}}.inverse();
   result.table_from_scanner = looking_at({820, 420, 740}, {120, -20, 100});
   const RayTracer scene(scene_with(result.placement, part[0]).mesh());
   RandomStream random(seed);
@@ -205,9 +207,6 @@ YinScans yin_simulated_scans(std::uint64_t seed) {
   const RigidTransform truth = table_from_workpiece.inverse() * later;
   result.start = {rotation_from_vector({0.006, -0.004, 0.005}) * truth.rotation,
                   truth.translation + Vector3d(3, -4, 2)};
-  result.targets = {{"X", scans.along_x},           {"Y", scans.along_y},          {"circle 1", scans.circles[0]},
-                    {"circle 2", scans.circles[1]}, {"sphere", scans.sphere},      {"cylinder", list_of(surfaces[0])},
-                    {"top", list_of(surfaces[1])},  {"side", list_of(surfaces[2])}};
   return result;
 }
 
@@ -228,37 +227,25 @@ YinScansFound yin_locate(const YinScans& scans) {
   return found;
 }
 
-std::string yin_positioning_text(const YinScans& scans, const std::string& points) {
-  const auto triple = [](const Vector3d& v) { return fmt::format("[{:.6f}, {:.6f}, {:.6f}]", v.x(), v.y(), v.z()); };
-  std::string text = fmt::format(
+YinScanFiles yin_scan_files(const YinScans& scans, const std::string& points_file) {
+  ScannerPositioningFile file;
+  file.scans = scans.scans;
+  file.scans.sphere_height = to_a_nanometre(scans.scans.sphere_height);
+  WorkpieceScan& workpiece = file.workpiece.emplace();
+  workpiece.features = yin_part();
+  workpiece.points = scans.surface;
+  workpiece.labels = scans.labels;
+  workpiece.start = scans.start;
+  workpiece.start.translation = scans.start.translation.unaryExpr(&to_a_nanometre);
+  workpiece.noise = yin::kSurfaceNoise;
+  const std::vector<std::string> names = {"cylinder", "top", "side"};
+  return {
       "# A structured-light scanner beside Yin's engraver: targets while X and Y carry the table and while it turns, "
       "a\n"
       "# standard sphere, and the clamped part. Simulated: what is hidden from projector or camera is not there.\n"
-      "#\n#   abbe position examples/laser_engraver/scanner.positioning.toml -o part.placement.toml\n"
-      "points = \"{}\"                 # target, x_mm, y_mm, z_mm in the scanner's frame\n"
-      "along_x = \"X\"                         # while X carries it in its positive sense\n"
-      "along_y = \"Y\"\n"
-      "circles = [\"circle 1\", \"circle 2\"]   # while the table turns, in order\n"
-      "turned = \"positively\"                 # by the right-hand rule about the table's Z; or \"negatively\"\n"
-      "sphere = \"sphere\"\n"
-      "sphere_radius_mm = {}\n"
-      "sphere_height_mm = {:.4f}             # of its centre above the table, by a height gauge\n"
-      "moved_since_mm = {}   # by X and Y, between the sphere and the workpiece\n"
-      "noise = {{ target_um = {:g}, sphere_um = {:g}, height_um = {:g} }}\n\n"
-      "[workpiece]\n"
-      "noise_um = {:g}\n"
-      "start_translation_mm = {}   # workpiece from scanner, roughly\n",
-      points, yin::kSphereRadius, scans.scans.sphere_height, triple(kMoved), 1e3 * yin::kTargetNoise,
-      1e3 * yin::kSurfaceNoise, 1e3 * yin::kHeightNoise, 1e3 * yin::kSurfaceNoise, triple(scans.start.translation));
-  text += fmt::format("start_angles_deg = {}   # of Rx Ry Rz\n", triple(angles_xyz(scans.start.rotation) / kDegree));
-  const std::vector<Shape> part = yin_part();
-  const char* const names[] = {"cylinder", "top", "side"};
-  for (std::size_t f = 0; f < part.size(); ++f) {
-    text += fmt::format("\n[[workpiece.feature]]\ntarget = \"{}\"\nkind = \"{}\"\npoint_mm = {}\ndirection = {}\n",
-                        names[f], shape_name(part[f].kind), triple(part[f].point), triple(part[f].direction));
-    if (part[f].radius > 0) text += fmt::format("radius_mm = {:.6f}\n", part[f].radius);
-  }
-  return text;
+      "#\n#   abbe position examples/laser_engraver/scanner.positioning.toml -o part.placement.toml\n" +
+          scanner_positioning_text(file, points_file, names),
+      target_points_csv(positioning_targets(file, names))};
 }
 
 }  // namespace abbe

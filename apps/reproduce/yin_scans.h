@@ -12,9 +12,8 @@ namespace abbe {
 /// A structured-light scanner looks at the table, targets, sphere and workpiece of the paper, all of which hide parts
 /// of each other; its baseline, noise and place are assumed, as the paper does not state them.
 struct YinScans {
-  std::vector<TargetPoints> targets;  ///< what it has seen, its frame: X, Y, circles, sphere, surfaces of the part
-  PositioningScans scans;             ///< the same as locate_scanner() takes them
-  Eigen::Matrix3Xd surface;
+  PositioningScans scans;    ///< what it has seen, its frame: X, Y, circles, sphere
+  Eigen::Matrix3Xd surface;  ///< and the surfaces of the part
   std::vector<std::size_t> labels;
   RigidTransform start;                              ///< workpiece from scanner, roughly
   RigidTransform table_from_scanner;                 ///< the truth
@@ -31,7 +30,10 @@ struct YinScansFound {
 };
 YinScansFound yin_locate(const YinScans& scans);
 
-/// Text of the `*.positioning.toml` file that goes with the CSV of these points. @param points  name of the CSV
-std::string yin_positioning_text(const YinScans& scans, const std::string& points);
+/// The same as files: text of a `*.positioning.toml` file and the CSV that it names.
+struct YinScanFiles {
+  std::string positioning, points;
+};
+YinScanFiles yin_scan_files(const YinScans& scans, const std::string& points_file);
 
 }  // namespace abbe

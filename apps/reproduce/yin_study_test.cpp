@@ -88,10 +88,36 @@ TEST(YinScans, WhatIsHiddenIsMissingAndTheRestLocatesTheWorkpieceWithinItsCovari
 
 TEST(YinScans, AreReadBackFromTheirFilesWithTheSameAnswer) {
   const YinScans scans = yin_simulated_scans(3);
-  const ScannerPositioningFile file = parse_scanner_positioning(
-      yin_positioning_text(scans, "scans.csv"), "x.positioning.toml", target_points_csv(scans.targets), "scans.csv");
+  const YinScanFiles files = yin_scan_files(scans, "scans.csv");
+  const ScannerPositioningFile file =
+      parse_scanner_positioning(files.positioning, "x.positioning.toml", files.points, "scans.csv");
   ASSERT_TRUE(file.workpiece);
   EXPECT_EQ(file.workpiece->labels, scans.labels);
+  EXPECT_EQ(file.scans.sphere_radius, scans.scans.sphere_radius);
+  EXPECT_EQ(file.scans.moved_since, scans.scans.moved_since);
+  EXPECT_EQ(file.scans.target_noise, scans.scans.target_noise);
+  EXPECT_EQ(file.scans.height_noise, scans.scans.height_noise);
+  EXPECT_TRUE(file.scans.turned_positively);
+  EXPECT_NEAR(file.scans.sphere_height, scans.scans.sphere_height, 1e-6);
+  EXPECT_LT((file.scans.circles.at(1).back() - scans.scans.circles[1].back()).norm(), 1e-6);
+  EXPECT_LT((file.workpiece->points - scans.surface).cwiseAbs().maxCoeff(), 1e-6);
+  expect_near(file.workpiece->start, scans.start, 1e-6);
+  const std::vector<Shape> part = yin_part();
+  ASSERT_EQ(file.workpiece->features.size(), part.size());
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    EXPECT_EQ(file.workpiece->features[i].kind, part[i].kind);
+    EXPECT_EQ(file.workpiece->features[i].point, part[i].point);
+    EXPECT_EQ(file.workpiece->features[i].direction, part[i].direction);
+    EXPECT_EQ(file.workpiece->features[i].radius, part[i].radius);
+  }
+  // A name for each feature, and no mesh.
+  EXPECT_THROW(scanner_positioning_text(file, "scans.csv", {"cylinder", "top"}), std::invalid_argument);
+  EXPECT_THROW(positioning_targets(file, {}), std::invalid_argument);
+  ScannerPositioningFile other = file;
+  other.scans.turned_positively = false;
+  other.workpiece.reset();
+  EXPECT_NE(scanner_positioning_text(other, "s.csv").find("turned = \"negatively\""), std::string::npos);
+  EXPECT_EQ(positioning_targets(other).size(), 5U);
   const ScannerPosition direct = locate_scanner(scans.scans), read = locate_scanner(file.scans);
   ASSERT_EQ(read.status, PositioningStatus::ok) << read.reason;
   EXPECT_LT((direct.table_from_scanner.translation - read.table_from_scanner.translation).norm(), 1e-4);

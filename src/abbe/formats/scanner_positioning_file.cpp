@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/number_text.h"
 #include "abbe/formats/text_file.h"
 #include "abbe/formats/toml_table.h"
 #include "abbe/machine/placement.h"
@@ -134,6 +136,20 @@ ScannerPositioningFile positioning_of(TomlTable root, Targets targets) {
   return result;
 }
 
+void require_features(const ScannerPositioningFile& file, const std::vector<std::string>& names) {
+  const std::size_t features = file.workpiece ? file.workpiece->features.size() : 0;
+  if (file.workpiece && !file.workpiece->part.empty())
+    throw std::invalid_argument("a workpiece on a mesh is not written");
+  if (features == names.size()) return;
+  throw std::invalid_argument(fmt::format("{} features of a workpiece and {} names", features, names.size()));
+}
+
+std::string circle_name(std::size_t i) { return fmt::format("circle {}", i + 1); }
+
+std::string triple_text(const Eigen::Vector3d& v) {
+  return fmt::format("[{}, {}, {}]", shortest_text(v.x()), shortest_text(v.y()), shortest_text(v.z()));
+}
+
 }  // namespace
 
 ScannerPositioningFile read_scanner_positioning(const std::filesystem::path& path) {
@@ -153,6 +169,64 @@ ScannerPositioningFile parse_scanner_positioning(const std::string& text, const 
   TomlTable root = TomlTable::parse(text, file);
   root.text("points");
   return positioning_of(root, Targets(points, points_file));
+}
+
+std::string scanner_positioning_text(const ScannerPositioningFile& file, const std::string& points_file,
+                                     const std::vector<std::string>& names) {
+  require_features(file, names);
+  const PositioningScans& scans = file.scans;
+  std::string circles;
+  for (std::size_t i = 0; i < scans.circles.size(); ++i) {
+    circles += fmt::format("{}\"{}\"", i > 0 ? ", " : "", circle_name(i));
+  }
+  std::string text = fmt::format(
+      "points = {}         # target, x_mm, y_mm, z_mm in the scanner's frame\n"
+      "along_x = \"X\"                 # while X carries it in its positive sense\n"
+      "along_y = \"Y\"\n"
+      "circles = [{}]   # while the table turns, in order\n"
+      "turned = \"{}\"         # about the table's Z by the right-hand rule: positively or negatively\n"
+      "sphere = \"sphere\"\n",
+      toml_string(points_file), circles, scans.turned_positively ? "positively" : "negatively");
+  if (scans.sphere_radius > 0) text += fmt::format("sphere_radius_mm = {}\n", shortest_text(scans.sphere_radius));
+  text += fmt::format("sphere_height_mm = {}   # of its centre above the table\n", shortest_text(scans.sphere_height));
+  text += fmt::format("moved_since_mm = {}   # by X and Y, between the sphere and the workpiece\n",
+                      triple_text(scans.moved_since));
+  text += fmt::format("noise = {{ target_um = {}, sphere_um = {}, height_um = {} }}\n",
+                      shortest_text(1e3 * scans.target_noise), shortest_text(1e3 * scans.sphere_noise),
+                      shortest_text(1e3 * scans.height_noise));
+  if (!file.workpiece) return text;
+  const WorkpieceScan& workpiece = *file.workpiece;
+  text += fmt::format("\n[workpiece]\nnoise_um = {}\n", shortest_text(1e3 * workpiece.noise));
+  text += fmt::format("start_translation_mm = {}   # workpiece from scanner, roughly\n",
+                      triple_text(workpiece.start.translation));
+  const Eigen::Vector3d angles = angles_xyz(workpiece.start.rotation);
+  text += toml_angles("start_angles", {angles.x(), angles.y(), angles.z()});  // Rx Ry Rz
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const Shape& shape = workpiece.features[i];
+    text += fmt::format("\n[[workpiece.feature]]\ntarget = {}\nkind = \"{}\"\npoint_mm = {}\n", toml_string(names[i]),
+                        shape_name(shape.kind), triple_text(shape.point));
+    if (shape.kind != ShapeKind::sphere) text += fmt::format("direction = {}\n", triple_text(shape.direction));
+    if (shape.kind != ShapeKind::plane) text += fmt::format("radius_mm = {}\n", shortest_text(shape.radius));
+  }
+  return text;
+}
+
+std::vector<TargetPoints> positioning_targets(const ScannerPositioningFile& file,
+                                              const std::vector<std::string>& names) {
+  require_features(file, names);
+  std::vector<TargetPoints> targets = {{"X", file.scans.along_x}, {"Y", file.scans.along_y}};
+  for (std::size_t i = 0; i < file.scans.circles.size(); ++i) {
+    targets.push_back({circle_name(i), file.scans.circles[i]});
+  }
+  targets.push_back({"sphere", file.scans.sphere});
+  for (std::size_t f = 0; f < names.size(); ++f) {
+    targets.push_back({names[f], {}});
+    for (std::size_t i = 0; i < file.workpiece->labels.size(); ++i) {
+      if (file.workpiece->labels[i] != f) continue;
+      targets.back().points.emplace_back(file.workpiece->points.col(static_cast<Eigen::Index>(i)));
+    }
+  }
+  return targets;
 }
 
 std::string target_points_csv(const std::vector<TargetPoints>& targets) {

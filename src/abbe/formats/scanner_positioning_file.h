@@ -34,11 +34,21 @@ ScannerPositioningFile read_scanner_positioning(const std::filesystem::path& pat
 ScannerPositioningFile parse_scanner_positioning(const std::string& text, const std::string& file,
                                                  std::string_view points, const std::string& points_file);
 
+/// Text of such a file: a scanner's view with features of a workpiece, or without a workpiece.
+/// @param points_file  name of the CSV beside it, of positioning_targets()
+/// @param names        [features] target of each
+/// @throws std::invalid_argument for a workpiece on a mesh, and for names that are not as many as the features
+std::string scanner_positioning_text(const ScannerPositioningFile& file, const std::string& points_file,
+                                     const std::vector<std::string>& names = {});
+
 /// Points of a scan, by target.
 struct TargetPoints {
   std::string target;
   std::vector<Eigen::Vector3d> points;  ///< mm, scanner's frame
 };
+/// The points of the file's targets: "X", "Y", "circle 1", ..., "sphere", and the features' names.
+std::vector<TargetPoints> positioning_targets(const ScannerPositioningFile& file,
+                                              const std::vector<std::string>& names = {});
 /// Contents of the CSV: `target`, `x`, `y`, `z`; to a nanometre.
 std::string target_points_csv(const std::vector<TargetPoints>& targets);
 

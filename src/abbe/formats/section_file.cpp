@@ -94,20 +94,4 @@ std::string sections_csv(const std::vector<SectionReadings>& sections) {
   return text;
 }
 
-Eigen::Matrix3Xd read_contour_points(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  return parse_contour_points(file.text(), path.string());
-}
-
-Eigen::Matrix3Xd parse_contour_points(std::string_view text, const std::string& file) {
-  const CsvTable csv =
-      read_csv(text, file, {{"x", Quantity::length}, {"y", Quantity::length}, {"z", Quantity::length}});
-  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(csv.rows));
-  for (std::size_t row = 0; row < csv.rows; ++row) {
-    points.col(static_cast<Eigen::Index>(row)) << csv.columns[0].numbers[row], csv.columns[1].numbers[row],
-        csv.columns[2].numbers[row];
-  }
-  return points;
-}
-
 }  // namespace abbe

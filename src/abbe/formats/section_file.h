@@ -27,8 +27,4 @@ std::vector<SectionReadings> parse_sections(std::string_view text, const std::st
 /// @throws std::invalid_argument where only some of them state it
 std::string sections_csv(const std::vector<SectionReadings>& sections);
 
-/// Reads measured points of a contour: `x`, `y`, `z`; [3, n] mm. @throws InputError
-Eigen::Matrix3Xd read_contour_points(const std::filesystem::path& path);
-Eigen::Matrix3Xd parse_contour_points(std::string_view text, const std::string& file);
-
 }  // namespace abbe

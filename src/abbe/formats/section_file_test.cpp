@@ -55,8 +55,6 @@ TEST(SectionFile, WhatIsWrongIsNamedWithItsLine) {
   EXPECT_NE(message_of([] { parse_sections("section,across_mm\nA,1\n", "x.csv"); }).find("height"), std::string::npos);
   EXPECT_NE(message_of([] { parse_sections("section,across_mm,height_mm\n", "x.csv"); }).find("no rows"),
             std::string::npos);
-  EXPECT_NE(message_of([] { parse_contour_points("x_mm,y_mm,z_mm\n", "p.csv"); }).find("no rows"), std::string::npos);
-  EXPECT_EQ(parse_contour_points("x_mm,y_mm,z_um\n1,2,3000\n", "p.csv").col(0), Eigen::Vector3d(1, 2, 3));
 }
 
 }  // namespace
