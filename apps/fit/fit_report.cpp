@@ -181,10 +181,10 @@ void add_notes(EvaluationReport& report, const FitRequest& request, const ShapeF
   if (!fit.rivals.empty()) {
     const ShapeRival& next = fit.rivals.front();
     const std::string what = request.method == FitMethod::robust
-                                 ? fmt::format("with {:.0f} % of the points near it", 100 * next.value)
+                                 ? fmt::format("with {:.0f} % of the points near it", 100 * next.share)
                              : request.method == FitMethod::minimum_zone
-                                 ? fmt::format("with a form deviation of {:.6g} \xC2\xB5m", 1e3 * next.value)
-                                 : fmt::format("of radius {:.6f} mm", next.value);
+                                 ? fmt::format("with a form deviation of {:.6g} \xC2\xB5m", 1e3 * next.form)
+                                 : fmt::format("of radius {:.6f} mm", next.shape.radius);
     const Eigen::Vector3d& at = next.shape.point;
     report.notes.push_back(
         fmt::format("{} other shape{} the best among {} neighbours; the next one, {}, has its point at ({:.4f}, "

@@ -260,12 +260,12 @@ void enter_covariance(CoaxialCircles& fit, const Axis& axis, const Sums& sums, c
 
 }  // namespace
 
-CoaxialCircles coaxial_circles_fit(Circles given, const CoaxialOptions& options) {
-  check(given, options);
+CoaxialCircles coaxial_circles_fit(Circles circles, const CoaxialOptions& options) {
+  check(circles, options);
   CoaxialCircles fit;
   fit.point.setZero();
   fit.direction.setZero();
-  const auto m = static_cast<Index>(given.size());
+  const auto m = static_cast<Index>(circles.size());
   const std::vector<Index> free = free_steps(m, options);
   const auto fail = [&fit](FitStatus status, const std::string& reason) {
     fit.status = status;
@@ -273,7 +273,7 @@ CoaxialCircles coaxial_circles_fit(Circles given, const CoaxialOptions& options)
     return fit;
   };
   Vector3d centre = Vector3d::Zero();
-  for (const Matrix3Xd& circle : given) {
+  for (const Matrix3Xd& circle : circles) {
     fit.points += static_cast<std::size_t>(circle.cols());
     if (circle.cols() < 2) return fail(FitStatus::too_few_points, "a circle has fewer than two points");
     if (!circle.allFinite()) return fail(FitStatus::bad_points, "a coordinate is not finite");
@@ -284,20 +284,20 @@ CoaxialCircles coaxial_circles_fit(Circles given, const CoaxialOptions& options)
     return fail(FitStatus::too_few_points,
                 std::to_string(fit.points) + " points for " + std::to_string(free.size()) + " parameters");
   }
-  std::vector<Matrix3Xd> circles;
+  std::vector<Matrix3Xd> centred;
   double size = 0;
-  for (const Matrix3Xd& circle : given) {
-    circles.emplace_back(circle.colwise() - centre);
-    size = std::max(size, circles.back().cwiseAbs().maxCoeff());
-    const Vector3d middle = circles.back().rowwise().mean();
-    if (!((circles.back().colwise() - middle).cwiseAbs().maxCoeff() > 1e-9 * size)) {
+  for (const Matrix3Xd& circle : circles) {
+    centred.emplace_back(circle.colwise() - centre);
+    size = std::max(size, centred.back().cwiseAbs().maxCoeff());
+    const Vector3d middle = centred.back().rowwise().mean();
+    if (!((centred.back().colwise() - middle).cwiseAbs().maxCoeff() > 1e-9 * size)) {
       return fail(FitStatus::degenerate, "all points of a circle are at one place");
     }
   }
   Reached best;
   best.sums.squares = std::numeric_limits<double>::infinity();
-  for (const Vector3d& direction : directions(circles, options)) {
-    const Reached reached = refine(axis_from(direction, circles, options), circles, free, size);
+  for (const Vector3d& direction : directions(centred, options)) {
+    const Reached reached = refine(axis_from(direction, centred, options), centred, free, size);
     if (reached.converged && reached.axis.radii.minCoeff() > 0 && reached.sums.squares < best.sums.squares) {
       best = reached;
     }
@@ -306,12 +306,12 @@ CoaxialCircles coaxial_circles_fit(Circles given, const CoaxialOptions& options)
   fit.status = FitStatus::ok;
   fit.iterations = best.iterations;
   report(fit, best.axis, centre);
-  best.sums = sums_at(best.axis, circles);
+  best.sums = sums_at(best.axis, centred);
   fit.rms = std::sqrt(best.sums.squares / static_cast<double>(fit.points));
   for (Index c = 0; c < m; ++c) {
     double farthest = 0;
     const Matrix3Xd q =
-        best.axis.axes.transpose() * (circles[static_cast<std::size_t>(c)].colwise() - best.axis.origin);
+        best.axis.axes.transpose() * (centred[static_cast<std::size_t>(c)].colwise() - best.axis.origin);
     for (Index i = 0; i < q.cols(); ++i) {
       farthest = std::max(
           farthest, std::hypot(std::hypot(q(0, i), q(1, i)) - best.axis.radii[c], q(2, i) - best.axis.heights[c]));

@@ -44,8 +44,8 @@ struct CoaxialCircles {
 /// their circles. Four parameters of the axis, height and radius of each circle.
 ///
 /// Two circles suffice for the axis, also where each alone is a short arc; one is circle3.
-/// @param given  [m] points of each circle, [3, n_i] mm
+/// @param circles  [m] points of each circle, [3, n_i] mm
 /// @throws std::invalid_argument for a direction that is none or radii that are not positive or not one per circle
-CoaxialCircles coaxial_circles_fit(std::span<const Eigen::Matrix3Xd> given, const CoaxialOptions& options = {});
+CoaxialCircles coaxial_circles_fit(std::span<const Eigen::Matrix3Xd> circles, const CoaxialOptions& options = {});
 
 }  // namespace abbe

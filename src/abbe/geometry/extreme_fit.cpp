@@ -189,8 +189,11 @@ ShapeFit extreme_fit(ShapeKind kind, ExtremeKind extreme, const FitPoints& point
     if (!other.converged) continue;
     ShapeRival rival;
     ShapeFrame at = other.frame;
-    rival.value = zone ? 2 * other.answer.value : std::abs(other.answer.value);
-    if (!zone) at.radius = rival.value;
+    if (zone) {
+      rival.form = 2 * other.answer.value;
+    } else {
+      at.radius = std::abs(other.answer.value);
+    }
     rival.shape = shape_of(at, survey.centroid.mean);
     fit.rivals.push_back(rival);
     if (other.answer.value - best.answer.value <= 1e-5 * std::abs(best.answer.value) + 1e-10 * survey.size) {

@@ -40,7 +40,7 @@ TEST(FitRivals, TheStripAcrossABoxIsNamedBesideTheNarrowerOne) {
   ASSERT_EQ(fit.status, FitStatus::ok) << fit.reason;
   EXPECT_NEAR(fit.form, 9.5, 1e-9);
   ASSERT_FALSE(fit.rivals.empty());
-  EXPECT_NEAR(fit.rivals[0].value, 10, 1e-9);
+  EXPECT_NEAR(fit.rivals[0].form, 10, 1e-9);
   EXPECT_NEAR(fit.rivals[0].shape.direction.dot(fit.shape.direction), 0, 1e-9);
   // Corners of a square around the same points, whose least-squares line is well determined.
   Matrix3Xd in_a_square = points;
@@ -67,7 +67,7 @@ TEST(FitRivals, StripsOfASymmetricGridAllGoThroughItsMiddleAndAreToldApart) {
   ASSERT_EQ(fit.status, FitStatus::ok) << fit.reason;
   EXPECT_NEAR(fit.form, 9.5, 1e-9);
   ASSERT_FALSE(fit.rivals.empty());
-  EXPECT_NEAR(fit.rivals[0].value, 10, 1e-9);
+  EXPECT_NEAR(fit.rivals[0].form, 10, 1e-9);
   EXPECT_NEAR(fit.rivals[0].shape.direction.x(), 0, 1e-9);
   // Points at the ends of the shorter side make that the direction of least squares; the narrowest strip stays.
   const Matrix3Xd points = grid_with_ends({10, 9.5, 0}, 9, 20);
@@ -95,7 +95,7 @@ TEST(FitRivals, TheNarrowestSlabIsFoundWhereLeastSquaresBeginsInAnotherValley) {
   EXPECT_NEAR(fit.form, 10, 1e-9);
   EXPECT_NEAR(fit.shape.direction.dot(thin), 0, 1e-9);
   ASSERT_FALSE(fit.rivals.empty());
-  EXPECT_GT(fit.rivals[0].value, 10);
+  EXPECT_GT(fit.rivals[0].form, 10);
 }
 
 TEST(FitRivals, TheLargerOfTwoRoomsIsInscribedAndTheOtherNamed) {
@@ -113,7 +113,7 @@ TEST(FitRivals, TheLargerOfTwoRoomsIsInscribedAndTheOtherNamed) {
   ASSERT_EQ(fit.status, FitStatus::ok) << fit.reason;
   EXPECT_NEAR(fit.shape.radius, 5.0005, 1e-3);
   ASSERT_FALSE(fit.rivals.empty());
-  EXPECT_NEAR(fit.rivals[0].value, 4.5005, 1e-3);
+  EXPECT_NEAR(fit.rivals[0].shape.radius, 4.5005, 1e-3);
   EXPECT_NEAR((fit.rivals[0].shape.point - fit.shape.point).norm(), 8.9, 0.02);
 }
 
@@ -152,14 +152,15 @@ std::size_t check_rivals(ShapeKind kind, ExtremeKind extreme, const Matrix3Xd& p
   const double sense = extreme == ExtremeKind::inscribed ? -1 : 1;
   double before = extreme == ExtremeKind::minimum_zone ? fit.form : fit.shape.radius;
   for (const ShapeRival& rival : fit.rivals) {
-    EXPECT_GE(sense * (rival.value - before), 0) << shape_name(kind) << ": best first";
-    before = rival.value;
-    EXPECT_NEAR(rival.value, value_of(rival.shape, extreme, points), 1e-9) << shape_name(kind);
+    const double value = extreme == ExtremeKind::minimum_zone ? rival.form : rival.shape.radius;
+    EXPECT_GE(sense * (value - before), 0) << shape_name(kind) << ": best first";
+    before = value;
+    EXPECT_NEAR(value, value_of(rival.shape, extreme, points), 1e-9) << shape_name(kind);
     const test::ShapeDifference off = test::difference(rival.shape, fit.shape);
     EXPECT_GT(off.length + off.angle, 1e-4) << shape_name(kind);
     for (int trial = 0; trial < 60; ++trial) {
       const Shape other = beside(rival.shape, held, std::pow(10, numbers.uniform(-7, -4)), numbers);
-      EXPECT_GE(sense * (value_of(other, extreme, points) - rival.value), -1e-9) << shape_name(kind);
+      EXPECT_GE(sense * (value_of(other, extreme, points) - value), -1e-9) << shape_name(kind);
     }
   }
   return fit.rivals.size();
@@ -225,7 +226,7 @@ TEST(FitRivals, ARobustPlaneNamesTheOtherLevelOfAStep) {
   ASSERT_EQ(uneven.status, FitStatus::ok) << uneven.reason;
   EXPECT_NEAR(uneven.shape.point.z(), 0, 0.003);
   ASSERT_EQ(uneven.rivals.size(), 1u);
-  EXPECT_NEAR(uneven.rivals[0].value, 0.34, 0.01);
+  EXPECT_NEAR(uneven.rivals[0].share, 0.34, 0.01);
   EXPECT_NEAR(uneven.rivals[0].shape.point.z(), 1.5, 0.01);
   const ShapeFit clear = robust_fit(ShapeKind::plane, step(0.9, 600, numbers));
   ASSERT_EQ(clear.status, FitStatus::ok) << clear.reason;
@@ -255,7 +256,7 @@ TEST(FitRivals, ARobustLineNamesTheOneThatCrossesItsMiddle) {
     ASSERT_EQ(uneven.status, FitStatus::ok) << uneven.reason;
     EXPECT_NEAR(uneven.shape.direction.x(), 1, 1e-4);
     ASSERT_EQ(uneven.rivals.size(), 1u) << shape_name(kind);
-    EXPECT_NEAR(uneven.rivals[0].value, 0.35, 0.01);
+    EXPECT_NEAR(uneven.rivals[0].share, 0.35, 0.01);
     EXPECT_NEAR(uneven.rivals[0].shape.direction.y(), 1, 1e-4);
     EXPECT_NEAR(uneven.rivals[0].shape.point.x(), 0, 0.004);
   }
@@ -278,7 +279,7 @@ TEST(FitRivals, ARobustCircleNamesAConcentricOne) {
   ASSERT_EQ(fit.rivals.size(), 1u);
   EXPECT_NEAR(fit.rivals[0].shape.radius, 14, 0.002);
   EXPECT_NEAR((fit.rivals[0].shape.point - fit.shape.point).norm(), 0, 0.003);
-  EXPECT_NEAR(fit.rivals[0].value, 0.4, 0.01);
+  EXPECT_NEAR(fit.rivals[0].share, 0.4, 0.01);
 }
 
 }  // namespace

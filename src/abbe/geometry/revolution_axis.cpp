@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "abbe/geometry/rotation.h"
+
 namespace abbe {
 namespace {
 
@@ -76,8 +78,7 @@ std::vector<RevolutionAxis> revolution_axes(const TriangleMesh& mesh, std::span<
   for (Eigen::Index i = 0; i < 3; ++i) {
     const Eigen::Vector3d turn = motions.col(i).head<3>(), shift = motions.col(i).tail<3>();
     // turn x p + shift = 0
-    Eigen::Matrix3d cross;
-    cross << 0, -turn.z(), turn.y(), turn.z(), 0, -turn.x(), -turn.y(), turn.x(), 0;
+    const Eigen::Matrix3d cross = skew(turn);
     normal_equations += cross.transpose() * cross;
     right -= cross.transpose() * shift;
   }

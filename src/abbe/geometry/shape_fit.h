@@ -41,9 +41,8 @@ struct FitOptions {
 /// Another shape that is the best one among its neighbours.
 struct ShapeRival {
   Shape shape;
-  /// Minimum zone: form deviation, mm. Circumscribed, inscribed: radius, mm. Robust: share of the points that take
-  /// part.
-  double value = 0;
+  double form = 0;   ///< minimum zone: form deviation, mm
+  double share = 0;  ///< robust: of the points, those that take part
 };
 
 /// A fitted shape with what is needed to judge it.
