@@ -53,9 +53,9 @@ TEST(FitRivals, TheStripAcrossABoxIsNamedBesideTheNarrowerOne) {
 Matrix3Xd grid_with_ends(const Vector3d& size, int count, int more) {
   Matrix3Xd points(3, count * count + 2 * more);
   for (Index i = 0; i < points.cols(); ++i) {
-    const Index k = i - count * count;
+    const Index k = i - count * count, row = i / count;
     const Vector3d share = k < 0 ? Vector3d(static_cast<double>(i % count) / (count - 1) - 0.5,
-                                            static_cast<double>(i / count) / (count - 1) - 0.5, 0)
+                                            static_cast<double>(row) / (count - 1) - 0.5, 0)
                                  : Vector3d(0, k % 2 == 0 ? 0.5 : -0.5, 0);
     points.col(i) = share.cwiseProduct(size);
   }
