@@ -72,7 +72,8 @@ TEST_F(ContourTest, ThePageHoldsTheContourErrorAlongTheCurveAndTheSections) {
   const nlohmann::json found = json({"contour", file, "--u-origin-um", "3", "--u-across-um", "1", "--u-height-um", "1",
                                      "--tolerance", "contour_max_um=30", "-o", (folder.path() / "out").string()},
                                     computation_says_no);
-  const nlohmann::json data = page_data("out"), contour = data["contour"];
+  const nlohmann::json data = page_data("out");
+  const nlohmann::json& contour = data["contour"];
   // In the order of the curve, as the figures have it; uncertainties with that of the origins.
   EXPECT_EQ(contour["s_mm"], nlohmann::json({0.0, 4.0}));
   for (const std::size_t i : {0U, 1U}) {

@@ -288,7 +288,8 @@ TEST(LeastSquaresFit, AConeOfHeldAngleAboutPointsOfACylinderOpensToEitherSide) {
   Matrix3Xd points(3, 60);
   for (Index i = 0; i < 60; ++i) {
     const double turn = 2 * std::numbers::pi * static_cast<double>(i % 20) / 20;
-    points.col(i) << 5 * std::cos(turn), 5 * std::sin(turn), static_cast<double>(i / 20);
+    const Index circle = i / 20;
+    points.col(i) << 5 * std::cos(turn), 5 * std::sin(turn), static_cast<double>(circle);
   }
   FitOptions held;
   held.constraints.direction = Vector3d::UnitZ();
