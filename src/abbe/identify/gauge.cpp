@@ -6,9 +6,9 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "abbe/identify/gauge_convention.h"
+#include "abbe/identify/parameter_words.h"
 
 namespace abbe {
 namespace {
@@ -29,21 +29,11 @@ Eigen::VectorXd usable_scale(const Eigen::VectorXd& column_norms) {
 /// @param quantity  what the functional is; empty: a combination that has no name
 void describe(const std::vector<EstimatedParameter>& parameters, const Eigen::VectorXd& scale,
               const std::string& quantity, GaugeConstraint& constraint) {
-  // Equal entries keep their order whatever the rounding.
-  Eigen::VectorXd scaled = constraint.direction.cwiseProduct(scale).cwiseAbs();
-  scaled = (scaled / (kAlike * std::max(scaled.maxCoeff(), 1e-300))).array().round();
-  std::vector<std::size_t> order(static_cast<std::size_t>(scaled.size()));
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return scaled[static_cast<Index>(a)] > scaled[static_cast<Index>(b)];
-  });
-  const double largest = scaled.size() > 0 ? scaled.maxCoeff() : 0;
+  constraint.inseparable = largest_entries(constraint.direction.cwiseProduct(scale), kNamedEntry);
   const double own = constraint.functional.cwiseAbs().maxCoeff();
   std::string others;
   std::size_t named = 0;
-  for (const std::size_t i : order) {
-    if (scaled[static_cast<Index>(i)] < kNamedEntry * largest) break;
-    constraint.inseparable.push_back(i);
+  for (const std::size_t i : constraint.inseparable) {
     // What the quantity itself consists of is no other; a combination without a name is all of its parts.
     if (!quantity.empty() && std::abs(constraint.functional[static_cast<Index>(i)]) > 1e-9 * own) continue;
     if (named++ < kMostNamed) others += (others.empty() ? "" : ", ") + parameters[i].name;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace abbe {
 namespace {
@@ -74,6 +75,20 @@ std::string parameter_words(const Problem& problem, const std::vector<EstimatedP
   for (std::size_t k = 0; k < std::min(most, said.size()); ++k) text += (k > 0 ? "; " : "") + said[k];
   if (said.size() > most) text += fmt::format("; and {} more", said.size() - most);
   return text;
+}
+
+std::vector<std::size_t> largest_entries(const Eigen::VectorXd& direction, double share) {
+  constexpr double kAlike = 1e-6;
+  const double largest = direction.size() > 0 ? direction.cwiseAbs().maxCoeff() : 0;
+  const auto amount = [&](std::size_t i) {
+    const double entry = std::abs(direction[static_cast<Eigen::Index>(i)]);
+    return largest > 0 ? std::round(entry / (kAlike * largest)) : 0.0;
+  };
+  std::vector<std::size_t> order(static_cast<std::size_t>(direction.size()));
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return amount(a) > amount(b); });
+  while (!order.empty() && amount(order.back()) < share / kAlike) order.pop_back();
+  return order;
 }
 
 }  // namespace abbe

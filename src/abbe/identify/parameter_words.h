@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -17,5 +18,10 @@ std::string error_words(const Machine& machine, std::size_t axis, Component comp
 /// @param which  entries of the vector of estimates
 std::string parameter_words(const Problem& problem, const std::vector<EstimatedParameter>& parameters,
                             const std::vector<std::size_t>& which, std::size_t most = 4);
+
+/// The entries of a direction that are named for it: from the largest amount down to a share of that; amounts that are
+/// equal but for rounding keep their order.
+/// @param direction  [parameters] in units that make the entries comparable
+std::vector<std::size_t> largest_entries(const Eigen::VectorXd& direction, double share);
 
 }  // namespace abbe

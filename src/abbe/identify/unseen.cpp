@@ -7,7 +7,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "abbe/identify/measurements_together.h"
 #include "abbe/identify/normal_equations.h"
@@ -35,19 +34,6 @@ Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
 Eigen::MatrixXd prior_information(const Problem& problem, const Eigen::VectorXd& typical) {
   const Eigen::MatrixXd rows = prior_rows(problem) * typical.asDiagonal();
   return rows.transpose() * rows;
-}
-
-std::vector<std::size_t> largest_entries(const Eigen::VectorXd& scaled) {
-  std::vector<std::size_t> order(static_cast<std::size_t>(scaled.size()));
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  // Equal entries keep their order whatever the rounding.
-  const Eigen::VectorXd size = (scaled.cwiseAbs() / (1e-6 * scaled.cwiseAbs().maxCoeff())).array().round();
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return size[static_cast<Index>(a)] > size[static_cast<Index>(b)];
-  });
-  const double largest = size.maxCoeff();
-  while (!order.empty() && size[static_cast<Index>(order.back())] < kNamedEntry * largest) order.pop_back();
-  return order;
 }
 
 std::string names(const std::vector<EstimatedParameter>& parameters, const std::vector<std::size_t>& which) {
@@ -175,7 +161,7 @@ class Adviser {
     Advice advice;
     advice.unseen = false;
     advice.kind = AdviceKind::weak;
-    advice.parameters = largest_entries(direction);
+    advice.parameters = largest_entries(direction, kNamedEntry);
     const EstimatedParameter& first = parameters_[advice.parameters.front()];
     if (!first.id.is_machine()) return;
     advice.words = parameter_words(problem_, parameters_, advice.parameters);

@@ -342,6 +342,14 @@ TEST(Unseen, what_only_a_prior_holds_is_said_so) {
   EXPECT_EQ(study.about("EAX"), nullptr);
 }
 
+TEST(Unseen, equal_entries_are_named_in_their_order_whatever_the_rounding) {
+  Eigen::VectorXd direction(5);
+  direction << 0.5, -0.5 * (1 + 1e-9), 0.05, -2, 0.5 * (1 - 1e-9);
+  EXPECT_EQ(largest_entries(direction, 0.2), (std::vector<std::size_t>{3, 0, 1, 4}));
+  EXPECT_EQ(largest_entries(1e-9 * direction, 0.02), (std::vector<std::size_t>{3, 0, 1, 4, 2}));
+  EXPECT_TRUE(largest_entries(Eigen::VectorXd(), 0.2).empty());
+}
+
 TEST(Unseen, errors_have_their_words_in_the_standards) {
   const Machine machine = test::trunnion_mill();
   const auto words = [&](const char* name) {
