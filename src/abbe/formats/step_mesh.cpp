@@ -24,6 +24,15 @@ void take(std::string_view& bytes, T* values, std::size_t count) {
   bytes.remove_prefix(count * sizeof(T));
 }
 
+// As a whole number only: 1e300 has no place in a size_t.
+std::size_t count_of(const nlohmann::json& head, const char* name) {
+  const nlohmann::json& value = head.at(name);
+  if (!value.is_number_unsigned()) {
+    throw nlohmann::json::type_error::create(302, std::string(name) + " is no count", &value);
+  }
+  return value.get<std::size_t>();
+}
+
 }  // namespace
 
 std::string step_mesh_bytes(const StepMesh& mesh) {
@@ -58,10 +67,10 @@ StepMesh parse_step_mesh(std::string_view bytes, const std::string& file) {
   try {
     const nlohmann::json head = nlohmann::json::parse(bytes.substr(0, end));
     if (head.at("kind").get<std::string>() != kKind) refuse("another version");
-    head.at("vertices").get_to(vertices);
-    head.at("triangles").get_to(triangles);
-    head.at("faces").get_to(result.faces);
-    head.at("solids").get_to(result.solids);
+    vertices = count_of(head, "vertices");
+    triangles = count_of(head, "triangles");
+    result.faces = count_of(head, "faces");
+    result.solids = count_of(head, "solids");
     head.at("unit").get_to(result.unit);
     head.at("deviation_mm").get_to(result.deviation_mm);
     head.at("deflection_mm").get_to(result.deflection_mm);
@@ -75,6 +84,7 @@ StepMesh parse_step_mesh(std::string_view bytes, const std::string& file) {
     refuse("the length does not fit");
   }
   if (triangles == 0) refuse("no triangles");
+  if (vertices == 0) refuse("no vertices");
   if (!(result.deviation_mm >= 0) || !(result.deflection_mm > 0)) refuse("no tolerance");
   result.mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices));
   result.mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles));

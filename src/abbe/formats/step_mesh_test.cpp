@@ -70,6 +70,9 @@ TEST(StepMesh, WhatCannotBeAMeshIsRefused) {
   mesh.mesh.triangles.resize(3, 0);
   mesh.face_of_triangle.clear();
   EXPECT_THAT(message(mesh), testing::HasSubstr("no triangles"));
+  mesh = block();
+  mesh.mesh.vertices.resize(3, 0);
+  EXPECT_THAT(message(mesh), testing::HasSubstr("no vertices"));
   std::string other = step_mesh_bytes(block());
   other.replace(other.find("mesh 1"), 6, "mesh 2");
   EXPECT_THAT(message_of([&] { parse_step_mesh(other, "part.step"); }), testing::HasSubstr("another version"));
@@ -81,6 +84,16 @@ TEST(StepMesh, CountsBeyondAllMemoryAreRefused) {
       R"("deviation_mm":0,"deflection_mm":1,"notes":[]})";
   EXPECT_THAT(message_of([&] { parse_step_mesh(head + "\n" + std::string(40, '\0'), "part.step"); }),
               testing::HasSubstr("the length does not fit"));
+}
+
+TEST(StepMesh, CountsAreWholeNumbers) {
+  for (const char* wrong : {"1e300", "-1", "2.0", "\"8\"", "null"}) {
+    std::string bytes = step_mesh_bytes(block());
+    bytes.replace(bytes.find("\"vertices\":8") + 11, 1, wrong);
+    EXPECT_THAT(message_of([&] { parse_step_mesh(bytes, "part.step"); }),
+                testing::HasSubstr("the first line is not understood"))
+        << wrong;
+  }
 }
 
 }  // namespace
