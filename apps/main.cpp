@@ -24,6 +24,7 @@ int run_command(int argc, char** argv) {
   add_identify_command(line);
   add_map_command(line);
   add_path_command(line);
+  add_test_piece_command(line);
   add_position_command(line);
   add_fit_command(line);
   add_evaluate_command(line);

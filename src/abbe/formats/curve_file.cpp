@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/number_text.h"
 #include "abbe/formats/text_file.h"
 
 namespace abbe {
@@ -60,6 +62,18 @@ Curve parse_curve(std::string_view text, const std::string& file, const Machine&
     curve.points.push_back(std::move(point));
   }
   return curve;
+}
+
+std::string curve_csv(const Curve& curve) {
+  assert(curve.indexed.empty());
+  std::string text = "x_mm,y_mm,z_mm,i,j,k,feed_mm_per_min,beam\n";
+  for (const CurvePoint& point : curve.points) {
+    assert(point.dwell == 0);
+    for (const double value : point.point) text += shortest_text(value) + ",";
+    for (const double value : point.direction) text += shortest_text(value) + ",";
+    text += shortest_text(60 * point.feed) + (point.working ? ",1\n" : ",0\n");
+  }
+  return text;
 }
 
 Curve read_curve(const std::filesystem::path& path, const Machine& machine) {

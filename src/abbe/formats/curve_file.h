@@ -20,4 +20,8 @@ Curve parse_curve(std::string_view text, const std::string& file, const Machine&
 /// Every word that would be misread is an error.
 Curve parse_curve_program(std::string_view text, const std::string& file, const Machine& machine);
 
+/// CSV as parse_curve() reads it, all digits: x_mm, y_mm, z_mm, i, j, k, feed_mm_per_min, beam.
+/// Curves without axes set beforehand and without piercing only.
+std::string curve_csv(const Curve& curve);
+
 }  // namespace abbe
