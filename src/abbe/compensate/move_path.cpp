@@ -1,0 +1,100 @@
+#include "abbe/compensate/move_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace abbe {
+namespace {
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+// rad; a smaller arc is a full circle, as in LinuxCNC: start and end are the same but for rounding.
+constexpr double kSmallestArc = 1e-6;
+// mm or rad; less is no motion to a control.
+constexpr double kNoMotion = 1e-7;
+
+double length(const WordValues& a, const WordValues& b, std::size_t first) {
+  double sum = 0;
+  for (std::size_t i = first; i < first + 3; ++i) {
+    const double d = b[i] - a[i];
+    if (std::abs(d) > kNoMotion) sum += d * d;
+  }
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+MovePath::MovePath(const ProgramMove& move) : move_(&move) {
+  if (move.kind != MoveKind::arc_clockwise && move.kind != MoveKind::arc_counterclockwise) return;
+  arc_ = true;
+  first_ = move.plane == ArcPlane::XY ? 0 : move.plane == ArcPlane::ZX ? 2 : 1;
+  second_ = (first_ + 1) % 3;
+  const double x = move.start[first_] - move.arc_centre[first_], y = move.start[second_] - move.arc_centre[second_];
+  const double u = move.end[first_] - move.arc_centre[first_], v = move.end[second_] - move.arc_centre[second_];
+  radius_ = std::hypot(x, y);
+  radius_end_ = std::hypot(u, v);
+  angle_ = std::atan2(y, x);
+  const double sense = move.kind == MoveKind::arc_counterclockwise ? 1 : -1;
+  double turn = std::remainder(sense * (std::atan2(v, u) - angle_), kTwoPi);
+  if (turn < kSmallestArc) turn += kTwoPi;
+  turn_ = sense * (turn + kTwoPi * std::max(move.arc_turns - 1, 0));
+  const double radius = std::max(radius_, radius_end_), drift = radius_end_ - radius_;
+  bend_ = std::hypot(radius * turn_ * turn_, 2 * drift * turn_);
+  speed_[first_] = speed_[second_] = std::hypot(radius * turn_, drift);
+  const std::size_t normal = 3 - first_ - second_;
+  speed_[normal] = std::abs(move.end[normal] - move.start[normal]);
+}
+
+void MovePath::at(double s, WordValues& words) const {
+  if (s <= 0) {
+    words = move_->start;
+    return;
+  }
+  if (s >= 1) {
+    words = move_->end;
+    return;
+  }
+  for (std::size_t i = 0; i < kAxisWords; ++i) words[i] = move_->start[i] + s * (move_->end[i] - move_->start[i]);
+  if (!arc_) return;
+  const double radius = radius_ + s * (radius_end_ - radius_), angle = angle_ + s * turn_;
+  words[first_] = move_->arc_centre[first_] + radius * std::cos(angle);
+  words[second_] = move_->arc_centre[second_] + radius * std::sin(angle);
+}
+
+double feed_length(const WordValues& start, const WordValues& end) {
+  constexpr std::size_t kX = 0, kA = 3, kU = 6;
+  const double linear = length(start, end, kX);
+  if (linear > 0) return linear;
+  const double second = length(start, end, kU);
+  return second > 0 ? second : length(start, end, kA);
+}
+
+double move_duration(const ProgramMove& move) {
+  if (move.kind == MoveKind::rapid || !(move.feed > 0)) return -1;
+  if (move.feed_mode == FeedMode::per_revolution) return -1;
+  if (move.feed_mode == FeedMode::inverse_time) return 1 / move.feed;
+  const MovePath path(move);
+  if (!path.is_arc()) return feed_length(move.start, move.end) / move.feed;
+  const std::array<double, 3> speed = path.speed();
+  const std::size_t normal = move.plane == ArcPlane::XY ? 2 : move.plane == ArcPlane::ZX ? 1 : 0;
+  return std::hypot(speed[(normal + 1) % 3], speed[normal]) / move.feed;
+}
+
+void set_piece_feed(const ProgramMove& move, double duration, double share, const WordValues& start,
+                    CorrectedPiece& piece) {
+  constexpr double kChange = 0.01;
+  piece.feed = move.feed;
+  piece.feed_mode = move.feed_mode;
+  if (!(duration > 0) || !(share > 0)) return;
+  const double wanted = duration * share;
+  if (move.feed_mode == FeedMode::inverse_time) {
+    piece.feed = share == 1 ? move.feed : 1 / wanted;
+    return;
+  }
+  const double taken = feed_length(start, piece.end) / move.feed;
+  if (taken == 0 || std::abs(taken - wanted) <= kChange * wanted) return;
+  piece.feed_mode = FeedMode::inverse_time;
+  piece.feed = 1 / wanted;
+}
+
+}  // namespace abbe

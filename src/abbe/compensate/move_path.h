@@ -1,0 +1,49 @@
+#pragma once
+
+#include "abbe/compensate/program_move.h"
+
+namespace abbe {
+
+/// The way of one move in the words of its program: a straight line, or an arc or helix in X, Y, Z with all other words
+/// linear in the angle. Where the radii of start and end differ, the radius is linear in the angle too, so that the arc
+/// ends where the program says.
+class MovePath {
+ public:
+  explicit MovePath(const ProgramMove& move);
+
+  bool is_arc() const { return arc_; }
+  /// Words at 0 <= s <= 1; exactly the start at 0 and the end at 1.
+  void at(double s, WordValues& words) const;
+
+  /// Bound of the second derivative of X, Y, Z by s, mm: 0 for a line. A chord over a share h of the move leaves the
+  /// arc by at most h^2 / 8 of it (the sagitta r (1 - cos(h angle / 2)) is a little less).
+  double bend() const { return bend_; }
+  /// Bound of the rates of X, Y, Z by s, each; mm.
+  std::array<double, 3> speed() const { return speed_; }
+
+ private:
+  const ProgramMove* move_;
+  bool arc_ = false;
+  std::size_t first_ = 0, second_ = 1;  ///< words of the plane, from the first to the second counterclockwise
+  double radius_ = 0, radius_end_ = 0, angle_ = 0, turn_ = 0;
+  double bend_ = 0;
+  std::array<double, 3> speed_{};
+};
+
+/// Length by which a control reckons the duration of a straight motion of its words, as LinuxCNC does: X Y Z if any of
+/// them moves, else U V W, else the rotary words; mm or rad. Source: LinuxCNC, G-code reference, "Feed rate".
+double feed_length(const WordValues& start, const WordValues& end);
+
+/// Duration of a move as programmed, minutes; negative: not known (rapid moves, feed per revolution, no feed).
+double move_duration(const ProgramMove& move);
+
+/// Feed of a piece that shall last that long.
+///
+/// G93: inverse time. G94: the feed of the move as long as the control then takes that duration, to 1 %; else (a rotary
+/// move that the correction gives a little linear motion, by which the control would go) inverse time.
+/// @param duration  of the move, minutes, as move_duration()
+/// @param share     of the move that the piece is
+void set_piece_feed(const ProgramMove& move, double duration, double share, const WordValues& start,
+                    CorrectedPiece& piece);
+
+}  // namespace abbe

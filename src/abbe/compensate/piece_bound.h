@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "abbe/compensate/axis_error_bound.h"
+#include "abbe/errors/error_set.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+/// Distances of the functional point, on its way through the nominal chain, from what each axis turns about; mm.
+struct ChainLevers {
+  std::array<double, kMaxAxes> from_point{};  ///< from Axis::point
+  std::array<double, kMaxAxes> from_line{};   ///< rotary: from the axis line
+};
+
+/// Bounds of how the axes move over one piece of a path, over 0 <= s <= 1, or over several pieces at once (the largest
+/// of each). Commanded: by the program; actual: as the control drives for the corrected one. mm and rad; rates by s.
+struct PieceMotion {
+  std::array<double, kMaxAxes> lowest{}, highest{};       ///< actual commands
+  std::array<double, kMaxAxes> width{};                   ///< how far the commands are from those of the levers
+  std::array<double, kMaxAxes> speed{}, actual_speed{};   ///< |rate| of the commands, commanded and actual
+  std::array<double, kMaxAxes> offset{}, offset_speed{};  ///< |actual - commanded| and of its rate
+  double arc_bend = 0;  ///< |second derivative| of the commanded X, Y, Z, as a vector: of arcs
+
+  // Tool centre programs; X, Y, Z are a straight line of the functional point then.
+  bool tool_centre = false;
+  double point_speed = 0;  ///< |rate| of the actual X, Y, Z
+  double point_width = 0;  ///< how far they are from the point of the levers, mm
+};
+
+/// By how much the tool leaves the commanded path between the ends of a piece, beyond what is missing at the ends.
+struct PieceBound {
+  double position = 0;     ///< mm
+  double orientation = 0;  ///< rad, of the tool's direction
+};
+
+/// Proves that pieces stay near the commanded path: bounds |actual(s) - commanded(s)| with nothing but bounds of error
+/// motions, their derivatives and levers.
+///
+/// With g the actual minus the commanded point, zero at both ends, |g| <= max|g''| / 8 + sum|jumps of g'| / 4. Bounds
+/// of g and its derivatives are carried through the chain from the tool to the workpiece by the product rule.
+/// Derivation: docs/programs.md. All operations are monotone: the bound of several pieces together (the largest of each
+/// entry) is a bound of each. Thread-safe.
+class PieceBounder {
+ public:
+  /// @param machine     sound
+  /// @param point_axes  those of X, Y, Z, which arcs move and which follow from the point in tool centre programs;
+  ///                    Machine::npos: none
+  PieceBounder(const Machine& machine, const ErrorSet& errors, const std::array<std::size_t, 3>& point_axes);
+
+  /// False if a rotary axis stands between X, Y and Z, or if they are dependent: no bound for tool centre programs.
+  bool has_tool_centre() const { return has_point_axes_; }
+
+  /// @param levers  at a pose of the piece
+  /// @param motion  its entries are those of chords; those of X, Y, Z are widened for arcs and tool centre programs
+  PieceBound bound(const ChainLevers& levers, PieceMotion& motion) const;
+
+  /// Levers of the nominal machine.
+  /// @param tool  functional point from the gauge point, mm
+  void levers(const double* positions, const Eigen::Vector3d& tool, ChainLevers& result) const;
+
+ private:
+  struct AxisModel {
+    AxisModel(const Machine& machine, const ErrorSet& error_set, std::size_t axis)
+        : rotary(machine.axes[axis].kind == AxisKind::rotary),
+          tool_side(machine.axes[axis].side == ChainSide::tool),
+          errors(machine, error_set, axis) {}
+    bool rotary, tool_side;
+    AxisErrorCells errors;
+    double line_turn = 0;      ///< rad, of the axis direction
+    double line_shift = 0;     ///< mm, of its place
+    double zero_position = 0;  ///< mm or rad
+    bool run_begins = false;   ///< first linear axis, from the tool, of those with no rotary one between
+    std::vector<std::size_t> run;
+    double run_stretch = 1;  ///< largest singular value of the run's directions
+    bool bends = false;      ///< X, Y or Z belongs to this run
+  };
+  struct Stage {
+    double speed = 0, bend = 0;
+  };
+  void set_point_axes();
+  double move_point_axes(const ChainLevers& levers, PieceMotion& motion, std::array<Stage, kMaxAxes>& stages) const;
+  void follow_arc(PieceMotion& motion) const;
+  bool is_point_axis(std::size_t i) const { return i == point_axes_[0] || i == point_axes_[1] || i == point_axes_[2]; }
+
+  Machine machine_;
+  std::vector<AxisModel> axes_;
+  double tool_error_ = 0;
+  std::array<std::size_t, 3> point_axes_;  ///< chain order
+  bool has_point_axes_ = false;
+  double point_condition_ = 1;  ///< 1 / smallest singular value of the point axes' directions
+};
+
+}  // namespace abbe

@@ -1,0 +1,286 @@
+#include "abbe/compensate/program_correction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "abbe/geometry/parallel_blocks.h"
+
+namespace abbe {
+namespace {
+
+constexpr std::size_t kChunk = 256;  // moves worked on together
+constexpr std::size_t kGroup = 16;   // moves with a common bound
+constexpr std::size_t kNoTool = static_cast<std::size_t>(-1);
+
+bool is_arc(const ProgramMove& move) {
+  return move.kind == MoveKind::arc_clockwise || move.kind == MoveKind::arc_counterclockwise;
+}
+
+ProgramPlace place(const ProgramMove& move, const CorrectedNode& node, double value) {
+  return {value, move.line, node.position, node.corrected_position, move.tool_length};
+}
+
+/// Moves that follow each other and what becomes of them.
+struct Chunk {
+  std::vector<CorrectedNode> nodes;
+  std::vector<std::size_t> start, end;  ///< nodes of each move
+  std::vector<std::size_t> tool;        ///< of each move; kNoTool: it cannot be made
+  std::vector<char> from_before;        ///< the start is where the move before ended
+  std::vector<char> proven;             ///< one piece will do
+  CorrectedPieces pieces;
+  ProgramReport report;
+  std::optional<MoveSplitter> splitter;
+};
+
+}  // namespace
+
+struct ProgramCorrection::Implementation {
+  Implementation(const Machine& given, const ErrorSet& errors, const WordAxes& given_words,
+                 const ProgramCorrectionOptions& wanted)
+      : machine(given),
+        words(given_words),
+        options(wanted),
+        correction(given, errors, given_words, wanted.rest, wanted.inverse),
+        problem(correction.problem()) {
+    if (problem.empty() && errors.composition != Composition{}) {
+      problem = "errors are composed in another way than that of ISO 230, which programs are not corrected for";
+    }
+    if (!problem.empty()) return;
+    bounder.emplace(machine, errors, std::array<std::size_t, 3>{words.axis[0], words.axis[1], words.axis[2]});
+    bool turns = false;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      turns = turns || (machine.axes[i].kind == AxisKind::rotary && words.moves(i));
+    }
+    if (!turns) options.tolerance.orientation = std::numeric_limits<double>::infinity();
+  }
+
+  bool can_be_made(const ProgramMove& move) const {
+    for (std::size_t i = 0; i < kAxisWords; ++i) {
+      if (words.axis[i] == Machine::npos && (move.start[i] != 0 || move.end[i] != 0) &&
+          !(i < 3 && move.coordinates == ProgramCoordinates::tool_centre)) {
+        return false;
+      }
+    }
+    return move.coordinates == ProgramCoordinates::axes || correction.kinematics().has_tool_centre();
+  }
+
+  PathTolerance tolerance_of(const ProgramMove& move) const {
+    if (move.kind != MoveKind::rapid) return options.tolerance;
+    return {options.rapid_tolerance, std::numeric_limits<double>::infinity()};
+  }
+
+  void place_nodes(std::span<const ProgramMove> moves, const ProgramMove* before, Chunk& chunk) const {
+    chunk.nodes.clear();
+    const std::size_t n = moves.size();
+    chunk.start.resize(n);
+    chunk.end.resize(n);
+    chunk.from_before.assign(n, 0);
+    chunk.proven.assign(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      const ProgramMove& move = moves[i];
+      const ProgramMove* earlier = i > 0 ? &moves[i - 1] : before;
+      chunk.from_before[i] = earlier != nullptr && earlier->end == move.start ? 1 : 0;
+      const bool shared = i > 0 && chunk.from_before[i] != 0 && chunk.tool[i] == chunk.tool[i - 1] &&
+                          earlier->coordinates == move.coordinates;
+      if (shared) {
+        chunk.start[i] = chunk.end[i - 1];
+      } else {
+        chunk.start[i] = chunk.nodes.size();
+        chunk.nodes.emplace_back().words = move.start;
+      }
+      chunk.end[i] = chunk.nodes.size();
+      chunk.nodes.emplace_back().words = move.end;
+    }
+  }
+
+  void correct_nodes(std::span<const ProgramMove> moves, Chunk& chunk) const {
+    std::size_t i = 0;
+    while (i < moves.size()) {
+      std::size_t last = i;
+      while (last + 1 < moves.size() && chunk.tool[last + 1] == chunk.tool[i] &&
+             moves[last + 1].coordinates == moves[i].coordinates) {
+        ++last;
+      }
+      if (chunk.tool[i] != kNoTool) {
+        const std::size_t first_node = chunk.start[i];
+        correction.correct(moves[i].coordinates, chunk.tool[i],
+                           {chunk.nodes.data() + first_node, chunk.end[last] + 1 - first_node});
+      }
+      i = last + 1;
+    }
+  }
+
+  /// One bound for several moves in a row, where they are alike; it proves each of them.
+  void prove_groups(std::span<const ProgramMove> moves, Chunk& chunk) const {
+    std::array<MovePiece, kGroup> pieces;
+    std::size_t i = 0;
+    while (i < moves.size()) {
+      const ProgramMove& first = moves[i];
+      std::size_t count = 0;
+      while (count < kGroup && i + count < moves.size()) {
+        const std::size_t k = i + count;
+        const ProgramMove& move = moves[k];
+        const bool alike = chunk.tool[k] == chunk.tool[i] && move.coordinates == first.coordinates &&
+                           (move.kind == MoveKind::rapid) == (first.kind == MoveKind::rapid);
+        if (!alike || chunk.tool[k] == kNoTool || is_arc(move)) break;
+        const CorrectedNode &from = chunk.nodes[chunk.start[k]], &to = chunk.nodes[chunk.end[k]];
+        if (!from.point_reached() || !to.point_reached()) break;
+        pieces[count++] = {&from, &to, nullptr, 1};
+      }
+      if (count < 2) {
+        i += std::max(count, std::size_t{1});
+        continue;
+      }
+      const PathTolerance tolerance = tolerance_of(first);
+      const PieceBound bound = bound_pieces(*bounder, machine.axes.size(), first.coordinates,
+                                            correction.tool_point(chunk.tool[i]), {pieces.data(), count});
+      if (bound.position <= tolerance.position - 2e-9 && bound.orientation <= tolerance.orientation) {
+        std::fill_n(chunk.proven.begin() + static_cast<std::ptrdiff_t>(i), count, char{1});
+      }
+      i += count;
+    }
+  }
+
+  void state(const ProgramMove& move, const CorrectedNode& node, ProgramReport& report) const {
+    report.status[static_cast<std::size_t>(node.status)].add(move.line);
+    const double shift =
+        std::sqrt(node.shift[0] * node.shift[0] + node.shift[1] * node.shift[1] + node.shift[2] * node.shift[2]);
+    if (report.largest_shift.line == 0 || shift > report.largest_shift.value)
+      report.largest_shift.take(place(move, node, shift));
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      const double value = std::abs(node.corrected_position[i] - node.position[i]);
+      if (report.by_axis[i].line == 0 || value > report.by_axis[i].value)
+        report.by_axis[i].take(place(move, node, value));
+    }
+    const bool known = node.point_reached();
+    if (known && node.orientation_left > report.largest_orientation_left.value)
+      report.largest_orientation_left.take(place(move, node, node.orientation_left));
+    if (options.limit > 0 && shift > options.limit) report.above_limit.add(move.line);
+  }
+
+  void give_piece(const ProgramMove& move, double duration, double share, const WordValues& from,
+                  const CorrectedNode& to, Chunk& chunk) const {
+    CorrectedPiece piece{to.corrected, move.feed, move.feed_mode};
+    set_piece_feed(move, duration, share, from, piece);
+    if (piece.feed_mode != move.feed_mode) chunk.report.inverse_time.add(move.line);
+    chunk.pieces.pieces.push_back(piece);
+    state(move, to, chunk.report);
+  }
+
+  void give_move(const ProgramMove& move, std::size_t i, Chunk& chunk) const {
+    if (chunk.tool[i] == kNoTool) {
+      chunk.report.impossible.add(move.line);
+      chunk.pieces.pieces.push_back({move.end, move.feed, move.feed_mode});
+      return;
+    }
+    const CorrectedNode &start = chunk.nodes[chunk.start[i]], &end = chunk.nodes[chunk.end[i]];
+    const double duration = move_duration(move);
+    bool whole = chunk.proven[i] != 0;
+    if (!whole && (!start.point_reached() || !end.point_reached())) {
+      // Nothing is proven about it. Where a rapid move comes from a place unknown to the errors, as at the start of a
+      // program, nothing needs to be; all else is said by its status.
+      whole = true;
+      if (move.kind != MoveKind::rapid && !start.point_reached()) chunk.report.not_proven.add(move.line);
+    }
+    if (whole) {
+      give_piece(move, duration, 1, start.corrected, end, chunk);
+      return;
+    }
+    MoveSplitter& splitter = *chunk.splitter;
+    if (!splitter.split(move, chunk.tool[i], tolerance_of(move), start, end)) chunk.report.not_proven.add(move.line);
+    const std::vector<CorrectedNode>& nodes = splitter.nodes();
+    const std::vector<double>& shares = splitter.shares();
+    if (nodes.size() > 2) ++chunk.report.split_moves;
+    for (std::size_t k = 1; k < nodes.size(); ++k)
+      give_piece(move, duration, shares[k] - shares[k - 1], nodes[k - 1].corrected, nodes[k], chunk);
+  }
+
+  void work(std::span<const ProgramMove> moves, const ProgramMove* before, Chunk& chunk) const {
+    chunk.report = ProgramReport{};
+    chunk.pieces.pieces.clear();
+    chunk.pieces.first.clear();
+    if (!chunk.splitter) chunk.splitter.emplace(correction, *bounder, machine.axes.size(), options.largest_pieces);
+    place_nodes(moves, before, chunk);
+    correct_nodes(moves, chunk);
+    prove_groups(moves, chunk);
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      chunk.pieces.first.push_back(chunk.pieces.pieces.size());
+      const ProgramMove* earlier = i > 0 ? &moves[i - 1] : before;
+      if (chunk.from_before[i] != 0 && earlier->tool_length != moves[i].tool_length)
+        chunk.report.tool_changes.add(moves[i].line);
+      give_move(moves[i], i, chunk);
+    }
+    chunk.report.moves = moves.size();
+    chunk.report.pieces = chunk.pieces.pieces.size();
+  }
+
+  Machine machine;
+  WordAxes words;
+  ProgramCorrectionOptions options;
+  NodeCorrection correction;
+  std::string problem;
+  std::optional<PieceBounder> bounder;
+  std::vector<std::unique_ptr<Chunk>> chunks;
+  std::optional<ProgramMove> last_move;
+  ProgramReport total;
+};
+
+ProgramCorrection::ProgramCorrection(const Machine& machine, const ErrorSet& errors, const WordAxes& words,
+                                     const ProgramCorrectionOptions& options)
+    : implementation_(std::make_unique<Implementation>(machine, errors, words, options)) {}
+ProgramCorrection::~ProgramCorrection() = default;
+ProgramCorrection::ProgramCorrection(ProgramCorrection&&) noexcept = default;
+ProgramCorrection& ProgramCorrection::operator=(ProgramCorrection&&) noexcept = default;
+
+void ProgramCorrection::correct(std::span<const ProgramMove> moves, CorrectedPieces& corrected) {
+  Implementation& self = *implementation_;
+  corrected.pieces.clear();
+  corrected.first.clear();
+  if (!self.problem.empty()) {
+    for (const ProgramMove& move : moves) {
+      corrected.first.push_back(corrected.pieces.size());
+      corrected.pieces.push_back({move.end, move.feed, move.feed_mode});
+    }
+    corrected.first.push_back(corrected.pieces.size());
+    return;
+  }
+  const std::size_t count = (moves.size() + kChunk - 1) / kChunk;
+  while (self.chunks.size() < count) self.chunks.push_back(std::make_unique<Chunk>());
+  for (std::size_t c = 0; c < count; ++c) {
+    Chunk& chunk = *self.chunks[c];
+    const std::size_t first = c * kChunk, last = std::min(first + kChunk, moves.size());
+    chunk.tool.resize(last - first);
+    for (std::size_t i = first; i < last; ++i) {
+      // Programs keep a tool for long: the search is for new ones.
+      if (i > first && chunk.tool[i - first - 1] != kNoTool && moves[i].tool_length == moves[i - 1].tool_length &&
+          self.can_be_made(moves[i])) {
+        chunk.tool[i - first] = chunk.tool[i - first - 1];
+      } else {
+        chunk.tool[i - first] = self.can_be_made(moves[i]) ? self.correction.tool(moves[i].tool_length) : kNoTool;
+      }
+    }
+  }
+  for_each_block(count, self.options.threads, [&](std::size_t c) {
+    const std::size_t first = c * kChunk, last = std::min(first + kChunk, moves.size());
+    const ProgramMove* before = first > 0 ? &moves[first - 1] : self.last_move ? &*self.last_move : nullptr;
+    self.work(moves.subspan(first, last - first), before, *self.chunks[c]);
+  });
+  std::size_t pieces = 0;
+  for (std::size_t c = 0; c < count; ++c) pieces += self.chunks[c]->pieces.pieces.size();
+  corrected.pieces.reserve(pieces);
+  for (std::size_t c = 0; c < count; ++c) {
+    const Chunk& chunk = *self.chunks[c];
+    for (const std::size_t first : chunk.pieces.first) corrected.first.push_back(corrected.pieces.size() + first);
+    corrected.pieces.insert(corrected.pieces.end(), chunk.pieces.pieces.begin(), chunk.pieces.pieces.end());
+    self.total.add(chunk.report);
+  }
+  corrected.first.push_back(corrected.pieces.size());
+  if (!moves.empty()) self.last_move = moves.back();
+}
+
+const ProgramReport& ProgramCorrection::report() const { return implementation_->total; }
+const std::string& ProgramCorrection::problem() const { return implementation_->problem; }
+
+}  // namespace abbe

@@ -1,0 +1,150 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "abbe/compensate/move_path.h"
+#include "abbe/compensate/word_axes.h"
+#include "abbe/errors/actual_pose.h"
+#include "abbe/errors/random_errors.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe::test {
+
+/// A machine with errors behind a control that interpolates words: an independent route to where the tool goes.
+class ControlledMachine {
+ public:
+  ControlledMachine(const Machine& machine, const ErrorSet& errors, const WordAxes& words)
+      : machine_(machine), errors_(errors), words_(words) {}
+
+  /// Pose of the nominal (errors: actual) tool where the control commands those words.
+  RigidTransform pose(const ProgramMove& move, const WordValues& words, bool with_errors) const {
+    Machine machine = machine_;
+    machine.tool_offset -= Eigen::Vector3d(move.tool_length[0], move.tool_length[1], move.tool_length[2]);
+    std::vector<double> axes(machine.axes.size(), 0.0);
+    for (std::size_t i = 0; i < kAxisWords; ++i) {
+      if (words_.axis[i] != Machine::npos) axes[words_.axis[i]] = words[i];
+    }
+    if (move.coordinates == ProgramCoordinates::tool_centre) {
+      // Newton's method on nominal_workpiece_from_tool, which is linear in X, Y, Z.
+      const Eigen::Vector3d wanted(words[0], words[1], words[2]);
+      for (std::size_t i = 0; i < 3; ++i) axes[words_.axis[i]] = 0;
+      const Eigen::Vector3d zero = nominal_workpiece_from_tool(machine, axes).translation;
+      Eigen::Matrix3d by_axis;
+      for (std::size_t i = 0; i < 3; ++i) {
+        axes[words_.axis[i]] = 1;
+        by_axis.col(static_cast<Eigen::Index>(i)) = nominal_workpiece_from_tool(machine, axes).translation - zero;
+        axes[words_.axis[i]] = 0;
+      }
+      const Eigen::Vector3d solved = by_axis.inverse() * (wanted - zero);
+      for (std::size_t i = 0; i < 3; ++i) axes[words_.axis[i]] = solved[static_cast<Eigen::Index>(i)];
+    }
+    return with_errors ? actual_workpiece_from_tool(machine, errors_, axes)
+                       : nominal_workpiece_from_tool(machine, axes);
+  }
+
+  double point_missed(const RigidTransform& a, const RigidTransform& b) const {
+    return (a.translation - b.translation).norm();
+  }
+  double direction_missed(const RigidTransform& a, const RigidTransform& b) const {
+    const Eigen::Vector3d one = a.rotation * machine_.tool_direction, other = b.rotation * machine_.tool_direction;
+    return (one - other).norm();
+  }
+
+ private:
+  Machine machine_;
+  ErrorSet errors_;
+  WordAxes words_;
+};
+
+inline WordValues between(const WordValues& a, const WordValues& b, double s) {
+  WordValues words;
+  for (std::size_t i = 0; i < kAxisWords; ++i) words[i] = a[i] + s * (b[i] - a[i]);
+  return words;
+}
+
+/// Words by name, and A B C to rotary axes of other names where a machine has such.
+inline WordAxes words_of(const Machine& machine) { return word_axes_by_name(machine); }
+
+/// Errors of tens of micrometres and microradians in every error motion, in bases of all kinds.
+inline ErrorSet mixed_errors(const Machine& machine, std::uint64_t seed) {
+  RandomErrorOptions options;
+  options.seed = seed;
+  options.translation_um = 20;
+  options.rotation_urad = 40;
+  options.location_um = 30;
+  options.location_urad = 60;
+  ErrorSet errors = random_errors(machine, options);
+  std::mt19937_64 generator(seed + 1);
+  std::normal_distribution<double> normal;
+  for (ErrorMotion& motion : errors.motions) {
+    const Axis& axis = machine.axes[motion.axis];
+    const double size = is_rotation(motion.component) ? 20e-6 : 0.01;
+    double from = axis.travel_min, to = axis.travel_max;
+    if (axis.endless || !(to > from)) {
+      from = -7;
+      to = 7;
+    }
+    Basis basis;
+    basis.from = from;
+    basis.to = to;
+    std::size_t smooth = 1;
+    switch (generator() % 7) {
+      case 0:
+        continue;  // as random_errors() has it
+      case 1:
+        basis.kind = BasisKind::chebyshev;
+        basis.order = 7;
+        break;
+      case 2:
+        basis.kind = BasisKind::monomial;
+        basis.order = 4;
+        break;
+      case 3:
+        basis.kind = BasisKind::fourier;
+        basis.order = 3;
+        basis.period = axis.kind == AxisKind::rotary ? 2 * 3.14159265358979323846 : (to - from) / 2.5;
+        break;
+      case 4:
+        basis.kind = BasisKind::bspline;
+        basis.order = 9;
+        break;
+      default:
+        basis.kind = generator() % 2 == 0 ? BasisKind::table_linear : BasisKind::table_monotone;
+        for (int k = 0; k <= 12; ++k) basis.nodes.push_back(from + (to - from) * k / 12);
+        basis.nodes.back() = to;
+        smooth = 3;
+        break;
+    }
+    std::vector<double> values(basis.size());
+    for (double& value : values) value = size * normal(generator) / static_cast<double>(smooth);
+    if (basis.kind == BasisKind::chebyshev || basis.kind == BasisKind::monomial) {
+      for (std::size_t k = 0; k < values.size(); ++k) values[k] /= 1 + static_cast<double>(k);
+    }
+    motion.basis = basis;
+    motion.coefficients = values;
+    motion.standard_uncertainty.clear();
+  }
+  errors.tool_offset_error = {0.01, -0.02, 0.015};
+  return errors;
+}
+
+/// Words that are axis positions within the travel, all axes in the middle part of it.
+inline WordValues random_axis_words(const Machine& machine, const WordAxes& words, std::mt19937_64& generator) {
+  std::uniform_real_distribution<double> uniform(-0.8, 0.8);
+  WordValues values{};
+  for (std::size_t i = 0; i < kAxisWords; ++i) {
+    if (words.axis[i] == Machine::npos) continue;
+    const Axis& axis = machine.axes[words.axis[i]];
+    const bool turns = axis.endless || !(axis.travel_max > axis.travel_min);
+    const double middle = turns ? 0 : 0.5 * (axis.travel_min + axis.travel_max);
+    const double half = turns ? 6 : 0.5 * (axis.travel_max - axis.travel_min);
+    values[i] = middle + half * uniform(generator);
+  }
+  return values;
+}
+
+}  // namespace abbe::test
