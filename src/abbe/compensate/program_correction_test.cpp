@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "abbe/compensate/program_moves_for_test.h"
+#include "abbe/compensate/tool_centre_moves.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
@@ -287,6 +288,31 @@ TEST(ProgramCorrection, ARotaryMoveKeepsItsDuration) {
   }
   EXPECT_NEAR(minutes, 0.25, 1e-12);
   EXPECT_GE(correction.report().inverse_time.count, 1U);
+}
+
+TEST(ProgramCorrection, ProgramsForKinematicsOfTheControlAreToolCentreMovesWithTheToolLengthAdded) {
+  const Machine machine = test::trunnion_mill();
+  const WordAxes words = test::words_of(machine);
+  const ErrorSet errors = test::mixed_errors(machine, 13);
+  std::vector<ProgramMove> moves = random_program(machine, words, ProgramCoordinates::tool_centre, 3, 1e-2, 7);
+  std::vector<ProgramMove> with_length = moves;
+  const std::array<double, 3> length = {0, 0, 30};
+  for (std::size_t k = 0; k < moves.size(); ++k) {
+    moves[k].tool_length = with_length[k].tool_length = length;
+    with_length[k].coordinates = ProgramCoordinates::axes;
+    with_length[k].start[2] += 30;
+    with_length[k].end[2] += 30;
+  }
+  ProgramCorrection one(machine, errors, words), other(machine, errors, words);
+  CorrectedPieces wanted, got;
+  one.correct(moves, wanted);
+  ToolCentreMoves adapted(other);
+  adapted.correct(with_length, got);
+  ASSERT_EQ(wanted.pieces.size(), got.pieces.size());
+  for (std::size_t k = 0; k < got.pieces.size(); ++k) {
+    for (std::size_t i = 0; i < kAxisWords; ++i)
+      EXPECT_NEAR(got.pieces[k].end[i], wanted.pieces[k].end[i] + (i == 2 ? 30 : 0), 1e-9);
+  }
 }
 
 TEST(ProgramCorrection, ErrorsComposedInOtherWaysAreRefused) {
