@@ -9,6 +9,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/interruption.h"
 #include "command.h"
+#include "compensate/compensate.h"
 #include "scan/scan.h"
 
 namespace abbe {
@@ -25,6 +26,7 @@ int run_command(int argc, char** argv) {
   add_map_command(line);
   add_path_command(line);
   add_test_piece_command(line);
+  add_compensate_command(line);
   add_position_command(line);
   add_fit_command(line);
   add_evaluate_command(line);

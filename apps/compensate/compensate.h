@@ -1,0 +1,11 @@
+#pragma once
+
+#include "command.h"
+
+namespace abbe {
+
+void add_compensate_command(CommandLine& line);
+/// abbe compensate table: tables of controls, and what they do not carry.
+void add_compensate_table(CLI::App& compensate, CommandLine& line);
+
+}  // namespace abbe

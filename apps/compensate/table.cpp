@@ -1,0 +1,329 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+
+#include "abbe/compensate/correction_uncertainty.h"
+#include "abbe/compensate/line_tables.h"
+#include "abbe/compensate/point_correction.h"
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/machine_file.h"
+#include "abbe/formats/results_folder.h"
+#include "abbe/verify/error_map.h"
+#include "compensate/compensate.h"
+#include "compensate/table_formats.h"
+#include "compensate/table_options.h"
+#include "compensate/table_report.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+struct TableCommand {
+  std::string machine, errors, format, output, map;
+  std::vector<std::string> at, axes, names;
+  double interpolation_um = 0.1, interpolation_urad = 0.1, limit_um = 0, limit_urad = 0, times_uncertainty = 0;
+  std::size_t max_points = 0, positions = 0, first_table = 0, encoder = 0;
+  int type = 1;
+  bool json = false, dry_run = false;
+};
+
+/// Grid over what is known of the travel; of a whole turn the end, which is its beginning, is left out.
+PoseList travel_grid(const Machine& machine, const ErrorSet& errors, std::size_t count,
+                     std::vector<std::size_t>& grid) {
+  PoseGrid positions;
+  grid.clear();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const KnownTravel travel = known_travel(machine, errors, i);
+    std::vector<double> values;
+    if (!(travel.to > travel.from)) {
+      values = {travel.from};
+    } else if (travel.whole_turn) {
+      values = evenly_spaced(travel.from, travel.to, count + 1);
+      values.pop_back();
+    } else {
+      values = evenly_spaced(travel.from, travel.to, count);
+    }
+    grid.push_back(values.size());
+    positions.values.push_back(std::move(values));
+  }
+  const PoseSource source = pose_source(positions);
+  PoseList poses;
+  poses.axis.assign(machine.axes.size(), std::vector<double>(source.count));
+  std::vector<double*> pointers;
+  for (std::vector<double>& values : poses.axis) pointers.push_back(values.data());
+  source.fill(0, source.count, pointers.data());
+  return poses;
+}
+
+std::size_t checked_positions(const TableCommand& command, const Machine& machine) {
+  if (command.positions == 0) return machine.axes.size() > 3 ? 5 : 9;
+  double poses = 1;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) poses *= static_cast<double>(command.positions);
+  if (command.positions < 2 || poses > 1e6) {
+    throw InputError({.field = fmt::format("--positions {}", command.positions)},
+                     fmt::format("{:.0f} poses for {} axes", poses, machine.axes.size()),
+                     "at least 2 positions per axis and at most 1,000,000 poses");
+  }
+  return command.positions;
+}
+
+/// Largest standard uncertainty of every table, and the tables that are below a multiple of it everywhere.
+std::vector<double> table_uncertainties(const ErrorSet& errors, const Eigen::MatrixXd& covariance,
+                                        const std::vector<TableSummary>& tables, double times,
+                                        std::set<std::string>& below, std::vector<std::string>& words) {
+  std::vector<double> largest;
+  for (const TableSummary& table : tables) {
+    const std::vector<double> uncertainty = propagated_uncertainty(errors, covariance, table.values);
+    double ratio = 0;
+    bool known = false;
+    for (std::size_t k = 0; k < uncertainty.size(); ++k) {
+      if (table.corrections[k] == 0) continue;
+      known = known || uncertainty[k] > 0;
+      ratio = uncertainty[k] > 0 ? std::max(ratio, std::abs(table.corrections[k]) / uncertainty[k]) : HUGE_VAL;
+    }
+    largest.push_back(uncertainty.empty() ? 0 : *std::max_element(uncertainty.begin(), uncertainty.end()));
+    if (times > 0 && known && ratio < times) {
+      below.insert(table.name);
+      words.push_back(fmt::format("{}: at most {:.2g} times its standard uncertainty", table.name, ratio));
+    }
+  }
+  return largest;
+}
+
+std::string pose_words(const Machine& machine, const PoseList& poses, std::size_t k) {
+  std::string words;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    words += fmt::format("{}{} {:.6g} {}", i == 0 ? "" : ", ", machine.axes[i].name,
+                         rotary ? poses.axis[i][k] / kDegree : poses.axis[i][k], rotary ? "deg" : "mm");
+  }
+  return words;
+}
+
+/// The largest corrections over tables and grid, and what of them is above a limit.
+void look_at_limits(const TableCommand& command, const ControllerTables& tables, TableReport& report) {
+  const Machine& machine = *report.machine;
+  PoseList added;
+  tables.correction->evaluate(report.poses, added);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    double& largest = rotary ? report.largest_rad : report.largest_mm;
+    for (std::size_t k = 0; k < report.poses.count(); ++k) {
+      if (!(std::abs(added.axis[i][k]) > largest)) continue;
+      largest = std::abs(added.axis[i][k]);
+      (rotary ? report.largest_rad_at : report.largest_mm_at) =
+          fmt::format("{} for axis {}", pose_words(machine, report.poses, k), machine.axes[i].name);
+    }
+  }
+  const auto refuse = [&](double value, bool is_angle, const std::string& where) {
+    const double limit = is_angle ? command.limit_urad : command.limit_um;
+    const double shown = is_angle ? 1e6 * value : 1e3 * value;
+    if (limit > 0 && shown > limit) {
+      const char* const unit = is_angle ? "urad" : "um";
+      report.refused.push_back(fmt::format("{:.3f} {} is above --limit-{} {:g}: {}", shown, unit, unit, limit, where));
+    }
+  };
+  for (const TableSummary& table : tables.tables) {
+    refuse(table.largest, table.is_angle, "table " + table.name);
+  }
+  refuse(report.largest_mm, false, report.largest_mm_at);
+  refuse(report.largest_rad, true, report.largest_rad_at);
+}
+
+void check_not_an_input(const TableCommand& command, const std::string& name) {
+  for (const std::string& input : {command.machine, command.errors}) {
+    std::error_code none;
+    if (std::filesystem::equivalent(input, name, none)) {
+      throw InputError({.file = name}, "this is an input of the command", "another name for the output");
+    }
+  }
+}
+
+bool is_folder_name(const std::string& name) {
+  return name.back() == '/' || std::filesystem::is_directory(name) || !std::filesystem::path(name).has_extension();
+}
+
+void check_outputs(const TableCommand& command) {
+  if (command.output.empty() && !command.dry_run) {
+    throw InputError({.field = "-o"}, "no output", "a file, a folder, or --dry-run");
+  }
+  if (!command.output.empty()) {
+    check_not_an_input(command, command.output);
+    if (is_folder_name(command.output)) check_results_folder(command.output);
+  }
+  if (command.map.empty()) return;
+  check_not_an_input(command, command.map);
+  const std::string extension = std::filesystem::path(command.map).extension().string();
+  if (extension != ".csv" && extension != ".vts" && extension != ".vtu") {
+    throw InputError({.file = command.map}, "unknown kind of map file", "a name ending in .csv, .vts or .vtu");
+  }
+}
+
+void write_tables(const TableCommand& command, const ControllerTables& tables, TableReport& report) {
+  if (tables.files.empty()) return;
+  if (is_folder_name(command.output)) {
+    ResultsFolder folder(command.output);
+    for (const auto& [name, text] : tables.files) {
+      folder.write(name, text);
+      report.written.push_back((std::filesystem::path(command.output) / name).string());
+    }
+    folder.commit();
+    return;
+  }
+  if (tables.files.size() > 1) {
+    throw InputError({.field = "-o " + command.output}, fmt::format("{} files are to be written", tables.files.size()),
+                     "a folder (a name without ending), or one axis with --axis");
+  }
+  write_file_atomically(command.output, tables.files.front().second);
+  report.written.push_back(command.output);
+}
+
+TableRequest request_of(const TableCommand& command, const Machine& machine, const ErrorSet& errors,
+                        const TableFormat& format) {
+  TableRequest request;
+  request.tolerance_mm = 1e-3 * command.interpolation_um;
+  request.tolerance_rad = 1e-6 * command.interpolation_urad;
+  if (!(request.tolerance_mm > 0 && request.tolerance_rad > 0)) {
+    throw InputError({.field = "--interpolation-um, --interpolation-urad"}, "not above zero", "a positive number");
+  }
+  request.reference = reference_pose(machine, middle_of_travel(machine, errors), command.at);
+  request.axes = chosen_axes(machine, command.axes);
+  request.names = table_axis_names(machine, format, command.names);
+  request.most_nodes = command.max_points;
+  if (command.type != 0 && command.type != 1) throw InputError({.field = "--type"}, "unknown type", "0 or 1");
+  request.type = command.type;
+  if (command.encoder > 1) throw InputError({.field = "--encoder"}, "unknown measuring system", "0 or 1");
+  request.encoder = command.encoder;
+  if (command.first_table > 999) throw InputError({.field = "--first-table"}, "too large", "0 to 999");
+  request.first_table = command.first_table;
+  return request;
+}
+
+int run_table(const TableCommand& command) {
+  const TableFormat& format = table_format(command.format);
+  check_outputs(command);
+  const Machine machine = read_machine(command.machine);
+  const ErrorsFile file = read_errors(command.errors, machine);
+  const ErrorSet& errors = file.errors;
+  TableRequest request = request_of(command, machine, errors, format);
+  TableReport report;
+  report.format = &format;
+  report.machine = &machine;
+  report.poses = travel_grid(machine, errors, checked_positions(command, machine), report.grid);
+
+  ControllerTables tables = format.make(machine, errors, request);
+  const Eigen::MatrixXd covariance = file.covariance.size() > 0 ? file.covariance : stated_variances(errors);
+  if (command.times_uncertainty > 0 && covariance.size() == 0) {
+    throw InputError({.file = command.errors}, "no standard uncertainties are stated",
+                     "some, for --leave-out-below-uncertainty");
+  }
+  if (covariance.size() > 0) {
+    report.uncertainty = table_uncertainties(errors, covariance, tables.tables, command.times_uncertainty,
+                                             request.left_out, report.left_out);
+    if (!request.left_out.empty()) {
+      tables = format.make(machine, errors, request);
+      std::set<std::string> none;
+      std::vector<std::string> no_words;
+      report.uncertainty = table_uncertainties(errors, covariance, tables.tables, 0, none, no_words);
+    }
+    ErrorMapOptions options;
+    ParameterCovariance parameters;
+    parameters.covariance = covariance;
+    for (std::size_t p = 0; p < errors.parameter_count(); ++p) parameters.parameters.push_back(p);
+    options.covariance = &parameters;
+    options.orientation = false;
+    const ErrorMap map = error_map(machine, errors, nullptr, pose_source(report.poses), options);
+    report.uncertainty_statistics = sample_statistics(map.norm_uncertainty, map.covered);
+  }
+  report.tables = &tables;
+  report.before = deviations_with(machine, errors, report.poses, NoCorrection());
+  report.after = deviations_with(machine, errors, report.poses, *tables.correction);
+  report.ideal = ideal_deviations(machine, errors, report.poses, report.ideal_not_reached);
+  {
+    std::vector<std::size_t> unused;
+    const PoseList few = travel_grid(machine, errors, machine.axes.size() > 3 ? 3 : 5, unused);
+    TableRequest quick = request;
+    quick.nodes = 33;
+    report.errors = carried_errors(
+        machine, errors, few, [&](const ErrorSet& alone) { return format.make(machine, alone, quick).correction; });
+  }
+  look_at_limits(command, tables, report);
+  const bool within =
+      std::all_of(tables.tables.begin(), tables.tables.end(), [](const TableSummary& table) { return table.within; });
+  const bool refused = !report.refused.empty();
+  if (!refused && within && !command.dry_run) write_tables(command, tables, report);
+  if (!refused && !command.map.empty()) {
+    const std::string extension = std::filesystem::path(command.map).extension().string();
+    if (extension != ".csv" && (extension == ".vts") != table_map_is_structured(report)) {
+      throw InputError({.file = command.map}, "wrong kind of map file",
+                       table_map_is_structured(report) ? ".vts for these poses" : ".vtu for these poses");
+    }
+    write_file_atomically(command.map, table_map_text(report, extension == ".csv"));
+    report.written.push_back(command.map);
+  }
+  if (command.json) {
+    print_table_json(report);
+  } else {
+    print_table_report(report);
+  }
+  for (const std::string& words : report.refused) fmt::print(stderr, "abbe: {}; nothing is written\n", words);
+  if (!refused && !within) {
+    fmt::print(stderr,
+               "abbe: straight lines between the nodes that {} has room for do not keep to --interpolation-um or "
+               "--interpolation-urad; no table is written\n",
+               format.name);
+  }
+  return refused || !within ? kNegative : kDone;
+}
+
+}  // namespace
+
+void add_compensate_table(CLI::App& compensate, CommandLine& line) {
+  auto options = std::make_shared<TableCommand>();
+  std::string formats = "Formats:\n";
+  for (const TableFormat& format : table_formats()) {
+    formats += fmt::format("  {:<16} {}\n", format.name, format.what);
+    if (!format.unverified.empty()) formats += fmt::format("  {:<16} EXPERIMENTAL: {}\n", "", format.unverified);
+  }
+  CLI::App* const command = compensate.add_subcommand("table", "Tables for a control, and what they do not carry");
+  command->footer(formats +
+                  "\nExample:\n"
+                  "  abbe compensate table examples/machines/three-axis-mill.machine.toml "
+                  "examples/compensate/mill.errors.toml --for linuxcnc --limit-um 100 -o comp\n"
+                  "Signs, units and sources of every format: docs/controller-tables.md");
+  command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
+  command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
+  command->add_option("--for", options->format, "Format, see below")->required();
+  command->add_option("-o,--output", options->output,
+                      "File to write, or a folder (a name without ending) where there are several");
+  command->add_flag("--dry-run", options->dry_run, "Say all, write no table");
+  command->add_option("--at", options->at,
+                      "AXIS_unit=position: where an axis stands while another moves; default the middle of its travel");
+  command->add_option("--axis", options->axes, "Only tables over this axis's position; repeatable");
+  command->add_option("--name", options->names,
+                      "AXIS=NAME: what the control calls an axis (joint, number); repeatable");
+  command->add_option("--interpolation-um", options->interpolation_um,
+                      "Largest error of straight lines between nodes, um (0.1)");
+  command->add_option("--interpolation-urad", options->interpolation_urad, "The same of rotary axes, urad (0.1)");
+  command->add_option("--max-points", options->max_points, "Nodes per table the control has room for");
+  command->add_option("--positions", options->positions,
+                      "Positions per axis for the volumetric error (9, 5 above 3 axes)");
+  command->add_option("--limit-um", options->limit_um, "Refuse any correction of a linear axis above this, um");
+  command->add_option("--limit-urad", options->limit_urad, "Refuse any correction of a rotary axis above this, urad");
+  command->add_option("--leave-out-below-uncertainty", options->times_uncertainty,
+                      "Leave out tables that are nowhere more than so many standard uncertainties");
+  command->add_option("--type", options->type, "linuxcnc: COMP_FILE_TYPE, 0 or 1 (1)");
+  command->add_option("--first-table", options->first_table, "siemens-cec: index of the first table (0)");
+  command->add_option("--encoder", options->encoder, "siemens-eec: measuring system, 0 or 1 (0)");
+  command->add_option("--map", options->map, "Map of the error before, after and ideal: .csv, .vts or .vtu");
+  command->add_flag("--json", options->json, "Print JSON for programs");
+  command->callback([&line, options] { line.run = [options]() -> int { return run_table(*options); }; });
+}
+
+}  // namespace abbe

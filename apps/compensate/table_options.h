@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "abbe/machine/machine.h"
+#include "compensate/table_formats.h"
+
+namespace abbe {
+
+/// Pose from "AXIS_unit=position" options; what is not given stays. @throws InputError
+std::vector<double> reference_pose(const Machine& machine, std::vector<double> positions,
+                                   const std::vector<std::string>& at);
+
+/// [axes] true where named; all without names. @throws InputError
+std::vector<bool> chosen_axes(const Machine& machine, const std::vector<std::string>& names);
+
+/// What the control calls the axes: the format's own names, and "AXIS=NAME" options. @throws InputError also for names
+/// given twice and characters that a control's names do not have
+std::vector<TableAxisName> table_axis_names(const Machine& machine, const TableFormat& format,
+                                            const std::vector<std::string>& names);
+
+}  // namespace abbe

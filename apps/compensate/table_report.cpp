@@ -1,0 +1,208 @@
+#include "compensate/table_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "abbe/formats/json_text.h"
+#include "abbe/formats/map_file.h"
+#include "study/summary.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+double in_micro(double value) { return 1e6 * value; }
+double in_um(double mm) { return 1e3 * mm; }
+
+std::string size_words(double value, bool is_angle) {
+  return is_angle ? fmt::format("{:.2f} urad", in_micro(value)) : fmt::format("{:.2f} um", in_um(value));
+}
+
+std::string position_words(double value, bool is_angle) {
+  return is_angle ? fmt::format("{:.6g} deg", value / kDegree) : fmt::format("{:.6g} mm", value);
+}
+
+/// What becomes of one error, in a word.
+const char* carried_word(const CarriedError& error) {
+  if (error.effect_before < 1e-9) {
+    if (error.turn_before < 1e-12) return "no effect";
+    return error.turn_after < 0.05 * error.turn_before ? "carried" : "not carried";
+  }
+  const double share = error.carried();
+  if (share >= 0.95) return "carried";
+  return share > 0.05 ? "in part" : "not carried";
+}
+
+void print_errors(const TableReport& report) {
+  fmt::print("what becomes of the errors, each alone (shift of the functional point, rms over the grid):\n");
+  for (const CarriedError& error : report.errors) {
+    fmt::print("  {:<8} {:>14}  {:<12} {:8.3f} -> {:.3f} um", error.name, size_words(error.size, error.is_angle),
+               carried_word(error), in_um(error.effect_before), in_um(error.effect_after));
+    if (error.turn_before > 1e-12) {
+      fmt::print(", direction {:.2f} -> {:.2f} urad", in_micro(error.turn_before), in_micro(error.turn_after));
+    }
+    fmt::print("\n");
+  }
+  fmt::print("  why not: {}\n", report.format->cannot);
+}
+
+void print_deviations(const char* name, const PoseDeviations& deviations) {
+  const SampleStatistics& p = deviations.position_statistics;
+  const SampleStatistics& o = deviations.orientation_statistics;
+  fmt::print(
+      "  {:<22} mean {:.3f}  95 % {:.3f}  max {:.3f} um;  tool direction mean {:.2f}  95 % {:.2f}  max {:.2f} urad\n",
+      name, in_um(p.mean), in_um(p.p95), in_um(p.maximum), in_micro(o.mean), in_micro(o.p95), in_micro(o.maximum));
+}
+
+nlohmann::ordered_json statistics_json(const PoseDeviations& deviations) {
+  const SampleStatistics& p = deviations.position_statistics;
+  const SampleStatistics& o = deviations.orientation_statistics;
+  return {{"mean_um", in_um(p.mean)},
+          {"p95_um", in_um(p.p95)},
+          {"max_um", in_um(p.maximum)},
+          {"direction_mean_urad", in_micro(o.mean)},
+          {"direction_p95_urad", in_micro(o.p95)},
+          {"direction_max_urad", in_micro(o.maximum)}};
+}
+
+}  // namespace
+
+void print_table_report(const TableReport& report) {
+  const TableFormat& format = *report.format;
+  fmt::print("tables of {} for {}: {}\n", report.machine->name, format.name, format.what);
+  fmt::print("convention: {}\n", format.convention);
+  if (!format.unverified.empty()) fmt::print("EXPERIMENTAL, not verified: {}\n", format.unverified);
+  for (std::size_t t = 0; t < report.tables->tables.size(); ++t) {
+    const TableSummary& table = report.tables->tables[t];
+    fmt::print("  {:<10} {:>5} nodes", table.name, table.nodes);
+    if (table.step > 0) fmt::print(", step {}", position_words(table.step, table.step_is_angle));
+    fmt::print("; largest correction {} at {}; between nodes within {}", size_words(table.largest, table.is_angle),
+               position_words(table.largest_at, table.step_is_angle),
+               table.is_angle ? fmt::format("{:.3f} urad", in_micro(table.interpolation_error))
+                              : fmt::format("{:.4f} um", in_um(table.interpolation_error)));
+    if (!table.within) fmt::print(" (ABOVE the limit: no more nodes)");
+    if (!report.uncertainty.empty()) {
+      fmt::print("; standard uncertainty up to {}", size_words(report.uncertainty[t], table.is_angle));
+    }
+    fmt::print("\n");
+  }
+  if (report.tables->tables.empty()) fmt::print("  no table is needed: nothing that this format carries is there\n");
+  for (const std::string& name : report.left_out) fmt::print("  left out: {}\n", name);
+  print_errors(report);
+  fmt::print("volumetric error over {} poses:\n", report.poses.count());
+  print_deviations("before", report.before);
+  print_deviations("with these tables", report.after);
+  print_deviations("ideal compensation", report.ideal);
+  if (report.ideal_not_reached > 0) {
+    fmt::print("  (ideal: the point is not reached at {} poses)\n", report.ideal_not_reached);
+  }
+  if (report.uncertainty_statistics) {
+    fmt::print("standard uncertainty of that error: mean {:.3f}  95 % {:.3f} um\n",
+               in_um(report.uncertainty_statistics->mean), in_um(report.uncertainty_statistics->p95));
+  }
+  if (report.largest_mm > 0) {
+    fmt::print("largest sum of corrections: {} at {}\n", size_words(report.largest_mm, false), report.largest_mm_at);
+  }
+  if (report.largest_rad > 0) {
+    fmt::print("largest sum of corrections: {} at {}\n", size_words(report.largest_rad, true), report.largest_rad_at);
+  }
+  for (const std::string& remark : report.tables->remarks) fmt::print("set: {}\n", remark);
+  for (const std::string& name : report.written) fmt::print("{} written\n", name);
+}
+
+void print_table_json(const TableReport& report) {
+  nlohmann::ordered_json json;
+  json["machine"] = report.machine->name;
+  json["format"] = report.format->name;
+  json["convention"] = report.format->convention;
+  json["unverified"] = report.format->unverified;
+  json["tables"] = nlohmann::ordered_json::array();
+  for (std::size_t t = 0; t < report.tables->tables.size(); ++t) {
+    const TableSummary& table = report.tables->tables[t];
+    nlohmann::ordered_json one;
+    one["name"] = table.name;
+    one["nodes"] = table.nodes;
+    one[table.step_is_angle ? "step_deg" : "step_mm"] = table.step_is_angle ? table.step / kDegree : table.step;
+    const char* const unit = table.is_angle ? "urad" : "um";
+    const double scale = table.is_angle ? 1e6 : 1e3;
+    one[std::string("largest_") + unit] = scale * table.largest;
+    one[table.step_is_angle ? "largest_at_deg" : "largest_at_mm"] =
+        table.step_is_angle ? table.largest_at / kDegree : table.largest_at;
+    one[std::string("interpolation_") + unit] = scale * table.interpolation_error;
+    one["interpolation_within_limit"] = table.within;
+    if (!report.uncertainty.empty()) {
+      one[std::string("standard_uncertainty_") + unit] = scale * report.uncertainty[t];
+    }
+    json["tables"].push_back(one);
+  }
+  json["left_out"] = report.left_out;
+  json["refused"] = report.refused;
+  json["errors"] = nlohmann::ordered_json::array();
+  for (const CarriedError& error : report.errors) {
+    nlohmann::ordered_json one;
+    one["name"] = error.name;
+    one[error.is_angle ? "size_urad" : "size_um"] = error.is_angle ? in_micro(error.size) : in_um(error.size);
+    one["carried"] = carried_word(error);
+    one["rms_before_um"] = in_um(error.effect_before);
+    one["rms_after_um"] = in_um(error.effect_after);
+    one["direction_rms_before_urad"] = in_micro(error.turn_before);
+    one["direction_rms_after_urad"] = in_micro(error.turn_after);
+    json["errors"].push_back(one);
+  }
+  json["why_not"] = report.format->cannot;
+  json["poses"] = report.poses.count();
+  json["before"] = statistics_json(report.before);
+  json["after"] = statistics_json(report.after);
+  json["ideal"] = statistics_json(report.ideal);
+  json["ideal_not_reached"] = report.ideal_not_reached;
+  if (report.uncertainty_statistics) json["standard_uncertainty_um"] = statistics_um(*report.uncertainty_statistics);
+  json["largest_correction_um"] = in_um(report.largest_mm);
+  json["largest_correction_urad"] = in_micro(report.largest_rad);
+  json["settings"] = report.tables->remarks;
+  json["files"] = report.written;
+  fmt::print("{}", json_text(json));
+}
+
+namespace {
+
+MapData map_of(const TableReport& report) {
+  const Machine& machine = *report.machine;
+  MapData data;
+  for (std::vector<double>& coordinate : data.points) coordinate.resize(report.poses.count());
+  for (std::size_t k = 0; k < report.poses.count(); ++k) {
+    const Eigen::Vector3d point = nominal_workpiece_from_tool(machine, report.poses.pose(k)).translation;
+    for (std::size_t c = 0; c < 3; ++c) data.points[c][k] = point[static_cast<Eigen::Index>(c)];
+  }
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    data.fields.push_back({machine.axes[i].name,
+                           rotary ? Quantity::angle : Quantity::length,
+                           rotary ? "deg" : "mm",
+                           {report.poses.axis[i]}});
+  }
+  const auto add = [&](const std::string& name, const PoseDeviations& deviations) {
+    data.fields.push_back({name, Quantity::length, "um", {deviations.position}});
+    data.fields.push_back({name + "_direction", Quantity::angle, "urad", {deviations.orientation}});
+  };
+  add("before", report.before);
+  add("after", report.after);
+  add("ideal", report.ideal);
+  // Poses run with the last axis fastest, map files with the first direction fastest.
+  data.grid.assign(report.grid.rbegin(), report.grid.rend());
+  return data;
+}
+
+}  // namespace
+
+std::string table_map_text(const TableReport& report, bool csv) {
+  const MapData data = map_of(report);
+  return csv ? map_csv(data) : map_vtk(data);
+}
+
+bool table_map_is_structured(const TableReport& report) { return map_is_structured(map_of(report)); }
+
+}  // namespace abbe

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "abbe/errors/poses.h"
+#include "abbe/verify/table_loss.h"
+#include "compensate/table_formats.h"
+
+namespace abbe {
+
+/// What tables for a control do and do not do, for the report.
+struct TableReport {
+  const TableFormat* format = nullptr;
+  const Machine* machine = nullptr;
+  const ControllerTables* tables = nullptr;
+  PoseList poses;
+  std::vector<std::size_t> grid;  ///< positions per axis, chain order
+  PoseDeviations before, after, ideal;
+  std::size_t ideal_not_reached = 0;
+  std::vector<CarriedError> errors;
+  std::vector<double>
+      uncertainty;  ///< [tables] largest standard uncertainty of a correction, mm or rad; empty: not stated
+  std::vector<std::string> left_out;  ///< "X: at most 1.2 times its standard uncertainty"
+  std::vector<std::string> refused;   ///< what is above a limit
+  std::vector<std::string> written;
+  double largest_mm = 0;  ///< of the sum of corrections of a linear axis over the grid
+  double largest_rad = 0;
+  std::string largest_mm_at, largest_rad_at;
+  /// Standard uncertainty of the volumetric error that is corrected, over the grid; mm.
+  std::optional<SampleStatistics> uncertainty_statistics;
+};
+
+void print_table_report(const TableReport& report);
+void print_table_json(const TableReport& report);
+
+/// Deviations over the grid before, with these tables and with the ideal correction, as a map for map_file.h.
+std::string table_map_text(const TableReport& report, bool csv);
+/// Whether the poses make a structured map (.vts) or an unstructured one (.vtu).
+bool table_map_is_structured(const TableReport& report);
+
+}  // namespace abbe

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "abbe/errors/poses.h"
+
+namespace abbe {
+
+/// What a control adds to the commands of its axes, as a function of the commands.
+class CommandCorrection {
+ public:
+  virtual ~CommandCorrection() = default;
+
+  /// @param commands    [axes][count], chain order, mm or rad
+  /// @param correction  [axes][count], written: added to the command, mm or rad
+  virtual void evaluate(const PoseList& commands, PoseList& correction) const = 0;
+};
+
+/// Nothing is added: the control before its tables are loaded.
+class NoCorrection final : public CommandCorrection {
+ public:
+  void evaluate(const PoseList& commands, PoseList& correction) const override {
+    correction.axis.assign(commands.axis.size(), std::vector<double>(commands.count(), 0.0));
+  }
+};
+
+}  // namespace abbe

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace abbe {
+
+/// Functions of one position that share the nodes of a table: values[function][k] at positions[k].
+using SampledFunctions =
+    std::function<void(std::span<const double> positions, std::vector<std::vector<double>>& values)>;
+
+struct NodeSpacing {
+  double from = 0;  ///< mm or rad
+  double to = 0;
+  std::vector<double> tolerance;  ///< [functions] largest difference between function and straight lines, its unit
+  std::size_t fewest = 2;         ///< nodes
+  std::size_t most = 10000;       ///< nodes that the table can have
+  /// Where it can be done with at most twice the nodes, the step is a multiple of this (0: any step), so that it is
+  /// written in few digits; mm or rad.
+  double step_multiple = 0;
+};
+
+/// Evenly spaced nodes and how well straight lines between them follow.
+struct TableNodes {
+  std::vector<double> positions;            ///< [n] mm or rad; one node if from = to
+  std::vector<std::vector<double>> values;  ///< [functions][n]
+  std::vector<double> error;                ///< [functions] largest difference found between the nodes
+  bool within = true;                       ///< every error is within its tolerance
+};
+
+/// Few evenly spaced nodes (to three parts in a hundred the fewest) that keep straight lines within the tolerance, or
+/// `most` of them.
+///
+/// The difference is looked at in 16 places of every interval, and at no fewer than 1000 in all, so that what is
+/// narrower than an interval is seen too.
+TableNodes choose_nodes(const SampledFunctions& functions, const NodeSpacing& spacing);
+
+/// Exactly so many nodes.
+TableNodes nodes_at(const SampledFunctions& functions, const NodeSpacing& spacing, std::size_t count);
+
+}  // namespace abbe

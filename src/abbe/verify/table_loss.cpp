@@ -1,0 +1,143 @@
+#include "abbe/verify/table_loss.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "abbe/compensate/compensated_inverse.h"
+#include "abbe/compensate/point_correction.h"
+#include "abbe/errors/actual_pose.h"
+
+namespace abbe {
+namespace {
+
+constexpr int kSamples = 201;  // places along an axis where its error motion is looked at
+
+void add_deviation(const Machine& machine, const ErrorSet& errors, const std::vector<double>& commands,
+                   const std::vector<double>& corrected, PoseDeviations& deviations) {
+  const RigidTransform wanted = nominal_workpiece_from_tool(machine, commands);
+  const RigidTransform actual = actual_workpiece_from_tool(machine, errors, corrected);
+  deviations.position.push_back((actual.translation - wanted.translation).norm());
+  const Eigen::Vector3d a = actual.rotation * machine.tool_direction, b = wanted.rotation * machine.tool_direction;
+  deviations.orientation.push_back(std::atan2(a.cross(b).norm(), a.dot(b)));
+}
+
+void summarise(PoseDeviations& deviations) {
+  deviations.position_statistics = sample_statistics(deviations.position);
+  deviations.orientation_statistics = sample_statistics(deviations.orientation);
+}
+
+double largest_value(const Machine& machine, const ErrorSet& errors, std::size_t axis, Component component) {
+  const KnownTravel travel = known_travel(machine, errors, axis);
+  double largest = 0;
+  for (const double q : evenly_spaced(travel.from, travel.to, kSamples)) {
+    largest = std::max(largest, std::abs(errors.evaluate(axis, q)[static_cast<std::size_t>(component)]));
+  }
+  return largest;
+}
+
+}  // namespace
+
+PoseDeviations deviations_with(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
+                               const CommandCorrection& correction) {
+  PoseList added;
+  correction.evaluate(commands, added);
+  PoseDeviations deviations;
+  for (std::size_t k = 0; k < commands.count(); ++k) {
+    const std::vector<double> pose = commands.pose(k);
+    std::vector<double> corrected = pose;
+    for (std::size_t i = 0; i < corrected.size(); ++i) corrected[i] += added.axis[i][k];
+    add_deviation(machine, errors, pose, corrected, deviations);
+  }
+  summarise(deviations);
+  return deviations;
+}
+
+PoseDeviations ideal_deviations(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
+                                std::size_t& not_reached) {
+  const CompensatedInverse inverse(with_room_beyond_travel(machine), errors);
+  PoseList reached = commands;
+  std::vector<const double*> in;
+  std::vector<double*> out;
+  for (std::size_t i = 0; i < commands.axis.size(); ++i) {
+    in.push_back(commands.axis[i].data());
+    out.push_back(reached.axis[i].data());
+  }
+  std::vector<CorrectionStatus> status(commands.count(), CorrectionStatus::not_run);
+  inverse.correct({in, commands.count()}, {out, status.data()});
+  not_reached = 0;
+  PoseDeviations deviations;
+  for (std::size_t k = 0; k < commands.count(); ++k) {
+    const bool point = status[k] == CorrectionStatus::reached || status[k] == CorrectionStatus::orientation_left ||
+                       status[k] == CorrectionStatus::turn_limited;
+    if (!point) ++not_reached;
+    add_deviation(machine, errors, commands.pose(k), reached.pose(k), deviations);
+  }
+  summarise(deviations);
+  return deviations;
+}
+
+std::vector<NamedErrors> errors_one_by_one(const Machine& machine, const ErrorSet& errors) {
+  std::vector<NamedErrors> alone;
+  for (const ErrorMotion& motion : errors.motions) {
+    const std::string name = error_motion_name(machine, motion.axis, motion.component);
+    auto found = std::find_if(alone.begin(), alone.end(), [&](const NamedErrors& one) { return one.name == name; });
+    if (found == alone.end()) {
+      NamedErrors named;
+      named.name = name;
+      named.is_angle = is_rotation(motion.component);
+      named.errors.composition = errors.composition;
+      alone.push_back(std::move(named));
+      found = alone.end() - 1;
+    }
+    found->errors.motions.push_back(motion);
+  }
+  for (NamedErrors& named : alone) {
+    const ErrorMotion& motion = named.errors.motions.front();
+    named.size = largest_value(machine, named.errors, motion.axis, motion.component);
+  }
+  for (const LocationError& location : errors.locations) {
+    NamedErrors named;
+    named.name = location_error_name(machine, location.axis, location.component);
+    named.is_angle = is_rotation(location.component);
+    // About (along) the axis's own direction it is its zero position, in the unit of the axis.
+    if (is_zero_position_error(machine.axes[location.axis], location.component)) {
+      named.is_angle = machine.axes[location.axis].kind == AxisKind::rotary;
+    }
+    named.size = std::abs(location.value);
+    named.errors.composition = errors.composition;
+    named.errors.locations.push_back(location);
+    alone.push_back(std::move(named));
+  }
+  for (int k = 0; k < 3; ++k) {
+    if (errors.tool_offset_error[k] == 0) continue;
+    NamedErrors named;
+    named.name = std::string("tool_") + "XYZ"[k];
+    named.size = std::abs(errors.tool_offset_error[k]);
+    named.errors.composition = errors.composition;
+    named.errors.tool_offset_error[k] = errors.tool_offset_error[k];
+    alone.push_back(std::move(named));
+  }
+  return alone;
+}
+
+std::vector<CarriedError> carried_errors(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
+                                         const CorrectionMaker& make) {
+  std::vector<CarriedError> carried;
+  for (const NamedErrors& alone : errors_one_by_one(machine, errors)) {
+    CarriedError one;
+    one.name = alone.name;
+    one.is_angle = alone.is_angle;
+    one.size = alone.size;
+    const PoseDeviations before = deviations_with(machine, alone.errors, commands, NoCorrection());
+    one.effect_before = before.position_statistics.rms;
+    one.turn_before = before.orientation_statistics.rms;
+    const PoseDeviations after = deviations_with(machine, alone.errors, commands, *make(alone.errors));
+    one.effect_after = after.position_statistics.rms;
+    one.turn_after = after.orientation_statistics.rms;
+    carried.push_back(one);
+  }
+  return carried;
+}
+
+}  // namespace abbe

@@ -1,0 +1,135 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class CompensateTable : public CommandTest {
+ protected:
+  const std::filesystem::path source = ABBE_SOURCE_DIR;
+  const std::string mill = (source / "examples/machines/three-axis-mill.machine.toml").string();
+  const std::string errors = (source / "examples/compensate/mill.errors.toml").string();
+
+  CommandResult table(const std::string& format, const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {"compensate", "table", mill, errors, "--for", format};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return abbe(arguments);
+  }
+  nlohmann::json json_of(const CommandResult& result) const {
+    EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
+    return nlohmann::json::parse(result.out);
+  }
+};
+
+const nlohmann::json& error_named(const nlohmann::json& json, const std::string& name) {
+  for (const nlohmann::json& error : json["errors"]) {
+    if (error["name"] == name) return error;
+  }
+  ADD_FAILURE() << name;
+  return json;
+}
+
+TEST_F(CompensateTable, LinuxCncGetsOneFilePerJointAndTheReportSaysWhatItCannotCarry) {
+  const nlohmann::json json = json_of(table("linuxcnc", {"-o", "comp", "--json"}));
+  ASSERT_EQ(json["files"].size(), 3U);
+  for (const char* axis : {"X", "Y", "Z"}) {
+    std::istringstream text(folder.read(std::string("comp/") + axis + ".comp"));
+    double nominal = 0, forward = 0, reverse = 0, last = -1e9;
+    int points = 0;
+    while (text >> nominal >> forward >> reverse) {
+      EXPECT_GT(nominal, last);
+      EXPECT_EQ(forward, reverse);
+      EXPECT_LT(std::abs(forward), 0.05);
+      last = nominal;
+      ++points;
+    }
+    EXPECT_TRUE(text.eof()) << "something beside numbers";
+    EXPECT_GE(points, 2);
+    EXPECT_LE(points, 256);
+  }
+  for (const char* name : {"EXX", "EYY", "EZZ"}) EXPECT_EQ(error_named(json, name)["carried"], "carried") << name;
+  for (const char* name : {"EYX", "EZX", "EC0Y"}) EXPECT_EQ(error_named(json, name)["carried"], "not carried") << name;
+  EXPECT_EQ(error_named(json, "EBX")["carried"], "in part");
+  EXPECT_LT(json["after"]["mean_um"].get<double>(), 0.7 * json["before"]["mean_um"].get<double>());
+  EXPECT_LT(json["ideal"]["max_um"].get<double>(), 1e-6);
+  EXPECT_GT(json["tables"][0]["standard_uncertainty_um"].get<double>(), 0.5);
+  // Type 0 says the same in other columns.
+  const nlohmann::json other = json_of(table("linuxcnc", {"-o", "comp0", "--type", "0", "--json"}));
+  EXPECT_NEAR(other["after"]["mean_um"].get<double>(), json["after"]["mean_um"].get<double>(), 1e-3);
+  EXPECT_NE(folder.read("comp0/X.comp"), folder.read("comp/X.comp"));
+}
+
+TEST_F(CompensateTable, SagTablesCarryStraightnessAndSquarenessAndEncoderTablesDoNot) {
+  const nlohmann::json sag = json_of(table("siemens-cec", {"-o", "CEC.INI", "--json"}));
+  const nlohmann::json encoder = json_of(table("siemens-eec", {"-o", "EEC.INI", "--json"}));
+  for (const char* name : {"EXX", "EYX", "EZX", "EXY", "EC0Y", "EB0Z"}) {
+    EXPECT_EQ(error_named(sag, name)["carried"], "carried") << name;
+  }
+  EXPECT_EQ(error_named(encoder, "EYX")["carried"], "not carried");
+  EXPECT_LT(sag["after"]["mean_um"].get<double>(), 0.2 * sag["before"]["mean_um"].get<double>());
+  EXPECT_LT(encoder["after"]["mean_um"].get<double>(), 0.7 * encoder["before"]["mean_um"].get<double>());
+  EXPECT_THAT(sag["unverified"].get<std::string>(), HasSubstr("sign"));
+  EXPECT_THAT(folder.read("CEC.INI"), testing::StartsWith("%_N_NC_CEC_INI\nCHANDATA(1)\n$AN_CEC[0,0]="));
+  EXPECT_THAT(folder.read("EEC.INI"), HasSubstr("$AA_ENC_COMP_STEP[0,X1]=23.75\n"));
+}
+
+TEST_F(CompensateTable, CorrectionsAboveALimitAreRefusedAndNothingIsWritten) {
+  const CommandResult result = table("linuxcnc", {"-o", "comp", "--limit-um", "20", "--map", "map.csv"});
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.err, HasSubstr("above --limit-um 20: table X"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "comp"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "map.csv"));
+  EXPECT_EQ(table("linuxcnc", {"-o", "comp", "--limit-um", "100"}).exit_code, ExitCode::done);
+}
+
+TEST_F(CompensateTable, TooFewPointsForTheInterpolationAreSaidAndNothingIsWritten) {
+  const CommandResult result = table("linuxcnc", {"-o", "comp", "--max-points", "5"});
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.out, HasSubstr("ABOVE the limit"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "comp"));
+}
+
+TEST_F(CompensateTable, TablesBelowTheirUncertaintyAreLeftOutAndNamed) {
+  const nlohmann::json json =
+      json_of(table("siemens-cec", {"-o", "CEC.INI", "--json", "--leave-out-below-uncertainty", "5"}));
+  ASSERT_FALSE(json["left_out"].empty());
+  EXPECT_THAT(json["left_out"].dump(), HasSubstr("Z for Y"));
+  EXPECT_THAT(folder.read("CEC.INI"), Not(HasSubstr("$AN_CEC_INPUT_AXIS[8]")));
+}
+
+TEST_F(CompensateTable, MapHasTheErrorBeforeAfterAndIdeal) {
+  ASSERT_EQ(table("siemens-cec", {"--dry-run", "--map", "map.csv", "--positions", "3"}).exit_code, ExitCode::done);
+  EXPECT_THAT(folder.read("map.csv"), HasSubstr("before_um"));
+  EXPECT_THAT(folder.read("map.csv"), HasSubstr("ideal_um"));
+  EXPECT_EQ(table("siemens-cec", {"--dry-run", "--map", "map.vts"}).exit_code, ExitCode::done);
+}
+
+TEST_F(CompensateTable, InputsAreNeverWrittenOverAndWrongOptionsAreNamed) {
+  std::filesystem::copy(errors, folder.path() / "mine.errors.toml");
+  const std::string before = folder.read("mine.errors.toml");
+  const CommandResult over =
+      abbe({"compensate", "table", mill, "mine.errors.toml", "--for", "siemens-cec", "-o", "mine.errors.toml"});
+  EXPECT_EQ(over.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(over.err, HasSubstr("this is an input"));
+  EXPECT_EQ(folder.read("mine.errors.toml"), before);
+  EXPECT_THAT(table("linuxcnc", {"-o", "x.comp"}).err, HasSubstr("3 files are to be written"));
+  EXPECT_EQ(table("linuxcnc", {"-o", "x.comp", "--axis", "X"}).exit_code, ExitCode::done);
+  EXPECT_THAT(table("heidenhain-9", {"-o", "x"}).err, HasSubstr("unknown format"));
+  EXPECT_THAT(table("linuxcnc", {}).err, HasSubstr("--dry-run"));
+  EXPECT_THAT(table("linuxcnc", {"-o", "c", "--at", "X_deg=3"}).err, HasSubstr("unit 'deg' for a linear axis"));
+  EXPECT_THAT(table("siemens-cec", {"-o", "c.ini", "--name", "X=AX2"}).err, HasSubstr("two axes are called AX2"));
+  EXPECT_THAT(table("linuxcnc", {"-o", "c", "--axis", "Q"}).err, HasSubstr("no such axis"));
+}
+
+}  // namespace
+}  // namespace abbe
