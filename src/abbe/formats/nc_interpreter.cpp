@@ -1,0 +1,364 @@
+#include "abbe/formats/nc_interpreter.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace abbe {
+namespace {
+
+constexpr double kInch = 25.4;
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::size_t kForgetEvery = std::size_t{1} << 22;
+
+bool is_rotary(std::size_t axis) { return axis >= 3 && axis <= 5; }
+
+}  // namespace
+
+NcInterpreter::NcInterpreter(std::string_view text, const std::string& file, const NcProgramOptions& options,
+                             NcWriter& writer)
+    : text_(text),
+      file_(file),
+      options_(options),
+      writer_(writer),
+      expression_(parameters_),
+      flow_(text, file, parameters_, expression_, {.idle_jumps = options.most_idle_rounds}),
+      reader_(file, expression_) {
+  modes_.inches = modes_.feed_inches = options.inches;
+  for (std::size_t k = 0; k < kAxisWords; ++k) {
+    if (options.words[k]) machine_words_ |= std::uint32_t{1} << k;
+    if (options.words[k] && options.start[k]) {
+      position_[k] = is_rotary(k) ? *options.start[k] / kDegree : *options.start[k];
+      known_ |= std::uint32_t{1} << k;
+    }
+  }
+  if (options.tools) {
+    tools_ = *options.tools;
+    for (auto& [number, offset] : tools_) {
+      for (std::size_t k = 3; k < 6; ++k) offset[k] /= kDegree;
+    }
+  }
+  tool_ = options.tool;
+  take_parameters();
+  parameters_.set_system(*this);
+  update_frame();
+}
+
+void NcInterpreter::take_parameters() {
+  const double length = options_.parameters_in_inches ? kInch : 1;
+  const auto place = [&](int first, int number, std::size_t& axis) {
+    axis = static_cast<std::size_t>(number - first);
+    return number >= first && number < first + static_cast<int>(kAxisWords);
+  };
+  bool axis_offset_on = false;
+  for (const auto& parameter : options_.parameters) {
+    const int number = parameter.first;
+    const double value = parameter.second;
+    const InputError::Place where{.file = file_, .field = fmt::format("#{}", number)};
+    if (number < 1 || number >= kNcParameters || !(std::abs(value) <= 1e9)) {
+      throw InputError(where, "is not a parameter that can be set", "a number from 1 to 5601 and a value up to 1e9");
+    }
+    if (NcParameters::is_of_control(number)) continue;
+    std::size_t axis = 0;
+    const auto scaled = [&] { return is_rotary(axis) ? value : value * length; };
+    bool taken = false;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!place(i == 0 ? 5161 : 5181, number, axis)) continue;
+      home_[i].value[axis] = scaled();
+      home_[i].known |= std::uint32_t{1} << axis;
+      taken = true;
+    }
+    if (place(5211, number, axis)) {
+      stored_axis_offset_[axis] = scaled();
+      taken = true;
+    }
+    for (std::size_t s = 0; s < systems_.size(); ++s) {
+      const int first = 5221 + 20 * static_cast<int>(s);
+      if (place(first, number, axis)) {
+        systems_[s][axis] = scaled();
+        taken = true;
+      }
+      if (number == first + 9) {
+        if (value != 0) {
+          throw InputError(where, "a work offset that is rotated is not handled", "0");
+        }
+        taken = true;
+      }
+    }
+    if (number == 5210) {
+      axis_offset_on = value != 0;
+      taken = true;
+    }
+    if (number == 5220) {
+      if (!(value >= 1 && value <= 9)) throw InputError(where, "is not a work offset", "1 (G54) to 9 (G59.3)");
+      modes_.system = static_cast<std::size_t>(std::lround(value)) - 1;
+      taken = true;
+    }
+    if (!taken) parameters_.set(number, value);
+  }
+  if (axis_offset_on) axis_offset_ = stored_axis_offset_;
+}
+
+std::size_t NcInterpreter::run(const std::function<void(std::size_t)>& read_to) {
+  std::string_view line;
+  std::size_t number = 0, lines = 0, told = 0;
+  bool percent = false;
+  while (flow_.next_line(line, number)) {
+    ++lines;
+    if (read_to && flow_.offset() > told + kForgetEvery) read_to(told = flow_.offset());
+    reader_.read(line, number, block_);
+    if (block_.is_percent) {
+      writer_.line("%");
+      if (percent) break;
+      percent = true;
+      continue;
+    }
+    if (block_.is_deleted && options_.block_delete) continue;
+    if (block_.flow != NcFlowWord::none) {
+      flow_.run(block_);
+      const char next = block_.cursor.peek();
+      if (next == '(' || next == ';') {
+        reader_.read({block_.cursor.at, static_cast<std::size_t>(block_.cursor.end - block_.cursor.at)}, number,
+                     block_);
+        pass_comments(true);
+      }
+      continue;
+    }
+    execute();
+    if (codes_.m_group[0] >= 0 && ends_program()) {
+      // Nothing behind it runs; the percent sign closes the file as it opened it.
+      if (percent) writer_.line("%");
+      break;
+    }
+  }
+  return lines;
+}
+
+bool NcInterpreter::ends_program() const {
+  const double code = block_.words[static_cast<std::size_t>(codes_.m_group[0])].value;
+  return code == 2 || code == 30;
+}
+
+void NcInterpreter::check_words() const {
+  for (std::size_t k = 0; k < kAxisWords; ++k) {
+    if ((codes_.axes & ~machine_words_ & (std::uint32_t{1} << k)) != 0) {
+      block_.fail("xyzabcuvw"[k], "the machine has no axis of this word");
+    }
+  }
+  const NcCode motion = codes_[NcGroup::motion];
+  const bool is_arc =
+      motion == 20 || motion == 30 || (!codes_.has(NcGroup::motion) && modes_.motion >= 20 && modes_.motion <= 30);
+  const bool is_cycle = motion >= 730 || (!codes_.has(NcGroup::motion) && modes_.motion >= 730 && modes_.motion != 800);
+  const bool is_g10 = codes_[NcGroup::non_modal] == 100;
+  const bool is_user = codes_.m_group[8] >= 0 || codes_.m_group[7] >= 0;
+  for (const char letter : {'i', 'j', 'k'}) {
+    if (block_.has(letter) && !is_arc && !is_g10) block_.fail(letter, "no code of this block uses it", "G2 or G3");
+  }
+  if (block_.has('r') && !is_arc && !is_cycle && !is_g10) {
+    block_.fail('r', "no code of this block uses it", "G2, G3 or a canned cycle");
+  }
+  if (block_.has('h') && !codes_.has(NcGroup::tool_length)) block_.fail('h', "no code of this block uses it", "G43");
+  if (block_.has('l') && !is_cycle && !is_g10 && !is_user && codes_.m_group[0] < 0) {
+    block_.fail('l', "no code of this block uses it", "G10, a canned cycle, M66 or M98");
+  }
+  if (block_.has('q') && !is_cycle && !is_g10 && !is_user && codes_[NcGroup::path] != 640 && codes_.m_group[2] < 0 &&
+      codes_.m_group[1] < 0) {
+    block_.fail('q', "no code of this block uses it", "G64, G73, G83, M19, M61, M66 or M100-M199");
+  }
+  if (block_.has('p') && !is_arc && !is_cycle && !is_g10 && !is_user && codes_[NcGroup::non_modal] != 40 &&
+      codes_[NcGroup::path] != 640 && codes_.m_group[6] < 0 && codes_.m_group[0] < 0 && codes_.m_group[2] < 0) {
+    block_.fail('p', "no code of this block uses it",
+                "G2, G3, G4, G10, G64, a canned cycle, M50-M68, M98 or M100-M199");
+  }
+  if (block_.has('e') && !is_user) block_.fail('e', "no code of this block uses it", "M66, M67 or M68");
+  if (block_.has('f') && block_.value('f') < 0) block_.fail('f', "the feed is negative");
+  if (block_.has('s') && block_.value('s') < 0) block_.fail('s', "the speed of the spindle is negative");
+  if (block_.has('t')) {
+    const double tool = block_.value('t');
+    if (tool < 0 || std::abs(tool - std::round(tool)) > 1e-4) block_.fail('t', "is not the number of a tool");
+  }
+}
+
+void NcInterpreter::execute() {
+  sort_nc_codes(block_, codes_);
+  check_words();
+  const NcCode other = codes_[NcGroup::non_modal];
+  const NcCode tool_length = codes_[NcGroup::tool_length];
+  // Who takes the axis words.
+  const bool sets_offset = other == 100 || other == 520 || other == 920;
+  const bool to_reference = other == 280 || other == 300;
+  const bool dynamic_tool = tool_length == 431 || (tool_length == 432 && !block_.has('h'));
+  const bool has_axes = codes_.axes != 0;
+  if (sets_offset || to_reference || (dynamic_tool && has_axes)) {
+    if (codes_.has(NcGroup::motion) && codes_[NcGroup::motion] != 800) {
+      block_.fail(codes_.word(block_, NcGroup::motion), "two codes of this block use the axis words");
+    }
+    if (static_cast<int>(sets_offset) + static_cast<int>(to_reference) + static_cast<int>(dynamic_tool) > 1) {
+      block_.fail(codes_.word(block_, NcGroup::tool_length), "two codes of this block use the axis words");
+    }
+  }
+  const bool free_axes = has_axes && !sets_offset && !to_reference && !dynamic_tool;
+  NcCode motion = kNoCode;
+  if (free_axes || (codes_.has(NcGroup::motion) && codes_[NcGroup::motion] >= 20 && codes_[NcGroup::motion] != 800)) {
+    motion = codes_.has(NcGroup::motion) ? codes_[NcGroup::motion] : modes_.motion;
+    if (motion == 800) {
+      const auto first = static_cast<std::size_t>(std::countr_zero(codes_.axes));
+      block_.fail("xyzabcuvw"[first], "axis words without a code that uses them", "G0, G1, G2, G3 or a canned cycle");
+    }
+  }
+  // An arc goes on with its centre alone: a full circle.
+  if (!has_axes && motion == kNoCode && !codes_.has(NcGroup::motion) && modes_.motion >= 20 && modes_.motion <= 30 &&
+      (block_.has('i') || block_.has('j') || block_.has('k'))) {
+    motion = modes_.motion;
+  }
+  if (codes_.m_group[0] >= 0) {
+    const NcWord& word = block_.words[static_cast<std::size_t>(codes_.m_group[0])];
+    if (word.value == 98 || word.value == 99) {
+      if (codes_.m_count > 1 || motion != kNoCode) block_.fail(word, "M98 and M99 stand alone in their block");
+      pass_comments(true);
+      if (word.value == 98) {
+        if (!block_.has('p')) block_.fail(word, "the number of the subprogram is missing", "P");
+        flow_.call_subprogram(block_, word, block_.value('p'), block_.has('l') ? block_.value('l') : 1);
+      } else {
+        flow_.end_subprogram(block_, word);
+      }
+      apply_assignments();
+      return;
+    }
+  }
+  set_feed();
+  if (block_.has('t')) selected_tool_ = static_cast<int>(std::lround(block_.value('t')));
+  if (codes_.m_group[1] >= 0) {
+    const NcWord& word = block_.words[static_cast<std::size_t>(codes_.m_group[1])];
+    if (word.value == 6) {
+      tool_ = selected_tool_;
+    } else if (block_.has('q')) {
+      tool_ = static_cast<int>(std::lround(block_.value('q')));
+    }
+  }
+  if (codes_.m_group[2] >= 0) {
+    const double code = block_.words[static_cast<std::size_t>(codes_.m_group[2])].value;
+    spindle_ = code == 3 || code == 4 ? static_cast<int>(code) : 0;
+  }
+  if (other == 40) {
+    if (!block_.has('p'))
+      block_.fail(codes_.word(block_, NcGroup::non_modal), "the time of the dwell is missing", "P in s");
+    if (block_.value('p') < 0) block_.fail('p', "the time of the dwell is negative");
+  }
+  set_modes();
+  set_tool_length();
+  if (codes_.has(NcGroup::work_offset)) {
+    const NcCode code = codes_[NcGroup::work_offset];
+    modes_.system = static_cast<std::size_t>(code < 590 ? (code - 540) / 10 : code - 585);
+    update_frame();
+  }
+  const bool moves = motion != kNoCode || to_reference;
+  if (codes_[NcGroup::non_modal] == 530 && (motion == kNoCode || motion > 10)) {
+    block_.fail(codes_.word(block_, NcGroup::non_modal), "G53 is not followed by a straight move", "G0 or G1");
+  }
+  if (other == 100 || (other >= 920 && other <= 923) || other == 520) {
+    set_origin();
+  } else {
+    if (other == 281 || other == 301) {
+      if ((machine_words_ & ~known_) != 0) fail_unknown(machine_words_ & ~known_, "G28.1 and G30.1 store it");
+      home_[other == 281 ? 0 : 1] = {position_, machine_words_};
+    }
+    pass_block(moves);
+  }
+  if (to_reference) go_to_reference();
+  if (motion != kNoCode) move_by_word(motion);
+  if (codes_.has(NcGroup::motion)) modes_.motion = codes_[NcGroup::motion];
+  if (moves && codes_.m_group[0] >= 0) {
+    // A stop holds when the motion is done, behind its last piece.
+    writer_.words_as_line();
+    std::string stop;
+    append_word(stop, block_.words[static_cast<std::size_t>(codes_.m_group[0])]);
+    writer_.line(stop);
+  }
+  if (!block_.assignments.empty()) apply_assignments();
+}
+
+void NcInterpreter::apply_assignments() {
+  double ignored = 0;
+  for (const NcAssignment& assignment : block_.assignments) {
+    if (assignment.number > 0) {
+      parameters_.set(assignment.number, assignment.value);
+    } else {
+      if (named(assignment.name, ignored)) {
+        throw InputError({file_, block_.cursor.line, 0, "#<" + assignment.name + ">"},
+                         "this parameter belongs to the control");
+      }
+      parameters_.set(assignment.name, assignment.value);
+    }
+  }
+  pass_assignments();
+}
+
+bool NcInterpreter::numbered(int number, double& value) const {
+  const double length = options_.parameters_in_inches ? kInch : 1;
+  const auto axis_of = [&](int first) { return static_cast<std::size_t>(number - first); };
+  const auto in = [&](int first) { return number >= first && number < first + static_cast<int>(kAxisWords); };
+  const auto stored = [&](double position, std::size_t axis) { return is_rotary(axis) ? position : position / length; };
+  for (std::size_t i = 0; i < 2; ++i) {
+    const int first = i == 0 ? 5161 : 5181;
+    if (!in(first)) continue;
+    value = stored(home_[i].value[axis_of(first)], axis_of(first));
+    return (home_[i].known >> axis_of(first) & 1) != 0;
+  }
+  if (in(5211)) {
+    value = stored(stored_axis_offset_[axis_of(5211)], axis_of(5211));
+    return true;
+  }
+  if (number == 5220) {
+    value = static_cast<double>(modes_.system) + 1;
+    return true;
+  }
+  for (std::size_t s = 0; s < systems_.size(); ++s) {
+    const int first = 5221 + 20 * static_cast<int>(s);
+    if (in(first)) {
+      value = stored(systems_[s][axis_of(first)], axis_of(first));
+      return true;
+    }
+  }
+  if (number == 5400 && tool_) {
+    value = *tool_;
+    return true;
+  }
+  if (in(5420)) {
+    const std::size_t axis = axis_of(5420);
+    value = (position_[axis] - offset_[axis]) / unit(axis);
+    return (known_ >> axis & 1) != 0;
+  }
+  return false;
+}
+
+bool NcInterpreter::named(std::string_view name, double& value) const {
+  if (name.size() == 2) {
+    const std::size_t axis = nc_axis(name[1]);
+    return axis < kAxisWords && numbered(5420 + static_cast<int>(axis), value);
+  }
+  const auto say = [&](double said) {
+    value = said;
+    return true;
+  };
+  if (name == "_line") return say(static_cast<double>(block_.cursor.line));
+  if (name == "_feed") return say(modes_.feed);
+  if (name == "_metric") return say(modes_.inches ? 0 : 1);
+  if (name == "_imperial") return say(modes_.inches ? 1 : 0);
+  if (name == "_absolute") return say(modes_.absolute ? 1 : 0);
+  if (name == "_incremental") return say(modes_.absolute ? 0 : 1);
+  if (name == "_inverse_time") return say(modes_.feed_mode == FeedMode::inverse_time ? 1 : 0);
+  if (name == "_units_per_minute") return say(modes_.feed_mode == FeedMode::per_minute ? 1 : 0);
+  if (name == "_units_per_rev") return say(modes_.feed_mode == FeedMode::per_revolution ? 1 : 0);
+  if (name == "_motion_mode") return say(modes_.motion);
+  if (name == "_plane") return say(modes_.plane == ArcPlane::XY ? 170 : modes_.plane == ArcPlane::ZX ? 180 : 190);
+  if (name == "_coord_system")
+    return say(modes_.system < 6 ? 540 + 10.0 * static_cast<double>(modes_.system)
+                                 : 585 + static_cast<double>(modes_.system));
+  if (name == "_current_tool" && tool_) return say(*tool_);
+  if (name == "_selected_tool" && selected_tool_) return say(*selected_tool_);
+  return false;
+}
+
+}  // namespace abbe

@@ -1,0 +1,77 @@
+#pragma once
+
+// Internal to formats: what is in force in an NC program.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "abbe/compensate/program_move.h"
+#include "abbe/formats/nc_block.h"
+
+namespace abbe {
+
+/// G codes in tenths: G53 is 530, G59.3 is 593.
+using NcCode = int;
+inline constexpr NcCode kNoCode = -1;
+
+/// Groups of G codes of which a block may have one each. Source: NIST RS274/NGC version 3, table 4; LinuxCNC, G-code,
+/// "Modal groups".
+enum class NcGroup : std::uint8_t {
+  none,         ///< not a code that is handled
+  non_modal,    ///< G4 G10 G28 G30 G52 G53 G92
+  motion,       ///< G0 G1 G2 G3 G73 G80-G89
+  plane,        ///< G17 G18 G19
+  distance,     ///< G90 G91
+  arc_centre,   ///< G90.1 G91.1
+  feed_mode,    ///< G93 G94 G95
+  units,        ///< G20 G21
+  cutter,       ///< G40
+  tool_length,  ///< G43 G43.1 G43.2 G43.4 G49
+  retract,      ///< G98 G99
+  work_offset,  ///< G54-G59.3
+  path,         ///< G61 G61.1 G64
+  spindle,      ///< G96 G97
+  diameter,     ///< G8
+};
+inline constexpr std::size_t kNcGroups = 15;
+
+/// The codes of one block, sorted.
+struct NcCodes {
+  std::array<NcCode, kNcGroups> code{};        ///< by group; kNoCode
+  std::array<std::int8_t, kNcGroups> place{};  ///< the word
+  std::uint32_t axes = 0;                      ///< bits of the axis words
+  std::array<std::int8_t, 10> m_group{};       ///< the word of an M code of each group, or -1
+  std::size_t m_count = 0;
+
+  NcCode operator[](NcGroup group) const { return code[static_cast<std::size_t>(group)]; }
+  bool has(NcGroup group) const { return (*this)[group] != kNoCode; }
+  const NcWord& word(const NcBlock& block, NcGroup group) const {
+    return block.words[static_cast<std::size_t>(place[static_cast<std::size_t>(group)])];
+  }
+};
+
+/// Sorts the codes of a block by their groups.
+/// @throws InputError for a code that is not handled, and for two of one group
+void sort_nc_codes(const NcBlock& block, NcCodes& codes);
+
+/// Axis word of a letter in lower case, or kAxisWords.
+std::size_t nc_axis(char letter);
+
+/// What is in force between blocks: LinuxCNC's state when a program begins.
+struct NcModes {
+  NcCode motion = 800;
+  ArcPlane plane = ArcPlane::XY;
+  bool absolute = true;
+  bool arc_absolute = false;
+  bool inches = false;
+  bool retract_to_r = true;  ///< G99
+  FeedMode feed_mode = FeedMode::per_minute;
+  double feed = 0;           ///< F as it was written
+  bool feed_inches = false;  ///< the unit in which it was
+  bool tool_centre = false;  ///< G43.4
+  std::size_t system = 0;    ///< G54 is 0
+  bool exact_path = false;   ///< G61, G61.1
+};
+
+}  // namespace abbe

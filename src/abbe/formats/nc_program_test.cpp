@@ -1,0 +1,191 @@
+#include "abbe/formats/nc_program.h"
+
+#include <gtest/gtest.h>
+
+#include "abbe/formats/message_of.h"
+#include "abbe/formats/nc_correctors_for_test.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+TEST(NcProgram, AMoveStatesWhatIsInForce) {
+  const RunProgram run = run_program("G21 G90 G55\nG10 L2 P2 X1 C5\nG43 H1\nG0 X2 Z3\nG1 Z1 C10 F120\nM2\n");
+  ASSERT_EQ(run.moves.size(), 2U);
+  const ProgramMove& move = run.moves[1];
+  EXPECT_EQ(move.line, 5U);
+  EXPECT_EQ(move.kind, MoveKind::straight);
+  EXPECT_EQ(move.coordinates, ProgramCoordinates::axes);
+  EXPECT_EQ(move.feed_mode, FeedMode::per_minute);
+  EXPECT_DOUBLE_EQ(move.feed, 120);
+  EXPECT_DOUBLE_EQ(move.start[0], 3);
+  EXPECT_DOUBLE_EQ(move.start[2], 53);
+  EXPECT_DOUBLE_EQ(move.end[2], 51);
+  EXPECT_DOUBLE_EQ(move.end[5], 15 * kDegree);
+  EXPECT_DOUBLE_EQ(move.tool_length[2], 50);
+}
+
+TEST(NcProgram, AFeedIsPerMinuteOfLengthOfAngleOrOfTheMove) {
+  const RunProgram run =
+      run_program("G20\nF2\nG1 X1\nA90\nX2 A0\nG93 X3 F4\nG95 F.1\nX4\nG94 G21 F6\nG1 X0\nG20 X1\nM2\n");
+  ASSERT_EQ(run.moves.size(), 7U);
+  EXPECT_DOUBLE_EQ(run.moves[0].feed, 50.8);
+  EXPECT_DOUBLE_EQ(run.moves[1].feed, 2 * kDegree);
+  EXPECT_DOUBLE_EQ(run.moves[2].feed, 50.8);
+  EXPECT_EQ(run.moves[3].feed_mode, FeedMode::inverse_time);
+  EXPECT_DOUBLE_EQ(run.moves[3].feed, 4);
+  EXPECT_EQ(run.moves[4].feed_mode, FeedMode::per_revolution);
+  EXPECT_DOUBLE_EQ(run.moves[4].feed, 2.54);
+  // F stands before G21 in the order of execution: it is in inches still.
+  EXPECT_DOUBLE_EQ(run.moves[5].feed, 152.4);
+  EXPECT_DOUBLE_EQ(run.moves[6].feed, 152.4);
+}
+
+TEST(NcProgram, ToolCentreControlStatesThePointInTheWorkpiece) {
+  NcProgramOptions options = options_at_zero();
+  const RunProgram run = run_program(
+      "G43 H1\nG0 X1 Y1 Z1 A0 B0 C0\nG49\nG43.4 H1\nG0 X5 Y5 Z5 A1\nG1 X6 A2 F10\nG49\nG0 X0 Y0 Z0\nM2\n", options);
+  ASSERT_EQ(run.moves.size(), 2U);
+  EXPECT_EQ(run.moves[1].coordinates, ProgramCoordinates::tool_centre);
+  EXPECT_DOUBLE_EQ(run.moves[1].start[2], 5);
+  EXPECT_DOUBLE_EQ(run.moves[1].end[2], 5);
+  EXPECT_DOUBLE_EQ(run.moves[1].tool_length[2], 50);
+  EXPECT_EQ(run.moves[0].coordinates, ProgramCoordinates::axes);
+  // Where the axes stand after the change is not known: those rapid moves pass uncorrected.
+  EXPECT_EQ(run.result.uncorrected_moves, 2U);
+  EXPECT_EQ(run.result.first_uncorrected_line, 5U);
+}
+
+TEST(NcProgram, WhatIsNoMovePassesAsItStands) {
+  const std::string text =
+      "%\n(a part)\nN10 G21 G90 G94 (metric)\nT1 M6 ; cutter\nS12000 M3\nG4 P0.5\nM8\nG64 P0.01\nM62 P1\nM101 P3\n"
+      "N20 G0 X1.000000 Y0.000000 Z0.000000 A0.000000 B0.000000 C0.000000 (to the start)\n"
+      "N30 M7 G1 X2.500000 F100\nM5\nM30\n%\n";
+  EXPECT_EQ(run_program(text).text, text);
+}
+
+TEST(NcProgram, WhatIsResolvedIsReplacedByItsResult) {
+  EXPECT_EQ(run_program("G21 G90\n#5=2 #100=[1/8]\n#<_depth>=3\n(DEBUG, x #5 and #100)\nG91 G0 X#5 M8\nX#100 S[10*#5]\n"
+                        "O1 repeat [2]\nY1 (loop)\nO1 endrepeat\nM2\nG0 X99\n")
+                .text,
+            "G21 G90\n#100=0.125\n#<_depth>=3\n(DEBUG, x 2 and 0.125)\n"
+            "M8 G0 X2.000000 Y0.000000 Z0.000000 A0.000000 B0.000000 C0.000000\nS20 G0 X2.125000\n"
+            "G0 Y1.000000 (loop)\nG0 Y2.000000 (loop)\nM2\n");
+}
+
+TEST(NcProgram, CyclesBecomeMovesAndDwells) {
+  EXPECT_EQ(
+      run_program("G21 G90 G94 F100\nG0 X0 Y0 Z5 A0 B0 C0\nN7 G98 G82 X1 Z-1 R1 P.25 M8 (hole)\nG80\nG64 P.1\n"
+                  "G81 X2 Z-1 R1\nM2\n")
+          .text,
+      "G21 G90 G94 F100\nG0 X0.000000 Y0.000000 Z5.000000 A0.000000 B0.000000 C0.000000\nG61\n"
+      "N7 M8 G0 X1.000000 (hole)\nG0 Z1.000000\nG1 Z-1.000000 F100\nG4 P0.25\nG0 Z5.000000\nG64\nG80\nG64 P.1\nG61\n"
+      "G0 X2.000000\nG0 Z1.000000\nG1 Z-1.000000\nG0 Z5.000000\nG64 P.1\nM2\n");
+}
+
+/// Adds to X, and says the moves in inverse time.
+class ShiftedMoves final : public MoveCorrector {
+ public:
+  void correct(std::span<const ProgramMove> moves, CorrectedPieces& corrected) override {
+    corrected.pieces.clear();
+    corrected.first.assign(1, 0);
+    for (const ProgramMove& move : moves) {
+      for (const double share : {0.5, 1.0}) {
+        if (move.kind == MoveKind::rapid && share < 1) continue;
+        CorrectedPiece piece{move.end, 2 * move.feed, FeedMode::inverse_time};
+        for (std::size_t k = 0; k < kAxisWords; ++k) {
+          piece.end[k] = move.start[k] + share * (move.end[k] - move.start[k]);
+        }
+        piece.end[0] += 0.25;
+        corrected.pieces.push_back(piece);
+      }
+      corrected.first.push_back(corrected.pieces.size());
+    }
+  }
+};
+
+std::string shifted(std::string_view text, NcProgramOptions options = options_at_zero()) {
+  options.words = {true, true, false, false, false, false, false, false, false};
+  options.start = {0, 0};
+  options.decimals_mm = 3;
+  ShiftedMoves corrector;
+  std::string out;
+  correct_nc_program(text, "p.ngc", options, corrector, [&](std::string_view part) { out += part; });
+  return out;
+}
+
+TEST(NcProgram, PiecesOfAMoveFollowEachOtherAndModesAreSaidWhereTheyChange) {
+  EXPECT_EQ(
+      shifted("G21 G90 G94 F3\nG0 X0 Y0\nN9 G1 X2 M8 (cut)\nG1 Y2\nM2\n"),
+      "G21 G90 G94 F3\nG0 X0.250 Y0.000\nN9 M8 G93 G1 X1.250 F6 (cut)\nG1 X2.250 F6\nG1 Y1.000 F6\nG1 Y2.000 F6\nM2\n");
+}
+
+TEST(NcProgram, G92TellsTheControlTheSameOffsetFromWhereItStands) {
+  // The control stands at 1.25, not at 1: with X0 its offset would be 0.25 too large.
+  EXPECT_EQ(shifted("G21 G90\nG0 X1 Y1\nG92 X0\nG0 X0\nX5\nM2\n"),
+            "G21 G90\nG0 X1.250 Y1.000\nG92 X0.2500000000\nG0 X5.250\nM2\n");
+  EXPECT_EQ(shifted("G21 G90\nG0 X1 Y1\nG10 L20 P1 X0\nG0 X0\nX5\nM2\n"),
+            "G21 G90\nG0 X1.250 Y1.000\nG10 L2 P1 X1.0000000000\nG0 X5.250\nM2\n");
+}
+
+TEST(NcProgram, AStopHoldsBehindTheLastPieceOfItsMove) {
+  EXPECT_EQ(shifted("G21 G90 F3\nG1 X2 M0\nM2\n"), "G21 G90 F3\nG93 G1 X1.250 Y0.000 F6\nG1 X2.250 F6\nM0\nM2\n");
+}
+
+TEST(NcProgram, InchesAreWrittenWithOneMoreDecimal) {
+  EXPECT_EQ(shifted("G20 G90\nG0 X1\nG21 X2\nM2\n"), "G20 G90\nG0 X1.0098 Y0.0000\nG21 G0 X2.250\nM2\n");
+}
+
+TEST(NcProgram, WhatTheProgramLeavesToTheControlIsSaid) {
+  EXPECT_EQ(shifted("G0 X1\nG1 X2 F1\n"), "G21 G90 G0 X1.250 Y0.000\nG93 G1 X1.750 F2\nG1 X2.250 F2\n");
+}
+
+TEST(NcProgram, AxesThatWereNotSentAnywhereAreNotMoved) {
+  NcProgramOptions options;
+  options.words = {true, true, true, true, false, true, false, false, false};
+  const RunProgram run = run_program("G21 G90\nG53 G0 Z0\nG0 A0 C0\nG0 X1 Y2\nG1 Z-1 F10\nM2\n", options);
+  EXPECT_EQ(run.text,
+            "G21 G90\nG0 Z0.000000\nG0 A0.000000 C0.000000\nG0 X1.000000 Y2.000000\nG94 G1 Z-1.000000 F10\nM2\n");
+  EXPECT_EQ(run.result.uncorrected_moves, 3U);
+  EXPECT_EQ(run.result.first_uncorrected_line, 2U);
+  EXPECT_EQ(run.moves.size(), 1U);
+}
+
+TEST(NcProgram, ParametersAndToolsComeFromFilesOfLinuxCnc) {
+  const auto parameters = parse_nc_parameters("5220\t2\n5241 10.5\n; comment\n\n5161 -0.000000\r\n", "p.var");
+  EXPECT_EQ(parameters.at(5241), 10.5);
+  const NcToolTable tools = parse_nc_tools("T1 P1 Z50.0 D6 ;endmill\nT12 P3 X-1.5 Z+20 A90\n", "t.tbl");
+  EXPECT_EQ(tools.at(1)[2], 50);
+  EXPECT_EQ(tools.at(12)[0], -1.5);
+  EXPECT_DOUBLE_EQ(tools.at(12)[3], 90 * kDegree);
+  EXPECT_EQ(parse_nc_tools("T1 Z2", "t.tbl", true).at(1)[2], 50.8);
+  NcProgramOptions options = options_at_zero();
+  options.parameters = parameters;
+  const RunProgram run = run_program("G0 X1\nG0 Y#5241\nM2\n", options);
+  EXPECT_EQ(run.moves[0].end[0], 11.5);
+  EXPECT_EQ(run.moves[1].end[1], 10.5);
+  EXPECT_EQ(message_of([] { parse_nc_tools("Z5\n", "t.tbl"); }),
+            "t.tbl:1:1: Z5: the number of the tool is missing; expected T");
+  EXPECT_EQ(message_of([] { parse_nc_tools("T1 Z5,0\n", "t.tbl"); }),
+            "t.tbl:1:5: 5,0: is not a number that can be used; expected an offset in mm or degrees");
+  EXPECT_EQ(message_of([] { parse_nc_parameters("5220 1\n5220 2\n", "p.var"); }),
+            "p.var:2:1: 5220 2: this parameter has a value already");
+  EXPECT_EQ(message_of([] { parse_nc_parameters("9999 1\n", "p.var"); }),
+            "p.var:1:1: 9999: is not a whole number; expected the number of a parameter, 1 to 5601");
+}
+
+TEST(NcProgram, ResultsDoNotDependOnTheBatch) {
+  const std::string text =
+      "G21 F9\nO1 repeat [50]\nG91 G1 X1 Y.5\nG90 G92 X[#5420]\nG2 X[#5420+2] I1 (c)\nG4 P1\nG55\nG0 Z1\nG54\nO1 "
+      "endrepeat\nM2\n";
+  const std::string whole = run_program(text).text;
+  for (const std::size_t batch : {1U, 2U, 7U}) {
+    NcProgramOptions options = options_at_zero();
+    options.batch = batch;
+    EXPECT_EQ(run_program(text, options).text, whole);
+  }
+}
+
+}  // namespace
+}  // namespace abbe

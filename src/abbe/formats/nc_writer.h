@@ -1,0 +1,118 @@
+#pragma once
+
+// Internal to formats: moves on their way to the corrector and to the corrected program.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "abbe/compensate/program_move.h"
+#include "abbe/formats/nc_program.h"
+
+namespace abbe {
+
+/// How positions are said in a program: program value = (control's value - offset) / unit.
+struct NcProgramFrame {
+  std::array<double, kAxisWords> offset{};  ///< mm, degrees
+  bool inches = false;
+};
+
+/// Collects the moves of a program and what stands between them, has them corrected and writes both in their order.
+class NcWriter {
+ public:
+  NcWriter(const std::string& file, const NcProgramOptions& options, MoveCorrector& corrector,
+           const std::function<void(std::string_view)>& write);
+
+  /// A line between the moves, without its end.
+  void line(std::string_view text);
+  /// What the last line() did to the control: it must be said again.
+  void forget_feed() { events_.forget_feed = true; }
+  void said_feed_mode(FeedMode mode);
+  void said_units() { events_.said_units = true; }
+  void said_absolute() { events_.said_absolute = true; }
+
+  /// What goes on the line of the next move's first piece: its number, words and comments.
+  void set_number(std::string_view text) { number_ = text; }
+  std::string& words() { return words_; }
+  std::string& comments() { return comments_; }
+  bool has_words() const { return !number_.empty() || !words_.empty() || !comments_.empty(); }
+  /// The number, words and comments as a line, if there are any.
+  void words_as_line();
+
+  /// From now on positions are said like this.
+  void set_frame(const NcProgramFrame& frame);
+  /// Positions of X, Y, Z mean something else now: what was said of them is not where the control is.
+  void forget_linear_axes();
+
+  /// @param words        bits of the axes that may be named: those whose position is known
+  /// @param is_corrected false: it is written as it is
+  void move(const ProgramMove& move, std::uint32_t words, bool is_corrected);
+
+  /// Corrects and writes what was collected.
+  void flush();
+  /// Where the control stands after what was written, mm or degrees; call flush() before. @returns whether it is known
+  bool position(std::size_t axis, double& value) const;
+  /// Writes everything. @param mode the program's own feed mode, which is set again
+  void finish();
+
+  std::size_t moves() const { return move_count_; }
+  std::size_t pieces() const { return piece_count_; }
+  std::size_t uncorrected() const { return uncorrected_; }
+  std::size_t first_uncorrected_line() const { return first_uncorrected_line_; }
+
+ private:
+  /// Changes of what the control has in force, by lines between moves.
+  struct Events {
+    bool forget_feed = false, said_units = false, said_absolute = false, sets_mode = false, forget_linear = false;
+    FeedMode mode = FeedMode::per_minute;
+  };
+  struct Item {
+    std::uint32_t lines = 0, number = 0, words = 0, comments = 0;  ///< where each ends in `texts_`
+    std::uint32_t axes = 0;
+    std::uint32_t frame = 0;
+    Events events;
+    bool is_corrected = true;
+  };
+
+  void write_item(std::size_t i, const CorrectedPiece* pieces, std::size_t count);
+  void write_piece(const ProgramMove& move, const Item& item, const CorrectedPiece& piece, bool first);
+  void apply(const Events& events);
+  void use_frame(std::size_t index);
+  double program_scale(std::size_t axis) const;
+  int decimals(std::size_t axis) const;
+  void append(std::string_view text);
+  void reserve(std::size_t bytes);
+  [[noreturn]] void fail(const ProgramMove& move, const std::string& problem) const;
+
+  const std::string& file_;
+  const NcProgramOptions& options_;
+  MoveCorrector& corrector_;
+  const std::function<void(std::string_view)>& write_;
+
+  // Collected.
+  std::vector<ProgramMove> moves_;
+  std::vector<Item> items_;
+  std::vector<NcProgramFrame> frames_;
+  std::string texts_;  ///< of the items, and behind them the lines before the next one
+  std::string number_, words_, comments_;
+  Events events_;
+  CorrectedPieces corrected_;
+
+  // Written: what the control has in force.
+  std::vector<char> out_;
+  char* at_ = nullptr;
+  NcProgramFrame frame_;
+  std::array<std::int64_t, kAxisWords> said_{};  ///< words in units of their last decimal
+  std::array<double, kAxisWords> scale_{};       ///< units of the last decimal per mm or degree
+  std::array<int, kAxisWords> decimals_{};
+  std::uint32_t is_said_ = 0;
+  bool units_said_ = false, absolute_said_ = false, mode_said_ = false;
+  FeedMode mode_ = FeedMode::per_minute;
+  double feed_ = -1;
+  std::size_t move_count_ = 0, piece_count_ = 0, uncorrected_ = 0, first_uncorrected_line_ = 0;
+};
+
+}  // namespace abbe
