@@ -1,0 +1,199 @@
+#include "abbe/runtime/freeze.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "abbe/errors/calibrated_machine.h"
+#include "abbe/machine/inverse_plan.h"
+#include "abbe/machine/machine_check.h"
+#include "abbe/runtime/abbe_runtime.h"
+#include "abbe/runtime/freeze_check.h"
+#include "abbe/runtime/frozen_functions.h"
+#include "abbe/runtime/frozen_layout.h"
+
+namespace abbe {
+namespace {
+
+struct Chosen {
+  std::vector<std::size_t> solved, turning, reaching;
+};
+
+/// Which axes work: as in CompensatedInverse for a wanted point and direction.
+Chosen choose_axes(const Machine& machine) {
+  const std::vector<double> reference(machine.axes.size(), 0.0);
+  InversePlan plan = make_inverse_plan(machine, TargetKind::point_and_direction, {}, reference);
+  if (plan.rotary_count == 0) plan = make_inverse_plan(machine, TargetKind::point, {}, reference);
+  Chosen chosen;
+  chosen.turning.assign(plan.rotary.begin(), plan.rotary.begin() + static_cast<std::ptrdiff_t>(plan.rotary_count));
+  chosen.reaching.assign(plan.linear.begin(), plan.linear.begin() + static_cast<std::ptrdiff_t>(plan.linear_count));
+  if (chosen.reaching.size() == 3) chosen.solved = chosen.reaching;
+  if (chosen.reaching.size() < 3 && plan.polar_count > 0) chosen.reaching.push_back(plan.polar[0]);
+  return chosen;
+}
+
+class Writer {
+ public:
+  void value(double v) { values_.push_back(v); }
+  void flag(bool v) { value(v ? 1 : 0); }
+  void vector(const Eigen::Vector3d& v) {
+    for (int k = 0; k < 3; ++k) value(v[k]);
+  }
+  void axes(const std::vector<std::size_t>& list) {
+    value(static_cast<double>(list.size()));
+    for (std::size_t k = 0; k < 3; ++k) value(k < list.size() ? static_cast<double>(list[k]) : 0);
+  }
+  const std::vector<double>& values() const { return values_; }
+
+ private:
+  std::vector<double> values_;
+};
+
+double limited(double value) { return std::clamp(value, -frozen::kLongest, frozen::kLongest); }
+
+/// Positions between which all error motions of an axis are known.
+std::array<double, 2> map_of(const ErrorSet& errors, std::size_t axis) {
+  std::array<double, 2> map{-frozen::kLongest, frozen::kLongest};
+  for (const ErrorMotion& motion : errors.motions) {
+    const Basis& basis = motion.basis;
+    if (motion.axis != axis || (basis.covers(basis.from - 1e5) && basis.covers(basis.to + 1e5))) continue;
+    const double spare = 1e-9 * (basis.to - basis.from);
+    map[0] = std::max(map[0], basis.from - spare);
+    map[1] = std::min(map[1], basis.to + spare);
+  }
+  return map;
+}
+
+void write_machine(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options, std::size_t groups,
+                   Writer& out) {
+  const Chosen chosen = choose_axes(machine);
+  out.value(static_cast<double>(machine.axes.size()));
+  out.axes(chosen.solved);
+  out.axes(chosen.turning);
+  out.axes(chosen.reaching);
+  out.value(options.largest_turn);
+  out.value(options.largest_shift);
+  out.vector(machine.tool_reference);
+  out.vector(options.tool);
+  out.vector(errors.tool_offset_error);
+  out.vector(machine.tool_direction);
+  out.value(options.tool_length_min);
+  out.value(options.tool_length_max);
+  Machine bare = machine;
+  bare.tool_offset.setZero();
+  const std::vector<double> zeros(machine.axes.size(), 0.0);
+  const bool at_joints = options.world_zero_at_joints && !chosen.solved.empty();
+  out.vector(at_joints ? nominal_workpiece_from_tool(bare, zeros).translation : Eigen::Vector3d(0, 0, 0));
+  const RigidTransform workpiece_from_bed = machine.bed_from_workpiece.inverse();
+  for (int i = 0; i < 9; ++i) out.value(workpiece_from_bed.rotation(i / 3, i % 3));
+  out.vector(workpiece_from_bed.translation);
+  for (int i = 0; i < 5; ++i) out.value(0);  // of freeze_check()
+  out.value(static_cast<double>(groups));
+}
+
+void write_axis(const Machine& machine, const ErrorSet& errors, const CalibratedMachine& calibrated, std::size_t i,
+                Writer& out) {
+  const Axis& axis = machine.axes[i];
+  const bool rotary = axis.kind == AxisKind::rotary;
+  out.flag(rotary);
+  out.flag(axis.side == ChainSide::tool);
+  out.flag(axis.primed);
+  const ErrorOrder order = errors.composition.order;
+  out.flag(order == ErrorOrder::iso ? rotary : order == ErrorOrder::before_motion);
+  out.flag(axis.endless);
+  out.value(static_cast<double>(axis.name.empty() ? 'X' : axis.name[0]));
+  out.value(axis.name.size() > 1 ? std::strtod(axis.name.c_str() + 1, nullptr) : 0);
+  out.vector(axis.direction);
+  out.vector(axis.point);
+  out.vector(calibrated.machine.axes[i].direction);
+  out.vector(calibrated.machine.axes[i].point);
+  out.value(calibrated.zero[i]);
+  const std::array<double, 2> map = map_of(errors, i);
+  out.value(map[0]);
+  out.value(map[1]);
+  out.value(limited(axis.travel_min));
+  out.value(limited(axis.travel_max));
+}
+
+void write_functions(const FrozenFunctions& functions, Writer& out) {
+  const std::size_t per_function = functions.kind == 2 ? 4 : 1;
+  out.value(static_cast<double>(functions.axis));
+  out.value(functions.kind);
+  out.value(static_cast<double>(functions.rows.size() / per_function));
+  out.flag(functions.everywhere);
+  out.value(functions.lowest);
+  out.value(functions.highest);
+  out.value(functions.first);
+  out.value(functions.second);
+  if (functions.kind == 2) {
+    for (const double node : functions.nodes) out.value(node);
+  }
+  for (const std::array<double, 6>& row : functions.rows) {
+    for (const double coefficient : row) out.value(coefficient);
+  }
+}
+
+template <typename T>
+void put(std::vector<unsigned char>& bytes, std::size_t place, const T& value) {
+  std::memcpy(bytes.data() + place, &value, sizeof value);
+}
+
+void put_text(std::vector<unsigned char>& bytes, std::size_t place, std::size_t room, const std::string& text) {
+  std::memcpy(bytes.data() + place, text.data(), std::min(room - 1, text.size()));
+}
+
+std::vector<unsigned char> file_of(const Machine& machine, const FreezeOptions& options,
+                                   const std::vector<double>& values) {
+  using namespace frozen;
+  std::vector<unsigned char> bytes(kHeaderBytes + 8 * values.size(), 0);
+  std::memcpy(bytes.data(), kMagic, sizeof kMagic);
+  put(bytes, kByteOrderAt, kByteOrder);
+  put(bytes, kFormatAt, std::uint32_t{ABBE_RUNTIME_FORMAT});
+  put(bytes, kCountAt, std::uint64_t{values.size()});
+  put(bytes, kSourceAt, options.source_checksum);
+  put_text(bytes, kVersionAt, kVersionBytes, options.version);
+  put_text(bytes, kNameAt, kNameBytes, machine.name);
+  std::memcpy(bytes.data() + kHeaderBytes, values.data(), 8 * values.size());
+  put(bytes, kChecksumAt, checksum(bytes.data(), bytes.size()));
+  return bytes;
+}
+
+std::string problem_of(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options) {
+  const std::vector<MachineProblem> problems = find_problems(machine);
+  if (!problems.empty()) return problems.front().text();
+  if (machine.axes.size() > ABBE_RUNTIME_AXES) return "more than 16 axes";
+  if (errors.composition.first_order) return "the errors are composed to first order only, to reproduce a paper";
+  if (!(options.tool_length_min <= options.tool_length_max)) return "the range of tool lengths is empty";
+  return {};
+}
+
+}  // namespace
+
+FrozenCompensation freeze(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options) {
+  FrozenCompensation result;
+  result.problem = problem_of(machine, errors, options);
+  if (!result.problem.empty()) return result;
+  const std::vector<FrozenFunctions> functions = frozen_functions(machine, errors, result.problem);
+  if (!result.problem.empty()) return result;
+  Writer out;
+  write_machine(machine, errors, options, functions.size(), out);
+  const CalibratedMachine calibrated = calibrated_machine(machine, errors);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) write_axis(machine, errors, calibrated, i, out);
+  for (const FrozenFunctions& group : functions) write_functions(group, out);
+  std::vector<double> values = out.values();
+  result.bytes = file_of(machine, options, values);
+  freeze_check(machine, errors, options, result);
+  if (!result.problem.empty()) {
+    result.bytes.clear();
+    return result;
+  }
+  values[frozen::kLargestCorrection] = result.largest_correction;
+  values[frozen::kLargestCorrection + 1] = result.largest_correction_turn;
+  values[frozen::kAccuracy] = result.accuracy;
+  values[frozen::kAccuracy + 1] = result.accuracy_turn;
+  values[frozen::kWorstIterations] = result.worst_iterations;
+  result.bytes = file_of(machine, options, values);
+  return result;
+}
+
+}  // namespace abbe

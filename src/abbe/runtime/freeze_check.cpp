@@ -1,0 +1,98 @@
+#include "abbe/runtime/freeze_check.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <span>
+
+#include "abbe/errors/actual_pose.h"
+#include "abbe/errors/random_stream.h"
+#include "abbe/runtime/frozen_machine.h"
+
+namespace abbe {
+namespace {
+
+struct Free {
+  void operator()(abbe_runtime* runtime) const { abbe_runtime_free(runtime); }
+};
+
+double angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+/// Commands between the ends of travel and map, at an end now and then.
+std::vector<double> some_commands(const Machine& machine, const abbe_runtime& runtime, RandomStream& random) {
+  std::vector<double> commands;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    abbe_runtime_axis axis;
+    abbe_runtime_describe_axis(&runtime, static_cast<int>(i), &axis);
+    double from = axis.endless != 0 ? -std::numbers::pi : axis.travel_min;
+    double to = axis.endless != 0 ? std::numbers::pi : axis.travel_max;
+    if (std::max(from, axis.map_min) <= std::min(to, axis.map_max)) {
+      from = std::max(from, axis.map_min);
+      to = std::min(to, axis.map_max);
+    }
+    const double share = std::clamp(random.uniform(-0.1, 1.1), 0.0, 1.0);
+    commands.push_back(from + share * (to - from));
+  }
+  return commands;
+}
+
+}  // namespace
+
+void freeze_check(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
+                  FrozenCompensation& result) {
+  abbe_runtime* handle = nullptr;
+  char text[128];
+  if (abbe_runtime_load(result.bytes.data(), result.bytes.size(), text, sizeof text, &handle) != ABBE_OK) {
+    result.problem = text;
+    return;
+  }
+  const std::unique_ptr<abbe_runtime, Free> runtime(handle);
+  result.largest_joint.assign(machine.axes.size(), 0.0);
+  RandomStream random(5);
+  Machine with_tool = machine;
+  const Eigen::Vector3d tools[] = {options.tool, -options.tool_length_min * machine.tool_direction,
+                                   -options.tool_length_max * machine.tool_direction};
+  for (const Eigen::Vector3d& tool : tools) {
+    with_tool.tool_offset = tool;
+    for (std::size_t k = 0; k < options.poses; ++k) {
+      const std::vector<double> nominal = some_commands(machine, *runtime, random);
+      std::vector<double> joints(nominal), back(nominal);
+      const RigidTransform wanted = nominal_workpiece_from_tool(with_tool, nominal);
+      const RigidTransform before = actual_workpiece_from_tool(with_tool, errors, nominal);
+      const double moved = (before.translation - wanted.translation).norm();
+      if (result.where.empty() || moved > result.largest_correction) {
+        result.largest_correction = moved;
+        result.where = nominal;
+        result.tool_length_there = -tool.dot(machine.tool_direction);
+      }
+      result.largest_correction_turn =
+          std::max(result.largest_correction_turn,
+                   angle(before.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction));
+      ++result.poses;
+      abbe_runtime_state state;
+      abbe_runtime_start(&state);
+      const int called = abbe_runtime_correct(runtime.get(), &state, nominal.data(), tool.data(), 1, joints.data());
+      const int status = called < 0 ? ABBE_POSITION_LEFT : called & ABBE_RESULT_MASK;
+      if (status == ABBE_POSITION_LEFT) ++result.unreached;
+      if (status == ABBE_TURN_LIMITED) ++result.limited;
+      if (called < 0) continue;
+      result.worst_iterations = std::max(result.worst_iterations, state.iterations);
+      abbe_runtime_start(&state);
+      if (abbe_runtime_uncorrect(runtime.get(), &state, joints.data(), tool.data(), 1, back.data()) >= 0)
+        result.worst_iterations = std::max(result.worst_iterations, state.iterations);
+      for (std::size_t i = 0; i < joints.size(); ++i)
+        result.largest_joint[i] = std::max(result.largest_joint[i], std::abs(joints[i] - nominal[i]));
+      if (status == ABBE_POSITION_LEFT) continue;
+      const RigidTransform after = actual_workpiece_from_tool(with_tool, errors, joints);
+      result.accuracy = std::max(result.accuracy, (after.translation - wanted.translation).norm());
+      if (status != ABBE_OK) continue;
+      const double turned = angle(after.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction);
+      // Machines without rotary axes for it do not correct the direction.
+      if (runtime->turning.count > 0) result.accuracy_turn = std::max(result.accuracy_turn, turned);
+    }
+  }
+}
+
+}  // namespace abbe

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+/// Layout of a *.abbec file, shared by writer and reader; docs/runtime.md describes it.
+namespace abbe::frozen {
+
+inline constexpr std::size_t kHeaderBytes = 128;
+inline constexpr unsigned char kMagic[8] = {0x89, 'A', 'B', 'B', 'E', 'C', '\r', '\n'};
+inline constexpr std::uint32_t kByteOrder = 0x0a0b0c0dU;
+
+// Places in the header, bytes.
+inline constexpr std::size_t kByteOrderAt = 8;
+inline constexpr std::size_t kFormatAt = 12;
+inline constexpr std::size_t kCountAt = 16;
+inline constexpr std::size_t kChecksumAt = 24;
+inline constexpr std::size_t kSourceAt = 32;
+inline constexpr std::size_t kVersionAt = 40;
+inline constexpr std::size_t kVersionBytes = 24;
+inline constexpr std::size_t kNameAt = 64;
+inline constexpr std::size_t kNameBytes = 64;
+
+// Values of the machine, at the beginning; all values are 64-bit floating point.
+enum Value : std::size_t {
+  kAxes = 0,
+  kSolved = 1,    // count, three axes
+  kTurning = 5,   // count, three axes
+  kReaching = 9,  // count, three axes
+  kLargestTurn = 13,
+  kLargestShift = 14,
+  kToolReference = 15,
+  kTool = 18,
+  kToolError = 21,
+  kToolDirection = 24,
+  kToolLengths = 27,
+  kWorldZero = 29,
+  kRotation = 32,
+  kShift = 41,
+  kLargestCorrection = 44,  // mm, rad
+  kAccuracy = 46,           // mm, rad
+  kWorstIterations = 48,
+  kGroups = 49,
+  kMachineValues = 50
+};
+
+// Values of an axis.
+enum AxisValue : std::size_t {
+  kRotary = 0,
+  kToolSide = 1,
+  kPrimed = 2,
+  kErrorFirst = 3,
+  kEndless = 4,
+  kLetter = 5,
+  kNumber = 6,
+  kDirection = 7,
+  kPoint = 10,
+  kActualDirection = 13,
+  kActualCentre = 16,
+  kZeroPosition = 19,
+  kMap = 20,
+  kTravel = 22,
+  kAxisValues = 24
+};
+
+// Values of a group of functions, before its nodes (piecewise: functions + 1) and coefficients (functions times 6,
+// piecewise: times 4 times 6).
+enum GroupValue : std::size_t {
+  kGroupAxis = 0,
+  kGroupKind = 1,  // 0 Chebyshev, 1 Fourier, 2 piecewise cubic
+  kFunctions = 2,
+  kEverywhere = 3,
+  kRange = 4,       // lowest and highest position, beyond which the errors stay as they are
+  kParameters = 6,  // Chebyshev: from, to; Fourier: period, 0; piecewise: period (0: none), 0
+  kGroupValues = 8
+};
+
+inline constexpr std::size_t kMostFunctions = 64;    // of a Chebyshev or Fourier group
+inline constexpr std::size_t kMostIntervals = 4096;  // of a piecewise group
+inline constexpr std::size_t kMostGroups = 96;
+
+// What an input may be, and what a file may contain: with it every result stays finite and bounded.
+inline constexpr double kLongest = 1e6;        // mm or rad, of a command or a place
+inline constexpr double kLargestError = 1000;  // mm or rad, of a coefficient
+inline constexpr double kMostBeyond = 1.1;     // of the argument of Chebyshev functions, beyond [-1, 1]
+
+/// CRC-64/XZ of a file, its checksum field counted as zeros. Every change of up to 64 neighbouring bits shows.
+std::uint64_t checksum(const unsigned char* bytes, std::size_t size);
+
+}  // namespace abbe::frozen
