@@ -97,7 +97,7 @@ int compensate(const abbe_runtime& machine, abbe_runtime_state* state, const Fro
 
 /// Origins of axes as they are once the solved axes stand where they should.
 void place_origins(const abbe_runtime& machine, const FrozenCommands& commands, NominalView& view) {
-  Triple moved;
+  Triple moved{};
   for (std::size_t i = 0; i < machine.axes; ++i) {
     if (machine.axis[i].solved != FrozenAxis::kNotSolved) moved = moved + commands.q[i] * view.column[i];
     view.origin[i] = view.origin[i] + moved;
@@ -165,7 +165,7 @@ int abbe_runtime_nominal_forward(const abbe_runtime* runtime, const double* join
 int abbe_runtime_inverse(const abbe_runtime* runtime, abbe_runtime_state* state, const double* point,
                          const double* words, const double* tool, double enable, double* joints) ABBE_NOEXCEPT {
   if (runtime == nullptr || point == nullptr || words == nullptr || joints == nullptr) return ABBE_NULL;
-  Triple of_tool, goal;
+  Triple of_tool{}, goal{};
   if (!tool_of(*runtime, tool, of_tool) || !usable(enable)) return ABBE_NOT_FINITE;
   FrozenCommands nominal;
   NominalView view;
@@ -179,7 +179,7 @@ int abbe_runtime_forward(const abbe_runtime* runtime, abbe_runtime_state* state,
                          const double* tool, double enable, double* point, double* words) ABBE_NOEXCEPT {
   if (runtime == nullptr || joints == nullptr || point == nullptr || words == nullptr) return ABBE_NULL;
   if (runtime->solved.count < 3) return ABBE_NOT_POSSIBLE;
-  Triple of_tool, at;
+  Triple of_tool{}, at{};
   FrozenCommands actual, nominal;
   if (!tool_of(*runtime, tool, of_tool) || !usable(enable) || !load(*runtime, joints, false, actual))
     return ABBE_NOT_FINITE;
@@ -196,7 +196,7 @@ int abbe_runtime_forward(const abbe_runtime* runtime, abbe_runtime_state* state,
 int abbe_runtime_correct(const abbe_runtime* runtime, abbe_runtime_state* state, const double* nominal,
                          const double* tool, double enable, double* joints) ABBE_NOEXCEPT {
   if (runtime == nullptr || nominal == nullptr || joints == nullptr) return ABBE_NULL;
-  Triple of_tool;
+  Triple of_tool{};
   FrozenCommands commands;
   if (!tool_of(*runtime, tool, of_tool) || !usable(enable) || !load(*runtime, nominal, false, commands))
     return ABBE_NOT_FINITE;
@@ -207,7 +207,7 @@ int abbe_runtime_correct(const abbe_runtime* runtime, abbe_runtime_state* state,
 int abbe_runtime_uncorrect(const abbe_runtime* runtime, abbe_runtime_state* state, const double* joints,
                            const double* tool, double enable, double* nominal) ABBE_NOEXCEPT {
   if (runtime == nullptr || joints == nullptr || nominal == nullptr) return ABBE_NULL;
-  Triple of_tool, at;
+  Triple of_tool{}, at{};
   FrozenCommands actual, found;
   if (!tool_of(*runtime, tool, of_tool) || !usable(enable) || !load(*runtime, joints, false, actual))
     return ABBE_NOT_FINITE;

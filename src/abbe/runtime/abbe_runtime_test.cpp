@@ -6,7 +6,6 @@
 
 #include "abbe/compensate/compensated_inverse.h"
 #include "abbe/errors/actual_pose.h"
-#include "abbe/geometry/angle.h"
 #include "abbe/machine/inverse_kinematics.h"
 #include "abbe/runtime/frozen_for_test.h"
 

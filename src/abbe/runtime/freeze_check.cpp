@@ -38,6 +38,13 @@ std::vector<double> some_commands(const Machine& machine, const abbe_runtime& ru
   return commands;
 }
 
+bool within_map(const abbe_runtime& runtime, const std::vector<double>& joints) {
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (!(joints[i] >= runtime.axis[i].map_min && joints[i] <= runtime.axis[i].map_max)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 void freeze_check(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
@@ -84,7 +91,8 @@ void freeze_check(const Machine& machine, const ErrorSet& errors, const FreezeOp
         result.worst_iterations = std::max(result.worst_iterations, state.iterations);
       for (std::size_t i = 0; i < joints.size(); ++i)
         result.largest_joint[i] = std::max(result.largest_joint[i], std::abs(joints[i] - nominal[i]));
-      if (status == ABBE_POSITION_LEFT) continue;
+      // Beyond the map nothing is known, by the full model neither.
+      if (status == ABBE_POSITION_LEFT || !within_map(*runtime, joints)) continue;
       const RigidTransform after = actual_workpiece_from_tool(with_tool, errors, joints);
       result.accuracy = std::max(result.accuracy, (after.translation - wanted.translation).norm());
       if (status != ABBE_OK) continue;

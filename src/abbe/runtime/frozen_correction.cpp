@@ -11,6 +11,7 @@ namespace {
 constexpr double kPositionTolerance = 1e-9;      // mm; what counts as reached
 constexpr double kOrientationTolerance = 1e-11;  // rad
 constexpr double kLever = 1000;                  // mm; a turn counts as what it moves there
+constexpr double kOwnPart = 0.01;                // of a turn that counts though it does nothing to the pose
 constexpr double kRest = 1e-13;                  // mm; an expected next step below this is not taken
 constexpr double kFirstRate = 1e-3;              // of one step to the next, before it has been seen
 constexpr double kRounding = 4e-16;              // steps below this of the lengths involved are rounding
@@ -32,7 +33,7 @@ Triple turn_between(const Triple& from, const Triple& to) {
 /// Says when no further step is worth taking.
 class Convergence {
  public:
-  /// @param step  what it does to the pose, mm: near a singularity long turns do little
+  /// @param step  what it does to the pose, mm
   bool reached(double step, double size) {
     const double rate = last_ > 0 ? std::min(1.0, std::max(step / last_, 1e-6)) : kFirstRate;
     last_ = step;
@@ -80,12 +81,18 @@ void set_from(const abbe_runtime& machine, const FrozenCommands& from, double si
 /// How turns move the point.
 Triple moved_by(const abbe_runtime& machine, const NominalView& view, const Triple& goal,
                 const std::array<double, 2>& turn) {
-  Triple sum;
+  Triple sum{};
   for (std::size_t k = 0; k < machine.turning.count; ++k) {
     const std::size_t i = machine.turning.axis[k];
     sum = sum + turn[k] * cross(view.column[i], goal - view.origin[i]);
   }
   return sum;
+}
+
+/// What turns do to the pose, mm. Near a singularity it is little, but where the turn is bounded it still matters which
+/// one it is.
+double effect_of(const TurnSystem& system, const std::array<double, 2>& turn) {
+  return kLever * (length(system.of(turn)) + kOwnPart * (std::abs(turn[0]) + std::abs(turn[1])));
 }
 
 int status_of(const abbe_runtime& machine, const Triple& point_left, const Triple& orientation_left,
@@ -115,7 +122,7 @@ FrozenResult solve_actual(const abbe_runtime& machine, const FrozenCommands& nom
     const std::array<double, 2> by_turn{new_y[0] - y[0], new_y[1] - y[1]};
     const Triple rest = goal - at.point - moved_by(machine, view, goal, by_turn) + reach_system.of(z);
     const Triple new_z = reach_system.solve(rest, machine.largest_shift, shift_bounded);
-    const double step = length(reach_system.of(new_z - z)) + kLever * length(turn_system.of(by_turn));
+    const double step = length(reach_system.of(new_z - z)) + effect_of(turn_system, by_turn);
     y = new_y;
     z = new_z;
     set_from(machine, nominal, 1, y, z, true, actual);
@@ -146,8 +153,8 @@ FrozenResult solve_nominal(const abbe_runtime& machine, const FrozenCommands& ac
     const Triple c = turn_between(at.direction, view.direction) + turn_system.of(y);
     const std::array<double, 2> new_y = turn_system.solve(c, machine.largest_turn, turn_bounded);
     const std::array<double, 2> by_turn{new_y[0] - y[0], new_y[1] - y[1]};
-    double step = kLever * length(turn_system.of(by_turn));
-    Triple point_left;
+    double step = effect_of(turn_system, by_turn);
+    Triple point_left{};
     y = new_y;
     if (reach) {
       const ReachSystem reach_system(machine, view, view.point);

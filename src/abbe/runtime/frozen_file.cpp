@@ -241,10 +241,9 @@ void read_group(Values& values, const abbe_runtime& m, FrozenGroup& group, std::
   group.same_turn = group.kind == FrozenGroup::Kind::fourier && group.everywhere && m.axis[axis].rotary &&
                     std::abs(group.scale - 1) <= 2 * std::numeric_limits<double>::epsilon();
   group.coefficients = room;
-  for (std::size_t k = 0; k < all; ++k, room += 8) {
+  for (std::size_t k = 0; k < all; ++k, room += 6) {
     for (std::size_t c = 0; c < 6; ++c)
       room[c] = values.number(-frozen::kLargestError, frozen::kLargestError, "coefficients of a group");
-    room[6] = room[7] = 0;
   }
 }
 
@@ -290,10 +289,10 @@ FrozenFile read_frozen(const unsigned char* bytes, std::size_t size, abbe_runtim
   const std::uint64_t sum = read_at<std::uint64_t>(bytes, kChecksumAt);
   if (checksum(bytes, size) != sum) return {ABBE_FILE_CHECKSUM, {}};
 
-  // Room for machine, groups, nodes and coefficients in one piece: six numbers of the file become eight.
+  // Room for machine, groups, nodes and coefficients in one piece.
   constexpr std::size_t kGroupsAt = (sizeof(abbe_runtime) + 63) / 64 * 64;
   constexpr std::size_t kRoomAt = kGroupsAt + (kMostGroups * sizeof(FrozenGroup) + 63) / 64 * 64;
-  void* const memory = std::malloc(kRoomAt + 8 * (count + count / 3 + 8));
+  void* const memory = std::malloc(kRoomAt + 8 * (count + 1));
   if (memory == nullptr) return {ABBE_FILE_NO_MEMORY, {}};
   abbe_runtime& m = *new (memory) abbe_runtime;
   FrozenGroup* const group = reinterpret_cast<FrozenGroup*>(static_cast<unsigned char*>(memory) + kGroupsAt);

@@ -13,8 +13,8 @@ namespace {
 
 /// How far beyond its range an error motion is still followed, so that a correction does not meet the end of it: mm or
 /// rad, and part of the range.
-constexpr double kBeyond = 0.1;
-constexpr double kPartBeyond = 0.002;
+constexpr double kBeyond = 1;
+constexpr double kPartBeyond = 0.005;
 
 /// Coefficients of the Chebyshev sum through the values at the Chebyshev points; for a polynomial, it itself.
 std::vector<double> chebyshev_coefficients(const ErrorMotion& motion) {

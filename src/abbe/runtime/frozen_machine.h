@@ -12,7 +12,7 @@ inline constexpr std::size_t kFrozenAxes = ABBE_RUNTIME_AXES;
 
 /// Three numbers; plain, so that nothing between a controller and its numbers can allocate or throw.
 struct Triple {
-  double x = 0, y = 0, z = 0;
+  double x, y, z;  // not set unless asked for: arrays of them are made in every call
 };
 inline Triple operator+(const Triple& a, const Triple& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 inline Triple operator-(const Triple& a, const Triple& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -24,14 +24,14 @@ inline Triple cross(const Triple& a, const Triple& b) {
 
 /// Columns of a rotation.
 struct Turned {
-  Triple x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+  Triple x, y, z;
 };
 inline Triple operator*(const Turned& r, const Triple& a) { return a.x * r.x + a.y * r.y + a.z * r.z; }
 inline Triple times_inverse(const Turned& r, const Triple& a) { return {dot(r.x, a), dot(r.y, a), dot(r.z, a)}; }
 
 /// Cosine and sine.
 struct CosineSine {
-  double c = 1, s = 0;
+  double c, s;
 };
 
 /// Functions of one axis position whose sums give all six components of its error motion at once.
@@ -46,7 +46,7 @@ struct FrozenGroup {
   double scale = 0, shift = 0;  ///< chebyshev: s = scale q + shift; fourier: scale = 2 pi / period
   double origin = 0, period = 0, per_spacing = 0;  ///< piecewise; per_spacing 0: the nodes are not evenly spaced
   const double* nodes = nullptr;                   ///< [functions + 1]
-  /// [functions][8] (piecewise: [functions][4][8], rising powers of the part of the interval): six components, two zeros
+  /// [functions][6] (piecewise: [functions][4][6], rising powers of the part of the interval): the six components
   const double* coefficients = nullptr;
 };
 
@@ -54,10 +54,10 @@ struct FrozenAxis {
   bool rotary = false, tool_side = false, error_first = false, endless = false;
   double sense = 1;       ///< displacement of the carried body = sense * command
   double chain_sign = 1;  ///< of the tool side against the workpiece side
-  Triple direction, point;                ///< nominal
-  Triple actual_direction, actual_centre;  ///< with location errors
-  double zero_position = 0;                ///< added to the command
-  CosineSine zero_turn;                    ///< of it
+  Triple direction{}, point{};                ///< nominal
+  Triple actual_direction{}, actual_centre{};  ///< with location errors
+  double zero_position = 0;                    ///< added to the command
+  CosineSine zero_turn{1, 0};                  ///< of it
   double map_min = 0, map_max = 0, travel_min = 0, travel_max = 0;
   char letter = 'X';
   int number = 0;
@@ -85,10 +85,10 @@ struct abbe_runtime {
   std::array<double, 3> reaching_unit{};  ///< mm or rad that count as 1 mm
   bool reaching_linear = false;           ///< the same three axes are solved and correct
   double largest_turn = 0, largest_shift = 0;  ///< rad, mm: bounds of a correction
-  abbe::Triple tool_reference, tool, tool_error, tool_direction;
+  abbe::Triple tool_reference{}, tool{}, tool_error{}, tool_direction{};
   double tool_length_min = 0, tool_length_max = 0;
-  abbe::Triple world_zero;                 ///< of the world in the workpiece frame
-  abbe::Turned workpiece_from_bed;         ///< with all axes at zero
-  abbe::Triple workpiece_from_bed_shift;
+  abbe::Triple world_zero{};               ///< of the world in the workpiece frame
+  abbe::Turned workpiece_from_bed{};       ///< with all axes at zero
+  abbe::Triple workpiece_from_bed_shift{};
   abbe_runtime_information information{};
 };

@@ -2,43 +2,61 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace abbe {
 namespace {
 
-/// Below, the series end with terms of 1e-19 of the result.
-constexpr double kSmallAngle = 0.02;
+/// Squares of angles below which the series may end where they do: what is left out is below 1e-18.
+constexpr double kSmallSquare = 4e-4;
+constexpr double kSmallerSquare = 2.5e-7;
 
-void add(double factor, const double* coefficients, double* sum) {
-  for (int k = 0; k < 8; ++k) sum[k] += factor * coefficients[k];
+/// Two numbers that the processor treats as one: a point and a direction, or two components of an error motion.
+using Pair = double __attribute__((vector_size(16)));
+
+Pair pair_at(const double* place) {
+  Pair pair;
+  std::memcpy(&pair, place, sizeof pair);
+  return pair;
 }
 
-void add_chebyshev(const FrozenGroup& group, double position, double* sum) {
+/// EX EY, EZ EA, EB EC of one axis.
+struct SixErrors {
+  Pair xy{}, za{}, bc{};
+
+  void add(double factor, const double* coefficients) {
+    xy += factor * pair_at(coefficients);
+    za += factor * pair_at(coefficients + 2);
+    bc += factor * pair_at(coefficients + 4);
+  }
+};
+
+void add_chebyshev(const FrozenGroup& group, double position, SixErrors& sum) {
   const double s = group.scale * position + group.shift;
   const double* row = group.coefficients;
   double t = 1, before = s;  // T_0 and T_-1 = T_1
-  for (std::size_t k = 0; k < group.functions; ++k, row += 8) {
-    add(t, row, sum);
+  for (std::size_t k = 0; k < group.functions; ++k, row += 6) {
+    sum.add(t, row);
     const double next = 2 * s * t - before;
     before = t;
     t = next;
   }
 }
 
-void add_fourier(const FrozenGroup& group, const CosineSine& first, double* sum) {
+void add_fourier(const FrozenGroup& group, const CosineSine& first, SixErrors& sum) {
   const double* row = group.coefficients;
-  add(1, row, sum);
+  sum.add(1, row);
   CosineSine turn = first;
   for (std::size_t k = 1; k + 1 < group.functions; k += 2) {
-    row += 8;
-    add(turn.c, row, sum);
-    row += 8;
-    add(turn.s, row, sum);
+    row += 6;
+    sum.add(turn.c, row);
+    row += 6;
+    sum.add(turn.s, row);
     turn = turned_on(turn, first);
   }
 }
 
-void add_piecewise(const FrozenGroup& group, double position, double* sum) {
+void add_piecewise(const FrozenGroup& group, double position, SixErrors& sum) {
   double q = position;
   if (group.period > 0) q -= group.period * std::floor((q - group.origin) / group.period);
   std::size_t i = 0;
@@ -50,39 +68,52 @@ void add_piecewise(const FrozenGroup& group, double position, double* sum) {
     i = after == group.nodes ? 0 : static_cast<std::size_t>(after - group.nodes) - 1;
   }
   const double u = (q - group.nodes[i]) / (group.nodes[i + 1] - group.nodes[i]);
-  const double* row = group.coefficients + 32 * i;
-  add(1, row, sum);
-  add(u, row + 8, sum);
-  add(u * u, row + 16, sum);
-  add(u * u * u, row + 24, sum);
+  const double* row = group.coefficients + 24 * i;
+  sum.add(1, row);
+  sum.add(u, row + 6);
+  sum.add(u * u, row + 12);
+  sum.add(u * u * u, row + 18);
 }
 
-/// Rz(EC) Ry(EB) Rx(EA) of a vector.
+/// Point and direction of the tool side by side: x, y, z of both.
+struct PointAndDirection {
+  Pair x, y, z;
+};
+
+/// A vector that moves points and leaves directions.
+PointAndDirection moved(const PointAndDirection& v, const Triple& by) {
+  return {v.x + Pair{by.x, 0}, v.y + Pair{by.y, 0}, v.z + Pair{by.z, 0}};
+}
+
+/// Rz(EC) Ry(EB) Rx(EA) of vectors, and its inverse.
 struct SmallRotation {
   CosineSine a, b, c;
-};
-Triple operator*(const SmallRotation& r, const Triple& v) {
-  const double y = r.a.c * v.y - r.a.s * v.z, z = r.a.s * v.y + r.a.c * v.z;
-  const double x = r.b.c * v.x + r.b.s * z, z2 = r.b.c * z - r.b.s * v.x;
-  return {r.c.c * x - r.c.s * y, r.c.s * x + r.c.c * y, z2};
-}
-Triple times_inverse(const SmallRotation& r, const Triple& v) {
-  const double x = r.c.c * v.x + r.c.s * v.y, y = r.c.c * v.y - r.c.s * v.x;
-  const double x2 = r.b.c * x - r.b.s * v.z, z = r.b.s * x + r.b.c * v.z;
-  return {x2, r.a.c * y + r.a.s * z, r.a.c * z - r.a.s * y};
-}
 
-/// Rotation about a unit direction, of vectors.
-Triple about(const Triple& u, const CosineSine& turn, const Triple& v) {
-  const double along = (1 - turn.c) * dot(u, v);
-  return turn.c * v + turn.s * cross(u, v) + along * u;
+  PointAndDirection of(const PointAndDirection& v) const {
+    const Pair y = a.c * v.y - a.s * v.z, z = a.s * v.y + a.c * v.z;
+    const Pair x = b.c * v.x + b.s * z;
+    return {c.c * x - c.s * y, c.s * x + c.c * y, b.c * z - b.s * v.x};
+  }
+  PointAndDirection back(const PointAndDirection& v) const {
+    const Pair x = c.c * v.x + c.s * v.y, y = c.c * v.y - c.s * v.x;
+    const Pair z = b.s * x + b.c * v.z;
+    return {b.c * x - b.s * v.z, a.c * y + a.s * z, a.c * z - a.s * y};
+  }
+};
+
+/// Rotation about a unit direction.
+PointAndDirection about(const Triple& u, const CosineSine& turn, const PointAndDirection& v) {
+  const Pair along = (1 - turn.c) * (u.x * v.x + u.y * v.y + u.z * v.z);
+  const double x = turn.s * u.x, y = turn.s * u.y, z = turn.s * u.z;
+  return {turn.c * v.x + (y * v.z - z * v.y) + along * u.x, turn.c * v.y + (z * v.x - x * v.z) + along * u.y,
+          turn.c * v.z + (x * v.y - y * v.x) + along * u.z};
 }
 
 /// The line of an axis with so much of its location errors.
 struct Line {
   Triple direction, centre;
-  double displacement = 0;  // linear
-  CosineSine turn;          // rotary
+  double displacement;  // linear
+  CosineSine turn;      // rotary
 };
 
 Line line_of(const FrozenAxis& axis, double position, const CosineSine& turn, double enable) {
@@ -101,67 +132,9 @@ Line line_of(const FrozenAxis& axis, double position, const CosineSine& turn, do
   return line;
 }
 
-/// A body's point and direction carried by one axis, towards the bed (`away` false) or from it.
-void carry(const abbe_runtime& machine, const FrozenAxis& axis, double position, const CosineSine& turn, double enable,
-           ActualTool& tool) {
-  alignas(64) double e[8];
-  axis_errors(machine, axis, position, turn, e);
-  const SmallRotation error{turn_of(enable * e[3]), turn_of(enable * e[4]), turn_of(enable * e[5])};
-  const Triple shift = enable * Triple{e[0], e[1], e[2]};
-  const Line line = line_of(axis, position, turn, enable);
-  Triple& p = tool.point;
-  Triple& d = tool.direction;
-  const auto by_error = [&] {
-    p = error * (p - axis.point) + axis.point + shift;
-    d = error * d;
-  };
-  const auto back_by_error = [&] {
-    p = times_inverse(error, p - axis.point - shift) + axis.point;
-    d = times_inverse(error, d);
-  };
-  const auto by_motion = [&](double sign) {
-    if (!axis.rotary) {
-      p = p + sign * line.displacement * line.direction;
-      return;
-    }
-    const CosineSine by{line.turn.c, sign * line.turn.s};
-    p = about(line.direction, by, p - line.centre) + line.centre;
-    d = about(line.direction, by, d);
-  };
-  if (axis.tool_side) {
-    if (axis.error_first) {
-      by_motion(1);
-      by_error();
-    } else {
-      by_error();
-      by_motion(1);
-    }
-  } else if (axis.error_first) {
-    back_by_error();
-    by_motion(-1);
-  } else {
-    by_motion(-1);
-    back_by_error();
-  }
-}
-
-}  // namespace
-
-CosineSine turn_of(double angle) {
-  if (std::abs(angle) > kSmallAngle) return {std::cos(angle), std::sin(angle)};
-  const double a = angle * angle;
-  return {1 - a * (1.0 / 2 - a * (1.0 / 24 - a * (1.0 / 720))),
-          angle * (1 - a * (1.0 / 6 - a * (1.0 / 120 - a * (1.0 / 5040))))};
-}
-
-void move_axis(const FrozenAxis& axis, std::size_t i, double to, FrozenCommands& commands) {
-  if (axis.rotary) commands.turn[i] = turned_on(commands.turn[i], turn_of(to - commands.q[i]));
-  commands.q[i] = to;
-}
-
-void axis_errors(const abbe_runtime& machine, const FrozenAxis& axis, double position, const CosineSine& turn,
-                 double errors[8]) {
-  for (int k = 0; k < 8; ++k) errors[k] = 0;
+/// Sum of all error motions of one axis; `turn` is that of the command.
+SixErrors axis_errors(const abbe_runtime& machine, const FrozenAxis& axis, double position, const CosineSine& turn) {
+  SixErrors errors;
   for (std::size_t g = axis.first_group; g < axis.first_group + axis.groups; ++g) {
     const FrozenGroup& group = machine.group[g];
     const double q = group.everywhere ? position : std::clamp(position, group.lowest, group.highest);
@@ -177,6 +150,45 @@ void axis_errors(const abbe_runtime& machine, const FrozenAxis& axis, double pos
         break;
     }
   }
+  return errors;
+}
+
+/// Point and direction carried by one axis: those of the tool side towards the bed, then away from it on the
+/// workpiece side.
+PointAndDirection carried(const abbe_runtime& machine, const FrozenAxis& axis, double position, const CosineSine& turn,
+                          double enable, PointAndDirection v) {
+  const SixErrors e = axis_errors(machine, axis, position, turn);
+  const SmallRotation error{turn_of(enable * e.za[1]), turn_of(enable * e.bc[0]), turn_of(enable * e.bc[1])};
+  const Triple shifted = axis.point + enable * Triple{e.xy[0], e.xy[1], e.za[0]};
+  const Line line = line_of(axis, position, turn, enable);
+  const auto by_error = [&](const PointAndDirection& at) {
+    return moved(error.of(moved(at, -1 * axis.point)), shifted);
+  };
+  const auto back_by_error = [&](const PointAndDirection& at) {
+    return moved(error.back(moved(at, -1 * shifted)), axis.point);
+  };
+  const auto by_motion = [&](double sign, const PointAndDirection& at) {
+    if (!axis.rotary) return moved(at, sign * line.displacement * line.direction);
+    const CosineSine by{line.turn.c, sign * line.turn.s};
+    return moved(about(line.direction, by, moved(at, -1 * line.centre)), line.centre);
+  };
+  if (axis.tool_side) return axis.error_first ? by_error(by_motion(1, v)) : by_motion(1, by_error(v));
+  return axis.error_first ? by_motion(-1, back_by_error(v)) : back_by_error(by_motion(-1, v));
+}
+
+}  // namespace
+
+CosineSine turn_of(double angle) {
+  const double a = angle * angle;
+  if (a < kSmallerSquare) return {1 - a * (1.0 / 2 - a * (1.0 / 24)), angle * (1 - a * (1.0 / 6))};
+  if (!(a < kSmallSquare)) return {std::cos(angle), std::sin(angle)};
+  return {1 - a * (1.0 / 2 - a * (1.0 / 24 - a * (1.0 / 720))),
+          angle * (1 - a * (1.0 / 6 - a * (1.0 / 120 - a * (1.0 / 5040))))};
+}
+
+void move_axis(const FrozenAxis& axis, std::size_t i, double to, FrozenCommands& commands) {
+  if (axis.rotary) commands.turn[i] = turned_on(commands.turn[i], turn_of(to - commands.q[i]));
+  commands.q[i] = to;
 }
 
 NominalView nominal_view(const abbe_runtime& machine, const FrozenCommands& commands, const Triple& tool,
@@ -206,16 +218,16 @@ NominalView nominal_view(const abbe_runtime& machine, const FrozenCommands& comm
   return view;
 }
 
-ActualTool actual_tool(const abbe_runtime& machine, const FrozenCommands& commands, const Triple& tool,
-                       double enable) {
-  ActualTool at{machine.tool_reference + tool + enable * machine.tool_error, machine.tool_direction};
+ActualTool actual_tool(const abbe_runtime& machine, const FrozenCommands& commands, const Triple& tool, double enable) {
+  const Triple start = machine.tool_reference + tool + enable * machine.tool_error;
+  const Triple& direction = machine.tool_direction;
+  PointAndDirection at{{start.x, direction.x}, {start.y, direction.y}, {start.z, direction.z}};
   // The chain from the tool on: tool-side axes carry towards the bed, workpiece-side axes are left behind.
   for (std::size_t i = machine.axes; i-- > 0;) {
-    carry(machine, machine.axis[i], commands.q[i], commands.turn[i], enable, at);
+    at = carried(machine, machine.axis[i], commands.q[i], commands.turn[i], enable, at);
   }
-  at.point = machine.workpiece_from_bed * at.point + machine.workpiece_from_bed_shift;
-  at.direction = machine.workpiece_from_bed * at.direction;
-  return at;
+  return {machine.workpiece_from_bed * Triple{at.x[0], at.y[0], at.z[0]} + machine.workpiece_from_bed_shift,
+          machine.workpiece_from_bed * Triple{at.x[1], at.y[1], at.z[1]}};
 }
 
 }  // namespace abbe

@@ -8,7 +8,7 @@ namespace abbe {
 
 /// Commands of all axes with cosines and sines of the rotary ones.
 struct FrozenCommands {
-  std::array<double, kFrozenAxes> q{};
+  std::array<double, kFrozenAxes> q;
   std::array<CosineSine, kFrozenAxes> turn;
 };
 
@@ -43,9 +43,5 @@ struct ActualTool {
 };
 /// @param enable  part of the errors, 0 to 1
 ActualTool actual_tool(const abbe_runtime& machine, const FrozenCommands& commands, const Triple& tool, double enable);
-
-/// The six components of one axis's error motion at a position: mm, mm, mm, rad, rad, rad and two zeros.
-void axis_errors(const abbe_runtime& machine, const FrozenAxis& axis, double position, const CosineSine& turn,
-                 double errors[8]);
 
 }  // namespace abbe
