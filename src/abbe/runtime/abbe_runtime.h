@@ -19,9 +19,9 @@ extern "C" {
 #endif
 
 enum {
-  ABBE_RUNTIME_AXES = 16,        /**< no machine has more axes */
-  ABBE_RUNTIME_FORMAT = 1,       /**< version of the file format */
-  ABBE_RUNTIME_ITERATIONS = 40,  /**< no call takes more */
+  ABBE_RUNTIME_AXES = 16,       /**< no machine has more axes */
+  ABBE_RUNTIME_FORMAT = 1,      /**< version of the file format */
+  ABBE_RUNTIME_ITERATIONS = 40, /**< no call takes more */
   ABBE_RUNTIME_TEXT = 64
 };
 
@@ -43,13 +43,13 @@ enum {
   ABBE_SINGULAR = -4,      /**< the linear axes lie in one plane in this pose */
   ABBE_NULL = -5,          /**< a pointer is null */
 
-  ABBE_FILE_SHORT = -10,      /**< fewer bytes than a header, or than the header says */
-  ABBE_FILE_FOREIGN = -11,    /**< no frozen compensation */
-  ABBE_FILE_ORDER = -12,      /**< written by a computer of another byte order */
-  ABBE_FILE_VERSION = -13,    /**< another version of the format */
-  ABBE_FILE_CHECKSUM = -14,   /**< damaged */
-  ABBE_FILE_CONTENT = -15,    /**< the checksum is right, the content is not */
-  ABBE_FILE_LONG = -16,       /**< more bytes than the header says */
+  ABBE_FILE_SHORT = -10,    /**< fewer bytes than a header, or than the header says */
+  ABBE_FILE_FOREIGN = -11,  /**< no frozen compensation */
+  ABBE_FILE_ORDER = -12,    /**< written by a computer of another byte order */
+  ABBE_FILE_VERSION = -13,  /**< another version of the format */
+  ABBE_FILE_CHECKSUM = -14, /**< damaged */
+  ABBE_FILE_CONTENT = -15,  /**< the checksum is right, the content is not */
+  ABBE_FILE_LONG = -16,     /**< more bytes than the header says */
   ABBE_FILE_NO_MEMORY = -17
 };
 
@@ -81,11 +81,11 @@ typedef struct abbe_runtime_information {
   uint64_t source_checksum;        /**< of machine and errors */
   size_t bytes;                    /**< of the file */
   int axes;
-  int tool_centre;               /**< 1: abbe_runtime_inverse() and _forward() work */
-  double tool[3];                /**< mm, functional point from the gauge point, axes of the machine at zero */
-  double tool_length_min;        /**< mm, against the tool direction */
-  double tool_length_max;        /**< mm */
-  double largest_correction_mm;  /**< by how much the tool point is moved, over the poses tried when the file was made */
+  int tool_centre;              /**< 1: abbe_runtime_inverse() and _forward() work */
+  double tool[3];               /**< mm, functional point from the gauge point, axes of the machine at zero */
+  double tool_length_min;       /**< mm, against the tool direction */
+  double tool_length_max;       /**< mm */
+  double largest_correction_mm; /**< by how much the tool point is moved, over the poses tried when the file was made */
   double largest_correction_rad; /**< by how much the tool direction is turned there */
   double accuracy_mm;            /**< largest difference of the actual tool to where it should be, by the full model */
   double accuracy_rad;

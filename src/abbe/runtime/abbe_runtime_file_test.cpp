@@ -29,6 +29,11 @@ void set_value(std::vector<unsigned char>& bytes, std::size_t place, double valu
   std::memcpy(bytes.data() + frozen::kChecksumAt, &sum, sizeof sum);
 }
 
+TEST(RuntimeFile, ItsChecksumIsTheOneOfXz) {
+  const unsigned char digits[] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+  EXPECT_EQ(frozen::crc(digits, sizeof digits), 0x995dc9bbdf1939faULL);  // check value of CRC-64/XZ
+}
+
 TEST(RuntimeFile, SaysWhatItIs) {
   const Machine machine = test::trunnion_mill();
   const FrozenCompensation frozen = test::quickly_frozen(machine, test::tens_of_micrometres(machine, 3), true);
@@ -117,7 +122,8 @@ TEST(RuntimeFile, ContentThatCannotBeIsRefusedThoughTheChecksumIsRight) {
     double value;
     const char* field;
   };
-  for (const Change& change : {Change{frozen::kAxes, 17, "number of axes"}, Change{frozen::kAxes, 0, "number of axes"},
+  for (const Change& change : {Change{frozen::kAxes, 17, "number of axes"},
+                               Change{frozen::kAxes, 0, "number of axes"},
                                Change{frozen::kAxes, 2.5, "number of axes"},
                                Change{frozen::kSolved, 2, "axes of the point"},
                                Change{frozen::kSolved + 1, 3, "axes of the point"},

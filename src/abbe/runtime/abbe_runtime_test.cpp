@@ -128,12 +128,13 @@ TEST(Runtime, NominalCallsAreTheKinematicsOfTheMachine) {
       const RigidTransform pose = nominal_workpiece_from_tool(machine, commands);
       Eigen::Vector3d point;
       std::vector<double> words(commands.size()), joints(commands.size());
-      const int result = abbe_runtime_nominal_forward(runtime.get(), commands.data(), nullptr, point.data(), words.data());
+      const int result =
+          abbe_runtime_nominal_forward(runtime.get(), commands.data(), nullptr, point.data(), words.data());
       if (about.tool_centre == 0) {
         EXPECT_EQ(result, ABBE_NOT_POSSIBLE);
-        EXPECT_EQ(abbe_runtime_nominal_inverse(runtime.get(), pose.translation.data(), words.data(), nullptr,
-                                               joints.data()),
-                  ABBE_NOT_POSSIBLE);
+        EXPECT_EQ(
+            abbe_runtime_nominal_inverse(runtime.get(), pose.translation.data(), words.data(), nullptr, joints.data()),
+            ABBE_NOT_POSSIBLE);
         continue;
       }
       ASSERT_EQ(result, ABBE_OK) << abbe_runtime_text(result);
@@ -172,11 +173,11 @@ TEST(Runtime, ForwardAndInverseAreInverseToEachOther) {
       abbe_runtime_state* const used = k % 3 == 0 ? nullptr : &state;
       std::vector<double> joints(nominal.size()), words(nominal.size()), again(nominal.size());
       Eigen::Vector3d back;
-      const int there = abbe_runtime_inverse(runtime.get(), used, point.data(), nominal.data(), nullptr, enable,
-                                             joints.data());
+      const int there =
+          abbe_runtime_inverse(runtime.get(), used, point.data(), nominal.data(), nullptr, enable, joints.data());
       ASSERT_GE(there, 0);
-      const int result = abbe_runtime_forward(runtime.get(), used, joints.data(), nullptr, enable, back.data(),
-                                              words.data());
+      const int result =
+          abbe_runtime_forward(runtime.get(), used, joints.data(), nullptr, enable, back.data(), words.data());
       ASSERT_EQ(result & ABBE_RESULT_MASK, there & ABBE_RESULT_MASK) << k;
       EXPECT_LE((back - point).norm(), 1e-12) << k;
       ASSERT_GE(abbe_runtime_inverse(runtime.get(), used, back.data(), words.data(), nullptr, enable, again.data()), 0);

@@ -157,7 +157,8 @@ TEST(RuntimeUse, ATurnedTableThatOnlyTiltsLeavesOrientation) {
   const Machine machine = test::single_axis("w X' Y' b Z B t");
   const test::RuntimePointer runtime = test::runtime_of(machine, test::tens_of_micrometres(machine, 5));
   std::vector<double> pose{10, 20, 30, 0.4}, joints(4), back(4);
-  EXPECT_EQ(abbe_runtime_correct(runtime.get(), nullptr, pose.data(), nullptr, 1, joints.data()), ABBE_ORIENTATION_LEFT);
+  EXPECT_EQ(abbe_runtime_correct(runtime.get(), nullptr, pose.data(), nullptr, 1, joints.data()),
+            ABBE_ORIENTATION_LEFT);
   EXPECT_EQ(abbe_runtime_uncorrect(runtime.get(), nullptr, joints.data(), nullptr, 1, back.data()),
             ABBE_ORIENTATION_LEFT);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(back[i], pose[i], 1e-12);

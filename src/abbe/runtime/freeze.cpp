@@ -150,7 +150,7 @@ std::vector<unsigned char> file_of(const Machine& machine, const FreezeOptions& 
   put(bytes, kByteOrderAt, kByteOrder);
   put(bytes, kFormatAt, std::uint32_t{ABBE_RUNTIME_FORMAT});
   put(bytes, kCountAt, std::uint64_t{values.size()});
-  put(bytes, kSourceAt, options.source_checksum);
+  put(bytes, kSourceAt, crc(reinterpret_cast<const unsigned char*>(options.source.data()), options.source.size()));
   put_text(bytes, kVersionAt, kVersionBytes, options.version);
   put_text(bytes, kNameAt, kNameBytes, machine.name);
   std::memcpy(bytes.data() + kHeaderBytes, values.data(), 8 * values.size());
@@ -193,6 +193,8 @@ FrozenCompensation freeze(const Machine& machine, const ErrorSet& errors, const 
   values[frozen::kAccuracy + 1] = result.accuracy_turn;
   values[frozen::kWorstIterations] = result.worst_iterations;
   result.bytes = file_of(machine, options, values);
+  std::memcpy(&result.checksum, result.bytes.data() + frozen::kChecksumAt, sizeof result.checksum);
+  std::memcpy(&result.source_checksum, result.bytes.data() + frozen::kSourceAt, sizeof result.source_checksum);
   return result;
 }
 

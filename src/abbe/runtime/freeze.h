@@ -13,22 +13,23 @@
 namespace abbe {
 
 struct FreezeOptions {
-  Eigen::Vector3d tool = Eigen::Vector3d::Zero();  ///< mm; default tool, functional point from the gauge point
+  Eigen::Vector3d tool = Eigen::Vector3d::Zero();     ///< mm; default tool, functional point from the gauge point
   double tool_length_min = 0, tool_length_max = 300;  ///< mm, against the tool direction: checked, flagged beyond
   /// World coordinates are zero where all joints and the tool are zero, so that without rotation they equal the joints;
   /// false: world coordinates are those of the workpiece frame.
   bool world_zero_at_joints = true;
-  double largest_turn = 0.01;   ///< rad, as CorrectionOptions
-  double largest_shift = 10;    ///< mm
-  std::size_t poses = 4000;     ///< tried for the statement, per tool length
-  std::uint64_t source_checksum = 0;  ///< of machine and errors, to be found again in the file
-  std::string version;                ///< of the program
+  double largest_turn = 0.01;  ///< rad, as CorrectionOptions
+  double largest_shift = 10;   ///< mm
+  std::size_t poses = 4000;    ///< tried for the statement, per tool length
+  std::string source;          ///< machine and errors as text, whose checksum the file keeps
+  std::string version;         ///< of the program
 };
 
 /// A frozen compensation and what was found by trying it against the full model at poses all over travel and map.
 struct FrozenCompensation {
   std::string problem;  ///< why it cannot be frozen; empty if it can
   std::vector<unsigned char> bytes;
+  std::uint64_t checksum = 0, source_checksum = 0;
   double largest_correction = 0;       ///< mm, of the tool point: actual against nominal at the same commands
   double largest_correction_turn = 0;  ///< rad, of the tool direction
   std::vector<double> where;           ///< nominal commands of largest_correction; mm, rad

@@ -135,8 +135,8 @@ FrozenResult solve_actual(const abbe_runtime& machine, const FrozenCommands& nom
   return found;
 }
 
-FrozenResult solve_nominal(const abbe_runtime& machine, const FrozenCommands& actual, const Triple& tool,
-                           double enable, FrozenCommands& nominal, Triple& point) {
+FrozenResult solve_nominal(const abbe_runtime& machine, const FrozenCommands& actual, const Triple& tool, double enable,
+                           FrozenCommands& nominal, Triple& point) {
   const ActualTool at = actual_tool(machine, actual, tool, enable);
   point = at.point;
   // Where the linear axes take any point, it is theirs whatever their commands: only the turns are unknown.
@@ -158,8 +158,7 @@ FrozenResult solve_nominal(const abbe_runtime& machine, const FrozenCommands& ac
     y = new_y;
     if (reach) {
       const ReachSystem reach_system(machine, view, view.point);
-      const Triple rest =
-          view.point - at.point - moved_by(machine, view, view.point, by_turn) + reach_system.of(z);
+      const Triple rest = view.point - at.point - moved_by(machine, view, view.point, by_turn) + reach_system.of(z);
       const Triple new_z = reach_system.solve(rest, machine.largest_shift, shift_bounded);
       step += length(reach_system.of(new_z - z));
       point_left = rest - reach_system.of(new_z);

@@ -23,8 +23,8 @@ FrozenResult solve_actual(const abbe_runtime& machine, const FrozenCommands& nom
 
 /// @param nominal  in: commands to start from; out
 /// @param point    out: where the actual tool is, workpiece frame, mm
-FrozenResult solve_nominal(const abbe_runtime& machine, const FrozenCommands& actual, const Triple& tool,
-                           double enable, FrozenCommands& nominal, Triple& point);
+FrozenResult solve_nominal(const abbe_runtime& machine, const FrozenCommands& actual, const Triple& tool, double enable,
+                           FrozenCommands& nominal, Triple& point);
 
 /// Commands of the three axes that are solved from the point.
 /// @param view  with solved axes at zero

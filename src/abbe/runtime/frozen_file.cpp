@@ -25,14 +25,23 @@ constexpr std::array<std::uint64_t, 256> make_table() {
 }
 constexpr std::array<std::uint64_t, 256> kTable = make_table();
 
+std::uint64_t add_byte(std::uint64_t value, unsigned char byte) {
+  return kTable[(value ^ byte) & 0xffU] ^ (value >> 8U);
+}
+
 }  // namespace
 
 std::uint64_t checksum(const unsigned char* bytes, std::size_t size) {
   std::uint64_t value = ~std::uint64_t{0};
   for (std::size_t i = 0; i < size; ++i) {
-    const unsigned char byte = i >= kChecksumAt && i < kChecksumAt + 8 ? 0 : bytes[i];
-    value = kTable[(value ^ byte) & 0xffU] ^ (value >> 8U);
+    value = add_byte(value, i >= kChecksumAt && i < kChecksumAt + 8 ? 0 : bytes[i]);
   }
+  return ~value;
+}
+
+std::uint64_t crc(const unsigned char* bytes, std::size_t size) {
+  std::uint64_t value = ~std::uint64_t{0};
+  for (std::size_t i = 0; i < size; ++i) value = add_byte(value, bytes[i]);
   return ~value;
 }
 

@@ -120,9 +120,8 @@ std::vector<FrozenFunctions> frozen_functions(const Machine& machine, const Erro
       problem = not_frozen(machine, motion, "more than 4095 intervals");
       return {};
     }
-    const auto found = std::find_if(all.begin(), all.end(), [&](const FrozenFunctions& other) {
-      return same_functions(other, functions);
-    });
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const FrozenFunctions& other) { return same_functions(other, functions); });
     FrozenFunctions& place = found == all.end() ? all.emplace_back(std::move(functions)) : *found;
     if (place.rows.size() < coefficients.size()) place.rows.resize(coefficients.size());
     for (std::size_t k = 0; k < coefficients.size(); ++k)

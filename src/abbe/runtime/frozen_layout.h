@@ -86,5 +86,7 @@ inline constexpr double kMostBeyond = 1.1;     // of the argument of Chebyshev f
 
 /// CRC-64/XZ of a file, its checksum field counted as zeros. Every change of up to 64 neighbouring bits shows.
 std::uint64_t checksum(const unsigned char* bytes, std::size_t size);
+/// CRC-64/XZ of any bytes.
+std::uint64_t crc(const unsigned char* bytes, std::size_t size);
 
 }  // namespace abbe::frozen

@@ -38,12 +38,12 @@ struct CosineSine {
 struct FrozenGroup {
   enum class Kind : std::uint8_t { chebyshev, fourier, piecewise_cubic };
   Kind kind = Kind::chebyshev;
-  bool everywhere = false;      ///< periodic: no end of range
-  bool same_turn = false;       ///< fourier of period 2 pi, everywhere: its first harmonic is that of the axis command
-  std::size_t functions = 0;    ///< chebyshev, fourier: functions; piecewise: intervals
-  double lowest = 0;            ///< positions beyond these two take the errors of the end
+  bool everywhere = false;    ///< periodic: no end of range
+  bool same_turn = false;     ///< fourier of period 2 pi, everywhere: its first harmonic is that of the axis command
+  std::size_t functions = 0;  ///< chebyshev, fourier: functions; piecewise: intervals
+  double lowest = 0;          ///< positions beyond these two take the errors of the end
   double highest = 0;
-  double scale = 0, shift = 0;  ///< chebyshev: s = scale q + shift; fourier: scale = 2 pi / period
+  double scale = 0, shift = 0;                     ///< chebyshev: s = scale q + shift; fourier: scale = 2 pi / period
   double origin = 0, period = 0, per_spacing = 0;  ///< piecewise; per_spacing 0: the nodes are not evenly spaced
   const double* nodes = nullptr;                   ///< [functions + 1]
   /// [functions][6] (piecewise: [functions][4][6], rising powers of the part of the interval): the six components
@@ -52,9 +52,9 @@ struct FrozenGroup {
 
 struct FrozenAxis {
   bool rotary = false, tool_side = false, error_first = false, endless = false;
-  double sense = 1;       ///< displacement of the carried body = sense * command
-  double chain_sign = 1;  ///< of the tool side against the workpiece side
-  Triple direction{}, point{};                ///< nominal
+  double sense = 1;                            ///< displacement of the carried body = sense * command
+  double chain_sign = 1;                       ///< of the tool side against the workpiece side
+  Triple direction{}, point{};                 ///< nominal
   Triple actual_direction{}, actual_centre{};  ///< with location errors
   double zero_position = 0;                    ///< added to the command
   CosineSine zero_turn{1, 0};                  ///< of it
@@ -79,16 +79,17 @@ struct abbe_runtime {
   std::size_t axes = 0;
   std::array<abbe::FrozenAxis, abbe::kFrozenAxes> axis;
   const abbe::FrozenGroup* group = nullptr;
-  abbe::FrozenChoice solved;    ///< three linear axes, or none: found from the point of the tool
-  abbe::FrozenChoice turning;   ///< rotary axes that correct the orientation, up to two
-  abbe::FrozenChoice reaching;  ///< axes that correct the point; linear, the last may be the rotary one of a polar machine
-  std::array<double, 3> reaching_unit{};  ///< mm or rad that count as 1 mm
-  bool reaching_linear = false;           ///< the same three axes are solved and correct
+  abbe::FrozenChoice solved;   ///< three linear axes, or none: found from the point of the tool
+  abbe::FrozenChoice turning;  ///< rotary axes that correct the orientation, up to two
+  abbe::FrozenChoice
+      reaching;  ///< axes that correct the point; linear, the last may be the rotary one of a polar machine
+  std::array<double, 3> reaching_unit{};       ///< mm or rad that count as 1 mm
+  bool reaching_linear = false;                ///< the same three axes are solved and correct
   double largest_turn = 0, largest_shift = 0;  ///< rad, mm: bounds of a correction
   abbe::Triple tool_reference{}, tool{}, tool_error{}, tool_direction{};
   double tool_length_min = 0, tool_length_max = 0;
-  abbe::Triple world_zero{};               ///< of the world in the workpiece frame
-  abbe::Turned workpiece_from_bed{};       ///< with all axes at zero
+  abbe::Triple world_zero{};          ///< of the world in the workpiece frame
+  abbe::Turned workpiece_from_bed{};  ///< with all axes at zero
   abbe::Triple workpiece_from_bed_shift{};
   abbe_runtime_information information{};
 };

@@ -96,9 +96,8 @@ ReachSystem::ReachSystem(const abbe_runtime& machine, const NominalView& view, c
     : count_(machine.reaching.count) {
   for (std::size_t k = 0; k < count_; ++k) {
     const std::size_t i = machine.reaching.axis[k];
-    column_[k] = machine.axis[i].rotary
-                     ? machine.reaching_unit[k] * cross(view.column[i], goal - view.origin[i])
-                     : view.column[i];
+    column_[k] = machine.axis[i].rotary ? machine.reaching_unit[k] * cross(view.column[i], goal - view.origin[i])
+                                        : view.column[i];
   }
   row_ = {cross(column_[1], column_[2]), cross(column_[2], column_[0]), cross(column_[0], column_[1])};
   determinant_ = dot(column_[0], row_[0]);
