@@ -195,80 +195,98 @@ void PieceBounder::follow_arc(PieceMotion& motion) const {
   }
 }
 
+/// What is known of the point and of the tool's direction on the way from the tool to the workpiece.
+struct PieceBounder::Passing {
+  const ChainLevers& levers;
+  const PieceMotion& motion;
+  double bend;  ///< of the commands of X, Y, Z: nominal ones on an arc, actual ones in tool centre programs
+  Majorant point, direction;
+  double grown = 0;  ///< how far the point may be from that of the levers
+
+  // In tool centre programs the control itself follows the point: the chain is compared with the nominal one at the
+  // same commands. The direction is compared with that of the commanded ones in all programs.
+  double point_speed(std::size_t i) const { return motion.tool_centre ? motion.actual_speed[i] : motion.speed[i]; }
+  double point_offset(std::size_t i) const { return motion.tool_centre ? 0 : motion.offset[i]; }
+  double point_offset_speed(std::size_t i) const { return motion.tool_centre ? 0 : motion.offset_speed[i]; }
+
+  void turn_by_error(const ErrorAlong& e, double length) {
+    point.turn(length, e.turn, e.turn_rate, e.turn_second);
+    direction.turn(1 - std::min(direction.off, 1.0), e.turn, e.turn_rate, e.turn_second);
+  }
+};
+
+void PieceBounder::pass_rotary(std::size_t i, Passing& at) const {
+  const AxisModel& axis = axes_[i];
+  const PieceMotion& motion = at.motion;
+  const double actual_speed = motion.actual_speed[i];
+  const ErrorAlong e(axis.errors.over(motion.lowest[i], motion.highest[i]), actual_speed, 0);
+  const double length = at.levers.from_point[i] + at.grown, across = at.levers.from_line[i] + at.grown;
+  // From the tool: Rot, then E; towards the workpiece: the inverse of E, shift first, then that of Rot.
+  if (!axis.tool_side) {
+    at.point.add(e.shift, e.shift_rate, e.shift_second);
+    at.turn_by_error(e, length);
+  }
+  rotate(at.point, length, across, at.point_speed(i), actual_speed, at.point_offset(i) + axis.zero_position,
+         at.point_offset_speed(i), axis.line_turn);
+  at.point.add(2 * axis.line_shift, axis.line_shift * actual_speed, axis.line_shift * square(actual_speed));
+  rotate(at.direction, 1, 1, motion.speed[i], actual_speed, motion.offset[i] + axis.zero_position,
+         motion.offset_speed[i], axis.line_turn);
+  if (axis.tool_side) {
+    at.turn_by_error(e, length);
+    at.point.add(e.shift, e.shift_rate, e.shift_second);
+  }
+  at.grown += motion.width[i] * across;
+}
+
+void PieceBounder::pass_linear(std::size_t i, Passing& at) const {
+  const AxisModel& axis = axes_[i];
+  const PieceMotion& motion = at.motion;
+  const double actual_speed = motion.actual_speed[i];
+  const double own_bend = motion.tool_centre && is_point_axis(i) ? at.bend : 0;
+  const ErrorAlong e(axis.errors.over(motion.lowest[i], motion.highest[i]), actual_speed, own_bend);
+  if (axis.tool_side) at.turn_by_error(e, at.levers.from_point[i] + at.grown);
+  if (axis.run_begins) {
+    // Axes with no rotary one between move the point as one vector.
+    double speeds = 0, widths = 0, offsets = 0, offset_speeds = 0;
+    for (const std::size_t k : axis.run) {
+      speeds += square(at.point_speed(k));
+      widths += square(motion.width[k]);
+      offsets += square(at.point_offset(k) + axes_[k].zero_position);
+      offset_speeds += square(at.point_offset_speed(k));
+    }
+    const double bend = axis.bends ? axis.run_stretch * at.bend : 0;
+    at.point.speed += axis.run_stretch * std::sqrt(speeds);
+    at.point.bend += bend;
+    at.grown += axis.run_stretch * std::sqrt(widths);
+    at.point.add(axis.run_stretch * std::sqrt(offsets), axis.run_stretch * std::sqrt(offset_speeds),
+                 motion.tool_centre ? 0 : bend);
+  }
+  const double reach = std::max(std::abs(motion.lowest[i]), std::abs(motion.highest[i])) + axis.zero_position;
+  at.point.add(axis.line_turn * reach, axis.line_turn * actual_speed, axis.line_turn * own_bend);
+  at.point.add(e.shift, e.shift_rate, e.shift_second);
+  if (!axis.tool_side) at.turn_by_error(e, at.levers.from_point[i] + at.grown);
+}
+
 PieceBound PieceBounder::bound(const ChainLevers& levers, PieceMotion& motion) const {
   std::array<Stage, kMaxAxes> stages;
   if (!motion.tool_centre && motion.arc_bend > 0) follow_arc(motion);
   const std::size_t stage_end = motion.tool_centre && has_point_axes_ ? point_axes_[0] + 1 : 0;
-  // Of the commands of X, Y, Z: nominal ones on an arc, or actual and nominal ones alike in tool centre programs.
   const double bend = stage_end > 0 ? move_point_axes(levers, motion, stages) : motion.arc_bend;
-
-  Majorant point, direction;
-  point.off = tool_error_;
-  double grown = 0;  // how far the point may be from that of the levers
+  Passing at{levers, motion, bend, {}, {}};
+  at.point.off = tool_error_;
   for (std::size_t i = axes_.size(); i-- > 0;) {
-    const AxisModel& axis = axes_[i];
-    const double speed = motion.speed[i], actual_speed = motion.actual_speed[i];
-    // In tool centre programs the control itself follows the point: the chain is compared with the nominal one at the
-    // same commands. The direction is compared with that of the commanded ones in all programs.
-    const double point_speed = motion.tool_centre ? actual_speed : speed;
-    const AxisErrorBound error = axis.errors.over(motion.lowest[i], motion.highest[i]);
-    const double length = levers.from_point[i] + grown;
-    const double offset = motion.offset[i] + axis.zero_position;
-    const double point_offset = (motion.tool_centre ? 0 : motion.offset[i]) + axis.zero_position;
-    const double point_offset_speed = motion.tool_centre ? 0 : motion.offset_speed[i];
-    if (axis.rotary) {
-      const ErrorAlong e(error, actual_speed, 0);
-      const double across = levers.from_line[i] + grown;
-      const auto error_motion = [&] {
-        point.turn(length, e.turn, e.turn_rate, e.turn_second);
-        point.add(e.shift, e.shift_rate, e.shift_second);
-        direction.turn(1 - std::min(direction.off, 1.0), e.turn, e.turn_rate, e.turn_second);
-      };
-      if (!axis.tool_side) error_motion();
-      rotate(point, length, across, point_speed, actual_speed, point_offset, point_offset_speed, axis.line_turn);
-      point.add(2 * axis.line_shift, axis.line_shift * actual_speed, axis.line_shift * square(actual_speed));
-      rotate(direction, 1, 1, speed, actual_speed, offset, motion.offset_speed[i], axis.line_turn);
-      if (axis.tool_side) error_motion();
-      grown += motion.width[i] * across;
+    if (axes_[i].rotary) {
+      pass_rotary(i, at);
     } else {
-      const double own_bend = motion.tool_centre && is_point_axis(i) ? bend : 0;
-      const ErrorAlong e(error, actual_speed, own_bend);
-      if (axis.tool_side) {
-        point.turn(length, e.turn, e.turn_rate, e.turn_second);
-        direction.turn(1 - std::min(direction.off, 1.0), e.turn, e.turn_rate, e.turn_second);
-      }
-      if (axis.run_begins) {
-        // Axes with no rotary one between move the point as one vector.
-        double speeds = 0, widths = 0, offsets = 0, offset_speeds = 0;
-        for (const std::size_t k : axis.run) {
-          speeds += square(motion.tool_centre ? motion.actual_speed[k] : motion.speed[k]);
-          widths += square(motion.width[k]);
-          offsets += square((motion.tool_centre ? 0 : motion.offset[k]) + axes_[k].zero_position);
-          offset_speeds += motion.tool_centre ? 0 : square(motion.offset_speed[k]);
-        }
-        point.speed += axis.run_stretch * std::sqrt(speeds);
-        grown += axis.run_stretch * std::sqrt(widths);
-        const double run_bend = axis.bends ? axis.run_stretch * bend : 0;
-        point.bend += run_bend;
-        point.add(axis.run_stretch * std::sqrt(offsets), axis.run_stretch * std::sqrt(offset_speeds),
-                  motion.tool_centre ? 0 : run_bend);
-      }
-      const double reach = std::max(std::abs(motion.lowest[i]), std::abs(motion.highest[i])) + axis.zero_position;
-      point.add(axis.line_turn * reach, axis.line_turn * actual_speed, axis.line_turn * own_bend);
-      point.add(e.shift, e.shift_rate, e.shift_second);
-      if (!axis.tool_side) {
-        const double after = levers.from_point[i] + grown;
-        point.turn(after, e.turn, e.turn_rate, e.turn_second);
-        direction.turn(1 - std::min(direction.off, 1.0), e.turn, e.turn_rate, e.turn_second);
-      }
+      pass_linear(i, at);
     }
     if (i < stage_end) {
-      point.speed = std::min(point.speed, stages[i].speed);
-      point.bend = std::min(point.bend, stages[i].bend);
+      at.point.speed = std::min(at.point.speed, stages[i].speed);
+      at.point.bend = std::min(at.point.bend, stages[i].bend);
     }
   }
   // In tool centre programs the chord itself is not in the chain.
-  return {0.125 * (point.off_bend + (motion.tool_centre ? motion.arc_bend : 0)), 0.125 * direction.off_bend};
+  return {0.125 * (at.point.off_bend + (motion.tool_centre ? motion.arc_bend : 0)), 0.125 * at.direction.off_bend};
 }
 
 }  // namespace abbe

@@ -82,6 +82,9 @@ class PieceBounder {
   struct Stage {
     double speed = 0, bend = 0;
   };
+  struct Passing;
+  void pass_rotary(std::size_t i, Passing& at) const;
+  void pass_linear(std::size_t i, Passing& at) const;
   void set_point_axes();
   double move_point_axes(const ChainLevers& levers, PieceMotion& motion, std::array<Stage, kMaxAxes>& stages) const;
   void follow_arc(PieceMotion& motion) const;

@@ -19,7 +19,7 @@ bool is_arc(const ProgramMove& move) {
 }
 
 ProgramPlace place(const ProgramMove& move, const CorrectedNode& node, double value) {
-  return {value, move.line, node.position, node.corrected_position, move.tool_length};
+  return {value, move.line, node.position, node.corrected_position, move.tool_length, node.status};
 }
 
 /// Moves that follow each other and what becomes of them.

@@ -111,11 +111,21 @@ inline ErrorSet mixed_errors(const Machine& machine, std::uint64_t seed) {
       case 4:
         basis.kind = BasisKind::bspline;
         basis.order = 9;
+        basis.periodic = axis.endless;
+        if (axis.endless) basis.period = 2 * 3.14159265358979323846;
         break;
       default:
         basis.kind = generator() % 2 == 0 ? BasisKind::table_linear : BasisKind::table_monotone;
         for (int k = 0; k <= 12; ++k) basis.nodes.push_back(from + (to - from) * k / 12);
         basis.nodes.back() = to;
+        if (axis.endless) {
+          basis.kind = BasisKind::table_linear;
+          basis.periodic = true;
+          basis.period = 2 * 3.14159265358979323846;
+          basis.nodes = {-3, -1.7, -0.2, 0.4, 1.9, 2.5};
+          basis.from = basis.nodes.front();
+          basis.to = basis.nodes.back();
+        }
         smooth = 3;
         break;
     }

@@ -16,6 +16,7 @@ struct ProgramPlace {
   std::array<double, kMaxAxes> position{};   ///< commands as programmed, chain order; mm or rad
   std::array<double, kMaxAxes> corrected{};  ///< commands that reach the same with the errors
   std::array<double, 3> tool_length{};       ///< mm, in force there
+  CorrectionStatus status = CorrectionStatus::not_run;
 
   bool take(const ProgramPlace& other);  ///< keeps the larger; the earlier of equal ones
 };

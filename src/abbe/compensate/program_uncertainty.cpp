@@ -110,6 +110,8 @@ PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, 
     result.point = std::sqrt(std::max(0.0, along.dot(spread.topLeftCorner<3, 3>() * along)));
   }
 
+  // Where the orientation is not wholly corrected, the commands do not follow from the deviation.
+  if (place.status != CorrectionStatus::reached) return result;
   // Point, and the two components of the rotation across the tool where a rotary axis works.
   std::vector<std::size_t> working;
   bool turns = false;

@@ -65,6 +65,7 @@ TEST(ProgramUncertainty, EqualsThatOfCorrectionsWithErrorsShiftedOneByOne) {
   ProgramPlace place;
   place.position = at.position;
   place.tool_length = length;
+  place.status = CorrectionStatus::reached;
   const PlaceUncertainty stated =
       uncertainty_at(machine, errors, covariance, place, std::vector<bool>(machine.axes.size(), true));
   ASSERT_TRUE(stated.stated);
