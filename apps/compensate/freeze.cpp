@@ -1,0 +1,187 @@
+#include "abbe/runtime/freeze.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/json_text.h"
+#include "abbe/formats/machine_file.h"
+#include "abbe/formats/results_folder.h"
+#include "abbe/runtime/abbe_runtime.h"
+#include "compensate/compensate.h"
+
+namespace abbe {
+namespace {
+
+/// A frozen compensation that differs more from the full model is not given out, mm.
+constexpr double kWorstAccuracy = 1e-6;
+
+struct FreezeArguments {
+  std::string machine, errors, output, world = "joints";
+  std::vector<double> tool, lengths{0, 300};
+  double limit_um = std::numeric_limits<double>::infinity();
+  double largest_turn_deg = 0.57;
+  bool json = false;
+};
+
+std::string command_words(const Machine& machine, const std::vector<double>& commands) {
+  std::string text;
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const Axis& axis = machine.axes[i];
+    const bool rotary = axis.kind == AxisKind::rotary;
+    text += fmt::format("{}{} {:.4g} {}", i > 0 ? ", " : "", axis.name,
+                        rotary ? commands[i] * 180 / std::numbers::pi : commands[i], rotary ? "deg" : "mm");
+  }
+  return text;
+}
+
+FreezeOptions options_of(const FreezeArguments& arguments, const Machine& machine, const ErrorsFile& errors) {
+  FreezeOptions options;
+  options.tool = machine.tool_offset;
+  if (!arguments.tool.empty()) options.tool = {arguments.tool[0], arguments.tool[1], arguments.tool[2]};
+  if (!options.tool.allFinite()) throw InputError({.field = "--tool-mm"}, "not finite", "three lengths in mm");
+  options.tool_length_min = arguments.lengths[0];
+  options.tool_length_max = arguments.lengths[1];
+  if (!(arguments.lengths[0] <= arguments.lengths[1]) || !std::isfinite(arguments.lengths[1] - arguments.lengths[0]))
+    throw InputError({.field = "--tool-length-mm"}, "the range is empty", "the lower end first, in mm");
+  if (!(arguments.limit_um > 0)) throw InputError({.field = "--limit-um"}, "not positive", "a length in um");
+  if (!(arguments.largest_turn_deg > 0) || !(arguments.largest_turn_deg <= 10))
+    throw InputError({.field = "--largest-turn-deg"}, "out of range", "more than 0 and at most 10 degrees");
+  options.largest_turn = arguments.largest_turn_deg * std::numbers::pi / 180;
+  options.world_zero_at_joints = arguments.world == "joints";
+  options.source = machine_text(machine) + errors_text(machine, errors);
+  options.version = ABBE_VERSION;
+  return options;
+}
+
+void print_result(const FreezeArguments& arguments, const Machine& machine, const FrozenCompensation& frozen) {
+  fmt::print("{}: errors of {} frozen\n", machine.name, arguments.errors);
+  fmt::print("  {}: {} bytes, format {}, abbe {}, checksum {:016x} (machine and errors {:016x})\n", arguments.output,
+             frozen.bytes.size(), static_cast<int>(ABBE_RUNTIME_FORMAT), ABBE_VERSION, frozen.checksum,
+             frozen.source_checksum);
+  fmt::print("  tried at {} poses, tools of {:g} to {:g} mm\n", frozen.poses, arguments.lengths[0],
+             arguments.lengths[1]);
+  fmt::print("  largest correction of the tool: {:.1f} um at {}, tool {:g} mm\n", 1e3 * frozen.largest_correction,
+             command_words(machine, frozen.where), frozen.tool_length_there);
+  fmt::print("  largest correction of its direction: {:.1f} urad\n", 1e6 * frozen.largest_correction_turn);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    fmt::print("  largest correction of {}: {:.4g} {}\n", machine.axes[i].name,
+               frozen.largest_joint[i] * (rotary ? 180 / std::numbers::pi : 1e3), rotary ? "deg" : "um");
+  }
+  fmt::print("  after it, by the full model: {:.1e} mm and {:.1e} rad at most\n", frozen.accuracy,
+             frozen.accuracy_turn);
+  fmt::print("  iterations of one call: at most {}\n", frozen.worst_iterations);
+  if (frozen.limited > 0)
+    fmt::print("  near singularities the turn is bounded: at {} poses a part of the orientation error stays\n",
+               frozen.limited);
+  if (frozen.unreached > 0)
+    fmt::print("  the axes cannot take all of the error of the point: at {} of {} poses a part of it stays\n",
+               frozen.unreached, frozen.poses);
+}
+
+void print_json(const FreezeArguments& arguments, const Machine& machine, const FrozenCompensation& frozen) {
+  nlohmann::ordered_json json;
+  json["machine"] = machine.name;
+  json["errors"] = arguments.errors;
+  json["output"] = arguments.output;
+  json["bytes"] = frozen.bytes.size();
+  json["format"] = static_cast<int>(ABBE_RUNTIME_FORMAT);
+  json["version"] = ABBE_VERSION;
+  json["checksum"] = fmt::format("{:016x}", frozen.checksum);
+  json["source_checksum"] = fmt::format("{:016x}", frozen.source_checksum);
+  json["poses"] = frozen.poses;
+  json["largest_correction_um"] = 1e3 * frozen.largest_correction;
+  json["largest_correction_urad"] = 1e6 * frozen.largest_correction_turn;
+  nlohmann::ordered_json where, joints;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    const double degrees = 180 / std::numbers::pi;
+    where[machine.axes[i].name + (rotary ? "_deg" : "_mm")] = frozen.where[i] * (rotary ? degrees : 1);
+    joints[machine.axes[i].name + (rotary ? "_deg" : "_um")] = frozen.largest_joint[i] * (rotary ? degrees : 1e3);
+  }
+  json["largest_correction_at"] = where;
+  json["largest_joint_corrections"] = joints;
+  json["accuracy_mm"] = frozen.accuracy;
+  json["accuracy_rad"] = frozen.accuracy_turn;
+  json["worst_iterations"] = frozen.worst_iterations;
+  json["turn_bounded"] = frozen.limited;
+  json["point_not_reached"] = frozen.unreached;
+  fmt::print("{}", json_text(json));
+}
+
+int run_freeze(const FreezeArguments& arguments) {
+  const Machine machine = read_machine(arguments.machine);
+  const ErrorsFile errors = read_errors(arguments.errors, machine);
+  const FrozenCompensation frozen = freeze(machine, errors.errors, options_of(arguments, machine, errors));
+  if (!frozen.problem.empty()) throw InputError({.file = arguments.errors}, "cannot be frozen: " + frozen.problem);
+  if (1e3 * frozen.largest_correction > arguments.limit_um) {
+    fmt::print(stderr,
+               "abbe: refused: the correction is {:.1f} um, above --limit-um {:g}, at {}, tool {:g} mm; nothing was "
+               "written\n",
+               1e3 * frozen.largest_correction, arguments.limit_um, command_words(machine, frozen.where),
+               frozen.tool_length_there);
+    return kNegative;
+  }
+  if (!(frozen.accuracy <= kWorstAccuracy)) {
+    fmt::print(stderr, "abbe: refused: the frozen compensation differs by {:.2e} mm from the full model\n",
+               frozen.accuracy);
+    return kNegative;
+  }
+  write_file_atomically(arguments.output, {reinterpret_cast<const char*>(frozen.bytes.data()), frozen.bytes.size()});
+  if (arguments.json) {
+    print_json(arguments, machine, frozen);
+  } else {
+    print_result(arguments, machine, frozen);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_compensate_freeze(CLI::App& compensate, CommandLine& line) {
+  auto arguments = std::make_shared<FreezeArguments>();
+  CLI::App* command =
+      compensate.add_subcommand("freeze", "Machine and errors to one file that a controller uses in real time");
+  command->footer(
+      "The file is for the C interface abbe/runtime/abbe_runtime.h and for the LinuxCNC module (docs/runtime.md). It "
+      "is\n"
+      "tried at thousands of poses before it is written; what is said here was found there.\n\n"
+      "Example:\n"
+      "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml examples/trunnion/table.errors.toml -o "
+      "mill.abbec\n"
+      "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml examples/trunnion/table.errors.toml -o "
+      "mill.abbec --tool-length-mm 60 220 --limit-um 500");
+  command->add_option("machine", arguments->machine, "Machine file (*.machine.toml)")->required();
+  command->add_option("errors", arguments->errors, "Errors file (*.errors.toml)")->required();
+  command->add_option("-o,--output", arguments->output, "File to write (*.abbec)")->required();
+  command
+      ->add_option("--tool-mm", arguments->tool,
+                   "Functional point from the gauge point, of calls that give no tool (default: that of the machine)")
+      ->expected(3);
+  command->add_option("--tool-length-mm", arguments->lengths, "Tool lengths that are tried; others are flagged")
+      ->expected(2)
+      ->capture_default_str();
+  command->add_option("--limit-um", arguments->limit_um, "Refuse if the tool would be corrected by more than this");
+  command
+      ->add_option("--largest-turn-deg", arguments->largest_turn_deg,
+                   "Largest turn of rotary axes together; binds near singularities")
+      ->capture_default_str();
+  command
+      ->add_option("--world", arguments->world,
+                   "Origin of world coordinates: joints (zero where all joints are) or workpiece")
+      ->check(CLI::IsMember({"joints", "workpiece"}))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "Print the result as JSON");
+  command->callback([arguments, &line] { line.run = [arguments] { return run_freeze(*arguments); }; });
+}
+
+}  // namespace abbe

@@ -1,0 +1,54 @@
+// `abbe compensate freeze`: the file, what is said of it, and what is refused.
+#include <nlohmann/json.hpp>
+
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+class CompensateFreezeTest : public CommandTest {
+ protected:
+  const std::string machine = std::string(ABBE_SOURCE_DIR) + "/examples/machines/trunnion-mill.machine.toml";
+  const std::string errors = std::string(ABBE_SOURCE_DIR) + "/examples/trunnion/table.errors.toml";
+  const std::string output = (folder.path() / "mill.abbec").string();
+};
+
+TEST_F(CompensateFreezeTest, WritesAFileAndSaysWhatItDoes) {
+  const CommandResult result = abbe({"compensate", "freeze", machine, errors, "-o", output, "--json"});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["bytes"].get<std::size_t>(), std::filesystem::file_size(output));
+  EXPECT_EQ(json["format"], 1);
+  EXPECT_EQ(json["checksum"].get<std::string>().size(), 16U);
+  EXPECT_GT(json["largest_correction_um"].get<double>(), 1);
+  EXPECT_LT(json["accuracy_mm"].get<double>(), 1e-9);
+  EXPECT_GE(json["worst_iterations"].get<int>(), 2);
+  const CommandResult again = abbe({"compensate", "freeze", machine, errors, "-o", output});
+  EXPECT_NE(again.out.find(json["checksum"].get<std::string>()), std::string::npos);
+  EXPECT_NE(again.out.find("largest correction of the tool: "), std::string::npos);
+}
+
+TEST_F(CompensateFreezeTest, ACorrectionAboveTheLimitIsRefusedWithItsPlace) {
+  const CommandResult result = abbe({"compensate", "freeze", machine, errors, "-o", output, "--limit-um", "1"});
+  EXPECT_EQ(result.exit_code, computation_says_no);
+  EXPECT_NE(result.err.find("above --limit-um 1, at C "), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
+TEST_F(CompensateFreezeTest, BadOptionsAreNamed) {
+  const auto refused = [&](std::vector<std::string> options, const std::string& name) {
+    std::vector<std::string> arguments{"compensate", "freeze", machine, errors, "-o", output};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const CommandResult result = abbe(arguments);
+    EXPECT_EQ(result.exit_code, bad_input);
+    EXPECT_NE(result.err.find(name), std::string::npos) << result.err;
+  };
+  refused({"--tool-length-mm", "200", "100"}, "--tool-length-mm");
+  refused({"--limit-um", "-3"}, "--limit-um");
+  refused({"--world", "moon"}, "--world");
+  refused({"--largest-turn-deg", "40"}, "--largest-turn-deg");
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
+}  // namespace
+}  // namespace abbe
