@@ -10,11 +10,12 @@
 #   make fuzz      fuzz every reader for FUZZ_SECONDS (default 60) each
 #   make coverage  line coverage of the quick tests
 #   make install   install to PREFIX (default /usr/local)
+#   make install-linuxcnc   kinematics module into LinuxCNC's folder of modules (linuxcnc/README.md)
 #   make clean     remove build/
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo test quick lint format bench fuzz coverage install clean
+.PHONY: build demo test quick lint format bench fuzz coverage install install-linuxcnc clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc)
@@ -97,6 +98,13 @@ coverage:
 
 install: build
 	@cmake --install build/release --prefix $(PREFIX)
+
+install-linuxcnc:
+	@.ci/set-up build
+	@cmake --preset release $(LAUNCHER) --log-level=WARNING >/dev/null
+	@cmake --build build/release -j $(JOBS) --target abbekins || \
+	  { echo "LinuxCNC's headers are missing: apt-get install linuxcnc-uspace-dev" >&2; exit 1; }
+	@cmake --install build/release --component linuxcnc
 
 clean:
 	rm -rf build
