@@ -8,8 +8,11 @@
 #include <string_view>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/table_lattice.h"
 #include "abbe/formats/table_linuxcnc.h"
 #include "abbe/formats/table_siemens.h"
+#include "abbe/formats/table_skew.h"
+#include "abbe/formats/table_volumetric.h"
 
 namespace {
 
@@ -29,6 +32,34 @@ void check(const std::vector<abbe::AxisTable>& tables) {
   }
 }
 
+const std::vector<abbe::TableAxisName> kLetters = {{0, "X", false}, {1, "Y", false}, {2, "C", true}};
+
+void check(const abbe::CorrectionLattice& lattice) {
+  if (lattice.inputs.size() != lattice.positions.size() || lattice.inputs.size() != lattice.modulo.size()) std::abort();
+  for (const std::vector<double>& values : lattice.corrections) {
+    if (values.size() != lattice.count()) std::abort();
+  }
+  abbe::PoseList pose, found;
+  pose.append({1, 2, 3});
+  abbe::LatticeCorrection(lattice).evaluate(pose, found);
+  for (const std::vector<double>& values : found.axis) {
+    if (!std::isfinite(values[0])) std::abort();
+  }
+}
+
+void check(const abbe::ErrorTables& tables) {
+  const abbe::ErrorSet errors = abbe::errors_of(tables);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double value : errors.evaluate(axis, 1.5)) {
+      if (!std::isfinite(value)) std::abort();
+    }
+  }
+}
+
+void check(const abbe::SkewFactors& factors) {
+  if (!(std::abs(factors.xy) <= 1) || !(std::abs(factors.xz) <= 1) || !(std::abs(factors.yz) <= 1)) std::abort();
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -36,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
   const std::string file = "fuzz";
   try {
-    switch (data[0] % 4) {
+    switch (data[0] % 10) {
       case 0:
         check({abbe::parse_linuxcnc(text, file, false, abbe::LinuxCncCompensation::trim)});
         break;
@@ -45,6 +76,24 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
       case 2:
         check(abbe::parse_siemens_cec(text, file, kAxes));
+        break;
+      case 4:
+        check(abbe::parse_lattice_csv(text, file, kLetters));
+        break;
+      case 5:
+        check(abbe::parse_lattice_vtk(text, file, kLetters));
+        break;
+      case 6:
+        check(abbe::parse_isg_csv(text, file, kLetters));
+        break;
+      case 7:
+        check(abbe::parse_etalon(text, file, kLetters));
+        break;
+      case 8:
+        check(abbe::parse_klipper_skew(text, file));
+        break;
+      case 9:
+        check(abbe::parse_marlin_skew(text, file));
         break;
       default:
         check(abbe::parse_siemens_eec(text, file, kAxes));

@@ -23,6 +23,7 @@ namespace abbe {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kAside = 0.19;
 
 struct TableCommand {
   std::string machine, errors, format, output, map;
@@ -49,6 +50,9 @@ PoseList travel_grid(const Machine& machine, const ErrorSet& errors, std::size_t
     } else {
       values = evenly_spaced(travel.from, travel.to, count);
     }
+    // Off round fractions of the travel, where nodes of tables are and the interpolation has no error.
+    const double aside = kAside * (travel.to - travel.from) / static_cast<double>(count);
+    for (std::size_t k = 1; k + 1 < values.size(); ++k) values[k] += k % 2 == 0 ? aside : -aside;
     grid.push_back(values.size());
     positions.values.push_back(std::move(values));
   }

@@ -2,11 +2,16 @@
 
 #include "abbe/formats/input_error.h"
 #include "compensate/axis_table_formats.h"
+#include "compensate/lattice_formats.h"
+#include "compensate/skew_formats.h"
+#include "compensate/volumetric_formats.h"
 
 namespace abbe {
 
 const std::vector<TableFormat>& table_formats() {
-  static const std::vector<TableFormat> formats = {linuxcnc_format(), siemens_cec_format(), siemens_eec_format()};
+  static const std::vector<TableFormat> formats = {linuxcnc_format(),    siemens_cec_format(), siemens_eec_format(),
+                                                   beckhoff_format(),    etalon_format(),      lattice_csv_format(),
+                                                   lattice_vtk_format(), klipper_format(),     marlin_format()};
   return formats;
 }
 

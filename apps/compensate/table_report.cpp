@@ -80,8 +80,8 @@ void print_table_report(const TableReport& report) {
     const TableSummary& table = report.tables->tables[t];
     fmt::print("  {:<10} {:>5} nodes", table.name, table.nodes);
     if (table.step > 0) fmt::print(", step {}", position_words(table.step, table.step_is_angle));
-    fmt::print("; largest correction {} at {}; between nodes within {}", size_words(table.largest, table.is_angle),
-               position_words(table.largest_at, table.step_is_angle),
+    fmt::print("; largest correction {}{}; between nodes within {}", size_words(table.largest, table.is_angle),
+               table.step > 0 ? " at " + position_words(table.largest_at, table.step_is_angle) : "",
                table.is_angle ? fmt::format("{:.3f} urad", in_micro(table.interpolation_error))
                               : fmt::format("{:.4f} um", in_um(table.interpolation_error)));
     if (!table.within) fmt::print(" (ABOVE the limit: no more nodes)");

@@ -83,6 +83,40 @@ TEST_F(CompensateTable, SagTablesCarryStraightnessAndSquarenessAndEncoderTablesD
   EXPECT_THAT(folder.read("EEC.INI"), HasSubstr("$AA_ENC_COMP_STEP[0,X1]=23.75\n"));
 }
 
+TEST_F(CompensateTable, EveryFormatReducesTheErrorWhenTheControlIsSimulatedWithTheFileReadBack) {
+  struct Expected {
+    const char* format;
+    double left;  ///< largest share of the mean error that may stay
+  };
+  // What is left is what the format cannot carry; volumes and models carry all shifts of the point.
+  for (const Expected& one : {Expected{"linuxcnc", 0.7}, Expected{"siemens-cec", 0.2}, Expected{"siemens-eec", 0.7},
+                              Expected{"beckhoff-isg", 0.01}, Expected{"etalon", 0.01}, Expected{"lattice-csv", 0.01},
+                              Expected{"lattice-vtk", 0.01}, Expected{"klipper", 1.0}, Expected{"marlin", 1.0}}) {
+    const std::string folder_name = std::string("out-") + one.format;
+    const nlohmann::json json = json_of(table(one.format, {"-o", folder_name, "--json"}));
+    EXPECT_LT(json["after"]["mean_um"].get<double>(), one.left * json["before"]["mean_um"].get<double>()) << one.format;
+    EXPECT_GT(json["after"]["max_um"].get<double>(), 0) << one.format << ": the grid should not lie on the nodes";
+    ASSERT_FALSE(json["files"].empty()) << one.format;
+    for (const nlohmann::json& file : json["files"]) {
+      EXPECT_GT(std::filesystem::file_size(folder.path() / file.get<std::string>()), 0U);
+    }
+  }
+}
+
+TEST_F(CompensateTable, PrintersGetAnglesOnly) {
+  const nlohmann::json json = json_of(table("marlin", {"-o", "skew.gcode", "--json"}));
+  for (const char* name : {"EC0Y", "EB0Z"}) EXPECT_EQ(error_named(json, name)["carried"], "carried") << name;
+  for (const char* name : {"EXX", "EYY", "EZX"}) EXPECT_EQ(error_named(json, name)["carried"], "not carried") << name;
+  EXPECT_THAT(folder.read("skew.gcode"), testing::StartsWith("M852 I"));
+}
+
+TEST_F(CompensateTable, ALatticeThatHasNoRoomSaysWhatItReachesAndIsNotWritten) {
+  const CommandResult result = table("lattice-csv", {"-o", "l.csv", "--max-points", "200"});
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.out, HasSubstr("ABOVE the limit"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "l.csv"));
+}
+
 TEST_F(CompensateTable, CorrectionsAboveALimitAreRefusedAndNothingIsWritten) {
   const CommandResult result = table("linuxcnc", {"-o", "comp", "--limit-um", "20", "--map", "map.csv"});
   EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);

@@ -40,7 +40,7 @@ TableNodes nodes_at(const SampledFunctions& functions, const NodeSpacing& spacin
   nodes.positions.back() = spacing.to;
   functions(nodes.positions, nodes.values);
   const std::size_t intervals = count - 1;
-  const std::size_t places = std::max<std::size_t>(16, 1000 / intervals + 1);
+  const std::size_t places = std::max<std::size_t>(16, spacing.places / intervals + 1);
   // In pieces, so that long tables need no more memory than short ones.
   std::vector<std::vector<double>> found;
   std::vector<double> positions;

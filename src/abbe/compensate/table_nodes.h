@@ -17,6 +17,7 @@ struct NodeSpacing {
   std::vector<double> tolerance;  ///< [functions] largest difference between function and straight lines, its unit
   std::size_t fewest = 2;         ///< nodes
   std::size_t most = 10000;       ///< nodes that the table can have
+  std::size_t places = 1000;      ///< where the difference is looked at, at least; and 16 in every interval
   /// Where it can be done with at most twice the nodes, the step is a multiple of this (0: any step), so that it is
   /// written in few digits; mm or rad.
   double step_multiple = 0;
@@ -33,7 +34,7 @@ struct TableNodes {
 /// Few evenly spaced nodes (to three parts in a hundred the fewest) that keep straight lines within the tolerance, or
 /// `most` of them.
 ///
-/// The difference is looked at in 16 places of every interval, and at no fewer than 1000 in all, so that what is
+/// The difference is looked at in 16 places of every interval, and at no fewer than `places` in all, so that what is
 /// narrower than an interval is seen too.
 TableNodes choose_nodes(const SampledFunctions& functions, const NodeSpacing& spacing);
 
