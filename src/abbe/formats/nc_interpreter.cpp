@@ -258,7 +258,7 @@ void NcInterpreter::execute() {
     block_.fail(codes_.word(block_, NcGroup::non_modal), "G53 is not followed by a straight move", "G0 or G1");
   }
   if (other == 100 || (other >= 920 && other <= 923) || other == 520) {
-    set_origin();
+    set_origin(moves);
   } else {
     if (other == 281 || other == 301) {
       if ((machine_words_ & ~known_) != 0) fail_unknown(machine_words_ & ~known_, "G28.1 and G30.1 store it");

@@ -49,6 +49,10 @@ class NcInterpreter final : public NcSystemValues {
 
   // nc_words.cpp: what passes to the control
   void pass_block(bool has_motion);
+  /// The block with its code of offsets and axis words said in another way.
+  /// @param replaced  letters of further words that belong to the code
+  void pass_block_with(const std::string& code, std::string_view replaced);
+  void note_what_was_said(bool has_motion);
   void append_words(std::uint64_t consumed);
   void append_word(std::string& text, const NcWord& word) const;
   void pass_comments(bool as_lines);
@@ -59,8 +63,8 @@ class NcInterpreter final : public NcSystemValues {
   void set_feed();
   void set_modes();
   void set_tool_length();
-  void set_origin();
-  void set_axis_offset();
+  void set_origin(bool moves);
+  void set_axis_offset(bool moves);
   void write_axis_offset();
   void update_frame();
   void set_tool_centre(bool on);

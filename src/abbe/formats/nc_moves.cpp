@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kInch = 25.4;
-constexpr std::uint32_t kRotaryWords = 0b111000;
 
 bool is_rotary(std::size_t axis) { return axis >= 3 && axis <= 5; }
 
@@ -74,19 +73,18 @@ void NcInterpreter::emit(ProgramMove& move, const Words& end, std::uint32_t know
   move.coordinates = modes_.tool_centre ? ProgramCoordinates::tool_centre : ProgramCoordinates::axes;
   move.feed_mode = modes_.feed_mode;
   const std::uint32_t unknown = machine_words_ & ~known_;
-  bool linear_moves = false;
+  bool linear_moves = false, rotary_moves = false;
   for (std::size_t k = 0; k < kAxisWords; ++k) {
     const double to = is_rotary(k) ? kDegree : 1;
     move.start[k] = position_[k] * to;
     move.end[k] = end[k] * to;
-    linear_moves = linear_moves || (!is_rotary(k) && end[k] != position_[k]);
+    if (move.end[k] != move.start[k]) (is_rotary(k) ? rotary_moves : linear_moves) = true;
   }
   for (std::size_t k = 0; k < 3; ++k) move.tool_length[k] = tool_offset_[k];
   if (move.kind != MoveKind::rapid) {
     if (unknown != 0) fail_unknown(unknown, "a move at work begins there");
     move.feed = modes_.feed;
-    if (modes_.feed_mode == FeedMode::per_minute && !linear_moves && move.kind == MoveKind::straight &&
-        (codes_.axes & kRotaryWords) != 0) {
+    if (modes_.feed_mode == FeedMode::per_minute && rotary_moves && !linear_moves && move.kind == MoveKind::straight) {
       move.feed *= kDegree;
     } else if (modes_.feed_mode != FeedMode::inverse_time && modes_.feed_inches) {
       move.feed *= kInch;

@@ -17,6 +17,7 @@ inline constexpr auto kDigitPairs = [] {
 }();
 
 /// Writes number / 10^decimals with all decimals, or without zeros at the end; at most 22 characters.
+/// @param decimals  0 to 15
 inline char* write_scaled(std::int64_t number, int decimals, bool trim, char* at) {
   std::uint64_t left = static_cast<std::uint64_t>(number);
   if (number < 0) {
@@ -29,7 +30,8 @@ inline char* write_scaled(std::int64_t number, int decimals, bool trim, char* at
       --decimals;
     }
   }
-  std::array<char, 24> digits;  // NOLINT(cppcoreguidelines-pro-type-member-init): written before they are read
+  std::array<char, 24> digits;
+  digits.fill('0');
   std::size_t first = digits.size();
   while (left >= 100) {
     const std::size_t pair = static_cast<std::size_t>(left % 100) * 2;
@@ -44,7 +46,7 @@ inline char* write_scaled(std::int64_t number, int decimals, bool trim, char* at
     digits[--first] = static_cast<char>('0' + left);
   }
   const std::size_t point = digits.size() - static_cast<std::size_t>(decimals);
-  while (first >= point) digits[--first] = '0';
+  if (first >= point) first = point - 1;
   while (first < point) *at++ = digits[first++];
   if (decimals > 0) {
     *at++ = '.';

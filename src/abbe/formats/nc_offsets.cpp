@@ -137,10 +137,10 @@ void NcInterpreter::set_tool_length() {
   update_frame();
 }
 
-void NcInterpreter::set_origin() {
+void NcInterpreter::set_origin(bool moves) {
   const NcCode code = codes_[NcGroup::non_modal];
   if (code != 100) {
-    set_axis_offset();
+    set_axis_offset(moves);
     return;
   }
   const NcWord& word = codes_.word(block_, NcGroup::non_modal);
@@ -177,13 +177,12 @@ void NcInterpreter::set_origin() {
                             block_.value("xyzabcuvw"[k]) * unit(k);
       text += fmt::format(" {}{:.10f}", "XYZABCUVW"[k], systems_[system][k] / unit(k));
     }
-    writer_.line(text);
-    pass_comments(true);
+    pass_block_with(text, "lp");
   }
   if (system == modes_.system) update_frame();
 }
 
-void NcInterpreter::set_axis_offset() {
+void NcInterpreter::set_axis_offset(bool moves) {
   const NcCode code = codes_[NcGroup::non_modal];
   const NcWord& word = codes_.word(block_, NcGroup::non_modal);
   if ((code == 920 || code == 520) && codes_.axes == 0) block_.fail(word, "axis words are missing");
@@ -214,7 +213,7 @@ void NcInterpreter::set_axis_offset() {
       axis_offset_ = stored_axis_offset_;
       break;
   }
-  if (code != 920) pass_block(false);
+  if (code != 920) pass_block(moves);
   update_frame();
 }
 
@@ -222,28 +221,15 @@ void NcInterpreter::write_axis_offset() {
   // The control stands where the correction has put it, not where the program has sent it: the words say what leads to
   // the same offset from there.
   writer_.flush();
-  const NcWord& code = codes_.word(block_, NcGroup::non_modal);
-  std::string text = std::string(block_.number);
-  if (!text.empty()) text += ' ';
-  for (std::size_t i = 0; i < block_.word_count; ++i) {
-    const NcWord& word = block_.words[i];
-    const std::size_t axis = nc_axis(word.letter);
-    if (&word == &code || axis == kAxisWords) {
-      if (word.letter == 'g' && word.value == 91) continue;
-      if (!text.empty() && text.back() != ' ') text += ' ';
-      std::string other;
-      append_word(other, word);
-      text += other;
-      continue;
-    }
+  std::string text = "G92";
+  for (std::size_t k = 0; k < kAxisWords; ++k) {
+    if ((codes_.axes >> k & 1) == 0) continue;
     double stands = 0;
-    if (!writer_.position(axis, stands)) stands = position_[axis];
-    const double base = systems_[modes_.system][axis] + (modes_.tool_centre ? 0 : tool_offset_[axis]);
-    text += fmt::format(" {}{:.10f}", "XYZABCUVW"[axis], (stands - base - axis_offset_[axis]) / unit(axis));
+    if (!writer_.position(k, stands)) stands = position_[k];
+    const double base = systems_[modes_.system][k] + (modes_.tool_centre ? 0 : tool_offset_[k]);
+    text += fmt::format(" {}{:.10f}", "XYZABCUVW"[k], (stands - base - axis_offset_[k]) / unit(k));
   }
-  writer_.line(text);
-  if (block_.has('f')) writer_.forget_feed();
-  pass_comments(true);
+  pass_block_with(text, "");
 }
 
 }  // namespace abbe

@@ -129,6 +129,45 @@ TEST(NcProgram, G92TellsTheControlTheSameOffsetFromWhereItStands) {
             "G21 G90\nG0 X1.250 Y1.000\nG10 L2 P1 X1.0000000000\nG0 X5.250\nM2\n");
 }
 
+TEST(NcProgram, OtherWordsOfABlockWithAnOffsetStay) {
+  EXPECT_EQ(shifted("G90\nG0 X1 Y1\nN4 M8 G92 X0 F7 (zero)\nN5 G10 L20 P2 Y0 S5\nG91 G55 G92 X1\nG90 G1 X1 Y2\nM2\n"),
+            "G90\nG21 G0 X1.250 Y1.000\nN4 M8 F7 G92 X0.2500000000 (zero)\nN5 S5 G10 L2 P2 Y1.0000000000\n"
+            "G55 G92 X1.2500000000\nG90 G93 G1 Y1.000 F14\nG1 Y2.000 F14\nM2\n");
+}
+
+TEST(NcProgram, FeedsOfAnglesAreDegreesPerMinute) {
+  EXPECT_EQ(run_program("G21 G90 G94\nG1 A90 F360\nX1\nA0\nG20\nX1 F2\nM2\n").text,
+            "G21 G90 G94\nG1 X0.000000 Y0.000000 Z0.000000 A90.000000 B0.000000 C0.000000 F360\nG1 X1.000000\n"
+            "G1 A0.000000\nG20\nG1 X1.0000000 F2\nM2\n");
+}
+
+/// Keeps the moves but for a length too small for the program's decimals, which goes where it was not, or is lost.
+class HairsBreadth final : public MoveCorrector {
+ public:
+  void correct(std::span<const ProgramMove> moves, CorrectedPieces& corrected) override {
+    corrected.pieces.clear();
+    corrected.first.assign(1, 0);
+    for (const ProgramMove& move : moves) {
+      corrected.pieces.push_back({move.end, move.feed, move.feed_mode});
+      corrected.pieces.back().end[1] += move.end[3] > 0 ? 6e-4 : 0;
+      corrected.first.push_back(corrected.pieces.size());
+    }
+  }
+};
+
+TEST(NcProgram, AFeedThatRoundingWouldTurnIntoAnotherBecomesATime) {
+  NcProgramOptions options = options_at_zero();
+  options.words = {true, true, false, true, false, false, false, false, false};
+  options.decimals_mm = options.decimals_deg = 3;
+  HairsBreadth corrector;
+  std::string out;
+  correct_nc_program("G21 G90 G94 F360\nG1 A90\nX2\nA180 X2.0001220703125\nM2\n", "p.ngc", options, corrector,
+                     [&](std::string_view part) { out += part; });
+  // 90 degrees in a quarter of a minute; 2^-13 mm at 360 mm/min.
+  EXPECT_EQ(out,
+            "G21 G90 G94 F360\nG93 G1 X0.000 Y0.001 A90.000 F4\nG94 G1 X2.000 F360\nG93 G1 A180.000 F2949120\nM2\n");
+}
+
 TEST(NcProgram, AStopHoldsBehindTheLastPieceOfItsMove) {
   EXPECT_EQ(shifted("G21 G90 F3\nG1 X2 M0\nM2\n"), "G21 G90 F3\nG93 G1 X1.250 Y0.000 F6\nG1 X2.250 F6\nM0\nM2\n");
 }

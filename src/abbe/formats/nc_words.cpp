@@ -136,23 +136,48 @@ void NcInterpreter::pass_block(bool has_motion) {
     writer_.set_number(block_.number);
     if (block_.word_count != static_cast<std::size_t>(std::popcount(consumed))) append_words(consumed);
     if (!block_.comments.empty()) pass_comments(false);
-    if (codes_[NcGroup::distance] == 900) writer_.said_absolute();
   } else if (!block_.is_computed && !block_.is_deleted && consumed == 0 &&
              (block_.comments.empty() || block_.line().find('#') == std::string_view::npos)) {
     writer_.line(without_blanks_behind(block_.line()));
-    if (codes_[NcGroup::distance] == 900) writer_.said_absolute();
-    if (codes_.has(NcGroup::feed_mode)) writer_.said_feed_mode(modes_.feed_mode);
   } else {
     writer_.set_number(block_.number);
     append_words(consumed);
     pass_comments(false);
     if (writer_.words().empty() && writer_.comments().empty()) writer_.set_number({});
     writer_.words_as_line();
-    if (codes_[NcGroup::distance] == 900) writer_.said_absolute();
-    if (codes_.has(NcGroup::feed_mode)) writer_.said_feed_mode(modes_.feed_mode);
   }
+  note_what_was_said(has_motion);
+}
+
+void NcInterpreter::note_what_was_said(bool has_motion) {
+  if (codes_[NcGroup::distance] == 900) writer_.said_absolute();
   if (codes_.has(NcGroup::units)) writer_.said_units();
-  if (block_.has('f') && !has_motion) writer_.forget_feed();
+  if (has_motion) return;
+  if (codes_.has(NcGroup::feed_mode)) writer_.said_feed_mode(modes_.feed_mode);
+  if (block_.has('f')) writer_.forget_feed();
+}
+
+void NcInterpreter::pass_block_with(const std::string& code, std::string_view replaced) {
+  std::uint64_t consumed = 0;
+  for (std::size_t i = 0; i < block_.word_count; ++i) {
+    const NcWord& word = block_.words[i];
+    if (nc_axis(word.letter) < kAxisWords || replaced.find(word.letter) != std::string_view::npos) {
+      consumed |= std::uint64_t{1} << i;
+    }
+  }
+  const auto drop = [&](NcGroup group) {
+    consumed |= std::uint64_t{1} << codes_.place[static_cast<std::size_t>(group)];
+  };
+  drop(NcGroup::non_modal);
+  if (codes_[NcGroup::distance] == 910) drop(NcGroup::distance);
+  writer_.set_number(block_.number);
+  append_words(consumed);
+  std::string& words = writer_.words();
+  if (!words.empty()) words += ' ';
+  words += code;
+  pass_comments(false);
+  writer_.words_as_line();
+  note_what_was_said(false);
 }
 
 }  // namespace abbe

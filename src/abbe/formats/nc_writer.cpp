@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numbers>
 
 #include "abbe/formats/decimal_text.h"
@@ -29,6 +30,23 @@ bool is_rotary(std::size_t axis) { return axis >= 3 && axis <= 5; }
 char* write_text(std::string_view text, char* at) {
   std::memcpy(at, text.data(), text.size());
   return at + text.size();
+}
+
+constexpr std::uint32_t kRotaryWords = 0b111000;
+
+bool moves_only_rotary_axes(const ProgramMove& move) {
+  if (move.kind != MoveKind::straight) return false;
+  bool linear = false, rotary = false;
+  for (std::size_t k = 0; k < kAxisWords; ++k) {
+    if (move.start[k] != move.end[k]) (is_rotary(k) ? rotary : linear) = true;
+  }
+  return rotary && !linear;
+}
+
+/// Half away from zero; a number that no word has if it is too large.
+std::int64_t rounded(double units) {
+  if (!(std::abs(units) < kLargestUnits)) return std::numeric_limits<std::int64_t>::min();
+  return static_cast<std::int64_t>(units + (units < 0 ? -0.5 : 0.5));
 }
 
 std::string_view mode_word(FeedMode mode) {
@@ -230,20 +248,34 @@ void NcWriter::write_item(std::size_t i, const CorrectedPiece* pieces, std::size
   append(std::string_view(texts_).substr(begin, item.lines - begin));
   apply(item.events);
   use_frame(item.frame);
-  for (std::size_t k = 0; k < count; ++k) write_piece(moves_[i], item, pieces[k], k == 0);
+  if ((item.axes & ~is_said_) != 0) {
+    for (std::size_t k = 0; k < kAxisWords; ++k) {
+      if ((is_said_ >> k & 1) == 0) stands_[k] = moves_[i].start[k];
+    }
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    write_piece(moves_[i], item, pieces[k], k == 0);
+    stands_ = pieces[k].end;
+  }
   piece_count_ += count;
 }
 
 void NcWriter::write_piece(const ProgramMove& move, const Item& item, const CorrectedPiece& piece, bool first) {
   std::array<std::int64_t, kAxisWords> words;  // NOLINT(cppcoreguidelines-pro-type-member-init): as far as `axes` says
-  std::uint32_t changed = 0;
+  std::uint32_t changed = 0, moved = 0;
   for (std::size_t k = 0; k < kAxisWords; ++k) {
     if ((item.axes >> k & 1) == 0) continue;
-    const double value = is_rotary(k) ? piece.end[k] / kDegree : piece.end[k];
-    const double units = (value - frame_.offset[k]) * scale_[k];
+    const double units = word_units(k, piece.end[k]);
     if (!(std::abs(units) < kLargestUnits)) fail(move, "the corrected position is not a number that can be written");
-    words[k] = static_cast<std::int64_t>(units + (units < 0 ? -0.5 : 0.5));
-    if (words[k] != said_[k] || (is_said_ >> k & 1) == 0) changed |= std::uint32_t{1} << k;
+    words[k] = rounded(units);
+    const std::uint32_t bit = std::uint32_t{1} << k;
+    if ((is_said_ & bit) == 0) {
+      changed |= bit;
+      if (words[k] != rounded(word_units(k, stands_[k]))) moved |= bit;
+    } else if (words[k] != said_[k]) {
+      changed |= bit;
+      moved |= bit;
+    }
   }
   const std::string_view texts = texts_;
   const bool has_text = first && item.comments > item.lines;
@@ -261,16 +293,10 @@ void NcWriter::write_piece(const ProgramMove& move, const Item& item, const Corr
     }
   }
   if (changed != 0) {
-    if (!units_said_) at = write_text(frame_.inches ? "G20 " : "G21 ", at);
-    if (!absolute_said_) at = write_text("G90 ", at);
-    units_said_ = absolute_said_ = true;
     const bool rapid = move.kind == MoveKind::rapid;
-    if (!rapid && (!mode_said_ || mode_ != piece.feed_mode)) {
-      at = write_text(mode_word(piece.feed_mode), at);
-      mode_ = piece.feed_mode;
-      mode_said_ = true;
-      feed_ = -1;
-    }
+    FeedMode mode = piece.feed_mode;
+    const double feed = feed_word(move, piece, moved, mode);
+    at = write_modes(move, mode, at);
     at = write_text(rapid ? "G0" : "G1", at);
     for (std::size_t k = 0; k < kAxisWords; ++k) {
       if ((changed >> k & 1) == 0) continue;
@@ -280,24 +306,7 @@ void NcWriter::write_piece(const ProgramMove& move, const Item& item, const Corr
       said_[k] = words[k];
     }
     is_said_ |= changed;
-    if (!rapid) {
-      double feed = piece.feed;
-      // Where only rotary axes move, F is an angle per minute.
-      const bool is_angle = piece.feed_mode == FeedMode::per_minute && (changed & ~std::uint32_t{0b111000}) == 0;
-      if (is_angle) {
-        feed /= kDegree;
-      } else if (frame_.inches && piece.feed_mode != FeedMode::inverse_time) {
-        feed /= kInch;
-      }
-      if (!(feed > 0) || !(feed < 1e9)) fail(move, "the corrected feed is not a positive number");
-      if (feed != feed_ || piece.feed_mode == FeedMode::inverse_time) {
-        const int digits = feed < 1 ? 9 : 6;
-        const auto number = static_cast<std::int64_t>(std::llround(feed * (feed < 1 ? 1e9 : 1e6)));
-        at = write_text(" F", at);
-        at = write_scaled(std::max<std::int64_t>(number, 1), digits, true, at);
-        feed_ = feed;
-      }
-    }
+    if (!rapid) at = write_feed(move, mode, feed, at);
     *at++ = ' ';
   }
   if (first && item.comments > item.words) {
@@ -307,6 +316,52 @@ void NcWriter::write_piece(const ProgramMove& move, const Item& item, const Corr
   at[-1] = '\n';
   at_ = at;
   if (static_cast<std::size_t>(at_ - out_.data()) >= kChunk) reserve(out_.size());
+}
+
+double NcWriter::word_units(std::size_t axis, double value) const {
+  return ((is_rotary(axis) ? value / kDegree : value) - frame_.offset[axis]) * scale_[axis];
+}
+
+double NcWriter::feed_word(const ProgramMove& move, const CorrectedPiece& piece, std::uint32_t moved,
+                           FeedMode& mode) const {
+  const double length_unit = frame_.inches ? kInch : 1;
+  if (mode == FeedMode::inverse_time || move.kind == MoveKind::rapid) return piece.feed;
+  if (mode == FeedMode::per_revolution) return piece.feed / length_unit;
+  // Where only rotary axes move, F is an angle per minute to the control, and in the move.
+  const bool is_angle = moved != 0 && (moved & ~kRotaryWords) == 0;
+  if (is_angle == moves_only_rotary_axes(move) || moved == 0) return piece.feed / (is_angle ? kDegree : length_unit);
+  // Rounding has made one of the other: the time says what is meant.
+  constexpr double kFastest_per_min = 1e8;
+  double squared = 0;
+  for (std::size_t k = 0; k < kAxisWords; ++k) {
+    if (is_rotary(k) != is_angle) squared += (piece.end[k] - stands_[k]) * (piece.end[k] - stands_[k]);
+  }
+  mode = FeedMode::inverse_time;
+  return squared > 0 ? std::min(piece.feed / std::sqrt(squared), kFastest_per_min) : kFastest_per_min;
+}
+
+char* NcWriter::write_modes(const ProgramMove& move, FeedMode mode, char* at) {
+  if (!units_said_) at = write_text(frame_.inches ? "G20 " : "G21 ", at);
+  if (!absolute_said_) at = write_text("G90 ", at);
+  units_said_ = absolute_said_ = true;
+  if (move.kind != MoveKind::rapid && (!mode_said_ || mode_ != mode)) {
+    at = write_text(mode_word(mode), at);
+    mode_ = mode;
+    mode_said_ = true;
+    feed_ = -1;
+  }
+  return at;
+}
+
+char* NcWriter::write_feed(const ProgramMove& move, FeedMode mode, double feed, char* at) {
+  if (!(feed > 0) || !(feed < 1e9)) fail(move, "the corrected feed is not a positive number");
+  if (feed == feed_ && mode != FeedMode::inverse_time) return at;
+  const int digits = feed < 1 ? 9 : 6;
+  const auto number = static_cast<std::int64_t>(std::llround(feed * (feed < 1 ? 1e9 : 1e6)));
+  at = write_text(" F", at);
+  at = write_scaled(std::max<std::int64_t>(number, 1), digits, true, at);
+  feed_ = feed;
+  return at;
 }
 
 }  // namespace abbe

@@ -79,9 +79,16 @@ class NcWriter {
 
   void write_item(std::size_t i, const CorrectedPiece* pieces, std::size_t count);
   void write_piece(const ProgramMove& move, const Item& item, const CorrectedPiece& piece, bool first);
+  /// Says modes that are not in force, and the move's kind.
+  /// Feed of a piece as the control takes it; `mode` may become inverse time.
+  double feed_word(const ProgramMove& move, const CorrectedPiece& piece, std::uint32_t moved, FeedMode& mode) const;
+  char* write_modes(const ProgramMove& move, FeedMode mode, char* at);
+  char* write_feed(const ProgramMove& move, FeedMode mode, double feed, char* at);
   void apply(const Events& events);
   void use_frame(std::size_t index);
   double program_scale(std::size_t axis) const;
+  /// A value in units of the last decimal of its word.
+  double word_units(std::size_t axis, double value) const;
   int decimals(std::size_t axis) const;
   void append(std::string_view text);
   void reserve(std::size_t bytes);
@@ -109,6 +116,7 @@ class NcWriter {
   std::array<double, kAxisWords> scale_{};       ///< units of the last decimal per mm or degree
   std::array<int, kAxisWords> decimals_{};
   std::uint32_t is_said_ = 0;
+  WordValues stands_{};  ///< end of the piece before, without rounding
   bool units_said_ = false, absolute_said_ = false, mode_said_ = false;
   FeedMode mode_ = FeedMode::per_minute;
   double feed_ = -1;
