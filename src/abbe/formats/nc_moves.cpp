@@ -91,7 +91,9 @@ void NcInterpreter::emit(ProgramMove& move, const Words& end, std::uint32_t know
     }
   }
   flow_.moves();
-  writer_.move(move, known & machine_words_, unknown == 0);
+  // Where a rapid move begins does not matter to where it ends.
+  if (unknown != 0) move.start = move.end;
+  writer_.move(move, known & machine_words_, (machine_words_ & ~known) == 0);
   position_ = end;
   known_ = known;
 }

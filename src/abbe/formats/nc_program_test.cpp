@@ -46,15 +46,17 @@ TEST(NcProgram, ToolCentreControlStatesThePointInTheWorkpiece) {
   NcProgramOptions options = options_at_zero();
   const RunProgram run = run_program(
       "G43 H1\nG0 X1 Y1 Z1 A0 B0 C0\nG49\nG43.4 H1\nG0 X5 Y5 Z5 A1\nG1 X6 A2 F10\nG49\nG0 X0 Y0 Z0\nM2\n", options);
-  ASSERT_EQ(run.moves.size(), 2U);
-  EXPECT_EQ(run.moves[1].coordinates, ProgramCoordinates::tool_centre);
-  EXPECT_DOUBLE_EQ(run.moves[1].start[2], 5);
-  EXPECT_DOUBLE_EQ(run.moves[1].end[2], 5);
-  EXPECT_DOUBLE_EQ(run.moves[1].tool_length[2], 50);
+  ASSERT_EQ(run.moves.size(), 4U);
+  EXPECT_EQ(run.moves[2].coordinates, ProgramCoordinates::tool_centre);
+  EXPECT_DOUBLE_EQ(run.moves[2].start[2], 5);
+  EXPECT_DOUBLE_EQ(run.moves[2].end[2], 5);
+  EXPECT_DOUBLE_EQ(run.moves[2].tool_length[2], 50);
   EXPECT_EQ(run.moves[0].coordinates, ProgramCoordinates::axes);
-  // Where the axes stand after the change is not known: those rapid moves pass uncorrected.
-  EXPECT_EQ(run.result.uncorrected_moves, 2U);
-  EXPECT_EQ(run.result.first_uncorrected_line, 5U);
+  EXPECT_EQ(run.moves[3].coordinates, ProgramCoordinates::axes);
+  // Where the axes stand after the change is not known: those rapid moves are corrected where they end.
+  EXPECT_EQ(run.moves[1].start, run.moves[1].end);
+  EXPECT_EQ(run.moves[3].start, run.moves[3].end);
+  EXPECT_EQ(run.result.uncorrected_moves, 0U);
 }
 
 TEST(NcProgram, WhatIsNoMovePassesAsItStands) {
@@ -186,9 +188,11 @@ TEST(NcProgram, AxesThatWereNotSentAnywhereAreNotMoved) {
   const RunProgram run = run_program("G21 G90\nG53 G0 Z0\nG0 A0 C0\nG0 X1 Y2\nG1 Z-1 F10\nM2\n", options);
   EXPECT_EQ(run.text,
             "G21 G90\nG0 Z0.000000\nG0 A0.000000 C0.000000\nG0 X1.000000 Y2.000000\nG94 G1 Z-1.000000 F10\nM2\n");
-  EXPECT_EQ(run.result.uncorrected_moves, 3U);
+  // The third ends where all axes are known, and is corrected.
+  EXPECT_EQ(run.result.uncorrected_moves, 2U);
   EXPECT_EQ(run.result.first_uncorrected_line, 2U);
-  EXPECT_EQ(run.moves.size(), 1U);
+  ASSERT_EQ(run.moves.size(), 2U);
+  EXPECT_EQ(run.moves[0].start, run.moves[0].end);
 }
 
 TEST(NcProgram, ParametersAndToolsComeFromFilesOfLinuxCnc) {
