@@ -3,14 +3,20 @@
 namespace abbe {
 
 void add_compensate_command(CommandLine& line) {
-  CLI::App* command = line.add("compensate", "Corrections of known errors, for controls",
-                               "  abbe compensate table examples/machines/three-axis-mill.machine.toml "
-                               "examples/compensate/mill.errors.toml --for linuxcnc -o comp\n"
-                               "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml "
-                               "examples/trunnion/table.errors.toml -o mill.abbec\n\n"
-                               "abbe compensate table --help says which controls have tables here.");
+  CLI::App* command =
+      line.add("compensate", "Corrections of known errors, for controls",
+               "  abbe compensate gcode examples/compensate/cone.ngc --machine "
+               "examples/machines/trunnion-mill.machine.toml --errors "
+               "examples/compensate/trunnion.errors.toml -o cone-corrected.ngc\n"
+               "  abbe compensate table examples/machines/three-axis-mill.machine.toml "
+               "examples/compensate/mill.errors.toml --for linuxcnc -o comp\n"
+               "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml "
+               "examples/trunnion/table.errors.toml -o mill.abbec\n\n"
+               "abbe compensate gcode --help says what X, Y and Z mean, abbe compensate table --help which controls "
+               "have tables here.");
   command->require_subcommand(1);
   add_compensate_freeze(*command, line);
+  add_compensate_gcode(*command, line);
   add_compensate_table(*command, line);
 }
 

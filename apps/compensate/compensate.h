@@ -7,6 +7,8 @@ namespace abbe {
 void add_compensate_command(CommandLine& line);
 /// abbe compensate freeze: machine and errors to a file for real time.
 void add_compensate_freeze(CLI::App& compensate, CommandLine& line);
+/// abbe compensate gcode: programs whose actual tool follows the commanded path.
+void add_compensate_gcode(CLI::App& compensate, CommandLine& line);
 /// abbe compensate table: tables of controls, and what they do not carry.
 void add_compensate_table(CLI::App& compensate, CommandLine& line);
 

@@ -1,0 +1,155 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+#include <system_error>
+
+#include "abbe/compensate/program_correction.h"
+#include "abbe/compensate/program_uncertainty.h"
+#include "abbe/compensate/tool_centre_moves.h"
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/json_text.h"
+#include "abbe/formats/machine_file.h"
+#include "abbe/formats/nc_program.h"
+#include "abbe/formats/streamed_file.h"
+#include "abbe/formats/text_file.h"
+#include "compensate/compensate.h"
+#include "compensate/gcode_options.h"
+#include "compensate/gcode_report.h"
+
+namespace abbe {
+namespace {
+
+void refuse_input_as_output(const GcodeOptions& options) {
+  for (const std::string& input :
+       {options.program, options.machine, options.errors, options.tool_table, options.parameters}) {
+    std::error_code ignored;
+    if (!input.empty() && std::filesystem::equivalent(input, options.output, ignored)) {
+      throw InputError({.file = options.output}, "is an input", "another name for the corrected program");
+    }
+  }
+}
+
+void state_uncertainties(const Machine& machine, const ErrorsFile& errors, const WordAxes& words, GcodeResult& result) {
+  const Eigen::MatrixXd covariance = parameter_covariance(errors.errors, errors.covariance);
+  std::vector<bool> moved;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) moved.push_back(words.moves(i));
+  const auto at = [&](const ProgramPlace& place) {
+    return place.line == 0 ? PlaceUncertainty{} : uncertainty_at(machine, errors.errors, covariance, place, moved);
+  };
+  result.largest = at(result.report.largest_shift);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) result.by_axis.push_back(at(result.report.by_axis[i]));
+}
+
+int run_gcode(const GcodeOptions& options) {
+  if (options.output.empty() && !options.dry_run) {
+    throw InputError({.field = "-o"}, "missing", "a file for the corrected program, or --dry-run");
+  }
+  if (!options.output.empty()) refuse_input_as_output(options);
+  const Machine machine = read_machine(options.machine);
+  const ErrorsFile errors = read_errors(options.errors, machine);
+  const WordAxes words = gcode_words(options, machine);
+  const NcProgramOptions text_options = gcode_text_options(options, machine, words);
+  const AllowedProblems allowed = allowed_problems(options);
+
+  GcodeResult result;
+  ErrorSet corrected_errors = errors.errors;
+  if (options.leave_out_factor > 0) {
+    result.left_out = leave_out_uncertain(
+        machine, corrected_errors, parameter_covariance(errors.errors, errors.covariance), options.leave_out_factor);
+  }
+  ProgramCorrection correction(machine, corrected_errors, words, gcode_correction_options(options));
+  if (!correction.problem().empty()) throw InputError({.file = options.errors}, correction.problem());
+  ToolCentreMoves tool_centre(correction);
+  MoveCorrector& corrector = options.tool_centre ? static_cast<MoveCorrector&>(tool_centre) : correction;
+
+  MappedFile program(options.program);
+  std::optional<StreamedFile> out;
+  if (!options.dry_run) out.emplace(options.output);
+  Progress progress("correcting the program");
+  const std::size_t size = program.text().size();
+  result.text = correct_nc_program(
+      program.text(), options.program, text_options, corrector,
+      [&](std::string_view text) {
+        if (out) out->append(text);
+      },
+      [&](std::size_t end) {
+        program.forget(end);
+        progress(end, size);
+      });
+  result.report = correction.report();
+  if (result.report.impossible.count > 0) {
+    throw InputError({.file = options.program, .line = result.report.impossible.line[0]},
+                     "a tool centre move, for which the machine has no solution here",
+                     "X, Y and Z as three independent linear axes without a rotary axis between them");
+  }
+  state_uncertainties(machine, errors, words, result);
+  result.refused = reasons_to_refuse(options, allowed, result.report);
+  if (out && result.refused.empty()) out->commit();
+  if (options.json) {
+    fmt::print("{}", json_text(gcode_json(options, machine, result)));
+  } else {
+    print_gcode_report(options, machine, result);
+  }
+  for (const std::string& reason : result.refused) fmt::print(stderr, "abbe: {}\n", reason);
+  if (!result.refused.empty() && !options.dry_run) fmt::print(stderr, "abbe: nothing written\n");
+  return result.refused.empty() ? kDone : kNegative;
+}
+
+}  // namespace
+
+void add_compensate_gcode(CLI::App& compensate, CommandLine& line) {
+  auto options = std::make_shared<GcodeOptions>();
+  CLI::App* command = compensate.add_subcommand(
+      "gcode", "Corrects an NC program: the actual tool follows the commanded path within a tolerance");
+  command->footer(
+      "Example:\n"
+      "  abbe compensate gcode examples/compensate/cone.ngc --machine "
+      "examples/machines/trunnion-mill.machine.toml --errors examples/compensate/trunnion.errors.toml -o "
+      "corrected.ngc\n\n"
+      "Words X Y Z are positions of the axes unless G43.4 or --tool-centre says otherwise. The tool is the machine\n"
+      "file's, longer by the tool length offset in force. See docs/programs.md.");
+  command->add_option("program", options->program, "NC program (RS274/NGC, ISO 6983)")->required();
+  command->add_option("--machine", options->machine, "machine file")->required();
+  command->add_option("--errors", options->errors, "errors file of the machine")->required();
+  command->add_option("-o,--output", options->output, "the corrected program");
+  command
+      ->add_option("--tolerance-um", options->tolerance_um,
+                   "largest distance of the actual tool from the commanded path between corrected poses")
+      ->capture_default_str();
+  command->add_option("--rapid-tolerance-um", options->rapid_tolerance_um, "the same for rapid moves")
+      ->capture_default_str();
+  command
+      ->add_option("--orientation-tolerance-urad", options->orientation_tolerance_urad,
+                   "the same for the direction of the tool")
+      ->capture_default_str();
+  command->add_option("--limit-um", options->limit_um,
+                      "corrections of the functional point above it are refused and nothing is written");
+  command->add_option("--leave-out-below-uncertainty", options->leave_out_factor,
+                      "leave out errors that are smaller than so many of their standard uncertainties everywhere");
+  command
+      ->add_option("--largest-turn-deg", options->largest_turn_deg,
+                   "how far rotary axes may turn for a correction near a singularity")
+      ->capture_default_str();
+  command->add_option("--word", options->words, "word of an axis in the program: C1=C");
+  command->add_option("--start", options->start, "where an axis stands when the program begins: X_mm=0, C_deg=30");
+  command->add_option("--tool-table", options->tool_table, "tool table of LinuxCNC, for G43 H");
+  command->add_flag("--tool-table-in-inches", options->tool_table_in_inches);
+  command->add_option("--tool", options->tool, "number of the tool in the spindle");
+  command->add_option("--parameters", options->parameters, "parameter file of LinuxCNC (.var), for work offsets");
+  command->add_flag("--parameters-in-inches", options->parameters_in_inches);
+  command->add_flag("--tool-centre", options->tool_centre,
+                    "X Y Z are the functional point in the workpiece frame throughout: the control has the kinematics");
+  command->add_flag("--inches", options->inches, "G20 is in force when the program begins");
+  command->add_flag("--block-delete", options->block_delete, "leave out blocks that begin with a slash");
+  command->add_option("--decimals", options->decimals, "of mm and degrees")->check(CLI::Range(0, 9));
+  command->add_option("--allow", options->allow,
+                      "write the program in spite of: not-covered, outside-travel, position-left, not-converged, "
+                      "not-proven");
+  command->add_flag("--dry-run", options->dry_run, "only the report: largest corrections and where; writes nothing");
+  command->add_flag("--json", options->json);
+  command->callback([&line, options] { line.run = [options] { return run_gcode(*options); }; });
+}
+
+}  // namespace abbe

@@ -1,0 +1,122 @@
+#include "compensate/gcode_options.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/number_text.h"
+#include "abbe/formats/path_program.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+bool is_rotary(std::size_t word) { return word >= 3 && word < 6; }
+
+/// "X_mm=100", "C_deg=30": a word and where its axis stands.
+void read_start(const std::string& text, const WordAxes& words, NcProgramOptions& options) {
+  const auto fail = [&](const std::string& problem) {
+    throw InputError({.field = "--start " + text}, problem, "WORD_unit=position, such as X_mm=100 or C_deg=30");
+  };
+  const std::size_t equals = text.find('='), underscore = text.find('_');
+  if (equals == std::string::npos || underscore == std::string::npos || underscore > equals) fail("not understood");
+  const std::string name = text.substr(0, underscore), unit = text.substr(underscore + 1, equals - underscore - 1);
+  for (std::size_t i = 0; i < kAxisWords; ++i) {
+    if (name != axis_word_text(static_cast<AxisWord>(i))) continue;
+    if (words.axis[i] == Machine::npos) fail("the machine has no axis for this word");
+    if (unit != (is_rotary(i) ? "deg" : "mm")) fail(fmt::format("unit '{}'", unit));
+    double value = 0;
+    if (parse_number(std::string_view(text).substr(equals + 1), 0, value) != NumberProblem::none) fail("not a number");
+    options.start[i] = is_rotary(i) ? value * kDegree : value;
+    return;
+  }
+  fail(fmt::format("'{}' is no word of an axis", name));
+}
+
+double positive(const char* option, double value, const char* unit) {
+  if (!(value > 0) || !std::isfinite(value)) {
+    throw InputError({.field = option}, fmt::format("{} is not above zero", value), unit);
+  }
+  return value;
+}
+
+}  // namespace
+
+AllowedProblems allowed_problems(const GcodeOptions& options) {
+  AllowedProblems allowed;
+  for (const std::string& name : options.allow) {
+    if (name == "not-covered") {
+      allowed.not_covered = true;
+    } else if (name == "outside-travel") {
+      allowed.outside_travel = true;
+    } else if (name == "position-left") {
+      allowed.position_left = true;
+    } else if (name == "not-converged") {
+      allowed.not_converged = true;
+    } else if (name == "not-proven") {
+      allowed.not_proven = true;
+    } else {
+      throw InputError({.field = "--allow " + name}, "unknown",
+                       "not-covered, outside-travel, position-left, not-converged or not-proven");
+    }
+  }
+  return allowed;
+}
+
+WordAxes gcode_words(const GcodeOptions& options, const Machine& machine) {
+  PathProgramOptions named;
+  named.words = axis_words(machine, options.words, "--word");
+  WordAxes words;
+  bool any = false;
+  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
+    const std::string word = axis_word(machine.axes[axis].name, named);
+    for (std::size_t i = 0; i < kAxisWords; ++i) {
+      if (word != axis_word_text(static_cast<AxisWord>(i))) continue;
+      const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
+      if (rotary != is_rotary(i)) {
+        throw InputError({.field = "--word"},
+                         fmt::format("axis {} is {}, its word {} is not", machine.axes[axis].name,
+                                     rotary ? "rotary" : "linear", word),
+                         "A, B or C for rotary axes, X, Y, Z, U, V or W for linear ones");
+      }
+      words.axis[i] = axis;
+      any = true;
+    }
+  }
+  if (!any) {
+    throw InputError({.file = options.machine}, "no axis has a word of programs",
+                     "--word AXIS=WORD, such as --word C1=C");
+  }
+  return words;
+}
+
+NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& machine, const WordAxes& words) {
+  (void)machine;
+  NcProgramOptions text;
+  for (std::size_t i = 0; i < kAxisWords; ++i) text.words[i] = words.axis[i] != Machine::npos;
+  for (const std::string& start : options.start) read_start(start, words, text);
+  if (!options.parameters.empty()) text.parameters = read_nc_parameters(options.parameters);
+  text.parameters_in_inches = options.parameters_in_inches;
+  if (!options.tool_table.empty()) text.tools = read_nc_tools(options.tool_table, options.tool_table_in_inches);
+  if (options.tool >= 0) text.tool = options.tool;
+  text.inches = options.inches;
+  text.block_delete = options.block_delete;
+  text.decimals_mm = text.decimals_deg = options.decimals;
+  text.batch = 1 << 14;
+  return text;
+}
+
+ProgramCorrectionOptions gcode_correction_options(const GcodeOptions& options) {
+  ProgramCorrectionOptions correction;
+  correction.tolerance.position = 1e-3 * positive("--tolerance-um", options.tolerance_um, "um");
+  correction.rapid_tolerance = 1e-3 * positive("--rapid-tolerance-um", options.rapid_tolerance_um, "um");
+  correction.tolerance.orientation =
+      1e-6 * positive("--orientation-tolerance-urad", options.orientation_tolerance_urad, "urad");
+  correction.inverse.largest_turn = kDegree * positive("--largest-turn-deg", options.largest_turn_deg, "deg");
+  correction.limit = 1e-3 * options.limit_um;
+  return correction;
+}
+
+}  // namespace abbe

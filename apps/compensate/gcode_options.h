@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "abbe/compensate/program_correction.h"
+#include "abbe/formats/nc_program.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+/// What `abbe compensate gcode` is told.
+struct GcodeOptions {
+  std::string program, machine, errors, output;
+  double tolerance_um = 1, rapid_tolerance_um = 10, orientation_tolerance_urad = 10, limit_um = 0;
+  double leave_out_factor = 0, largest_turn_deg = 0.5;
+  std::vector<std::string> words, start, allow;
+  std::string tool_table, parameters;
+  int tool = -1, decimals = 6;
+  bool tool_table_in_inches = false, parameters_in_inches = false;
+  bool tool_centre = false, inches = false, block_delete = false, dry_run = false, json = false;
+};
+
+/// What a program may meet and still be written, by its name for --allow.
+struct AllowedProblems {
+  bool not_covered = false, outside_travel = false, position_left = false, not_converged = false, not_proven = false;
+};
+
+/// @throws InputError for an unknown name
+AllowedProblems allowed_problems(const GcodeOptions& options);
+/// Axes of the program's words. @throws InputError if one is of the wrong kind, or if there is none
+WordAxes gcode_words(const GcodeOptions& options, const Machine& machine);
+NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& machine, const WordAxes& words);
+/// @throws InputError for numbers out of range
+ProgramCorrectionOptions gcode_correction_options(const GcodeOptions& options);
+
+}  // namespace abbe

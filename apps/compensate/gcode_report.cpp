@@ -1,0 +1,202 @@
+#include "compensate/gcode_report.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+const StatusCount& status_count(const ProgramReport& report, CorrectionStatus status) {
+  return report.status[static_cast<std::size_t>(status)];
+}
+
+std::string lines_text(const StatusCount& count) {
+  std::string text;
+  std::size_t shown = 0;
+  for (const std::size_t line : count.line) {
+    if (line == 0) break;
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", line);
+    ++shown;
+  }
+  const std::string name = shown == 1 ? "line " : "lines ";
+  return name + text + (shown == StatusCount::kLines && count.count > shown ? " ..." : "");
+}
+
+nlohmann::ordered_json count_json(const StatusCount& count) {
+  nlohmann::ordered_json json;
+  json["count"] = count.count;
+  json["first_lines"] = nlohmann::ordered_json::array();
+  for (const std::size_t line : count.line) {
+    if (line != 0) json["first_lines"].push_back(line);
+  }
+  return json;
+}
+
+std::string position_text(const Machine& machine, const ProgramPlace& place) {
+  std::string text;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    text += fmt::format("{}{} {:.3f}", text.empty() ? "" : " ", machine.axes[i].name,
+                        place.position[i] / (rotary ? kDegree : 1));
+  }
+  return text;
+}
+
+nlohmann::ordered_json position_json(const Machine& machine, const ProgramPlace& place) {
+  nlohmann::ordered_json json;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    json[machine.axes[i].name + (rotary ? "_deg" : "_mm")] = place.position[i] / (rotary ? kDegree : 1);
+  }
+  return json;
+}
+
+struct NamedStatus {
+  CorrectionStatus status;
+  const char* text;
+};
+constexpr NamedStatus kStatuses[] = {
+    {CorrectionStatus::orientation_left, "the point is reached, the machine cannot turn the orientation error away"},
+    {CorrectionStatus::turn_limited, "near a singularity the turn is bounded, some orientation error stays"},
+    {CorrectionStatus::position_left, "the machine does not reach the point"},
+    {CorrectionStatus::outside_travel, "the corrected position is outside the travel and was kept at its end"},
+    {CorrectionStatus::not_covered, "the errors are not known there"},
+    {CorrectionStatus::not_converged, "no correction was found"},
+    {CorrectionStatus::not_finite, "a position is no number"}};
+
+}  // namespace
+
+std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const AllowedProblems& allowed,
+                                           const ProgramReport& report) {
+  std::vector<std::string> reasons;
+  const auto add = [&](const StatusCount& count, bool is_allowed, const std::string& text, const char* allow) {
+    if (count.count == 0 || is_allowed) return;
+    std::string reason =
+        fmt::format("{}: {} pose{}, {}", text, count.count, count.count == 1 ? "" : "s", lines_text(count));
+    if (allow != nullptr) reason += fmt::format(" (--allow {} to write it all the same)", allow);
+    reasons.push_back(reason);
+  };
+  add(report.above_limit, false, fmt::format("correction above the limit of {:g} um", options.limit_um), nullptr);
+  add(status_count(report, CorrectionStatus::not_covered), allowed.not_covered,
+      "outside the range over which the errors are known", "not-covered");
+  add(status_count(report, CorrectionStatus::outside_travel), allowed.outside_travel,
+      "corrected position outside the travel", "outside-travel");
+  add(status_count(report, CorrectionStatus::position_left), allowed.position_left, "point not reached",
+      "position-left");
+  add(status_count(report, CorrectionStatus::not_converged), allowed.not_converged, "no correction found",
+      "not-converged");
+  add(status_count(report, CorrectionStatus::not_finite), false, "position that is no number", nullptr);
+  add(report.not_proven, allowed.not_proven, "path between corrected poses not proven to stay within the tolerance",
+      "not-proven");
+  return reasons;
+}
+
+void print_gcode_report(const GcodeOptions& options, const Machine& machine, const GcodeResult& result) {
+  const ProgramReport& report = result.report;
+  fmt::print("{} moves of {} on {}: {} pieces, {} moves split; path within {:g} um between them\n", report.moves,
+             options.program, machine.name, report.pieces, report.split_moves, options.tolerance_um);
+  const ProgramPlace& shift = report.largest_shift;
+  if (shift.line != 0) {
+    fmt::print("largest correction of the functional point {:.3f} um", 1e3 * shift.value);
+    if (result.largest.stated) fmt::print(", standard uncertainty {:.3f} um", 1e3 * result.largest.point);
+    fmt::print(", line {}, {}\n", shift.line, position_text(machine, shift));
+  }
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const ProgramPlace& place = report.by_axis[i];
+    if (place.line == 0) continue;
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    const double unit = rotary ? 1e6 : 1e3;
+    fmt::print("  {:<3} {:>10.3f} {:<4}", machine.axes[i].name, unit * place.value, rotary ? "urad" : "um");
+    if (result.by_axis[i].axes_known) fmt::print(" u {:.3f}", unit * result.by_axis[i].axis[i]);
+    fmt::print(", line {}\n", place.line);
+  }
+  if (report.largest_orientation_left.value > 1e-9) {
+    fmt::print("largest orientation error that stays {:.3f} urad, line {}\n",
+               1e6 * report.largest_orientation_left.value, report.largest_orientation_left.line);
+  }
+  for (const NamedStatus& named : kStatuses) {
+    const StatusCount& count = status_count(report, named.status);
+    if (count.count == 0) continue;
+    fmt::print("{}: {} pose{}, {}: {}\n", correction_status_text(named.status), count.count,
+               count.count == 1 ? "" : "s", lines_text(count), named.text);
+  }
+  if (report.not_proven.count > 0) {
+    fmt::print("not proven to stay within the tolerance: {} move{}, {}\n", report.not_proven.count,
+               report.not_proven.count == 1 ? "" : "s", lines_text(report.not_proven));
+  }
+  if (report.tool_changes.count > 0) {
+    fmt::print("begin where the machine stood with another tool length: {} move{}, {}\n", report.tool_changes.count,
+               report.tool_changes.count == 1 ? "" : "s", lines_text(report.tool_changes));
+  }
+  if (report.inverse_time.count > 0) {
+    fmt::print("inverse time feeds, so that durations stay: {} pieces, {}\n", report.inverse_time.count,
+               lines_text(report.inverse_time));
+  }
+  if (result.text.uncorrected_moves > 0) {
+    fmt::print("rapid moves not corrected, as some axis had not been sent anywhere yet: {}, first in line {}\n",
+               result.text.uncorrected_moves, result.text.first_uncorrected_line);
+  }
+  if (options.leave_out_factor > 0) {
+    std::string names;
+    for (const std::string& name : result.left_out) names += (names.empty() ? "" : ", ") + name;
+    fmt::print("left out, below {:g} standard uncertainties everywhere: {}\n", options.leave_out_factor,
+               names.empty() ? "none" : names);
+  }
+  if (!result.refused.empty()) return;
+  if (options.dry_run) {
+    fmt::print("dry run: nothing written\n");
+  } else {
+    fmt::print("{} written\n", options.output);
+  }
+}
+
+nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& machine, const GcodeResult& result) {
+  const ProgramReport& report = result.report;
+  nlohmann::ordered_json json;
+  json["program"] = options.program;
+  json["machine"] = machine.name;
+  json["written"] = result.refused.empty() && !options.dry_run;
+  json["refused"] = result.refused;
+  json["lines"] = result.text.lines;
+  json["moves"] = report.moves;
+  json["pieces"] = report.pieces;
+  json["split_moves"] = report.split_moves;
+  json["tolerance_um"] = options.tolerance_um;
+  if (report.largest_shift.line != 0) {
+    nlohmann::ordered_json& largest = json["largest_correction"];
+    largest["value_um"] = 1e3 * report.largest_shift.value;
+    if (result.largest.stated) largest["standard_uncertainty_um"] = 1e3 * result.largest.point;
+    largest["line"] = report.largest_shift.line;
+    largest["position"] = position_json(machine, report.largest_shift);
+  }
+  json["axes"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const ProgramPlace& place = report.by_axis[i];
+    if (place.line == 0) continue;
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    const std::string unit = rotary ? "_urad" : "_um";
+    const double factor = rotary ? 1e6 : 1e3;
+    nlohmann::ordered_json axis;
+    axis["axis"] = machine.axes[i].name;
+    axis["largest" + unit] = factor * place.value;
+    if (result.by_axis[i].axes_known) axis["standard_uncertainty" + unit] = factor * result.by_axis[i].axis[i];
+    axis["line"] = place.line;
+    json["axes"].push_back(axis);
+  }
+  json["largest_orientation_left_urad"] = 1e6 * report.largest_orientation_left.value;
+  for (std::size_t i = 1; i < kCorrectionStatuses; ++i) {
+    json["poses"][correction_status_text(static_cast<CorrectionStatus>(i))] = count_json(report.status[i]);
+  }
+  json["not_proven"] = count_json(report.not_proven);
+  json["above_limit"] = count_json(report.above_limit);
+  json["tool_length_changes"] = count_json(report.tool_changes);
+  json["inverse_time_pieces"] = count_json(report.inverse_time);
+  json["uncorrected_rapid_moves"] = result.text.uncorrected_moves;
+  json["left_out"] = result.left_out;
+  return json;
+}
+
+}  // namespace abbe

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "abbe/compensate/program_report.h"
+#include "abbe/compensate/program_uncertainty.h"
+#include "abbe/formats/nc_program.h"
+#include "abbe/machine/machine.h"
+#include "compensate/gcode_options.h"
+
+namespace abbe {
+
+/// What was done to a program, with the uncertainties of the largest corrections.
+struct GcodeResult {
+  ProgramReport report;
+  NcProgramResult text;
+  PlaceUncertainty largest;               ///< at ProgramReport::largest_shift
+  std::vector<PlaceUncertainty> by_axis;  ///< [axes] at ProgramReport::by_axis
+  std::vector<std::string> left_out;      ///< errors below their uncertainty
+  std::vector<std::string> refused;       ///< why nothing is written; empty: it is
+};
+
+/// Reasons not to write the program that are not allowed.
+std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const AllowedProblems& allowed,
+                                           const ProgramReport& report);
+void print_gcode_report(const GcodeOptions& options, const Machine& machine, const GcodeResult& result);
+nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& machine, const GcodeResult& result);
+
+}  // namespace abbe

@@ -1,0 +1,318 @@
+// abbe compensate gcode on the example programs: where the tool of a machine with errors goes.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "abbe/compensate/program_moves_for_test.h"
+#include "abbe/formats/child_process.h"
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/machine_file.h"
+#include "abbe/formats/nc_program.h"
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double kDegree = std::numbers::pi / 180;
+const std::filesystem::path kExamples = std::filesystem::path(ABBE_SOURCE_DIR) / "examples";
+
+/// Notes moves and leaves them as they are.
+class Recorder final : public MoveCorrector {
+ public:
+  void correct(std::span<const ProgramMove> given, CorrectedPieces& corrected) override {
+    corrected.pieces.clear();
+    corrected.first.assign(1, 0);
+    for (const ProgramMove& move : given) {
+      moves.push_back(move);
+      corrected.pieces.push_back({move.end, move.feed, move.feed_mode});
+      corrected.first.push_back(corrected.pieces.size());
+    }
+  }
+  std::vector<ProgramMove> moves;
+};
+
+std::vector<ProgramMove> moves_of(const std::filesystem::path& program) {
+  std::ifstream file(program);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  NcProgramOptions options;
+  options.words[4] = false;  // no B
+  Recorder recorder;
+  correct_nc_program(text, program.string(), options, recorder, [](std::string_view) {});
+  return recorder.moves;
+}
+
+struct Distance {
+  double largest = 0;
+  std::size_t samples = 0;
+};
+
+/// Largest distance of points, in their order, from a chain of straight lines.
+Distance distance_from(const std::vector<Eigen::Vector3d>& points, const std::vector<Eigen::Vector3d>& chain) {
+  Distance distance;
+  std::size_t near = 0;
+  for (const Eigen::Vector3d& point : points) {
+    const std::size_t first = near > 60 ? near - 60 : 0, last = std::min(chain.size() - 1, near + 600);
+    double least = 1e300;
+    for (std::size_t k = first; k < last; ++k) {
+      const Eigen::Vector3d along = chain[k + 1] - chain[k];
+      const double length = along.squaredNorm();
+      const double s = length > 0 ? std::clamp((point - chain[k]).dot(along) / length, 0.0, 1.0) : 0.0;
+      const double d = (point - chain[k] - s * along).norm();
+      if (d < least) {
+        least = d;
+        near = k;
+      }
+    }
+    distance.largest = std::max(distance.largest, least);
+    ++distance.samples;
+  }
+  return distance;
+}
+
+/// Functional points at work along moves; every move with its share of samples.
+std::vector<Eigen::Vector3d> points_along(const test::ControlledMachine& control, const std::vector<ProgramMove>& moves,
+                                          bool with_errors, int fewest) {
+  std::vector<Eigen::Vector3d> points;
+  for (const ProgramMove& move : moves) {
+    if (move.kind == MoveKind::rapid) continue;
+    const MovePath path(move);
+    const std::array<double, 3> speed = path.speed();
+    double length = std::hypot(speed[0], speed[1], speed[2]);
+    if (!path.is_arc()) length = feed_length(move.start, move.end);
+    const int count = std::clamp(static_cast<int>(length / 0.1), fewest, 4000);
+    for (int k = 0; k <= count; ++k) {
+      WordValues words;
+      path.at(static_cast<double>(k) / count, words);
+      points.push_back(control.pose(move, words, with_errors).translation);
+    }
+  }
+  return points;
+}
+
+class CompensateGcode : public CommandTest {
+ protected:
+  CommandResult run(const std::string& program, std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {
+        "compensate", "gcode", (kExamples / "compensate" / program).string(), "--machine", machine, "--errors", errors};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return abbe(arguments);
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder.path() / name) << text; }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder.path() / name); }
+
+  test::ControlledMachine control() const {
+    const Machine read = read_machine(machine);
+    return {read, read_errors(errors, read).errors, word_axes_by_name(read)};
+  }
+
+  /// The tool at work, from moves as programmed and from those of the corrected program.
+  void expect_followed(const std::vector<ProgramMove>& original, const std::vector<ProgramMove>& corrected,
+                       double tolerance) const {
+    const test::ControlledMachine machine_and_control = control();
+    const std::vector<Eigen::Vector3d> commanded = points_along(machine_and_control, original, false, 20);
+    const std::vector<Eigen::Vector3d> driven = points_along(machine_and_control, corrected, true, 4);
+    const Distance there = distance_from(driven, commanded), back = distance_from(commanded, driven);
+    EXPECT_LE(there.largest, tolerance);
+    EXPECT_LE(back.largest, tolerance);  // nothing of the path is missing
+    EXPECT_GE(there.samples, 500U);
+    const std::vector<Eigen::Vector3d> uncorrected = points_along(machine_and_control, original, true, 4);
+    EXPECT_GE(distance_from(uncorrected, commanded).largest, 0.02);
+  }
+
+  const std::string machine = (kExamples / "machines/trunnion-mill.machine.toml").string();
+  const std::string errors = (kExamples / "compensate/trunnion.errors.toml").string();
+};
+
+TEST_F(CompensateGcode, TheToolOfTheMachineWithErrorsFollowsBothPrograms) {
+  for (const std::string program : {"cone.ngc", "plate.ngc"}) {
+    SCOPED_TRACE(program);
+    const CommandResult result = run(program, {"-o", program});
+    ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("written"));
+    expect_followed(moves_of(kExamples / "compensate" / program), moves_of(folder.path() / program), 1.1e-3);
+  }
+}
+
+TEST_F(CompensateGcode, ARotaryMoveKeepsItsTime) {
+  ASSERT_EQ(run("plate.ngc", {"-o", "out.ngc"}).exit_code, ExitCode::done);
+  // N290 turns C by 45 deg at 720 deg/min, N310 takes a twelfth of a minute.
+  double minutes = 0, turned = 0;
+  for (const ProgramMove& move : moves_of(folder.path() / "out.ngc")) {
+    if (move.kind == MoveKind::rapid || move.feed_mode != FeedMode::inverse_time) continue;
+    minutes += 1 / move.feed;
+    turned += move.end[5] - move.start[5];
+  }
+  EXPECT_NEAR(turned, 60 * kDegree, 1e-3);
+  EXPECT_NEAR(minutes, 45.0 / 720 + 1.0 / 12, 1e-4);
+}
+
+TEST_F(CompensateGcode, JsonSaysWhatWasDoneAndWithWhatUncertainty) {
+  const CommandResult result = run("cone.ngc", {"-o", "out.ngc", "--json", "--leave-out-below-uncertainty", "2"});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json.at("written"), true);
+  EXPECT_GT(json.at("moves"), 100);
+  EXPECT_GT(json.at("largest_correction").at("value_um"), 20);
+  EXPECT_LT(json.at("largest_correction").at("value_um"), 100);
+  EXPECT_GT(json.at("largest_correction").at("standard_uncertainty_um"), 0.5);
+  EXPECT_LT(json.at("largest_correction").at("standard_uncertainty_um"), 5);
+  EXPECT_EQ(json.at("axes").size(), 5U);
+  EXPECT_EQ(json.at("poses").at("not covered").at("count"), 0);
+  EXPECT_THAT(json.at("left_out").get<std::vector<std::string>>(), testing::Contains("EAX"));
+}
+
+TEST_F(CompensateGcode, ADryRunWritesNothing) {
+  const CommandResult result = run("plate.ngc", {"--dry-run"});
+  EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("largest correction of the functional point"));
+  EXPECT_THAT(result.out, HasSubstr("dry run: nothing written"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_F(CompensateGcode, CorrectionsAboveTheLimitAreRefusedByLine) {
+  const CommandResult result = run("cone.ngc", {"-o", "out.ngc", "--limit-um", "15"});
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.err, HasSubstr("correction above the limit of 15 um"));
+  EXPECT_THAT(result.err, HasSubstr("lines "));
+  EXPECT_THAT(result.err, HasSubstr("nothing written"));
+  EXPECT_FALSE(exists("out.ngc"));
+  EXPECT_EQ(run("cone.ngc", {"-o", "out.ngc", "--limit-um", "200"}).exit_code, ExitCode::done);
+}
+
+TEST_F(CompensateGcode, PosesThatCannotBeCorrectedAreRefusedUnlessAllowed) {
+  // The top of Z is the end of its travel, and its correction leads beyond.
+  write("top.ngc", "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nG1 Z0 F100\nM2\n");
+  std::vector<std::string> arguments = {"compensate", "gcode", "top.ngc", "--machine", machine,
+                                        "--errors",   errors,  "-o",      "out.ngc"};
+  CommandResult result = abbe(arguments);
+  const bool beyond = result.exit_code != ExitCode::done;
+  if (!beyond) {
+    // The sign of the correction is the other one: the lower end then.
+    write("top.ngc", "G21 G90\nG0 X0 Y0 Z-505 A-20 C0\nG1 Z-510 F100\nM2\n");
+    result = abbe(arguments);
+    std::filesystem::remove(folder.path() / "out.ngc");
+    result = abbe(arguments);
+  }
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.err, HasSubstr("outside the travel: 1 pose, line 3"));
+  EXPECT_FALSE(exists("out.ngc"));
+  arguments.insert(arguments.end(), {"--allow", "outside-travel"});
+  EXPECT_EQ(abbe(arguments).exit_code, ExitCode::done);
+  EXPECT_TRUE(exists("out.ngc"));
+  arguments.back() = "anything";
+  EXPECT_EQ(abbe(arguments).exit_code, ExitCode::bad_input);
+}
+
+TEST_F(CompensateGcode, InputsAreNeverWritten) {
+  write("p.ngc", "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nM2\n");
+  const std::vector<std::string> base = {"compensate", "gcode", "p.ngc", "--machine", machine, "--errors", errors};
+  for (const std::string output : {"p.ngc", "./p.ngc"}) {
+    std::vector<std::string> arguments = base;
+    arguments.insert(arguments.end(), {"-o", output});
+    const CommandResult result = abbe(arguments);
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+    EXPECT_THAT(result.err, HasSubstr("is an input"));
+  }
+  EXPECT_EQ(folder.read("p.ngc"), "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nM2\n");
+  EXPECT_EQ(abbe(base).exit_code, ExitCode::bad_input);
+}
+
+TEST_F(CompensateGcode, WordsWithoutAnAxisAreErrorsWithTheirLine) {
+  write("b.ngc", "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nG0 B5\nM2\n");
+  const CommandResult result =
+      abbe({"compensate", "gcode", "b.ngc", "--machine", machine, "--errors", errors, "-o", "out.ngc"});
+  EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(result.err, HasSubstr("b.ngc"));
+  EXPECT_THAT(result.err, HasSubstr("3"));
+  EXPECT_FALSE(exists("out.ngc"));
+}
+
+TEST_F(CompensateGcode, ToolCentreProgramsAreOfThePoint) {
+  // The same pose in words of the axes and of the point.
+  const test::ControlledMachine machine_and_control = control();
+  ProgramMove move;
+  WordValues words{};
+  words[0] = 20, words[1] = 30, words[2] = -300, words[3] = -20 * kDegree, words[5] = 40 * kDegree;
+  const Eigen::Vector3d point = machine_and_control.pose(move, words, false).translation;
+  write("point.ngc", fmt::format("G21 G90\nG0 X{:.7f} Y{:.7f} Z{:.7f} A-20 C40\nG1 X{:.7f} F100\nM2\n", point.x(),
+                                 point.y(), point.z(), point.x() + 3));
+  ASSERT_EQ(abbe({"compensate", "gcode",    "point.ngc",     "--machine", machine,   "--errors", errors,
+                  "-o",         "out.ngc",  "--tool-centre", "--start",   "X_mm=0",  "--start",  "Y_mm=0",
+                  "--start",    "Z_mm=100", "--start",       "A_deg=-20", "--start", "C_deg=40"})
+                .exit_code,
+            ExitCode::done);
+  NcProgramOptions options;
+  options.words[4] = false;
+  for (std::size_t i = 0; i < kAxisWords; ++i) options.start[i] = 0.0;
+  Recorder recorder;
+  correct_nc_program(folder.read("out.ngc"), "out.ngc", options, recorder, [](std::string_view) {});
+  ASSERT_FALSE(recorder.moves.empty());
+  ProgramMove last = recorder.moves.back();
+  last.coordinates = ProgramCoordinates::tool_centre;
+  const Eigen::Vector3d wanted = point + Eigen::Vector3d(3, 0, 0);
+  EXPECT_NEAR((machine_and_control.pose(last, last.end, true).translation - wanted).norm(), 0, 2e-6);
+  EXPECT_GE((machine_and_control.pose(last, last.end, false).translation - wanted).norm(), 0.005);
+}
+
+std::string rs274() {
+  const char* const folders = std::getenv("PATH");
+  std::istringstream list(folders == nullptr ? "" : folders);
+  for (std::string folder; std::getline(list, folder, ':');) {
+    const std::filesystem::path path = std::filesystem::path(folder) / "rs274";
+    std::error_code ignored;
+    if (std::filesystem::exists(path, ignored)) return path.string();
+  }
+  return "";
+}
+
+/// Straight moves as LinuxCNC's interpreter prints them: mm and degrees with four decimals.
+std::vector<ProgramMove> moves_of_linuxcnc(const std::string& program, const std::string& parameters) {
+  const ChildProcess process({rs274(), "-g", "-v", parameters, program}, 60);
+  std::istringstream lines{std::string(process.output())};
+  std::vector<ProgramMove> moves;
+  WordValues here{};
+  for (std::string line; std::getline(lines, line);) {
+    const bool feed = line.find("STRAIGHT_FEED(") != std::string::npos;
+    const std::size_t open = line.find("STRAIGHT_");
+    if (open == std::string::npos || (!feed && line.find("STRAIGHT_TRAVERSE(") == std::string::npos)) continue;
+    std::string numbers = line.substr(line.find('(', open) + 1);
+    std::replace(numbers.begin(), numbers.end(), ',', ' ');
+    std::istringstream cells(numbers);
+    ProgramMove move;
+    move.start = here;
+    for (std::size_t i = 0; i < 6; ++i) {
+      cells >> move.end[i];
+      if (i >= 3) move.end[i] *= kDegree;
+    }
+    move.kind = feed ? MoveKind::straight : MoveKind::rapid;
+    here = move.end;
+    moves.push_back(move);
+  }
+  return moves;
+}
+
+TEST_F(CompensateGcode, AsLinuxCncReadsBothProgramsTheToolFollowsThePath) {
+  if (rs274().empty()) GTEST_SKIP() << "rs274 (Debian package linuxcnc-uspace) is not installed";
+  ASSERT_EQ(run("cone.ngc", {"-o", "out.ngc"}).exit_code, ExitCode::done);
+  write("parameters.var", "5161\t0\n5181\t0\n5220\t1\n");
+  const std::string parameters = (folder.path() / "parameters.var").string();
+  const std::vector<ProgramMove> original = moves_of_linuxcnc((kExamples / "compensate/cone.ngc").string(), parameters);
+  const std::vector<ProgramMove> corrected = moves_of_linuxcnc((folder.path() / "out.ngc").string(), parameters);
+  ASSERT_GE(original.size(), 100U);
+  ASSERT_GE(corrected.size(), original.size());
+  // Four decimals of a degree are 0.2 um at the part.
+  expect_followed(original, corrected, 1.6e-3);
+}
+
+}  // namespace
+}  // namespace abbe
