@@ -11,7 +11,7 @@ import hal
 import linuxcnc
 
 MODULE = os.environ["ABBEKINS"]
-LIMIT_S = 50
+LIMIT_S = 80
 started = time.monotonic()
 log = open("driver.txt", "w", buffering=1)
 command, status, errors = linuxcnc.command(), linuxcnc.stat(), linuxcnc.error_channel()
@@ -52,21 +52,26 @@ def mdi(text):
     until(idle, text)
 
 
-def standing():
-    """World position, tool length and joints, once the joints stand (they follow the world by some cycles)."""
-    names = [f"axis.{a}.pos-cmd" for a in "xyzac"] + ["motion.tooloffset.z"] + [f"joint.{j}.motor-pos-cmd" for j in range(5)]
-    before, same = None, 0
-    while same < 3:
-        now = [hal.get_value(name) for name in names]
+def cycles(count):
+    """Waits until so many servo cycles have gone by: without real time, time alone says nothing of them."""
+    end = hal.get_value("integ.0.out") + 0.001 * (count + 0.5)
+    until(lambda: hal.get_value("integ.0.out") > end, "servo cycles")
+
+
+def standing(place=None):
+    """World position, tool length and joints, once the world is at `place` and the joints have followed."""
+    world = [f"axis.{a}.pos-cmd" for a in "xyzac"]
+    joints = [f"joint.{j}.motor-pos-cmd" for j in range(5)]
+    if place:
+        until(lambda: max(abs(hal.get_value(n) - p) for n, p in zip(world, place)) < 1e-6, f"world at {place}")
+    before = None
+    while True:
+        cycles(12)
+        now = [hal.get_value(name) for name in world + ["motion.tooloffset.z"] + joints]
         # Rounding may change from one cycle to the next.
-        same = same + 1 if before and max(abs(a - b) for a, b in zip(now, before)) < 1e-11 else 0
+        if before and max(abs(a - b) for a, b in zip(now, before)) < 1e-11:
+            return now
         before = now
-        if time.monotonic() - started > LIMIT_S:
-            stop("joints do not come to rest")
-        time.sleep(0.0015)
-    return before
-
-
 
 
 until(lambda: (status.poll() or True) and status.task_state != 0, "no task")
@@ -87,12 +92,12 @@ mdi("G21 G90 G49 G61")
 
 # Enabling at a standing pose: recorded in every servo cycle.
 mdi("G0 X100 Y-80 Z-200 A-30 C60")
-standing()
+standing([100, -80, -200, -30, 60])
 hal.set_p("sampler.0.enable", "1")
-time.sleep(0.05)
+cycles(30)
 hal.set_p(MODULE + ".enable", "1")
 until(lambda: hal.get_value(MODULE + ".enabled") == 1, "the ramp")
-time.sleep(0.1)
+cycles(30)
 hal.set_p("sampler.0.enable", "0")
 say("enabled")
 
@@ -106,7 +111,7 @@ with open("reached.txt", "w") as out:
             tool = length
         # With G43 the program's Z is that of the tool's point.
         mdi(f"G0 X{x:.9f} Y{y:.9f} Z{z - length:.9f} A{a:.9f} C{c:.9f}")
-        out.write(" ".join(f"{value:.17g}" for value in standing()) + "\n")
+        out.write(" ".join(f"{value:.17g}" for value in standing([x, y, z, a, c])) + "\n")
 say("poses reached, status %d" % hal.get_value(MODULE + ".status"))
 
 mdi(open("start.ngc").read().strip())

@@ -33,7 +33,10 @@ def as_user(*words):
 
 def run_folder(place):
     """A new folder that the user of LinuxCNC may use."""
-    for parent in (place, tempfile.gettempdir()):
+    for parent in (os.path.abspath(place), tempfile.gettempdir()):
+        # A socket of LinuxCNC stands in it, whose name may have 107 characters.
+        if len(parent) > 75:
+            continue
         os.makedirs(parent, exist_ok=True)
         folder = pathlib.Path(tempfile.mkdtemp(prefix="linuxcnc-", dir=parent))
         os.chmod(folder, 0o755)
@@ -92,10 +95,13 @@ def hal_text(module):
         "loadrt [KINS]KINEMATICS",
         "loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS",
         "loadrt sampler depth=16384,16384 cfg=ffffff,ffffffffff",
+        "loadrt integ",
         "addf motion-command-handler servo-thread",
         "addf motion-controller servo-thread",
+        "addf integ.0 servo-thread",
         "addf sampler.0 servo-thread",
         "addf sampler.1 servo-thread",
+        "setp integ.0.in 1",
         "setp sampler.0.enable 0",
         "setp sampler.1.enable 0",
         f"setp {module}.ramp-seconds 0.4",
