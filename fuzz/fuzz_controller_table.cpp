@@ -8,6 +8,8 @@
 #include <string_view>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/table_fanuc.h"
+#include "abbe/formats/table_heidenhain.h"
 #include "abbe/formats/table_lattice.h"
 #include "abbe/formats/table_linuxcnc.h"
 #include "abbe/formats/table_siemens.h"
@@ -32,6 +34,7 @@ void check(const std::vector<abbe::AxisTable>& tables) {
   }
 }
 
+const std::vector<abbe::TableAxisName> kNumbers = {{0, "1", false}, {1, "2", false}, {2, "3", true}};
 const std::vector<abbe::TableAxisName> kLetters = {{0, "X", false}, {1, "Y", false}, {2, "C", true}};
 
 void check(const abbe::CorrectionLattice& lattice) {
@@ -67,7 +70,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
   const std::string file = "fuzz";
   try {
-    switch (data[0] % 10) {
+    switch (data[0] % 12) {
       case 0:
         check({abbe::parse_linuxcnc(text, file, false, abbe::LinuxCncCompensation::trim)});
         break;
@@ -94,6 +97,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
       case 9:
         check(abbe::parse_marlin_skew(text, file));
+        break;
+      case 10:
+        check(abbe::parse_heidenhain_com(text, file, 0, kLetters, -1));
+        break;
+      case 11:
+        for (const abbe::FanucPitch& pitch : abbe::parse_fanuc_pitch(text, file, kNumbers)) {
+          check({abbe::fanuc_table(pitch, 1e-3)});
+        }
         break;
       default:
         check(abbe::parse_siemens_eec(text, file, kAxes));

@@ -15,22 +15,6 @@ namespace {
 constexpr double kDecimalStep_mm = 1e-3;
 constexpr double kDecimalStep_rad = 3.14159265358979323846 / 180 * 1e-3;
 
-LineTableOptions line_options(const TableRequest& request, const TableFormat& format) {
-  LineTableOptions options;
-  options.reference = request.reference;
-  options.axes = request.axes;
-  options.tolerance_mm = request.tolerance_mm;
-  options.tolerance_rad = request.tolerance_rad;
-  options.most_nodes = request.most_nodes > 0 ? std::min(request.most_nodes, format.most_nodes) : format.most_nodes;
-  options.nodes = request.nodes > 0 ? std::min(request.nodes, options.most_nodes) : 0;
-  options.step_multiple_mm = kDecimalStep_mm;
-  options.step_multiple_rad = kDecimalStep_rad;
-  // Below the last digit that is written there is nothing to correct.
-  options.negligible_mm = 1e-7;
-  options.negligible_rad = 1e-9;
-  return options;
-}
-
 std::string table_name(const Machine& machine, const AxisTable& table) {
   const std::string& input = machine.axes[table.input].name;
   return table.input == table.output ? input : input + " for " + machine.axes[table.output].name;
@@ -70,7 +54,24 @@ TableSummary summary_of(const Machine& machine, const AxisTable& table, double i
   return summary;
 }
 
-/// Tables of one axis's command that are wanted, with what is said of them.
+}  // namespace
+
+LineTableOptions line_options(const TableRequest& request, const TableFormat& format) {
+  LineTableOptions options;
+  options.reference = request.reference;
+  options.axes = request.axes;
+  options.tolerance_mm = request.tolerance_mm;
+  options.tolerance_rad = request.tolerance_rad;
+  options.most_nodes = request.most_nodes > 0 ? std::min(request.most_nodes, format.most_nodes) : format.most_nodes;
+  options.nodes = request.nodes > 0 ? std::min(request.nodes, options.most_nodes) : 0;
+  options.step_multiple_mm = kDecimalStep_mm;
+  options.step_multiple_rad = kDecimalStep_rad;
+  // Below the last digit that is written there is nothing to correct.
+  options.negligible_mm = 1e-7;
+  options.negligible_rad = 1e-9;
+  return options;
+}
+
 std::vector<AxisTable> wanted_tables(const Machine& machine, const ErrorSet& errors, const TableRequest& request,
                                      const LineTableOptions& options, ControllerTables& made) {
   const LineTables found = line_tables(machine, errors, options);
@@ -84,6 +85,16 @@ std::vector<AxisTable> wanted_tables(const Machine& machine, const ErrorSet& err
   }
   return tables;
 }
+
+std::vector<AxisTable> with_sign(std::vector<AxisTable> tables, bool negate) {
+  for (AxisTable& table : tables) {
+    for (double& value : table.forward) value = negate ? -value : value;
+    for (double& value : table.reverse) value = negate ? -value : value;
+  }
+  return tables;
+}
+
+namespace {
 
 ControllerTables make_linuxcnc(const TableFormat& format, const Machine& machine, const ErrorSet& errors,
                                const TableRequest& request) {
@@ -117,9 +128,11 @@ ControllerTables make_siemens(bool cross, const TableFormat& format, const Machi
   std::vector<AxisTable> read;
   if (!tables.empty()) {
     const std::string name = cross ? "CEC.INI" : "EEC.INI";
-    const std::string text = cross ? siemens_cec_text(tables, request.names, request.first_table)
-                                   : siemens_eec_text(tables, request.names, request.encoder);
-    read = cross ? parse_siemens_cec(text, name, request.names) : parse_siemens_eec(text, name, request.names);
+    const std::string text =
+        cross ? siemens_cec_text(with_sign(tables, request.negate), request.names, request.first_table)
+              : siemens_eec_text(tables, request.names, request.encoder);
+    read = cross ? with_sign(parse_siemens_cec(text, name, request.names), request.negate)
+                 : parse_siemens_eec(text, name, request.names);
     made.files.emplace_back(name, text);
     std::size_t longest = 0;
     for (const AxisTable& table : tables) longest = std::max(longest, table.positions.size());
@@ -168,7 +181,8 @@ TableFormat siemens_cec_format() {
   format.convention =
       "the value is the correction (minus the error), mm or degrees, added to the position setpoint of the output axis "
       "at the setpoint of the input axis. Straight lines between points, the end values outside";
-  format.unverified = "the sign of the value: the manual says that the setpoint is altered by it; check the first move";
+  format.unverified =
+      "the sign of the value: the manual says that the setpoint is altered by it; check the first move (--negate)";
   format.axis_names = "machine axis name (AX1, X1)";
   format.most_nodes = 2000;
   format.cannot =

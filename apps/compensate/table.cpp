@@ -30,8 +30,9 @@ struct TableCommand {
   std::vector<std::string> at, axes, names;
   double interpolation_um = 0.1, interpolation_urad = 0.1, limit_um = 0, limit_urad = 0, times_uncertainty = 0;
   std::size_t max_points = 0, positions = 0, first_table = 0, encoder = 0;
+  double unit_um = 1;
   int type = 1;
-  bool json = false, dry_run = false;
+  bool json = false, dry_run = false, negate = false;
 };
 
 /// Grid over what is known of the travel; of a whole turn the end, which is its beginning, is left out.
@@ -206,6 +207,11 @@ TableRequest request_of(const TableCommand& command, const Machine& machine, con
   request.encoder = command.encoder;
   if (command.first_table > 999) throw InputError({.field = "--first-table"}, "too large", "0 to 999");
   request.first_table = command.first_table;
+  request.negate = command.negate;
+  if (!(command.unit_um >= 0.001 && command.unit_um <= 10)) {
+    throw InputError({.field = "--detection-unit-um"}, "out of range", "0.001 to 10 um");
+  }
+  request.unit_mm = 1e-3 * command.unit_um;
   return request;
 }
 
@@ -325,6 +331,10 @@ void add_compensate_table(CLI::App& compensate, CommandLine& line) {
   command->add_option("--type", options->type, "linuxcnc: COMP_FILE_TYPE, 0 or 1 (1)");
   command->add_option("--first-table", options->first_table, "siemens-cec: index of the first table (0)");
   command->add_option("--encoder", options->encoder, "siemens-eec: measuring system, 0 or 1 (0)");
+  command->add_flag("--negate", options->negate,
+                    "siemens-cec, heidenhain, fanuc-pitch: values with the other sign (theirs is not known for sure)");
+  command->add_option("--detection-unit-um", options->unit_um,
+                      "fanuc-pitch: unit of the data, um; of rotary axes thousandths of a degree (1)");
   command->add_option("--map", options->map, "Map of the error before, after and ideal: .csv, .vts or .vtu");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options]() -> int { return run_table(*options); }; });

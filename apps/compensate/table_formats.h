@@ -28,6 +28,8 @@ struct TableRequest {
   int type = 1;                      ///< linuxcnc: COMP_FILE_TYPE
   std::size_t encoder = 0;           ///< siemens-eec
   std::size_t first_table = 0;       ///< siemens-cec
+  bool negate = false;               ///< values with the other sign, where the control's is not known for sure
+  double unit_mm = 1e-3;             ///< fanuc-pitch: detection unit; of rotary axes as many degrees
 };
 
 /// A part of the tables that can be left out, and what it says.

@@ -1,0 +1,150 @@
+#include "compensate/pitch_formats.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "abbe/formats/table_fanuc.h"
+#include "abbe/formats/table_heidenhain.h"
+#include "compensate/axis_table_formats.h"
+
+namespace abbe {
+namespace {
+
+/// One table of table names per line; the first is the active one.
+std::string heidenhain_assignment(const TableRequest& request, const std::vector<std::size_t>& inputs) {
+  std::string columns = "NR ACTIVE", files = "0 *";
+  for (const std::size_t input : inputs) {
+    const std::string& name = table_axis(request.names, input).name;
+    columns += " " + name;
+    files += " " + name + ".COM";
+  }
+  return "BEGIN CONFIG.CMA MM\n" + columns + "\n" + files + "\n[END]\n";
+}
+
+ControllerTables make_heidenhain(const TableFormat& format, const Machine& machine, const ErrorSet& errors,
+                                 const TableRequest& request) {
+  ControllerTables made;
+  LineTableOptions options = line_options(request, format);
+  options.cross = true;
+  const std::vector<AxisTable> tables = wanted_tables(machine, errors, request, options, made);
+  const double sign = request.negate ? 1 : -1;
+  std::vector<AxisTable> read;
+  std::vector<std::size_t> inputs;
+  for (const AxisTable& table : tables) {
+    if (std::find(inputs.begin(), inputs.end(), table.input) == inputs.end()) inputs.push_back(table.input);
+  }
+  for (const std::size_t input : inputs) {
+    std::vector<AxisTable> of_input;
+    for (const AxisTable& table : tables) {
+      if (table.input == input) of_input.push_back(table);
+    }
+    const std::string name = table_axis(request.names, input).name + ".COM";
+    const std::string text = heidenhain_com_text(of_input, request.names, sign);
+    made.files.emplace_back(name, text);
+    for (AxisTable& table : parse_heidenhain_com(text, name, input, request.names, sign)) {
+      // A rotary axis has entries from 0 to 360 degrees, and repeats itself.
+      table.modulo = machine.axes[input].endless;
+      read.push_back(std::move(table));
+    }
+  }
+  if (!inputs.empty()) made.files.emplace_back("CONFIG.CMA", heidenhain_assignment(request, inputs));
+  made.correction = std::make_unique<AxisTableCorrection>(std::move(read));
+  return made;
+}
+
+ControllerTables make_fanuc(const TableFormat& format, const Machine& machine, const ErrorSet& errors,
+                            const TableRequest& request) {
+  ControllerTables made;
+  const auto unit_of = [&](std::size_t axis) {
+    return machine.axes[axis].kind == AxisKind::rotary ? request.unit_mm * std::numbers::pi / 180 : request.unit_mm;
+  };
+  std::vector<FanucPitch> pitches;
+  std::vector<double> constants;  // of the tables at their reference positions, where the data are zero
+  std::size_t first_point = 0;
+  for (const AxisTable& table : wanted_tables(machine, errors, request, line_options(request, format), made)) {
+    const bool rotary = machine.axes[table.input].kind == AxisKind::rotary;
+    const double unit = unit_of(table.input);
+    pitches.push_back(fanuc_pitch(with_sign({table}, request.negate).front(), unit, first_point));
+    const FanucPitch& pitch = pitches.back();
+    constants.push_back(table.forward[pitch.reference_point - first_point]);
+    first_point += table.positions.size();
+    made.remarks.push_back(
+        fmt::format("{}: data rounded to {:g} {}; they are zero at the reference position {:g} {}, which has to be "
+                    "shifted by {:.2f} {} "
+                    "(the figures above take it that it is)",
+                    machine.axes[table.input].name, (rotary ? 1e6 : 1e3) * unit * pitch.magnification,
+                    rotary ? "urad" : "um", pitch.reference_position * (rotary ? 180 / std::numbers::pi : 1),
+                    rotary ? "deg" : "mm", (rotary ? 1e6 : 1e3) * constants.back(), rotary ? "urad" : "um"));
+  }
+  std::vector<AxisTable> read;
+  if (!pitches.empty()) {
+    const std::string name = "PITCH.PRM";
+    const std::string text = fanuc_pitch_text(pitches, request.names);
+    made.files.emplace_back(name, text);
+    for (const FanucPitch& pitch : parse_fanuc_pitch(text, name, request.names)) {
+      AxisTable table = with_sign({fanuc_table(pitch, unit_of(pitch.axis))}, request.negate).front();
+      for (std::size_t p = 0; p < pitches.size(); ++p) {
+        if (pitches[p].axis != pitch.axis) continue;
+        for (double& value : table.forward) value += constants[p];
+      }
+      table.reverse = table.forward;
+      table.modulo = machine.axes[pitch.axis].endless;
+      read.push_back(std::move(table));
+    }
+  }
+  made.correction = std::make_unique<AxisTableCorrection>(std::move(read));
+  return made;
+}
+
+}  // namespace
+
+TableFormat heidenhain_format() {
+  TableFormat format;
+  format.name = "heidenhain";
+  format.what =
+      "compensation-value tables of HEIDENHAIN (*.COM, CONFIG.CMA), every axis for itself and for the linear axes";
+  format.convention =
+      "AXISPOS in mm or degrees from the machine datum; values are errors (actual minus nominal), mm or degrees; "
+      "straight "
+      "lines between points";
+  format.unverified =
+      "head and end of the text (BEGIN, NR, [END]); the sign of the values (--negate); that the end values hold "
+      "outside; "
+      "BACKLASH is not written";
+  format.axis_names = "axis key of CfgAxes/axisList";
+  format.several_files = true;
+  format.most_nodes = kHeidenhainPoints;
+  format.cannot =
+      "tables add up, each of one axis's position: an angle times a lever that another axis changes is right "
+      "only on the lines through the reference pose, and the direction of the tool stays";
+  format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+    return make_heidenhain(format, machine, errors, request);
+  };
+  return format;
+}
+
+TableFormat fanuc_pitch_format() {
+  TableFormat format;
+  format.name = "fanuc-pitch";
+  format.what = "stored pitch error compensation of FANUC as a parameter file, every axis for itself";
+  format.convention =
+      "steps of the correction (minus the error) from point to point in whole detection units times the magnification, "
+      "zero at the reference position; straight lines between points";
+  format.unverified =
+      "the numbers of data blocks (10000 + point) and of the parameters for a given control, the sign (--negate), that "
+      "the control interpolates between points, largest step and number of points";
+  format.axis_names = "number of the controlled axis";
+  format.most_nodes = kFanucPoints;
+  format.cannot =
+      "an axis is corrected by its own position only, in whole units and zero at its reference position; "
+      "a constant is the reference position's matter";
+  format.default_name = [](std::size_t index, const Axis& /*axis*/) { return fmt::format("{}", index + 1); };
+  format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+    return make_fanuc(format, machine, errors, request);
+  };
+  return format;
+}
+
+}  // namespace abbe
