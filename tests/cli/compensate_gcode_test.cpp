@@ -21,7 +21,6 @@ namespace abbe {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 constexpr double kDegree = std::numbers::pi / 180;
 const std::filesystem::path kExamples = std::filesystem::path(ABBE_SOURCE_DIR) / "examples";

@@ -66,8 +66,21 @@ inline WordValues between(const WordValues& a, const WordValues& b, double s) {
   return words;
 }
 
-/// Words by name, and A B C to rotary axes of other names where a machine has such.
-inline WordAxes words_of(const Machine& machine) { return word_axes_by_name(machine); }
+/// Words by name; axes with a number get their letter or another free word of their kind.
+inline WordAxes words_of(const Machine& machine) {
+  WordAxes words = word_axes_by_name(machine);
+  for (std::size_t axis = machine.axes.size(); axis-- > 0;) {
+    if (words.moves(axis)) continue;
+    const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
+    std::size_t chosen = kAxisWords;
+    for (std::size_t i = kAxisWords; i-- > 0;) {
+      if ((i >= 3 && i < 6) != rotary || words.axis[i] != Machine::npos) continue;
+      if (chosen == kAxisWords || machine.axes[axis].name[0] == axis_word_text(static_cast<AxisWord>(i))[0]) chosen = i;
+    }
+    if (chosen < kAxisWords) words.axis[chosen] = axis;
+  }
+  return words;
+}
 
 /// Errors of tens of micrometres and microradians in every error motion, in bases of all kinds.
 inline ErrorSet mixed_errors(const Machine& machine, std::uint64_t seed) {
