@@ -79,7 +79,7 @@ bench:
 	@.ci/set-up bench
 	$(call build_preset,bench)
 	@for program in closest_point compensated_inverse fits forward_pose five_instruments identification identification_memory planning polygon_trace read_csv \
-	  read_mesh registration scan_points; do \
+	  read_mesh registration runtime_call scan_points; do \
 	  echo "== $$program"; build/bench/bin/$$program; done
 
 fuzz:

@@ -133,10 +133,7 @@ int uncompensate(const abbe_runtime& machine, abbe_runtime_state* state, const F
 }
 
 }  // namespace
-}  // namespace abbe
-
-using namespace abbe;
-
+// The functions of the C interface are those of the global namespace wherever they are defined.
 extern "C" {
 
 void abbe_runtime_start(abbe_runtime_state* state) ABBE_NOEXCEPT {
@@ -264,3 +261,5 @@ const char* abbe_runtime_text(int result) ABBE_NOEXCEPT {
 }
 
 }  // extern "C"
+
+}  // namespace abbe

@@ -8,6 +8,7 @@
  * in chain order (workpiece to tool).
  */
 
+/* The names and types of C. NOLINTBEGIN(modernize-*,readability-identifier-naming) */
 #include <stddef.h>
 #include <stdint.h>
 
@@ -142,3 +143,4 @@ void abbe_runtime_tool_of_offset(const abbe_runtime* runtime, const double* offs
 #ifdef __cplusplus
 }
 #endif
+/* NOLINTEND(modernize-*,readability-identifier-naming) */

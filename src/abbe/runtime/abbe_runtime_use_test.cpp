@@ -22,7 +22,7 @@ ErrorSet every_basis(const Machine& machine) {
   ErrorSet errors;
   std::mt19937_64 generator(31);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const auto add = [&](const char* axis_name, Component component, Basis basis) {
+  const auto add = [&](const char* axis_name, Component component, const Basis& basis) {
     const std::size_t axis = machine.find_axis(axis_name);
     std::vector<double> coefficients(basis.size());
     for (double& value : coefficients) value = uniform(generator) * (is_rotation(component) ? 3e-5 : 0.02);

@@ -119,7 +119,8 @@ void write_functions(const FrozenFunctions& functions, Writer& out) {
   const std::size_t per_function = functions.kind == 2 ? 4 : 1;
   out.value(static_cast<double>(functions.axis));
   out.value(functions.kind);
-  out.value(static_cast<double>(functions.rows.size() / per_function));
+  const std::size_t count = functions.rows.size() / per_function;
+  out.value(static_cast<double>(count));
   out.flag(functions.everywhere);
   out.value(functions.lowest);
   out.value(functions.highest);

@@ -342,10 +342,7 @@ FrozenFile read_frozen(const unsigned char* bytes, std::size_t size, abbe_runtim
   return {};
 }
 
-}  // namespace abbe
-
-using namespace abbe;
-
+// The functions of the C interface are those of the global namespace wherever they are defined.
 extern "C" {
 
 int abbe_runtime_load(const void* bytes, size_t size, char* text, size_t text_size,
@@ -392,3 +389,5 @@ int abbe_runtime_describe_axis(const abbe_runtime* runtime, int axis, abbe_runti
 }
 
 }  // extern "C"
+
+}  // namespace abbe
