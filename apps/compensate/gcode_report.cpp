@@ -96,7 +96,7 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
 
 void print_gcode_report(const GcodeOptions& options, const Machine& machine, const GcodeResult& result) {
   const ProgramReport& report = result.report;
-  fmt::print("{} moves of {} on {}: {} pieces, {} moves split; path within {:g} um between them\n", report.moves,
+  fmt::print("{} moves of {} on {}: {} pieces, {} split; path within {:g} um between them\n", report.moves,
              options.program, machine.name, report.pieces, report.split_moves, options.tolerance_um);
   const ProgramPlace& shift = report.largest_shift;
   if (shift.line != 0) {
