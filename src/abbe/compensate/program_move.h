@@ -22,6 +22,7 @@ enum class MoveKind : std::uint8_t {
   arc_counterclockwise,  ///< G3
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): planes have the names of their axes
 enum class ArcPlane : std::uint8_t { XY, ZX, YZ };  ///< G17, G18, G19
 
 enum class FeedMode : std::uint8_t {

@@ -56,7 +56,7 @@ void NcBlockReader::begin(NcBlock& block) {
   block.is_deleted = block.is_percent = block.is_computed = false;
   block.number = {};
   block.word_count = 0;
-  block.index.fill(-1);
+  block.index.fill(NcBlock::kNoWord);
   block.comments.clear();
   block.assignments.clear();
   block.flow = NcFlowWord::none;
@@ -134,9 +134,9 @@ void NcBlockReader::read_word(NcBlock& block, char letter) {
   word.value = expression_.read_value(cursor);
   word.end = cursor.at;
   if (!(std::abs(word.value) <= kLargestInput)) cursor.fail(begin, "is too large", "a magnitude of at most 1e9");
-  std::int8_t& index = block.index[static_cast<std::size_t>(letter - 'a')];
-  if (index < 0) {
-    index = static_cast<std::int8_t>(block.word_count);
+  std::uint8_t& index = block.index[static_cast<std::size_t>(letter - 'a')];
+  if (index == NcBlock::kNoWord) {
+    index = static_cast<std::uint8_t>(block.word_count);
   } else if (letter != 'g' && letter != 'm') {
     cursor.fail(begin, "this letter stands in the block already");
   }

@@ -52,6 +52,7 @@ enum class NcFlowWord : std::uint8_t {
 /// The words of one line; what it points to is the line itself.
 struct NcBlock {
   static constexpr std::size_t kMostWords = 64;
+  static constexpr std::uint8_t kNoWord = 255;
 
   NcCursor cursor;           ///< behind the words; with an O word behind that
   bool is_deleted = false;   ///< begins with a slash
@@ -60,17 +61,15 @@ struct NcBlock {
   std::string_view number;   ///< "N100" as written; may be empty
   std::size_t word_count = 0;
   std::array<NcWord, kMostWords> words;
-  std::array<std::int8_t, 26> index{};  ///< word of a letter, or -1; the first one of G and M
+  std::array<std::uint8_t, 26> index{};  ///< word of a letter, or kNoWord; the first one of G and M
   std::vector<std::string_view> comments;
   std::vector<NcAssignment> assignments;
   NcFlowWord flow = NcFlowWord::none;
   std::string label;             ///< of the O word
   const char* o_word = nullptr;  ///< where it stands
 
-  bool has(char letter) const { return index[static_cast<std::size_t>(letter - 'a')] >= 0; }
-  const NcWord& word(char letter) const {
-    return words[static_cast<std::size_t>(index[static_cast<std::size_t>(letter - 'a')])];
-  }
+  bool has(char letter) const { return index[static_cast<std::size_t>(letter - 'a')] != kNoWord; }
+  const NcWord& word(char letter) const { return words[index[static_cast<std::size_t>(letter - 'a')]]; }
   double value(char letter) const { return word(letter).value; }
   std::string_view line() const { return {cursor.begin, static_cast<std::size_t>(cursor.end - cursor.begin)}; }
   bool is_empty() const { return word_count == 0 && comments.empty() && assignments.empty(); }

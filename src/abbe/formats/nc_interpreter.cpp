@@ -77,6 +77,7 @@ void NcInterpreter::take_parameters() {
       const int first = 5221 + 20 * static_cast<int>(s);
       if (place(first, number, axis)) {
         systems_[s][axis] = scaled();
+        system_is_said_[s] = true;
         taken = true;
       }
       if (number == first + 9) {
@@ -126,7 +127,7 @@ std::size_t NcInterpreter::run(const std::function<void(std::size_t)>& read_to) 
       continue;
     }
     execute();
-    if (codes_.m_group[0] >= 0 && ends_program()) {
+    if (codes_.has(NcMGroup::stop) && ends_program()) {
       // Nothing behind it runs; the percent sign closes the file as it opened it.
       if (percent) writer_.line("%");
       break;
@@ -136,7 +137,7 @@ std::size_t NcInterpreter::run(const std::function<void(std::size_t)>& read_to) 
 }
 
 bool NcInterpreter::ends_program() const {
-  const double code = block_.words[static_cast<std::size_t>(codes_.m_group[0])].value;
+  const double code = codes_.word(block_, NcMGroup::stop).value;
   return code == 2 || code == 30;
 }
 
@@ -151,7 +152,7 @@ void NcInterpreter::check_words() const {
       motion == 20 || motion == 30 || (!codes_.has(NcGroup::motion) && modes_.motion >= 20 && modes_.motion <= 30);
   const bool is_cycle = motion >= 730 || (!codes_.has(NcGroup::motion) && modes_.motion >= 730 && modes_.motion != 800);
   const bool is_g10 = codes_[NcGroup::non_modal] == 100;
-  const bool is_user = codes_.m_group[8] >= 0 || codes_.m_group[7] >= 0;
+  const bool is_user = codes_.has(NcMGroup::user) || codes_.has(NcMGroup::signals);
   for (const char letter : {'i', 'j', 'k'}) {
     if (block_.has(letter) && !is_arc && !is_g10) block_.fail(letter, "no code of this block uses it", "G2 or G3");
   }
@@ -159,15 +160,16 @@ void NcInterpreter::check_words() const {
     block_.fail('r', "no code of this block uses it", "G2, G3 or a canned cycle");
   }
   if (block_.has('h') && !codes_.has(NcGroup::tool_length)) block_.fail('h', "no code of this block uses it", "G43");
-  if (block_.has('l') && !is_cycle && !is_g10 && !is_user && codes_.m_group[0] < 0) {
+  if (block_.has('l') && !is_cycle && !is_g10 && !is_user && !codes_.has(NcMGroup::stop)) {
     block_.fail('l', "no code of this block uses it", "G10, a canned cycle, M66 or M98");
   }
-  if (block_.has('q') && !is_cycle && !is_g10 && !is_user && codes_[NcGroup::path] != 640 && codes_.m_group[2] < 0 &&
-      codes_.m_group[1] < 0) {
+  if (block_.has('q') && !is_cycle && !is_g10 && !is_user && codes_[NcGroup::path] != 640 &&
+      !codes_.has(NcMGroup::spindle) && !codes_.has(NcMGroup::tool)) {
     block_.fail('q', "no code of this block uses it", "G64, G73, G83, M19, M61, M66 or M100-M199");
   }
   if (block_.has('p') && !is_arc && !is_cycle && !is_g10 && !is_user && codes_[NcGroup::non_modal] != 40 &&
-      codes_[NcGroup::path] != 640 && codes_.m_group[6] < 0 && codes_.m_group[0] < 0 && codes_.m_group[2] < 0) {
+      codes_[NcGroup::path] != 640 && !codes_.has(NcMGroup::overrides) && !codes_.has(NcMGroup::stop) &&
+      !codes_.has(NcMGroup::spindle)) {
     block_.fail('p', "no code of this block uses it",
                 "G2, G3, G4, G10, G64, a canned cycle, M50-M68, M98 or M100-M199");
   }
@@ -212,8 +214,8 @@ void NcInterpreter::execute() {
       (block_.has('i') || block_.has('j') || block_.has('k'))) {
     motion = modes_.motion;
   }
-  if (codes_.m_group[0] >= 0) {
-    const NcWord& word = block_.words[static_cast<std::size_t>(codes_.m_group[0])];
+  if (codes_.has(NcMGroup::stop)) {
+    const NcWord& word = codes_.word(block_, NcMGroup::stop);
     if (word.value == 98 || word.value == 99) {
       if (codes_.m_count > 1 || motion != kNoCode) block_.fail(word, "M98 and M99 stand alone in their block");
       pass_comments(true);
@@ -229,16 +231,16 @@ void NcInterpreter::execute() {
   }
   set_feed();
   if (block_.has('t')) selected_tool_ = static_cast<int>(std::lround(block_.value('t')));
-  if (codes_.m_group[1] >= 0) {
-    const NcWord& word = block_.words[static_cast<std::size_t>(codes_.m_group[1])];
+  if (codes_.has(NcMGroup::tool)) {
+    const NcWord& word = codes_.word(block_, NcMGroup::tool);
     if (word.value == 6) {
       tool_ = selected_tool_;
     } else if (block_.has('q')) {
       tool_ = static_cast<int>(std::lround(block_.value('q')));
     }
   }
-  if (codes_.m_group[2] >= 0) {
-    const double code = block_.words[static_cast<std::size_t>(codes_.m_group[2])].value;
+  if (codes_.has(NcMGroup::spindle)) {
+    const double code = codes_.word(block_, NcMGroup::spindle).value;
     spindle_ = code == 3 || code == 4 ? static_cast<int>(code) : 0;
   }
   if (other == 40) {
@@ -269,11 +271,11 @@ void NcInterpreter::execute() {
   if (to_reference) go_to_reference();
   if (motion != kNoCode) move_by_word(motion);
   if (codes_.has(NcGroup::motion)) modes_.motion = codes_[NcGroup::motion];
-  if (moves && codes_.m_group[0] >= 0) {
+  if (moves && codes_.has(NcMGroup::stop)) {
     // A stop holds when the motion is done, behind its last piece.
     writer_.words_as_line();
     std::string stop;
-    append_word(stop, block_.words[static_cast<std::size_t>(codes_.m_group[0])]);
+    append_word(stop, codes_.word(block_, NcMGroup::stop));
     writer_.line(stop);
   }
   if (!block_.assignments.empty()) apply_assignments();

@@ -29,6 +29,8 @@ class NcInterpreter final : public NcSystemValues {
   /// @returns lines that were run
   std::size_t run(const std::function<void(std::size_t)>& read_to);
 
+  std::size_t first_assumed_offset_line() const { return first_assumed_offset_line_; }
+
   bool numbered(int number, double& value) const override;
   bool named(std::string_view name, double& value) const override;
 
@@ -104,9 +106,10 @@ class NcInterpreter final : public NcSystemValues {
   Words position_{};
   std::uint32_t known_ = 0;
   std::array<Words, 9> systems_{};  ///< work offsets G54 to G59.3
-  Words axis_offset_{};             ///< G92, G52 in force
-  Words stored_axis_offset_{};      ///< 5211 ...
-  bool axis_offset_is_known_ = true;
+  std::array<bool, 9> system_is_said_{};
+  std::size_t first_assumed_offset_line_ = 0;
+  Words axis_offset_{};              ///< G92, G52 in force
+  Words stored_axis_offset_{};       ///< 5211 ...
   Words tool_offset_{};              ///< G43
   Words offset_{};                   ///< sum of those in force
   std::array<Reference, 2> home_{};  ///< G28, G30

@@ -126,8 +126,7 @@ const char* reason(NcCode code) {
   }
 }
 
-/// Modal group of an M code; 9: none, such as M62 or M100.
-std::size_t m_group_of(int code) {
+NcMGroup m_group_of(int code) {
   switch (code) {
     case 0:
     case 1:
@@ -136,28 +135,28 @@ std::size_t m_group_of(int code) {
     case 60:
     case 98:
     case 99:
-      return 0;
+      return NcMGroup::stop;
     case 6:
     case 61:
-      return 1;
+      return NcMGroup::tool;
     case 3:
     case 4:
     case 5:
     case 19:
-      return 2;
+      return NcMGroup::spindle;
     case 7:
-      return 3;
+      return NcMGroup::mist;
     case 8:
-      return 4;
+      return NcMGroup::flood;
     case 9:
-      return 5;
+      return NcMGroup::no_coolant;
     case 48:
     case 49:
     case 50:
     case 51:
     case 52:
     case 53:
-      return 6;
+      return NcMGroup::overrides;
     case 62:
     case 63:
     case 64:
@@ -165,9 +164,9 @@ std::size_t m_group_of(int code) {
     case 66:
     case 67:
     case 68:
-      return 7;
+      return NcMGroup::signals;
     default:
-      return code >= 100 && code <= 199 ? 8 : 9;
+      return code >= 100 && code <= 199 ? NcMGroup::user : NcMGroup::none;
   }
 }
 
@@ -177,19 +176,20 @@ void sort_m_code(const NcBlock& block, std::size_t i, NcCodes& codes) {
   if (std::abs(word.value - rounded) > 1e-4 || rounded < 0 || rounded > 199) {
     block.fail(word, "is not an M code", "a whole number from 0 to 199");
   }
-  const std::size_t group = m_group_of(static_cast<int>(rounded));
-  if (group == 9) {
+  const NcMGroup group = m_group_of(static_cast<int>(rounded));
+  if (group == NcMGroup::none) {
     block.fail(word,
                rounded >= 70 && rounded <= 73 ? "saving and restoring the modes is not handled"
                                               : "is not an M code that is handled",
                "M0-M9 M19 M30 M48-M53 M60-M68 M98 M99 M100-M199");
   }
-  if (codes.m_group[group] >= 0) block.fail(word, "a second M code of the same modal group in one block");
-  if ((group == 5 && (codes.m_group[3] >= 0 || codes.m_group[4] >= 0)) ||
-      ((group == 3 || group == 4) && codes.m_group[5] >= 0)) {
+  // Mist and flood may stand together, but not beside what stops both.
+  const bool is_coolant = group == NcMGroup::mist || group == NcMGroup::flood;
+  if (codes.has(group) || (is_coolant && codes.has(NcMGroup::no_coolant)) ||
+      (group == NcMGroup::no_coolant && (codes.has(NcMGroup::mist) || codes.has(NcMGroup::flood)))) {
     block.fail(word, "a second M code of the same modal group in one block");
   }
-  codes.m_group[group] = static_cast<std::int8_t>(i);
+  codes.m_place[static_cast<std::size_t>(group)] = static_cast<std::uint8_t>(i);
   if (++codes.m_count > 4) block.fail(word, "more than four M codes in one block");
 }
 
@@ -223,7 +223,7 @@ std::size_t nc_axis(char letter) {
 void sort_nc_codes(const NcBlock& block, NcCodes& codes) {
   codes.code.fill(kNoCode);
   codes.axes = 0;
-  codes.m_group.fill(-1);
+  codes.m_place.fill(NcBlock::kNoWord);
   codes.m_count = 0;
   for (std::size_t i = 0; i < block.word_count; ++i) {
     const NcWord& word = block.words[i];
@@ -243,7 +243,7 @@ void sort_nc_codes(const NcBlock& block, NcCodes& codes) {
       // G53 stands beside the motion that it is for, like no other code of its group; LinuxCNC says the same.
       if (codes.code[group] != kNoCode) block.fail(word, "a second G code of the same modal group in one block");
       codes.code[group] = code;
-      codes.place[group] = static_cast<std::int8_t>(i);
+      codes.place[group] = static_cast<std::uint8_t>(i);
     }
   }
 }

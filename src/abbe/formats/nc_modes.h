@@ -36,18 +36,37 @@ enum class NcGroup : std::uint8_t {
 };
 inline constexpr std::size_t kNcGroups = 15;
 
+/// Groups of M codes of which a block may have one each; what stands beside each other has groups of its own.
+enum class NcMGroup : std::uint8_t {
+  stop,        ///< M0 M1 M2 M30 M60 M98 M99
+  tool,        ///< M6 M61
+  spindle,     ///< M3 M4 M5 M19
+  mist,        ///< M7
+  flood,       ///< M8
+  no_coolant,  ///< M9
+  overrides,   ///< M48-M53
+  signals,     ///< M62-M68
+  user,        ///< M100-M199
+  none,        ///< not a code that is handled
+};
+inline constexpr std::size_t kNcMGroups = 9;
+
 /// The codes of one block, sorted.
 struct NcCodes {
-  std::array<NcCode, kNcGroups> code{};        ///< by group; kNoCode
-  std::array<std::int8_t, kNcGroups> place{};  ///< the word
-  std::uint32_t axes = 0;                      ///< bits of the axis words
-  std::array<std::int8_t, 10> m_group{};       ///< the word of an M code of each group, or -1
+  std::array<NcCode, kNcGroups> code{};            ///< by group; kNoCode
+  std::array<std::uint8_t, kNcGroups> place{};     ///< the word
+  std::uint32_t axes = 0;                          ///< bits of the axis words
+  std::array<std::uint8_t, kNcMGroups> m_place{};  ///< the word of an M code of each group, or kNoWord
   std::size_t m_count = 0;
 
   NcCode operator[](NcGroup group) const { return code[static_cast<std::size_t>(group)]; }
   bool has(NcGroup group) const { return (*this)[group] != kNoCode; }
   const NcWord& word(const NcBlock& block, NcGroup group) const {
-    return block.words[static_cast<std::size_t>(place[static_cast<std::size_t>(group)])];
+    return block.words[place[static_cast<std::size_t>(group)]];
+  }
+  bool has(NcMGroup group) const { return m_place[static_cast<std::size_t>(group)] != NcBlock::kNoWord; }
+  const NcWord& word(const NcBlock& block, NcMGroup group) const {
+    return block.words[m_place[static_cast<std::size_t>(group)]];
   }
 };
 

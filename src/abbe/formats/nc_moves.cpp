@@ -90,6 +90,9 @@ void NcInterpreter::emit(ProgramMove& move, const Words& end, std::uint32_t know
       move.feed *= kInch;
     }
   }
+  if (!system_is_said_[modes_.system] && first_assumed_offset_line_ == 0 && codes_[NcGroup::non_modal] != 530) {
+    first_assumed_offset_line_ = move.line;
+  }
   flow_.moves();
   // Where a rapid move begins does not matter to where it ends.
   if (unknown != 0) move.start = move.end;

@@ -162,6 +162,7 @@ void NcInterpreter::set_origin(bool moves) {
   if (number < 0 || number > 9) block_.fail('p', "is not a work offset", "0 (current) to 9 (G59.3)");
   if (block_.has('r') && block_.value('r') != 0) block_.fail('r', "a rotated work offset is not handled");
   const std::size_t system = number == 0 ? modes_.system : static_cast<std::size_t>(number - 1);
+  system_is_said_[system] = true;
   if (kind == 2) {
     for (std::size_t k = 0; k < kAxisWords; ++k) {
       if ((codes_.axes >> k & 1) != 0) systems_[system][k] = block_.value("xyzabcuvw"[k]) * unit(k);

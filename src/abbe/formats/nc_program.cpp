@@ -25,6 +25,7 @@ NcProgramResult correct_nc_program(std::string_view text, const std::string& fil
   result.pieces = writer.pieces();
   result.uncorrected_moves = writer.uncorrected();
   result.first_uncorrected_line = writer.first_uncorrected_line();
+  result.first_assumed_offset_line = interpreter.first_assumed_offset_line();
   return result;
 }
 

@@ -46,6 +46,9 @@ struct NcProgramResult {
   /// line.
   std::size_t uncorrected_moves = 0;
   std::size_t first_uncorrected_line = 0;
+  /// First move in a work offset (G54-G59.3) that neither the parameters nor the program have said, so that it was
+  /// taken for zero; 0: none.
+  std::size_t first_assumed_offset_line = 0;
 };
 
 /// Runs an NC program (RS274/NGC as LinuxCNC reads it, ISO 6983), has its moves corrected and writes it again.

@@ -195,6 +195,13 @@ TEST(NcProgram, AxesThatWereNotSentAnywhereAreNotMoved) {
   EXPECT_EQ(run.moves[0].start, run.moves[0].end);
 }
 
+TEST(NcProgram, AWorkOffsetThatNobodyHasSaidIsToldOf) {
+  EXPECT_EQ(run_program("G53 G0 X1\nG10 L2 P2 X5\nG55 X1\nG56 X2\nM2\n").result.first_assumed_offset_line, 4U);
+  NcProgramOptions options = options_at_zero();
+  options.parameters[5221] = 0;
+  EXPECT_EQ(run_program("G0 X1\nM2\n", options).result.first_assumed_offset_line, 0U);
+}
+
 TEST(NcProgram, ParametersAndToolsComeFromFilesOfLinuxCnc) {
   const auto parameters = parse_nc_parameters("5220\t2\n5241 10.5\n; comment\n\n5161 -0.000000\r\n", "p.var");
   EXPECT_EQ(parameters.at(5241), 10.5);

@@ -96,7 +96,7 @@ void NcInterpreter::pass_assignments() {
 }
 
 void NcInterpreter::pass_block(bool has_motion) {
-  const auto bit = [](std::int8_t i) { return std::uint64_t{1} << i; };
+  const auto bit = [](std::uint8_t i) { return std::uint64_t{1} << i; };
   std::uint64_t consumed = 0;
   const auto drop = [&](NcGroup group) {
     if (codes_.has(group)) consumed |= bit(codes_.place[static_cast<std::size_t>(group)]);
@@ -116,11 +116,12 @@ void NcInterpreter::pass_block(bool has_motion) {
     const NcCode other = codes_[NcGroup::non_modal];
     if (other == 530 || other == 280 || other == 300) drop(NcGroup::non_modal);
     drop_letter('f');
-    if (codes_.m_group[0] >= 0) consumed |= bit(codes_.m_group[0]);
+    if (codes_.has(NcMGroup::stop)) consumed |= bit(codes_.m_place[static_cast<std::size_t>(NcMGroup::stop)]);
     const NcCode motion = codes_.has(NcGroup::motion) ? codes_[NcGroup::motion] : modes_.motion;
     if (motion >= 20 && motion != 800 && other != 280 && other != 300) {
-      const bool is_shared = other == 40 || codes_[NcGroup::path] == 640 || codes_.m_group[7] >= 0 ||
-                             codes_.m_group[6] >= 0 || codes_.m_group[8] >= 0 || codes_.m_group[2] >= 0;
+      const bool is_shared = other == 40 || codes_[NcGroup::path] == 640 || codes_.has(NcMGroup::signals) ||
+                             codes_.has(NcMGroup::overrides) || codes_.has(NcMGroup::user) ||
+                             codes_.has(NcMGroup::spindle);
       for (const char letter : {'i', 'j', 'k', 'r'}) drop_letter(letter);
       for (const char letter : {'p', 'q', 'l'}) {
         if (!block_.has(letter)) continue;
