@@ -139,6 +139,10 @@ void print_gcode_report(const GcodeOptions& options, const Machine& machine, con
     fmt::print("rapid moves not corrected, as some axis had not been sent anywhere yet: {}, first in line {}\n",
                result.text.uncorrected_moves, result.text.first_uncorrected_line);
   }
+  if (result.text.first_assumed_offset_line > 0) {
+    fmt::print("work offset taken for zero, as neither --parameters nor the program says it: from line {}\n",
+               result.text.first_assumed_offset_line);
+  }
   if (options.leave_out_factor > 0) {
     std::string names;
     for (const std::string& name : result.left_out) names += (names.empty() ? "" : ", ") + name;
@@ -195,6 +199,7 @@ nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& ma
   json["tool_length_changes"] = count_json(report.tool_changes);
   json["inverse_time_pieces"] = count_json(report.inverse_time);
   json["uncorrected_rapid_moves"] = result.text.uncorrected_moves;
+  json["first_line_in_assumed_work_offset"] = result.text.first_assumed_offset_line;
   json["left_out"] = result.left_out;
   return json;
 }
