@@ -24,6 +24,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kAside = 0.19;
+/// Tables that make the error larger by more than this are refused.
+constexpr double kWorse = 1.02;
 
 struct TableCommand {
   std::string machine, errors, format, output, map;
@@ -134,6 +136,13 @@ void look_at_limits(const TableCommand& command, const ControllerTables& tables,
       report.refused.push_back(fmt::format("{:.3f} {} is above --limit-{} {:g}: {}", shown, unit, unit, limit, where));
     }
   };
+  const double before = report.before.position_statistics.rms, after = report.after.position_statistics.rms;
+  if (!tables.tables.empty() && after > kWorse * before) {
+    report.refused.push_back(
+        fmt::format("the volumetric error would grow from {:.3f} to {:.3f} um rms: the tables hold near the reference "
+                    "pose only (--at, --axis)",
+                    1e3 * before, 1e3 * after));
+  }
   for (const TableSummary& table : tables.tables) {
     refuse(table.largest, table.is_angle, "table " + table.name);
   }

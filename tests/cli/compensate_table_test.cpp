@@ -111,6 +111,16 @@ TEST_F(CompensateTable, PrintersGetAnglesOnly) {
   EXPECT_THAT(folder.read("skew.gcode"), testing::StartsWith("M852 I"));
 }
 
+TEST_F(CompensateTable, TablesThatWouldMakeTheErrorLargerAreRefused) {
+  // Two tables that turn: corrections of X, Y, Z alone hold only near the pose in which the others stand.
+  const CommandResult result =
+      abbe({"compensate", "table", (source / "examples/machines/yin-engraver-u.machine.toml").string(),
+            (source / "examples/laser_engraver/linkage.errors.toml").string(), "--for", "lattice-vtk", "-o", "l.vtk"});
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.err, HasSubstr("would grow"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "l.vtk"));
+}
+
 TEST_F(CompensateTable, ALatticeThatHasNoRoomSaysWhatItReachesAndIsNotWritten) {
   const CommandResult result = table("lattice-csv", {"-o", "l.csv", "--max-points", "200"});
   EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
