@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "abbe/errors/random_errors.h"
+#include "abbe/errors/random_stream.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "study/instrument_campaign.h"
@@ -12,6 +13,9 @@
 
 namespace abbe {
 namespace {
+
+// A stream of its own, apart from those of the other errors.
+constexpr std::uint64_t kReversalStream = 1'000'000'009;
 
 PoseList poses_once(const Machine& machine, const MeasurementPlan& plan, std::uint64_t seed) {
   const std::size_t points = static_cast<std::size_t>(std::max(plan.points, 0));
@@ -54,7 +58,18 @@ ErrorSet true_errors(const Study& study) {
   target.measure = generator.mean_volumetric ? VolumetricMeasure::mean : VolumetricMeasure::maximum;
   target.value_um = 1e3 * (generator.mean_volumetric ? *generator.mean_volumetric : *generator.maximum_volumetric);
   scale_errors(study.machine, errors, target);
+  for (std::size_t axis = 0; axis < study.machine.axes.size(); ++axis) {
+    const bool rotary = study.machine.axes[axis].kind == AxisKind::rotary;
+    const double size = rotary ? generator.rotary_reversal : generator.reversal;
+    // Lost motion: the axis stays behind.
+    RandomStream random(generator.seed, kReversalStream + axis);
+    if (size > 0) errors.reversals.push_back({axis, -size * random.uniform(0.5, 1.5), 0});
+  }
   return errors;
+}
+
+bool approach_matters(const Study& study, const ErrorSet& truth) {
+  return !truth.reversals.empty() || (study.identification && !study.identification->reversals.empty());
 }
 
 std::uint64_t plan_seed(const Study& study, std::size_t setup, std::size_t plan) {

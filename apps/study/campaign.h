@@ -64,6 +64,9 @@ struct Campaign {
 /// True errors of a simulated study: from its file, or drawn and scaled.
 ErrorSet true_errors(const Study& study);
 
+/// True if readings are to say from which side the axes came: some axis has a reversal value, or one is identified.
+bool approach_matters(const Study& study, const ErrorSet& truth);
+
 /// Seed of one plan: every plan of every set-up has numbers of its own, whatever stands beside it in the study.
 std::uint64_t plan_seed(const Study& study, std::size_t setup, std::size_t plan);
 

@@ -77,7 +77,8 @@ void simulate(const Study& study, std::size_t setup_index, const ErrorSet& truth
   for (std::size_t p = 0; p < setup.plans.size(); ++p) {
     const std::uint64_t seed = plan_seed(study, setup_index, p);
     // Poses are planned with what is known of the set-up, not with what it really is.
-    const InstrumentReadings plan = planned_readings(study.machine, *setup.device, setup.plans[p], seed, setup.name);
+    InstrumentReadings plan = planned_readings(study.machine, *setup.device, setup.plans[p], seed, setup.name);
+    if (approach_matters(study, truth)) plan.poses.approach = approach_in_order(plan.poses);
     InstrumentSimulationOptions options;
     options.seed = seed;
     options.noise_factor = study.simulation->noise ? 1 : 0;

@@ -151,6 +151,15 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
     }
     errors.locations.push_back(location);
   }
+  for (const std::size_t axis : plan.reversals) {
+    Reversal reversal{axis, 0, 0};
+    if (initial) {
+      for (const Reversal& start : initial->reversals) {
+        if (start.axis == axis) reversal.value = start.value;
+      }
+    }
+    errors.reversals.push_back(reversal);
+  }
   if (initial) errors.tool_offset_error = initial->tool_offset_error;
   return errors;
 }

@@ -29,6 +29,7 @@ ErrorSet planned_errors(const Study& study) {
   }
   for (const IdentifiedLocation& location : study.identification->locations)
     errors.locations.push_back({location.axis, location.component, 0, 0});
+  for (const std::size_t axis : study.identification->reversals) errors.reversals.push_back({axis, 0, 0});
   return errors;
 }
 
@@ -38,7 +39,7 @@ void append(TrackerReadings& all, const TrackerReadings& more) {
     return;
   }
   const auto join = [](auto& a, const auto& b) { a.insert(a.end(), b.begin(), b.end()); };
-  for (std::size_t i = 0; i < all.poses.axis.size(); ++i) join(all.poses.axis[i], more.poses.axis[i]);
+  join_poses(all.poses, more.poses);
   join(all.station, more.station);
   join(all.reflector, more.reflector);
   for (std::size_t i = 0; i < 3; ++i) join(all.measured[i], more.measured[i]);

@@ -111,8 +111,11 @@ std::string noise_words(const Setup& setup) {
 void identification_assumptions(const Study& study, const StudyResult& result, std::vector<std::string>& list) {
   const IdentificationPlan& plan = *study.identification;
   list.emplace_back(
-      "Every error motion is a function of the position of its own axis only: no temperature, load, speed or direction "
-      "of approach; location errors are constants.");
+      plan.reversals.empty()
+          ? "Every error motion is a function of the position of its own axis only: no temperature, load, speed or "
+            "direction of approach; location errors are constants."
+          : "Every error motion is a function of the position of its own axis only, the mean of both directions of "
+            "approach, apart from the reversal values: no temperature, load or speed; location errors are constants.");
   for (const Setup& setup : study.setups) list.push_back(noise_words(setup));
   list.emplace_back(
       "Residual = (measured - modelled) / standard uncertainty. Uncertainties of the result follow from those of the "

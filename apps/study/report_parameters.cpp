@@ -112,21 +112,29 @@ nlohmann::ordered_json report_error_motions(const Machine& machine, const Identi
 nlohmann::ordered_json report_location_errors(const Machine& machine, const Identification& identification,
                                               const ErrorSet* truth) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (std::size_t l = 0; l < identification.errors.locations.size(); ++l) {
-    const LocationError& location = identification.errors.locations[l];
-    const bool angle = is_rotation(location.component);
+  const auto add = [&](const std::string& name, std::size_t axis, bool angle, double value, double uncertainty,
+                       const double* true_value) {
     const std::string suffix = angle ? "_urad" : "_um";
-    const std::string name = location_error_name(machine, location.axis, location.component);
     nlohmann::ordered_json entry;
     entry["name"] = name;
-    entry["axis"] = machine.axes[location.axis].name;
-    entry["component"] = std::string(1, component_letter(location.component));
-    entry["value" + suffix] = unit_of(angle) * location.value;
-    entry["standard_uncertainty" + suffix] = unit_of(angle) * location.standard_uncertainty;
-    if (truth != nullptr) entry["truth" + suffix] = unit_of(angle) * truth->locations[l].value;
+    entry["axis"] = machine.axes[axis].name;
+    entry["value" + suffix] = unit_of(angle) * value;
+    entry["standard_uncertainty" + suffix] = unit_of(angle) * uncertainty;
+    if (true_value != nullptr) entry["truth" + suffix] = unit_of(angle) * *true_value;
     const std::string note = gauge_note(identification, name);
     if (!note.empty()) entry["note"] = note;
     list.push_back(entry);
+  };
+  for (std::size_t l = 0; l < identification.errors.locations.size(); ++l) {
+    const LocationError& location = identification.errors.locations[l];
+    add(location_error_name(machine, location.axis, location.component), location.axis, is_rotation(location.component),
+        location.value, location.standard_uncertainty, truth != nullptr ? &truth->locations[l].value : nullptr);
+    list.back()["component"] = std::string(1, component_letter(location.component));
+  }
+  for (std::size_t r = 0; r < identification.errors.reversals.size(); ++r) {
+    const Reversal& reversal = identification.errors.reversals[r];
+    add(reversal_name(machine, reversal.axis), reversal.axis, machine.axes[reversal.axis].kind == AxisKind::rotary,
+        reversal.value, reversal.standard_uncertainty, truth != nullptr ? &truth->reversals[r].value : nullptr);
   }
   return list;
 }
@@ -139,12 +147,13 @@ nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResu
   std::vector<double> scales;
   nlohmann::ordered_json values = nlohmann::ordered_json::array(), uncertainties = nlohmann::ordered_json::array(),
                          largest = nlohmann::ordered_json::array(), truths = nlohmann::ordered_json::array();
-  // Which axis a machine parameter belongs to: motions first, then locations, then the tool.
+  // Which axis a machine parameter belongs to: motions first, then locations, reversals, the tool.
   std::vector<std::string> machine_groups;
   for (const ErrorMotion& motion : identified.errors.motions) {
     machine_groups.insert(machine_groups.end(), motion.coefficients.size(), machine.axes[motion.axis].name);
   }
   machine_groups.insert(machine_groups.end(), identified.errors.locations.size(), "location");
+  machine_groups.insert(machine_groups.end(), identified.errors.reversals.size(), "reversal");
   machine_groups.insert(machine_groups.end(), 3, "tool");
 
   for (std::size_t p = 0; p < identified.parameters.size(); ++p) {

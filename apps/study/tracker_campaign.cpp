@@ -53,7 +53,7 @@ void append(TrackerReadings& all, const TrackerReadings& more) {
   }
   const auto join = [](auto& a, const auto& b) { a.insert(a.end(), b.begin(), b.end()); };
   const double time_offset = all.time_s.empty() ? 0 : all.time_s.back();
-  for (std::size_t i = 0; i < all.poses.axis.size(); ++i) join(all.poses.axis[i], more.poses.axis[i]);
+  join_poses(all.poses, more.poses);
   join(all.station, more.station);
   join(all.reflector, more.reflector);
   for (std::size_t i = 0; i < 3; ++i) join(all.measured[i], more.measured[i]);
@@ -132,7 +132,8 @@ void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet&
     for (std::size_t reflector : plan.targets) {
       options.sights.push_back({static_cast<std::uint16_t>(plan.station), static_cast<std::uint16_t>(reflector)});
     }
-    const PoseList poses = plan_poses(study.machine, plan, seed);
+    PoseList poses = plan_poses(study.machine, plan, seed);
+    if (approach_matters(study, truth)) poses.approach = approach_in_order(poses);
     SimulatedTracker simulated = simulate_tracker(study.machine, truth, result.truth, poses, options);
     state_uncertainty(result.truth, setup.stated, simulated.readings);
     const std::uint32_t offset = static_cast<std::uint32_t>(result.readings.count());

@@ -46,6 +46,12 @@ std::vector<double> true_parameters(const ErrorSet& truth, const ErrorSet& model
       if (one.axis == location.axis && one.component == location.component) location.value += one.value;
     }
   }
+  for (Reversal& reversal : result.reversals) {
+    reversal.value = 0;
+    for (const Reversal& one : truth.reversals) {
+      if (one.axis == reversal.axis) reversal.value += one.value;
+    }
+  }
   result.tool_offset_error = truth.tool_offset_error;
   return result.parameters();
 }

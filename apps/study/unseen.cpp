@@ -43,9 +43,12 @@ TrackerReadings select(const TrackerReadings& all, const std::vector<std::uint8_
   part.measure = all.measure;
   part.stated = all.stated;
   part.poses.axis.resize(all.poses.axis.size());
+  part.poses.approach.resize(all.poses.approach.size());
   for (std::size_t k = 0; k < all.count(); ++k) {
     if ((use.empty() || use[k] != 0) != used) continue;
     for (std::size_t i = 0; i < all.poses.axis.size(); ++i) part.poses.axis[i].push_back(all.poses.axis[i][k]);
+    for (std::size_t i = 0; i < all.poses.approach.size(); ++i)
+      part.poses.approach[i].push_back(all.poses.approach[i][k]);
     part.station.push_back(all.station[k]);
     part.reflector.push_back(all.reflector[k]);
     for (std::size_t i = 0; i < 3; ++i) part.measured[i].push_back(all.measured[i][k]);

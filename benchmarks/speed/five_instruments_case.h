@@ -78,7 +78,7 @@ class FiveInstrumentsCase {
     for (const std::unique_ptr<Observations>& one : observed) all.push_back(one.get());
     Problem result = estimate_everything(machine, start, all);
     result.machine_parameters.resize(result.machine_parameters.size() - 3);  // not the tool offset
-    const std::vector<bool> angles = parameters_are_angles(start);
+    const std::vector<bool> angles = parameters_are_angles(machine, start);
     for (const std::size_t p : result.machine_parameters) {
       result.priors.push_back({{ParameterId::kMachine, p}, 0, angles[p] ? kRotation : kTranslation});
     }

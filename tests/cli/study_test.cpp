@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -118,6 +119,40 @@ class Studies : public CommandTest {
     return nlohmann::json::parse(result.out, nullptr, false);
   }
 };
+
+TEST_F(Studies, FindReversalValuesWhereTheSidesOfApproachAreKnown) {
+  write_study({{"mean_volumetric_um = 300", "mean_volumetric_um = 300\nreversal_um = 20\nreversal_urad = 60"},
+               {"[identify]", "[identify]\nreversals = [\"*\"]"},
+               {"points = 150", "points = 400"}});
+  ASSERT_EQ(abbe({"simulate", "s.study.toml", "-o", "data"}).exit_code, ExitCode::done);
+  const std::string csv = folder.read("data/tracker.csv");
+  EXPECT_THAT(csv.substr(0, csv.find('\n')), HasSubstr(",C_approach,X_approach,Z_approach"));
+  ASSERT_EQ(run_json()["status"], "converged");
+  const auto values = [](const std::string& text) {
+    std::map<std::string, double> found;
+    const std::regex entry(R"re(\[\[reversal\]\]\naxis = "(\w+)"\nvalue_\w+ = ([-\d.e]+))re");
+    for (std::sregex_iterator at(text.begin(), text.end(), entry), end; at != end; ++at) {
+      found[(*at)[1]] = std::stod((*at)[2]);
+    }
+    return found;
+  };
+  const std::map<std::string, double> truth = values(folder.read("data/truth.errors.toml"));
+  const std::map<std::string, double> found = values(folder.read("out/errors.toml"));
+  ASSERT_EQ(truth.size(), 3U);
+  ASSERT_EQ(found.size(), 3U);
+  for (const auto& [axis, value] : truth) {
+    EXPECT_LT(value, -9) << axis;
+    EXPECT_NEAR(found.at(axis), value, axis == "C" ? 15 : 6) << axis;
+  }
+
+  // Measured readings say the same as simulated ones; without the columns nothing shows the reversal values.
+  write_measured_study(csv);
+  std::string study = folder.read("s.study.toml");
+  study.replace(study.find("[identify]"), 10, "[identify]\nreversals = [\"X\", \"Z\"]");
+  folder.write("s.study.toml", study);
+  ASSERT_EQ(run_json()["status"], "converged");
+  EXPECT_EQ(values(folder.read("out/errors.toml")).size(), 2U);
+}
 
 TEST_F(Studies, FindTheErrorsFromNothingButReadings) {
   write_study();

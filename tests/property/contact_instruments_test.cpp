@@ -60,7 +60,7 @@ ErrorSet true_errors(const Campaign& campaign) {
     }
   }
   const std::vector<std::string> names = parameter_names(machine, errors);
-  const std::vector<bool> angles = parameters_are_angles(errors);
+  const std::vector<bool> angles = parameters_are_angles(machine, errors);
   std::vector<double> values(names.size(), 0.0);
   RandomStream random(11);
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -94,7 +94,7 @@ Fit fit(const Campaign& campaign, double noise_factor, std::uint64_t seed) {
   problem.errors = start;
   Fit fit;
   const std::vector<std::string> names = parameter_names(campaign.machine, truth);
-  const std::vector<bool> angles = parameters_are_angles(truth);
+  const std::vector<bool> angles = parameters_are_angles(campaign.machine, truth);
   const std::vector<double> true_values = truth.parameters();
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (std::find(campaign.estimated.begin(), campaign.estimated.end(), names[i]) == campaign.estimated.end()) continue;

@@ -72,7 +72,7 @@ class FusedCampaign {
     for (const std::size_t i : chosen) observations.push_back(observations_[i].get());
     Problem problem = estimate_everything(machine_, drawn_errors(machine_, nullptr), observations);
     problem.machine_parameters.resize(problem.machine_parameters.size() - 3);  // not the tool offset
-    const std::vector<bool> angles = parameters_are_angles(problem.errors);
+    const std::vector<bool> angles = parameters_are_angles(problem.machine, problem.errors);
     for (const std::size_t p : problem.machine_parameters) {
       problem.priors.push_back({{ParameterId::kMachine, p}, 0, angles[p] ? kRotation : kTranslation});
     }

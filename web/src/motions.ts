@@ -131,7 +131,7 @@ export function motionSection(motions: ErrorMotion[], machine?: Machine): HTMLEl
 
 export function locationSection(errors: LocationError[]): HTMLElement | undefined {
   const part = section('locations', 'Location errors',
-    'Squareness and parallelism of linear axes, position and tilt of axis average lines. Bars are 95 % intervals (k = 2).');
+    'Squareness and parallelism of linear axes, position and tilt of axis average lines; reversal values where they are identified. Bars are 95 % intervals (k = 2).');
   const groups = html('div', {class: 'columns'});
   for (const unit of ['µrad', 'µm']) {
     const rows = errors.flatMap((error) => {

@@ -85,7 +85,7 @@ TEST(ActualPose, JacobiansMatchCentralDifferences) {
       return d;
     };
     const std::vector<double> start = c.errors.parameters();
-    const std::vector<bool> angle = parameters_are_angles(c.errors);
+    const std::vector<bool> angle = parameters_are_angles(c.machine, c.errors);
     const std::vector<std::string> names = parameter_names(c.machine, c.errors);
     for (std::size_t k = 0; k < start.size(); ++k) {
       const double step = angle[k] ? 1e-6 : 1e-3;

@@ -97,7 +97,7 @@ void expect_central_differences(const Case& c, std::uint64_t seed, Body from, Bo
   const std::vector<std::size_t> parameters = all_parameters(c.errors);
   const Derivatives d = differentiate(plan, batch, rows, parameters, c.machine.axes.size());
   const std::vector<double> values = c.errors.parameters();
-  const std::vector<bool> angle = parameters_are_angles(c.errors);
+  const std::vector<bool> angle = parameters_are_angles(c.machine, c.errors);
   const std::size_t rows_and_poses = 2 * batch.count();
 
   for (const std::size_t p : parameters) {

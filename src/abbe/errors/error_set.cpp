@@ -19,7 +19,7 @@ int principal_direction(const Axis& axis) {
 char component_letter(Component component) { return "XYZABC"[static_cast<int>(component)]; }
 
 std::size_t ErrorSet::parameter_count() const {
-  std::size_t count = locations.size() + 3;
+  std::size_t count = locations.size() + reversals.size() + 3;
   for (const ErrorMotion& motion : motions) count += motion.coefficients.size();
   return count;
 }
@@ -31,6 +31,7 @@ std::vector<double> ErrorSet::parameters() const {
     values.insert(values.end(), motion.coefficients.begin(), motion.coefficients.end());
   }
   for (const LocationError& location : locations) values.push_back(location.value);
+  for (const Reversal& reversal : reversals) values.push_back(reversal.value);
   for (int k = 0; k < 3; ++k) values.push_back(tool_offset_error[k]);
   return values;
 }
@@ -42,6 +43,7 @@ void ErrorSet::set_parameters(const std::vector<double>& values) {
     for (double& coefficient : motion.coefficients) coefficient = values[next++];
   }
   for (LocationError& location : locations) location.value = values[next++];
+  for (Reversal& reversal : reversals) reversal.value = values[next++];
   for (int k = 0; k < 3; ++k) tool_offset_error[k] = values[next++];
 }
 
@@ -69,6 +71,8 @@ std::string location_error_name(const Machine& machine, std::size_t axis, Compon
   return std::string("E") + component_letter(component) + "0" + machine.axes[axis].name;
 }
 
+std::string reversal_name(const Machine& machine, std::size_t axis) { return "reversal_" + machine.axes[axis].name; }
+
 std::vector<std::string> parameter_names(const Machine& machine, const ErrorSet& errors) {
   std::vector<std::string> names;
   names.reserve(errors.parameter_count());
@@ -82,11 +86,12 @@ std::vector<std::string> parameter_names(const Machine& machine, const ErrorSet&
   for (const LocationError& location : errors.locations) {
     names.push_back(location_error_name(machine, location.axis, location.component));
   }
+  for (const Reversal& reversal : errors.reversals) names.push_back(reversal_name(machine, reversal.axis));
   for (const char* name : {"tool_X", "tool_Y", "tool_Z"}) names.emplace_back(name);
   return names;
 }
 
-std::vector<bool> parameters_are_angles(const ErrorSet& errors) {
+std::vector<bool> parameters_are_angles(const Machine& machine, const ErrorSet& errors) {
   std::vector<bool> angles;
   angles.reserve(errors.parameter_count());
   for (const ErrorMotion& motion : errors.motions) {
@@ -94,6 +99,9 @@ std::vector<bool> parameters_are_angles(const ErrorSet& errors) {
   }
   // Zero position errors of rotary axes are the rotation component about the axis, so the component decides here too.
   for (const LocationError& location : errors.locations) angles.push_back(is_rotation(location.component));
+  for (const Reversal& reversal : errors.reversals) {
+    angles.push_back(machine.axes[reversal.axis].kind == AxisKind::rotary);
+  }
   angles.insert(angles.end(), 3, false);
   return angles;
 }

@@ -42,6 +42,18 @@ struct LocationError {
   bool operator==(const LocationError&) const = default;
 };
 
+/// Reversal of one axis: where it stands depends on the side from which it came there (lost motion, backlash).
+///
+/// Reversal value B = position after an approach in positive direction less that after one in negative direction
+/// (ISO 230-2:2014, 3.11); lost motion makes it negative. At a command q the axis stands as if q + approach B / 2 had
+/// been commanded, approach = +1, -1, or 0 where the side is not known: error motions are means of both directions.
+struct Reversal {
+  std::size_t axis = 0;             ///< index into Machine::axes
+  double value = 0;                 ///< B, mm or rad
+  double standard_uncertainty = 0;  ///< mm or rad, 0: not stated
+  bool operator==(const Reversal&) const = default;
+};
+
 /// Where E(q) stands against the motion of its axis, see docs/conventions.md. `iso` is the convention of this project:
 /// linear T(q) E(q), rotary E(q) T(q). The others exist to reproduce published work.
 enum class ErrorOrder { iso, after_motion, before_motion };
@@ -57,10 +69,11 @@ struct Composition {
 struct ErrorSet {
   std::vector<ErrorMotion> motions;
   std::vector<LocationError> locations;
+  std::vector<Reversal> reversals;                              ///< at most one per axis
   Eigen::Vector3d tool_offset_error = Eigen::Vector3d::Zero();  ///< mm, added to Machine::tool_offset
   Composition composition;
 
-  /// Number of coefficients: those of all motions in order, then locations, then the tool offset error (3).
+  /// Number of coefficients: those of all motions in order, then locations, reversals, the tool offset error (3).
   std::size_t parameter_count() const;
   std::vector<double> parameters() const;                  ///< mm or rad, [parameter_count()]
   void set_parameters(const std::vector<double>& values);  ///< [parameter_count()]
@@ -76,10 +89,12 @@ struct ErrorSet {
 std::string error_motion_name(const Machine& machine, std::size_t axis, Component component);
 /// "EC0Y": E + component + 0 + axis name.
 std::string location_error_name(const Machine& machine, std::size_t axis, Component component);
-/// Names in the order of ErrorSet::parameters(): "EXX[P2]", "EC0Y", "tool_X".
+/// "reversal_X".
+std::string reversal_name(const Machine& machine, std::size_t axis);
+/// Names in the order of ErrorSet::parameters(): "EXX[P2]", "EC0Y", "reversal_X", "tool_X".
 std::vector<std::string> parameter_names(const Machine& machine, const ErrorSet& errors);
 /// True for parameters in rad, false for mm; order of ErrorSet::parameters().
-std::vector<bool> parameters_are_angles(const ErrorSet& errors);
+std::vector<bool> parameters_are_angles(const Machine& machine, const ErrorSet& errors);
 
 /// Parses "EXX" or "EC0Y" against the axes of a machine.
 /// @returns false if the text names no error of this machine

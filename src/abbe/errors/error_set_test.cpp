@@ -59,7 +59,7 @@ TEST(ErrorSet, ParametersRoundTripInTheOrderOfTheirNames) {
   EXPECT_EQ(parameter_names(machine, errors),
             (std::vector<std::string>{"EXX[P0]", "EXX[P1]", "ECC2[mean]", "ECC2[cos1]", "ECC2[sin1]", "EC0X", "tool_X",
                                       "tool_Y", "tool_Z"}));
-  EXPECT_EQ(parameters_are_angles(errors), (std::vector<bool>{0, 0, 1, 1, 1, 1, 0, 0, 0}));
+  EXPECT_EQ(parameters_are_angles(machine, errors), (std::vector<bool>{0, 0, 1, 1, 1, 1, 0, 0, 0}));
   errors.set_parameters({9, 8, 7, 6, 5, 4, 3, 2, 1});
   EXPECT_EQ(errors.parameters(), (std::vector<double>{9, 8, 7, 6, 5, 4, 3, 2, 1}));
 }

@@ -31,6 +31,34 @@ PoseSource pose_source(PoseGrid grid) {
           }};
 }
 
+std::vector<std::vector<std::int8_t>> approach_in_order(const PoseList& poses) {
+  std::vector<std::vector<std::int8_t>> approach;
+  for (const std::vector<double>& commands : poses.axis) {
+    std::vector<std::int8_t>& sides = approach.emplace_back(commands.size(), std::int8_t{0});
+    for (std::size_t k = 1; k < commands.size(); ++k) {
+      const double motion = commands[k] - commands[k - 1];
+      sides[k] = motion > 0 ? std::int8_t{1} : motion < 0 ? std::int8_t{-1} : sides[k - 1];
+    }
+  }
+  return approach;
+}
+
+void join_poses(PoseList& all, const PoseList& more) {
+  const std::size_t before = all.count();
+  all.axis.resize(more.axis.size());
+  for (std::size_t i = 0; i < more.axis.size(); ++i) {
+    all.axis[i].insert(all.axis[i].end(), more.axis[i].begin(), more.axis[i].end());
+  }
+  if (all.approach.empty() && more.approach.empty()) return;
+  all.approach.resize(more.axis.size());
+  for (std::size_t i = 0; i < more.axis.size(); ++i) {
+    std::vector<std::int8_t>& sides = all.approach[i];
+    sides.resize(before, 0);
+    if (!more.approach.empty()) sides.insert(sides.end(), more.approach[i].begin(), more.approach[i].end());
+    sides.resize(all.count(), 0);
+  }
+}
+
 std::vector<double> evenly_spaced(double from, double to, std::size_t count) {
   std::vector<double> values(count);
   if (count == 1) values[0] = 0.5 * (from + to);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace abbe {
 /// Axis commands of many poses, owned, structure of arrays: axis[i][k], chain order, mm or rad.
 struct PoseList {
   std::vector<std::vector<double>> axis;
+  /// From which side an axis came: approach[i][k] = +1 or -1, the sign of its last motion, 0 if it is not known. Empty
+  /// as a whole where nothing is known. Plans and what is made from poses leave it empty.
+  std::vector<std::vector<std::int8_t>> approach{};
 
   std::size_t count() const { return axis.empty() ? 0 : axis.front().size(); }
   std::vector<double> pose(std::size_t k) const {
@@ -47,6 +51,13 @@ struct PoseSource {
 /// @param list  must outlive the source
 PoseSource pose_source(const PoseList& list);
 PoseSource pose_source(PoseGrid grid);
+
+/// Sides from which the axes come if the poses are visited in their order, straight from one to the next: the sign of
+/// an axis's last motion; 0 before its first.
+std::vector<std::vector<std::int8_t>> approach_in_order(const PoseList& poses);
+
+/// Adds to `all` the poses of `more`, which may know the approach or not.
+void join_poses(PoseList& all, const PoseList& more);
 
 /// Evenly spread positions from `from` to `to`, both included; one position: the middle.
 std::vector<double> evenly_spaced(double from, double to, std::size_t count);

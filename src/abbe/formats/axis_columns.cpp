@@ -51,4 +51,38 @@ PoseList take_poses(std::string_view text, const std::string& file, const Machin
   return list;
 }
 
+std::string approach_header(const Axis& axis) { return axis.name + "_approach"; }
+
+std::size_t add_approach_columns(const Machine& machine, std::vector<CsvColumn>& columns) {
+  const std::size_t first = columns.size();
+  for (const Axis& axis : machine.axes) {
+    columns.push_back({approach_header(axis), Quantity::dimensionless, false, false, CsvColumn::Range::any});
+  }
+  return first;
+}
+
+std::vector<std::vector<std::int8_t>> take_approach(std::string_view text, const std::string& file,
+                                                    const Machine& machine, const CsvTable& table, std::size_t first) {
+  std::vector<std::vector<std::int8_t>> approach(machine.axes.size());
+  bool known = false;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const CsvValues& column = table.columns[first + i];
+    approach[i].assign(table.rows, 0);
+    if (!column.present) continue;
+    known = true;
+    for (std::size_t row = 0; row < table.rows; ++row) {
+      const double side = column.numbers[row];
+      if (side != 1 && side != -1 && side != 0) {
+        throw InputError({file, csv_line(text, row), 0, column.header}, fmt::format("{:.9g} is no side", side),
+                         "1 after a motion in positive direction, -1 in negative, 0 if it is not known");
+      }
+      approach[i][row] = static_cast<std::int8_t>(side);
+    }
+  }
+  if (!known) approach.clear();
+  return approach;
+}
+
+std::vector<double> approach_numbers(const std::vector<std::int8_t>& sides) { return {sides.begin(), sides.end()}; }
+
 }  // namespace abbe

@@ -1,6 +1,8 @@
 #pragma once
 
 // Internal to formats: the columns of axis commands in a CSV file.
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,5 +29,19 @@ std::optional<OutsideTravel> first_outside_travel(const Axis& axis, std::span<co
 /// @throws InputError for a command outside its axis's travel, if that is checked
 PoseList take_poses(std::string_view text, const std::string& file, const Machine& machine, CsvTable& table,
                     bool check_travel);
+
+/// Optional columns "X_approach": from which side the axis came, +1, -1 or 0 (not known).
+/// @returns index of the first of them; one per axis, chain order
+std::size_t add_approach_columns(const Machine& machine, std::vector<CsvColumn>& columns);
+
+/// Sides of approach for poses that were taken from the table; empty if there is no such column.
+/// @throws InputError for any other number
+std::vector<std::vector<std::int8_t>> take_approach(std::string_view text, const std::string& file,
+                                                    const Machine& machine, const CsvTable& table, std::size_t first);
+
+/// The sides of one axis as numbers for a column.
+std::vector<double> approach_numbers(const std::vector<std::int8_t>& sides);
+/// "X_approach"
+std::string approach_header(const Axis& axis);
 
 }  // namespace abbe

@@ -40,7 +40,7 @@ Eigen::MatrixXd parse_covariance(std::string_view text, const std::string& file,
                                  const ErrorSet& errors) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   const std::vector<std::string> names = parameter_names(machine, errors);
-  const std::vector<bool> angles = parameters_are_angles(errors);
+  const std::vector<bool> angles = parameters_are_angles(machine, errors);
   const auto count = static_cast<Eigen::Index>(names.size());
   std::size_t at = 0, line = 0;
 
@@ -91,7 +91,7 @@ Eigen::MatrixXd parse_covariance(std::string_view text, const std::string& file,
 
 std::string covariance_text(const Machine& machine, const ErrorsFile& contents) {
   const std::vector<std::string> names = parameter_names(machine, contents.errors);
-  const std::vector<bool> angles = parameters_are_angles(contents.errors);
+  const std::vector<bool> angles = parameters_are_angles(machine, contents.errors);
   std::string text = "# Covariance of the parameters; an entry is in the product of the units of its row and column.\n";
   text += "parameter,unit";
   for (const std::string& name : names) text += "," + csv_field(name);

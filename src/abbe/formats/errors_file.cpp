@@ -169,6 +169,22 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
     table.finish();
     errors.locations.push_back(location);
   }
+  for (TomlTable& table : root.tables("reversal")) {
+    Reversal reversal;
+    const std::string name = table.text("axis");
+    reversal.axis = machine.find_axis(name);
+    if (reversal.axis == Machine::npos) {
+      table.fail("axis", fmt::format("\"{}\" is no axis of this machine", name), axis_names(machine));
+    }
+    for (const Reversal& other : errors.reversals) {
+      if (other.axis == reversal.axis) table.fail("axis", "stands twice");
+    }
+    const Quantity quantity = axis_quantity(machine.axes[reversal.axis]);
+    reversal.value = table.number("value", quantity);
+    reversal.standard_uncertainty = table.size_or("standard_uncertainty", quantity, 0);
+    table.finish();
+    errors.reversals.push_back(reversal);
+  }
   if (auto tool = root.optional_table("tool_offset_error")) {
     const auto value = tool->numbers("value", Quantity::length, 3);
     errors.tool_offset_error = {value[0], value[1], value[2]};
@@ -220,6 +236,16 @@ std::string errors_text(const Machine& machine, const ErrorsFile& contents, cons
     if (location.standard_uncertainty > 0) {
       text += fmt::format("standard_uncertainty_{} = {}\n", unit.suffix,
                           quantity_text(location.standard_uncertainty, unit));
+    }
+  }
+  for (const Reversal& reversal : errors.reversals) {
+    const Axis& axis = machine.axes[reversal.axis];
+    const Unit& unit = unit_named(axis_quantity(axis), axis.kind == AxisKind::rotary ? "urad" : "um");
+    text += fmt::format("\n[[reversal]]\naxis = {}\nvalue_{} = {}\n", toml_string(axis.name), unit.suffix,
+                        quantity_text(reversal.value, unit));
+    if (reversal.standard_uncertainty > 0) {
+      text += fmt::format("standard_uncertainty_{} = {}\n", unit.suffix,
+                          quantity_text(reversal.standard_uncertainty, unit));
     }
   }
   const Eigen::Vector3d& tool = errors.tool_offset_error;

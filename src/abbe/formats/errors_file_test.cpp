@@ -1,5 +1,6 @@
 #include "abbe/formats/errors_file.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -66,6 +67,7 @@ ErrorSet random_set(std::mt19937_64& generator) {
     errors.locations.push_back({0, component, random(), std::abs(random())});
   }
   errors.locations.push_back({1, Component::C, random(), 0});
+  errors.reversals = {{1, random(), std::abs(random())}, {0, random(), 0}};
   errors.tool_offset_error = {random(), random(), random()};
   errors.composition = {ErrorOrder::before_motion, true};
   return errors;
@@ -74,6 +76,7 @@ ErrorSet random_set(std::mt19937_64& generator) {
 void expect_same(const ErrorSet& a, const ErrorSet& b) {
   EXPECT_EQ(a.motions, b.motions);
   EXPECT_EQ(a.locations, b.locations);
+  EXPECT_EQ(a.reversals, b.reversals);
   EXPECT_EQ(a.tool_offset_error, b.tool_offset_error);
   EXPECT_EQ(a.composition, b.composition);
 }
@@ -126,6 +129,22 @@ TEST(ErrorsFile, ReadsUnitsTablesAndDefaults) {
   EXPECT_DOUBLE_EQ(fourier.coefficients[2], 2 * std::numbers::pi / 648000);
   EXPECT_EQ(contents.errors.locations[0].value, 12.3e-6);
   EXPECT_EQ(contents.covariance.size(), 0);
+}
+
+TEST(ErrorsFile, ReadsAndRefusesReversals) {
+  const ErrorsFile contents = parse(
+      "[[reversal]]\naxis = \"X\"\nvalue_um = -6.5\nstandard_uncertainty_um = 0.5\n"
+      "[[reversal]]\naxis = \"C\"\nvalue_arcsec = -2\n");
+  ASSERT_EQ(contents.errors.reversals.size(), 2U);
+  EXPECT_EQ(contents.errors.reversals[0].value, -0.0065);
+  EXPECT_EQ(contents.errors.reversals[0].standard_uncertainty, 0.0005);
+  EXPECT_DOUBLE_EQ(contents.errors.reversals[1].value, -2 * std::numbers::pi / 648000);
+  EXPECT_EQ(parse(errors_text(machine(), contents)).errors.reversals, contents.errors.reversals);
+  EXPECT_THAT(wrong("[[reversal]]\naxis = \"Q\"\nvalue_um = 1\n"),
+              testing::HasSubstr("\"Q\" is no axis of this machine"));
+  EXPECT_THAT(wrong("[[reversal]]\naxis = \"C\"\nvalue_um = 1\n"), testing::HasSubstr("value_urad"));
+  EXPECT_THAT(wrong("[[reversal]]\naxis = \"X\"\nvalue_um = 1\n[[reversal]]\naxis = \"X\"\nvalue_um = 1\n"),
+              testing::HasSubstr("stands twice"));
 }
 
 TEST(ErrorsFile, RefusesWhatIsNoErrorOfTheMachine) {

@@ -99,10 +99,13 @@ InstrumentReadings parse_instrument_readings(std::string_view text, const std::s
   const std::size_t time = wanted.size();
   wanted.push_back({"time", Quantity::time, false, false, CsvColumn::Range::any});
 
+  const std::size_t approach = add_approach_columns(machine, wanted);
+
   CsvTable table = read_csv(text, file, wanted, options.mapping, options.threads);
   InstrumentReadings readings;
   const std::vector<std::size_t> targets = take_targets(text, file, instrument, table.columns[item], table.rows);
   readings.poses = take_poses(text, file, machine, table, options.check_travel);
+  readings.poses.approach = take_approach(text, file, machine, table, approach);
   readings.item = take_items(text, file, machine, instrument, targets, readings.poses);
   readings.inputs = take_columns(table, input, instrument.inputs().size());
   readings.measured = take_columns(table, component, rows_each);
@@ -144,6 +147,8 @@ std::string instrument_readings_text(const Machine& machine, const Instrument& i
         readings.poses.axis[i]);
   }
   const std::size_t axes = columns.size();
+  std::vector<std::vector<double>> approach;
+  for (const std::vector<std::int8_t>& sides : readings.poses.approach) approach.push_back(approach_numbers(sides));
   for (std::size_t i = 0; i < instrument.inputs().size(); ++i) {
     const ReadingComponent& known = instrument.inputs()[i];
     add(known.name, quantity_of(known), known.is_angle ? "deg" : "mm", readings.inputs[i]);
@@ -157,6 +162,11 @@ std::string instrument_readings_text(const Machine& machine, const Instrument& i
     add("u_" + one.name, quantity_of(one), one.is_angle ? "arcsec" : "um", readings.uncertainty[i]);
   }
   if (!readings.time_s.empty()) add("time", Quantity::time, "s", readings.time_s);
+
+  for (std::size_t i = 0; i < approach.size(); ++i) {
+    columns.push_back(
+        {csv_field(approach_header(machine.axes[i])), &approach[i], &unit_named(Quantity::dimensionless, "")});
+  }
 
   const std::vector<std::string> targets = instrument.target_names();
   const bool named = targets.size() > 1;

@@ -49,10 +49,12 @@ class Reader {
     const std::size_t cov_xyz = add_covariance(TrackerMeasure::cartesian);
     const std::size_t cov_range = add_covariance(TrackerMeasure::range_and_angles);
     const std::size_t time = layout_.add("time", Quantity::time);
+    const std::size_t approach = add_approach_columns(machine_, layout_.columns);
 
     csv_ = read_csv(text_, file_, layout_.columns, options_.mapping, options_.threads);
     TrackerReadings& readings = table_.readings;
     readings.poses = poses();
+    readings.poses.approach = take_approach(text_, file_, machine_, csv_, approach);
     read_measured(xyz, range);
     const bool cartesian = readings.measure == TrackerMeasure::cartesian;
     refuse_other(cartesian ? u_range : u_xyz, 3);

@@ -1,5 +1,6 @@
 #include <cassert>
 
+#include "abbe/formats/axis_columns.h"
 #include "abbe/formats/covariance_columns.h"
 #include "abbe/formats/measurement_file.h"
 #include "abbe/formats/number_text.h"
@@ -22,7 +23,7 @@ class Columns {
  public:
   void add(const std::string& base, Quantity quantity, const char* suffix, const std::vector<double>& numbers) {
     Column column;
-    column.header = csv_field(base + "_" + suffix);
+    column.header = csv_field(*suffix == 0 ? base : base + "_" + suffix);
     column.numbers = numbers.data();
     column.unit = &unit_named(quantity, suffix);
     columns_.push_back(column);
@@ -109,6 +110,11 @@ std::string measurements_text(const Machine& machine, const MeasurementTable& ta
     for (std::size_t k = 0; k < 6; ++k) columns.add(stated[k].base, stated[k].quantity, stated[k].unit, u[k]);
   }
   if (!readings.time_s.empty()) columns.add("time", Quantity::time, "s", readings.time_s);
+  std::vector<std::vector<double>> approach;
+  for (const std::vector<std::int8_t>& sides : readings.poses.approach) approach.push_back(approach_numbers(sides));
+  for (std::size_t i = 0; i < approach.size(); ++i) {
+    columns.add(approach_header(machine.axes[i]), Quantity::dimensionless, "", approach[i]);
+  }
   return columns.text(readings.count());
 }
 

@@ -37,6 +37,8 @@ struct ErrorGenerator {
   std::optional<double> mean_volumetric;     ///< mm; exactly one of these two is given
   std::optional<double> maximum_volumetric;  ///< mm
   bool location_errors = true;               ///< draw squareness, parallelism and axis positions too
+  double reversal = 0;                       ///< mm, lost motion of linear axes: drawn from 0.5 to 1.5 times this
+  double rotary_reversal = 0;                ///< rad, likewise of rotary axes
 };
 
 /// Gross errors put into simulated readings.
@@ -153,6 +155,7 @@ struct ParameterPrior {
 struct IdentificationPlan {
   std::vector<IdentifiedMotion> motions;
   std::vector<IdentifiedLocation> locations;
+  std::vector<std::size_t> reversals;  ///< axes
   bool tool_offset = false;
   std::optional<std::filesystem::path> initial_errors;  ///< start values; else zero
   std::vector<ParameterPrior> priors;

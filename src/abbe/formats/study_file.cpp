@@ -26,6 +26,8 @@ Simulation read_simulation(TomlTable& table, const std::filesystem::path& folder
     options.location_errors = generator->boolean_or("location_errors", true);
     options.mean_volumetric = generator->optional_number("mean_volumetric", Quantity::length);
     options.maximum_volumetric = generator->optional_number("maximum_volumetric", Quantity::length);
+    options.reversal = generator->size_or("reversal", Quantity::length, 0);
+    options.rotary_reversal = generator->size_or("reversal", Quantity::angle, 0);
     generator->finish();
     if (options.mean_volumetric.has_value() == options.maximum_volumetric.has_value()) {
       generator->fail("", "the size of the errors is missing or stands twice",

@@ -104,6 +104,23 @@ void read_locations(TomlTable& table, const Machine& machine, IdentificationPlan
   }
 }
 
+void read_reversals(TomlTable& table, const Machine& machine, IdentificationPlan& plan) {
+  for (const std::string& name : table.texts_or_none("reversals")) {
+    bool found = false;
+    for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
+      if (!matches_pattern(machine.axes[axis].name, name)) continue;
+      found = true;
+      if (std::find(plan.reversals.begin(), plan.reversals.end(), axis) == plan.reversals.end()) {
+        plan.reversals.push_back(axis);
+      }
+    }
+    if (!found) {
+      table.fail("reversals", fmt::format("\"{}\" is no axis of this machine", name),
+                 "names of axes or \"*\"; axes " + axis_names(machine));
+    }
+  }
+}
+
 /// The same knowledge of every pattern that `parameters` lists.
 void read_prior(TomlTable& table, std::vector<ParameterPrior>& priors) {
   ParameterPrior prior;
@@ -171,6 +188,7 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
     }
   }
   read_locations(table, machine, plan);
+  read_reversals(table, machine, plan);
   plan.tool_offset = table.boolean_or("tool_offset", false);
   if (table.has("initial")) plan.initial_errors = folder / table.text("initial");
   table.text_or("initial", "");

@@ -283,6 +283,7 @@ class Run {
       next += motion.coefficients.size();
     }
     for (LocationError& location : errors.locations) location.standard_uncertainty = uncertainties[next++];
+    for (Reversal& reversal : errors.reversals) reversal.standard_uncertainty = uncertainties[next++];
     for (const SelectedObservations& selected : problem_.observations)
       result_.setup.push_back(selected.observations->unknown_values());
   }

@@ -27,8 +27,13 @@ std::string words_of(const Problem& problem, std::size_t index) {
     return location_error_name(machine, location.axis, location.component) + ": " +
            error_words(machine, location.axis, location.component, true);
   }
-  return fmt::format("tool_{}: error of the tool offset in {}", "XYZ"[index - next - problem.errors.locations.size()],
-                     "XYZ"[index - next - problem.errors.locations.size()]);
+  next += problem.errors.locations.size();
+  if (index - next < problem.errors.reversals.size()) {
+    const std::size_t axis = problem.errors.reversals[index - next].axis;
+    return reversal_name(machine, axis) + ": reversal value of " + machine.axes[axis].name;
+  }
+  next += problem.errors.reversals.size();
+  return fmt::format("tool_{}: error of the tool offset in {}", "XYZ"[index - next], "XYZ"[index - next]);
 }
 
 }  // namespace

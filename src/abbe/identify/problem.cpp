@@ -25,7 +25,7 @@ Problem estimate_everything(const Machine& machine, const ErrorSet& errors,
 std::vector<EstimatedParameter> estimated_parameters(const Problem& problem) {
   std::vector<EstimatedParameter> result;
   const std::vector<std::string> names = parameter_names(problem.machine, problem.errors);
-  const std::vector<bool> angles = parameters_are_angles(problem.errors);
+  const std::vector<bool> angles = parameters_are_angles(problem.machine, problem.errors);
   for (const std::size_t i : problem.machine_parameters)
     result.push_back({names[i], angles[i], {ParameterId::kMachine, i}});
   for (std::size_t o = 0; o < problem.observations.size(); ++o) {

@@ -35,13 +35,15 @@ Key commonest(const std::vector<Key>& keys, const std::vector<bool>& counts) {
   return best;
 }
 
-// Parameters of error motions and location errors of axes of one kind; the tool offset error goes with the linear axes.
+// Parameters of error motions, location errors and reversals of axes of one kind; the tool offset error goes with the
+// linear axes.
 std::vector<std::size_t> parameters_of(const Problem& problem, AxisKind kind) {
   std::vector<bool> belongs;
   const std::vector<Axis>& axes = problem.machine.axes;
   for (const ErrorMotion& motion : problem.errors.motions)
     belongs.insert(belongs.end(), motion.coefficients.size(), axes[motion.axis].kind == kind);
   for (const LocationError& location : problem.errors.locations) belongs.push_back(axes[location.axis].kind == kind);
+  for (const Reversal& reversal : problem.errors.reversals) belongs.push_back(axes[reversal.axis].kind == kind);
   belongs.resize(problem.errors.parameter_count(), kind == AxisKind::linear);
   std::vector<std::size_t> result;
   for (const std::size_t i : problem.machine_parameters)
@@ -123,6 +125,7 @@ void write_uncertainties(const Problem& problem, Identification& total) {
     next += motion.coefficients.size();
   }
   for (LocationError& location : total.errors.locations) location.standard_uncertainty = all[next++];
+  for (Reversal& reversal : total.errors.reversals) reversal.standard_uncertainty = all[next++];
 }
 
 }  // namespace

@@ -87,6 +87,32 @@ TEST(BallBar, DerivativesEqualDifferences) {
   }
 }
 
+TEST(BallBar, ReversalOfAnAxisIsSeenWithItsDerivative) {
+  const Machine machine = test::trunnion_mill();
+  const auto bar = std::make_shared<BallBar>(two_balls());
+  ErrorSet errors = test::some_errors(machine);
+  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
+    errors.reversals.push_back({axis, machine.axes[axis].kind == AxisKind::rotary ? -4e-5 : -0.011, 0});
+  }
+  InstrumentReadings plan = circles(machine, *bar);
+  const InstrumentReadings mean = test::exact_readings(machine, errors, bar, plan);
+  plan.poses.approach = approach_in_order(plan.poses);
+  test::expect_jacobian_equals_differences(machine, errors, bar, plan);
+  const InstrumentReadings directed = test::exact_readings(machine, errors, bar, plan);
+  for (std::vector<std::int8_t>& sides : plan.poses.approach) {
+    for (std::int8_t& side : sides) side = static_cast<std::int8_t>(-side);
+  }
+  const InstrumentReadings opposite = test::exact_readings(machine, errors, bar, plan);
+  double largest = 0;
+  for (std::size_t k = 0; k < plan.count(); ++k) {
+    // Both directions lie about their mean; half of 11 um is seen along X or Y.
+    EXPECT_NEAR((directed.measured[0][k] + opposite.measured[0][k]) / 2, mean.measured[0][k], 1e-6);
+    largest = std::max(largest, std::abs(directed.measured[0][k] - mean.measured[0][k]));
+  }
+  EXPECT_GT(largest, 0.005);
+  EXPECT_LT(largest, 0.02);
+}
+
 TEST(BallBar, MayHangTheOtherWayRound) {
   const Machine machine = test::trunnion_mill();
   const ErrorSet errors = test::some_errors(machine);

@@ -47,7 +47,7 @@ void InstrumentReadings::append(const std::vector<double>& positions, std::size_
 }
 
 void InstrumentReadings::append(const InstrumentReadings& more) {
-  append_columns(poses.axis, more.poses.axis);
+  join_poses(poses, more.poses);
   item.insert(item.end(), more.item.begin(), more.item.end());
   append_columns(inputs, more.inputs);
   append_columns(measured, more.measured);
@@ -60,6 +60,10 @@ InstrumentReadings InstrumentReadings::subset(const std::vector<std::size_t>& re
   InstrumentReadings part;
   for (const std::size_t k : readings) part.item.push_back(item[k]);
   for (const std::vector<double>& axis : poses.axis) part.poses.axis.push_back(picked(axis, readings));
+  for (const std::vector<std::int8_t>& sides : poses.approach) {
+    std::vector<std::int8_t>& picked_sides = part.poses.approach.emplace_back();
+    for (const std::size_t k : readings) picked_sides.push_back(sides[k]);
+  }
   for (const std::vector<double>& column : inputs) part.inputs.push_back(picked(column, readings));
   for (const std::vector<double>& column : measured) part.measured.push_back(picked(column, readings));
   for (const std::vector<double>& column : uncertainty) part.uncertainty.push_back(picked(column, readings));
@@ -120,6 +124,11 @@ void check_readings(const Machine& machine, const Instrument& instrument, const 
     }
   }
   check_columns(readings.poses.axis, machine.axes.size(), count, "axis commands");
+  for (const std::vector<std::int8_t>& sides : readings.poses.approach) {
+    if (sides.size() != count || readings.poses.approach.size() != machine.axes.size()) {
+      throw std::invalid_argument(instrument.name() + ": sides of approach, not one per axis and reading");
+    }
+  }
   check_columns(readings.inputs, instrument.inputs().size(), count, "inputs");
   if (measured) {
     check_columns(readings.measured, instrument.components().size(), count, "measured values");

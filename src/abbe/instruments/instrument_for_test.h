@@ -55,7 +55,7 @@ inline void expect_jacobian_equals_differences(const Machine& machine, const Err
   for (const double r : residuals) ASSERT_NEAR(r, 0, 1e-10) << "readings without noise leave residuals";
 
   const std::vector<std::string> names = parameter_names(machine, errors);
-  const std::vector<bool> angles = parameters_are_angles(errors);
+  const std::vector<bool> angles = parameters_are_angles(machine, errors);
   std::vector<double> above(rows * count), below(rows * count);
   for (std::size_t column = 0; column < start.size() + setup.size(); ++column) {
     const bool of_machine = column < start.size();

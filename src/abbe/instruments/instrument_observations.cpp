@@ -4,6 +4,8 @@
 #include <cassert>
 #include <stdexcept>
 
+#include "abbe/errors/reversal.h"
+
 namespace abbe {
 namespace {
 
@@ -14,7 +16,7 @@ static_assert(Observations::kBlockSize <= ChainPlan::kBlockSize);
 
 /// Working memory of one thread, grown once and kept.
 struct Scratch {
-  std::vector<double> positions, inputs, by_quantity, jacobian;
+  std::vector<double> positions, inputs, by_quantity, jacobian, by_position;
   std::vector<const double*> axis;
   ItemBlock block;
   double rotation[9][kBlock], start[3][kBlock], seen[3][kBlock], origin[3][kBlock];
@@ -47,6 +49,7 @@ struct InstrumentObservations::Implementation {
   std::vector<double> unknown_values;
   std::size_t tool_parameter = 0;
   Eigen::Vector3d tool_offset_error = Eigen::Vector3d::Zero();
+  ReversalShift reversal;
 
   std::size_t rows() const { return instrument->components().size(); }
   std::size_t find_members(std::size_t first, std::size_t count, std::size_t pair, Scratch& s) const;
@@ -92,6 +95,12 @@ void InstrumentObservations::Implementation::load(const BodyPair& pair, std::siz
     }
   };
   gather(readings.poses.axis, s.positions, s.axis);
+  if (reversal.acts_on(readings.poses)) {
+    for (std::size_t i = 0; i < s.axis.size(); ++i) {
+      double* commands = &s.positions[i * kBlock];
+      for (std::size_t k = 0; k < members; ++k) commands[k] += reversal.shift(readings.poses, i, first + s.at[k]);
+    }
+  }
   gather(readings.inputs, s.inputs, s.block.inputs);
   const bool on_tool = pair.from == Body::tool;
   for (int c = 0; c < 3; ++c) std::fill_n(s.start[c], members, on_tool ? tool_offset_error[c] : 0.0);
@@ -182,8 +191,25 @@ void InstrumentObservations::Implementation::evaluate_pair(const BodyPair& pair,
   }
   const std::size_t compact_stride = rows() * members;
   s.jacobian.resize(machine_parameters.size() * compact_stride);
+  double* by_position = nullptr;
+  if (reversal.acts_on(readings.poses)) {
+    s.by_position.resize(s.axis.size() * compact_stride);
+    by_position = s.by_position.data();
+  }
   pair.plan.differentiate({s.axis, members}, {s.start[0], s.start[1], s.start[2]}, {s.seen[0], s.seen[1], s.seen[2]},
-                          {row_arrays, rows()}, machine_parameters, s.jacobian.data(), compact_stride);
+                          {row_arrays, rows()}, machine_parameters, s.jacobian.data(), compact_stride, nullptr,
+                          by_position);
+  for (std::size_t column = 0; by_position != nullptr && column < machine_parameters.size(); ++column) {
+    const std::size_t axis = reversal.axis_of(machine_parameters[column]);
+    if (axis == ReversalShift::npos) continue;
+    for (std::size_t row = 0; row < rows(); ++row) {
+      for (std::size_t k = 0; k < members; ++k) {
+        const double half_approach = 0.5 * readings.poses.approach[axis][first + s.at[k]];
+        s.jacobian[column * compact_stride + row * members + k] =
+            half_approach * by_position[(axis * rows() + row) * members + k];
+      }
+    }
+  }
   for (std::size_t column = 0; column < machine_parameters.size(); ++column) {
     for (std::size_t row = 0; row < rows(); ++row) {
       const double* compact = &s.jacobian[column * compact_stride + row * members];
@@ -205,6 +231,7 @@ InstrumentObservations::InstrumentObservations(const Machine& machine, const Err
   assert(own.rows() >= 1 && own.rows() <= kMaxRows);
   own.tool_parameter = errors.parameter_count() - 3;
   own.tool_offset_error = errors.tool_offset_error;
+  own.reversal = ReversalShift(errors);
   own.weight.assign(own.rows(), std::vector<double>(count));
   for (std::size_t row = 0; row < own.rows(); ++row) {
     for (std::size_t k = 0; k < count; ++k) {
@@ -263,6 +290,7 @@ void InstrumentObservations::set_parameters(std::span<const double> machine, std
   assert(machine.size() == own.tool_parameter + 3);
   assert(setup.size() == own.unknowns.size());
   for (Implementation::BodyPair& pair : own.pairs) pair.plan.set_parameters(machine);
+  own.reversal.set_parameters(machine);
   for (int k = 0; k < 3; ++k) own.tool_offset_error[k] = machine[own.tool_parameter + static_cast<std::size_t>(k)];
   for (std::size_t i = 0; i < setup.size(); ++i) {
     own.unknown_values[i] = setup[i];

@@ -63,6 +63,10 @@ void check_sizes(const Machine& machine, const TrackerReadings& readings) {
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     check("commands of axis " + machine.axes[i].name, readings.poses.axis[i].size(), false);
   }
+  if (!readings.poses.approach.empty() && readings.poses.approach.size() != machine.axes.size()) {
+    throw std::invalid_argument("sides of approach not one per axis");
+  }
+  for (const std::vector<std::int8_t>& sides : readings.poses.approach) check("side of approach", sides.size(), false);
   check("reflector", readings.reflector.size(), false);
   for (const std::vector<double>& values : readings.measured) check("measured", values.size(), false);
   check("time", readings.time_s.size(), true);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/errors/reversal.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/instruments/tracker_residual.h"
 #include "abbe/instruments/tracker_whitening.h"
@@ -33,7 +34,8 @@ struct Members {
 struct Scratch {
   std::vector<double> positions;  ///< [axes][kBlock]
   std::vector<const double*> axis;
-  std::vector<double> jacobian;  ///< compact columns of one pair of bodies
+  std::vector<double> jacobian;     ///< compact columns of one pair of bodies
+  std::vector<double> by_position;  ///< [axes][3][members]
   double start[3][kBlock], seen[3][kBlock], gathered[3][kBlock], trig[4][kBlock], weight[6][kBlock];
   double residual[3][kBlock], force[3][3][kBlock], by_start[3][3][kBlock];
   std::uint16_t station[kBlock], reflector[kBlock];
@@ -67,6 +69,7 @@ struct TrackerObservations::Implementation {
   std::vector<Eigen::Vector3d> offsets;  ///< present reflector offsets
   std::vector<Eigen::Vector3d> starts;   ///< offsets with the tool offset error where it acts
   Eigen::Vector3d tool_offset_error = Eigen::Vector3d::Zero();
+  ReversalShift reversal;
 
   std::uint8_t pair_at(std::size_t reading) const {
     return pair_of[readings.station[reading] * given.reflectors.size() + readings.reflector[reading]];
@@ -131,6 +134,8 @@ struct TrackerObservations::Implementation {
                      double* residuals, double* jacobian, std::size_t stride) const;
   void load(const Members& members, std::size_t first, Scratch& s) const;
   void residuals_of_runs(const Members& members, bool with_forces, Scratch& s) const;
+  void reversal_columns(const Members& members, std::size_t first, std::span<const std::size_t> machine_parameters,
+                        const Scratch& s, double* target, std::size_t stride) const;
   void setup_column(const UnknownRole& role, std::size_t count, const Scratch& s, double* column) const;
 };
 
@@ -148,11 +153,15 @@ void TrackerObservations::Implementation::load(const Members& members, std::size
   const std::size_t axes = readings.poses.axis.size();
   s.axis.resize(axes);
   s.positions.resize(axes * kBlock);
+  const bool reverses = reversal.acts_on(readings.poses);
   for (std::size_t i = 0; i < axes; ++i) {
     const double* commands = readings.poses.axis[i].data() + first;
-    if (!members.whole_block) {
+    if (!members.whole_block || reverses) {
       double* gathered = &s.positions[i * kBlock];
-      for (std::size_t k = 0; k < members.count; ++k) gathered[k] = commands[members.at[k]];
+      for (std::size_t k = 0; k < members.count; ++k) {
+        gathered[k] = commands[members.at[k]];
+        if (reverses) gathered[k] += reversal.shift(readings.poses, i, first + members.at[k]);
+      }
       commands = gathered;
     }
     s.axis[i] = commands;
@@ -225,6 +234,22 @@ void TrackerObservations::Implementation::setup_column(const UnknownRole& role, 
   }
 }
 
+void TrackerObservations::Implementation::reversal_columns(const Members& members, std::size_t first,
+                                                           std::span<const std::size_t> machine_parameters,
+                                                           const Scratch& s, double* target, std::size_t stride) const {
+  const std::size_t n = members.count;
+  for (std::size_t column = 0; column < machine_parameters.size(); ++column) {
+    const std::size_t axis = reversal.axis_of(machine_parameters[column]);
+    if (axis == ReversalShift::npos) continue;
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t k = 0; k < n; ++k) {
+        const double half_approach = 0.5 * readings.poses.approach[axis][first + members.at[k]];
+        target[column * stride + row * n + k] = half_approach * s.by_position[(axis * 3 + row) * n + k];
+      }
+    }
+  }
+}
+
 void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, const Members& members, std::size_t first,
                                                         std::size_t count,
                                                         std::span<const std::size_t> machine_parameters,
@@ -261,8 +286,14 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
     by_start[row] = {s.by_start[row][0], s.by_start[row][1], s.by_start[row][2]};
   }
   if (!machine_parameters.empty() || by_start_wanted) {
+    double* by_position = nullptr;
+    if (reversal.acts_on(readings.poses)) {
+      s.by_position.resize(readings.poses.axis.size() * 3 * n);
+      by_position = s.by_position.data();
+    }
     pair.plan.differentiate(positions, start, seen, rows, machine_parameters, target, target_stride,
-                            by_start_wanted ? by_start : nullptr);
+                            by_start_wanted ? by_start : nullptr, by_position);
+    if (by_position != nullptr) reversal_columns(members, first, machine_parameters, s, target, target_stride);
   }
   if (pair.from != Body::tool) {
     // The tool offset error belongs to targets on the tool; a station standing there has its own pose.
@@ -294,6 +325,7 @@ TrackerObservations::TrackerObservations(const Machine& machine, const ErrorSet&
   own.readings = std::move(readings);
   own.tool_parameter = errors.parameter_count() - 3;
   own.tool_offset_error = errors.tool_offset_error;
+  own.reversal = ReversalShift(errors);
   if (own.readings.measure == TrackerMeasure::range_and_angles) {
     for (std::size_t a = 0; a < 2; ++a) {
       for (double angle : own.readings.measured[a + 1]) {
@@ -365,6 +397,7 @@ void TrackerObservations::set_parameters(std::span<const double> machine, std::s
   assert(machine.size() == own.tool_parameter + 3);
   assert(setup.size() == own.unknowns.size());
   for (Implementation::BodyPair& pair : own.pairs) pair.plan.set_parameters(machine);
+  own.reversal.set_parameters(machine);
   for (int k = 0; k < 3; ++k) own.tool_offset_error[k] = machine[own.tool_parameter + static_cast<std::size_t>(k)];
   own.update_setup(setup);
 }
@@ -400,7 +433,12 @@ Eigen::Vector3d TrackerObservations::distance(std::size_t reading) const {
   Scratch& s = scratch();
   const std::size_t axes = own.readings.poses.axis.size();
   s.axis.resize(axes);
-  for (std::size_t i = 0; i < axes; ++i) s.axis[i] = own.readings.poses.axis[i].data() + reading;
+  s.positions.resize(std::max(s.positions.size(), axes));
+  for (std::size_t i = 0; i < axes; ++i) {
+    const PoseList& poses = own.readings.poses;
+    s.positions[i] = poses.axis[i][reading] + own.reversal.shift(poses, i, reading);
+    s.axis[i] = &s.positions[i];
+  }
   Eigen::Vector3d seen;
   const Eigen::Vector3d& start = own.starts[own.readings.reflector[reading]];
   own.pairs[own.pair_at(reading)].plan.transform({s.axis, 1}, {&start[0], &start[1], &start[2]},

@@ -33,6 +33,7 @@ Mixed mixed_case(TrackerMeasure measure, StatedUncertainty stated) {
   LocationError location{.axis = 0, .component = Component::A, .value = 1e-4};
   mixed.base.truth.locations.push_back(location);
   mixed.base.truth.tool_offset_error = {0.01, -0.02, 0.03};
+  mixed.base.truth.reversals = {{2, -0.012, 0}, {0, 3e-5, 0}};
   TrackerSetup& setup = mixed.base.setup;
   setup.stations.resize(3, setup.stations[0]);
   const Body bodies[] = {Body::workpiece, Body::bed, Body::tool};
@@ -58,14 +59,23 @@ Mixed mixed_case(TrackerMeasure measure, StatedUncertainty stated) {
     if (setup.stations[s].body == setup.reflectors[r].body) continue;
     const std::vector<double> positions{random.uniform(0, 6), random.uniform(0, 1400), random.uniform(0, 600)};
     readings.poses.append(positions);
+    // An axis stands where half of its reversal value has left it.
+    std::vector<double> standing = positions;
+    readings.poses.approach.resize(3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      readings.poses.approach[i].push_back(static_cast<std::int8_t>(static_cast<int>(random.bits() % 3) - 1));
+      for (const Reversal& reversal : mixed.base.truth.reversals) {
+        if (reversal.axis == i) standing[i] += readings.poses.approach[i].back() * reversal.value / 2;
+      }
+    }
     readings.station.push_back(static_cast<std::uint16_t>(s));
     readings.reflector.push_back(static_cast<std::uint16_t>(r));
     // An independent route to the reading: the pose of both bodies, one at a time.
     const auto bed_from = [&](Body body) {
       if (body == Body::bed) return RigidTransform();
-      if (body == Body::workpiece) return actual_bed_from_workpiece(mixed.base.machine, mixed.base.truth, positions);
+      if (body == Body::workpiece) return actual_bed_from_workpiece(mixed.base.machine, mixed.base.truth, standing);
       const Eigen::Vector3d tip = mixed.base.machine.tool_offset + mixed.base.truth.tool_offset_error;
-      return actual_bed_from_tool(mixed.base.machine, mixed.base.truth, positions) * RigidTransform::translate(-tip);
+      return actual_bed_from_tool(mixed.base.machine, mixed.base.truth, standing) * RigidTransform::translate(-tip);
     };
     const Eigen::Vector3d seen =
         bed_from(setup.stations[s].body).inverse() *
@@ -154,7 +164,7 @@ TEST_P(MixedTracker, JacobianMatchesCentralDifferences) {
   std::vector<double> residuals(rows), more(rows), less(rows), jacobian(columns * stride, -7.0);
   observations.set_parameters(machine, setup);
   observations.evaluate(first, count, machine_parameters, setup_parameters, residuals.data(), jacobian.data(), stride);
-  const std::vector<bool> angles = parameters_are_angles(mixed.base.truth);
+  const std::vector<bool> angles = parameters_are_angles(mixed.base.machine, mixed.base.truth);
   for (std::size_t column = 0; column < columns; ++column) {
     const bool is_machine = column < machine_parameters.size();
     const std::size_t index =

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/errors/reversal.h"
 #include "abbe/geometry/parallel_blocks.h"
 
 namespace abbe {
@@ -100,6 +101,7 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
     chains.point.emplace_back(machine, errors, on, from);
     chains.back.emplace_back(machine, errors, from, on);
   }
+  const ReversalShift reversal(errors);
   const std::size_t blocks = (poses.count() + kPosesPerBlock - 1) / kPosesPerBlock;
   std::vector<std::vector<Reading>> made(blocks);
   std::vector<std::size_t> hidden(blocks, 0);
@@ -117,7 +119,9 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
     };
     const std::size_t last = std::min(poses.count(), (block + 1) * kPosesPerBlock);
     for (std::size_t pose = block * kPosesPerBlock; pose < last; ++pose) {
-      for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = poses.axis[i][pose];
+      for (std::size_t i = 0; i < positions.size(); ++i) {
+        positions[i] = poses.axis[i][pose] + reversal.shift(poses, i, pose);
+      }
       std::size_t first_sight = 0, end_sight = sights.size();
       if (options.choice != SightChoice::every) {
         first_sight = options.choice == SightChoice::cycle
@@ -171,12 +175,14 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
   std::size_t total = 0;
   for (const std::vector<Reading>& part : made) total += part.size();
   readings.reserve(machine.axes.size(), total);
+  if (!poses.approach.empty()) readings.poses.approach.resize(machine.axes.size());
   for (std::size_t block = 0; block < blocks; ++block) {
     result.hidden += hidden[block];
     for (const Reading& reading : made[block]) {
       const std::uint32_t index = static_cast<std::uint32_t>(readings.count());
       for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         readings.poses.axis[i].push_back(poses.axis[i][reading.pose]);
+        if (!poses.approach.empty()) readings.poses.approach[i].push_back(poses.approach[i][reading.pose]);
       }
       for (std::size_t k = 0; k < 3; ++k) readings.measured[k].push_back(reading.measured[static_cast<int>(k)]);
       readings.station.push_back(reading.sight.station);

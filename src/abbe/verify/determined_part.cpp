@@ -33,7 +33,7 @@ DeterminedPart determined_part(const Machine& machine, const ErrorSet& errors, c
   Eigen::MatrixXd beside = at.by_parameter * unseen;
   remove_span(rigid, beside);
   // At every pose 1 mm for a millimetre, the size of the workspace for a radian.
-  const std::vector<bool> is_angle = parameters_are_angles(errors);
+  const std::vector<bool> is_angle = parameters_are_angles(machine, errors);
   Eigen::VectorXd effect(n);
   for (Index p = 0; p < n; ++p) {
     effect[p] = is_angle[covariance.parameters[static_cast<std::size_t>(p)]] ? at.size : 1;

@@ -132,7 +132,7 @@ TEST(ErrorMap, UncertaintyAgreesWithDrawnParameters) {
   const PoseList poses = random_poses(150, 5);
   // A correlated covariance of some parameters, mm and rad mixed, the tool offset among them.
   ParameterCovariance covariance;
-  const std::vector<bool> angles = parameters_are_angles(errors);
+  const std::vector<bool> angles = parameters_are_angles(m, errors);
   for (std::size_t i = 0; i < errors.parameter_count(); i += 9) covariance.parameters.push_back(i);
   covariance.parameters.push_back(errors.parameter_count() - 2);
   const Eigen::Index n = static_cast<Eigen::Index>(covariance.parameters.size());
