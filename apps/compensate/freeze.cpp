@@ -17,6 +17,7 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/runtime/abbe_runtime.h"
 #include "compensate/compensate.h"
+#include "compensate/reversal_words.h"
 
 namespace abbe {
 namespace {
@@ -121,6 +122,7 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
 int run_freeze(const FreezeArguments& arguments) {
   const Machine machine = read_machine(arguments.machine);
   const ErrorsFile errors = read_errors(arguments.errors, machine);
+  warn_of_reversals(machine, errors.errors);
   const FrozenCompensation frozen = freeze(machine, errors.errors, options_of(arguments, machine, errors));
   if (!frozen.problem.empty()) throw InputError({.file = arguments.errors}, "cannot be frozen: " + frozen.problem);
   if (1e3 * frozen.largest_correction > arguments.limit_um) {

@@ -17,6 +17,7 @@
 #include "compensate/compensate.h"
 #include "compensate/gcode_options.h"
 #include "compensate/gcode_report.h"
+#include "compensate/reversal_words.h"
 
 namespace abbe {
 namespace {
@@ -52,6 +53,7 @@ int run_gcode(const GcodeOptions& options) {
   const WordAxes words = gcode_words(options, machine);
   const NcProgramOptions text_options = gcode_text_options(options, machine, words);
   const AllowedProblems allowed = allowed_problems(options);
+  warn_of_reversals(machine, errors.errors);
 
   GcodeResult result;
   ErrorSet corrected_errors = errors.errors;

@@ -15,6 +15,7 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/verify/error_map.h"
 #include "compensate/compensate.h"
+#include "compensate/reversal_words.h"
 #include "compensate/table_formats.h"
 #include "compensate/table_options.h"
 #include "compensate/table_report.h"
@@ -231,6 +232,7 @@ int run_table(const TableCommand& command) {
   const ErrorsFile file = read_errors(command.errors, machine);
   const ErrorSet& errors = file.errors;
   TableRequest request = request_of(command, machine, errors, format);
+  warn_of_reversals(machine, errors);
   TableReport report;
   report.format = &format;
   report.machine = &machine;

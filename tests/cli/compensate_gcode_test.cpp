@@ -170,6 +170,18 @@ TEST_F(CompensateGcode, JsonSaysWhatWasDoneAndWithWhatUncertainty) {
   EXPECT_THAT(json.at("left_out").get<std::vector<std::string>>(), testing::Contains("EAX"));
 }
 
+TEST_F(CompensateGcode, ReversalValuesThatStayAreNamed) {
+  std::ifstream file(kExamples / "compensate/trunnion.errors.toml");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::ofstream(folder.path() / "r.errors.toml") << text << "\n[[reversal]]\naxis = \"X\"\nvalue_um = -6\n";
+  const CommandResult result =
+      abbe({"compensate", "gcode", (kExamples / "compensate/cone.ngc").string(), "--machine",
+            (kExamples / "machines/trunnion-mill.machine.toml").string(), "--errors", "r.errors.toml", "--dry-run"});
+  EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("reversal values are not compensated"));
+  EXPECT_THAT(result.err, HasSubstr("X -6 um"));
+}
+
 TEST_F(CompensateGcode, ADryRunWritesNothing) {
   const CommandResult result = run("plate.ngc", {"--dry-run"});
   EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
