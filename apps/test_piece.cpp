@@ -103,11 +103,12 @@ void add_common(CLI::App& piece, TestPieceOptions& options, const char* centre, 
 }  // namespace
 
 void add_test_piece_command(CommandLine& line) {
-  CLI::App* command = line.add("test-piece", "Tool paths of five-axis test pieces, milled with the flank of the tool",
-                               "  abbe test-piece cone-frustum -o cone.csv\n"
-                               "  abbe test-piece s-shape --centre-mm 0 0 30 -o s.csv\n"
-                               "  abbe path examples/machines/trunnion-mill.machine.toml cone.csv -o cone.ngc\n\n"
-                               "Sizes and what they are compared with: docs/test-pieces.md.");
+  CLI::App* command = line.add(
+      "test-piece", "Tool paths of five-axis test pieces, milled with the flank of the tool",
+      "  abbe test-piece cone-frustum -o cone.csv\n"
+      "  abbe test-piece s-shape --centre-mm 0 0 30 -o s.csv\n\n"
+      "Axis commands and a program: abbe path MACHINE cone.csv -o cone.ngc. Sizes and what is measured on the pieces:\n"
+      "docs/test-pieces.md.");
   command->require_subcommand(1);
   auto options = std::make_shared<TestPieceOptions>();
   CLI::App* cone = command->add_subcommand("cone-frustum", "Inclined cone frustum (in the manner of ISO 10791-7, M3)");

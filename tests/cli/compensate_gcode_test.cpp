@@ -288,7 +288,9 @@ std::string rs274() {
 
 /// Straight moves as LinuxCNC's interpreter prints them: mm and degrees with four decimals.
 std::vector<ProgramMove> moves_of_linuxcnc(const std::string& program, const std::string& parameters) {
-  const ChildProcess process({rs274(), "-g", "-v", parameters, program}, 60);
+  // Its tools stand in a file of the home folder, which another one at work would take away.
+  const std::string home = "HOME=" + std::filesystem::path(parameters).parent_path().string();
+  const ChildProcess process({"/usr/bin/env", home, rs274(), "-g", "-v", parameters, program}, 60);
   std::istringstream lines{std::string(process.output())};
   std::vector<ProgramMove> moves;
   WordValues here{};

@@ -71,11 +71,12 @@ class Rs274 {
     // It takes the lengths of its table for inches.
     std::ofstream(tools) << fmt::format("T1 P1 Z{:.12f}\nT2 P2 X{:.12f} Y{:.12f} Z{:.12f}\n", 50 / 25.4, 1 / 25.4,
                                         2 / 25.4, 30 / 25.4);
-    const ChildProcess process({rs274(), "-g", "-v", var, "-t", tools, ngc}, 60);
+    // Its tools stand in a file of the home folder, which another one at work would take away.
+    const ChildProcess process({"/usr/bin/env", "HOME=" + folder, rs274(), "-g", "-v", var, "-t", tools, ngc}, 60);
     Canon canon = read(std::string(process.output()));
     if (std::string(process.output()).find("PROGRAM_END") == std::string::npos &&
         program.find("M2") != std::string::npos) {
-      canon.error = std::string(process.messages()) + std::string(process.output());
+      canon.error = "rs274 did not reach the end: " + std::string(process.messages()) + std::string(process.output());
     }
     std::filesystem::remove_all(folder);
     return canon;
