@@ -41,6 +41,10 @@ class Scanner {
     if (code >= 0x7F || (code < 0x20 && c != '\t' && c != '\r' && c != '\n')) {
       fail("a character that may stand in texts and comments only", kName);
     }
+    if (in_value_ && c >= '0' && c <= '9' && at_ > 0 &&
+        std::string_view(" \t\r\n=[{,").find(text_[at_ - 1]) != std::string_view::npos) {
+      check_date();
+    }
     if (c == '=') in_value_ = true;
     if (c == '[' || c == '{') {
       // Behind a wrong value the parser reads on over brackets and quotes, and then takes no character beyond ASCII.
@@ -68,6 +72,16 @@ class Scanner {
     if (at_ > 0 && allowed.find(text_[at_ - 1]) == std::string_view::npos) {
       fail("a quote in the middle of a word", "=, a comma or a blank before it");
     }
+  }
+
+  /// What the parser takes for the beginning of a date; it does not count underscores.
+  void check_date() const {
+    std::string word;
+    for (std::size_t i = at_; i < text_.size() && word.size() < 8; ++i) {
+      if (std::string_view(" \t\r\n,]}#").find(text_[i]) != std::string_view::npos) break;
+      if (text_[i] != '_') word += text_[i];
+    }
+    if (word.size() == 8 && word[4] == '-' && word[7] == '-') fail("a date", "a number, or a text in quotes");
   }
 
   [[noreturn]] void fail(const std::string& problem, const std::string& expected) const {

@@ -107,6 +107,9 @@ TEST(TomlTable, RefusesHeadersWithoutNameAndStrayCharacters) {
   EXPECT_EQ(wrong("a = 0\x01", read_range),
             "a.toml:1:6: a character that may stand in texts and comments only" + expected);
   EXPECT_EQ(wrong("a = { b = [} }", read_range), "a.toml:1:12: a bracket that closes another kind; expected ]");
+  EXPECT_EQ(wrong("a = [2026-01-01 8]", read_range), "a.toml:1:6: a date; expected a number, or a text in quotes");
+  EXPECT_EQ(wrong("a = 20_26-01-01 8", read_range), "a.toml:1:5: a date; expected a number, or a text in quotes");
+  EXPECT_EQ(wrong("a = [0, 80-0-Q1-(e 8]", read_range), "a.toml:1:9: a date; expected a number, or a text in quotes");
 }
 
 TEST(TomlTable, AcceptsAnyCharacterInTextsAndCommentsAndNestedArrays) {
