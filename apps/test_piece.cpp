@@ -54,32 +54,35 @@ int write_piece(const TestPieceOptions& options, const char* what, const std::st
   return kDone;
 }
 
+/// What both pieces have.
+template <typename Piece>
+void take_common(const TestPieceOptions& options, Piece& piece) {
+  if (options.height_mm > 0) piece.height = options.height_mm;
+  piece.tool_radius = options.tool_diameter_mm / 2;
+  piece.feed = options.feed_mm_per_min / 60;
+  piece.chord_tolerance = options.chord_um / 1000;
+}
+
 TestPiece make_cone_frustum(const TestPieceOptions& options) {
   ConeFrustum frustum;
+  take_common(options, frustum);
   frustum.base_diameter = options.base_diameter_mm;
-  if (options.height_mm > 0) frustum.height = options.height_mm;
   frustum.half_apex_angle = options.half_apex_deg * kDegree;
   frustum.inclination = options.inclination_deg * kDegree;
   frustum.lean_azimuth = options.azimuth_deg * kDegree;
   if (!options.centre_mm.empty()) frustum.base_centre = Eigen::Vector3d::Map(options.centre_mm.data());
-  frustum.tool_radius = options.tool_diameter_mm / 2;
-  frustum.feed = options.feed_mm_per_min / 60;
-  frustum.chord_tolerance = options.chord_um / 1000;
   return cone_frustum(frustum);
 }
 
 TestPiece make_s_shape(const TestPieceOptions& options) {
   SShape shape;
+  take_common(options, shape);
   shape.length = options.length_mm;
   shape.amplitude = options.amplitude_mm;
-  if (options.height_mm > 0) shape.height = options.height_mm;
   shape.lean = options.lean_deg * kDegree;
   shape.twist = options.twist_deg * kDegree;
   shape.azimuth = options.azimuth_deg * kDegree;
   if (!options.centre_mm.empty()) shape.centre = Eigen::Vector3d::Map(options.centre_mm.data());
-  shape.tool_radius = options.tool_diameter_mm / 2;
-  shape.feed = options.feed_mm_per_min / 60;
-  shape.chord_tolerance = options.chord_um / 1000;
   return s_shape(shape);
 }
 

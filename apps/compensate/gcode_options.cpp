@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "abbe/formats/input_error.h"
-#include "abbe/formats/number_text.h"
 #include "abbe/formats/path_program.h"
+#include "axis_option.h"
 
 namespace abbe {
 namespace {
@@ -15,24 +15,18 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 bool is_rotary(std::size_t word) { return word >= 3 && word < 6; }
 
-/// "X_mm=100", "C_deg=30": a word and where its axis stands.
-void read_start(const std::string& text, const WordAxes& words, NcProgramOptions& options) {
-  const auto fail = [&](const std::string& problem) {
-    throw InputError({.field = "--start " + text}, problem, "WORD_unit=position, such as X_mm=100 or C_deg=30");
-  };
-  const std::size_t equals = text.find('='), underscore = text.find('_');
-  if (equals == std::string::npos || underscore == std::string::npos || underscore > equals) fail("not understood");
-  const std::string name = text.substr(0, underscore), unit = text.substr(underscore + 1, equals - underscore - 1);
+/// "X_mm=100", "C_deg=30": the word of an axis in the program and where the axis stands.
+void read_start(const std::string& text, const Machine& machine, const WordAxes& words, NcProgramOptions& options) {
+  const std::string name = text.substr(0, text.find('_'));
   for (std::size_t i = 0; i < kAxisWords; ++i) {
-    if (name != axis_word_text(static_cast<AxisWord>(i))) continue;
-    if (words.axis[i] == Machine::npos) fail("the machine has no axis for this word");
-    if (unit != (is_rotary(i) ? "deg" : "mm")) fail(fmt::format("unit '{}'", unit));
-    double value = 0;
-    if (parse_number(std::string_view(text).substr(equals + 1), 0, value) != NumberProblem::none) fail("not a number");
-    options.start[i] = is_rotary(i) ? value * kDegree : value;
+    if (name != axis_word_text(static_cast<AxisWord>(i)) || words.axis[i] == Machine::npos) continue;
+    // The axis may have another name than its word.
+    const std::string of_axis = machine.axes[words.axis[i]].name + text.substr(name.size());
+    options.start[i] = axis_option(machine, "--start", of_axis).position;
     return;
   }
-  fail(fmt::format("'{}' is no word of an axis", name));
+  throw InputError({.field = "--start " + text}, fmt::format("'{}' is no word of an axis of the machine", name),
+                   "WORD_unit=position, such as X_mm=100 or C_deg=30");
 }
 
 double positive(const char* option, double value, const char* unit) {
@@ -93,10 +87,9 @@ WordAxes gcode_words(const GcodeOptions& options, const Machine& machine) {
 }
 
 NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& machine, const WordAxes& words) {
-  (void)machine;
   NcProgramOptions text;
   for (std::size_t i = 0; i < kAxisWords; ++i) text.words[i] = words.axis[i] != Machine::npos;
-  for (const std::string& start : options.start) read_start(start, words, text);
+  for (const std::string& start : options.start) read_start(start, machine, words, text);
   if (!options.parameters.empty()) text.parameters = read_nc_parameters(options.parameters);
   text.parameters_in_inches = options.parameters_in_inches;
   if (!options.tool_table.empty()) text.tools = read_nc_tools(options.tool_table, options.tool_table_in_inches);

@@ -3,34 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "abbe/formats/input_error.h"
-#include "abbe/formats/number_text.h"
+#include "axis_option.h"
 
 namespace abbe {
 
 std::vector<double> reference_pose(const Machine& machine, std::vector<double> positions,
                                    const std::vector<std::string>& at) {
   for (const std::string& text : at) {
-    const auto fail = [&](const std::string& problem) {
-      throw InputError({.field = "--at " + text}, problem, "AXIS_unit=position, such as X_mm=300 or A_deg=0");
-    };
-    const std::size_t equals = text.find('='), underscore = text.rfind('_', equals);
-    if (equals == std::string::npos || underscore == std::string::npos) fail("not understood");
-    const std::size_t axis = machine.find_axis(text.substr(0, underscore));
-    if (axis == Machine::npos) fail("the machine has no axis '" + text.substr(0, underscore) + "'");
-    const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
-    const std::string unit = text.substr(underscore + 1, equals - underscore - 1);
-    if (unit != (rotary ? "deg" : "mm")) {
-      fail(fmt::format("unit '{}' for a {} axis", unit, rotary ? "rotary" : "linear"));
+    const HeldAxis at_position = axis_option(machine, "--at", text);
+    const Axis& axis = machine.axes[at_position.axis];
+    if (!axis.endless && (at_position.position < axis.travel_min || at_position.position > axis.travel_max)) {
+      throw InputError({.field = "--at " + text}, "outside the axis's travel", "a position within it");
     }
-    double value = 0;
-    if (parse_number(std::string_view(text).substr(equals + 1), 0, value) != NumberProblem::none) fail("not a number");
-    if (rotary) value *= std::numbers::pi / 180;
-    const Axis& one = machine.axes[axis];
-    if (!one.endless && (value < one.travel_min || value > one.travel_max)) fail("outside the axis's travel");
-    positions[axis] = value;
+    positions[at_position.axis] = at_position.position;
   }
   return positions;
 }

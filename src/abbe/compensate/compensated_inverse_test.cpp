@@ -7,8 +7,8 @@
 #include <numbers>
 #include <random>
 
+#include "abbe/compensate/errors_for_test.h"
 #include "abbe/errors/actual_pose.h"
-#include "abbe/errors/random_errors.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
@@ -50,33 +50,10 @@ struct Corrections {
   }
 };
 
-/// Errors of tens of micrometres and microradians, every one the machine can have.
-ErrorSet large_errors(const Machine& machine, std::uint64_t seed) {
-  RandomErrorOptions options;
-  options.seed = seed;
-  options.translation_um = 40;
-  options.rotation_urad = 80;
-  options.location_um = 60;
-  options.location_urad = 150;
-  ErrorSet errors = random_errors(machine, options);
-  errors.tool_offset_error = {0.01, -0.02, 0.015};
-  return errors;
-}
-
 std::vector<std::vector<double>> random_poses(const Machine& machine, std::size_t count, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
   std::vector<std::vector<double>> poses;
-  while (poses.size() < count) {
-    std::vector<double> pose = test::random_commands(machine, generator);
-    for (std::size_t i = 0; i < pose.size(); ++i) {
-      const Axis& axis = machine.axes[i];
-      if (axis.endless) continue;
-      // Room at both ends for the corrections.
-      const double middle = 0.5 * (axis.travel_min + axis.travel_max);
-      pose[i] = middle + 0.98 * (pose[i] - middle);
-    }
-    poses.push_back(std::move(pose));
-  }
+  while (poses.size() < count) poses.push_back(test::inner_commands(machine, generator));
   return poses;
 }
 
@@ -91,7 +68,7 @@ TEST(CompensatedInverse, BringsTheActualToolToTheNominalPoseOfEveryMachine) {
   for (const test::NamedMachine& named : test::all_machines()) {
     const Machine& machine = named.machine;
     SCOPED_TRACE(named.name);
-    const ErrorSet errors = large_errors(machine, 3);
+    const ErrorSet errors = test::tens_of_micrometres(machine, 3);
     Corrections poses(machine, random_poses(machine, 300, 5));
     poses.correct(CompensatedInverse(machine, errors));
     int reached = 0;
@@ -120,7 +97,7 @@ TEST(CompensatedInverse, BringsTheActualToolToTheNominalPoseOfEveryMachine) {
 
 TEST(CompensatedInverse, FiveAxesReachPointAndDirectionAwayFromSingularities) {
   const Machine machine = test::trunnion_mill();
-  const ErrorSet errors = large_errors(machine, 7);
+  const ErrorSet errors = test::tens_of_micrometres(machine, 7);
   std::vector<std::vector<double>> list = random_poses(machine, 2000, 11);
   const std::size_t a = machine.find_axis("A");
   for (std::vector<double>& pose : list) {
@@ -151,7 +128,7 @@ TEST(CompensatedInverse, WithoutErrorsCommandsStayAsTheyAre) {
 
 TEST(CompensatedInverse, NearASingularityTheTurnIsBoundedAndThePointReached) {
   const Machine machine = test::trunnion_mill();
-  const ErrorSet errors = large_errors(machine, 13);
+  const ErrorSet errors = test::tens_of_micrometres(machine, 13);
   const std::size_t a = machine.find_axis("A"), c = machine.find_axis("C");
   std::vector<double> pose(machine.axes.size(), 0.0);
   for (std::size_t i = 0; i < pose.size(); ++i) {
@@ -187,7 +164,7 @@ TEST(CompensatedInverse, NearASingularityTheTurnIsBoundedAndThePointReached) {
 
 TEST(CompensatedInverse, ThroughASingularityNoCommandJumps) {
   const Machine machine = test::trunnion_mill();
-  const ErrorSet errors = large_errors(machine, 17);
+  const ErrorSet errors = test::tens_of_micrometres(machine, 17);
   const std::size_t a = machine.find_axis("A"), c = machine.find_axis("C");
   std::vector<std::vector<double>> list;
   constexpr int kHalf = 20000;
@@ -214,7 +191,7 @@ TEST(CompensatedInverse, ThroughASingularityNoCommandJumps) {
 
 TEST(CompensatedInverse, AResultDoesNotDependOnThePosesWithIt) {
   const Machine machine = test::gantry_fork_head();
-  const CompensatedInverse inverse(machine, large_errors(machine, 19));
+  const CompensatedInverse inverse(machine, test::tens_of_micrometres(machine, 19));
   const std::vector<std::vector<double>> list = random_poses(machine, 300, 23);
   Corrections all(machine, list);
   all.correct(inverse);
@@ -228,7 +205,7 @@ TEST(CompensatedInverse, AResultDoesNotDependOnThePosesWithIt) {
 
 TEST(CompensatedInverse, InPlaceItDoesTheSame) {
   const Machine machine = test::trunnion_mill();
-  const CompensatedInverse inverse(machine, large_errors(machine, 29));
+  const CompensatedInverse inverse(machine, test::tens_of_micrometres(machine, 29));
   Corrections poses(machine, random_poses(machine, 200, 31));
   poses.correct(inverse);
   std::vector<std::vector<double>> axes = poses.commands;
@@ -274,7 +251,7 @@ TEST(CompensatedInverse, WhatIsNotKnownIsLeftAlone) {
 
 TEST(CompensatedInverse, GivenPosesAreReachedInFullOrientationWhereTheMachineCan) {
   const Machine machine = test::three_axis_head();
-  const ErrorSet errors = large_errors(machine, 37);
+  const ErrorSet errors = test::tens_of_micrometres(machine, 37);
   Corrections poses(machine, random_poses(machine, 200, 41));
   // Targets that the actual machine has at other commands near by: they can be reached exactly.
   std::mt19937_64 generator(43);

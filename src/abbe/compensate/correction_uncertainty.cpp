@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/errors/stated_uncertainty.h"
+
 namespace abbe {
 
 std::vector<double> propagated_uncertainty(const ErrorSet& errors, const Eigen::MatrixXd& covariance,
@@ -40,14 +42,7 @@ std::vector<double> propagated_uncertainty(const ErrorSet& errors, const Eigen::
 }
 
 Eigen::MatrixXd stated_variances(const ErrorSet& errors) {
-  std::vector<double> uncertainty;
-  for (const ErrorMotion& motion : errors.motions) {
-    for (std::size_t i = 0; i < motion.coefficients.size(); ++i) {
-      uncertainty.push_back(motion.standard_uncertainty.empty() ? 0.0 : motion.standard_uncertainty[i]);
-    }
-  }
-  for (const LocationError& location : errors.locations) uncertainty.push_back(location.standard_uncertainty);
-  uncertainty.resize(errors.parameter_count(), 0.0);
+  const std::vector<double> uncertainty = stated_uncertainties(errors);
   if (std::all_of(uncertainty.begin(), uncertainty.end(), [](double u) { return u == 0; })) return {};
   const auto size = static_cast<Eigen::Index>(uncertainty.size());
   Eigen::MatrixXd variances = Eigen::MatrixXd::Zero(size, size);

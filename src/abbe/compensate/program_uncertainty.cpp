@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "abbe/errors/actual_pose.h"
+#include "abbe/errors/stated_uncertainty.h"
 
 namespace abbe {
 namespace {
@@ -76,19 +77,8 @@ bool is_uncertain_everywhere(const Machine& machine, const ErrorSet& errors, con
 Eigen::MatrixXd parameter_covariance(const ErrorSet& errors, const Eigen::MatrixXd& covariance) {
   const auto n = static_cast<Eigen::Index>(errors.parameter_count());
   if (covariance.rows() == n) return covariance;
-  Eigen::MatrixXd diagonal = Eigen::MatrixXd::Zero(n, n);
-  Eigen::Index p = 0;
-  for (const ErrorMotion& motion : errors.motions) {
-    for (std::size_t i = 0; i < motion.coefficients.size(); ++i, ++p) {
-      const double u = motion.standard_uncertainty.empty() ? 0 : motion.standard_uncertainty[i];
-      diagonal(p, p) = u * u;
-    }
-  }
-  for (const LocationError& location : errors.locations) {
-    diagonal(p, p) = location.standard_uncertainty * location.standard_uncertainty;
-    ++p;
-  }
-  return diagonal;
+  const std::vector<double> stated = stated_uncertainties(errors);
+  return Eigen::VectorXd(Eigen::VectorXd::Map(stated.data(), n).cwiseAbs2()).asDiagonal();
 }
 
 PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,

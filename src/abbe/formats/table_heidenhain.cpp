@@ -5,15 +5,14 @@
 #include <cassert>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/program_text.h"
 #include "abbe/formats/table_numbers.h"
 #include "abbe/formats/text_cursor.h"
 
 namespace abbe {
 namespace {
 
-std::string number_of(double value, bool rotary) {
-  return fixed_decimals(shown_position(value, rotary), rotary ? 7 : 6);
-}
+std::string number_of(double value, bool rotary) { return fixed_number(shown_position(value, rotary), rotary ? 7 : 6); }
 
 }  // namespace
 

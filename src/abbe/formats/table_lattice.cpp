@@ -9,6 +9,7 @@
 
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/program_text.h"
 #include "abbe/formats/table_numbers.h"
 #include "abbe/formats/text_cursor.h"
 
@@ -28,7 +29,7 @@ std::string output_title(const TableAxisName& axis) {
 }
 
 std::string correction_text(double value, bool rotary) {
-  return fixed_decimals(scale_of(rotary) * value, kCorrectionDecimals);
+  return fixed_number(scale_of(rotary) * value, kCorrectionDecimals);
 }
 
 std::string position_text(double value, bool rotary) {

@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/program_text.h"
 #include "abbe/formats/table_numbers.h"
 
 namespace abbe {
@@ -24,8 +25,8 @@ std::string linuxcnc_text(const AxisTable& table, bool rotary, LinuxCncCompensat
       forward = nominal - forward;
       reverse = nominal - reverse;
     }
-    text += fmt::format("{} {} {}\n", fixed_decimals(nominal, kDecimals), fixed_decimals(forward, kDecimals),
-                        fixed_decimals(reverse, kDecimals));
+    text += fmt::format("{} {} {}\n", fixed_number(nominal, kDecimals), fixed_number(forward, kDecimals),
+                        fixed_number(reverse, kDecimals));
   }
   return text;
 }

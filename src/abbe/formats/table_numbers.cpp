@@ -7,18 +7,13 @@
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/number_text.h"
+#include "abbe/formats/program_text.h"
 #include "abbe/formats/text_cursor.h"
 
 namespace abbe {
 
-std::string fixed_decimals(double value, int decimals) {
-  std::string text = fmt::format("{:.{}f}", value, decimals);
-  if (text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
-  return text;
-}
-
 std::string trimmed_decimals(double value, int decimals) {
-  std::string text = fixed_decimals(value, decimals);
+  std::string text = fixed_number(value, decimals);
   if (text.find('.') == std::string::npos) return text;
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();

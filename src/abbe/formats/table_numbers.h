@@ -8,10 +8,7 @@
 
 namespace abbe {
 
-/// A number of a fixed count of decimals, without exponent; "-0.000" is "0.000".
-std::string fixed_decimals(double value, int decimals);
-
-/// The same without the zeros at its end: "760", "20.5".
+/// fixed_number() without the zeros at its end: "760", "20.5".
 std::string trimmed_decimals(double value, int decimals);
 
 /// mm as they are, rad as degrees.

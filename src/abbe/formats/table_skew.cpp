@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/program_text.h"
 #include "abbe/formats/table_numbers.h"
 #include "abbe/formats/text_cursor.h"
 
@@ -79,8 +80,8 @@ SkewFactors parse_klipper_skew(std::string_view text, const std::string& file) {
 }
 
 std::string marlin_skew_text(const SkewFactors& factors) {
-  return fmt::format("M852 I{} J{} K{}\nM500\n", fixed_decimals(factors.xy, 9), fixed_decimals(factors.xz, 9),
-                     fixed_decimals(factors.yz, 9));
+  return fmt::format("M852 I{} J{} K{}\nM500\n", fixed_number(factors.xy, 9), fixed_number(factors.xz, 9),
+                     fixed_number(factors.yz, 9));
 }
 
 SkewFactors parse_marlin_skew(std::string_view text, const std::string& file) {

@@ -6,13 +6,14 @@
 #include <set>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/program_text.h"
 #include "abbe/formats/table_numbers.h"
 #include "abbe/formats/text_cursor.h"
 
 namespace abbe {
 namespace {
 
-std::string value_text(double value, bool is_angle) { return fixed_decimals(value, is_angle ? 12 : 9); }
+std::string value_text(double value, bool is_angle) { return fixed_number(value, is_angle ? 12 : 9); }
 std::string position_text(double value, bool rotary) { return trimmed_decimals(shown_position(value, rotary), 9); }
 
 /// An error by its name in these files: "EXY" of a motion, "C0B" of a location.
