@@ -114,9 +114,10 @@ TEST(NcErrors, OfWordsThatAreWrongOrHaveNoUse) {
   EXPECT_EQ(refusal("G43.1\n"), "p.ngc:1:1: G43.1: the offset of the tool is missing; expected axis words");
   EXPECT_EQ(refusal("G43.4 H1\nG43 H1\n"),
             "p.ngc:2:1: G43: another tool length while tool centre control is on; expected G49 before it");
-  EXPECT_EQ(refusal("G43.4 H1\nG1 X1 F1\n"),
-            "p.ngc:2:1: G1: where XYZ stands is not known here, and a move at work begins there; expected a G0 before "
-            "it that names these axes, or where they stand when the program begins");
+  EXPECT_EQ(
+      refusal("G43.4 H1\nG1 X1 F1\n"),
+      "p.ngc:2:1: G1: where X, Y, Z stand is not known here, and a move at work begins there; expected a G0 before "
+      "it that names these axes, or where they stand when the program begins (--start X_mm=0)");
   EXPECT_EQ(refusal("G43.4 H1\nG0 X1 Y1 Z1\nG53 G0 X1\n"),
             "p.ngc:3:1: G53: G53 while tool centre control is on; expected G49 before it");
   EXPECT_EQ(refusal("G4\n"), "p.ngc:1:1: G4: the time of the dwell is missing; expected P in s");
@@ -282,17 +283,17 @@ TEST(NcErrors, OfAProgramWithoutAToolTable) {
 
 TEST(NcErrors, OfPositionsThatAreNotKnown) {
   const NcProgramOptions options;
-  EXPECT_EQ(
-      message_of([&] { run_program("G21\nG0 X1\nN5 G1 X2 F1\n", options); }),
-      "p.ngc:3:1: N5: where YZABC stands is not known here, and a move at work begins there; expected a G0 before it "
-      "that names these axes, or where they stand when the program begins");
+  EXPECT_EQ(message_of([&] { run_program("G21\nG0 X1\nN5 G1 X2 F1\n", options); }),
+            "p.ngc:3:1: N5: where Y, Z, A, B, C stand is not known here, and a move at work begins there; expected a "
+            "G0 before it "
+            "that names these axes, or where they stand when the program begins (--start X_mm=0)");
   EXPECT_EQ(message_of([&] { run_program("G91 G0 X1\n", options); }),
             "p.ngc:1:1: G91: where X stands is not known here, and G91 counts from there; expected a G0 before it that "
-            "names these axes, or where they stand when the program begins");
+            "names these axes, or where they stand when the program begins (--start X_mm=0)");
   EXPECT_EQ(
       message_of([&] { run_program("G92 X0\n", options); }),
       "p.ngc:1:1: G92: where X stands is not known here, and G92 takes it; expected a G0 before it that names these "
-      "axes, or where they stand when the program begins");
+      "axes, or where they stand when the program begins (--start X_mm=0)");
 }
 
 TEST(NcErrors, OfParametersThatAreGiven) {

@@ -20,14 +20,17 @@ bool is_rotary(std::size_t axis) { return axis >= 3 && axis <= 5; }
 void NcInterpreter::fail_unknown(std::uint32_t words, const std::string& why) const {
   std::string names;
   for (std::size_t k = 0; k < kAxisWords; ++k) {
-    if ((words >> k & 1) != 0) names += "XYZABCUVW"[k];
+    if ((words >> k & 1) == 0) continue;
+    if (!names.empty()) names += ", ";
+    names += "XYZABCUVW"[k];
   }
   NcCursor place = block_.cursor;
   place.at = place.begin;
   place.skip_blanks();
   const char* const first = place.at;
-  place.fail(first, fmt::format("where {} stands is not known here, and {}", names, why),
-             "a G0 before it that names these axes, or where they stand when the program begins");
+  place.fail(first,
+             fmt::format("where {} {} is not known here, and {}", names, names.size() > 1 ? "stand" : "stands", why),
+             "a G0 before it that names these axes, or where they stand when the program begins (--start X_mm=0)");
 }
 
 NcInterpreter::Words NcInterpreter::ends(std::uint32_t& known) const {

@@ -1,15 +1,7 @@
 #include "abbe/formats/nc_program.h"
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <system_error>
-
-#include "abbe/formats/input_error.h"
 #include "abbe/formats/nc_interpreter.h"
 #include "abbe/formats/nc_writer.h"
-#include "abbe/formats/streamed_file.h"
-#include "abbe/formats/text_file.h"
 
 namespace abbe {
 
@@ -26,21 +18,6 @@ NcProgramResult correct_nc_program(std::string_view text, const std::string& fil
   result.uncorrected_moves = writer.uncorrected();
   result.first_uncorrected_line = writer.first_uncorrected_line();
   result.first_assumed_offset_line = interpreter.first_assumed_offset_line();
-  return result;
-}
-
-NcProgramResult correct_nc_program_file(const std::filesystem::path& program, const std::filesystem::path& corrected,
-                                        const NcProgramOptions& options, MoveCorrector& corrector) {
-  std::error_code ignored;
-  if (std::filesystem::equivalent(program, corrected, ignored)) {
-    throw InputError({.file = corrected.string()}, "is the program itself", "another file for the corrected program");
-  }
-  MappedFile file(program);
-  StreamedFile out(corrected);
-  const NcProgramResult result = correct_nc_program(
-      file.text(), program.string(), options, corrector, [&](std::string_view text) { out.append(text); },
-      [&](std::size_t end) { file.forget(end); });
-  out.commit();
   return result;
 }
 

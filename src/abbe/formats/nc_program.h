@@ -64,11 +64,6 @@ NcProgramResult correct_nc_program(std::string_view text, const std::string& fil
                                    MoveCorrector& corrector, const std::function<void(std::string_view)>& write,
                                    const std::function<void(std::size_t)>& read_to = {});
 
-/// From file to file. The new file appears when it is whole; the input is never written.
-/// @throws InputError also if both are the same file
-NcProgramResult correct_nc_program_file(const std::filesystem::path& program, const std::filesystem::path& corrected,
-                                        const NcProgramOptions& options, MoveCorrector& corrector);
-
 /// Parameters of a LinuxCNC parameter file (.var): a number and a value in every line.
 /// @throws InputError
 std::map<int, double> read_nc_parameters(const std::filesystem::path& path);
