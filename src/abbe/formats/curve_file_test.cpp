@@ -76,6 +76,8 @@ TEST(CurveFile, ProgramsThatWouldBeMisreadAreRefused) {
   EXPECT_THAT(message("G1 X1 Y2 Z3 I0 J0 K1\nC2=5\n"), HasSubstr("part.ngc:2: C2=5"));
   EXPECT_THAT(message("G1 X1 Y2 Z3 I0 J0 K1\nC7=5\n"), HasSubstr("no axis C7"));
   EXPECT_THAT(message("G1 X#1\n"), HasSubstr("no number"));
+  EXPECT_THAT(message("G1 X1000000001\n"), HasSubstr("too large"));
+  EXPECT_THAT(message(("G1 X1 Y2 Z3 J0 K1 I" + std::string(200, '9')).c_str()), HasSubstr("too large"));
   EXPECT_THAT(message("T1 M6\n"), HasSubstr("T1"));
   EXPECT_THAT(message("M8\n"), HasSubstr("M8"));
   EXPECT_THAT(message("G4 P1\n"), HasSubstr("before the first move"));

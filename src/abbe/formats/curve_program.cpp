@@ -89,8 +89,9 @@ class ProgramReader {
     while (i < line.size() && (is_digit(line[i]) || line[i] == '.' || line[i] == '-' || line[i] == '+')) ++i;
     word.written = shown_word(line.substr(begin, i - begin));
     if (parse_number(line.substr(number, i - number), 0, word.value) != NumberProblem::none) {
-      fail(word.written, "no number behind the letter", "a plain number of magnitude below 1e9");
+      fail(word.written, "no number behind the letter", "a plain number of at most 1e9");
     }
+    if (!(std::abs(word.value) <= kLargestInput)) fail(word.written, "is too large", "a magnitude of at most 1e9");
     return word;
   }
 

@@ -9,7 +9,13 @@
 
 namespace abbe {
 
-int default_thread_count() { return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64); }
+int default_thread_count() {
+#ifdef ABBE_ONE_THREAD  // fuzzing: what threads do first differs from run to run
+  return 1;
+#else
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
+#endif
+}
 
 void for_each_block(std::size_t blocks, int threads, const std::function<void(std::size_t)>& work) {
   if (threads <= 0) threads = default_thread_count();
