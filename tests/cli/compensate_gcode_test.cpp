@@ -3,16 +3,14 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <sstream>
 
 #include "abbe/compensate/program_moves_for_test.h"
-#include "abbe/formats/child_process.h"
 #include "abbe/formats/errors_file.h"
+#include "abbe/formats/linuxcnc_for_test.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/nc_program.h"
 #include "cli/command_test.h"
@@ -40,11 +38,13 @@ class Recorder final : public MoveCorrector {
   std::vector<ProgramMove> moves;
 };
 
-std::vector<ProgramMove> moves_of(const std::filesystem::path& program) {
+/// @param from_zero  all axes stand at zero when the program begins; else that is not known
+std::vector<ProgramMove> moves_of(const std::filesystem::path& program, bool from_zero = false) {
   std::ifstream file(program);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   NcProgramOptions options;
   options.words[4] = false;  // no B
+  for (std::size_t i = 0; from_zero && i < 6; ++i) options.start[i] = 0.0;
   Recorder recorder;
   correct_nc_program(text, program.string(), options, recorder, [](std::string_view) {});
   return recorder.moves;
@@ -275,56 +275,41 @@ TEST_F(CompensateGcode, ToolCentreProgramsAreOfThePoint) {
   EXPECT_GE((machine_and_control.pose(last, last.end, false).translation - wanted).norm(), 0.005);
 }
 
-std::string rs274() {
-  const char* const folders = std::getenv("PATH");
-  std::istringstream list(folders == nullptr ? "" : folders);
-  for (std::string folder; std::getline(list, folder, ':');) {
-    const std::filesystem::path path = std::filesystem::path(folder) / "rs274";
-    std::error_code ignored;
-    if (std::filesystem::exists(path, ignored)) return path.string();
-  }
-  return "";
+/// The program through LinuxCNC's module `gcode`; fails the test if that does not read it to its end.
+std::vector<ProgramMove> moves_of_linuxcnc(const std::filesystem::path& program) {
+  std::ifstream file(program);
+  const test::Canon canon = test::run_gcode_module({std::istreambuf_iterator<char>(file), {}});
+  EXPECT_EQ(canon.error, "");
+  return test::program_moves(canon);
 }
 
-/// Straight moves as LinuxCNC's interpreter prints them: mm and degrees with four decimals.
-std::vector<ProgramMove> moves_of_linuxcnc(const std::string& program, const std::string& parameters) {
-  // Its tools stand in a file of the home folder, which another one at work would take away.
-  const std::string home = "HOME=" + std::filesystem::path(parameters).parent_path().string();
-  const ChildProcess process({"/usr/bin/env", home, rs274(), "-g", "-v", parameters, program}, 60);
-  std::istringstream lines{std::string(process.output())};
-  std::vector<ProgramMove> moves;
-  WordValues here{};
-  for (std::string line; std::getline(lines, line);) {
-    const bool feed = line.find("STRAIGHT_FEED(") != std::string::npos;
-    const std::size_t open = line.find("STRAIGHT_");
-    if (open == std::string::npos || (!feed && line.find("STRAIGHT_TRAVERSE(") == std::string::npos)) continue;
-    std::string numbers = line.substr(line.find('(', open) + 1);
-    std::replace(numbers.begin(), numbers.end(), ',', ' ');
-    std::istringstream cells(numbers);
-    ProgramMove move;
-    move.start = here;
-    for (std::size_t i = 0; i < 6; ++i) {
-      cells >> move.end[i];
-      if (i >= 3) move.end[i] *= kDegree;
-    }
-    move.kind = feed ? MoveKind::straight : MoveKind::rapid;
-    here = move.end;
-    moves.push_back(move);
+void expect_same_moves(const std::vector<ProgramMove>& linuxcnc, const std::vector<ProgramMove>& here) {
+  const std::vector<test::CanonMove> expected = test::canon_moves(linuxcnc), found = test::canon_moves(here);
+  ASSERT_EQ(expected.size(), found.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    SCOPED_TRACE(fmt::format("move {}", i + 1));
+    ASSERT_EQ(expected[i].kind, found[i].kind);
+    ASSERT_EQ(expected[i].turns, found[i].turns);
+    for (std::size_t k = 0; k < 6; ++k) ASSERT_NEAR(expected[i].end[k], found[i].end[k], 1e-9) << "XYZABC"[k];
+    for (std::size_t k = 0; k < 2; ++k) ASSERT_NEAR(expected[i].centre[k], found[i].centre[k], 1e-9);
   }
-  return moves;
 }
 
 TEST_F(CompensateGcode, AsLinuxCncReadsBothProgramsTheToolFollowsThePath) {
-  if (rs274().empty()) GTEST_SKIP() << "rs274 (Debian package linuxcnc-uspace) is not installed";
-  ASSERT_EQ(run("cone.ngc", {"-o", "out.ngc"}).exit_code, ExitCode::done);
-  write("parameters.var", "5161\t0\n5181\t0\n5220\t1\n");
-  const std::string parameters = (folder.path() / "parameters.var").string();
-  const std::vector<ProgramMove> original = moves_of_linuxcnc((kExamples / "compensate/cone.ngc").string(), parameters);
-  const std::vector<ProgramMove> corrected = moves_of_linuxcnc((folder.path() / "out.ngc").string(), parameters);
-  ASSERT_GE(original.size(), 100U);
-  ASSERT_GE(corrected.size(), original.size());
-  // Four decimals of a degree are 0.2 um at the part.
-  expect_followed(original, corrected, 1.6e-3);
+  if (!test::has_gcode_module()) {
+    GTEST_SKIP() << "LinuxCNC's Python module gcode (Debian package linuxcnc-uspace) is not installed";
+  }
+  for (const std::string program : {"cone.ngc", "plate.ngc"}) {
+    SCOPED_TRACE(program);
+    const std::filesystem::path input = kExamples / "compensate" / program, output = folder.path() / program;
+    ASSERT_EQ(run(program, {"-o", program}).exit_code, ExitCode::done);
+    const std::vector<ProgramMove> original = moves_of_linuxcnc(input), corrected = moves_of_linuxcnc(output);
+    ASSERT_GE(original.size(), 30U);
+    ASSERT_GE(corrected.size(), original.size());
+    expect_same_moves(original, moves_of(input, true));
+    expect_same_moves(corrected, moves_of(output, true));
+    expect_followed(original, corrected, 1.1e-3);
+  }
 }
 
 }  // namespace

@@ -1,171 +1,32 @@
-// Against LinuxCNC's own interpreter, `rs274`: the same programs give the same moves, and so do those that are written.
+// Against LinuxCNC's own interpreter, `rs274` and its module `gcode`: the same programs give the same moves, and so do
+// those that are written.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
-#include "abbe/formats/child_process.h"
-#include "abbe/formats/message_of.h"
+#include "abbe/formats/linuxcnc_for_test.h"
 #include "abbe/formats/nc_correctors_for_test.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
-std::string rs274() {
-  const char* const folders = std::getenv("PATH");
-  std::istringstream list(folders == nullptr ? "" : folders);
-  for (std::string folder; std::getline(list, folder, ':');) {
-    const std::filesystem::path path = std::filesystem::path(folder) / "rs274";
-    std::error_code ignored;
-    if (std::filesystem::exists(path, ignored)) return path.string();
-  }
-  return "";
-}
-
-/// A move as `rs274` prints it, in mm and degrees of the control.
-struct CanonMove {
-  char kind = 0;  ///< T rapid, F straight, A arc
-  std::array<double, 6> end{};
-  std::array<double, 2> centre{};  ///< first and second axis of the plane
-  int turns = 0;                   ///< signed
-  double feed = 0;                 ///< as in force; mm/min in G21
-};
-
-struct Canon {
-  std::vector<CanonMove> moves;
-  std::string error;
-};
-
-std::vector<double> numbers(const std::string& text) {
-  std::vector<double> values;
-  const char* at = text.c_str();
-  while (*at != 0) {
-    char* end = nullptr;
-    const double value = std::strtod(at, &end);
-    if (end == at) {
-      ++at;
-    } else {
-      values.push_back(value);
-      at = end;
-    }
-  }
-  return values;
-}
-
-class Rs274 {
- public:
-  Canon run(const std::string& program) {
-    const std::string folder = std::filesystem::path(testing::TempDir()) / fmt::format("abbe_rs274_{}", ::getpid());
-    std::filesystem::create_directories(folder);
-    const std::string ngc = folder + "/program.ngc", var = folder + "/parameters.var", tools = folder + "/tools.tbl";
-    std::ofstream(ngc) << program;
-    std::ofstream(var) << "5161\t0\n5181\t0\n5220\t1\n";
-    // It takes the lengths of its table for inches.
-    std::ofstream(tools) << fmt::format("T1 P1 Z{:.12f}\nT2 P2 X{:.12f} Y{:.12f} Z{:.12f}\n", 50 / 25.4, 1 / 25.4,
-                                        2 / 25.4, 30 / 25.4);
-    // Its tools stand in a file of the home folder, which another one at work would take away.
-    const ChildProcess process({"/usr/bin/env", "HOME=" + folder, rs274(), "-g", "-v", var, "-t", tools, ngc}, 60);
-    Canon canon = read(std::string(process.output()));
-    if (std::string(process.output()).find("PROGRAM_END") == std::string::npos &&
-        program.find("M2") != std::string::npos) {
-      canon.error = "rs274 did not reach the end: " + std::string(process.messages()) + std::string(process.output());
-    }
-    std::filesystem::remove_all(folder);
-    return canon;
-  }
-
- private:
-  static Canon read(const std::string& output) {
-    Canon canon;
-    std::array<double, 6> system{}, axis_offset{}, tool{};
-    double unit = 1, feed = 0;
-    std::array<std::size_t, 3> plane = {0, 1, 2};
-    std::array<double, 6> now{};
-    std::istringstream lines(output);
-    for (std::string line; std::getline(lines, line);) {
-      const std::size_t open = line.find('(');
-      const std::size_t blank = line.rfind(' ', open);
-      if (open == std::string::npos || blank == std::string::npos) continue;
-      const std::string name = line.substr(blank + 1, open - blank - 1);
-      const std::string inside = line.substr(open + 1);
-      const std::vector<double> v = numbers(inside);
-      const auto scaled = [&](std::size_t first, std::array<double, 6>& values) {
-        for (std::size_t k = 0; k < 6; ++k) values[k] = k < 3 ? unit * v[first + k] : v[first + k];
-      };
-      if (name == "USE_LENGTH_UNITS") unit = inside.find("INCHES") != std::string::npos ? 25.4 : 1;
-      if (name == "SET_G5X_OFFSET") scaled(1, system);
-      if (name == "SET_G92_OFFSET") scaled(0, axis_offset);
-      if (name == "USE_TOOL_LENGTH_OFFSET") scaled(0, tool);
-      if (name == "SET_FEED_RATE") feed = v[0];
-      if (name == "SELECT_PLANE") {
-        if (inside.find("XY") != std::string::npos) plane = {0, 1, 2};
-        if (inside.find("XZ") != std::string::npos) plane = {2, 0, 1};
-        if (inside.find("YZ") != std::string::npos) plane = {1, 2, 0};
-      }
-      CanonMove move;
-      if (name == "STRAIGHT_TRAVERSE" || name == "STRAIGHT_FEED") {
-        move.kind = name == "STRAIGHT_FEED" ? 'F' : 'T';
-        scaled(0, move.end);
-        for (std::size_t k = 0; k < 6; ++k) move.end[k] += system[k] + axis_offset[k] + tool[k];
-      } else if (name == "ARC_FEED") {
-        move.kind = 'A';
-        move.end[plane[0]] = unit * v[0];
-        move.end[plane[1]] = unit * v[1];
-        move.end[plane[2]] = unit * v[5];
-        for (std::size_t k = 3; k < 6; ++k) move.end[k] = v[k + 3];
-        for (std::size_t k = 0; k < 6; ++k) move.end[k] += system[k] + axis_offset[k] + tool[k];
-        for (std::size_t i = 0; i < 2; ++i) {
-          const std::size_t k = plane[i];
-          move.centre[i] = unit * v[2 + i] + system[k] + axis_offset[k] + tool[k];
-        }
-        move.turns = static_cast<int>(v[4]);
-      } else {
-        continue;
-      }
-      move.feed = feed;
-      // It repeats where it stands between the holes of a cycle.
-      if (move.kind == 'A' || move.end != now) canon.moves.push_back(move);
-      now = move.end;
-    }
-    return canon;
-  }
-};
-
-std::vector<CanonMove> as_canon(const std::vector<ProgramMove>& moves) {
-  std::vector<CanonMove> canon;
-  for (const ProgramMove& move : moves) {
-    CanonMove& c = canon.emplace_back();
-    const bool is_arc = move.kind == MoveKind::arc_clockwise || move.kind == MoveKind::arc_counterclockwise;
-    c.kind = is_arc ? 'A' : move.kind == MoveKind::rapid ? 'T' : 'F';
-    for (std::size_t k = 0; k < 6; ++k) c.end[k] = k < 3 ? move.end[k] : move.end[k] / kDegree;
-    if (is_arc) {
-      const std::size_t a = move.plane == ArcPlane::XY ? 0 : move.plane == ArcPlane::ZX ? 2 : 1;
-      c.centre = {move.arc_centre[a], move.arc_centre[(a + 1) % 3]};
-      c.turns = move.kind == MoveKind::arc_clockwise ? -move.arc_turns : move.arc_turns;
-    }
-    if (!is_arc && move.start == move.end) canon.pop_back();
-  }
-  return canon;
-}
+using test::Canon;
+using test::CanonMove;
 
 /// 4 decimals of mm, or of inches.
 constexpr double kPrinted = 2.6e-3;
+/// mm or degrees: rounding of inches to mm, and nine decimals of what is written.
+constexpr double kDoubles = 1e-9;
 
-void expect_same(const std::vector<CanonMove>& expected, const std::vector<CanonMove>& found) {
+void expect_same(const std::vector<CanonMove>& expected, const std::vector<CanonMove>& found, double tolerance) {
   ASSERT_FALSE(expected.empty());
   for (std::size_t i = 0; i < std::min(expected.size(), found.size()); ++i) {
     SCOPED_TRACE(fmt::format("move {}", i + 1));
     ASSERT_EQ(expected[i].kind, found[i].kind);
-    for (std::size_t k = 0; k < 6; ++k) ASSERT_NEAR(expected[i].end[k], found[i].end[k], kPrinted) << "XYZABC"[k];
-    for (std::size_t k = 0; k < 2; ++k) ASSERT_NEAR(expected[i].centre[k], found[i].centre[k], kPrinted);
+    for (std::size_t k = 0; k < 6; ++k) ASSERT_NEAR(expected[i].end[k], found[i].end[k], tolerance) << "XYZABC"[k];
+    for (std::size_t k = 0; k < 2; ++k) ASSERT_NEAR(expected[i].centre[k], found[i].centre[k], tolerance);
     ASSERT_EQ(expected[i].turns, found[i].turns);
   }
   ASSERT_EQ(expected.size(), found.size());
@@ -187,39 +48,20 @@ struct NamedProgram {
 };
 void PrintTo(const NamedProgram& program, std::ostream* out) { *out << program.name; }
 
-class SameAsLinuxCnc : public testing::TestWithParam<NamedProgram> {
- protected:
-  void SetUp() override {
-    if (rs274().empty()) GTEST_SKIP() << "rs274 (Debian package linuxcnc-uspace) is not installed";
-  }
-};
-
-TEST_P(SameAsLinuxCnc, MovesOfAProgram) {
-  Rs274 linuxcnc;
-  const Canon canon = linuxcnc.run(GetParam().text);
-  ASSERT_EQ(canon.error, "");
-  const RunProgram run = run_program(GetParam().text, options());
-  expect_same(canon.moves, as_canon(run.moves));
-}
-
-TEST_P(SameAsLinuxCnc, MovesOfTheProgramThatIsWritten) {
-  Rs274 linuxcnc;
-  const RunProgram run = run_program(GetParam().text, options());
-  const Canon original = linuxcnc.run(GetParam().text);
-  const Canon written = linuxcnc.run(run.text);
-  ASSERT_EQ(written.error, "") << run.text;
+/// Moves of the program that is written against those of the original.
+void expect_same_ends(const Canon& original, const Canon& written, double tolerance) {
   // Arcs are chords there; every end point is met in its order, and nothing else is between straight moves.
   std::size_t at = 0;
   for (const CanonMove& move : original.moves) {
     SCOPED_TRACE(fmt::format("move {} of {}", &move - original.moves.data() + 1, original.moves.size()));
     const auto is_there = [&](const CanonMove& other) {
       bool same = true;
-      for (std::size_t k = 0; k < 6; ++k) same = same && std::abs(other.end[k] - move.end[k]) < kPrinted;
+      for (std::size_t k = 0; k < 6; ++k) same = same && std::abs(other.end[k] - move.end[k]) < tolerance;
       return same;
     };
     if (move.kind != 'A') {
       ASSERT_LT(at, written.moves.size());
-      ASSERT_TRUE(is_there(written.moves[at])) << run.text;
+      ASSERT_TRUE(is_there(written.moves[at]));
       ASSERT_EQ(written.moves[at].kind, move.kind);
       ++at;
       continue;
@@ -232,7 +74,44 @@ TEST_P(SameAsLinuxCnc, MovesOfTheProgramThatIsWritten) {
     ASSERT_LT(at, written.moves.size());
     ++at;
   }
-  ASSERT_EQ(at, written.moves.size()) << run.text;
+  ASSERT_EQ(at, written.moves.size());
+}
+
+class SameAsLinuxCnc : public testing::TestWithParam<NamedProgram> {
+ protected:
+  void SetUp() override {
+    if (test::rs274().empty()) GTEST_SKIP() << "rs274 (Debian package linuxcnc-uspace) is not installed";
+  }
+};
+
+TEST_P(SameAsLinuxCnc, MovesOfAProgram) {
+  const Canon canon = test::run_rs274(GetParam().text);
+  ASSERT_EQ(canon.error, "");
+  const RunProgram run = run_program(GetParam().text, options());
+  expect_same(canon.moves, test::canon_moves(run.moves), kPrinted);
+}
+
+TEST_P(SameAsLinuxCnc, MovesOfTheProgramThatIsWritten) {
+  const RunProgram run = run_program(GetParam().text, options());
+  const Canon written = test::run_rs274(run.text);
+  ASSERT_EQ(written.error, "") << run.text;
+  SCOPED_TRACE(run.text);
+  expect_same_ends(test::run_rs274(GetParam().text), written, kPrinted);
+}
+
+TEST_P(SameAsLinuxCnc, MovesOfBothInFullDoubles) {
+  if (!test::has_gcode_module()) GTEST_SKIP() << "LinuxCNC's Python module gcode is not installed";
+  const Canon original = test::run_gcode_module(GetParam().text);
+  ASSERT_EQ(original.error, "");
+  NcProgramOptions fine = options();
+  fine.parameters_in_inches = false;  // the module has them in the unit of the machine
+  fine.decimals_mm = fine.decimals_deg = 9;
+  const RunProgram run = run_program(GetParam().text, fine);
+  expect_same(original.moves, test::canon_moves(run.moves), kDoubles);
+  const Canon written = test::run_gcode_module(run.text);
+  ASSERT_EQ(written.error, "") << run.text;
+  SCOPED_TRACE(run.text);
+  expect_same_ends(original, written, kDoubles);
 }
 
 const std::array kPrograms = {
