@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "abbe/formats/json_text.h"
@@ -197,6 +198,18 @@ void print_plan(const Study& study, const StudyPlan& result) {
   print_grids(result);
 }
 
+/// Takes the set-ups out that are not planned, and names them; all stay if none could be planned.
+std::string leave_out_other_instruments(Study& study) {
+  std::string names;
+  const auto is_tracker = [](const Setup& setup) { return setup.device == nullptr; };
+  if (std::none_of(study.setups.begin(), study.setups.end(), is_tracker)) return names;
+  for (const Setup& setup : study.setups) {
+    if (!is_tracker(setup)) names += (names.empty() ? "" : ", ") + setup.name + " (" + setup.instrument + ")";
+  }
+  std::erase_if(study.setups, [&](const Setup& setup) { return !is_tracker(setup); });
+  return names;
+}
+
 }  // namespace
 
 void add_plan_command(CommandLine& line) {
@@ -214,7 +227,9 @@ void add_plan_command(CommandLine& line) {
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] {
     line.run = [options]() -> int {
-      const Study study = read_study(options->study);
+      Study study = read_study(options->study);
+      const std::string others = leave_out_other_instruments(study);
+      if (!others.empty()) fmt::print(stderr, "note: only trackers are planned, not {}\n", others);
       StudyPlan result;
       {
         Progress progress("planning");

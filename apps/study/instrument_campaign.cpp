@@ -9,6 +9,7 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/instrument_file.h"
+#include "abbe/formats/planned_poses.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/instruments/path_plan.h"
@@ -19,9 +20,24 @@ namespace {
 // A stream of its own, apart from those of the readings.
 constexpr std::uint64_t kTruthStream = 1'000'000'007;
 
+/// Poses of a file for one target.
+PoseList planned_poses(const Machine& machine, const Setup& setup, const MeasurementPlan& plan, std::size_t target) {
+  const PlannedPoses planned = read_planned_poses(plan.file, machine, setup);
+  PoseList poses;
+  poses.axis.resize(machine.axes.size());
+  for (std::size_t k = 0; k < planned.poses.count(); ++k) {
+    if (planned.target.empty() || planned.target[k] == target) poses.append(planned.poses.pose(k));
+  }
+  return poses;
+}
+
 /// Poses of a plan for one target; those with points that meet are items.
-PoseList target_poses(const Machine& machine, const Instrument& device, const MeasurementPlan& plan, std::size_t target,
+PoseList target_poses(const Machine& machine, const Setup& setup, const MeasurementPlan& plan, std::size_t target,
                       std::uint64_t seed) {
+  const Instrument& device = *setup.device;
+  if (plan.kind == PlanKind::poses) {
+    return repeated(planned_poses(machine, setup, plan, target), plan.repeats, plan.there_and_back);
+  }
   if (plan.kind != PlanKind::circle && plan.kind != PlanKind::follow) return plan_poses(machine, plan, seed);
   const std::optional<MeetingPoints> points = device.meeting_points(target);
   if (!points) {
@@ -77,7 +93,7 @@ void simulate(const Study& study, std::size_t setup_index, const ErrorSet& truth
   for (std::size_t p = 0; p < setup.plans.size(); ++p) {
     const std::uint64_t seed = plan_seed(study, setup_index, p);
     // Poses are planned with what is known of the set-up, not with what it really is.
-    InstrumentReadings plan = planned_readings(study.machine, *setup.device, setup.plans[p], seed, setup.name);
+    InstrumentReadings plan = planned_readings(study.machine, setup, setup.plans[p], seed);
     if (approach_matters(study, truth)) plan.poses.approach = approach_in_order(plan.poses);
     InstrumentSimulationOptions options;
     options.seed = seed;
@@ -171,12 +187,13 @@ std::vector<KnownUnknown> InstrumentCampaign::true_unknowns() const {
   return known;
 }
 
-InstrumentReadings planned_readings(const Machine& machine, const Instrument& device, const MeasurementPlan& plan,
-                                    std::uint64_t seed, const std::string& setup_name) {
+InstrumentReadings planned_readings(const Machine& machine, const Setup& setup, const MeasurementPlan& plan,
+                                    std::uint64_t seed) {
+  const Instrument& device = *setup.device;
   InstrumentReadings readings;
   for (const std::size_t target : plan.targets) {
     try {
-      const PoseList poses = target_poses(machine, device, plan, target, seed);
+      const PoseList poses = target_poses(machine, setup, plan, target, seed);
       for (std::size_t k = 0; k < poses.count(); ++k) {
         const std::size_t item = device.item_at(machine, target, poses.pose(k));
         for (const std::vector<double>& inputs : device.planned_inputs(item)) {
@@ -184,7 +201,7 @@ InstrumentReadings planned_readings(const Machine& machine, const Instrument& de
         }
       }
     } catch (const std::invalid_argument& error) {
-      throw InputError({.file = setup_name, .field = "plan"},
+      throw InputError({.file = setup.name, .field = "plan"},
                        fmt::format("{}: {}", device.target_names()[target], error.what()),
                        "poses at which it can be measured, within the travel of the machine");
     }

@@ -38,7 +38,7 @@ std::unique_ptr<CampaignSetup> gather_instrument(const Study& study, std::size_t
 
 /// What one plan would measure with an instrument: each pose with each target and each of its inputs.
 /// @throws InputError if a pose is out of reach
-InstrumentReadings planned_readings(const Machine& machine, const Instrument& device, const MeasurementPlan& plan,
-                                    std::uint64_t seed, const std::string& setup_name);
+InstrumentReadings planned_readings(const Machine& machine, const Setup& setup, const MeasurementPlan& plan,
+                                    std::uint64_t seed);
 
 }  // namespace abbe

@@ -4,7 +4,9 @@
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/measurement_file.h"
+#include "abbe/formats/planned_poses.h"
 #include "abbe/geometry/rotation.h"
+#include "abbe/instruments/path_plan.h"
 #include "abbe/instruments/tracker_start.h"
 #include "abbe/instruments/tracker_whitening.h"
 
@@ -115,6 +117,29 @@ TrackerReadings readings_from_table(const MeasurementTable& table, const Setup& 
   return readings;
 }
 
+/// Poses of a file, with one sight for each of them in their order.
+PoseList planned_sights(const Machine& machine, const Setup& setup, const MeasurementPlan& plan,
+                        TrackerSimulationOptions& options) {
+  const PlannedPoses planned = read_planned_poses(plan.file, machine, setup);
+  PoseList poses;
+  for (std::size_t k = 0; k < planned.poses.count(); ++k) {
+    for (const std::size_t reflector : planned.target.empty() ? plan.targets : std::vector{planned.target[k]}) {
+      poses.append(planned.poses.pose(k));
+      options.sights.push_back({static_cast<std::uint16_t>(planned.station[k]), static_cast<std::uint16_t>(reflector)});
+    }
+  }
+  options.choice = SightChoice::cycle;
+  const std::vector<Sight> once = options.sights;
+  for (std::size_t r = 1; r < plan.repeats; ++r) {
+    if (plan.there_and_back && r % 2 == 1) {
+      options.sights.insert(options.sights.end(), once.rbegin(), once.rend());
+    } else {
+      options.sights.insert(options.sights.end(), once.begin(), once.end());
+    }
+  }
+  return repeated(poses, plan.repeats, plan.there_and_back);
+}
+
 void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet& truth, TrackerCampaign& result,
                     const ProgressCallback& progress) {
   const Setup& setup = study.setups[setup_index];
@@ -129,10 +154,13 @@ void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet&
     options.outlier_mm = study.simulation->outliers.size;
     options.threads = study.threads;
     options.progress = progress;
-    for (std::size_t reflector : plan.targets) {
-      options.sights.push_back({static_cast<std::uint16_t>(plan.station), static_cast<std::uint16_t>(reflector)});
+    PoseList poses = plan.kind == PlanKind::poses ? planned_sights(study.machine, setup, plan, options)
+                                                  : plan_poses(study.machine, plan, seed);
+    if (options.sights.empty()) {
+      for (std::size_t reflector : plan.targets) {
+        options.sights.push_back({static_cast<std::uint16_t>(plan.station), static_cast<std::uint16_t>(reflector)});
+      }
     }
-    PoseList poses = plan_poses(study.machine, plan, seed);
     if (approach_matters(study, truth)) poses.approach = approach_in_order(poses);
     SimulatedTracker simulated = simulate_tracker(study.machine, truth, result.truth, poses, options);
     state_uncertainty(result.truth, setup.stated, simulated.readings);

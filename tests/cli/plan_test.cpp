@@ -55,6 +55,52 @@ TEST_F(Plans, ListReadingsAndCompareThemWithGrids) {
   }
 }
 
+TEST_F(Plans, AreReadAgainAsPosesOfASimulationAndLeaveOtherInstrumentsAside) {
+  std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/examples/closed_loop/closed_loop.study.toml");
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string study = text.str();
+  const std::string relative = "\"../machines";
+  study.replace(study.find(relative), relative.size(), "\"" + std::string(ABBE_SOURCE_DIR) + "/examples/machines");
+  study.replace(study.find("poses = 1500"), 12, "poses = 300");
+  study.replace(study.find("readings = 400"), 14, "readings = 60");
+  folder.write("loop.study.toml", study);
+  const CommandResult planned = abbe({"plan", "loop.study.toml", "-o", "poses.csv"});
+  EXPECT_THAT(planned.err, HasSubstr("only trackers are planned, not ball-bar (ball-bar)"));
+  ASSERT_EQ(planned.exit_code, done) << planned.err;
+  const CommandResult simulated = abbe({"simulate", "loop.study.toml", "-o", "readings"});
+  ASSERT_EQ(simulated.exit_code, done) << simulated.err;
+  // Pose and reflector of every reading are those of the plan, in its order.
+  std::istringstream plan(folder.read("poses.csv")), readings(folder.read("readings/tracker.csv"));
+  std::string planned_row, read_row, skipped;
+  std::getline(plan, skipped);
+  std::getline(plan, skipped);
+  while (std::getline(readings, read_row) && read_row.starts_with('#')) {
+  }
+  const auto fields = [](const std::string& row) {
+    std::vector<std::string> result;
+    std::istringstream stream(row);
+    for (std::string field; std::getline(stream, field, ',');) result.push_back(field);
+    return result;
+  };
+  const std::vector<std::string> header = fields(read_row);
+  const auto column = [&](const char* name) {
+    return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
+  };
+  const std::size_t c = column("C_deg"), z = column("Z_mm"), reflector = column("reflector");
+  ASSERT_LT(std::max({c, z, reflector}), header.size());
+  std::size_t rows = 0;
+  while (std::getline(plan, planned_row)) {
+    ASSERT_TRUE(std::getline(readings, read_row));
+    const std::vector<std::string> want = fields(planned_row), have = fields(read_row);
+    EXPECT_EQ(std::stod(have.at(c)), std::stod(want.at(0)));
+    EXPECT_EQ(std::stod(have.at(z)), std::stod(want.at(4)));
+    EXPECT_EQ(have.at(reflector), want.at(6));
+    ++rows;
+  }
+  EXPECT_EQ(rows, 60U);
+}
+
 TEST_F(Plans, WithoutATableSayWhatIsMissing) {
   std::string study = trunnion_study();
   const std::size_t begin = study.find("[plan]"), end = study.find("[simulate");

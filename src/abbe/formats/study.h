@@ -59,9 +59,10 @@ enum class PlanKind {
   line,
   random,
   spiral,
-  circle,        ///< one point of an item goes round the other, the linear axes moving
-  follow,        ///< the points of an item stay together while the rotary axes go through their grid
-  step_diagonal  ///< as line, but one axis after the other in every step
+  circle,         ///< one point of an item goes round the other, the linear axes moving
+  follow,         ///< the points of an item stay together while the rotary axes go through their grid
+  step_diagonal,  ///< as line, but one axis after the other in every step
+  poses           ///< from a file
 };
 
 /// Axis positions at which simulated readings are taken.
@@ -70,6 +71,7 @@ enum class PlanKind {
 /// al., fig. 5, are fixed axes and restricted ranges: A all axes over their range, B one fixed C, C one fixed X and Z.
 struct MeasurementPlan {
   PlanKind kind = PlanKind::grid;
+  std::filesystem::path file;      ///< poses: what read_planned_poses() reads
   std::vector<AxisRange> axes;     ///< [axes], chain order; mm or rad
   int points = 0;                  ///< line, random, spiral, circle
   double turns = 1;                ///< spiral: turns of the ellipse over the two axes of largest range

@@ -2,6 +2,7 @@
 
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/message_of.h"
+#include "abbe/formats/planned_poses.h"
 #include "abbe/formats/study_file.h"
 
 namespace abbe {
@@ -141,6 +142,32 @@ TEST(StudyInstrument, SaysWhatIsWrongWithAStepDiagonal) {
             std::string::npos);
   EXPECT_NE(wrong_plan("steps = 3\norder = [\"X\", \"X\"]\n" + axes).find("order: X stands twice"), std::string::npos);
   EXPECT_NE(wrong_plan("steps = 3\naxis.X = {}\n").find("too few axes move"), std::string::npos);
+}
+
+TEST(StudyInstrument, PosesOfAFileNameTheirItems) {
+  const Study study = parsed(with_plan("kind = \"poses\"\nfile = \"poses.csv\"\nrepeats = 2\n"));
+  const abbe::Setup& bar = study.setups.at(0);
+  EXPECT_EQ(bar.plans.at(2).kind, PlanKind::poses);
+  EXPECT_EQ(bar.plans.at(2).file.filename(), "poses.csv");
+  EXPECT_EQ(bar.plans.at(2).repeats, 2U);
+  EXPECT_NE(message_of([] { parsed(with_plan("kind = \"poses\"\n")); }).find("setup[1].plan[3].file"),
+            std::string::npos);
+
+  const auto read = [&](const char* text) { return parse_planned_poses(text, "poses.csv", study.machine, bar); };
+  const PlannedPoses all = read("C_deg,X_mm,Z_mm\n0,10,20\n90,30,40\n");
+  EXPECT_EQ(all.poses.count(), 2U);
+  EXPECT_EQ(all.poses.axis[1][1], 30);
+  EXPECT_TRUE(all.target.empty());
+  const PlannedPoses own = read("# planned\nC_deg,X_mm,Z_mm,setup,item\n0,10,20,other,B1\n90,30,40,bar,B2\n");
+  EXPECT_EQ(own.poses.count(), 1U);
+  EXPECT_EQ(own.target, (std::vector<std::size_t>{1}));
+  EXPECT_NE(message_of([&] {
+              read("C_deg,X_mm,Z_mm,item\n0,10,20,B1\n0,10,20,B9\n");
+            }).find("poses.csv:3: item: 'B9' is not in the set-up 'bar'; expected one of B1, B2"),
+            std::string::npos);
+  EXPECT_NE(message_of([&] { read("C_deg,X_mm,Z_mm,setup\n0,10,20,other\n"); }).find("no pose for the set-up 'bar'"),
+            std::string::npos);
+  EXPECT_NE(message_of([&] { read("C_deg,X_mm,Z_mm\n0,10,900\n"); }).find("poses.csv:2"), std::string::npos);
 }
 
 TEST(StudyInstrument, RefusesAFallingRangeWhereTheOrderSaysNothing) {

@@ -24,7 +24,8 @@ struct PlanNames {
   std::vector<std::string> stations;
 };
 
-MeasurementPlan read_plan(TomlTable& table, const Machine& machine, const PlanNames& names);
+MeasurementPlan read_plan(TomlTable& table, const std::filesystem::path& folder, const Machine& machine,
+                          const PlanNames& names);
 
 /// Which way ranges of axes may be written.
 enum class RangeOrder { rising, either };

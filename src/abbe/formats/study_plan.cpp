@@ -111,10 +111,19 @@ void check_moving_axes(TomlTable& table, const Machine& machine, const Measureme
 
 }  // namespace
 
-MeasurementPlan read_plan(TomlTable& table, const Machine& machine, const PlanNames& names) {
+MeasurementPlan read_plan(TomlTable& table, const std::filesystem::path& folder, const Machine& machine,
+                          const PlanNames& names) {
   MeasurementPlan plan;
   plan.kind = static_cast<PlanKind>(
-      table.word("kind", {"grid", "line", "random", "spiral", "circle", "follow", "step-diagonal"}));
+      table.word("kind", {"grid", "line", "random", "spiral", "circle", "follow", "step-diagonal", "poses"}));
+  if (plan.kind == PlanKind::poses) {
+    plan.file = folder / table.text("file");
+    plan.repeats = static_cast<std::size_t>(table.integer_or("repeats", 1, 1, kLargestRepeatCount));
+    plan.there_and_back = table.boolean_or("there_and_back", false);
+    for (std::size_t i = 0; i < names.targets.size(); ++i) plan.targets.push_back(i);
+    table.finish();
+    return plan;
+  }
   const bool is_grid = plan.kind == PlanKind::grid || plan.kind == PlanKind::follow;
   const bool is_step_diagonal = plan.kind == PlanKind::step_diagonal;
   const bool may_fall = plan.kind == PlanKind::line || is_step_diagonal;

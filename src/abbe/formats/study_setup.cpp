@@ -209,7 +209,7 @@ Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Ma
   for (TomlTable& plan : table.tables("plan")) {
     if (!simulated) table.fail("plan", "belongs to a simulation only", "[simulate], or [[setup.data]]");
     if (names.targets.empty()) table.fail("", "the reflectors are missing", "[[setup.reflector]]");
-    setup.plans.push_back(read_plan(plan, machine, names));
+    setup.plans.push_back(read_plan(plan, folder, machine, names));
   }
   for (TomlTable& data : table.tables("data")) {
     if (simulated) table.fail("data", "stands beside [simulate]", "only one of them");
