@@ -17,7 +17,6 @@
 #include "compensate/compensate.h"
 #include "compensate/gcode_options.h"
 #include "compensate/gcode_report.h"
-#include "compensate/reversal_words.h"
 
 namespace abbe {
 namespace {
@@ -53,7 +52,6 @@ int run_gcode(const GcodeOptions& options) {
   const WordAxes words = gcode_words(options, machine);
   const NcProgramOptions text_options = gcode_text_options(options, machine, words);
   const AllowedProblems allowed = allowed_problems(options);
-  warn_of_reversals(machine, errors.errors);
 
   GcodeResult result;
   ErrorSet corrected_errors = errors.errors;
@@ -81,6 +79,12 @@ int run_gcode(const GcodeOptions& options) {
         progress(end, size);
       });
   result.report = correction.report();
+  result.reversals = correction.reversals();
+  for (const ReversalAxis& axis : result.reversals) {
+    for (const Reversal& reversal : errors.errors.reversals) {
+      if (reversal.axis == axis.axis) result.reversal_uncertainty.push_back(reversal.standard_uncertainty);
+    }
+  }
   if (result.report.impossible.count > 0) {
     throw InputError({.file = options.program, .line = result.report.impossible.line[0]},
                      "a tool centre move, for which the machine has no solution here",
@@ -111,7 +115,9 @@ void add_compensate_gcode(CLI::App& compensate, CommandLine& line) {
       "examples/machines/trunnion-mill.machine.toml --errors examples/compensate/trunnion.errors.toml -o "
       "corrected.ngc\n\n"
       "Words X Y Z are positions of the axes unless G43.4 or --tool-centre says otherwise. The tool is the machine\n"
-      "file's, longer by the tool length offset in force. See docs/programs.md.");
+      "file's, longer by the tool length offset in force. Axes with reversal values take up their play by a motion of\n"
+      "their own where they turn round; the control's own backlash compensation stays as it was when the errors were\n"
+      "measured. See docs/programs.md.");
   command->add_option("program", options->program, "NC program (RS274/NGC, ISO 6983)")->required();
   command->add_option("--machine", options->machine, "machine file")->required();
   command->add_option("--errors", options->errors, "errors file of the machine")->required();
@@ -126,6 +132,9 @@ void add_compensate_gcode(CLI::App& compensate, CommandLine& line) {
       ->add_option("--orientation-tolerance-urad", options->orientation_tolerance_urad,
                    "the same for the direction of the tool")
       ->capture_default_str();
+  command->add_option("--reversal-dead-band-um", options->dead_band_um,
+                      "axes with reversal values have turned round when they have come back by more than this "
+                      "(default: an eighth of the tolerance, in which it is then; else it comes on top)");
   command->add_option("--limit-um", options->limit_um,
                       "corrections of the functional point above it are refused and nothing is written");
   command->add_option("--leave-out-below-uncertainty", options->leave_out_factor,

@@ -108,6 +108,9 @@ ProgramCorrectionOptions gcode_correction_options(const GcodeOptions& options) {
   correction.tolerance.orientation =
       1e-6 * positive("--orientation-tolerance-urad", options.orientation_tolerance_urad, "urad");
   correction.inverse.largest_turn = kDegree * positive("--largest-turn-deg", options.largest_turn_deg, "deg");
+  if (options.dead_band_um != 0) {
+    correction.reversal_dead_band = 1e-3 * positive("--reversal-dead-band-um", options.dead_band_um, "um");
+  }
   correction.limit = 1e-3 * options.limit_um;
   return correction;
 }

@@ -13,6 +13,7 @@ namespace abbe {
 struct GcodeOptions {
   std::string program, machine, errors, output;
   double tolerance_um = 1, rapid_tolerance_um = 10, orientation_tolerance_urad = 10, limit_um = 0;
+  double dead_band_um = 0;
   double leave_out_factor = 0, largest_turn_deg = 0.5;
   std::vector<std::string> words, start, allow;
   std::string tool_table, parameters;

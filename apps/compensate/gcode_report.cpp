@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+#include "compensate/reversal_words.h"
+
 namespace abbe {
 namespace {
 
@@ -52,6 +54,49 @@ nlohmann::ordered_json position_json(const Machine& machine, const ProgramPlace&
     json[machine.axes[i].name + (rotary ? "_deg" : "_mm")] = place.position[i] / (rotary ? kDegree : 1);
   }
   return json;
+}
+
+void print_reversals(const Machine& machine, const GcodeResult& result) {
+  for (std::size_t r = 0; r < result.reversals.size(); ++r) {
+    const ReversalAxis& axis = result.reversals[r];
+    const StatusCount& taken_up = result.report.take_ups[axis.axis];
+    const StatusCount& unknown = result.report.direction_unknown[axis.axis];
+    fmt::print("reversal of {} {}", machine.axes[axis.axis].name, reversal_size(machine, axis.axis, axis.value));
+    if (result.reversal_uncertainty[r] > 0) {
+      fmt::print(", standard uncertainty {}", reversal_size(machine, axis.axis, result.reversal_uncertainty[r]));
+    }
+    fmt::print(": taken up {} time{}", taken_up.count, taken_up.count == 1 ? "" : "s");
+    if (taken_up.count > 0) fmt::print(", {}", lines_text(taken_up));
+    fmt::print("; dead band {}\n", reversal_size(machine, axis.axis, axis.dead_band));
+    if (unknown.count > 0) {
+      fmt::print("  nothing is added before {} has moved: {} pose{}, {}\n", machine.axes[axis.axis].name, unknown.count,
+                 unknown.count == 1 ? "" : "s", lines_text(unknown));
+    }
+    if (axis.value > 0) {
+      fmt::print(
+          "  above zero it is no lost motion: where {} turns round, the motion that takes it up moves the axis itself\n",
+          machine.axes[axis.axis].name);
+    }
+  }
+}
+
+nlohmann::ordered_json reversals_json(const Machine& machine, const GcodeResult& result) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (std::size_t r = 0; r < result.reversals.size(); ++r) {
+    const ReversalAxis& axis = result.reversals[r];
+    const bool rotary = machine.axes[axis.axis].kind == AxisKind::rotary;
+    const std::string unit = rotary ? "_urad" : "_um";
+    const double factor = rotary ? 1e6 : 1e3;
+    nlohmann::ordered_json one;
+    one["axis"] = machine.axes[axis.axis].name;
+    one["value" + unit] = factor * axis.value;
+    if (result.reversal_uncertainty[r] > 0) one["standard_uncertainty" + unit] = factor * result.reversal_uncertainty[r];
+    one["dead_band" + unit] = factor * axis.dead_band;
+    one["taken_up"] = count_json(result.report.take_ups[axis.axis]);
+    one["direction_not_known"] = count_json(result.report.direction_unknown[axis.axis]);
+    all.push_back(one);
+  }
+  return all;
 }
 
 struct NamedStatus {
@@ -113,6 +158,7 @@ void print_gcode_report(const GcodeOptions& options, const Machine& machine, con
     if (result.by_axis[i].axes_known) fmt::print(" u {:.3f}", unit * result.by_axis[i].axis[i]);
     fmt::print(", line {}\n", place.line);
   }
+  print_reversals(machine, result);
   if (report.largest_orientation_left.value > 1e-9) {
     fmt::print("largest orientation error that stays {:.3f} urad, line {}\n",
                1e6 * report.largest_orientation_left.value, report.largest_orientation_left.line);
@@ -190,6 +236,7 @@ nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& ma
     axis["line"] = place.line;
     json["axes"].push_back(axis);
   }
+  json["reversals"] = reversals_json(machine, result);
   json["largest_orientation_left_urad"] = 1e6 * report.largest_orientation_left.value;
   for (std::size_t i = 1; i < kCorrectionStatuses; ++i) {
     json["poses"][correction_status_text(static_cast<CorrectionStatus>(i))] = count_json(report.status[i]);

@@ -6,14 +6,17 @@
 
 namespace abbe {
 
+std::string reversal_size(const Machine& machine, std::size_t axis, double value) {
+  const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
+  return fmt::format("{:.4g} {}", (rotary ? 1e6 : 1e3) * value, rotary ? "urad" : "um");
+}
+
 void warn_of_reversals(const Machine& machine, const ErrorSet& errors) {
   std::string words;
   for (const Reversal& reversal : errors.reversals) {
     if (reversal.value == 0) continue;
-    const Axis& axis = machine.axes[reversal.axis];
-    const bool rotary = axis.kind == AxisKind::rotary;
-    words += fmt::format("{}{} {:.4g} {}", words.empty() ? "" : ", ", axis.name, (rotary ? 1e6 : 1e3) * reversal.value,
-                         rotary ? "urad" : "um");
+    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", machine.axes[reversal.axis].name,
+                         reversal_size(machine, reversal.axis, reversal.value));
   }
   if (words.empty()) return;
   fmt::print(stderr,

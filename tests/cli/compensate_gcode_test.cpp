@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "abbe/compensate/machine_with_play_for_test.h"
 #include "abbe/compensate/program_moves_for_test.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/linuxcnc_for_test.h"
@@ -78,6 +79,14 @@ Distance distance_from(const std::vector<Eigen::Vector3d>& points, const std::ve
   return distance;
 }
 
+int samples_along(const ProgramMove& move, int fewest) {
+  const MovePath path(move);
+  const std::array<double, 3> speed = path.speed();
+  double length = std::hypot(speed[0], speed[1], speed[2]);
+  if (!path.is_arc()) length = feed_length(move.start, move.end);
+  return std::clamp(static_cast<int>(length / 0.1), fewest, 4000);
+}
+
 /// Functional points at work along moves; every move with its share of samples.
 std::vector<Eigen::Vector3d> points_along(const test::ControlledMachine& control, const std::vector<ProgramMove>& moves,
                                           bool with_errors, int fewest) {
@@ -85,10 +94,7 @@ std::vector<Eigen::Vector3d> points_along(const test::ControlledMachine& control
   for (const ProgramMove& move : moves) {
     if (move.kind == MoveKind::rapid) continue;
     const MovePath path(move);
-    const std::array<double, 3> speed = path.speed();
-    double length = std::hypot(speed[0], speed[1], speed[2]);
-    if (!path.is_arc()) length = feed_length(move.start, move.end);
-    const int count = std::clamp(static_cast<int>(length / 0.1), fewest, 4000);
+    const int count = samples_along(move, fewest);
     for (int k = 0; k <= count; ++k) {
       WordValues words;
       path.at(static_cast<double>(k) / count, words);
@@ -170,16 +176,77 @@ TEST_F(CompensateGcode, JsonSaysWhatWasDoneAndWithWhatUncertainty) {
   EXPECT_THAT(json.at("left_out").get<std::vector<std::string>>(), testing::Contains("EAX"));
 }
 
-TEST_F(CompensateGcode, ReversalValuesThatStayAreNamed) {
-  std::ifstream file(kExamples / "compensate/trunnion.errors.toml");
+/// The same of a machine whose axes have play and go where they are carried from move to move.
+std::vector<Eigen::Vector3d> points_with_play(test::MachineWithPlay& machine, const std::vector<ProgramMove>& moves) {
+  std::vector<Eigen::Vector3d> points;
+  for (const ProgramMove& move : moves) {
+    const int count = samples_along(move, 4);
+    const MovePath path(move);
+    for (int k = 0; k <= count; ++k) {
+      WordValues words;
+      path.at(static_cast<double>(k) / count, words);
+      machine.drive(machine.commands(move, words));
+      if (move.kind != MoveKind::rapid) points.push_back(machine.actual(move).translation);
+    }
+  }
+  return points;
+}
+
+TEST_F(CompensateGcode, AxesWithPlayFollowBothPrograms) {
+  std::ifstream file(errors);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  std::ofstream(folder.path() / "r.errors.toml") << text << "\n[[reversal]]\naxis = \"X\"\nvalue_um = -6\n";
-  const CommandResult result =
-      abbe({"compensate", "gcode", (kExamples / "compensate/cone.ngc").string(), "--machine",
-            (kExamples / "machines/trunnion-mill.machine.toml").string(), "--errors", "r.errors.toml", "--dry-run"});
-  EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("reversal values are not compensated"));
-  EXPECT_THAT(result.err, HasSubstr("X -6 um"));
+  write("r.errors.toml", text + R"(
+[[reversal]]
+axis = "X"
+value_um = -9
+standard_uncertainty_um = 0.6
+[[reversal]]
+axis = "Y"
+value_um = -14
+standard_uncertainty_um = 0.6
+[[reversal]]
+axis = "Z"
+value_um = -5
+standard_uncertainty_um = 4
+[[reversal]]
+axis = "A"
+value_urad = -40
+standard_uncertainty_urad = 2
+[[reversal]]
+axis = "C"
+value_urad = -55
+standard_uncertainty_urad = 2
+)");
+  const Machine read = read_machine(machine);
+  const ErrorSet with_play = read_errors((folder.path() / "r.errors.toml").string(), read).errors;
+  for (const std::string program : {"cone.ngc", "plate.ngc"}) {
+    SCOPED_TRACE(program);
+    const std::string original = (kExamples / "compensate" / program).string();
+    const CommandResult result =
+        abbe({"compensate", "gcode", original, "--machine", machine, "--errors", "r.errors.toml", "-o", program});
+    ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+    EXPECT_EQ(result.err, "");
+    EXPECT_THAT(result.out, HasSubstr("reversal of X -9 um, standard uncertainty 0.6 um: taken up "));
+    EXPECT_THAT(result.out, HasSubstr("reversal of C -55 urad, standard uncertainty 2 urad: taken up "));
+    const WordAxes words = word_axes_by_name(read);
+    const std::vector<ProgramMove> commanded_moves = moves_of(original);
+    const std::vector<Eigen::Vector3d> commanded = points_along(control(), commanded_moves, false, 20);
+    test::MachineWithPlay driven(read, with_play, words), uncorrected(read, with_play, words);
+    const std::vector<Eigen::Vector3d> points = points_with_play(driven, moves_of(folder.path() / program));
+    EXPECT_LE(distance_from(points, commanded).largest, 1.1e-3);
+    EXPECT_LE(distance_from(commanded, points).largest, 1.1e-3);
+    EXPECT_GE(distance_from(points_with_play(uncorrected, commanded_moves), commanded).largest, 0.02);
+  }
+  const CommandResult left = abbe({"compensate", "gcode", (kExamples / "compensate/cone.ngc").string(), "--machine",
+                                   machine, "--errors", "r.errors.toml", "--dry-run", "--json",
+                                   "--leave-out-below-uncertainty", "2"});
+  ASSERT_EQ(left.exit_code, ExitCode::done) << left.err;
+  const auto json = nlohmann::json::parse(left.out);
+  EXPECT_THAT(json.at("left_out").get<std::vector<std::string>>(), testing::Contains("reversal_Z"));
+  EXPECT_EQ(json.at("reversals").size(), 4U);
+  EXPECT_EQ(json.at("reversals")[0].at("value_um"), -9);
+  EXPECT_EQ(json.at("reversals")[0].at("dead_band_um"), 0.125);
+  EXPECT_GT(json.at("reversals")[0].at("taken_up").at("count"), 1);
 }
 
 TEST_F(CompensateGcode, ADryRunWritesNothing) {

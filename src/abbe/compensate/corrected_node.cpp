@@ -85,4 +85,44 @@ void NodeCorrection::correct_block(ProgramCoordinates coordinates, const Tool& t
   }
 }
 
+CorrectedNode NodeCorrection::offset(ProgramCoordinates coordinates, std::size_t tool, const CorrectedNode& node,
+                                     const std::array<double, kMaxAxes>& added) const {
+  CorrectedNode result = node;
+  bool any = false;
+  for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+    if (added[i] == 0) continue;
+    any = true;
+    const Axis& axis = machine_.axes[i];
+    double& position = result.corrected_position[i];
+    position += added[i];
+    if (axis.endless || (position >= axis.travel_min && position <= axis.travel_max)) continue;
+    position = std::clamp(position, axis.travel_min, axis.travel_max);
+    if (node.point_reached()) result.status = CorrectionStatus::outside_travel;
+  }
+  if (!any) return result;
+  const WordAxes& words = kinematics_.words();
+  for (std::size_t i = 0; i < kAxisWords; ++i) {
+    const std::size_t axis = words.axis[i];
+    if (axis != Machine::npos && added[axis] != 0) {
+      result.corrected[i] += result.corrected_position[axis] - node.corrected_position[axis];
+    }
+  }
+  std::array<std::array<double, 2>, kMaxAxes> positions;
+  std::array<const double*, kMaxAxes> commands;
+  for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+    positions[i] = {node.corrected_position[i], result.corrected_position[i]};
+    commands[i] = positions[i].data();
+  }
+  std::array<std::array<double, 2>, 3> start, seen;
+  for (std::size_t i = 0; i < 3; ++i) start[i].fill(tools_[tool].point[static_cast<Eigen::Index>(i)]);
+  nominal_.transform({{commands.data(), machine_.axes.size()}, 2}, {start[0].data(), start[1].data(), start[2].data()},
+                     {seen[0].data(), seen[1].data(), seen[2].data()});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double moved = seen[i][1] - seen[i][0];
+    result.shift[i] += moved;
+    if (coordinates == ProgramCoordinates::tool_centre) result.corrected[i] = node.corrected[i] + moved;
+  }
+  return result;
+}
+
 }  // namespace abbe

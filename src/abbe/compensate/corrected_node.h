@@ -48,6 +48,12 @@ class NodeCorrection {
   /// Fills everything but `words`.
   void correct(ProgramCoordinates coordinates, std::size_t tool, std::span<CorrectedNode> nodes) const;
 
+  /// A corrected node whose axes get something more, by their nominal kinematics in tool centre programs. Where that
+  /// leads out of the travel they are kept at its end, and the status says so.
+  /// @param added  [axes] mm or rad
+  CorrectedNode offset(ProgramCoordinates coordinates, std::size_t tool, const CorrectedNode& node,
+                       const std::array<double, kMaxAxes>& added) const;
+
   const WordKinematics& kinematics() const { return kinematics_; }
   const std::string& problem() const { return problem_; }
 

@@ -22,6 +22,16 @@ double length(const WordValues& a, const WordValues& b, std::size_t first) {
   return std::sqrt(sum);
 }
 
+/// Such a move has its feed per minute in angles.
+bool moves_only_rotary_axes(const ProgramMove& move) {
+  if (move.kind != MoveKind::straight) return false;
+  bool linear = false, rotary = false;
+  for (std::size_t i = 0; i < kAxisWords; ++i) {
+    if (move.start[i] != move.end[i]) (i >= 3 && i < 6 ? rotary : linear) = true;
+  }
+  return rotary && !linear;
+}
+
 }  // namespace
 
 MovePath::MovePath(const ProgramMove& move) : move_(&move) {
@@ -95,6 +105,20 @@ void set_piece_feed(const ProgramMove& move, double duration, double share, cons
   if (taken == 0 || std::abs(taken - wanted) <= kChange * wanted) return;
   piece.feed_mode = FeedMode::inverse_time;
   piece.feed = 1 / wanted;
+}
+
+void set_take_up_feed(const ProgramMove& move, bool rotary, double way, double duration, double moved,
+                      CorrectedPiece& piece) {
+  constexpr double kFastest_per_min = 1e8;
+  piece.feed = move.feed;
+  piece.feed_mode = move.feed_mode;
+  if (move.kind == MoveKind::rapid || move.feed_mode == FeedMode::per_revolution || !(duration > 0)) return;
+  if (move.feed_mode == FeedMode::per_minute) {
+    if (rotary == moves_only_rotary_axes(move)) return;
+  }
+  piece.feed_mode = FeedMode::inverse_time;
+  const double taken = moved > 0 ? std::min(std::abs(way) / moved, 1.0) * duration : duration;
+  piece.feed = 1 / std::max(taken, 1 / kFastest_per_min);
 }
 
 }  // namespace abbe

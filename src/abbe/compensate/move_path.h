@@ -46,4 +46,13 @@ double move_duration(const ProgramMove& move);
 void set_piece_feed(const ProgramMove& move, double duration, double share, const WordValues& start,
                     CorrectedPiece& piece);
 
+/// Feed of a motion of one axis alone that belongs to a piece: that of the move where it is one of the same kind of
+/// axis; else, and with inverse time, such that it is as fast as the piece, and takes no longer.
+/// @param rotary    of the axis
+/// @param way       of the functional point by that motion, mm
+/// @param duration  of the piece, minutes; not above 0: not known
+/// @param moved     by the functional point in the piece, mm
+void set_take_up_feed(const ProgramMove& move, bool rotary, double way, double duration, double moved,
+                      CorrectedPiece& piece);
+
 }  // namespace abbe

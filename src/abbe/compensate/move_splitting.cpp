@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace abbe {
 namespace {
@@ -65,6 +66,28 @@ PieceBound bound_pieces(const PieceBounder& bounder, std::size_t axes, ProgramCo
   return bounder.bound(levers, motion);
 }
 
+double bound_excess(const PieceBounder& bounder, const PathTolerance& tolerance, const PieceBound& bound,
+                    const MovePiece* piece) {
+  // What lags does so however short a piece is.
+  const bool counts = bounder.play().lags_count;
+  const double position = tolerance.position - kEndResidual - (counts ? bound.lag : 0);
+  const double orientation = tolerance.orientation - (counts ? bound.lag_turn : 0);
+  if (!(position > 0) || !(orientation > 0)) return std::numeric_limits<double>::infinity();
+  double excess = std::max(bound.position / position, bound.orientation / orientation);
+  const PlayBounds& play = bounder.play();
+  if (!play.any || !(bound.axis_bend > 0)) return excess;
+  for (std::size_t i = 0; i < kMaxAxes; ++i) {
+    if (!play.has[i] || !bounder.is_point_axis(i)) continue;
+    // A curve with |l''| <= b that goes from 0 to d leaves this interval by at most (b / 2 - d)^2 / (2 b).
+    const double way = piece == nullptr
+                           ? 0
+                           : std::abs(piece->to->corrected_position[i] - piece->from->corrected_position[i]);
+    const double beyond = std::max(0.0, 0.5 * bound.axis_bend - way);
+    raise(excess, beyond * beyond / (2 * bound.axis_bend) / (kOvershootShare * play.lag[i]));
+  }
+  return excess;
+}
+
 bool MoveSplitter::split(const ProgramMove& move, std::size_t tool, const PathTolerance& tolerance,
                          const CorrectedNode& start, const CorrectedNode& end) {
   const MovePath path(move);
@@ -80,8 +103,7 @@ bool MoveSplitter::split(const ProgramMove& move, std::size_t tool, const PathTo
       // What has no correction has no bound either; its status is said.
       if (proven_[k] != 0 || !piece.from->point_reached() || !piece.to->point_reached()) continue;
       const PieceBound bound = bound_pieces(*bounder_, axes_, move.coordinates, tool_point, {&piece, 1});
-      const double excess =
-          std::max(bound.position / (tolerance.position - kEndResidual), bound.orientation / tolerance.orientation);
+      const double excess = bound_excess(*bounder_, tolerance, bound, &piece);
       if (excess <= 1) {
         proven_[k] = 1;
         continue;

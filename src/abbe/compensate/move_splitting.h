@@ -27,6 +27,11 @@ struct MovePiece {
 PieceBound bound_pieces(const PieceBounder& bounder, std::size_t axes, ProgramCoordinates coordinates,
                         const Eigen::Vector3d& tool, std::span<const MovePiece> pieces);
 
+/// At most 1 where the bound keeps to the tolerance; else about the square of the number of parts that will.
+/// @param piece  null: of several pieces at once
+double bound_excess(const PieceBounder& bounder, const PathTolerance& tolerance, const PieceBound& bound,
+                    const MovePiece* piece);
+
 /// Splits one move until every piece stays within the tolerance. Keeps its memory for the next move.
 class MoveSplitter {
  public:

@@ -195,6 +195,30 @@ void PieceBounder::follow_arc(PieceMotion& motion) const {
   }
 }
 
+/// In tool centre programs the words are those of commands that are offset by up to half of the reversal values: the
+/// point is elsewhere by as much, and goes another way by as much as that offset turns.
+void PieceBounder::widen_by_play(const ChainLevers& levers, PieceMotion& motion) const {
+  double grown = 0, aside = 0, turning = 0, offset_turn = 0, speed = 0;
+  for (std::size_t i = axes_.size(); i-- > 0;) {
+    motion.width[i] += play_.offset[i];
+    if (axes_[i].rotary) {
+      const double across = levers.from_line[i] + grown;
+      aside += play_.offset[i] * across;
+      grown += motion.width[i] * across;
+      offset_turn += play_.offset[i];
+      turning += motion.actual_speed[i];
+      speed += motion.actual_speed[i] * across;
+    } else {
+      aside += play_.offset[i];
+      grown += motion.width[i];
+      speed += motion.actual_speed[i];
+    }
+  }
+  // To second order in the offsets; the factor is for the rest.
+  motion.point_speed += 2 * (turning * aside + offset_turn * (speed + motion.point_speed));
+  motion.point_width += 4 * aside;
+}
+
 /// What is known of the point and of the tool's direction on the way from the tool to the workpiece.
 struct PieceBounder::Passing {
   const ChainLevers& levers;
@@ -202,6 +226,7 @@ struct PieceBounder::Passing {
   double bend;  ///< of the commands of X, Y, Z: nominal ones on an arc, actual ones in tool centre programs
   Majorant point, direction;
   double grown = 0;  ///< how far the point may be from that of the levers
+  double lag = 0, lag_turn = 0;
 
   // In tool centre programs the control itself follows the point: the chain is compared with the nominal one at the
   // same commands. The direction is compared with that of the commanded ones in all programs.
@@ -219,14 +244,20 @@ void PieceBounder::pass_rotary(std::size_t i, Passing& at) const {
   const AxisModel& axis = axes_[i];
   const PieceMotion& motion = at.motion;
   const double actual_speed = motion.actual_speed[i];
-  const ErrorAlong e(axis.errors.over(motion.lowest[i], motion.highest[i]), actual_speed, 0);
+  const AxisErrorBound error = axis.errors.over(motion.lowest[i], motion.highest[i]);
+  const ErrorAlong e(error, actual_speed, 0);
   const double length = at.levers.from_point[i] + at.grown, across = at.levers.from_line[i] + at.grown;
+  if (play_.any) {
+    at.lag += play_.lag[i] * (across + at.point.off + error.shift_slope + error.turn_slope * length);
+    at.lag_turn += play_.lag[i] * (1 + error.turn_slope);
+  }
+  const double offset = motion.tool_centre ? play_.offset[i] : 0;
   // From the tool: Rot, then E; towards the workpiece: the inverse of E, shift first, then that of Rot.
   if (!axis.tool_side) {
     at.point.add(e.shift, e.shift_rate, e.shift_second);
     at.turn_by_error(e, length);
   }
-  rotate(at.point, length, across, at.point_speed(i), actual_speed, at.point_offset(i) + axis.zero_position,
+  rotate(at.point, length, across, at.point_speed(i), actual_speed, at.point_offset(i) + axis.zero_position + offset,
          at.point_offset_speed(i), axis.line_turn);
   at.point.add(2 * axis.line_shift, axis.line_shift * actual_speed, axis.line_shift * square(actual_speed));
   rotate(at.direction, 1, 1, motion.speed[i], actual_speed, motion.offset[i] + axis.zero_position,
@@ -243,20 +274,28 @@ void PieceBounder::pass_linear(std::size_t i, Passing& at) const {
   const PieceMotion& motion = at.motion;
   const double actual_speed = motion.actual_speed[i];
   const double own_bend = motion.tool_centre && is_point_axis(i) ? at.bend : 0;
-  const ErrorAlong e(axis.errors.over(motion.lowest[i], motion.highest[i]), actual_speed, own_bend);
+  const AxisErrorBound error = axis.errors.over(motion.lowest[i], motion.highest[i]);
+  const ErrorAlong e(error, actual_speed, own_bend);
+  if (play_.any) {
+    at.lag += play_.lag[i] * (error.shift_slope + error.turn_slope * (at.levers.from_point[i] + at.grown));
+    at.lag_turn += play_.lag[i] * error.turn_slope;
+  }
   if (axis.tool_side) at.turn_by_error(e, at.levers.from_point[i] + at.grown);
   if (axis.run_begins) {
     // Axes with no rotary one between move the point as one vector.
-    double speeds = 0, widths = 0, offsets = 0, offset_speeds = 0;
+    double speeds = 0, widths = 0, offsets = 0, offset_speeds = 0, lags = 0;
     for (const std::size_t k : axis.run) {
       speeds += square(at.point_speed(k));
       widths += square(motion.width[k]);
-      offsets += square(at.point_offset(k) + axes_[k].zero_position);
+      offsets +=
+          square(at.point_offset(k) + axes_[k].zero_position + (motion.tool_centre ? play_.offset[k] : 0));
+      lags += square(play_.lag[k]);
       offset_speeds += square(at.point_offset_speed(k));
     }
     const double bend = axis.bends ? axis.run_stretch * at.bend : 0;
     at.point.speed += axis.run_stretch * std::sqrt(speeds);
     at.point.bend += bend;
+    at.lag += axis.run_stretch * std::sqrt(lags);
     at.grown += axis.run_stretch * std::sqrt(widths);
     at.point.add(axis.run_stretch * std::sqrt(offsets), axis.run_stretch * std::sqrt(offset_speeds),
                  motion.tool_centre ? 0 : bend);
@@ -270,6 +309,7 @@ void PieceBounder::pass_linear(std::size_t i, Passing& at) const {
 PieceBound PieceBounder::bound(const ChainLevers& levers, PieceMotion& motion) const {
   std::array<Stage, kMaxAxes> stages;
   if (!motion.tool_centre && motion.arc_bend > 0) follow_arc(motion);
+  if (motion.tool_centre && play_.any) widen_by_play(levers, motion);
   const std::size_t stage_end = motion.tool_centre && has_point_axes_ ? point_axes_[0] + 1 : 0;
   const double bend = stage_end > 0 ? move_point_axes(levers, motion, stages) : motion.arc_bend;
   Passing at{levers, motion, bend, {}, {}};
@@ -285,8 +325,16 @@ PieceBound PieceBounder::bound(const ChainLevers& levers, PieceMotion& motion) c
       at.point.bend = std::min(at.point.bend, stages[i].bend);
     }
   }
+  PieceBound result;
   // In tool centre programs the chord itself is not in the chain.
-  return {0.125 * (at.point.off_bend + (motion.tool_centre ? motion.arc_bend : 0)), 0.125 * at.direction.off_bend};
+  result.position = 0.125 * (at.point.off_bend + (motion.tool_centre ? motion.arc_bend : 0));
+  result.orientation = 0.125 * at.direction.off_bend;
+  // The chain as it is turns and stretches by less than a thousandth more than that of the levers.
+  const double lag = (motion.tool_centre ? 1 + kOvershootShare : 1.0) * 1.001;
+  result.lag = lag * at.lag;
+  result.lag_turn = lag * at.lag_turn;
+  result.axis_bend = motion.tool_centre ? bend : 0;
+  return result;
 }
 
 }  // namespace abbe

@@ -36,7 +36,25 @@ struct PieceMotion {
 struct PieceBound {
   double position = 0;     ///< mm
   double orientation = 0;  ///< rad, of the tool's direction
+
+  // Besides, where axes have reversal values (docs/programs.md, "Reversal"):
+  double lag = 0;       ///< mm; by how much the point is off while axes may lag by PieceMotion's dead bands
+  double lag_turn = 0;  ///< rad; the same of the tool's direction
+  double axis_bend = 0;  ///< tool centre: |second derivative by s| of the commands of X, Y, Z; mm
 };
+
+/// Axes that have play: their commands are offset by up to half of the reversal value in either direction.
+struct PlayBounds {
+  std::array<double, kMaxAxes> offset{};  ///< of commands, mm or rad
+  std::array<double, kMaxAxes> lag{};     ///< of the actual position behind that commanded, mm or rad
+  std::array<bool, kMaxAxes> has{};       ///< the axis has a reversal value
+  bool any = false;
+  bool lags_count = true;  ///< as part of the tolerance
+};
+
+/// In tool centre programs a linear axis may go beyond both ends of a piece by so much of the dead band (it goes on a
+/// curve).
+inline constexpr double kOvershootShare = 0.25;
 
 /// Proves that pieces stay near the commanded path: bounds |actual(s) - commanded(s)| with nothing but bounds of error
 /// motions, their derivatives and levers.
@@ -51,6 +69,11 @@ class PieceBounder {
   /// @param point_axes  those of X, Y, Z, which arcs move and which follow from the point in tool centre programs;
   ///                    Machine::npos: none
   PieceBounder(const Machine& machine, const ErrorSet& errors, const std::array<std::size_t, 3>& point_axes);
+
+  /// Reversal values, which the errors given before do not bring in.
+  void set_play(const PlayBounds& play) { play_ = play; }
+  const PlayBounds& play() const { return play_; }
+  bool is_point_axis(std::size_t i) const { return i == point_axes_[0] || i == point_axes_[1] || i == point_axes_[2]; }
 
   /// False if a rotary axis stands between X, Y and Z, or if they are dependent: no bound for tool centre programs.
   bool has_tool_centre() const { return has_point_axes_; }
@@ -88,10 +111,11 @@ class PieceBounder {
   void set_point_axes();
   double move_point_axes(const ChainLevers& levers, PieceMotion& motion, std::array<Stage, kMaxAxes>& stages) const;
   void follow_arc(PieceMotion& motion) const;
-  bool is_point_axis(std::size_t i) const { return i == point_axes_[0] || i == point_axes_[1] || i == point_axes_[2]; }
+  void widen_by_play(const ChainLevers& levers, PieceMotion& motion) const;
 
   Machine machine_;
   std::vector<AxisModel> axes_;
+  PlayBounds play_;
   double tool_error_ = 0;
   std::array<std::size_t, 3> point_axes_;  ///< chain order
   bool has_point_axes_ = false;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "abbe/compensate/program_reversals.h"
 #include "abbe/geometry/parallel_blocks.h"
 
 namespace abbe {
@@ -12,14 +13,12 @@ namespace {
 
 constexpr std::size_t kChunk = 256;  // moves worked on together
 constexpr std::size_t kGroup = 16;   // moves with a common bound
+constexpr double kDeadBandShare = 0.125;
+constexpr std::size_t kChunksWithWay = 8;
 constexpr std::size_t kNoTool = static_cast<std::size_t>(-1);
 
 bool is_arc(const ProgramMove& move) {
   return move.kind == MoveKind::arc_clockwise || move.kind == MoveKind::arc_counterclockwise;
-}
-
-ProgramPlace place(const ProgramMove& move, const CorrectedNode& node, double value) {
-  return {value, move.line, node.position, node.corrected_position, move.tool_length, node.status};
 }
 
 /// Moves that follow each other and what becomes of them.
@@ -32,6 +31,8 @@ struct Chunk {
   CorrectedPieces pieces;
   ProgramReport report;
   std::optional<MoveSplitter> splitter;
+  ProgramWay way;  ///< with reversal values only: the poses before directions are known
+  std::vector<ProgramStep> steps;
 };
 
 }  // namespace
@@ -54,6 +55,12 @@ struct ProgramCorrection::Implementation {
       turns = turns || (machine.axes[i].kind == AxisKind::rotary && words.moves(i));
     }
     if (!turns) options.tolerance.orientation = std::numeric_limits<double>::infinity();
+    const bool part = !(options.reversal_dead_band > 0);
+    const double dead_band = part ? kDeadBandShare * options.tolerance.position : options.reversal_dead_band;
+    const double no_limit = std::numeric_limits<double>::infinity();
+    reversals = ProgramReversals(machine, errors, words, *bounder, dead_band,
+                                 part ? kDeadBandShare * options.tolerance.orientation : no_limit);
+    bounder->set_play(reversals.play(part));
   }
 
   bool can_be_made(const ProgramMove& move) const {
@@ -136,47 +143,65 @@ struct ProgramCorrection::Implementation {
       const PathTolerance tolerance = tolerance_of(first);
       const PieceBound bound = bound_pieces(*bounder, machine.axes.size(), first.coordinates,
                                             correction.tool_point(chunk.tool[i]), {pieces.data(), count});
-      if (bound.position <= tolerance.position - 2e-9 && bound.orientation <= tolerance.orientation) {
+      if (bound_excess(*bounder, tolerance, bound, nullptr) <= 1) {
         std::fill_n(chunk.proven.begin() + static_cast<std::ptrdiff_t>(i), count, char{1});
       }
       i += count;
     }
   }
 
-  void state(const ProgramMove& move, const CorrectedNode& node, ProgramReport& report) const {
+  void state(const ProgramMove& move, const CorrectedNode& node, ProgramReport& report,
+             const AxisApproach& approach = {}) const {
+    const auto place = [&](double value) {
+      return ProgramPlace{value, move.line, node.position, node.corrected_position, move.tool_length, node.status,
+                          approach};
+    };
     report.status[static_cast<std::size_t>(node.status)].add(move.line);
     const double shift =
         std::sqrt(node.shift[0] * node.shift[0] + node.shift[1] * node.shift[1] + node.shift[2] * node.shift[2]);
     if (report.largest_shift.line == 0 || shift > report.largest_shift.value)
-      report.largest_shift.take(place(move, node, shift));
+      report.largest_shift.take(place(shift));
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
       const double value = std::abs(node.corrected_position[i] - node.position[i]);
       if (report.by_axis[i].line == 0 || value > report.by_axis[i].value)
-        report.by_axis[i].take(place(move, node, value));
+        report.by_axis[i].take(place(value));
     }
     const bool known = node.point_reached();
     if (known && node.orientation_left > report.largest_orientation_left.value)
-      report.largest_orientation_left.take(place(move, node, node.orientation_left));
+      report.largest_orientation_left.take(place(node.orientation_left));
     if (options.limit > 0 && shift > options.limit) report.above_limit.add(move.line);
   }
 
   void give_piece(const ProgramMove& move, double duration, double share, const WordValues& from,
-                  const CorrectedNode& to, Chunk& chunk) const {
+                  const CorrectedNode& to, Chunk& chunk, const AxisApproach& approach = {}) const {
     CorrectedPiece piece{to.corrected, move.feed, move.feed_mode};
     set_piece_feed(move, duration, share, from, piece);
     if (piece.feed_mode != move.feed_mode) chunk.report.inverse_time.add(move.line);
     chunk.pieces.pieces.push_back(piece);
-    state(move, to, chunk.report);
+    state(move, to, chunk.report, approach);
+  }
+
+  /// Poses of a move: pieces of the program, or with reversal values nodes of its way, which become pieces when the
+  /// directions are known.
+  void give_nodes(const ProgramMove& move, std::span<const CorrectedNode> nodes, std::span<const double> shares,
+                  Chunk& chunk) const {
+    if (reversals.act()) {
+      chunk.way.nodes.insert(chunk.way.nodes.end(), nodes.begin(), nodes.end());
+      chunk.way.shares.insert(chunk.way.shares.end(), shares.begin(), shares.end());
+      return;
+    }
+    const double duration = move_duration(move);
+    for (std::size_t k = 1; k < nodes.size(); ++k)
+      give_piece(move, duration, shares[k] - shares[k - 1], nodes[k - 1].corrected, nodes[k], chunk);
   }
 
   void give_move(const ProgramMove& move, std::size_t i, Chunk& chunk) const {
     if (chunk.tool[i] == kNoTool) {
       chunk.report.impossible.add(move.line);
-      chunk.pieces.pieces.push_back({move.end, move.feed, move.feed_mode});
+      if (!reversals.act()) chunk.pieces.pieces.push_back({move.end, move.feed, move.feed_mode});
       return;
     }
     const CorrectedNode &start = chunk.nodes[chunk.start[i]], &end = chunk.nodes[chunk.end[i]];
-    const double duration = move_duration(move);
     bool whole = chunk.proven[i] != 0;
     if (!whole && (!start.point_reached() || !end.point_reached())) {
       // Nothing is proven about it. Where a rapid move comes from a place unknown to the errors, as at the start of a
@@ -185,35 +210,118 @@ struct ProgramCorrection::Implementation {
       if (move.kind != MoveKind::rapid && !start.point_reached()) chunk.report.not_proven.add(move.line);
     }
     if (whole) {
-      give_piece(move, duration, 1, start.corrected, end, chunk);
+      const std::array<CorrectedNode, 2> both = {start, end};
+      const std::array<double, 2> shares = {0, 1};
+      give_nodes(move, both, shares, chunk);
       return;
     }
     MoveSplitter& splitter = *chunk.splitter;
     if (!splitter.split(move, chunk.tool[i], tolerance_of(move), start, end)) chunk.report.not_proven.add(move.line);
-    const std::vector<CorrectedNode>& nodes = splitter.nodes();
-    const std::vector<double>& shares = splitter.shares();
-    if (nodes.size() > 2) ++chunk.report.split_moves;
-    for (std::size_t k = 1; k < nodes.size(); ++k)
-      give_piece(move, duration, shares[k] - shares[k - 1], nodes[k - 1].corrected, nodes[k], chunk);
+    if (splitter.nodes().size() > 2) ++chunk.report.split_moves;
+    give_nodes(move, splitter.nodes(), splitter.shares(), chunk);
+  }
+
+  void give_steps(const ProgramMove& move, std::size_t i, Chunk& chunk) const {
+    const ProgramWay& way = chunk.way;
+    if (way.first[i] == way.first[i + 1]) {
+      chunk.pieces.pieces.push_back({move.end, move.feed, move.feed_mode});
+      return;
+    }
+    const double duration = move_duration(move);
+    reversals.steps(correction, move, chunk.tool[i], way, i, chunk.steps);
+    WordValues at = reversals
+                        .commanded(correction, move, chunk.tool[i], way.nodes[way.first[i]],
+                                   way.approach[way.first[i]])
+                        .corrected;
+    for (const ProgramStep& step : chunk.steps) {
+      const double share = way.shares[step.to] - way.shares[step.to - 1];
+      if (step.taken_up == ProgramStep::npos) {
+        give_piece(move, duration, share, at, step.node, chunk, step.approach);
+        for (const ReversalAxis& axis : reversals.axes()) {
+          if (step.approach[axis.axis] == 0) chunk.report.direction_unknown[axis.axis].add(move.line);
+        }
+      } else {
+        const bool rotary = machine.axes[step.taken_up].kind == AxisKind::rotary;
+        CorrectedPiece piece{step.node.corrected, move.feed, move.feed_mode};
+        set_take_up_feed(move, rotary, step.way, duration * share,
+                         reversals.moved(way.nodes[step.to - 1], way.nodes[step.to]), piece);
+        chunk.pieces.pieces.push_back(piece);
+        chunk.report.take_ups[step.taken_up].add(move.line);
+      }
+      at = step.node.corrected;
+    }
+  }
+
+  /// What is left to do when the directions are known.
+  void give_all_steps(std::span<const ProgramMove> moves, Chunk& chunk) const {
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      chunk.pieces.first.push_back(chunk.pieces.pieces.size());
+      give_steps(moves[i], i, chunk);
+    }
+    chunk.report.pieces = chunk.pieces.pieces.size();
   }
 
   void work(std::span<const ProgramMove> moves, const ProgramMove* before, Chunk& chunk) const {
     chunk.report = ProgramReport{};
     chunk.pieces.pieces.clear();
     chunk.pieces.first.clear();
+    chunk.way.clear();
     if (!chunk.splitter) chunk.splitter.emplace(correction, *bounder, machine.axes.size(), options.largest_pieces);
     place_nodes(moves, before, chunk);
     correct_nodes(moves, chunk);
     prove_groups(moves, chunk);
     for (std::size_t i = 0; i < moves.size(); ++i) {
-      chunk.pieces.first.push_back(chunk.pieces.pieces.size());
+      (reversals.act() ? chunk.way.first : chunk.pieces.first)
+          .push_back(reversals.act() ? chunk.way.nodes.size() : chunk.pieces.pieces.size());
       const ProgramMove* earlier = i > 0 ? &moves[i - 1] : before;
       if (chunk.from_before[i] != 0 && earlier->tool_length != moves[i].tool_length)
         chunk.report.tool_changes.add(moves[i].line);
       give_move(moves[i], i, chunk);
     }
+    chunk.way.first.push_back(chunk.way.nodes.size());
     chunk.report.moves = moves.size();
     chunk.report.pieces = chunk.pieces.pieces.size();
+  }
+
+  void correct_batch(std::span<const ProgramMove> moves, CorrectedPieces& corrected) {
+    const std::size_t count = (moves.size() + kChunk - 1) / kChunk;
+    while (chunks.size() < count) chunks.push_back(std::make_unique<Chunk>());
+    const auto moves_of = [&](std::size_t c) {
+      return moves.subspan(c * kChunk, std::min(kChunk, moves.size() - c * kChunk));
+    };
+    for (std::size_t c = 0; c < count; ++c) find_tools(moves_of(c), *chunks[c]);
+    for_each_block(count, options.threads, [&](std::size_t c) {
+      const ProgramMove* before = c > 0 ? &moves[c * kChunk - 1] : last_move ? &*last_move : nullptr;
+      work(moves_of(c), before, *chunks[c]);
+    });
+    if (reversals.act()) {
+      for (std::size_t c = 0; c < count; ++c) reversals.follow(chunks[c]->way);
+      for_each_block(count, options.threads, [&](std::size_t c) { give_all_steps(moves_of(c), *chunks[c]); });
+    }
+    std::size_t pieces = corrected.pieces.size();
+    for (std::size_t c = 0; c < count; ++c) pieces += chunks[c]->pieces.pieces.size();
+    corrected.pieces.reserve(pieces);
+    for (std::size_t c = 0; c < count; ++c) {
+      const Chunk& chunk = *chunks[c];
+      const std::size_t before = corrected.pieces.size();
+      for (const std::size_t first : chunk.pieces.first) corrected.first.push_back(before + first);
+      corrected.pieces.insert(corrected.pieces.end(), chunk.pieces.pieces.begin(), chunk.pieces.pieces.end());
+      total.add(chunk.report);
+    }
+    last_move = moves.back();
+  }
+
+  void find_tools(std::span<const ProgramMove> moves, Chunk& chunk) {
+    chunk.tool.resize(moves.size());
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      // Programs keep a tool for long: the search is for new ones.
+      if (i > 0 && chunk.tool[i - 1] != kNoTool && moves[i].tool_length == moves[i - 1].tool_length &&
+          can_be_made(moves[i])) {
+        chunk.tool[i] = chunk.tool[i - 1];
+      } else {
+        chunk.tool[i] = can_be_made(moves[i]) ? correction.tool(moves[i].tool_length) : kNoTool;
+      }
+    }
   }
 
   Machine machine;
@@ -222,6 +330,7 @@ struct ProgramCorrection::Implementation {
   NodeCorrection correction;
   std::string problem;
   std::optional<PieceBounder> bounder;
+  ProgramReversals reversals;
   std::vector<std::unique_ptr<Chunk>> chunks;
   std::optional<ProgramMove> last_move;
   ProgramReport total;
@@ -246,41 +355,16 @@ void ProgramCorrection::correct(std::span<const ProgramMove> moves, CorrectedPie
     corrected.first.push_back(corrected.pieces.size());
     return;
   }
-  const std::size_t count = (moves.size() + kChunk - 1) / kChunk;
-  while (self.chunks.size() < count) self.chunks.push_back(std::make_unique<Chunk>());
-  for (std::size_t c = 0; c < count; ++c) {
-    Chunk& chunk = *self.chunks[c];
-    const std::size_t first = c * kChunk, last = std::min(first + kChunk, moves.size());
-    chunk.tool.resize(last - first);
-    for (std::size_t i = first; i < last; ++i) {
-      // Programs keep a tool for long: the search is for new ones.
-      if (i > first && chunk.tool[i - first - 1] != kNoTool && moves[i].tool_length == moves[i - 1].tool_length &&
-          self.can_be_made(moves[i])) {
-        chunk.tool[i - first] = chunk.tool[i - first - 1];
-      } else {
-        chunk.tool[i - first] = self.can_be_made(moves[i]) ? self.correction.tool(moves[i].tool_length) : kNoTool;
-      }
-    }
-  }
-  for_each_block(count, self.options.threads, [&](std::size_t c) {
-    const std::size_t first = c * kChunk, last = std::min(first + kChunk, moves.size());
-    const ProgramMove* before = first > 0 ? &moves[first - 1] : self.last_move ? &*self.last_move : nullptr;
-    self.work(moves.subspan(first, last - first), before, *self.chunks[c]);
-  });
-  std::size_t pieces = 0;
-  for (std::size_t c = 0; c < count; ++c) pieces += self.chunks[c]->pieces.pieces.size();
-  corrected.pieces.reserve(pieces);
-  for (std::size_t c = 0; c < count; ++c) {
-    const Chunk& chunk = *self.chunks[c];
-    for (const std::size_t first : chunk.pieces.first) corrected.first.push_back(corrected.pieces.size() + first);
-    corrected.pieces.insert(corrected.pieces.end(), chunk.pieces.pieces.begin(), chunk.pieces.pieces.end());
-    self.total.add(chunk.report);
+  // With reversal values the poses of moves are kept until the directions are known: of few moves at a time.
+  const std::size_t batch = self.reversals.act() ? kChunksWithWay * kChunk : moves.size();
+  for (std::size_t first = 0; first < moves.size(); first += batch) {
+    self.correct_batch(moves.subspan(first, std::min(batch, moves.size() - first)), corrected);
   }
   corrected.first.push_back(corrected.pieces.size());
-  if (!moves.empty()) self.last_move = moves.back();
 }
 
 const ProgramReport& ProgramCorrection::report() const { return implementation_->total; }
 const std::string& ProgramCorrection::problem() const { return implementation_->problem; }
+const std::vector<ReversalAxis>& ProgramCorrection::reversals() const { return implementation_->reversals.axes(); }
 
 }  // namespace abbe

@@ -19,6 +19,9 @@ struct ProgramCorrectionOptions {
   CorrectionOptions inverse;
   PathTolerance tolerance;              ///< of feed moves
   double rapid_tolerance = 0.01;        ///< mm, of rapid moves, whose orientation is not looked at between their ends
+  /// mm, of axes with reversal values, of rotary ones at the longest lever; 0: an eighth of the tolerance and part of it,
+  /// else what it costs comes on top of the tolerance.
+  double reversal_dead_band = 0;
   double limit = 0;                     ///< mm; corrections of the functional point above it are counted; 0: no limit
   std::vector<double> rest;             ///< [axes] commands of axes that no word moves, mm or rad; empty: zero
   int threads = 0;                      ///< 0: as many as the machine has
@@ -26,6 +29,9 @@ struct ProgramCorrectionOptions {
 };
 
 /// Corrects the moves of a program so that the tool of a machine with errors follows the commanded path.
+///
+/// Axes with reversal values get half of it against the direction of their last motion, and a motion of their own by
+/// all of it where they turn round (ProgramReversals).
 ///
 /// The ends of moves are corrected by CompensatedInverse; a move whose path between them cannot be proven to stay
 /// within the tolerance (PieceBounder) is split. Dense programs pass with one pose and a share of a common bound per
@@ -43,6 +49,8 @@ class ProgramCorrection : public MoveCorrector {
 
   /// Of all moves so far.
   const ProgramReport& report() const;
+  /// Axes whose reversal values are compensated, with their dead bands.
+  const std::vector<ReversalAxis>& reversals() const;
   /// What makes this object unusable; empty if it is sound. Unusable, moves come back as they are.
   const std::string& problem() const;
 

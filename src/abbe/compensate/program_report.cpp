@@ -40,6 +40,10 @@ void ProgramReport::add(const ProgramReport& later) {
   inverse_time.add(later.inverse_time);
   above_limit.add(later.above_limit);
   impossible.add(later.impossible);
+  for (std::size_t i = 0; i < take_ups.size(); ++i) {
+    take_ups[i].add(later.take_ups[i]);
+    direction_unknown[i].add(later.direction_unknown[i]);
+  }
 }
 
 }  // namespace abbe

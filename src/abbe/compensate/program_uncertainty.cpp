@@ -92,6 +92,15 @@ PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, 
   Deviation deviation;
   Eigen::MatrixXd by_parameters, by_positions;
   tool_deviation(with_tool, errors, position, deviation, &by_parameters, &by_positions);
+  // An axis stands as if half of its reversal value had been commanded besides, in the direction of its approach.
+  const std::size_t first_reversal = errors.parameter_count() - 3 - errors.reversals.size();
+  for (std::size_t r = 0; r < errors.reversals.size(); ++r) {
+    const Reversal& reversal = errors.reversals[r];
+    const Eigen::Matrix<double, 6, 1> by_value =
+        0.5 * place.approach[reversal.axis] * by_positions.col(static_cast<Eigen::Index>(reversal.axis));
+    by_parameters.col(static_cast<Eigen::Index>(first_reversal + r)) = by_value;
+    deviation += reversal.value * by_value;
+  }
   const Eigen::Matrix<double, 6, 6> spread = by_parameters * covariance * by_parameters.transpose();
   result.stated = true;
   const Eigen::Vector3d shift = deviation.head<3>();
@@ -157,6 +166,13 @@ std::vector<std::string> leave_out_uncertain(const Machine& machine, ErrorSet& e
     if (!(variance > 0) || std::abs(location.value) >= factor * std::sqrt(variance)) continue;
     location.value = 0;
     names.push_back(location_error_name(machine, location.axis, location.component));
+  }
+  for (Reversal& reversal : kept.reversals) {
+    const double variance = covariance(parameter, parameter);
+    ++parameter;
+    if (!(variance > 0) || std::abs(reversal.value) >= factor * std::sqrt(variance)) continue;
+    reversal.value = 0;
+    names.push_back(reversal_name(machine, reversal.axis));
   }
   errors = kept;
   return names;

@@ -113,5 +113,40 @@ TEST(ProgramUncertainty, ErrorsBelowTheirUncertaintyEverywhereAreLeftOutByName) 
   EXPECT_THAT(leave_out_uncertain(machine, kept, parameter_covariance(errors, {}), 2), testing::ElementsAre("EC0Y"));
 }
 
+TEST(ProgramUncertainty, ReversalValuesEnterByHalfInTheDirectionOfTheApproach) {
+  const Machine machine = test::three_axis_mill();
+  const std::size_t x = machine.find_axis("X"), y = machine.find_axis("Y");
+  ErrorSet errors;
+  errors.locations.push_back({y, Component::C, 50e-6, 0});
+  errors.reversals = {{x, -0.012, 0.002}, {y, -0.01, 0.004}};
+  const Eigen::MatrixXd covariance = parameter_covariance(errors, {});
+  ProgramPlace place;
+  place.status = CorrectionStatus::reached;
+  place.approach[x] = -1;
+  const std::vector<bool> moved(3, true);
+  PlaceUncertainty stated = uncertainty_at(machine, errors, covariance, place, moved);
+  ASSERT_TRUE(stated.axes_known);
+  EXPECT_NEAR(stated.axis[x], 0.001, 1e-6);
+  EXPECT_NEAR(stated.axis[y], 0, 1e-6);  // not moved yet: nothing is added for it
+  EXPECT_NEAR(stated.point, 0.001, 1e-6);
+  place.approach[y] = 1;
+  stated = uncertainty_at(machine, errors, covariance, place, moved);
+  EXPECT_NEAR(stated.axis[y], 0.002, 1e-6);
+}
+
+TEST(ProgramUncertainty, ReversalValuesBelowTheirUncertaintyAreLeftOutByName) {
+  const Machine machine = test::three_axis_mill();
+  const std::size_t x = machine.find_axis("X"), y = machine.find_axis("Y"), z = machine.find_axis("Z");
+  ErrorSet errors;
+  errors.locations.push_back({y, Component::C, 50e-6, 3e-6});
+  errors.reversals = {{x, -0.002, 0.0015}, {y, -0.004, 0.0015}, {z, 0.001, 0}};
+  ErrorSet kept = errors;
+  EXPECT_THAT(leave_out_uncertain(machine, kept, parameter_covariance(errors, {}), 2),
+              testing::ElementsAre("reversal_X"));
+  EXPECT_EQ(kept.reversals[0].value, 0);
+  EXPECT_EQ(kept.reversals[1].value, -0.004);
+  EXPECT_EQ(kept.reversals[2].value, 0.001);
+}
+
 }  // namespace
 }  // namespace abbe

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "abbe/errors/error_set.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+/// Direction of the last motion of every axis: +1, -1, 0 where it is not known or does not matter.
+using AxisApproach = std::array<std::int8_t, kMaxAxes>;
+
+/// An axis with a reversal value (errors/reversal.h) whose direction is followed.
+struct ReversalAxis {
+  std::size_t axis = 0;
+  double value = 0;      ///< B, mm or rad
+  double dead_band = 0;  ///< mm or rad; going back by no more than this is no reversal
+
+  /// What the command gets so that the axis stands where it shall after an approach in that direction; mm or rad.
+  double offset(int direction) const { return -0.5 * value * direction; }
+  bool operator==(const ReversalAxis&) const = default;
+};
+
+/// Follows in which direction axes move, with a dead band: a direction lasts until the axis has come back from the
+/// furthest place it reached in it by more than the dead band. An axis that does not move keeps its direction; before
+/// it has moved by more than the dead band it has none.
+///
+/// So the axis is never further behind that furthest place than the dead band while it counts as moving towards it: by
+/// no more than that does play hold it off the place it is commanded to.
+class AxisDirections {
+ public:
+  /// @param dead_bands  [axes followed] mm or rad
+  explicit AxisDirections(const std::vector<double>& dead_bands);
+
+  /// The axis stands at a place to which it came in a way that was not seen.
+  void stand(std::size_t i, double position);
+  /// The axis moves there straight from where it is.
+  /// @returns true if its direction is another one from where it is on
+  bool move(std::size_t i, double position);
+
+  std::int8_t direction(std::size_t i) const { return state_[i].direction; }
+  bool stands(std::size_t i) const { return state_[i].seen; }
+
+ private:
+  struct State {
+    double dead_band = 0;
+    double lowest = 0, highest = 0;  ///< since the direction began
+    std::int8_t direction = 0;
+    bool seen = false;
+  };
+  std::vector<State> state_;
+};
+
+}  // namespace abbe

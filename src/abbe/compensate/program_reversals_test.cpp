@@ -1,0 +1,235 @@
+// Programs for axes with reversal values, driven on machines whose axes have play: an independent route.
+#include "abbe/compensate/program_reversals.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "abbe/compensate/machine_with_play_for_test.h"
+#include "abbe/compensate/program_correction.h"
+#include "abbe/compensate/program_moves_for_test.h"
+#include "abbe/compensate/tool_centre_moves.h"
+#include "abbe/machine/machines_for_test.h"
+
+namespace abbe {
+namespace {
+
+using test::MachineWithPlay;
+
+constexpr double kTolerance = 1e-3;             // mm
+constexpr double kOrientationTolerance = 1e-5;  // rad
+
+struct Missed {
+  double point = 0;  ///< mm, of the actual tool from the commanded path of its move
+  double both = 0;   ///< the same with the direction, both in their tolerances: sqrt(2) where each is kept
+};
+
+using Place = Eigen::Matrix<double, 6, 1>;
+
+/// Distance of a place from a chain of straight lines, of its first n numbers.
+double distance_from(const Place& place, const std::vector<Place>& path, Eigen::Index n, std::size_t& near) {
+  double least = 1e300;
+  // The tool goes on along the path and is never far from where it was.
+  const std::size_t first = near > 30 ? near - 30 : 0, last = std::min(path.size() - 1, near + 400);
+  for (std::size_t p = first; p < last; ++p) {
+    const Eigen::VectorXd along = (path[p + 1] - path[p]).head(n), there = (place - path[p]).head(n);
+    const double square = along.squaredNorm();
+    const double s = square > 0 ? std::clamp(there.dot(along) / square, 0.0, 1.0) : 0.0;
+    const double distance = (there - s * along).norm();
+    if (distance >= least) continue;
+    least = distance;
+    near = p;
+  }
+  return least;
+}
+
+/// Drives moves and measures the actual tool against the commanded path from a move on.
+Missed drive(MachineWithPlay& machine, const std::vector<ProgramMove>& moves, const CorrectedPieces& pieces,
+             std::size_t measured_from, int samples) {
+  constexpr int kPlaces = 1500;
+  Missed missed;
+  WordValues at = moves.front().start;
+  std::vector<Place> path(kPlaces + 1);
+  const auto place = [&](const RigidTransform& pose) {
+    Place scaled;
+    scaled << pose.translation / kTolerance, pose.rotation * machine.tool_direction() / kOrientationTolerance;
+    return scaled;
+  };
+  for (std::size_t i = 0; i < moves.size(); ++i) {
+    const ProgramMove& move = moves[i];
+    if (i >= measured_from) {
+      const MovePath way(move);
+      for (int k = 0; k <= kPlaces; ++k) {
+        WordValues words;
+        way.at(static_cast<double>(k) / kPlaces, words);
+        path[static_cast<std::size_t>(k)] = place(machine.nominal(move, words));
+      }
+    }
+    std::size_t near_point = 0, near = 0;
+    for (std::size_t k = pieces.first[i]; k < pieces.first[i + 1]; ++k) {
+      for (int j = 1; j <= samples; ++j) {
+        machine.drive(machine.commands(move, test::between(at, pieces.pieces[k].end, double(j) / samples)));
+        if (i < measured_from) continue;
+        const Place actual = place(machine.actual(move));
+        missed.point = std::max(missed.point, kTolerance * distance_from(actual, path, 3, near_point));
+        missed.both = std::max(missed.both, distance_from(actual, path, 6, near));
+      }
+      at = pieces.pieces[k].end;
+    }
+  }
+  return missed;
+}
+
+CorrectedPieces as_programmed(const std::vector<ProgramMove>& moves) {
+  CorrectedPieces pieces;
+  for (const ProgramMove& move : moves) {
+    pieces.first.push_back(pieces.pieces.size());
+    constexpr int kParts = 60;
+    const MovePath path(move);
+    for (int k = 1; k <= kParts; ++k) {
+      CorrectedPiece piece{{}, move.feed, move.feed_mode};
+      path.at(static_cast<double>(k) / kParts, piece.end);
+      pieces.pieces.push_back(piece);
+    }
+  }
+  pieces.first.push_back(pieces.pieces.size());
+  return pieces;
+}
+
+/// Lost motion in every axis: tens of micrometres and microradians.
+ErrorSet errors_with_play(const Machine& machine, std::uint64_t seed, bool geometric) {
+  ErrorSet errors;
+  if (geometric) errors = test::mixed_errors(machine, seed);
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> uniform(0.5, 1.5);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    errors.reversals.push_back({i, -uniform(generator) * (rotary ? 60e-6 : 0.02), rotary ? 2e-6 : 1e-3});
+  }
+  return errors;
+}
+
+/// There and back through the whole of the middle of the travel, so that every axis has a direction and is settled.
+void begin_program(const Machine& machine, const WordAxes& words, ProgramCoordinates coordinates, const WordValues& to,
+                   std::vector<ProgramMove>& moves) {
+  const MachineWithPlay nominal(machine, {}, words);
+  const auto to_words = [&](const WordValues& axis_words) {
+    ProgramMove on_axes;
+    WordValues result = axis_words;
+    if (coordinates == ProgramCoordinates::axes) return result;
+    const Eigen::Vector3d point = nominal.nominal(on_axes, axis_words).translation;
+    for (std::size_t i = 0; i < 3; ++i) result[i] = point[static_cast<Eigen::Index>(i)];
+    return result;
+  };
+  WordValues aside = to;
+  for (std::size_t i = 0; i < kAxisWords; ++i) {
+    if (words.axis[i] != Machine::npos) aside[i] -= i >= 3 && i < 6 ? 0.01 : 3;
+  }
+  ProgramMove move;
+  move.line = 1;
+  move.kind = MoveKind::rapid;
+  move.coordinates = coordinates;
+  move.feed = 1000;
+  move.start = to_words(aside);
+  move.end = to_words(to);
+  moves.push_back(move);
+}
+
+ProgramMove next_move(const ProgramMove& before, MoveKind kind, const WordValues& end) {
+  ProgramMove move = before;
+  ++move.line;
+  move.kind = kind;
+  move.start = before.end;
+  move.end = end;
+  return move;
+}
+
+struct Outcome {
+  Missed corrected, programmed;
+  ProgramReport report;
+};
+
+Outcome outcome(const Machine& machine, const ErrorSet& errors, const std::vector<ProgramMove>& moves, int samples) {
+  const WordAxes words = test::words_of(machine);
+  ProgramCorrection correction(machine, errors, words);
+  EXPECT_EQ(correction.problem(), "");
+  CorrectedPieces corrected;
+  correction.correct(moves, corrected);
+  Outcome result;
+  result.report = correction.report();
+  EXPECT_EQ(result.report.not_proven.count, 0U);
+  MachineWithPlay driven(machine, errors, words), plain(machine, errors, words);
+  result.corrected = drive(driven, moves, corrected, 1, samples);
+  result.programmed = drive(plain, moves, as_programmed(moves), 1, 2);
+  return result;
+}
+
+TEST(ProgramReversals, CirclesOfAxesWithPlayStayWithinTheTolerance) {
+  const Machine machine = test::three_axis_mill();
+  const WordAxes words = test::words_of(machine);
+  for (const bool geometric : {false, true}) {
+    const ErrorSet errors = errors_with_play(machine, 3, geometric);
+    for (const ArcPlane plane : {ArcPlane::XY, ArcPlane::ZX, ArcPlane::YZ}) {
+      std::vector<ProgramMove> moves;
+      std::mt19937_64 generator(5);
+      begin_program(machine, words, ProgramCoordinates::axes, test::random_axis_words(machine, words, generator), moves);
+      ProgramMove circle = next_move(moves.back(), MoveKind::arc_counterclockwise, moves.back().end);
+      circle.plane = plane;
+      circle.arc_centre = {circle.start[0] + 11, circle.start[1] - 7, circle.start[2] + 9};
+      moves.push_back(circle);
+      const Outcome found = outcome(machine, errors, moves, 5);
+      EXPECT_LE(found.corrected.point, kTolerance);
+      EXPECT_GE(found.programmed.point, 8e-3);
+      // The beginning of three axes, two quadrants of two each, and where the circle begins in negative direction;
+      // errors may turn an axis round besides.
+      const std::size_t first = plane == ArcPlane::XY ? 0 : plane == ArcPlane::ZX ? 2 : 1, second = (first + 1) % 3;
+      const std::size_t turned = (circle.arc_centre[second] < circle.start[second] ? 1U : 0U) +
+                                 (circle.arc_centre[first] > circle.start[first] ? 1U : 0U);
+      std::size_t taken_up = 0;
+      for (const StatusCount& count : found.report.take_ups) taken_up += count.count;
+      if (geometric) {
+        EXPECT_GE(taken_up, 7U + turned);
+      } else {
+        EXPECT_EQ(taken_up, 7U + turned);
+      }
+    }
+  }
+}
+
+TEST(ProgramReversals, RandomMovesOfManyMachinesStayWithinTheTolerance) {
+  std::mt19937_64 generator(17);
+  std::size_t taken_up = 0;
+  for (const Machine& machine : {test::trunnion_mill(), test::head_table_mill(), test::nutating_head_mill(),
+                                 test::three_axis_mill(), test::gantry_fork_head(), test::redundant_gantry()}) {
+    SCOPED_TRACE(machine.name);
+    const WordAxes words = test::words_of(machine);
+    for (const ProgramCoordinates coordinates : {ProgramCoordinates::axes, ProgramCoordinates::tool_centre}) {
+      const ErrorSet errors = errors_with_play(machine, generator(), true);
+      std::vector<ProgramMove> moves;
+      begin_program(machine, words, coordinates, test::random_axis_words(machine, words, generator), moves);
+      std::uniform_real_distribution<double> uniform(-1, 1);
+      for (int n = 0; n < 6; ++n) {
+        WordValues end = moves.back().end;
+        for (std::size_t i = 0; i < kAxisWords; ++i) {
+          if (words.axis[i] == Machine::npos || generator() % 4 == 0) continue;
+          end[i] += (i >= 3 && i < 6 ? 0.05 : 8) * uniform(generator);
+        }
+        moves.push_back(next_move(moves.back(), MoveKind::straight, end));
+      }
+      const Outcome found = outcome(machine, errors, moves, 4);
+      EXPECT_LE(found.corrected.point, kTolerance);
+      EXPECT_GE(found.programmed.point, 10e-3);
+      if (machine.axes.size() > 3) {
+        const double left = found.report.largest_orientation_left.value / kOrientationTolerance;
+        EXPECT_LE(found.corrected.both, std::numbers::sqrt2 + left);
+      }
+      for (const StatusCount& count : found.report.take_ups) taken_up += count.count;
+    }
+  }
+  EXPECT_GE(taken_up, 100U);
+}
+
+}  // namespace
+}  // namespace abbe
