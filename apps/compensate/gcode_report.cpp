@@ -74,7 +74,8 @@ void print_reversals(const Machine& machine, const GcodeResult& result) {
     }
     if (axis.value > 0) {
       fmt::print(
-          "  above zero it is no lost motion: where {} turns round, the motion that takes it up moves the axis itself\n",
+          "  above zero it is no lost motion: where {} turns round, the motion that takes it up moves the axis "
+          "itself\n",
           machine.axes[axis.axis].name);
     }
   }
@@ -90,7 +91,8 @@ nlohmann::ordered_json reversals_json(const Machine& machine, const GcodeResult&
     nlohmann::ordered_json one;
     one["axis"] = machine.axes[axis.axis].name;
     one["value" + unit] = factor * axis.value;
-    if (result.reversal_uncertainty[r] > 0) one["standard_uncertainty" + unit] = factor * result.reversal_uncertainty[r];
+    if (result.reversal_uncertainty[r] > 0)
+      one["standard_uncertainty" + unit] = factor * result.reversal_uncertainty[r];
     one["dead_band" + unit] = factor * axis.dead_band;
     one["taken_up"] = count_json(result.report.take_ups[axis.axis]);
     one["direction_not_known"] = count_json(result.report.direction_unknown[axis.axis]);

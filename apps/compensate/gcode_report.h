@@ -16,12 +16,12 @@ namespace abbe {
 struct GcodeResult {
   ProgramReport report;
   NcProgramResult text;
-  PlaceUncertainty largest;               ///< at ProgramReport::largest_shift
-  std::vector<PlaceUncertainty> by_axis;  ///< [axes] at ProgramReport::by_axis
-  std::vector<ReversalAxis> reversals;    ///< compensated reversal values
+  PlaceUncertainty largest;                  ///< at ProgramReport::largest_shift
+  std::vector<PlaceUncertainty> by_axis;     ///< [axes] at ProgramReport::by_axis
+  std::vector<ReversalAxis> reversals;       ///< compensated reversal values
   std::vector<double> reversal_uncertainty;  ///< [reversals] mm or rad, 0: not stated
-  std::vector<std::string> left_out;      ///< errors below their uncertainty
-  std::vector<std::string> refused;       ///< why nothing is written; empty: it is
+  std::vector<std::string> left_out;         ///< errors below their uncertainty
+  std::vector<std::string> refused;          ///< why nothing is written; empty: it is
 };
 
 /// Reasons not to write the program that are not allowed.

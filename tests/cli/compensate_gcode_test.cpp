@@ -180,7 +180,7 @@ TEST_F(CompensateGcode, JsonSaysWhatWasDoneAndWithWhatUncertainty) {
 std::vector<Eigen::Vector3d> points_with_play(test::MachineWithPlay& machine, const std::vector<ProgramMove>& moves) {
   std::vector<Eigen::Vector3d> points;
   for (const ProgramMove& move : moves) {
-    const int count = samples_along(move, 4);
+    const int count = samples_along(move, 20);
     const MovePath path(move);
     for (int k = 0; k <= count; ++k) {
       WordValues words;
@@ -230,16 +230,16 @@ standard_uncertainty_urad = 2
     EXPECT_THAT(result.out, HasSubstr("reversal of C -55 urad, standard uncertainty 2 urad: taken up "));
     const WordAxes words = word_axes_by_name(read);
     const std::vector<ProgramMove> commanded_moves = moves_of(original);
-    const std::vector<Eigen::Vector3d> commanded = points_along(control(), commanded_moves, false, 20);
+    const std::vector<Eigen::Vector3d> commanded = points_along(control(), commanded_moves, false, 400);
     test::MachineWithPlay driven(read, with_play, words), uncorrected(read, with_play, words);
     const std::vector<Eigen::Vector3d> points = points_with_play(driven, moves_of(folder.path() / program));
     EXPECT_LE(distance_from(points, commanded).largest, 1.1e-3);
     EXPECT_LE(distance_from(commanded, points).largest, 1.1e-3);
     EXPECT_GE(distance_from(points_with_play(uncorrected, commanded_moves), commanded).largest, 0.02);
   }
-  const CommandResult left = abbe({"compensate", "gcode", (kExamples / "compensate/cone.ngc").string(), "--machine",
-                                   machine, "--errors", "r.errors.toml", "--dry-run", "--json",
-                                   "--leave-out-below-uncertainty", "2"});
+  const CommandResult left =
+      abbe({"compensate", "gcode", (kExamples / "compensate/cone.ngc").string(), "--machine", machine, "--errors",
+            "r.errors.toml", "--dry-run", "--json", "--leave-out-below-uncertainty", "2"});
   ASSERT_EQ(left.exit_code, ExitCode::done) << left.err;
   const auto json = nlohmann::json::parse(left.out);
   EXPECT_THAT(json.at("left_out").get<std::vector<std::string>>(), testing::Contains("reversal_Z"));

@@ -152,5 +152,42 @@ TEST(PieceFeed, LinearMovesAndFeedsPerRevolutionStayAsTheyAre) {
   EXPECT_EQ(piece.feed, 0.2);
 }
 
+TEST(PieceFeed, AMotionOfOneAxisAloneHasTheFeedOfItsKindOrTheRightTime) {
+  ProgramMove move;
+  move.kind = MoveKind::straight;
+  move.feed = 600;
+  move.end[0] = 50;
+  CorrectedPiece piece;
+  set_take_up_feed(move, false, 0.01, 0.1, 50, piece);
+  EXPECT_EQ(piece.feed_mode, FeedMode::per_minute);
+  EXPECT_EQ(piece.feed, 600);
+  // 20 um at the speed of 50 mm in a tenth of a minute.
+  set_take_up_feed(move, true, 0.02, 0.1, 50, piece);
+  EXPECT_EQ(piece.feed_mode, FeedMode::inverse_time);
+  EXPECT_DOUBLE_EQ(piece.feed, 500 / 0.02);
+  // Never longer than the piece, never in no time.
+  set_take_up_feed(move, true, 0.02, 0.1, 0, piece);
+  EXPECT_DOUBLE_EQ(piece.feed, 10);
+  set_take_up_feed(move, true, 1e-300, 0.1, 50, piece);
+  EXPECT_DOUBLE_EQ(piece.feed, 1e8);
+  // Nothing is known of the time.
+  set_take_up_feed(move, true, 0.02, 0, 0, piece);
+  EXPECT_EQ(piece.feed_mode, FeedMode::per_minute);
+  move.feed_mode = FeedMode::inverse_time;
+  move.feed = 10;
+  set_take_up_feed(move, false, 0.02, 0.1, 50, piece);
+  EXPECT_EQ(piece.feed_mode, FeedMode::inverse_time);
+  EXPECT_DOUBLE_EQ(piece.feed, 500 / 0.02);
+  ProgramMove turn;
+  turn.kind = MoveKind::straight;
+  turn.feed = 4;
+  turn.end[5] = 1;
+  set_take_up_feed(turn, true, 0.02, 0.25, 100, piece);
+  EXPECT_EQ(piece.feed_mode, FeedMode::per_minute);
+  set_take_up_feed(turn, false, 0.02, 0.25, 100, piece);
+  EXPECT_EQ(piece.feed_mode, FeedMode::inverse_time);
+  EXPECT_DOUBLE_EQ(piece.feed, 400 / 0.02);
+}
+
 }  // namespace
 }  // namespace abbe

@@ -79,9 +79,8 @@ double bound_excess(const PieceBounder& bounder, const PathTolerance& tolerance,
   for (std::size_t i = 0; i < kMaxAxes; ++i) {
     if (!play.has[i] || !bounder.is_point_axis(i)) continue;
     // A curve with |l''| <= b that goes from 0 to d leaves this interval by at most (b / 2 - d)^2 / (2 b).
-    const double way = piece == nullptr
-                           ? 0
-                           : std::abs(piece->to->corrected_position[i] - piece->from->corrected_position[i]);
+    const double way =
+        piece == nullptr ? 0 : std::abs(piece->to->corrected_position[i] - piece->from->corrected_position[i]);
     const double beyond = std::max(0.0, 0.5 * bound.axis_bend - way);
     raise(excess, beyond * beyond / (2 * bound.axis_bend) / (kOvershootShare * play.lag[i]));
   }

@@ -287,8 +287,7 @@ void PieceBounder::pass_linear(std::size_t i, Passing& at) const {
     for (const std::size_t k : axis.run) {
       speeds += square(at.point_speed(k));
       widths += square(motion.width[k]);
-      offsets +=
-          square(at.point_offset(k) + axes_[k].zero_position + (motion.tool_centre ? play_.offset[k] : 0));
+      offsets += square(at.point_offset(k) + axes_[k].zero_position + (motion.tool_centre ? play_.offset[k] : 0));
       lags += square(play_.lag[k]);
       offset_speeds += square(at.point_offset_speed(k));
     }

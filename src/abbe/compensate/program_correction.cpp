@@ -153,18 +153,16 @@ struct ProgramCorrection::Implementation {
   void state(const ProgramMove& move, const CorrectedNode& node, ProgramReport& report,
              const AxisApproach& approach = {}) const {
     const auto place = [&](double value) {
-      return ProgramPlace{value, move.line, node.position, node.corrected_position, move.tool_length, node.status,
-                          approach};
+      return ProgramPlace{value,       move.line, node.position, node.corrected_position, move.tool_length,
+                          node.status, approach};
     };
     report.status[static_cast<std::size_t>(node.status)].add(move.line);
     const double shift =
         std::sqrt(node.shift[0] * node.shift[0] + node.shift[1] * node.shift[1] + node.shift[2] * node.shift[2]);
-    if (report.largest_shift.line == 0 || shift > report.largest_shift.value)
-      report.largest_shift.take(place(shift));
+    if (report.largest_shift.line == 0 || shift > report.largest_shift.value) report.largest_shift.take(place(shift));
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
       const double value = std::abs(node.corrected_position[i] - node.position[i]);
-      if (report.by_axis[i].line == 0 || value > report.by_axis[i].value)
-        report.by_axis[i].take(place(value));
+      if (report.by_axis[i].line == 0 || value > report.by_axis[i].value) report.by_axis[i].take(place(value));
     }
     const bool known = node.point_reached();
     if (known && node.orientation_left > report.largest_orientation_left.value)
@@ -229,10 +227,9 @@ struct ProgramCorrection::Implementation {
     }
     const double duration = move_duration(move);
     reversals.steps(correction, move, chunk.tool[i], way, i, chunk.steps);
-    WordValues at = reversals
-                        .commanded(correction, move, chunk.tool[i], way.nodes[way.first[i]],
-                                   way.approach[way.first[i]])
-                        .corrected;
+    WordValues at =
+        reversals.commanded(correction, move, chunk.tool[i], way.nodes[way.first[i]], way.approach[way.first[i]])
+            .corrected;
     for (const ProgramStep& step : chunk.steps) {
       const double share = way.shares[step.to] - way.shares[step.to - 1];
       if (step.taken_up == ProgramStep::npos) {

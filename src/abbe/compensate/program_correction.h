@@ -17,10 +17,10 @@ namespace abbe {
 
 struct ProgramCorrectionOptions {
   CorrectionOptions inverse;
-  PathTolerance tolerance;              ///< of feed moves
-  double rapid_tolerance = 0.01;        ///< mm, of rapid moves, whose orientation is not looked at between their ends
-  /// mm, of axes with reversal values, of rotary ones at the longest lever; 0: an eighth of the tolerance and part of it,
-  /// else what it costs comes on top of the tolerance.
+  PathTolerance tolerance;        ///< of feed moves
+  double rapid_tolerance = 0.01;  ///< mm, of rapid moves, whose orientation is not looked at between their ends
+  /// mm, of axes with reversal values, of rotary ones at the longest lever; 0: an eighth of the tolerance and part of
+  /// it, else what it costs comes on top of the tolerance.
   double reversal_dead_band = 0;
   double limit = 0;                     ///< mm; corrections of the functional point above it are counted; 0: no limit
   std::vector<double> rest;             ///< [axes] commands of axes that no word moves, mm or rad; empty: zero

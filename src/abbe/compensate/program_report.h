@@ -44,11 +44,11 @@ struct ProgramReport {
   std::array<ProgramPlace, kMaxAxes> by_axis;  ///< |corrected - programmed|, mm or rad
   ProgramPlace largest_orientation_left;       ///< rad, of the tool direction, where the machine cannot turn it
   std::array<StatusCount, kCorrectionStatuses> status;  ///< by CorrectionStatus, of the ends of moves and pieces
-  StatusCount not_proven;    ///< moves whose path could not be shown to stay within the tolerance
-  StatusCount tool_changes;  ///< moves that begin where the machine stood with another tool length
-  StatusCount inverse_time;  ///< moves per minute with pieces whose duration needs inverse time
-  StatusCount above_limit;   ///< ends where the point's correction is above the limit
-  std::array<StatusCount, kMaxAxes> take_ups;           ///< of axes with reversal values, where they turn round
+  StatusCount not_proven;                      ///< moves whose path could not be shown to stay within the tolerance
+  StatusCount tool_changes;                    ///< moves that begin where the machine stood with another tool length
+  StatusCount inverse_time;                    ///< moves per minute with pieces whose duration needs inverse time
+  StatusCount above_limit;                     ///< ends where the point's correction is above the limit
+  std::array<StatusCount, kMaxAxes> take_ups;  ///< of axes with reversal values, where they turn round
   std::array<StatusCount, kMaxAxes> direction_unknown;  ///< poses before the axis has moved
   /// Words that move an axis that the machine does not have, or tool centre moves it cannot make.
   StatusCount impossible;

@@ -122,8 +122,7 @@ void ProgramReversals::steps(const NodeCorrection& correction, const ProgramMove
       const double way_there =
           lever_[axis.axis] * std::abs(axis.offset(approach[axis.axis]) - axis.offset(taken[axis.axis]));
       taken[axis.axis] = approach[axis.axis];
-      steps.push_back(
-          {commanded(correction, move, tool, way.nodes[k - 1], taken), axis.axis, way_there, k, taken});
+      steps.push_back({commanded(correction, move, tool, way.nodes[k - 1], taken), axis.axis, way_there, k, taken});
     }
     steps.push_back({commanded(correction, move, tool, way.nodes[k], approach), ProgramStep::npos, 0, k, approach});
   }

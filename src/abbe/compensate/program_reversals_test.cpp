@@ -174,7 +174,8 @@ TEST(ProgramReversals, CirclesOfAxesWithPlayStayWithinTheTolerance) {
     for (const ArcPlane plane : {ArcPlane::XY, ArcPlane::ZX, ArcPlane::YZ}) {
       std::vector<ProgramMove> moves;
       std::mt19937_64 generator(5);
-      begin_program(machine, words, ProgramCoordinates::axes, test::random_axis_words(machine, words, generator), moves);
+      begin_program(machine, words, ProgramCoordinates::axes, test::random_axis_words(machine, words, generator),
+                    moves);
       ProgramMove circle = next_move(moves.back(), MoveKind::arc_counterclockwise, moves.back().end);
       circle.plane = plane;
       circle.arc_centre = {circle.start[0] + 11, circle.start[1] - 7, circle.start[2] + 9};
@@ -229,6 +230,141 @@ TEST(ProgramReversals, RandomMovesOfManyMachinesStayWithinTheTolerance) {
     }
   }
   EXPECT_GE(taken_up, 100U);
+}
+
+TEST(ProgramReversals, CommandsGetHalfOfItAgainstTheDirectionOfTheirLastMotion) {
+  const Machine machine = test::three_axis_mill();
+  const WordAxes words = test::words_of(machine);
+  ErrorSet errors;
+  errors.reversals = {{machine.find_axis("X"), -0.012, 0}, {machine.find_axis("Y"), 0.004, 0}};
+  ProgramMove out;
+  out.line = 1;
+  out.kind = MoveKind::straight;
+  out.feed = 600;
+  out.start[1] = out.end[1] = 50;  // within the travel
+  out.start[0] = 10;
+  out.end[0] = 30;
+  WordValues end = out.end;
+  end[0] = 10;
+  end[1] = 55;
+  const ProgramMove back = next_move(out, MoveKind::straight, end);
+  end[2] = -40;
+  const ProgramMove down = next_move(back, MoveKind::rapid, end);
+  ProgramCorrection correction(machine, errors, words);
+  ASSERT_EQ(correction.reversals().size(), 2U);
+  EXPECT_DOUBLE_EQ(correction.reversals()[0].dead_band, 1.25e-4);
+  CorrectedPieces corrected;
+  correction.correct(std::vector<ProgramMove>{out, back, down}, corrected);
+  const std::vector<std::array<double, 3>> wanted = {
+      {10.006, 50, 0},     {30.006, 50, 0},                          // half of the gap first, Y has not moved
+      {29.994, 50, 0},     {29.994, 49.998, 0}, {9.994, 54.998, 0},  // X all of it, Y half
+      {9.994, 54.998, -40}};                                         // nothing turns round
+  ASSERT_EQ(corrected.pieces.size(), wanted.size());
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(corrected.pieces[k].end[i], wanted[k][i], 1e-9) << k;
+    EXPECT_EQ(corrected.pieces[k].feed_mode, FeedMode::per_minute);
+  }
+  EXPECT_EQ(corrected.first, (std::vector<std::size_t>{0, 2, 5, 6}));
+  const ProgramReport& report = correction.report();
+  EXPECT_EQ(report.take_ups[machine.find_axis("X")].count, 2U);
+  EXPECT_EQ(report.direction_unknown[machine.find_axis("X")].count, 0U);
+  EXPECT_EQ(report.direction_unknown[machine.find_axis("Y")].count, 1U);
+  EXPECT_NEAR(report.by_axis[machine.find_axis("X")].value, 0.006, 1e-12);
+  EXPECT_EQ(report.largest_shift.approach[machine.find_axis("Y")], 1);
+}
+
+TEST(ProgramReversals, MotionsBesideTheProgramLeaveTheDirectionOfTheirAxesUnknown) {
+  const Machine machine = test::three_axis_mill();
+  const WordAxes words = test::words_of(machine);
+  ErrorSet errors;
+  errors.reversals = {{machine.find_axis("X"), -0.012, 0}, {machine.find_axis("Y"), -0.004, 0}};
+  ProgramMove first;
+  first.line = 1;
+  first.end[0] = first.end[1] = 30;
+  ProgramMove second = first;
+  second.line = 2;
+  second.start = first.end;
+  second.start[0] = 50;  // X came there by a word that is not a move
+  second.end = second.start;
+  second.end[2] = -10;
+  ProgramCorrection correction(machine, errors, words);
+  CorrectedPieces corrected;
+  correction.correct(std::vector<ProgramMove>{first, second}, corrected);
+  EXPECT_NEAR(corrected.pieces.back().end[0], 50, 1e-12);
+  EXPECT_NEAR(corrected.pieces.back().end[1], 30.002, 1e-12);
+}
+
+TEST(ProgramReversals, ResultsDoNotDependOnBatchesOrThreads) {
+  const Machine machine = test::trunnion_mill();
+  const WordAxes words = test::words_of(machine);
+  const ErrorSet errors = errors_with_play(machine, 7, true);
+  std::mt19937_64 generator(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::vector<ProgramMove> moves;
+  begin_program(machine, words, ProgramCoordinates::axes, test::random_axis_words(machine, words, generator), moves);
+  for (int n = 0; n < 600; ++n) {
+    WordValues end = moves.back().end;
+    for (std::size_t i = 0; i < kAxisWords; ++i) {
+      if (words.axis[i] != Machine::npos && generator() % 3 != 0) end[i] += (i >= 3 ? 1e-4 : 0.05) * uniform(generator);
+    }
+    moves.push_back(next_move(moves.back(), n % 50 == 0 ? MoveKind::rapid : MoveKind::straight, end));
+  }
+  const auto run = [&](std::size_t batch, int threads, std::size_t& taken_up) {
+    ProgramCorrectionOptions options;
+    options.threads = threads;
+    ProgramCorrection correction(machine, errors, words, options);
+    std::vector<double> numbers;
+    CorrectedPieces corrected;
+    for (std::size_t i = 0; i < moves.size(); i += batch) {
+      correction.correct({moves.data() + i, std::min(batch, moves.size() - i)}, corrected);
+      for (const CorrectedPiece& piece : corrected.pieces) {
+        numbers.insert(numbers.end(), piece.end.begin(), piece.end.end());
+        numbers.push_back(piece.feed);
+      }
+      EXPECT_EQ(corrected.first.back(), corrected.pieces.size());
+    }
+    taken_up = 0;
+    for (const StatusCount& count : correction.report().take_ups) taken_up += count.count;
+    return numbers;
+  };
+  std::size_t all = 0, single = 0, few = 0;
+  const std::vector<double> one = run(601, 1, all);
+  EXPECT_EQ(one, run(1, 2, single));
+  EXPECT_EQ(one, run(90, 2, few));
+  EXPECT_GE(all, 100U);
+  EXPECT_EQ(all, single);
+  EXPECT_EQ(all, few);
+}
+
+TEST(ProgramReversals, ALargerDeadBandComesOnTopOfTheTolerance) {
+  const Machine machine = test::three_axis_mill();
+  const WordAxes words = test::words_of(machine);
+  const ErrorSet errors = errors_with_play(machine, 3, true);
+  std::vector<ProgramMove> moves;
+  std::mt19937_64 generator(5);
+  begin_program(machine, words, ProgramCoordinates::axes, test::random_axis_words(machine, words, generator), moves);
+  for (const double x : {60.0, -60.0, 50.0}) {
+    WordValues end = moves.back().end;
+    end[0] += x;
+    moves.push_back(next_move(moves.back(), MoveKind::straight, end));
+  }
+  std::array<std::size_t, 2> taken_up{};
+  std::array<double, 2> missed{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    ProgramCorrectionOptions options;
+    options.reversal_dead_band = k == 0 ? 0 : 0.006;
+    ProgramCorrection correction(machine, errors, words, options);
+    CorrectedPieces corrected;
+    correction.correct(moves, corrected);
+    EXPECT_EQ(correction.report().not_proven.count, 0U);
+    for (const StatusCount& count : correction.report().take_ups) taken_up[k] += count.count;
+    MachineWithPlay driven(machine, errors, words);
+    missed[k] = drive(driven, moves, corrected, 1, 4).point;
+  }
+  EXPECT_LE(missed[0], kTolerance);
+  EXPECT_LE(missed[1], kTolerance + std::sqrt(3.0) * 0.006);
+  // Y and Z stand still but for their corrections.
+  EXPECT_LT(taken_up[1], taken_up[0]);
 }
 
 }  // namespace

@@ -29,9 +29,9 @@ Eigen::MatrixXd parameter_covariance(const ErrorSet& errors, const Eigen::Matrix
 PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
                                 const ProgramPlace& place, const std::vector<bool>& moved);
 
-/// Error motions (all terms of one component of one axis together), location errors and reversal values that are smaller
-/// than `factor` times their own standard uncertainty everywhere on the travel: set to zero, and named. Those without a stated
-/// uncertainty stay.
+/// Error motions (all terms of one component of one axis together), location errors and reversal values that are
+/// smaller than `factor` times their own standard uncertainty everywhere on the travel: set to zero, and named. Those
+/// without a stated uncertainty stay.
 /// @param covariance  as parameter_covariance() gives it
 std::vector<std::string> leave_out_uncertain(const Machine& machine, ErrorSet& errors,
                                              const Eigen::MatrixXd& covariance, double factor);
