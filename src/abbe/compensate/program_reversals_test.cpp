@@ -48,7 +48,7 @@ double distance_from(const Place& place, const std::vector<Place>& path, Eigen::
 /// Drives moves and measures the actual tool against the commanded path from a move on.
 Missed drive(MachineWithPlay& machine, const std::vector<ProgramMove>& moves, const CorrectedPieces& pieces,
              std::size_t measured_from, int samples) {
-  constexpr int kPlaces = 1500;
+  constexpr int kPlaces = 800;
   Missed missed;
   WordValues at = moves.front().start;
   std::vector<Place> path(kPlaces + 1);
