@@ -40,6 +40,7 @@ void add_register_command(CommandLine& line);
 void add_deviate_command(CommandLine& line);
 void add_reproduce_command(CommandLine& line);
 void add_test_piece_command(CommandLine& line);
+void add_verify_command(CommandLine& line);
 
 /// Progress of long work: a line on stderr that is redrawn, with the time left; nothing if stderr is no terminal or the
 /// work takes less than a second.

@@ -27,6 +27,7 @@ int run_command(int argc, char** argv) {
   add_path_command(line);
   add_test_piece_command(line);
   add_compensate_command(line);
+  add_verify_command(line);
   add_position_command(line);
   add_fit_command(line);
   add_evaluate_command(line);

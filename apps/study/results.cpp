@@ -9,6 +9,7 @@
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/json_text.h"
+#include "abbe/formats/machine_file.h"
 #include "abbe/formats/map_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/identify/prediction.h"
@@ -104,6 +105,7 @@ nlohmann::ordered_json write_results(const Study& study, const StudyResult& resu
   nlohmann::ordered_json summary = study_summary(study, result);
   ResultsFolder folder(study.output);
   folder.write("summary.json", json_text(summary));
+  folder.write("machine.toml", machine_text(study.machine));
   if (result.campaign.truth) {
     for (const std::unique_ptr<CampaignSetup>& setup : result.campaign.setups) {
       folder.write("readings/" + setup->name + ".csv", setup->readings_text(study.machine));

@@ -9,8 +9,8 @@ namespace abbe {
 
 /// Writes everything a study has computed into its results folder, whole or not at all. @returns the summary
 ///
-/// errors.toml with errors.covariance.csv, summary.json, residuals.csv, readings (simulated studies), maps/,
-/// report.html.
+/// machine.toml, errors.toml with errors.covariance.csv, summary.json, residuals.csv, readings (simulated studies),
+/// maps/, report.html.
 nlohmann::ordered_json write_results(const Study& study, const StudyResult& result);
 
 /// Map as the files hold it.

@@ -1,0 +1,83 @@
+#include "test_piece/sizes.h"
+
+#include <numbers>
+#include <stdexcept>
+
+#include "abbe/formats/input_error.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+void add_common(CLI::App& piece, TestPieceSizes& sizes, const char* centre, const char* height) {
+  piece.add_option("--centre-mm", sizes.centre_mm, centre)->expected(3);
+  piece.add_option("--height-mm", sizes.height_mm, height)->check(CLI::PositiveNumber);
+  piece.add_option("--tool-diameter-mm", sizes.tool_diameter_mm, "Diameter of the cylindrical cutter")
+      ->capture_default_str();
+  piece.add_option("--azimuth-deg", sizes.azimuth_deg, "Turn of the piece about Z")->capture_default_str();
+}
+
+/// What both pieces have.
+template <typename Piece>
+void take_common(const TestPieceSizes& sizes, Piece& piece, Eigen::Vector3d& centre) {
+  if (sizes.centre_mm.size() != 3 && !sizes.centre_mm.empty()) {
+    throw InputError({.field = "--centre-mm"}, "not three numbers", "x y z in the workpiece frame, mm");
+  }
+  if (!sizes.centre_mm.empty()) centre = Eigen::Vector3d::Map(sizes.centre_mm.data());
+  if (sizes.height_mm > 0) piece.height = sizes.height_mm;
+  piece.tool_radius = sizes.tool_diameter_mm / 2;
+}
+
+template <typename Piece>
+TestPiece made(const Piece& sizes, TestPiece (*make)(const Piece&), const char* what) {
+  try {
+    return make(sizes);
+  } catch (const std::invalid_argument& error) {
+    throw InputError({.field = what}, "these sizes make no test piece", error.what());
+  }
+}
+
+}  // namespace
+
+void add_cone_frustum_sizes(CLI::App& piece, TestPieceSizes& sizes) {
+  add_common(piece, sizes, "Centre of the base, workpiece frame (default 0 60 40)", "Along the axis (default 20)");
+  piece.add_option("--base-diameter-mm", sizes.base_diameter_mm, "Diameter of the base")->capture_default_str();
+  piece.add_option("--half-apex-deg", sizes.half_apex_deg, "Half of the angle at the apex")->capture_default_str();
+  piece.add_option("--inclination-deg", sizes.inclination_deg, "Of the cone's axis from +Z")->capture_default_str();
+}
+
+void add_s_shape_sizes(CLI::App& piece, TestPieceSizes& sizes) {
+  add_common(piece, sizes, "Middle of the foot, workpiece frame (default 0 0 30)", "Along Z (default 40)");
+  piece.add_option("--length-mm", sizes.length_mm, "From end to end along X")->capture_default_str();
+  piece.add_option("--amplitude-mm", sizes.amplitude_mm, "Of the sine that is the foot")->capture_default_str();
+  piece.add_option("--lean-deg", sizes.lean_deg, "Lean of the wall at its ends")->capture_default_str();
+  piece.add_option("--twist-deg", sizes.twist_deg, "Lean of the wall at the crests, to either side")
+      ->capture_default_str();
+}
+
+ConeFrustum cone_frustum_of(const TestPieceSizes& sizes) {
+  ConeFrustum frustum;
+  take_common(sizes, frustum, frustum.base_centre);
+  frustum.base_diameter = sizes.base_diameter_mm;
+  frustum.half_apex_angle = sizes.half_apex_deg * kDegree;
+  frustum.inclination = sizes.inclination_deg * kDegree;
+  frustum.lean_azimuth = sizes.azimuth_deg * kDegree;
+  return frustum;
+}
+
+SShape s_shape_of(const TestPieceSizes& sizes) {
+  SShape shape;
+  take_common(sizes, shape, shape.centre);
+  shape.length = sizes.length_mm;
+  shape.amplitude = sizes.amplitude_mm;
+  shape.lean = sizes.lean_deg * kDegree;
+  shape.twist = sizes.twist_deg * kDegree;
+  shape.azimuth = sizes.azimuth_deg * kDegree;
+  return shape;
+}
+
+TestPiece made_piece(const ConeFrustum& frustum) { return made(frustum, cone_frustum, "cone frustum"); }
+TestPiece made_piece(const SShape& shape) { return made(shape, s_shape, "S shape"); }
+
+}  // namespace abbe

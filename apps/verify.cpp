@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "abbe/formats/json_text.h"
+#include "command.h"
+#include "verify/verify_job.h"
+#include "verify/verify_text.h"
+
+namespace abbe {
+namespace {
+
+int run_verify(const VerifyOptions& options) {
+  const VerifyResult result = verify(options);
+  if (options.json) {
+    fmt::print("{}", json_text(verify_json(options, result)));
+  } else {
+    print_verify(options, result);
+  }
+  const std::vector<VerifyVerdict> verdicts = verify_verdicts(options, result);
+  const bool met =
+      std::all_of(verdicts.begin(), verdicts.end(), [](const VerifyVerdict& verdict) { return verdict.met; });
+  return met ? kDone : kNegative;
+}
+
+CLI::App* add_piece(CLI::App& command, const char* name, const char* description, const char* example,
+                    VerifyPiece& piece) {
+  CLI::App* app = command.add_subcommand(name, description);
+  app->fallthrough();
+  app->add_option("--before", piece.before, "Trace of the program as it was (*.csv)")->required();
+  app->add_option("--after", piece.after, "Trace with the compensation (*.csv)")->required();
+  app->footer(std::string("Sizes as in abbe test-piece ") + name +
+              ".\nExample:\n  abbe verify --machine examples/machines/trunnion-mill.machine.toml --errors "
+              "examples/compensate/trunnion.errors.toml --truth examples/verify/truth.errors.toml " +
+              name + " " + example);
+  return app;
+}
+
+}  // namespace
+
+void add_verify_command(CommandLine& line) {
+  struct Pieces {
+    VerifyOptions options;
+    VerifyPiece cone, s;
+    double reduction = 0, ratio = 0;
+  };
+  auto asked = std::make_shared<Pieces>();
+  VerifyOptions& options = asked->options;
+  CLI::App* command = line.add(
+      "verify", "What a compensation leaves: at unseen poses and on test pieces, against the simulated truth",
+      "  abbe verify examples/aguado/results/aguado\n"
+      "  abbe verify --machine examples/machines/trunnion-mill.machine.toml --errors "
+      "examples/compensate/trunnion.errors.toml --truth examples/verify/truth.errors.toml --least-reduction 20 "
+      "cone-frustum --before examples/verify/cone-before.csv --after examples/verify/cone-after.csv s-shape --before "
+      "examples/verify/s-before.csv --after examples/verify/s-after.csv\n\n"
+      "Test pieces stand at the end, each with the traces of both runs and its sizes as in abbe test-piece. A trace "
+      "is\n"
+      "a CSV of what the axes were commanded while the program ran, a row for each servo cycle or so: time_s, X_mm,\n"
+      "Y_mm, Z_mm, A_deg, C_deg. Method and figures: docs/verify.md.");
+  command->add_option("results", options.results, "Results folder of abbe run, of a study with simulated readings");
+  command->add_option("--machine", options.machine, "Machine file (default: machine.toml of the results)");
+  command->add_option("--errors", options.errors, "Identified errors (default: errors.toml of the results)");
+  command->add_option("--truth", options.truth, "True errors (default: truth.errors.toml of the results)");
+  command->add_option("--poses", options.poses, "Number of random poses")
+      ->check(CLI::Range(10, 10000))
+      ->capture_default_str();
+  command->add_option("--seed", options.seed, "Of the random poses")->capture_default_str();
+  command
+      ->add_option("--range", options.ranges,
+                   "AXIS_unit=from:to or AXIS_unit=position; repeatable (default: where the errors are known)")
+      ->allow_extra_args(false);
+  CLI::Option* const reduction =
+      command
+          ->add_option("--least-reduction", asked->reduction,
+                       "Wanted: mean volumetric error so many times smaller; exit code 1 if it is not")
+          ->check(CLI::PositiveNumber);
+  CLI::Option* const ratio =
+      command
+          ->add_option("--largest-ratio", asked->ratio,
+                       "Wanted: volumetric error (root mean square) at most so many times its predicted standard "
+                       "uncertainty; exit code 1 if it is more")
+          ->check(CLI::PositiveNumber);
+  command->add_option("--reach-mm", options.reach, "A sample farther from the test piece's tool path does not cut it")
+      ->check(CLI::Range(0.01, 10.0))
+      ->capture_default_str();
+  command->add_flag("--json", options.json, "Print JSON for programs");
+  command->require_subcommand(0, 2);
+  CLI::App* const cone =
+      add_piece(*command, "cone-frustum", "Inclined cone frustum (in the manner of ISO 10791-7, M3)",
+                "--before examples/verify/cone-before.csv --after examples/verify/cone-after.csv", asked->cone);
+  add_cone_frustum_sizes(*cone, asked->cone.sizes);
+  CLI::App* const s = add_piece(*command, "s-shape", "Wall in the shape of an S (in the manner of ISO 10791-7, M4)",
+                                "--before examples/verify/s-before.csv --after examples/verify/s-after.csv", asked->s);
+  add_s_shape_sizes(*s, asked->s.sizes);
+  asked->cone.is_cone = true;
+  command->callback([&line, asked, reduction, ratio, cone, s] {
+    line.run = [asked, reduction, ratio, cone, s] {
+      VerifyOptions all = asked->options;
+      if (reduction->count() > 0) all.least_reduction = asked->reduction;
+      if (ratio->count() > 0) all.largest_ratio = asked->ratio;
+      if (cone->parsed()) all.pieces.push_back(asked->cone);
+      if (s->parsed()) all.pieces.push_back(asked->s);
+      return run_verify(all);
+    };
+  });
+}
+
+}  // namespace abbe

@@ -1,0 +1,232 @@
+#include "verify/verify_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numbers>
+#include <stdexcept>
+
+#include "abbe/compensate/correction_uncertainty.h"
+#include "abbe/errors/random_stream.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/machine_file.h"
+#include "abbe/formats/number_text.h"
+#include "abbe/formats/trace_file.h"
+#include "study/job.h"
+
+namespace abbe {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// So fine that the lines between the points of a piece are not seen in the figures, mm.
+constexpr double kPieceTolerance = 1e-5;
+/// Stream of the sides from which axes come, beside the seed of the poses.
+constexpr std::uint64_t kApproachStream = 77;
+
+/// A file that was named, or the one that results hold under this name.
+std::string found(const std::string& named, const std::string& results, const char* in_results, const char* option) {
+  if (!named.empty()) return named;
+  if (results.empty()) {
+    throw InputError({.field = option}, "is missing", "this option, or the results folder of abbe run");
+  }
+  const fs::path path = fs::path(results) / in_results;
+  std::error_code ignored;
+  if (!fs::is_directory(results, ignored)) throw InputError({.file = results}, "is no folder", "results of abbe run");
+  if (!fs::exists(path, ignored)) {
+    throw InputError({.file = path.string()}, "these results have no such file",
+                     fmt::format("results of a simulated study, or {} with a file", option));
+  }
+  return path.string();
+}
+
+/// "X_mm=-100:100" or "C_deg=30".
+void apply_range(const Machine& machine, const std::string& text, std::vector<AxisRange>& ranges) {
+  const auto fail = [&](const std::string& problem) {
+    throw InputError({.field = "--range " + text}, problem,
+                     "AXIS_unit=from:to or AXIS_unit=position, such as X_mm=-100:100");
+  };
+  const std::size_t equals = text.find('='), underscore = text.rfind('_', equals);
+  if (equals == std::string::npos || underscore == std::string::npos) fail("not understood");
+  const std::size_t axis = machine.find_axis(text.substr(0, underscore));
+  if (axis == Machine::npos) fail("the machine has no axis '" + text.substr(0, underscore) + "'");
+  const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
+  const std::string unit = text.substr(underscore + 1, equals - underscore - 1);
+  if (unit != (rotary ? "deg" : "mm")) fail(fmt::format("unit '{}' for a {} axis", unit, rotary ? "rotary" : "linear"));
+  const std::size_t colon = text.find(':', equals);
+  const std::string_view all(text);
+  double from = 0, to = 0;
+  bool understood =
+      parse_number(all.substr(equals + 1, std::min(colon, text.size()) - equals - 1), 0, from) == NumberProblem::none;
+  to = from;
+  if (colon != std::string::npos) {
+    understood = parse_number(all.substr(colon + 1), 0, to) == NumberProblem::none && understood && from < to;
+  }
+  if (!understood) fail("needs a position, or two with the larger one behind the smaller");
+  const double scale = rotary ? std::numbers::pi / 180 : 1;
+  ranges[axis] = from == to ? AxisRange::fixed(from * scale) : AxisRange{from * scale, to * scale, 2, 0};
+}
+
+PoseList unseen_poses(const VerifyOptions& options, VerifyResult& result) {
+  const Machine& machine = result.machine;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    AxisRange range = known_range(machine, result.identified.errors, i, 2);
+    const AxisRange true_range = known_range(machine, result.truth.errors, i, 2);
+    if (std::max(range.from, true_range.from) <= std::min(range.to, true_range.to)) {
+      range.from = std::max(range.from, true_range.from);
+      range.to = std::min(range.to, true_range.to);
+    }
+    result.ranges.push_back(range);
+  }
+  for (const std::string& text : options.ranges) apply_range(machine, text, result.ranges);
+  PoseList poses;
+  try {
+    poses = random_plan(machine, result.ranges, options.poses, options.seed);
+  } catch (const std::invalid_argument& error) {
+    throw InputError({.field = "--range"}, error.what(), "ranges within the travel of their axes");
+  }
+  result.both_directions = !result.truth.errors.reversals.empty() || !result.identified.errors.reversals.empty();
+  if (result.both_directions) {
+    poses.approach.resize(machine.axes.size());
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      RandomStream random(options.seed, kApproachStream + i);
+      for (std::size_t k = 0; k < poses.count(); ++k) {
+        poses.approach[i].push_back(random.uniform() < 0.5 ? std::int8_t{-1} : std::int8_t{1});
+      }
+    }
+  }
+  return poses;
+}
+
+[[noreturn]] void refuse(const PieceRun& run, const std::string& piece, const PieceDeviation& deviation, double reach) {
+  InputError::Place place{.file = run.file, .line = trace_line(run.file, deviation.row)};
+  const std::string sizes = "a trace of the program of this piece, with its sizes and centre as in abbe test-piece";
+  switch (deviation.status) {
+    case PieceTraceStatus::never_begins:
+      throw InputError(place,
+                       fmt::format("the tool never begins to cut the {}: here it is nearest to the first point, {:.4g} "
+                                   "mm away",
+                                   piece, deviation.distance),
+                       sizes);
+    case PieceTraceStatus::leaves_piece:
+      throw InputError(place,
+                       fmt::format("the tool is {:.4g} mm beside the {} after {:.1f} of {:.1f} mm", deviation.distance,
+                                   piece, deviation.reached, deviation.length),
+                       fmt::format("{}; or --reach-mm above {:g}", sizes, reach));
+    default:
+      throw InputError(
+          place,
+          fmt::format("the trace ends after {:.1f} of {:.1f} mm of the {}", deviation.reached, deviation.length, piece),
+          "a trace up to the end of the cut");
+  }
+}
+
+PieceRun run_piece(const VerifyResult& result, const std::string& name, const TestPiece& piece,
+                   const ConeFrustum* frustum, const std::string& file, double reach) {
+  PieceRun run;
+  run.file = file;
+  const TraceFile trace = read_trace(file, result.machine);
+  run.samples = trace.commands.count();
+  const ToolPlaces tool =
+      actual_tool(result.machine, result.truth.errors, positions_with_play(result.truth.errors, trace.commands));
+  run.deviation = test_piece_deviation(piece, tool, reach);
+  if (run.deviation.status != PieceTraceStatus::done) refuse(run, name, run.deviation, reach);
+  for (const std::size_t row : run.deviation.rows) {
+    if (tool.covered[row] != 0) continue;
+    throw InputError({.file = file, .line = trace_line(file, row)},
+                     "an axis is outside the range in which its true errors are known",
+                     fmt::format("errors known there ({})", result.truth_file));
+  }
+  if (!trace.time_s.empty()) {
+    run.duration_s = trace.time_s[run.deviation.rows.back()] - trace.time_s[run.deviation.rows.front()];
+  }
+  run.as_cut = piece_figures(run.deviation, false);
+  run.aligned = piece_figures(run.deviation, true);
+  if (frustum != nullptr) {
+    run.foot = cone_roundness(*frustum, run.deviation, false);
+    run.head = cone_roundness(*frustum, run.deviation, true);
+  }
+  return run;
+}
+
+PieceResult verify_piece(const VerifyResult& result, const VerifyPiece& asked, double reach) {
+  PieceResult piece;
+  piece.is_cone = asked.is_cone;
+  piece.name = asked.is_cone ? "Cone frustum" : "S shape";
+  const std::string words = asked.is_cone ? "cone frustum" : "S shape";
+  ConeFrustum frustum;
+  if (asked.is_cone) {
+    frustum = cone_frustum_of(asked.sizes);
+    frustum.chord_tolerance = kPieceTolerance;
+    piece.piece = made_piece(frustum);
+  } else {
+    SShape shape = s_shape_of(asked.sizes);
+    shape.chord_tolerance = kPieceTolerance;
+    piece.piece = made_piece(shape);
+  }
+  const ConeFrustum* const cone = asked.is_cone ? &frustum : nullptr;
+  piece.before = run_piece(result, words, piece.piece, cone, asked.before, reach);
+  piece.after = run_piece(result, words, piece.piece, cone, asked.after, reach);
+  return piece;
+}
+
+}  // namespace
+
+VerifyResult verify(const VerifyOptions& options) {
+  VerifyResult result;
+  result.machine_file = found(options.machine, options.results, "machine.toml", "--machine");
+  result.errors_file = found(options.errors, options.results, "errors.toml", "--errors");
+  result.truth_file = found(options.truth, options.results, "truth.errors.toml", "--truth");
+  result.machine = read_machine(result.machine_file);
+  result.identified = read_errors(result.errors_file, result.machine);
+  result.truth = read_errors(result.truth_file, result.machine);
+  // Without correlations, which is the best that can be said of a file that states uncertainties only.
+  if (result.identified.covariance.size() == 0) {
+    result.identified.covariance = stated_variances(result.identified.errors);
+    result.correlations_known = false;
+  }
+  if (options.largest_ratio && result.identified.covariance.size() == 0) {
+    throw InputError({.file = result.errors_file}, "states no uncertainties, and --largest-ratio asks for them",
+                     "the errors.toml of an identification");
+  }
+  const PoseList poses = unseen_poses(options, result);
+  try {
+    result.poses = check_compensated_poses(result.machine, result.truth.errors, result.identified.errors,
+                                           result.identified.covariance, poses);
+  } catch (const std::invalid_argument& error) {
+    throw InputError({.file = result.errors_file}, error.what(), "errors that can be compensated on this machine");
+  }
+  // The best fit of the workpiece datum has six freedoms.
+  if (result.poses.after.size() < 10) {
+    throw InputError(
+        {.field = "--range"},
+        fmt::format("{} of {} poses have a result: {} outside the travel once corrected, {} where errors "
+                    "are not known",
+                    result.poses.after.size(), poses.count(), result.poses.outside_travel, result.poses.not_covered),
+        "ranges within travel and measured range, and at least 10 poses");
+  }
+  for (const VerifyPiece& piece : options.pieces) result.pieces.push_back(verify_piece(result, piece, options.reach));
+  return result;
+}
+
+std::vector<VerifyVerdict> verify_verdicts(const VerifyOptions& options, const VerifyResult& result) {
+  std::vector<VerifyVerdict> verdicts;
+  if (options.least_reduction) {
+    const double value = result.poses.reduction();
+    const bool met = value >= *options.least_reduction;
+    verdicts.push_back({fmt::format("{:.1f} times smaller: {} the wanted {:g} times", value,
+                                    met ? "at least" : "LESS than", *options.least_reduction),
+                        met});
+  }
+  if (options.largest_ratio) {
+    const double value = result.poses.uncertainty_ratio();
+    const bool met = value > 0 && value <= *options.largest_ratio;
+    verdicts.push_back({fmt::format("{:.2f} times the predicted uncertainty: {} the permitted {:g} times", value,
+                                    met ? "within" : "ABOVE", *options.largest_ratio),
+                        met});
+  }
+  return verdicts;
+}
+
+}  // namespace abbe

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "abbe/formats/errors_file.h"
+#include "abbe/instruments/measurement_plan.h"
+#include "abbe/machine/machine.h"
+#include "abbe/verify/compensated_poses.h"
+#include "abbe/verify/test_piece_deviation.h"
+#include "test_piece/sizes.h"
+
+namespace abbe {
+
+/// A test piece that was run twice.
+struct VerifyPiece {
+  bool is_cone = false;  ///< else the S
+  TestPieceSizes sizes;
+  std::string before, after;  ///< traces (*.csv)
+};
+
+/// What the command was asked.
+struct VerifyOptions {
+  std::string results, machine, errors, truth, output;
+  std::vector<std::string> ranges;
+  std::vector<VerifyPiece> pieces;
+  std::size_t poses = 1000;
+  std::uint64_t seed = 1;
+  double reach = 1;  ///< mm
+  std::optional<double> least_reduction, largest_ratio;
+  bool json = false, force = false;
+};
+
+/// One run of a test piece.
+struct PieceRun {
+  std::string file;
+  std::size_t samples = 0;
+  std::optional<double> duration_s;  ///< of the cut
+  PieceDeviation deviation;
+  PieceFigures as_cut, aligned;  ///< without and with the best fit of the workpiece
+  Roundness foot, head;          ///< of a cone
+};
+
+struct PieceResult {
+  bool is_cone = false;
+  std::string name;  ///< "Cone frustum"
+  TestPiece piece;
+  PieceRun before, after;
+};
+
+struct VerifyResult {
+  Machine machine;
+  ErrorsFile identified, truth;
+  std::string machine_file, errors_file, truth_file;
+  std::vector<AxisRange> ranges;
+  bool correlations_known = true;  ///< false: the errors file states standard uncertainties only
+  bool both_directions = false;    ///< there are reversal values: axes come from either side
+  CompensatedPoses poses;
+  std::vector<PieceResult> pieces;
+};
+
+/// @throws InputError
+VerifyResult verify(const VerifyOptions& options);
+
+/// Verdicts on the two figures that may be asked for.
+struct VerifyVerdict {
+  std::string text;
+  bool met = true;
+};
+std::vector<VerifyVerdict> verify_verdicts(const VerifyOptions& options, const VerifyResult& result);
+
+}  // namespace abbe

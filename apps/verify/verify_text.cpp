@@ -1,0 +1,177 @@
+#include "verify/verify_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "study/summary.h"
+
+namespace abbe {
+namespace {
+
+nlohmann::ordered_json flank_json(const FlankFigures& flank) {
+  return {{"lowest_um", 1e3 * flank.lowest},
+          {"highest_um", 1e3 * flank.highest},
+          {"largest_um", 1e3 * flank.largest()},
+          {"range_um", 1e3 * flank.range()},
+          {"rms_um", 1e3 * flank.rms}};
+}
+
+nlohmann::ordered_json figures_json(const PieceFigures& figures) {
+  return {{"foot", flank_json(figures.foot)},
+          {"head", flank_json(figures.head)},
+          {"contour_mean_um", 1e3 * figures.contour.mean},
+          {"contour_largest_um", 1e3 * figures.contour.largest}};
+}
+
+nlohmann::ordered_json roundness_json(const Roundness& circle) {
+  if (!circle.evaluated) return nullptr;
+  return {{"roundness_um", 1e3 * circle.roundness},
+          {"centre_um", {1e3 * circle.centre.x(), 1e3 * circle.centre.y()}},
+          {"radius_deviation_um", 1e3 * circle.radius_deviation}};
+}
+
+nlohmann::ordered_json run_json(const PieceRun& run, bool is_cone) {
+  nlohmann::ordered_json json;
+  json["file"] = run.file;
+  json["samples"] = run.samples;
+  json["samples_cutting"] = run.deviation.rows.size();
+  json["cut_mm"] = run.deviation.reached;
+  if (run.duration_s) json["cut_s"] = *run.duration_s;
+  json["as_cut"] = figures_json(run.as_cut);
+  json["best_fit"] = figures_json(run.aligned);
+  if (is_cone) {
+    json["foot_circle"] = roundness_json(run.foot);
+    json["head_circle"] = roundness_json(run.head);
+  }
+  return json;
+}
+
+void print_pair(const char* name, double before, double after) {
+  fmt::print("  {:<46} {:>9.2f} {:>9.2f} um", name, 1e3 * before, 1e3 * after);
+  if (after > 0) fmt::print("  {:>6.1f} times", before / after);
+  fmt::print("\n");
+}
+
+void print_piece(const PieceResult& piece) {
+  const auto& [b, a] = std::pair<const PieceRun&, const PieceRun&>(piece.before, piece.after);
+  fmt::print("\n{}: {:.1f} mm cut, {} and {} samples\n", piece.name, a.deviation.reached, b.deviation.rows.size(),
+             a.deviation.rows.size());
+  fmt::print("  {:<46} {:>9} {:>9}\n", "", "before", "after");
+  if (piece.is_cone && b.foot.evaluated && a.foot.evaluated && b.head.evaluated && a.head.evaluated) {
+    print_pair("roundness at the foot", b.foot.roundness, a.foot.roundness);
+    print_pair("roundness at the head", b.head.roundness, a.head.roundness);
+  }
+  const auto print_figures = [](const char* how, const PieceFigures& before, const PieceFigures& after) {
+    const std::string text = how;
+    print_pair(("flank at the foot, range, " + text).c_str(), before.foot.range(), after.foot.range());
+    print_pair(("flank at the foot, largest, " + text).c_str(), before.foot.largest(), after.foot.largest());
+    print_pair(("flank at the head, range, " + text).c_str(), before.head.range(), after.head.range());
+    print_pair(("flank at the head, largest, " + text).c_str(), before.head.largest(), after.head.largest());
+    print_pair(("contour error, largest, " + text).c_str(), before.contour.largest, after.contour.largest);
+    print_pair(("contour error, mean, " + text).c_str(), before.contour.mean, after.contour.mean);
+  };
+  print_figures("best fit", b.aligned, a.aligned);
+  print_figures("as cut", b.as_cut, a.as_cut);
+}
+
+}  // namespace
+
+std::string verify_sentence(const VerifyResult& result) {
+  const CompensatedPoses& poses = result.poses;
+  std::string text = fmt::format(
+      "Volumetric error at {} unseen poses: mean {:.3g} um before, {:.2g} um after compensation, {:.3g} times smaller",
+      poses.after.size(), 1e3 * poses.before_statistics.mean, 1e3 * poses.after_statistics.mean, poses.reduction());
+  if (poses.uncertainty_ratio() > 0) {
+    text += fmt::format("; {:.2f} times what its uncertainty predicts", poses.uncertainty_ratio());
+  }
+  return text + ".";
+}
+
+std::string ranges_text(const Machine& machine, const std::vector<AxisRange>& ranges) {
+  std::string text;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    const double unit = rotary ? 180 / std::numbers::pi : 1;
+    const char* const name = rotary ? "deg" : "mm";
+    text += fmt::format("{}{} ", i > 0 ? ", " : "", machine.axes[i].name);
+    if (ranges[i].is_fixed()) {
+      text += fmt::format("{:.6g} {}", unit * ranges[i].from, name);
+    } else {
+      text += fmt::format("{:.6g} to {:.6g} {}", unit * ranges[i].from, unit * ranges[i].to, name);
+    }
+  }
+  return text;
+}
+
+void print_verify(const VerifyOptions& options, const VerifyResult& result) {
+  const CompensatedPoses& poses = result.poses;
+  fmt::print("{}\n\n", verify_sentence(result));
+  fmt::print("{}: {}{}\n", result.machine.name, ranges_text(result.machine, result.ranges),
+             result.both_directions ? ", axes coming from either side" : "");
+  const auto row = [](const char* name, const SampleStatistics& s, double unit, const char* unit_name) {
+    fmt::print("  {:<46} mean {:.3f}  rms {:.3f}  95 % {:.3f}  max {:.3f} {}\n", name, unit * s.mean, unit * s.rms,
+               unit * s.p95, unit * s.maximum, unit_name);
+  };
+  row("volumetric error, before", poses.before_statistics, 1e3, "um");
+  row("volumetric error, after", poses.after_statistics, 1e3, "um");
+  if (!poses.uncertainty.empty()) {
+    row("predicted standard uncertainty", poses.uncertainty_statistics, 1e3, "um");
+    fmt::print("  {:<46} {:.1f} %\n", "coordinates within twice their uncertainty", 100 * poses.coverage);
+  }
+  row("direction of the tool, before", poses.direction_before_statistics, 1e6, "urad");
+  row("direction of the tool, after", poses.direction_after_statistics, 1e6, "urad");
+  if (poses.outside_travel > 0 || poses.not_covered > 0) {
+    fmt::print("  left out: {} poses whose corrected commands leave the travel, {} where errors are not known\n",
+               poses.outside_travel, poses.not_covered);
+  }
+  for (const PieceResult& piece : result.pieces) print_piece(piece);
+  const std::vector<VerifyVerdict> verdicts = verify_verdicts(options, result);
+  if (!verdicts.empty()) fmt::print("\n");
+  for (const VerifyVerdict& verdict : verdicts) fmt::print("{}\n", verdict.text);
+}
+
+nlohmann::ordered_json verify_json(const VerifyOptions& options, const VerifyResult& result) {
+  const CompensatedPoses& poses = result.poses;
+  nlohmann::ordered_json json;
+  json["format"] = "abbe-verify/1";
+  json["machine"] = result.machine.name;
+  json["verdict"] = verify_sentence(result);
+  nlohmann::ordered_json unseen;
+  unseen["poses"] = poses.after.size();
+  unseen["seed"] = options.seed;
+  unseen["ranges"] = ranges_text(result.machine, result.ranges);
+  unseen["both_directions"] = result.both_directions;
+  unseen["outside_travel"] = poses.outside_travel;
+  unseen["outside_known_range"] = poses.not_covered;
+  unseen["position_before_um"] = statistics_um(poses.before_statistics);
+  unseen["position_after_um"] = statistics_um(poses.after_statistics);
+  const auto urad = [](const SampleStatistics& s) {
+    return nlohmann::ordered_json{
+        {"mean", 1e6 * s.mean}, {"rms", 1e6 * s.rms}, {"p95", 1e6 * s.p95}, {"max", 1e6 * s.maximum}};
+  };
+  unseen["direction_before_urad"] = urad(poses.direction_before_statistics);
+  unseen["direction_after_urad"] = urad(poses.direction_after_statistics);
+  unseen["reduction"] = poses.reduction();
+  if (!poses.uncertainty.empty()) {
+    unseen["predicted_standard_uncertainty_um"] = statistics_um(poses.uncertainty_statistics);
+    unseen["uncertainty_ratio"] = poses.uncertainty_ratio();
+    unseen["coverage_percent"] = 100 * poses.coverage;
+  }
+  json["unseen_poses"] = unseen;
+  json["test_pieces"] = nlohmann::ordered_json::array();
+  for (const PieceResult& piece : result.pieces) {
+    json["test_pieces"].push_back({{"name", piece.is_cone ? "cone-frustum" : "s-shape"},
+                                   {"length_mm", piece.after.deviation.length},
+                                   {"before", run_json(piece.before, piece.is_cone)},
+                                   {"after", run_json(piece.after, piece.is_cone)}});
+  }
+  json["wanted"] = nlohmann::ordered_json::array();
+  for (const VerifyVerdict& verdict : verify_verdicts(options, result)) {
+    json["wanted"].push_back({{"text", verdict.text}, {"met", verdict.met}});
+  }
+  return json;
+}
+
+}  // namespace abbe

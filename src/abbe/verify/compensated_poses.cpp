@@ -1,0 +1,188 @@
+#include "abbe/verify/compensated_poses.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "abbe/compensate/compensated_inverse.h"
+#include "abbe/errors/reversal.h"
+#include "abbe/geometry/angle.h"
+#include "abbe/geometry/best_fit_transform.h"
+#include "abbe/verify/actual_tool.h"
+#include "abbe/verify/covariance_root.h"
+#include "abbe/verify/displacement_fields.h"
+
+namespace abbe {
+namespace {
+
+using Eigen::Index;
+
+constexpr std::uint8_t kUsed = 1, kNotCovered = 2;
+
+/// The tools of used poses after the best fit of the workpiece datum, against where they should be.
+struct Left {
+  Eigen::Matrix3Xd displacement;
+  std::vector<double> norm, angle;
+};
+
+Left left_after_datum(const ToolPlaces& actual, const ToolPlaces& wanted, const std::vector<std::size_t>& used) {
+  std::vector<Eigen::Vector3d> source, target;
+  for (const std::size_t k : used) {
+    source.emplace_back(actual.point.col(static_cast<Index>(k)));
+    target.emplace_back(wanted.point.col(static_cast<Index>(k)));
+  }
+  const RigidTransform datum = best_fit_transform(source, target).target_from_source;
+  Left left;
+  left.displacement.resize(3, static_cast<Index>(used.size()));
+  for (std::size_t n = 0; n < used.size(); ++n) {
+    const auto k = static_cast<Index>(used[n]);
+    const Eigen::Vector3d displacement = datum * source[n] - target[n];
+    left.displacement.col(static_cast<Index>(n)) = displacement;
+    left.norm.push_back(displacement.norm());
+    left.angle.push_back(angle_between(datum.rotation * actual.direction.col(k), wanted.direction.col(k)));
+  }
+  return left;
+}
+
+/// Adds what reversal values do to the columns of their parameters: half the approach times the derivative by the
+/// axis's command, by differences.
+void add_reversal_columns(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
+                          const std::vector<std::size_t>& used, Eigen::MatrixXd& by_parameter) {
+  const ReversalShift reversal(errors);
+  if (!reversal.acts_on(commands)) return;
+  constexpr double kStep = 1e-3;
+  for (std::size_t p = 0; p < errors.parameter_count(); ++p) {
+    const std::size_t axis = reversal.axis_of(p);
+    if (axis == ReversalShift::npos) continue;
+    PoseList up, down;
+    up.axis = down.axis = commands.axis;
+    for (double& value : up.axis[axis]) value += kStep;
+    for (double& value : down.axis[axis]) value -= kStep;
+    const ToolPlaces above = actual_tool(machine, errors, up), below = actual_tool(machine, errors, down);
+    for (std::size_t n = 0; n < used.size(); ++n) {
+      const auto k = static_cast<Index>(used[n]);
+      by_parameter.block<3, 1>(3 * static_cast<Index>(n), static_cast<Index>(p)) =
+          0.5 * commands.approach[axis][used[n]] * (above.point.col(k) - below.point.col(k)) / (2 * kStep);
+    }
+  }
+}
+
+void predict(const Machine& machine, const ErrorSet& identified, const Eigen::MatrixXd& covariance,
+             const PoseList& commands, const std::vector<std::size_t>& used, const Left& after,
+             CompensatedPoses& result) {
+  std::vector<std::size_t> parameters(identified.parameter_count());
+  for (std::size_t p = 0; p < parameters.size(); ++p) parameters[p] = p;
+  PoseList plain;
+  plain.axis = commands.axis;
+  std::vector<std::uint8_t> wanted(commands.count(), 0);
+  for (const std::size_t k : used) wanted[k] = 1;
+  DisplacementFields at = displacement_fields(machine, identified, parameters, pose_source(plain), wanted);
+  add_reversal_columns(machine, identified, commands, used, at.by_parameter);
+  Eigen::MatrixXd spread = at.by_parameter * covariance_root(covariance);
+  remove_span(orthonormal_columns(at.by_motion, 1e-10), spread);
+  std::size_t within = 0;
+  for (std::size_t n = 0; n < used.size(); ++n) {
+    double variance = 0;
+    for (Index c = 0; c < 3; ++c) {
+      const Index row = 3 * static_cast<Index>(n) + c;
+      const double u = spread.cols() > 0 ? spread.row(row).norm() : 0;
+      variance += u * u;
+      within += std::abs(after.displacement(c, static_cast<Index>(n))) <= 2 * u ? 1U : 0U;
+    }
+    result.uncertainty.push_back(std::sqrt(variance));
+  }
+  result.coverage = static_cast<double>(within) / (3 * static_cast<double>(used.size()));
+}
+
+}  // namespace
+
+double CompensatedPoses::reduction() const {
+  return after_statistics.mean > 0 ? before_statistics.mean / after_statistics.mean : 0;
+}
+
+double CompensatedPoses::uncertainty_ratio() const {
+  return uncertainty_statistics.rms > 0 ? after_statistics.rms / uncertainty_statistics.rms : 0;
+}
+
+PoseList corrected_commands(const Machine& machine, const ErrorSet& identified, const PoseList& commands,
+                            std::vector<std::uint8_t>& used) {
+  ErrorSet mean = identified;
+  mean.reversals.clear();
+  const CompensatedInverse inverse(machine, mean);
+  if (!inverse.problem().empty()) throw std::invalid_argument("corrected commands: " + inverse.problem());
+  const std::size_t count = commands.count();
+  PoseList corrected;
+  corrected.axis.assign(machine.axes.size(), std::vector<double>(count));
+  std::vector<const double*> from;
+  std::vector<double*> to;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    from.push_back(commands.axis[i].data());
+    to.push_back(corrected.axis[i].data());
+  }
+  std::vector<CorrectionStatus> status(count);
+  CorrectedArrays arrays;
+  arrays.axis = to;
+  arrays.status = status.data();
+  inverse.correct({from, count}, arrays);
+  used.assign(count, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const CorrectionStatus at = status[k];
+    if (at == CorrectionStatus::reached || at == CorrectionStatus::orientation_left ||
+        at == CorrectionStatus::turn_limited) {
+      used[k] = kUsed;
+    } else if (at == CorrectionStatus::not_covered) {
+      used[k] = kNotCovered;
+    }
+  }
+  const ReversalShift reversal(identified);
+  if (reversal.acts_on(commands)) {
+    for (std::size_t i = 0; i < corrected.axis.size(); ++i) {
+      for (std::size_t k = 0; k < count; ++k) corrected.axis[i][k] -= reversal.shift(commands, i, k);
+    }
+  }
+  corrected.approach = commands.approach;
+  return corrected;
+}
+
+CompensatedPoses check_compensated_poses(const Machine& machine, const ErrorSet& truth, const ErrorSet& identified,
+                                         const Eigen::MatrixXd& covariance, const PoseList& commands) {
+  if (commands.axis.size() != machine.axes.size()) {
+    throw std::invalid_argument("compensated poses: commands do not fit the machine's axes");
+  }
+  const auto parameters = static_cast<Index>(identified.parameter_count());
+  if (covariance.size() > 0 && (covariance.rows() != parameters || covariance.cols() != parameters)) {
+    throw std::invalid_argument("compensated poses: the covariance does not fit the errors");
+  }
+  CompensatedPoses result;
+  const PoseList corrected = corrected_commands(machine, identified, commands, result.used);
+  const ToolPlaces wanted = actual_tool(machine, ErrorSet{}, commands);
+  const ToolPlaces before = actual_tool(machine, truth, commands), after = actual_tool(machine, truth, corrected);
+  std::vector<std::size_t> used;
+  for (std::size_t k = 0; k < commands.count(); ++k) {
+    if (result.used[k] == kNotCovered || before.covered[k] == 0 || after.covered[k] == 0) {
+      ++result.not_covered;
+      result.used[k] = 0;
+    } else if (result.used[k] != kUsed) {
+      ++result.outside_travel;
+    } else {
+      used.push_back(k);
+    }
+  }
+  const Left left_before = left_after_datum(before, wanted, used), left_after = left_after_datum(after, wanted, used);
+  result.before = left_before.norm;
+  result.after = left_after.norm;
+  result.direction_before = left_before.angle;
+  result.direction_after = left_after.angle;
+  if (covariance.size() > 0 && !used.empty()) {
+    predict(machine, identified, covariance, commands, used, left_after, result);
+  }
+  result.before_statistics = sample_statistics(result.before);
+  result.after_statistics = sample_statistics(result.after);
+  result.direction_before_statistics = sample_statistics(result.direction_before);
+  result.direction_after_statistics = sample_statistics(result.direction_after);
+  result.uncertainty_statistics = sample_statistics(result.uncertainty);
+  return result;
+}
+
+}  // namespace abbe

@@ -1,0 +1,118 @@
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+using testing::HasSubstr;
+
+class VerifyCommand : public CommandTest {
+ protected:
+  static std::string example(const std::string& name) {
+    return (std::filesystem::path(ABBE_SOURCE_DIR) / "examples" / name).string();
+  }
+  const std::vector<std::string> files = {"verify",
+                                          "--machine",
+                                          example("machines/trunnion-mill.machine.toml"),
+                                          "--errors",
+                                          example("compensate/trunnion.errors.toml"),
+                                          "--truth",
+                                          example("verify/truth.errors.toml")};
+
+  CommandResult verify(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = files;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return abbe(arguments);
+  }
+  std::vector<std::string> cone(const std::string& before, const std::string& after) const {
+    return {"--poses", "50", "cone-frustum", "--before", before, "--after", after};
+  }
+  /// The cone's trace with one line changed or the file cut off behind it.
+  std::string changed(std::size_t line, const std::string& text, bool cut_off = false) const {
+    std::ifstream file(example("verify/cone-before.csv"));
+    std::string all, one;
+    for (std::size_t n = 1; std::getline(file, one); ++n) {
+      all += (n == line && !text.empty() ? text : one) + "\n";
+      if (n == line && cut_off) break;
+    }
+    return folder.write("trace.csv", all).string();
+  }
+};
+
+TEST_F(VerifyCommand, BothTestPiecesAndUnseenPosesGetBetter) {
+  const CommandResult result =
+      verify({"--json", "--largest-ratio", "1.5", "--least-reduction", "15", "cone-frustum", "--before",
+              example("verify/cone-before.csv"), "--after", example("verify/cone-after.csv"), "s-shape", "--before",
+              example("verify/s-before.csv"), "--after", example("verify/s-after.csv")});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  const nlohmann::json& unseen = json["unseen_poses"];
+  EXPECT_EQ(unseen["poses"].get<int>() + unseen["outside_travel"].get<int>() + unseen["outside_known_range"].get<int>(),
+            1000);
+  EXPECT_GT(unseen["reduction"].get<double>(), 15);
+  EXPECT_LT(unseen["uncertainty_ratio"].get<double>(), 1.5);
+  EXPECT_GT(unseen["coverage_percent"].get<double>(), 80);
+  ASSERT_EQ(json["test_pieces"].size(), 2u);
+  for (const nlohmann::json& piece : json["test_pieces"]) {
+    for (const char* const edge : {"foot", "head"}) {
+      EXPECT_LT(2 * piece["after"]["best_fit"][edge]["range_um"].get<double>(),
+                piece["before"]["best_fit"][edge]["range_um"].get<double>());
+    }
+  }
+  EXPECT_LT(2 * json["test_pieces"][0]["after"]["foot_circle"]["roundness_um"].get<double>(),
+            json["test_pieces"][0]["before"]["foot_circle"]["roundness_um"].get<double>());
+}
+
+TEST_F(VerifyCommand, WhatIsWantedAndNotReachedIsExitCodeOne) {
+  const CommandResult result = verify({"--poses", "100", "--least-reduction", "1000"});
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.out, HasSubstr("LESS than the wanted 1000 times"));
+  EXPECT_EQ(verify({"--poses", "100", "--largest-ratio", "0.01"}).exit_code, ExitCode::computation_says_no);
+}
+
+TEST_F(VerifyCommand, TheSameSeedGivesTheSameFigures) {
+  EXPECT_EQ(verify({"--poses", "60", "--json"}).out, verify({"--poses", "60", "--json", "--seed", "1"}).out);
+  EXPECT_NE(verify({"--poses", "60", "--json"}).out, verify({"--poses", "60", "--json", "--seed", "2"}).out);
+}
+
+TEST_F(VerifyCommand, TracesThatAreWrongAreNamedWithLineAndField) {
+  const std::string good = example("verify/cone-before.csv");
+  const auto refused = [&](const std::string& trace) {
+    const CommandResult result = verify(cone(good, trace));
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+    return result.err;
+  };
+  EXPECT_THAT(refused(changed(2, "C_deg,A_deg,Y_mm,X_mm,W_mm")), HasSubstr("trace.csv:2"));
+  EXPECT_THAT(refused(changed(2, "C_deg,B_deg,Y_mm,X_mm,Z_mm")), HasSubstr("B_deg: unknown column"));
+  EXPECT_THAT(refused(changed(2, "C_deg,A_deg,Y_mm,X_mm,Z_deg")), HasSubstr("Z_deg"));
+  EXPECT_THAT(refused(changed(7, "1,2,3,four,5")), HasSubstr("trace.csv:7"));
+  EXPECT_THAT(refused(changed(7, "1,2,3,4")), HasSubstr("trace.csv:7"));
+  EXPECT_THAT(refused(changed(3, "", true)), HasSubstr("1 sample"));
+  EXPECT_THAT(refused(changed(100, "", true)), HasSubstr("the trace ends after"));
+  EXPECT_THAT(refused(changed(100, "0,0,0,0,0")), HasSubstr("trace.csv:100"));
+  EXPECT_THAT(refused(example("verify/s-before.csv")), HasSubstr("the tool never begins to cut the cone frustum"));
+  EXPECT_THAT(refused("nowhere.csv"), HasSubstr("nowhere.csv"));
+  const CommandResult elsewhere =
+      verify({"--poses", "50", "cone-frustum", "--before", good, "--after", good, "--centre-mm", "0", "0", "40"});
+  EXPECT_EQ(elsewhere.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(elsewhere.err, HasSubstr("with its sizes and centre as in abbe test-piece"));
+}
+
+TEST_F(VerifyCommand, WhatIsMissingOrOutOfRangeIsSaid) {
+  EXPECT_THAT(abbe({"verify"}).err, HasSubstr("--machine"));
+  EXPECT_THAT(abbe({"verify", "nowhere"}).err, HasSubstr("nowhere: is no folder"));
+  EXPECT_THAT(abbe({"verify", folder.path().string()}).err, HasSubstr("machine.toml: these results have no such file"));
+  EXPECT_THAT(verify({"--range", "X_mm=-9000:9000"}).err, HasSubstr("within the travel"));
+  EXPECT_THAT(verify({"--range", "X_deg=0:1"}).err, HasSubstr("unit 'deg' for a linear axis"));
+  EXPECT_THAT(verify({"--range", "B_deg=0:1"}).err, HasSubstr("the machine has no axis 'B'"));
+  EXPECT_THAT(verify({"--range", "X_mm=5:1"}).err, HasSubstr("the larger one behind the smaller"));
+  EXPECT_THAT(verify({"--range", "X_mm=nan"}).err, HasSubstr("--range X_mm=nan"));
+  EXPECT_EQ(verify({"cone-frustum", "--before", "a.csv"}).exit_code, ExitCode::bad_input);
+}
+
+}  // namespace
+}  // namespace abbe
