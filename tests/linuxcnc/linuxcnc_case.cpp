@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <numbers>
 #include <random>
@@ -22,6 +21,7 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/machine/inverse_kinematics.h"
 #include "abbe/runtime/freeze.h"
+#include "judging.h"
 
 namespace abbe {
 namespace {
@@ -29,11 +29,6 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kToolLength = 50;  // of the tool table of the test
 const std::string kJoints = "XYZAC";
-
-[[noreturn]] void fail(const std::string& what) {
-  std::printf("FAILED: %s\n", what.c_str());
-  std::exit(1);
-}
 
 struct Case {
   Machine machine = read_machine(ABBE_SOURCE_DIR "/examples/machines/trunnion-mill.machine.toml");
@@ -160,29 +155,6 @@ struct Library {
   CompensatedInverse inverse;
 };
 
-std::vector<std::vector<double>> rows(const std::string& path, std::size_t columns) {
-  std::ifstream file(path);
-  std::vector<std::vector<double>> all;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    std::vector<double> row;
-    for (double value = 0; words >> value;) row.push_back(value);
-    if (row.size() == columns) all.push_back(row);
-  }
-  return all;
-}
-
-struct Mean {
-  double sum = 0, largest = 0;
-  std::size_t count = 0;
-  void add(double value) {
-    sum += value;
-    largest = std::max(largest, value);
-    ++count;
-  }
-  double mean() const { return count > 0 ? sum / static_cast<double>(count) : 0; }
-};
-
 /// Rows: 5 world coordinates, tool length, 5 joints.
 void judge_poses(const Case& c, const std::string& folder) {
   const std::vector<std::vector<double>> reached = rows(folder + "/reached.txt", 11);
@@ -231,13 +203,6 @@ void judge_ramp(const std::string& folder) {
   if (samples.front()[5] != 0 || samples.back()[5] != 1) fail("the ramp does not go from 0 to 1");
   if (between < 30) fail("the ramp jumps");
   if (!(moved > 0.01) || !(largest_step < 0.1 * moved)) fail("the joints jump");
-}
-
-double distance_to_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const Eigen::Vector3d along = b - a;
-  const double square = along.squaredNorm();
-  const double share = square > 0 ? std::min(1.0, std::max(0.0, along.dot(p - a) / square)) : 0;
-  return (p - a - share * along).norm();
 }
 
 /// Samples of every servo cycle of the program: 5 joints, 5 world coordinates. Joints follow the world some cycles
