@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "abbe/compensate/machine_planes.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/nc_program.h"
 
@@ -58,6 +59,28 @@ Run run(std::string_view text, const abbe::NcProgramOptions& options) {
   return result;
 }
 
+/// A table that tilts and turns, for tilted planes.
+const abbe::MachinePlanes& planes() {
+  static const abbe::MachinePlanes made = [] {
+    abbe::Machine machine;
+    machine.name = "trunnion";
+    for (const char* name : {"C", "A", "X", "Y", "Z"}) {
+      abbe::Axis& axis = machine.axes.emplace_back();
+      axis.name = name;
+      abbe::axis_kind_from_letter(name[0], axis.kind);
+      axis.side = machine.axes.size() <= 2 ? abbe::ChainSide::workpiece : abbe::ChainSide::tool;
+      axis.primed = machine.axes.size() <= 2;
+      axis.direction = abbe::direction_from_letter(name[0]);
+      axis.point = {1, -2, 3};
+      axis.travel_min = axis.kind == abbe::AxisKind::rotary ? -2 : -500;
+      axis.travel_max = -axis.travel_min;
+    }
+    machine.axes[0].endless = true;
+    return abbe::MachinePlanes(machine, abbe::word_axes_by_name(machine), {});
+  }();
+  return made;
+}
+
 void check_again(const Run& first, const abbe::NcProgramOptions& options) {
   const Run second = run(first.text, options);
   // Moves that go nowhere are not written.
@@ -99,6 +122,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.inches = flags / 16 % 2 == 1;
     options.tools = abbe::NcToolTable{{1, {0, 0, 50}}, {2, {1, 2, 30, 0.5}}};
     options.parameters = {{5161, 1}, {5163, 20}, {5181, 0}, {5211, 2}, {5220, 1}, {5241, 10}};
+    options.planes = &planes();
+    options.tool_centre = flags / 32 % 2 == 1;
     options.most_moves = 3000;
     options.most_idle_rounds = 200;
     const Run first = run(text, options);

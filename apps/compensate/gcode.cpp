@@ -4,6 +4,7 @@
 #include <optional>
 #include <system_error>
 
+#include "abbe/compensate/machine_planes.h"
 #include "abbe/compensate/program_correction.h"
 #include "abbe/compensate/program_uncertainty.h"
 #include "abbe/compensate/tool_centre_moves.h"
@@ -50,8 +51,11 @@ int run_gcode(const GcodeOptions& options) {
   const Machine machine = read_machine(options.machine);
   const ErrorsFile errors = read_errors(options.errors, machine);
   const WordAxes words = gcode_words(options, machine);
-  const NcProgramOptions text_options = gcode_text_options(options, machine, words);
+  NcProgramOptions text_options = gcode_text_options(options, machine, words);
   const AllowedProblems allowed = allowed_problems(options);
+  const MachinePlanes planes(machine, words, {});
+  text_options.planes = &planes;
+  text_options.tool_centre = options.tool_centre;
 
   GcodeResult result;
   ErrorSet corrected_errors = errors.errors;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "abbe/compensate/machine_planes.h"
 #include "abbe/compensate/machine_with_play_for_test.h"
 #include "abbe/compensate/program_moves_for_test.h"
 #include "abbe/formats/errors_file.h"
@@ -40,11 +41,13 @@ class Recorder final : public MoveCorrector {
 };
 
 /// @param from_zero  all axes stand at zero when the program begins; else that is not known
-std::vector<ProgramMove> moves_of(const std::filesystem::path& program, bool from_zero = false) {
+std::vector<ProgramMove> moves_of(const std::filesystem::path& program, bool from_zero = false,
+                                  const PlaneKinematics* planes = nullptr) {
   std::ifstream file(program);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   NcProgramOptions options;
   options.words[4] = false;  // no B
+  options.planes = planes;
   for (std::size_t i = 0; from_zero && i < 6; ++i) options.start[i] = 0.0;
   Recorder recorder;
   correct_nc_program(text, program.string(), options, recorder, [](std::string_view) {});
@@ -146,6 +149,19 @@ TEST_F(CompensateGcode, TheToolOfTheMachineWithErrorsFollowsBothPrograms) {
     EXPECT_THAT(result.out, HasSubstr("written"));
     expect_followed(moves_of(kExamples / "compensate" / program), moves_of(folder.path() / program), 1.1e-3);
   }
+}
+
+TEST_F(CompensateGcode, TheToolFollowsATiltedPlane) {
+  write(
+      "tilted.ngc",
+      "G21 G90 G17\nG10 L2 P1 X0 Y0 Z-410\nG54\nG53 G0 Z-5\nG0 X0 Y0 A0 C0\nG68.2 X20 Y10 Z60 I40 J-35 K0\nG53.1\n"
+      "G0 X0 Y0 Z60\nG1 Z0 F800\nX50\nG3 X60 Y10 R10\nG1 Y40\nG0 Z60\nG81 X5 Y20 Z-10 R3\nG80\nG69\nG53 G0 Z-5\nM2\n");
+  const CommandResult result =
+      abbe({"compensate", "gcode", "tilted.ngc", "--machine", machine, "--errors", errors, "-o", "out.ngc"});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  const Machine read = read_machine(machine);
+  const MachinePlanes planes(read, word_axes_by_name(read), {});
+  expect_followed(moves_of(folder.path() / "tilted.ngc", false, &planes), moves_of(folder.path() / "out.ngc"), 1.1e-3);
 }
 
 TEST_F(CompensateGcode, ARotaryMoveKeepsItsTime) {

@@ -38,7 +38,7 @@ TEST(NcErrors, OfCodesThatAreNotHandled) {
   EXPECT_EQ(refusal("G7\n"),
             "p.ngc:1:1: G7: diameter programming is not handled; expected a code of docs/nc-programs.md");
   EXPECT_EQ(refusal("G68.2 X0 Y0 Z0 I0 J0 K0\n"),
-            "p.ngc:1:1: G68.2: rotated coordinates are not handled; expected a code of docs/nc-programs.md");
+            "p.ngc:1:1: G68.2: the machine is not known, which a tilted plane needs");
   EXPECT_EQ(refusal("G87 X1\n"),
             "p.ngc:1:1: G87: this cycle is not handled: it needs the operator or an oriented spindle; expected a code "
             "of docs/nc-programs.md");
@@ -88,7 +88,7 @@ TEST(NcErrors, OfWordsThatAreWrongOrHaveNoUse) {
   EXPECT_EQ(refusal("X1 O5\n"), "p.ngc:1:4: O5: an O word stands first in its block");
   EXPECT_EQ(refusal("G0 X2000000000\n"), "p.ngc:1:4: X2000000000: is too large; expected a magnitude of at most 1e9");
   EXPECT_EQ(refusal("G0 U1\n"), "p.ngc:1:4: U1: the machine has no axis of this word");
-  EXPECT_EQ(refusal("G0 I1 X1\n"), "p.ngc:1:4: I1: no code of this block uses it; expected G2 or G3");
+  EXPECT_EQ(refusal("G0 I1 X1\n"), "p.ngc:1:4: I1: no code of this block uses it; expected G2, G3 or G68.2");
   EXPECT_EQ(refusal("G0 Q1 X1\n"),
             "p.ngc:1:4: Q1: no code of this block uses it; expected G64, G73, G83, M19, M61, M66 or M100-M199");
   EXPECT_EQ(refusal("G0 H1 X1\n"), "p.ngc:1:4: H1: no code of this block uses it; expected G43");

@@ -153,8 +153,10 @@ void NcInterpreter::check_words() const {
   const bool is_cycle = motion >= 730 || (!codes_.has(NcGroup::motion) && modes_.motion >= 730 && modes_.motion != 800);
   const bool is_g10 = codes_[NcGroup::non_modal] == 100;
   const bool is_user = codes_.has(NcMGroup::user) || codes_.has(NcMGroup::signals);
+  const bool is_plane = codes_[NcGroup::tilt] == 682;
   for (const char letter : {'i', 'j', 'k'}) {
-    if (block_.has(letter) && !is_arc && !is_g10) block_.fail(letter, "no code of this block uses it", "G2 or G3");
+    if (block_.has(letter) && !is_arc && !is_g10 && !is_plane)
+      block_.fail(letter, "no code of this block uses it", "G2, G3 or G68.2");
   }
   if (block_.has('r') && !is_arc && !is_cycle && !is_g10) {
     block_.fail('r', "no code of this block uses it", "G2, G3 or a canned cycle");
@@ -169,7 +171,7 @@ void NcInterpreter::check_words() const {
   }
   if (block_.has('p') && !is_arc && !is_cycle && !is_g10 && !is_user && codes_[NcGroup::non_modal] != 40 &&
       codes_[NcGroup::path] != 640 && !codes_.has(NcMGroup::overrides) && !codes_.has(NcMGroup::stop) &&
-      !codes_.has(NcMGroup::spindle)) {
+      !codes_.has(NcMGroup::spindle) && !is_plane && codes_[NcGroup::non_modal] != 531) {
     block_.fail('p', "no code of this block uses it",
                 "G2, G3, G4, G10, G64, a canned cycle, M50-M68, M98 or M100-M199");
   }
@@ -185,9 +187,11 @@ void NcInterpreter::check_words() const {
 void NcInterpreter::execute() {
   sort_nc_codes(block_, codes_);
   check_words();
+  if (tilt_.on || codes_.has(NcGroup::tilt) || codes_[NcGroup::non_modal] == 531) check_plane_words();
   const NcCode other = codes_[NcGroup::non_modal];
   const NcCode tool_length = codes_[NcGroup::tool_length];
   // Who takes the axis words.
+  const bool sets_plane = codes_[NcGroup::tilt] == 682;
   const bool sets_offset = other == 100 || other == 520 || other == 920;
   const bool to_reference = other == 280 || other == 300;
   const bool dynamic_tool = tool_length == 431 || (tool_length == 432 && !block_.has('h'));
@@ -200,7 +204,7 @@ void NcInterpreter::execute() {
       block_.fail(codes_.word(block_, NcGroup::tool_length), "two codes of this block use the axis words");
     }
   }
-  const bool free_axes = has_axes && !sets_offset && !to_reference && !dynamic_tool;
+  const bool free_axes = has_axes && !sets_plane && !sets_offset && !to_reference && !dynamic_tool;
   NcCode motion = kNoCode;
   if (free_axes || (codes_.has(NcGroup::motion) && codes_[NcGroup::motion] >= 20 && codes_[NcGroup::motion] != 800)) {
     motion = codes_.has(NcGroup::motion) ? codes_[NcGroup::motion] : modes_.motion;
@@ -210,8 +214,8 @@ void NcInterpreter::execute() {
     }
   }
   // An arc goes on with its centre alone: a full circle.
-  if (!has_axes && motion == kNoCode && !codes_.has(NcGroup::motion) && modes_.motion >= 20 && modes_.motion <= 30 &&
-      (block_.has('i') || block_.has('j') || block_.has('k'))) {
+  if (!has_axes && !sets_plane && motion == kNoCode && !codes_.has(NcGroup::motion) && modes_.motion >= 20 &&
+      modes_.motion <= 30 && (block_.has('i') || block_.has('j') || block_.has('k'))) {
     motion = modes_.motion;
   }
   if (codes_.has(NcMGroup::stop)) {
@@ -249,13 +253,15 @@ void NcInterpreter::execute() {
     if (block_.value('p') < 0) block_.fail('p', "the time of the dwell is negative");
   }
   set_modes();
+  if (codes_.has(NcGroup::tilt)) set_plane();
   set_tool_length();
   if (codes_.has(NcGroup::work_offset)) {
     const NcCode code = codes_[NcGroup::work_offset];
     modes_.system = static_cast<std::size_t>(code < 590 ? (code - 540) / 10 : code - 585);
     update_frame();
   }
-  const bool moves = motion != kNoCode || to_reference;
+  const bool turns_to_plane = other == 531;
+  const bool moves = motion != kNoCode || to_reference || turns_to_plane;
   if (codes_[NcGroup::non_modal] == 530 && (motion == kNoCode || motion > 10)) {
     block_.fail(codes_.word(block_, NcGroup::non_modal), "G53 is not followed by a straight move", "G0 or G1");
   }
@@ -266,9 +272,11 @@ void NcInterpreter::execute() {
       if ((machine_words_ & ~known_) != 0) fail_unknown(machine_words_ & ~known_, "G28.1 and G30.1 store it");
       home_[other == 281 ? 0 : 1] = {position_, machine_words_};
     }
+    if (turns_to_plane) block_.comments.push_back("(G53.1)");
     pass_block(moves);
   }
   if (to_reference) go_to_reference();
+  if (turns_to_plane) turn_to_plane();
   if (motion != kNoCode) move_by_word(motion);
   if (codes_.has(NcGroup::motion)) modes_.motion = codes_[NcGroup::motion];
   if (moves && codes_.has(NcMGroup::stop)) {

@@ -1,6 +1,7 @@
 #pragma once
 
 // Internal to formats: runs an NC program.
+#include <Eigen/Core>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -69,6 +70,7 @@ class NcInterpreter final : public NcSystemValues {
   void set_axis_offset(bool moves);
   void write_axis_offset();
   void update_frame();
+  Words offsets_in_force() const;
   void set_tool_centre(bool on);
   double unit(std::size_t axis) const;
   const Words& tool_offset(const NcWord& word);
@@ -85,6 +87,18 @@ class NcInterpreter final : public NcSystemValues {
   void check_feed(const char* what);
   void emit(ProgramMove& move, const Words& end, std::uint32_t known);
   [[noreturn]] void fail_unknown(std::uint32_t words, const std::string& why) const;
+
+  // nc_planes.cpp: tilted planes
+  void check_plane_words() const;
+  void set_plane();
+  void turn_to_plane();
+  /// From here on position_ has X, Y, Z of the plane (positions of the axes).
+  void enter_plane();
+  void leave_plane();
+  Words axes_of_plane(const Words& words) const;
+  void turn_arc_to_axes(ProgramMove& move) const;
+  WordValues radians(const Words& words) const;
+  bool words_are_points() const;
 
   // nc_cycles.cpp
   void cycle(NcCode motion);
@@ -111,12 +125,26 @@ class NcInterpreter final : public NcSystemValues {
   Words axis_offset_{};              ///< G92, G52 in force
   Words stored_axis_offset_{};       ///< 5211 ...
   Words tool_offset_{};              ///< G43
-  Words offset_{};                   ///< sum of those in force
+  Words offset_{};                   ///< sum of those in force; X, Y, Z zero while a plane is tilted
   std::array<Reference, 2> home_{};  ///< G28, G30
   NcToolTable tools_;
   std::optional<int> tool_, selected_tool_;
   int spindle_ = 0;         ///< 3 or 4: turns by M3 or M4; 0: is not known to turn
   std::string path_words_;  ///< "G64 P0.1", for after a cycle
+
+  /// G68.2: place in the workpiece = origin + rotation * X, Y, Z of the plane, each in the directions of X, Y, Z words.
+  struct Tilt {
+    bool on = false;
+    bool counts = false;  ///< position_ has X, Y, Z of the plane
+    Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    /// Positions of the axes X, Y, Z = axes_from_plane * (X, Y, Z of the plane) + at_zero, as the others stand, mm.
+    Eigen::Matrix3d axes_from_plane = Eigen::Matrix3d::Identity();
+    Eigen::Vector3d at_zero = Eigen::Vector3d::Zero();
+  };
+  Tilt tilt_;
+  Words machine_position_{};  ///< of the control while position_ counts in a plane
+  std::string plane_comment_;
 
   /// Of the last block of a cycle, for the next one of the same code.
   struct Cycle {

@@ -15,6 +15,7 @@ NcGroup group_of(NcCode code) {
     case 301:
     case 520:
     case 530:
+    case 531:
     case 920:
     case 921:
     case 922:
@@ -80,6 +81,9 @@ NcGroup group_of(NcCode code) {
       return NcGroup::spindle;
     case 80:
       return NcGroup::diameter;
+    case 682:
+    case 690:
+      return NcGroup::tilt;
     default:
       return NcGroup::none;
   }
@@ -112,10 +116,14 @@ const char* reason(NcCode code) {
     case 70:
       return "diameter programming is not handled";
     case 680:
-    case 682:
-    case 690:
-    case 531:
-      return "rotated coordinates are not handled";
+    case 681:
+      return "rotated coordinates are not handled but for tilted planes by G68.2";
+    case 683:
+    case 684:
+      return "a tilted plane by where the tool points or by another plane is not handled, only that of G68.2";
+    case 533:
+    case 536:
+      return "turning to a tilted plane while the tool keeps its place is not handled, only G53.1";
     case 870:
     case 880:
       return "this cycle is not handled: it needs the operator or an oriented spindle";

@@ -19,7 +19,7 @@ inline constexpr NcCode kNoCode = -1;
 /// "Modal groups".
 enum class NcGroup : std::uint8_t {
   none,         ///< not a code that is handled
-  non_modal,    ///< G4 G10 G28 G30 G52 G53 G92
+  non_modal,    ///< G4 G10 G28 G30 G52 G53 G53.1 G92
   motion,       ///< G0 G1 G2 G3 G73 G80-G89
   plane,        ///< G17 G18 G19
   distance,     ///< G90 G91
@@ -33,8 +33,9 @@ enum class NcGroup : std::uint8_t {
   path,         ///< G61 G61.1 G64
   spindle,      ///< G96 G97
   diameter,     ///< G8
+  tilt,         ///< G68.2 G69
 };
-inline constexpr std::size_t kNcGroups = 15;
+inline constexpr std::size_t kNcGroups = 16;
 
 /// Groups of M codes of which a block may have one each; what stands beside each other has groups of its own.
 enum class NcMGroup : std::uint8_t {

@@ -77,10 +77,17 @@ void NcInterpreter::emit(ProgramMove& move, const Words& end, std::uint32_t know
   move.feed_mode = modes_.feed_mode;
   const std::uint32_t unknown = machine_words_ & ~known_;
   bool linear_moves = false, rotary_moves = false;
+  if (tilt_.counts) {
+    constexpr std::uint32_t kLinear = 7;
+    if ((kLinear & ~known) != 0) fail_unknown(kLinear & ~known, "in a tilted plane every move takes all three");
+    if (move.kind == MoveKind::arc_clockwise || move.kind == MoveKind::arc_counterclockwise) turn_arc_to_axes(move);
+  }
+  const Words& start = tilt_.counts ? machine_position_ : position_;
+  const Words target = tilt_.counts ? axes_of_plane(end) : end;
   for (std::size_t k = 0; k < kAxisWords; ++k) {
     const double to = is_rotary(k) ? kDegree : 1;
-    move.start[k] = position_[k] * to;
-    move.end[k] = end[k] * to;
+    move.start[k] = start[k] * to;
+    move.end[k] = target[k] * to;
     if (move.end[k] != move.start[k]) (is_rotary(k) ? rotary_moves : linear_moves) = true;
   }
   for (std::size_t k = 0; k < 3; ++k) move.tool_length[k] = tool_offset_[k];
@@ -101,6 +108,7 @@ void NcInterpreter::emit(ProgramMove& move, const Words& end, std::uint32_t know
   if (unknown != 0) move.start = move.end;
   writer_.move(move, known & machine_words_, (machine_words_ & ~known) == 0);
   position_ = end;
+  machine_position_ = target;
   known_ = known;
 }
 
@@ -125,6 +133,9 @@ void NcInterpreter::move_by_word(NcCode motion) {
     arc(motion);
     return;
   }
+  // G53 is of the axes in a tilted plane too.
+  const bool leaves_plane = tilt_.on && codes_[NcGroup::non_modal] == 530;
+  if (leaves_plane) leave_plane();
   std::uint32_t known = 0;
   const Words end = ends(known);
   if (motion == 0) {
@@ -133,6 +144,7 @@ void NcInterpreter::move_by_word(NcCode motion) {
     check_feed("G1");
     straight(end, known);
   }
+  if (leaves_plane) enter_plane();
 }
 
 void NcInterpreter::go_to_reference() {

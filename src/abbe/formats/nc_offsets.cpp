@@ -58,13 +58,20 @@ void NcInterpreter::set_modes() {
   if (codes_.has(NcGroup::retract)) modes_.retract_to_r = codes_[NcGroup::retract] == 990;
 }
 
+NcInterpreter::Words NcInterpreter::offsets_in_force() const {
+  Words offset{};
+  for (std::size_t k = 0; k < kAxisWords; ++k) {
+    offset[k] = systems_[modes_.system][k] + axis_offset_[k];
+    if (!modes_.tool_centre) offset[k] += tool_offset_[k];
+  }
+  return offset;
+}
+
 void NcInterpreter::update_frame() {
   NcProgramFrame frame;
-  for (std::size_t k = 0; k < kAxisWords; ++k) {
-    offset_[k] = systems_[modes_.system][k] + axis_offset_[k];
-    if (!modes_.tool_centre) offset_[k] += tool_offset_[k];
-  }
+  offset_ = offsets_in_force();
   frame.offset = offset_;
+  for (std::size_t k = 0; tilt_.on && k < 3; ++k) offset_[k] = 0;
   frame.inches = modes_.inches;
   writer_.set_frame(frame);
 }
@@ -99,6 +106,7 @@ void NcInterpreter::set_tool_length() {
   if (!codes_.has(NcGroup::tool_length)) return;
   const NcCode code = codes_[NcGroup::tool_length];
   const NcWord& word = codes_.word(block_, NcGroup::tool_length);
+  if (tilt_.on) leave_plane();
   switch (code) {
     case 490:
       tool_offset_ = {};
@@ -135,6 +143,7 @@ void NcInterpreter::set_tool_length() {
     block_.fail(word, "another tool length while tool centre control is on", "G49 before it");
   }
   update_frame();
+  if (tilt_.on) enter_plane();
 }
 
 void NcInterpreter::set_origin(bool moves) {

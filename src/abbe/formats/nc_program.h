@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "abbe/compensate/plane_kinematics.h"
 #include "abbe/compensate/program_move.h"
 
 namespace abbe {
@@ -28,6 +29,8 @@ struct NcProgramOptions {
   bool parameters_in_inches = false;         ///< lengths among them, which are mm otherwise
   std::optional<NcToolTable> tools;          ///< for G43 H
   std::optional<int> tool;                   ///< in the spindle, for G43 without H
+  const PlaneKinematics* planes = nullptr;   ///< for G68.2; not owned
+  bool tool_centre = false;                  ///< X, Y, Z are the functional point in the workpiece throughout
   bool inches = false;                       ///< G20 in force when the program begins
   bool block_delete = false;                 ///< leave out blocks that begin with a slash
   int decimals_mm = 6;                       ///< of lengths in mm, 0 to 9; one more in inches

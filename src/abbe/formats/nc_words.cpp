@@ -105,6 +105,10 @@ void NcInterpreter::pass_block(bool has_motion) {
     if (block_.has(letter)) consumed |= bit(block_.index[static_cast<std::size_t>(letter - 'a')]);
   };
   if (codes_[NcGroup::distance] == 910) drop(NcGroup::distance);
+  drop(NcGroup::tilt);
+  if (codes_[NcGroup::tilt] == 682) {
+    for (const char letter : {'x', 'y', 'z', 'i', 'j', 'k', 'p'}) drop_letter(letter);
+  }
   if (has_motion) {
     if (codes_.axes != 0) {
       for (const char letter : {'x', 'y', 'z', 'a', 'b', 'c', 'u', 'v', 'w'}) drop_letter(letter);
@@ -114,11 +118,11 @@ void NcInterpreter::pass_block(bool has_motion) {
     drop(NcGroup::retract);
     drop(NcGroup::arc_centre);
     const NcCode other = codes_[NcGroup::non_modal];
-    if (other == 530 || other == 280 || other == 300) drop(NcGroup::non_modal);
+    if (other == 530 || other == 531 || other == 280 || other == 300) drop(NcGroup::non_modal);
     drop_letter('f');
     if (codes_.has(NcMGroup::stop)) consumed |= bit(codes_.m_place[static_cast<std::size_t>(NcMGroup::stop)]);
     const NcCode motion = codes_.has(NcGroup::motion) ? codes_[NcGroup::motion] : modes_.motion;
-    if (motion >= 20 && motion != 800 && other != 280 && other != 300) {
+    if (motion >= 20 && motion != 800 && other != 280 && other != 300 && other != 531) {
       const bool is_shared = other == 40 || codes_[NcGroup::path] == 640 || codes_.has(NcMGroup::signals) ||
                              codes_.has(NcMGroup::overrides) || codes_.has(NcMGroup::user) ||
                              codes_.has(NcMGroup::spindle);
