@@ -36,6 +36,10 @@ void use(const abbe_runtime* runtime) {
         require(abbe_runtime_describe_axis(runtime, i, &axis) == ABBE_OK);
         nominal[static_cast<std::size_t>(i)] = axis.rotary != 0 ? 0.3 + at / 1000 : at;
       }
+      double uncertainty = 0;
+      require((abbe_runtime_uncertainty(runtime, nominal.data(), nullptr, &uncertainty) >= 0) ==
+              (about.has_uncertainty != 0));
+      require(uncertainty >= 0 && uncertainty <= 1.1e6);
       abbe_runtime_correct(runtime, &state, nominal.data(), nullptr, enable, joints.data());
       require(state.iterations <= ABBE_RUNTIME_ITERATIONS);
       check(joints, about.axes);

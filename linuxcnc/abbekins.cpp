@@ -49,6 +49,7 @@ struct Pins {
   hal_float_t* offset[3];                      // in: motion.tooloffset.x, .y, .z
   hal_float_t* correction[ABBE_RUNTIME_AXES];  // out, of each joint
   hal_float_t* largest;                        // out: largest correction of a linear joint so far
+  hal_float_t* uncertainty;                    // out: standard uncertainty of the tool point's correction, um; or -1
   hal_s32_t* status;                           // out: result of the last call, see abbe_runtime.h
   hal_bit_t* outside_map;                      // out: errors are not known there and stay those of the edge
   hal_bit_t* outside_tool;                     // out: the tool is longer or shorter than the file was checked for
@@ -118,6 +119,13 @@ void report(int result, const abbe_runtime_state& state) {
       *pins.largest = std::fabs(state.correction[i]);
     }
   }
+}
+
+/// Standard uncertainty of the correction where the joints are; -1 if the file has none.
+void report_uncertainty(const double* joints, const double* tool) {
+  double uncertainty = 0;
+  const int result = abbe_runtime_uncertainty(module.runtime, joints, tool, &uncertainty);
+  *module.pins->uncertainty = result >= 0 ? 1e3 * uncertainty : -1;
 }
 
 /// "abbekins: what" on LinuxCNC's own output.
@@ -290,6 +298,7 @@ int make_pins() {
     failed |= hal_pin_float_newf(HAL_OUT, &pins.correction[i], id, ABBEKINS_NAME ".correction-%s", name);
   }
   failed |= hal_pin_float_newf(HAL_OUT, &pins.largest, id, ABBEKINS_NAME ".largest-correction");
+  failed |= hal_pin_float_newf(HAL_OUT, &pins.uncertainty, id, ABBEKINS_NAME ".uncertainty-um");
   failed |= hal_pin_s32_newf(HAL_OUT, &pins.status, id, ABBEKINS_NAME ".status");
   failed |= hal_pin_bit_newf(HAL_OUT, &pins.outside_map, id, ABBEKINS_NAME ".outside-map");
   failed |= hal_pin_bit_newf(HAL_OUT, &pins.outside_tool, id, ABBEKINS_NAME ".outside-tool");
@@ -343,6 +352,7 @@ int kinematicsInverse(const EmcPose* world, double* joints, const KINEMATICS_INV
                          : abbe_runtime_correct(module.runtime, &module.inverse_state, words, tool, part, q);
   report(result, module.inverse_state);
   if (result < 0) return -1;
+  report_uncertainty(q, tool);
   for (int j = 0; j < module.axes; ++j) {
     const int axis = module.axis_of_joint[j];
     joints[j] = q[axis] / (module.rotary[axis] ? kDegree : 1);

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "abbe/compensate/program_uncertainty.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
@@ -30,6 +31,7 @@ struct FreezeArguments {
   std::vector<double> tool, lengths{0, 300};
   double limit_um = std::numeric_limits<double>::infinity();
   double largest_turn_deg = 0.57;
+  double leave_out_factor = 0;
   bool json = false;
 };
 
@@ -58,12 +60,14 @@ FreezeOptions options_of(const FreezeArguments& arguments, const Machine& machin
     throw InputError({.field = "--largest-turn-deg"}, "out of range", "more than 0 and at most 10 degrees");
   options.largest_turn = arguments.largest_turn_deg * std::numbers::pi / 180;
   options.world_zero_at_joints = arguments.world == "joints";
+  options.covariance = parameter_covariance(errors.errors, errors.covariance);
   options.source = machine_text(machine) + errors_text(machine, errors);
   options.version = ABBE_VERSION;
   return options;
 }
 
-void print_result(const FreezeArguments& arguments, const Machine& machine, const FrozenCompensation& frozen) {
+void print_result(const FreezeArguments& arguments, const Machine& machine, const FrozenCompensation& frozen,
+                  const std::vector<std::string>& left_out) {
   fmt::print("{}: errors of {} frozen\n", machine.name, arguments.errors);
   fmt::print("  {}: {} bytes, format {}, abbe {}, checksum {:016x} (machine and errors {:016x})\n", arguments.output,
              frozen.bytes.size(), static_cast<int>(ABBE_RUNTIME_FORMAT), ABBE_VERSION, frozen.checksum,
@@ -80,6 +84,20 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
   }
   fmt::print("  after it, by the full model: {:.1e} mm and {:.1e} rad at most\n", frozen.accuracy,
              frozen.accuracy_turn);
+  if (frozen.largest_uncertainty > 0) {
+    fmt::print(
+        "  standard uncertainty of the tool's correction: {:.2f} um on average, at most {:.2f} um; in the file to "
+        "{:.2f} um\n",
+        1e3 * frozen.mean_uncertainty, 1e3 * frozen.largest_uncertainty, 1e3 * frozen.uncertainty_lattice);
+  } else {
+    fmt::print("  standard uncertainty of the tool's correction: not stated by the errors file\n");
+  }
+  if (arguments.leave_out_factor > 0) {
+    std::string names;
+    for (const std::string& name : left_out) names += (names.empty() ? "" : ", ") + name;
+    fmt::print("  left out, below {:g} standard uncertainties everywhere: {}\n", arguments.leave_out_factor,
+               names.empty() ? "none" : names);
+  }
   fmt::print("  iterations of one call: at most {}\n", frozen.worst_iterations);
   if (frozen.limited > 0)
     fmt::print("  near singularities the turn is bounded: at {} poses a part of the orientation error stays\n",
@@ -89,7 +107,8 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
                frozen.unreached, frozen.poses);
 }
 
-void print_json(const FreezeArguments& arguments, const Machine& machine, const FrozenCompensation& frozen) {
+void print_json(const FreezeArguments& arguments, const Machine& machine, const FrozenCompensation& frozen,
+                const std::vector<std::string>& left_out) {
   nlohmann::ordered_json json;
   json["machine"] = machine.name;
   json["errors"] = arguments.errors;
@@ -113,6 +132,12 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
   json["largest_joint_corrections"] = joints;
   json["accuracy_mm"] = frozen.accuracy;
   json["accuracy_rad"] = frozen.accuracy_turn;
+  if (frozen.largest_uncertainty > 0) {
+    json["largest_standard_uncertainty_um"] = 1e3 * frozen.largest_uncertainty;
+    json["mean_standard_uncertainty_um"] = 1e3 * frozen.mean_uncertainty;
+    json["standard_uncertainty_in_file_to_um"] = 1e3 * frozen.uncertainty_lattice;
+  }
+  json["left_out"] = left_out;
   json["worst_iterations"] = frozen.worst_iterations;
   json["turn_bounded"] = frozen.limited;
   json["point_not_reached"] = frozen.unreached;
@@ -121,8 +146,16 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
 
 int run_freeze(const FreezeArguments& arguments) {
   const Machine machine = read_machine(arguments.machine);
-  const ErrorsFile errors = read_errors(arguments.errors, machine);
+  ErrorsFile errors = read_errors(arguments.errors, machine);
+  if (!(arguments.leave_out_factor >= 0 && arguments.leave_out_factor <= 1000)) {
+    throw InputError({.field = "--leave-out-below-uncertainty"}, "out of range", "0 to 1000 standard uncertainties");
+  }
   warn_of_reversals(machine, errors.errors);
+  std::vector<std::string> left_out;
+  if (arguments.leave_out_factor > 0) {
+    left_out = leave_out_uncertain(machine, errors.errors, parameter_covariance(errors.errors, errors.covariance),
+                                   arguments.leave_out_factor);
+  }
   const FrozenCompensation frozen = freeze(machine, errors.errors, options_of(arguments, machine, errors));
   if (!frozen.problem.empty()) throw InputError({.file = arguments.errors}, "cannot be frozen: " + frozen.problem);
   if (1e3 * frozen.largest_correction > arguments.limit_um) {
@@ -140,9 +173,9 @@ int run_freeze(const FreezeArguments& arguments) {
   }
   write_file_atomically(arguments.output, {reinterpret_cast<const char*>(frozen.bytes.data()), frozen.bytes.size()});
   if (arguments.json) {
-    print_json(arguments, machine, frozen);
+    print_json(arguments, machine, frozen, left_out);
   } else {
-    print_result(arguments, machine, frozen);
+    print_result(arguments, machine, frozen, left_out);
   }
   return kDone;
 }
@@ -182,6 +215,8 @@ void add_compensate_freeze(CLI::App& compensate, CommandLine& line) {
                    "Origin of world coordinates: joints (zero where all joints are) or workpiece")
       ->check(CLI::IsMember({"joints", "workpiece"}))
       ->capture_default_str();
+  command->add_option("--leave-out-below-uncertainty", arguments->leave_out_factor,
+                      "Leave out errors that are smaller than so many of their standard uncertainties everywhere");
   command->add_flag("--json", arguments->json, "Print the result as JSON");
   command->callback([arguments, &line] { line.run = [arguments] { return run_freeze(*arguments); }; });
 }

@@ -1,4 +1,5 @@
 // `abbe compensate freeze`: the file, what is said of it, and what is refused.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cli/command_test.h"
@@ -18,7 +19,7 @@ TEST_F(CompensateFreezeTest, WritesAFileAndSaysWhatItDoes) {
   ASSERT_EQ(result.exit_code, done) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_EQ(json["bytes"].get<std::size_t>(), std::filesystem::file_size(output));
-  EXPECT_EQ(json["format"], 1);
+  EXPECT_EQ(json["format"], 2);
   EXPECT_EQ(json["checksum"].get<std::string>().size(), 16U);
   EXPECT_GT(json["largest_correction_um"].get<double>(), 1);
   EXPECT_LT(json["accuracy_mm"].get<double>(), 1e-9);
@@ -26,6 +27,24 @@ TEST_F(CompensateFreezeTest, WritesAFileAndSaysWhatItDoes) {
   const CommandResult again = abbe({"compensate", "freeze", machine, errors, "-o", output});
   EXPECT_NE(again.out.find(json["checksum"].get<std::string>()), std::string::npos);
   EXPECT_NE(again.out.find("largest correction of the tool: "), std::string::npos);
+}
+
+TEST_F(CompensateFreezeTest, TheFileCarriesTheUncertaintyOfTheErrors) {
+  const std::string uncertain = std::string(ABBE_SOURCE_DIR) + "/examples/compensate/trunnion.errors.toml";
+  const CommandResult result =
+      abbe({"compensate", "freeze", machine, uncertain, "-o", output, "--leave-out-below-uncertainty", "2", "--json"});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_GT(json["mean_standard_uncertainty_um"].get<double>(), 0.5);
+  EXPECT_GT(json["largest_standard_uncertainty_um"], json["mean_standard_uncertainty_um"]);
+  EXPECT_LT(json["largest_standard_uncertainty_um"].get<double>(), 20);
+  EXPECT_LT(json["standard_uncertainty_in_file_to_um"].get<double>(),
+            0.5 * json["mean_standard_uncertainty_um"].get<double>());
+  // As `abbe compensate gcode` leaves it out.
+  const auto left_out = json["left_out"].get<std::vector<std::string>>();
+  EXPECT_NE(std::find(left_out.begin(), left_out.end(), "EAX"), left_out.end());
+  const CommandResult without = abbe({"compensate", "freeze", machine, errors, "-o", output});
+  EXPECT_NE(without.out.find("not stated by the errors file"), std::string::npos) << without.out;
 }
 
 TEST_F(CompensateFreezeTest, ACorrectionAboveTheLimitIsRefusedWithItsPlace) {
@@ -47,6 +66,7 @@ TEST_F(CompensateFreezeTest, BadOptionsAreNamed) {
   refused({"--limit-um", "-3"}, "--limit-um");
   refused({"--world", "moon"}, "--world");
   refused({"--largest-turn-deg", "40"}, "--largest-turn-deg");
+  refused({"--leave-out-below-uncertainty", "-1"}, "--leave-out-below-uncertainty");
   EXPECT_FALSE(std::filesystem::exists(output));
 }
 

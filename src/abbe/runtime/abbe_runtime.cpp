@@ -213,6 +213,18 @@ int abbe_runtime_uncorrect(const abbe_runtime* runtime, abbe_runtime_state* stat
   return result;
 }
 
+int abbe_runtime_uncertainty(const abbe_runtime* runtime, const double* joints, const double* tool,
+                             double* uncertainty_mm) ABBE_NOEXCEPT {
+  if (runtime == nullptr || joints == nullptr || uncertainty_mm == nullptr) return ABBE_NULL;
+  if (runtime->uncertainty.dimensions == 0) return ABBE_NOT_STATED;
+  Triple of_tool{};
+  if (!tool_of(*runtime, tool, of_tool)) return ABBE_NOT_FINITE;
+  for (std::size_t i = 0; i < runtime->axes; ++i) {
+    if (!(std::abs(joints[i]) <= frozen::kLongest)) return ABBE_NOT_FINITE;
+  }
+  return runtime->uncertainty.at(joints, -dot(of_tool, runtime->tool_direction), *uncertainty_mm);
+}
+
 const char* abbe_runtime_text(int result) ABBE_NOEXCEPT {
   switch (result) {
     case ABBE_NOT_FINITE:
@@ -225,6 +237,8 @@ const char* abbe_runtime_text(int result) ABBE_NOEXCEPT {
       return "the linear axes lie in one plane";
     case ABBE_NULL:
       return "a pointer is null or an axis does not exist";
+    case ABBE_NOT_STATED:
+      return "the errors that were frozen had no uncertainties";
     case ABBE_FILE_SHORT:
       return "the file is truncated";
     case ABBE_FILE_LONG:

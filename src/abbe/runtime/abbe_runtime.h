@@ -21,7 +21,7 @@ extern "C" {
 
 enum {
   ABBE_RUNTIME_AXES = 16,       /**< no machine has more axes */
-  ABBE_RUNTIME_FORMAT = 1,      /**< version of the file format */
+  ABBE_RUNTIME_FORMAT = 2,      /**< version of the file format */
   ABBE_RUNTIME_ITERATIONS = 40, /**< no call takes more */
   ABBE_RUNTIME_TEXT = 64
 };
@@ -43,6 +43,7 @@ enum {
   ABBE_NOT_POSSIBLE = -3,  /**< the machine has no three linear axes to take a point; abbe_runtime_correct() works */
   ABBE_SINGULAR = -4,      /**< the linear axes lie in one plane in this pose */
   ABBE_NULL = -5,          /**< a pointer is null */
+  ABBE_NOT_STATED = -6,    /**< the errors that were frozen had no uncertainties */
 
   ABBE_FILE_SHORT = -10,    /**< fewer bytes than a header, or than the header says */
   ABBE_FILE_FOREIGN = -11,  /**< no frozen compensation */
@@ -91,6 +92,10 @@ typedef struct abbe_runtime_information {
   double accuracy_mm;            /**< largest difference of the actual tool to where it should be, by the full model */
   double accuracy_rad;
   int worst_iterations;
+  int has_uncertainty;           /**< 1: abbe_runtime_uncertainty() works */
+  double largest_uncertainty_mm; /**< standard uncertainty of the correction of the point, over poses and tools */
+  double mean_uncertainty_mm;    /**< the same, their mean */
+  double uncertainty_lattice_mm; /**< largest difference of abbe_runtime_uncertainty() from the full model there */
 } abbe_runtime_information;
 
 /** Checks a file and prepares it. Allocates once; the bytes are not needed afterwards.
@@ -135,6 +140,14 @@ int abbe_runtime_correct(const abbe_runtime* runtime, abbe_runtime_state* state,
                          const double* tool, double enable, double* joints) ABBE_NOEXCEPT;
 int abbe_runtime_uncorrect(const abbe_runtime* runtime, abbe_runtime_state* state, const double* joints,
                            const double* tool, double enable, double* nominal) ABBE_NOEXCEPT;
+
+/** Standard uncertainty (GUM, one standard deviation) of the wholly enabled correction of the tool point at these
+ * nominal joints, in the direction in which it is largest; mm. It comes from the uncertainties of the errors that were
+ * frozen, linear between the nodes of a lattice over axes and tool lengths; beyond its ends it is that of the end, and
+ *  ABBE_OUTSIDE_MAP or ABBE_OUTSIDE_TOOL is raised. Takes no iterations.
+ *  @return ABBE_OK with flags, ABBE_NOT_STATED, ABBE_NOT_FINITE, ABBE_NULL */
+int abbe_runtime_uncertainty(const abbe_runtime* runtime, const double* joints, const double* tool,
+                             double* uncertainty_mm) ABBE_NOEXCEPT;
 
 /** Tool vector of a controller's tool length offset (mm, world axes; G43 of a tool of length L along Z: 0, 0, L): the
  *  functional point lies at minus that from the gauge point. */

@@ -9,6 +9,7 @@
 #include "abbe/machine/machine_check.h"
 #include "abbe/runtime/abbe_runtime.h"
 #include "abbe/runtime/freeze_check.h"
+#include "abbe/runtime/freeze_uncertainty.h"
 #include "abbe/runtime/frozen_functions.h"
 #include "abbe/runtime/frozen_layout.h"
 
@@ -134,6 +135,21 @@ void write_functions(const FrozenFunctions& functions, Writer& out) {
   }
 }
 
+void write_uncertainty(const UncertaintyLattice& lattice, Writer& out) {
+  out.value(static_cast<double>(lattice.dimensions.size()));
+  out.value(lattice.largest);
+  out.value(lattice.mean);
+  out.value(lattice.interpolation);
+  for (const FrozenUncertainty::Dimension& d : lattice.dimensions) {
+    out.value(static_cast<double>(d.axis));
+    out.value(static_cast<double>(d.nodes));
+    out.value(d.from);
+    out.value(d.to);
+    out.flag(d.is_periodic);
+  }
+  for (const double value : lattice.values) out.value(value);
+}
+
 template <typename T>
 void put(std::vector<unsigned char>& bytes, std::size_t place, const T& value) {
   std::memcpy(bytes.data() + place, &value, sizeof value);
@@ -164,6 +180,11 @@ std::string problem_of(const Machine& machine, const ErrorSet& errors, const Fre
   if (!problems.empty()) return problems.front().text();
   if (machine.axes.size() > ABBE_RUNTIME_AXES) return "more than 16 axes";
   if (errors.composition.first_order) return "the errors are composed to first order only, to reproduce a paper";
+  const auto parameters = static_cast<Eigen::Index>(errors.parameter_count());
+  if (options.covariance.rows() != 0 &&
+      (options.covariance.rows() != parameters || options.covariance.cols() != parameters)) {
+    return "the covariance is not that of the parameters of the errors";
+  }
   if (!(options.tool_length_min <= options.tool_length_max)) return "the range of tool lengths is empty";
   return {};
 }
@@ -181,6 +202,11 @@ FrozenCompensation freeze(const Machine& machine, const ErrorSet& errors, const 
   const CalibratedMachine calibrated = calibrated_machine(machine, errors);
   for (std::size_t i = 0; i < machine.axes.size(); ++i) write_axis(machine, errors, calibrated, i, out);
   for (const FrozenFunctions& group : functions) write_functions(group, out);
+  const UncertaintyLattice uncertainty = uncertainty_lattice(machine, errors, options);
+  write_uncertainty(uncertainty, out);
+  result.largest_uncertainty = uncertainty.largest;
+  result.mean_uncertainty = uncertainty.mean;
+  result.uncertainty_lattice = uncertainty.interpolation;
   std::vector<double> values = out.values();
   result.bytes = file_of(machine, options, values);
   freeze_check(machine, errors, options, result);

@@ -21,8 +21,11 @@ struct FreezeOptions {
   double largest_turn = 0.01;  ///< rad, as CorrectionOptions
   double largest_shift = 10;   ///< mm
   std::size_t poses = 4000;    ///< tried for the statement, per tool length
-  std::string source;          ///< machine and errors as text, whose checksum the file keeps
-  std::string version;         ///< of the program
+  /// Of all parameters of the errors, in their order (square of mm, rad); empty: the file states no uncertainty.
+  Eigen::MatrixXd covariance;
+  std::size_t uncertainty_nodes = 20000;  ///< at most so many poses and tools at which the file has it
+  std::string source;                     ///< machine and errors as text, whose checksum the file keeps
+  std::string version;                    ///< of the program
 };
 
 /// A frozen compensation and what was found by trying it against the full model at poses all over travel and map.
@@ -37,7 +40,9 @@ struct FrozenCompensation {
   std::vector<double> largest_joint;   ///< [axes] largest correction of each joint, mm or rad
   double accuracy = 0;                 ///< mm, actual tool at the compensated joints against where it should be
   double accuracy_turn = 0;            ///< rad
-  int worst_iterations = 0;            ///< of all calls, both directions
+  double largest_uncertainty = 0, mean_uncertainty = 0;  ///< mm, of the point's correction; 0: not stated
+  double uncertainty_lattice = 0;  ///< mm, largest difference of the file's uncertainty from the full model's
+  int worst_iterations = 0;        ///< of all calls, both directions
   std::size_t poses = 0, limited = 0, unreached = 0;  ///< tried; turn bounded; point not reached
 };
 

@@ -256,6 +256,32 @@ void read_group(Values& values, const abbe_runtime& m, FrozenGroup& group, std::
   }
 }
 
+void read_uncertainty(Values& values, abbe_runtime& m, double* room) {
+  FrozenUncertainty& u = m.uncertainty;
+  constexpr std::string_view kField = "uncertainty of the correction";
+  u.dimensions = values.whole(FrozenUncertainty::kMostDimensions, kField);
+  m.information.has_uncertainty = u.dimensions > 0 ? 1 : 0;
+  m.information.largest_uncertainty_mm = values.number(0, frozen::kLongest, kField);
+  m.information.mean_uncertainty_mm = values.number(0, frozen::kLongest, kField);
+  m.information.uncertainty_lattice_mm = values.number(0, frozen::kLongest, kField);
+  std::size_t nodes = 1;
+  for (std::size_t k = 0; values.ok() && k < u.dimensions; ++k) {
+    FrozenUncertainty::Dimension& d = u.dimension[k];
+    d.axis = values.whole(FrozenUncertainty::kToolLength, kField);
+    d.nodes = values.whole(FrozenUncertainty::kMostNodes / nodes, kField);
+    d.from = values.length(kField);
+    d.to = values.length(kField);
+    d.is_periodic = values.flag(kField);
+    values.require(d.axis < m.axes || d.axis == FrozenUncertainty::kToolLength, kField);
+    values.require(d.nodes >= 2 && d.to - d.from >= 1e-6, kField);
+    nodes *= d.nodes > 0 ? d.nodes : 1;
+  }
+  if (u.dimensions == 0 || !values.ok()) return;
+  values.require(values.left() == nodes, kField);
+  u.value = room;
+  for (std::size_t k = 0; values.ok() && k < nodes; ++k) *room++ = values.number(0, frozen::kLongest, kField);
+}
+
 void copy_text(char* to, const unsigned char* from, std::size_t size) {
   std::memset(to, 0, ABBE_RUNTIME_TEXT);
   std::memcpy(to, from, size);
@@ -321,6 +347,7 @@ FrozenFile read_frozen(const unsigned char* bytes, std::size_t size, abbe_runtim
     before = axis;
     if (m.axis[axis].groups++ == 0) m.axis[axis].first_group = g;
   }
+  if (values.ok()) read_uncertainty(values, m, room);
   values.require(values.at_end(), "number of values");
   if (!values.ok()) {
     std::free(memory);

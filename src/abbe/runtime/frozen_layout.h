@@ -75,6 +75,21 @@ enum GroupValue : std::size_t {
   kGroupValues = 8
 };
 
+// After the groups: the uncertainty of the correction.
+enum UncertaintyValue : std::size_t {
+  kDimensions = 0,     // 0: not stated, and nothing follows these values
+  kUncertainties = 1,  // largest, mean, largest difference of the lattice; mm
+  kUncertaintyValues = 4
+};
+// Values of a dimension; behind the last one the uncertainties in the nodes, the last dimension fastest.
+enum DimensionValue : std::size_t {
+  kDimensionAxis = 0,  // 16: tool length
+  kNodes = 1,
+  kEnds = 2,
+  kPeriodic = 4,
+  kDimensionValues = 5
+};
+
 inline constexpr std::size_t kMostFunctions = 64;    // of a Chebyshev or Fourier group
 inline constexpr std::size_t kMostIntervals = 4096;  // of a piecewise group
 inline constexpr std::size_t kMostGroups = 96;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "abbe/runtime/abbe_runtime.h"
+#include "abbe/runtime/frozen_uncertainty.h"
 
 namespace abbe {
 
@@ -91,5 +92,6 @@ struct abbe_runtime {
   abbe::Triple world_zero{};          ///< of the world in the workpiece frame
   abbe::Turned workpiece_from_bed{};  ///< with all axes at zero
   abbe::Triple workpiece_from_bed_shift{};
+  abbe::FrozenUncertainty uncertainty;
   abbe_runtime_information information{};
 };

@@ -1,0 +1,155 @@
+#include "abbe/runtime/freeze_uncertainty.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "abbe/errors/actual_pose.h"
+#include "abbe/errors/random_stream.h"
+#include "abbe/geometry/rotation.h"
+
+namespace abbe {
+namespace {
+
+using Dimension = FrozenUncertainty::Dimension;
+
+/// From end to end of travel and of where the errors are known.
+Dimension dimension_of(const Machine& machine, const ErrorSet& errors, std::size_t axis) {
+  const Axis& a = machine.axes[axis];
+  Dimension d;
+  d.axis = axis;
+  if (a.endless) {
+    d.from = -std::numbers::pi;
+    d.to = std::numbers::pi;
+    d.is_periodic = true;
+  } else {
+    double from = a.travel_min, to = a.travel_max;
+    for (const ErrorMotion& motion : errors.motions) {
+      const Basis& basis = motion.basis;
+      if (motion.axis != axis || (basis.covers(basis.from - 1e5) && basis.covers(basis.to + 1e5))) continue;
+      from = std::max(from, basis.from);
+      to = std::min(to, basis.to);
+    }
+    d.from = from <= to ? from : a.travel_min;
+    d.to = from <= to ? to : a.travel_max;
+  }
+  const bool turns_far = a.kind == AxisKind::rotary && d.to - d.from > 3.5;
+  d.nodes = turns_far ? 9 : 5;
+  return d;
+}
+
+class PointUncertainty {
+ public:
+  PointUncertainty(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options)
+      : machine_(machine), errors_(errors), covariance_(options.covariance) {
+    machine_.tool_offset.setZero();
+  }
+
+  /// For several tools along the tool direction at one pose.
+  void at(const std::vector<double>& position, const std::vector<double>& lengths, std::vector<double>& result) {
+    tool_deviation(machine_, errors_, position, deviation_, &by_parameters_);
+    const Eigen::Matrix<double, 6, 6> spread = by_parameters_ * covariance_ * by_parameters_.transpose();
+    const Eigen::Vector3d tool = nominal_workpiece_from_tool(machine_, position).rotation * machine_.tool_direction;
+    for (const double length : lengths) {
+      // The point lies against the tool direction from the gauge point; small turns move it by their cross product.
+      Eigen::Matrix<double, 3, 6> moves;
+      moves << Eigen::Matrix3d::Identity(), skew(length * tool);
+      const Eigen::Matrix3d point = moves * spread * moves.transpose();
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(point, Eigen::EigenvaluesOnly);
+      result.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[2])));
+    }
+  }
+
+ private:
+  Machine machine_;
+  const ErrorSet& errors_;
+  const Eigen::MatrixXd& covariance_;
+  Deviation deviation_;
+  Eigen::MatrixXd by_parameters_;
+};
+
+double node(const Dimension& d, std::size_t i) {
+  return d.from + (d.to - d.from) * static_cast<double>(i) / static_cast<double>(d.nodes - 1);
+}
+
+void choose_dimensions(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
+                       std::vector<double>& middle, std::vector<Dimension>& dimensions) {
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const Dimension d = dimension_of(machine, errors, i);
+    middle[i] = 0.5 * (d.from + d.to);
+    if (d.to - d.from > 1e-6) dimensions.push_back(d);
+  }
+  while (dimensions.size() + 1 > FrozenUncertainty::kMostDimensions) dimensions.erase(dimensions.begin());
+  if (options.tool_length_max - options.tool_length_min > 1e-6 || dimensions.empty()) {
+    const double to = std::max(options.tool_length_max, options.tool_length_min + 1);
+    dimensions.push_back({FrozenUncertainty::kToolLength, 3, options.tool_length_min, to, false});
+  }
+  const auto nodes = [&] {
+    std::size_t product = 1;
+    for (const Dimension& d : dimensions) product *= d.nodes;
+    return product;
+  };
+  while (nodes() > options.uncertainty_nodes) {
+    const auto largest = std::max_element(dimensions.begin(), dimensions.end(),
+                                          [](const Dimension& a, const Dimension& b) { return a.nodes < b.nodes; });
+    if (largest->nodes == 2) return;
+    --largest->nodes;
+  }
+}
+
+}  // namespace
+
+UncertaintyLattice uncertainty_lattice(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options) {
+  UncertaintyLattice lattice;
+  if (options.covariance.rows() == 0 || options.covariance.isZero(0)) return lattice;
+  std::vector<double> position(machine.axes.size());
+  std::vector<Dimension>& dimensions = lattice.dimensions;
+  choose_dimensions(machine, errors, options, position, dimensions);
+  const std::vector<double> middle = position;
+  PointUncertainty uncertainty(machine, errors, options);
+
+  const bool has_lengths = dimensions.back().axis == FrozenUncertainty::kToolLength;
+  std::vector<double> lengths;
+  if (has_lengths) {
+    for (std::size_t i = 0; i < dimensions.back().nodes; ++i) lengths.push_back(node(dimensions.back(), i));
+  } else {
+    lengths.push_back(options.tool_length_min);
+  }
+  const std::size_t turning = dimensions.size() - (has_lengths ? 1 : 0);
+  std::vector<std::size_t> index(turning, 0);
+  for (bool more = true; more;) {
+    for (std::size_t k = 0; k < turning; ++k) position[dimensions[k].axis] = node(dimensions[k], index[k]);
+    uncertainty.at(position, lengths, lattice.values);
+    more = false;
+    for (std::size_t k = turning; k-- > 0 && !more;) {
+      more = ++index[k] < dimensions[k].nodes;
+      if (!more) index[k] = 0;
+    }
+  }
+
+  FrozenUncertainty frozen;
+  frozen.dimensions = dimensions.size();
+  std::copy(dimensions.begin(), dimensions.end(), frozen.dimension.begin());
+  frozen.value = lattice.values.data();
+  for (const double value : lattice.values) lattice.largest = std::max(lattice.largest, value);
+  constexpr int kTried = 500;
+  RandomStream random(11);
+  position = middle;
+  for (int i = 0; i < kTried; ++i) {
+    for (std::size_t k = 0; k < turning; ++k) {
+      position[dimensions[k].axis] = random.uniform(dimensions[k].from, dimensions[k].to);
+    }
+    const double length = has_lengths ? random.uniform(options.tool_length_min, options.tool_length_max) : lengths[0];
+    std::vector<double> there;
+    uncertainty.at(position, {length}, there);
+    double between = 0;
+    frozen.at(position.data(), length, between);
+    lattice.mean += there[0] / kTried;
+    lattice.largest = std::max(lattice.largest, there[0]);
+    lattice.interpolation = std::max(lattice.interpolation, std::abs(between - there[0]));
+  }
+  return lattice;
+}
+
+}  // namespace abbe

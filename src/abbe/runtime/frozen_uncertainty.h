@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "abbe/runtime/abbe_runtime.h"
+
+namespace abbe {
+
+/// Standard uncertainty of the correction of the functional point, on a lattice over axes and tool lengths.
+struct FrozenUncertainty {
+  static constexpr std::size_t kMostDimensions = 8;
+  static constexpr std::size_t kMostNodes = 131072;  ///< of all dimensions together
+
+  /// Nodes evenly spaced from `from` to `to`.
+  struct Dimension {
+    std::size_t axis = 0;      ///< of the machine; kToolLength: none
+    std::size_t nodes = 2;     ///< two or more
+    double from = 0, to = 0;   ///< mm or rad
+    bool is_periodic = false;  ///< endless axes: one turn
+  };
+  static constexpr std::size_t kToolLength = ABBE_RUNTIME_AXES;
+
+  std::size_t dimensions = 0;  ///< 0: the errors had no uncertainties
+  std::array<Dimension, kMostDimensions> dimension;
+  const double* value = nullptr;  ///< mm; the last dimension is the fastest
+
+  /// Linear between the nodes; beyond the ends as at the end.
+  /// @param joints  [axes] mm, rad; finite and not beyond 1e6
+  /// @returns ABBE_OK, or with ABBE_OUTSIDE_MAP, ABBE_OUTSIDE_TOOL where it is beyond
+  int at(const double* joints, double tool_length, double& uncertainty) const noexcept;
+};
+
+}  // namespace abbe
