@@ -135,7 +135,7 @@ TEST(RuntimeFile, ContentThatCannotBeIsRefusedThoughTheChecksumIsRight) {
                                Change{frozen::kTool, not_a_number, "tool"},
                                Change{frozen::kToolDirection, 0.5, "tool direction"},
                                Change{frozen::kRotation, -1, "workpiece frame"},
-                               Change{frozen::kGroups, 3, "number of values"},
+                               Change{frozen::kGroups, 3, "uncertainty of the correction"},
                                Change{frozen::kGroups, 60, "group"},
                                Change{kAxis + frozen::kLetter, 33, "letter of an axis"},
                                Change{kAxis + frozen::kDirection, 0.1, "direction of an axis"},
