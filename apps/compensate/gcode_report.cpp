@@ -171,6 +171,13 @@ void print_gcode_report(const GcodeOptions& options, const Machine& machine, con
     fmt::print("{}: {} pose{}, {}: {}\n", correction_status_text(named.status), count.count,
                count.count == 1 ? "" : "s", lines_text(count), named.text);
   }
+  if (report.held_at_travel.count > 0) {
+    fmt::print(
+        "rapid moves kept at the end of a travel, where the correction points outwards: {} pose{}, {}; the point "
+        "misses its place by at most {:.3f} um, in line {}\n",
+        report.held_at_travel.count, report.held_at_travel.count == 1 ? "" : "s", lines_text(report.held_at_travel),
+        1e3 * report.largest_held.value, report.largest_held.line);
+  }
   if (report.not_proven.count > 0) {
     fmt::print("not proven to stay within the tolerance: {} move{}, {}\n", report.not_proven.count,
                report.not_proven.count == 1 ? "" : "s", lines_text(report.not_proven));
@@ -243,6 +250,8 @@ nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& ma
   for (std::size_t i = 1; i < kCorrectionStatuses; ++i) {
     json["poses"][correction_status_text(static_cast<CorrectionStatus>(i))] = count_json(report.status[i]);
   }
+  json["held_at_travel"] = count_json(report.held_at_travel);
+  json["held_at_travel"]["largest_left_um"] = 1e3 * report.largest_held.value;
   json["not_proven"] = count_json(report.not_proven);
   json["above_limit"] = count_json(report.above_limit);
   json["tool_length_changes"] = count_json(report.tool_changes);

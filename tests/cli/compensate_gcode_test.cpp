@@ -307,6 +307,36 @@ TEST_F(CompensateGcode, PosesThatCannotBeCorrectedAreRefusedUnlessAllowed) {
   EXPECT_EQ(abbe(arguments).exit_code, ExitCode::bad_input);
 }
 
+TEST_F(CompensateGcode, RapidMovesAreKeptAtTheEndOfTheTravel) {
+  // At one of both ends of Z the correction points outwards.
+  write("ends.ngc", "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nG0 Z0\nX10\nG0 Z-510\nG0 Z-5\nM2\n");
+  const CommandResult result =
+      abbe({"compensate", "gcode", "ends.ngc", "--machine", machine, "--errors", errors, "-o", "out.ngc", "--json"});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_GE(json.at("held_at_travel").at("count"), 1);
+  EXPECT_GT(json.at("held_at_travel").at("largest_left_um"), 0.1);
+  EXPECT_LT(json.at("held_at_travel").at("largest_left_um"), json.at("largest_correction").at("value_um"));
+  EXPECT_EQ(json.at("poses").at("outside travel").at("count"), 0);
+  double least = 0, largest = -510;
+  for (const ProgramMove& move : moves_of(folder.path() / "out.ngc")) {
+    least = std::min(least, move.end[2]);
+    largest = std::max(largest, move.end[2]);
+  }
+  EXPECT_GE(least, -510);
+  EXPECT_LE(largest, 0);
+  EXPECT_TRUE(least == -510 || largest == 0);
+  // Where the program itself leaves the travel it is refused, and so is work that begins where the tool is not.
+  write("beyond.ngc", "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nG0 Z1\nM2\n");
+  EXPECT_EQ(
+      abbe({"compensate", "gcode", "beyond.ngc", "--machine", machine, "--errors", errors, "-o", "b.ngc"}).exit_code,
+      ExitCode::computation_says_no);
+  write("work.ngc", "G21 G90\nG0 X0 Y0 Z0 A-20 C0\nG1 Z-5 F100\nG0 Z-510\nG1 Z-505\nM2\n");
+  EXPECT_EQ(
+      abbe({"compensate", "gcode", "work.ngc", "--machine", machine, "--errors", errors, "-o", "w.ngc"}).exit_code,
+      ExitCode::computation_says_no);
+}
+
 TEST_F(CompensateGcode, InputsAreNeverWritten) {
   write("p.ngc", "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nM2\n");
   const std::vector<std::string> base = {"compensate", "gcode", "p.ngc", "--machine", machine, "--errors", errors};

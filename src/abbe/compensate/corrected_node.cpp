@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace abbe {
 
@@ -45,7 +46,7 @@ void NodeCorrection::correct_block(ProgramCoordinates coordinates, const Tool& t
   std::array<const double*, kMaxAxes> commands, moved;
   std::array<double*, kMaxAxes> corrected;
   std::array<CorrectionStatus, ChainPlan::kBlockSize> status;
-  Lanes orientation;
+  Lanes point_left, orientation;
   for (std::size_t i = 0; i < n; ++i) {
     commands[i] = in[i].data();
     moved[i] = corrected[i] = out[i].data();
@@ -56,7 +57,7 @@ void NodeCorrection::correct_block(ProgramCoordinates coordinates, const Tool& t
     for (std::size_t i = 0; i < n; ++i) in[i][k] = node.position[i];
   }
   tool.inverse->correct({{commands.data(), n}, count},
-                        {{corrected.data(), n}, status.data(), nullptr, orientation.data()});
+                        {{corrected.data(), n}, status.data(), point_left.data(), orientation.data()});
 
   std::array<Lanes, 3> start, before, after;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -70,6 +71,7 @@ void NodeCorrection::correct_block(ProgramCoordinates coordinates, const Tool& t
   for (std::size_t k = 0; k < count; ++k) {
     CorrectedNode& node = nodes[k];
     node.status = status[k];
+    node.position_left = point_left[k];
     node.orientation_left = orientation[k];
     for (std::size_t i = 0; i < n; ++i) node.corrected_position[i] = out[i][k];
     for (std::size_t i = 0; i < 3; ++i) node.shift[i] = after[i][k] - before[i][k];
@@ -96,7 +98,10 @@ CorrectedNode NodeCorrection::offset(ProgramCoordinates coordinates, std::size_t
     double& position = result.corrected_position[i];
     position += added[i];
     if (axis.endless || (position >= axis.travel_min && position <= axis.travel_max)) continue;
+    const double wanted = position;
     position = std::clamp(position, axis.travel_min, axis.travel_max);
+    result.position_left +=
+        axis.kind == AxisKind::linear ? std::abs(position - wanted) : std::numeric_limits<double>::quiet_NaN();
     if (node.point_reached()) result.status = CorrectionStatus::outside_travel;
   }
   if (!any) return result;

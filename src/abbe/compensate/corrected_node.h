@@ -23,6 +23,7 @@ struct CorrectedNode {
   std::array<double, kMaxAxes> position{};            ///< axis commands of `words`, chain order; mm, rad
   std::array<double, kMaxAxes> corrected_position{};  ///< of `corrected`
   std::array<double, 3> shift{};  ///< of the nominal functional point by the correction, workpiece frame, mm
+  double position_left = 0;       ///< mm, actual point from where it shall be; NaN: not known
   double orientation_left = 0;    ///< rad
   CorrectionStatus status = CorrectionStatus::not_run;
 

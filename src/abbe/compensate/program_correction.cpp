@@ -150,13 +150,30 @@ struct ProgramCorrection::Implementation {
     }
   }
 
+  /// A rapid move to the end of a travel, where the correction points outwards: it does not cut, and the axes stay.
+  bool is_held(const ProgramMove& move, const CorrectedNode& node) const {
+    if (move.kind != MoveKind::rapid || node.status != CorrectionStatus::outside_travel) return false;
+    constexpr double kSpare = 1e-9;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      const Axis& axis = machine.axes[i];
+      const double position = node.position[i];
+      if (!axis.endless && (position < axis.travel_min - kSpare || position > axis.travel_max + kSpare)) return false;
+    }
+    return std::isfinite(node.position_left);
+  }
+
   void state(const ProgramMove& move, const CorrectedNode& node, ProgramReport& report,
              const AxisApproach& approach = {}) const {
     const auto place = [&](double value) {
       return ProgramPlace{value,       move.line, node.position, node.corrected_position, move.tool_length,
                           node.status, approach};
     };
-    report.status[static_cast<std::size_t>(node.status)].add(move.line);
+    if (is_held(move, node)) {
+      report.held_at_travel.add(move.line);
+      report.largest_held.take(place(node.position_left));
+    } else {
+      report.status[static_cast<std::size_t>(node.status)].add(move.line);
+    }
     const double shift =
         std::sqrt(node.shift[0] * node.shift[0] + node.shift[1] * node.shift[1] + node.shift[2] * node.shift[2]);
     if (report.largest_shift.line == 0 || shift > report.largest_shift.value) report.largest_shift.take(place(shift));

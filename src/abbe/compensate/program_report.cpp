@@ -35,6 +35,8 @@ void ProgramReport::add(const ProgramReport& later) {
   for (std::size_t i = 0; i < by_axis.size(); ++i) by_axis[i].take(later.by_axis[i]);
   largest_orientation_left.take(later.largest_orientation_left);
   for (std::size_t i = 0; i < status.size(); ++i) status[i].add(later.status[i]);
+  held_at_travel.add(later.held_at_travel);
+  largest_held.take(later.largest_held);
   not_proven.add(later.not_proven);
   tool_changes.add(later.tool_changes);
   inverse_time.add(later.inverse_time);

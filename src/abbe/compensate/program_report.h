@@ -44,6 +44,10 @@ struct ProgramReport {
   std::array<ProgramPlace, kMaxAxes> by_axis;  ///< |corrected - programmed|, mm or rad
   ProgramPlace largest_orientation_left;       ///< rad, of the tool direction, where the machine cannot turn it
   std::array<StatusCount, kCorrectionStatuses> status;  ///< by CorrectionStatus, of the ends of moves and pieces
+  /// Ends of rapid moves to a place within the travel whose correction would lead out of it and was kept at its end:
+  /// not among `status`.
+  StatusCount held_at_travel;
+  ProgramPlace largest_held;                   ///< mm, by which the actual point misses the place there
   StatusCount not_proven;                      ///< moves whose path could not be shown to stay within the tolerance
   StatusCount tool_changes;                    ///< moves that begin where the machine stood with another tool length
   StatusCount inverse_time;                    ///< moves per minute with pieces whose duration needs inverse time
