@@ -8,6 +8,7 @@
 #include "abbe/compensate/line_tables.h"
 #include "abbe/formats/table_linuxcnc.h"
 #include "abbe/formats/table_siemens.h"
+#include "compensate/reversal_words.h"
 
 namespace abbe {
 namespace {
@@ -39,17 +40,31 @@ TableSummary summary_of(const Machine& machine, const AxisTable& table, double i
   summary.interpolation_error = interpolation_error;
   summary.within = within;
   for (std::size_t k = 0; k < table.positions.size(); ++k) {
-    if (std::abs(table.forward[k]) < summary.largest) continue;
-    summary.largest = std::abs(table.forward[k]);
+    const double larger = std::max(std::abs(table.forward[k]), std::abs(table.reverse[k]));
+    if (larger < summary.largest) continue;
+    summary.largest = larger;
     summary.largest_at = table.positions[k];
   }
-  for (const std::size_t k : some_of(table.positions.size())) {
+  const bool directions = table.forward != table.reverse;
+  const std::vector<std::size_t> chosen = some_of(table.positions.size());
+  for (const std::size_t k : chosen) {
     summary.positions.push_back(table.positions[k]);
     summary.corrections.push_back(table.forward[k]);
   }
-  summary.values = [&machine, reference, cross, input = table.input, output = table.output,
+  for (const std::size_t k : chosen) {
+    if (directions) summary.corrections.push_back(table.reverse[k]);
+  }
+  summary.values = [&machine, reference, cross, directions, input = table.input, output = table.output,
                     positions = summary.positions](const ErrorSet& errors) {
-    return line_correction(machine, errors, reference, input, output, positions, cross);
+    std::vector<double> values = line_correction(machine, errors, reference, input, output, positions, cross);
+    if (!directions) return values;
+    const std::size_t count = values.size();
+    const double half = 0.5 * reversal_of(errors, input);
+    for (std::size_t k = 0; k < count; ++k) {
+      values.push_back(values[k] + half);
+      values[k] -= half;
+    }
+    return values;
   };
   return summary;
 }
@@ -60,6 +75,7 @@ LineTableOptions line_options(const TableRequest& request, const TableFormat& fo
   LineTableOptions options;
   options.reference = request.reference;
   options.axes = request.axes;
+  options.directions = format.directions;
   options.tolerance_mm = request.tolerance_mm;
   options.tolerance_rad = request.tolerance_rad;
   options.most_nodes = request.most_nodes > 0 ? std::min(request.most_nodes, format.most_nodes) : format.most_nodes;
@@ -167,6 +183,11 @@ TableFormat linuxcnc_format() {
       "a joint is corrected by its own position only, so errors across it are not, and an angle times a lever only on "
       "the line "
       "through the reference pose";
+  format.directions = true;
+  format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
+    return fmt::format("in the forward and reverse columns of joint {}; without COMP_FILE its BACKLASH would be {}",
+                       axis, lost_motion_words(lost_motion, rotary));
+  };
   format.default_name = [](std::size_t index, const Axis& /*axis*/) { return fmt::format("{}", index); };
   format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
     return make_linuxcnc(format, machine, errors, request);
@@ -188,6 +209,10 @@ TableFormat siemens_cec_format() {
   format.cannot =
       "tables add up, each of one axis's position: an angle times a lever that another axis changes is right "
       "only on the lines through the reference pose, and orientation is not corrected";
+  format.directions = true;
+  format.backlash = [](const std::string& axis, double /*lost_motion*/, bool /*rotary*/) {
+    return fmt::format("in tables of direction 1 and -1; MD32450 $MA_BACKLASH of {} stays as it was", axis);
+  };
   format.default_name = [](std::size_t index, const Axis& /*axis*/) { return fmt::format("AX{}", index + 1); };
   format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
     return make_siemens(true, format, machine, errors, request);
@@ -208,6 +233,9 @@ TableFormat siemens_eec_format() {
       "an axis is corrected by its own position only, so errors across it are not, and an angle times a lever only on "
       "the "
       "line through the reference pose";
+  format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
+    return fmt::format("MD32450 $MA_BACKLASH of {} takes it: {}", axis, lost_motion_words(lost_motion, rotary));
+  };
   format.default_name = [](std::size_t /*index*/, const Axis& axis) {
     return axis.name.size() == 1 ? axis.name + "1" : axis.name;
   };

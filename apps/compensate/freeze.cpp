@@ -107,8 +107,8 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
                frozen.unreached, frozen.poses);
 }
 
-void print_json(const FreezeArguments& arguments, const Machine& machine, const FrozenCompensation& frozen,
-                const std::vector<std::string>& left_out) {
+void print_json(const FreezeArguments& arguments, const Machine& machine, const ErrorSet& errors,
+                const FrozenCompensation& frozen, const std::vector<std::string>& left_out) {
   nlohmann::ordered_json json;
   json["machine"] = machine.name;
   json["errors"] = arguments.errors;
@@ -138,6 +138,12 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
     json["standard_uncertainty_in_file_to_um"] = 1e3 * frozen.uncertainty_lattice;
   }
   json["left_out"] = left_out;
+  json["backlash"] = nlohmann::ordered_json::array();
+  for (const JointBacklash& one : linuxcnc_backlash(machine, errors)) {
+    json["backlash"].push_back({{"axis", one.axis},
+                                {"setting", one.setting},
+                                {one.rotary ? "lost_motion_deg" : "lost_motion_mm", one.lost_motion}});
+  }
   json["worst_iterations"] = frozen.worst_iterations;
   json["turn_bounded"] = frozen.limited;
   json["point_not_reached"] = frozen.unreached;
@@ -150,7 +156,6 @@ int run_freeze(const FreezeArguments& arguments) {
   if (!(arguments.leave_out_factor >= 0 && arguments.leave_out_factor <= 1000)) {
     throw InputError({.field = "--leave-out-below-uncertainty"}, "out of range", "0 to 1000 standard uncertainties");
   }
-  warn_of_reversals(machine, errors.errors);
   std::vector<std::string> left_out;
   if (arguments.leave_out_factor > 0) {
     left_out = leave_out_uncertain(machine, errors.errors, parameter_covariance(errors.errors, errors.covariance),
@@ -173,9 +178,10 @@ int run_freeze(const FreezeArguments& arguments) {
   }
   write_file_atomically(arguments.output, {reinterpret_cast<const char*>(frozen.bytes.data()), frozen.bytes.size()});
   if (arguments.json) {
-    print_json(arguments, machine, frozen, left_out);
+    print_json(arguments, machine, errors.errors, frozen, left_out);
   } else {
     print_result(arguments, machine, frozen, left_out);
+    print_linuxcnc_backlash(machine, errors.errors);
   }
   return kDone;
 }
@@ -189,7 +195,8 @@ void add_compensate_freeze(CLI::App& compensate, CommandLine& line) {
   command->footer(
       "The file is for the C interface abbe/runtime/abbe_runtime.h and for the LinuxCNC module (docs/runtime.md). It "
       "is\n"
-      "tried at thousands of poses before it is written; what is said here was found there.\n\n"
+      "tried at thousands of poses before it is written; what is said here was found there. Reversal values are not\n"
+      "in it: the lines for LinuxCNC's own BACKLASH are printed.\n\n"
       "Example:\n"
       "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml examples/trunnion/table.errors.toml -o "
       "mill.abbec\n"

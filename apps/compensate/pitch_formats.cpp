@@ -8,6 +8,7 @@
 #include "abbe/formats/table_fanuc.h"
 #include "abbe/formats/table_heidenhain.h"
 #include "compensate/axis_table_formats.h"
+#include "compensate/reversal_words.h"
 
 namespace abbe {
 namespace {
@@ -113,6 +114,11 @@ TableFormat heidenhain_format() {
       "head and end of the text (BEGIN, NR, [END]); the sign of the values (--negate); that the end values hold "
       "outside; "
       "BACKLASH is not written";
+  format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
+    return fmt::format(
+        "the backlash compensation of {} takes it (column BACKLASH or its parameter; sign not verified): {}", axis,
+        lost_motion_words(lost_motion, rotary));
+  };
   format.axis_names = "axis key of CfgAxes/axisList";
   format.several_files = true;
   format.most_nodes = kHeidenhainPoints;
@@ -135,6 +141,10 @@ TableFormat fanuc_pitch_format() {
   format.unverified =
       "the numbers of data blocks (10000 + point) and of the parameters for a given control, the sign (--negate), that "
       "the control interpolates between points, largest step and number of points";
+  format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
+    return fmt::format("parameter 1851 of axis {} takes it, in detection units (sign not verified): {}", axis,
+                       lost_motion_words(lost_motion, rotary));
+  };
   format.axis_names = "number of the controlled axis";
   format.most_nodes = kFanucPoints;
   format.cannot =

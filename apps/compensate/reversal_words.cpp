@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <string>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string_view>
 
 namespace abbe {
 
@@ -11,18 +14,51 @@ std::string reversal_size(const Machine& machine, std::size_t axis, double value
   return fmt::format("{:.4g} {}", (rotary ? 1e6 : 1e3) * value, rotary ? "urad" : "um");
 }
 
-void warn_of_reversals(const Machine& machine, const ErrorSet& errors) {
-  std::string words;
-  for (const Reversal& reversal : errors.reversals) {
-    if (reversal.value == 0) continue;
-    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", machine.axes[reversal.axis].name,
-                         reversal_size(machine, reversal.axis, reversal.value));
+std::string number_in_units(double value, bool rotary) {
+  return rotary ? fmt::format("{:.7f}", value * 180 / std::numbers::pi) : fmt::format("{:.6f}", value);
+}
+
+std::string lost_motion_words(double lost_motion, bool rotary) {
+  return fmt::format("{} {} {} than when the errors were measured", number_in_units(std::abs(lost_motion), rotary),
+                     rotary ? "deg" : "mm", lost_motion < 0 ? "less" : "more");
+}
+
+std::vector<JointBacklash> linuxcnc_backlash(const Machine& machine, const ErrorSet& errors) {
+  std::vector<std::size_t> order;
+  for (const char letter : std::string_view("XYZABCUVW")) {
+    const std::size_t axis = machine.find_axis(std::string(1, letter));
+    if (axis != Machine::npos) order.push_back(axis);
   }
-  if (words.empty()) return;
-  fmt::print(stderr,
-             "abbe: reversal values are not compensated, corrections are the means of both directions of approach: "
-             "{}; a control has a backlash parameter for them\n",
-             words);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    if (std::find(order.begin(), order.end(), i) == order.end()) order.push_back(i);
+  }
+  std::vector<JointBacklash> all;
+  for (std::size_t joint = 0; joint < order.size(); ++joint) {
+    for (const Reversal& reversal : errors.reversals) {
+      if (reversal.axis != order[joint] || reversal.value == 0) continue;
+      const Axis& axis = machine.axes[reversal.axis];
+      const bool rotary = axis.kind == AxisKind::rotary;
+      all.push_back({axis.name, fmt::format("[JOINT_{}]BACKLASH", joint),
+                     -reversal.value * (rotary ? 180 / std::numbers::pi : 1), rotary});
+    }
+  }
+  return all;
+}
+
+void print_linuxcnc_backlash(const Machine& machine, const ErrorSet& errors) {
+  const std::vector<JointBacklash> all = linuxcnc_backlash(machine, errors);
+  if (all.empty()) return;
+  fmt::print("  reversal values are not in the file, kinematics do not know directions; in LinuxCNC's ini file:\n");
+  for (const JointBacklash& one : all) {
+    const char* const unit = one.rotary ? "deg" : "mm";
+    if (one.lost_motion > 0) {
+      fmt::print("    {} = {:.7f}    ({}, {}; more than that by what was set when the errors were measured)\n",
+                 one.setting, one.lost_motion, one.axis, unit);
+    } else {
+      fmt::print("    {}    {:.7f} {} less than when the errors were measured ({}: no lost motion)\n", one.setting,
+                 -one.lost_motion, unit, one.axis);
+    }
+  }
 }
 
 }  // namespace abbe

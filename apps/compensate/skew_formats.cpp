@@ -9,6 +9,7 @@
 #include "abbe/compensate/skew_factors.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/table_skew.h"
+#include "compensate/reversal_words.h"
 
 namespace abbe {
 namespace {
@@ -74,6 +75,12 @@ TableFormat skew_format(bool klipper) {
   format.cannot =
       "three angles and nothing else: no scale, no straightness, no error motion; what is left of a "
       "constant is a shift of the workpiece's zero";
+  if (!klipper) {
+    format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
+      return fmt::format("M425 {}... F1 of a firmware with BACKLASH_COMPENSATION takes it: {}", axis,
+                         lost_motion_words(lost_motion, rotary));
+    };
+  }
   format.make = [klipper](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
     return make_skew(klipper, machine, errors, request);
   };

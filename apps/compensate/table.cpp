@@ -104,6 +104,43 @@ std::vector<double> table_uncertainties(const ErrorSet& errors, const Eigen::Mat
   return largest;
 }
 
+/// Reversal values that are below a multiple of their standard uncertainty are taken for zero.
+void leave_out_reversals(const Machine& machine, const Eigen::MatrixXd& covariance, double times, ErrorSet& errors,
+                         TableReport& report) {
+  const std::size_t first = errors.parameter_count() - 3 - errors.reversals.size();
+  for (std::size_t r = 0; r < errors.reversals.size(); ++r) {
+    Reversal& reversal = errors.reversals[r];
+    const auto p = static_cast<Eigen::Index>(first + r);
+    const double uncertainty = std::sqrt(std::max(0.0, covariance(p, p)));
+    if (!(uncertainty > 0) || std::abs(reversal.value) >= times * uncertainty) continue;
+    report.left_out.push_back(fmt::format("{}: {:.2g} times its standard uncertainty",
+                                          reversal_name(machine, reversal.axis),
+                                          std::abs(reversal.value) / uncertainty));
+    reversal.value = 0;
+  }
+}
+
+/// What takes the reversal values that the tables do not carry.
+void state_reversals(const ErrorSet& errors, const TableRequest& request, TableReport& report) {
+  for (const Reversal& reversal : errors.reversals) {
+    if (reversal.value == 0) continue;
+    const Axis& axis = report.machine->axes[reversal.axis];
+    const bool rotary = axis.kind == AxisKind::rotary, in_tables = report.format->directions;
+    std::string words;
+    if (in_tables && !request.axes.empty() && !request.axes[reversal.axis]) {
+      words = "no table is wanted for this axis";
+    } else if (report.format->backlash) {
+      const bool named = !report.format->axis_names.empty();
+      words = report.format->backlash(named ? table_axis(request.names, reversal.axis).name : axis.name,
+                                      -reversal.value, rotary);
+    } else {
+      words =
+          "backlash compensation of the control takes it, if it has one: " + lost_motion_words(-reversal.value, rotary);
+    }
+    report.reversals.emplace_back(reversal_name(*report.machine, reversal.axis), words);
+  }
+}
+
 std::string pose_words(const Machine& machine, const PoseList& poses, std::size_t k) {
   std::string words;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
@@ -230,16 +267,16 @@ int run_table(const TableCommand& command) {
   check_outputs(command);
   const Machine machine = read_machine(command.machine);
   const ErrorsFile file = read_errors(command.errors, machine);
-  const ErrorSet& errors = file.errors;
+  ErrorSet errors = file.errors;
   TableRequest request = request_of(command, machine, errors, format);
-  warn_of_reversals(machine, errors);
   TableReport report;
   report.format = &format;
   report.machine = &machine;
   report.poses = travel_grid(machine, errors, checked_positions(command, machine), report.grid);
 
-  ControllerTables tables = format.make(machine, errors, request);
   const Eigen::MatrixXd covariance = file.covariance.size() > 0 ? file.covariance : stated_variances(errors);
+  if (covariance.size() > 0) leave_out_reversals(machine, covariance, command.times_uncertainty, errors, report);
+  ControllerTables tables = format.make(machine, errors, request);
   if (command.times_uncertainty > 0 && covariance.size() == 0) {
     throw InputError({.file = command.errors}, "no standard uncertainties are stated",
                      "some, for --leave-out-below-uncertainty");
@@ -274,6 +311,7 @@ int run_table(const TableCommand& command) {
     report.errors = carried_errors(
         machine, errors, few, [&](const ErrorSet& alone) { return format.make(machine, alone, quick).correction; });
   }
+  state_reversals(errors, request, report);
   look_at_limits(command, tables, report);
   const bool within =
       std::all_of(tables.tables.begin(), tables.tables.end(), [](const TableSummary& table) { return table.within; });

@@ -65,7 +65,11 @@ struct TableFormat {
   std::string axis_names;  ///< what --name gives: "joint number", empty: the format names no axes
   bool several_files = false;
   std::size_t most_nodes = 10000;
-  std::string cannot;  ///< why what is not carried is not
+  std::string cannot;       ///< why what is not carried is not
+  bool directions = false;  ///< tables differ by direction: reversal values are in them
+  /// What of the control takes a lost motion (minus the reversal value) of an axis by its name there: "12 um", where
+  /// the tables do not; null: nothing is known of it.
+  std::function<std::string(const std::string& axis, double lost_motion, bool rotary)> backlash;
   std::function<std::string(std::size_t index, const Axis& axis)> default_name;
   std::function<ControllerTables(const Machine&, const ErrorSet&, const TableRequest&)> make;
 };

@@ -48,6 +48,7 @@ void print_errors(const TableReport& report) {
     fmt::print("\n");
   }
   fmt::print("  why not: {}\n", report.format->cannot);
+  for (const auto& [name, words] : report.reversals) fmt::print("  {}: {}\n", name, words);
 }
 
 void print_deviations(const char* name, const PoseDeviations& deviations) {
@@ -151,6 +152,9 @@ void print_table_json(const TableReport& report) {
     one["rms_after_um"] = in_um(error.effect_after);
     one["direction_rms_before_urad"] = in_micro(error.turn_before);
     one["direction_rms_after_urad"] = in_micro(error.turn_after);
+    for (const auto& [name, words] : report.reversals) {
+      if (name == error.name) one["control"] = words;
+    }
     json["errors"].push_back(one);
   }
   json["why_not"] = report.format->cannot;

@@ -1,5 +1,7 @@
 // `abbe compensate freeze`: the file, what is said of it, and what is refused.
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cli/command_test.h"
@@ -68,6 +70,23 @@ TEST_F(CompensateFreezeTest, BadOptionsAreNamed) {
   refused({"--largest-turn-deg", "40"}, "--largest-turn-deg");
   refused({"--leave-out-below-uncertainty", "-1"}, "--leave-out-below-uncertainty");
   EXPECT_FALSE(std::filesystem::exists(output));
+}
+
+TEST_F(CompensateFreezeTest, ReversalValuesAreLinesForTheControlsOwnBacklash) {
+  std::ifstream file(errors);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::ofstream(folder.path() / "r.errors.toml") << text << "\n[[reversal]]\naxis = \"Y\"\nvalue_um = -12\n"
+                                                 << "[[reversal]]\naxis = \"C\"\nvalue_urad = 35\n";
+  const CommandResult result = abbe({"compensate", "freeze", machine, "r.errors.toml", "-o", output});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_NE(result.out.find("[JOINT_1]BACKLASH = 0.0120000    (Y, mm"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("[JOINT_4]BACKLASH    0.0020054 deg less"), std::string::npos) << result.out;
+  const nlohmann::json json =
+      nlohmann::json::parse(abbe({"compensate", "freeze", machine, "r.errors.toml", "-o", output, "--json"}).out);
+  ASSERT_EQ(json["backlash"].size(), 2U);
+  EXPECT_EQ(json["backlash"][0]["axis"], "Y");
+  EXPECT_NEAR(json["backlash"][0]["lost_motion_mm"].get<double>(), 0.012, 1e-12);
 }
 
 }  // namespace

@@ -176,5 +176,59 @@ TEST_F(CompensateTable, InputsAreNeverWrittenOverAndWrongOptionsAreNamed) {
   EXPECT_THAT(table("linuxcnc", {"-o", "c", "--axis", "Q"}).err, HasSubstr("no such axis"));
 }
 
+TEST_F(CompensateTable, ReversalValuesAreInTablesOfBothDirectionsOrNamedWithWhatTakesThem) {
+  std::ifstream file(errors);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::ofstream(folder.path() / "r.errors.toml") << text << R"(
+[[reversal]]
+axis = "X"
+value_um = -12
+standard_uncertainty_um = 0.5
+[[reversal]]
+axis = "Z"
+value_um = -1
+standard_uncertainty_um = 0.8
+)";
+  const auto with_play = [&](const std::string& format, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"compensate", "table", mill, "r.errors.toml", "--for", format, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = abbe(arguments);
+    EXPECT_EQ(result.err, "");
+    return json_of(result);
+  };
+  for (const std::string type : {"0", "1"}) {
+    const nlohmann::json json = with_play("linuxcnc", {"-o", "comp" + type, "--type", type});
+    EXPECT_EQ(error_named(json, "reversal_X")["carried"], "carried");
+    EXPECT_THAT(error_named(json, "reversal_X")["control"].get<std::string>(), HasSubstr("0.012000 mm more"));
+    EXPECT_NEAR(error_named(json, "reversal_X")["rms_before_um"].get<double>(), 6, 1e-6);
+    EXPECT_NEAR(error_named(json, "reversal_X")["rms_after_um"].get<double>(), 0, 2e-3);
+    std::istringstream rows(folder.read("comp" + type + "/X.comp"));
+    double nominal = 0, forward = 0, reverse = 0;
+    int points = 0;
+    for (; rows >> nominal >> forward >> reverse; ++points) {
+      // Lost motion: forward the command is further by half of it. Type 0 has actual positions.
+      EXPECT_NEAR(forward - reverse, type == "1" ? 0.012 : -0.012, 2e-7);
+    }
+    EXPECT_GE(points, 2);
+  }
+  const nlohmann::json sag = with_play("siemens-cec", {"-o", "CEC.INI"});
+  EXPECT_EQ(error_named(sag, "reversal_X")["carried"], "carried");
+  const std::string cec = folder.read("CEC.INI");
+  EXPECT_THAT(cec, HasSubstr("$AN_CEC_DIRECTION[0]=1"));
+  EXPECT_THAT(cec, HasSubstr("$AN_CEC_DIRECTION[1]=-1"));
+  const nlohmann::json encoder = with_play("siemens-eec", {"-o", "EEC.INI"});
+  EXPECT_EQ(error_named(encoder, "reversal_X")["carried"], "not carried");
+  EXPECT_THAT(error_named(encoder, "reversal_X")["control"].get<std::string>(),
+              HasSubstr("MD32450 $MA_BACKLASH of X1 takes it: 0.012000 mm more"));
+  EXPECT_GT(encoder["after"]["mean_um"].get<double>(), sag["after"]["mean_um"].get<double>() + 3);
+  // One table for both directions is the mean.
+  const CommandResult without = table("siemens-eec", {"-o", "MEAN.INI"});
+  EXPECT_EQ(without.exit_code, ExitCode::done);
+  EXPECT_EQ(folder.read("EEC.INI"), folder.read("MEAN.INI"));
+  const nlohmann::json left = with_play("linuxcnc", {"-o", "left", "--leave-out-below-uncertainty", "2"});
+  EXPECT_THAT(left["left_out"].dump(), HasSubstr("reversal_Z: 1.2 times"));
+  EXPECT_THAT(left["left_out"].dump(), Not(HasSubstr("reversal_X")));
+}
+
 }  // namespace
 }  // namespace abbe

@@ -5,8 +5,10 @@
 
 namespace abbe {
 
-double AxisTable::at(double position) const {
-  const auto value = [&](std::size_t i) { return 0.5 * (forward[i] + reverse[i]); };
+double AxisTable::at(double position, int approach) const {
+  const auto value = [&](std::size_t i) {
+    return approach > 0 ? forward[i] : approach < 0 ? reverse[i] : 0.5 * (forward[i] + reverse[i]);
+  };
   const double first = positions.front(), last = positions.back();
   if (modulo && last > first) position -= (last - first) * std::floor((position - first) / (last - first));
   if (!(position > first)) return value(0);
@@ -22,8 +24,15 @@ void AxisTableCorrection::evaluate(const PoseList& commands, PoseList& correctio
   for (const AxisTable& table : tables_) {
     const std::vector<double>& input = commands.axis[table.input];
     std::vector<double>& output = correction.axis[table.output];
-    for (std::size_t k = 0; k < input.size(); ++k) output[k] += table.at(input[k]);
+    for (std::size_t k = 0; k < input.size(); ++k) {
+      output[k] += table.at(input[k], commands.approach.empty() ? 0 : commands.approach[table.input][k]);
+    }
   }
+}
+
+bool AxisTableCorrection::knows_directions() const {
+  return std::any_of(tables_.begin(), tables_.end(),
+                     [](const AxisTable& table) { return table.forward != table.reverse; });
 }
 
 double largest_correction(const AxisTable& table) {

@@ -19,8 +19,9 @@ struct AxisTable {
   bool modulo = false;
   bool operator==(const AxisTable&) const = default;
 
-  /// Correction at a command of `input`; of both directions the mean, which is what is left when reversal is not known.
-  double at(double position) const;
+  /// Correction at a command of `input`.
+  /// @param approach  +1 or -1, the sign of its last motion; 0: not known, the mean of both directions
+  double at(double position, int approach = 0) const;
 };
 
 /// Tables of a control that adds up what they say; every one is looked up at the command, before any correction.
@@ -28,6 +29,7 @@ class AxisTableCorrection final : public CommandCorrection {
  public:
   explicit AxisTableCorrection(std::vector<AxisTable> tables) : tables_(std::move(tables)) {}
   void evaluate(const PoseList& commands, PoseList& correction) const override;
+  bool knows_directions() const override;
 
  private:
   std::vector<AxisTable> tables_;

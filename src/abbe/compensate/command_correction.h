@@ -7,7 +7,8 @@
 
 namespace abbe {
 
-/// What a control adds to the commands of its axes, as a function of the commands.
+/// What a control adds to the commands of its axes, as a function of the commands and of the direction in
+/// which they are reached.
 class CommandCorrection {
  public:
   virtual ~CommandCorrection() = default;
@@ -15,6 +16,9 @@ class CommandCorrection {
   /// @param commands    [axes][count], chain order, mm or rad
   /// @param correction  [axes][count], written: added to the command, mm or rad
   virtual void evaluate(const PoseList& commands, PoseList& correction) const = 0;
+
+  /// True if the correction is another one after another approach (PoseList::approach).
+  virtual bool knows_directions() const { return false; }
 };
 
 /// Nothing is added: the control before its tables are loaded.

@@ -44,6 +44,13 @@ double constant_of(const Machine& machine, const ErrorSet& errors, const std::ve
 
 }  // namespace
 
+double reversal_of(const ErrorSet& errors, std::size_t axis) {
+  for (const Reversal& reversal : errors.reversals) {
+    if (reversal.axis == axis) return reversal.value;
+  }
+  return 0;
+}
+
 std::vector<double> middle_of_travel(const Machine& machine, const ErrorSet& errors) {
   std::vector<double> middle;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
@@ -109,6 +116,11 @@ LineTables line_tables(const Machine& machine, const ErrorSet& errors, const Lin
         table.modulo = true;
       }
       table.reverse = table.forward;
+      if (i == line.outputs[f] && options.directions) {
+        const double half = 0.5 * reversal_of(errors, i);
+        for (double& value : table.forward) value -= half;
+        for (double& value : table.reverse) value += half;
+      }
       if (largest_correction(table) <= (rotary ? options.negligible_rad : options.negligible_mm)) continue;
       result.tables.push_back(std::move(table));
       result.interpolation_error.push_back(nodes.error[f]);

@@ -15,6 +15,7 @@ struct LineTableOptions {
   std::vector<bool> axes;         ///< [axes] whose commands are looked up; empty: all
   bool own = true;                ///< tables of an axis for itself
   bool cross = false;             ///< tables of an axis for the linear axes other than itself
+  bool directions = false;        ///< own tables differ by the axis's reversal value; else they are the mean
   double tolerance_mm = 1e-4;     ///< between straight lines and the function
   double tolerance_rad = 1e-7;
   std::size_t most_nodes = 10000;
@@ -31,6 +32,9 @@ struct LineTables {
   std::vector<bool> within;                 ///< [tables] the tolerance is kept
 };
 
+/// Reversal value of an axis, mm or rad; 0 where the errors have none.
+double reversal_of(const ErrorSet& errors, std::size_t axis);
+
 /// Middle of the known travel of every axis; mm or rad.
 std::vector<double> middle_of_travel(const Machine& machine, const ErrorSet& errors);
 
@@ -42,6 +46,7 @@ std::vector<double> middle_of_travel(const Machine& machine, const ErrorSet& err
 /// so that the sum of all tables is c to first order in the errors wherever c_j is a sum of functions of one axis each
 /// (an expansion about lines through one point, "cut-HDMR", Rabitz and Alis, J. Math. Chem. 25 (1999) 197). What
 /// depends on two axes together, such as an angle times a lever that another axis changes, is right on the lines only.
+/// With a reversal value B an own table gets -B / 2 forward and +B / 2 in reverse (errors/reversal.h).
 /// Without `cross` an own table is lowered to own_correction() at the reference: the remaining constant comes from
 /// other axes' positions and would be wrong at all others.
 LineTables line_tables(const Machine& machine, const ErrorSet& errors, const LineTableOptions& options);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "abbe/compensate/compensated_inverse.h"
+#include "abbe/compensate/line_tables.h"
 #include "abbe/compensate/point_correction.h"
 #include "abbe/errors/actual_pose.h"
 
@@ -27,6 +28,26 @@ void summarise(PoseDeviations& deviations) {
   deviations.orientation_statistics = sample_statistics(deviations.orientation);
 }
 
+/// Directions in which axes with reversal values can have come, [axes] each; 0 for all others.
+std::vector<std::vector<std::int8_t>> approaches(const Machine& machine, const ErrorSet& errors) {
+  constexpr std::size_t kMostAxes = 6;
+  std::vector<std::size_t> axes;
+  for (const Reversal& reversal : errors.reversals) {
+    if (reversal.value != 0) axes.push_back(reversal.axis);
+  }
+  std::vector<std::vector<std::int8_t>> all;
+  const bool few = axes.size() <= kMostAxes;
+  const std::size_t count = few ? std::size_t{1} << axes.size() : 2;
+  for (std::size_t pattern = 0; pattern < count; ++pattern) {
+    std::vector<std::int8_t> approach(machine.axes.size(), 0);
+    for (std::size_t r = 0; r < axes.size(); ++r) {
+      approach[axes[r]] = (few ? pattern >> r & 1 : pattern) != 0 ? std::int8_t{1} : std::int8_t{-1};
+    }
+    all.push_back(std::move(approach));
+  }
+  return all;
+}
+
 double largest_value(const Machine& machine, const ErrorSet& errors, std::size_t axis, Component component) {
   const KnownTravel travel = known_travel(machine, errors, axis);
   double largest = 0;
@@ -40,17 +61,33 @@ double largest_value(const Machine& machine, const ErrorSet& errors, std::size_t
 
 PoseDeviations deviations_with(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
                                const CommandCorrection& correction) {
-  PoseList added;
-  correction.evaluate(commands, added);
-  PoseDeviations deviations;
-  for (std::size_t k = 0; k < commands.count(); ++k) {
-    const std::vector<double> pose = commands.pose(k);
-    std::vector<double> corrected = pose;
-    for (std::size_t i = 0; i < corrected.size(); ++i) corrected[i] += added.axis[i][k];
-    add_deviation(machine, errors, pose, corrected, deviations);
+  PoseList from = commands, added;
+  PoseDeviations largest;
+  for (const std::vector<std::int8_t>& approach : approaches(machine, errors)) {
+    from.approach.clear();
+    for (const std::int8_t sign : approach) from.approach.emplace_back(commands.count(), sign);
+    if (added.axis.empty() || correction.knows_directions()) correction.evaluate(from, added);
+    PoseDeviations deviations;
+    for (std::size_t k = 0; k < commands.count(); ++k) {
+      const std::vector<double> pose = commands.pose(k);
+      std::vector<double> stands = pose;
+      for (std::size_t i = 0; i < stands.size(); ++i) {
+        // The axis stands as if half of its reversal value had been commanded besides.
+        stands[i] += added.axis[i][k] + 0.5 * approach[i] * reversal_of(errors, i);
+      }
+      add_deviation(machine, errors, pose, stands, deviations);
+    }
+    if (largest.position.empty()) {
+      largest = std::move(deviations);
+      continue;
+    }
+    for (std::size_t k = 0; k < commands.count(); ++k) {
+      largest.position[k] = std::max(largest.position[k], deviations.position[k]);
+      largest.orientation[k] = std::max(largest.orientation[k], deviations.orientation[k]);
+    }
   }
-  summarise(deviations);
-  return deviations;
+  summarise(largest);
+  return largest;
 }
 
 PoseDeviations ideal_deviations(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
@@ -107,6 +144,16 @@ std::vector<NamedErrors> errors_one_by_one(const Machine& machine, const ErrorSe
     named.size = std::abs(location.value);
     named.errors.composition = errors.composition;
     named.errors.locations.push_back(location);
+    alone.push_back(std::move(named));
+  }
+  for (const Reversal& reversal : errors.reversals) {
+    if (reversal.value == 0) continue;
+    NamedErrors named;
+    named.name = reversal_name(machine, reversal.axis);
+    named.is_angle = machine.axes[reversal.axis].kind == AxisKind::rotary;
+    named.size = std::abs(reversal.value);
+    named.errors.composition = errors.composition;
+    named.errors.reversals.push_back(reversal);
     alone.push_back(std::move(named));
   }
   for (int k = 0; k < 3; ++k) {

@@ -23,7 +23,8 @@ struct PoseDeviations {
 };
 
 /// The machine with errors, driven by a control that adds a correction to its commands: actual pose at the corrected
-/// commands against the nominal pose at the commands.
+/// commands against the nominal pose at the commands. Where axes have reversal values, the largest over all directions
+/// in which they can have come (beyond six such axes: all forward and all backward).
 PoseDeviations deviations_with(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
                                const CommandCorrection& correction);
 
@@ -35,7 +36,7 @@ PoseDeviations ideal_deviations(const Machine& machine, const ErrorSet& errors, 
 
 /// One error of the machine by its name, and how much of what it does a control's tables take away.
 struct CarriedError {
-  std::string name;          ///< "EXX", "EC0Y", "tool_X"
+  std::string name;          ///< "EXX", "EC0Y", "reversal_X", "tool_X"
   bool is_angle = false;     ///< of `size`
   double size = 0;           ///< largest value over the axis's known travel, mm or rad
   double effect_before = 0;  ///< root mean square shift of the functional point by this error alone, mm
@@ -56,7 +57,8 @@ using CorrectionMaker = std::function<std::unique_ptr<CommandCorrection>(const E
 std::vector<CarriedError> carried_errors(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
                                          const CorrectionMaker& make);
 
-/// Every error motion and location error by name with a set that contains it alone (all terms of one motion together).
+/// Every error motion, location error and reversal value by name with a set that contains it alone (all terms of one
+/// motion together).
 struct NamedErrors {
   std::string name;
   bool is_angle = false;

@@ -90,5 +90,40 @@ TEST(TableLoss, ErrorsAloneAddUpToAllErrors) {
   EXPECT_EQ(tool, errors.tool_offset_error);
 }
 
+TEST(TableLoss, TablesOfBothDirectionsCarryReversalValuesAndTheMeanDoesNot) {
+  const Machine machine = test::trunnion_mill();
+  ErrorSet errors;
+  errors.reversals = {{machine.find_axis("X"), -0.02, 0}, {machine.find_axis("C"), 40e-6, 0}};
+  const PoseList poses = poses_of(machine, 20);
+  // An independent route: every combination of directions, one by one.
+  double largest = 0;
+  for (const int x : {-1, 1}) {
+    for (const int c : {-1, 1}) {
+      std::vector<double> stands = poses.pose(7);
+      stands[machine.find_axis("X")] += -0.01 * x;
+      stands[machine.find_axis("C")] += 20e-6 * c;
+      largest = std::max(largest, (nominal_workpiece_from_tool(machine, stands).translation -
+                                   nominal_workpiece_from_tool(machine, poses.pose(7)).translation)
+                                      .norm());
+    }
+  }
+  const PoseDeviations before = deviations_with(machine, errors, poses, NoCorrection());
+  EXPECT_NEAR(before.position[7], largest, 1e-12);
+  for (const bool directions : {true, false}) {
+    const auto make = [&](const ErrorSet& set) -> std::unique_ptr<CommandCorrection> {
+      LineTableOptions options;
+      options.directions = directions;
+      return std::make_unique<AxisTableCorrection>(line_tables(machine, set, options).tables);
+    };
+    const PoseDeviations after = deviations_with(machine, errors, poses, *make(errors));
+    EXPECT_NEAR(after.position_statistics.maximum, directions ? 0 : before.position_statistics.maximum, 1e-9);
+    const std::vector<CarriedError> carried = carried_errors(machine, errors, poses, make);
+    ASSERT_EQ(carried.size(), 2U);
+    EXPECT_NEAR(named(carried, "reversal_X").effect_before, 0.01, 1e-12);
+    EXPECT_NEAR(named(carried, "reversal_X").carried(), directions ? 1 : 0, 1e-6);
+    EXPECT_NEAR(named(carried, "reversal_C").carried(), directions ? 1 : 0, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace abbe
