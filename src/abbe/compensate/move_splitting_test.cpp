@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/compensate/machine_with_play_for_test.h"
 #include "abbe/compensate/program_moves_for_test.h"
 #include "abbe/machine/machines_for_test.h"
 
@@ -222,6 +223,81 @@ TEST(MoveSplitting, TooManyPiecesAreSaidToBe) {
   const std::size_t tool = correction.tool({});
   correction.correct(ProgramCoordinates::axes, tool, nodes);
   EXPECT_FALSE(splitter.split(move, tool, {1e-6, 1}, nodes[0], nodes[1]));
+}
+
+TEST(MoveSplitting, BoundsHoldWithReversalValuesInAnyDirections) {
+  std::mt19937_64 generator(29);
+  int sampled = 0, by_play = 0;
+  for (const Machine& machine : {test::trunnion_mill(), test::swivel_head_mill(), test::head_table_mill(),
+                                 test::nutating_head_mill(), test::gantry_fork_head(), test::three_axis_head()}) {
+    SCOPED_TRACE(machine.name);
+    const WordAxes words = test::words_of(machine);
+    // Without errors reversal is all there is; a bound that forgot it would be zero for lines.
+    const ErrorSet errors = generator() % 2 == 0 ? ErrorSet{} : test::mixed_errors(machine, generator());
+    NodeCorrection correction(machine, errors, words, {}, {});
+    PieceBounder bounder(machine, errors, {words.axis[0], words.axis[1], words.axis[2]});
+    if (!bounder.has_tool_centre()) continue;
+    // Much larger than any, so that they are most of what the bounds are about.
+    PlayBounds play;
+    play.any = true;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      if (generator() % 4 == 0) continue;
+      play.has[i] = true;
+      play.offset[i] = machine.axes[i].kind == AxisKind::rotary ? 2e-3 : 0.4;
+      play.lag[i] = 1e-9;
+    }
+    const test::MachineWithPlay control(machine, {}, words);
+    for (int n = 0; n < 40; ++n) {
+      const ProgramMove move =
+          random_move(machine, correction.kinematics(), ProgramCoordinates::tool_centre, generator);
+      const std::size_t tool = correction.tool(move.tool_length);
+      const MovePath path(move);
+      std::array<CorrectedNode, 2> nodes, commanded;
+      nodes[0].words = move.start;
+      nodes[1].words = move.end;
+      correction.correct(move.coordinates, tool, nodes);
+      if (!nodes[0].point_reached() || !nodes[1].point_reached()) continue;
+      const MovePiece piece{&nodes[0], &nodes[1], path.is_arc() ? &path : nullptr, 1};
+      bounder.set_play(play);
+      const PieceBound bound =
+          bound_pieces(bounder, machine.axes.size(), move.coordinates, correction.tool_point(tool), {&piece, 1});
+      bounder.set_play({});
+      const PieceBound without =
+          bound_pieces(bounder, machine.axes.size(), move.coordinates, correction.tool_point(tool), {&piece, 1});
+      std::array<double, kMaxAxes> added{};
+      for (std::size_t i = 0; i < machine.axes.size(); ++i) added[i] = play.offset[i] * (generator() % 2 == 0 ? 1 : -1);
+      for (std::size_t k = 0; k < 2; ++k) commanded[k] = correction.offset(move.coordinates, tool, nodes[k], added);
+      if (!commanded[0].point_reached() || !commanded[1].point_reached()) continue;
+      Machine with_tool = machine;
+      with_tool.tool_offset -= Eigen::Vector3d(move.tool_length[0], move.tool_length[1], move.tool_length[2]);
+      double point = 0, overshoot = 0;
+      constexpr int kSamples = 12;
+      for (int j = 0; j <= kSamples; ++j) {
+        const double t = static_cast<double>(j) / kSamples;
+        WordValues wanted;
+        path.at(t, wanted);
+        std::vector<double> axes =
+            control.commands(move, test::between(commanded[0].corrected, commanded[1].corrected, t));
+        for (std::size_t i = 0; i < axes.size(); ++i) axes[i] -= added[i];
+        const Eigen::Vector3d missed =
+            actual_workpiece_from_tool(with_tool, errors, axes).translation - control.nominal(move, wanted).translation;
+        point = std::max(point, missed.norm());
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+          if (!bounder.is_point_axis(i)) continue;
+          const double a = nodes[0].corrected_position[i], b = nodes[1].corrected_position[i];
+          const double beyond = std::max(0.0, 0.5 * bound.axis_bend - std::abs(b - a));
+          overshoot = std::max(axes[i] - std::max(a, b), std::min(a, b) - axes[i]);
+          const double allowed = bound.axis_bend > 0 ? beyond * beyond / (2 * bound.axis_bend) : 0;
+          ASSERT_LE(overshoot, allowed + 1e-8) << "move " << n;
+        }
+      }
+      ASSERT_LE(point, bound.position + 2e-8) << "move " << n;
+      ++sampled;
+      if (point > 1.01 * without.position) ++by_play;
+    }
+  }
+  EXPECT_GE(sampled, 100);
+  EXPECT_GE(by_play, 20);  // the bound without play would not do
 }
 
 }  // namespace
