@@ -2,6 +2,7 @@
 #
 #   make build     release build: build/release/bin/abbe
 #   make demo      set-up, build, run the main study of examples/, say where the report is
+#   make closed-loop  measure, identify, compensate, run in LinuxCNC, verify: examples/closed_loop
 #   make test      set-up and every check that continuous integration runs
 #   make quick     build and run only the quick tests
 #   make lint      formatting, structure and static analysis
@@ -15,13 +16,14 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo test quick lint format bench fuzz coverage install install-linuxcnc clean
+.PHONY: build demo closed-loop test quick lint format bench fuzz coverage install install-linuxcnc clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc)
 FUZZ_SECONDS ?= 60
 DEMO_STUDY ?= examples/aguado/aguado.study.toml
 DEMO_RESULTS ?= build/demo
+LOOP_RESULTS ?= build/closed-loop
 
 # Objects are shared between build folders and clones where ccache is installed.
 export CCACHE_BASEDIR ?= $(CURDIR)
@@ -43,6 +45,11 @@ build:
 demo: build
 	build/release/bin/abbe run $(DEMO_STUDY) --output $(DEMO_RESULTS)
 	@echo "The report is in $(CURDIR)/$(DEMO_RESULTS)/report.html"
+
+closed-loop:
+	@.ci/set-up build linuxcnc
+	$(call build_preset,release)
+	examples/closed_loop/run $(LOOP_RESULTS)
 
 test:
 	@.ci/set-up test
@@ -78,8 +85,8 @@ format:
 bench:
 	@.ci/set-up bench
 	$(call build_preset,bench)
-	@for program in closest_point compensated_inverse fits forward_pose five_instruments identification identification_memory planning polygon_trace read_csv \
-	  read_mesh registration runtime_call scan_points; do \
+	@for program in closest_point compensated_inverse fits forward_pose five_instruments identification identification_memory nc_program planning \
+	  polygon_trace program_correction read_csv read_mesh registration runtime_call scan_points; do \
 	  echo "== $$program"; build/bench/bin/$$program; done
 
 fuzz:
