@@ -1,22 +1,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
+#include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
+#include "abbe/formats/results_folder.h"
 #include "command.h"
 #include "verify/verify_job.h"
+#include "verify/verify_page.h"
 #include "verify/verify_text.h"
 
 namespace abbe {
 namespace {
 
 int run_verify(const VerifyOptions& options) {
+  if (!options.output.empty()) {
+    if (!std::filesystem::path(options.output).extension().string().starts_with(".htm")) {
+      throw InputError({.file = options.output}, "unknown kind of page", "a name ending in .html");
+    }
+    if (!options.force && std::filesystem::exists(options.output)) {
+      throw InputError({.file = options.output}, "the file exists", "another name, or --force to replace it");
+    }
+  }
   const VerifyResult result = verify(options);
+  if (!options.output.empty()) write_file_atomically(options.output, verify_page(options, result));
   if (options.json) {
     fmt::print("{}", json_text(verify_json(options, result)));
   } else {
     print_verify(options, result);
+    if (!options.output.empty()) fmt::print("\npage: {}\n", options.output);
   }
   const std::vector<VerifyVerdict> verdicts = verify_verdicts(options, result);
   const bool met =
@@ -51,7 +65,7 @@ void add_verify_command(CommandLine& line) {
       "verify", "What a compensation leaves: at unseen poses and on test pieces, against the simulated truth",
       "  abbe verify examples/aguado/results/aguado\n"
       "  abbe verify --machine examples/machines/trunnion-mill.machine.toml --errors "
-      "examples/compensate/trunnion.errors.toml --truth examples/verify/truth.errors.toml --least-reduction 20 "
+      "examples/compensate/trunnion.errors.toml --truth examples/verify/truth.errors.toml -o page.html "
       "cone-frustum --before examples/verify/cone-before.csv --after examples/verify/cone-after.csv s-shape --before "
       "examples/verify/s-before.csv --after examples/verify/s-after.csv\n\n"
       "Test pieces stand at the end, each with the traces of both runs and its sizes as in abbe test-piece. A trace "
@@ -84,6 +98,8 @@ void add_verify_command(CommandLine& line) {
   command->add_option("--reach-mm", options.reach, "A sample farther from the test piece's tool path does not cut it")
       ->check(CLI::Range(0.01, 10.0))
       ->capture_default_str();
+  command->add_option("-o,--output", options.output, "Page to write (*.html)");
+  command->add_flag("--force", options.force, "Replace an existing page");
   command->add_flag("--json", options.json, "Print JSON for programs");
   command->require_subcommand(0, 2);
   CLI::App* const cone =

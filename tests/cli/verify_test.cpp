@@ -74,6 +74,19 @@ TEST_F(VerifyCommand, WhatIsWantedAndNotReachedIsExitCodeOne) {
   EXPECT_EQ(verify({"--poses", "100", "--largest-ratio", "0.01"}).exit_code, ExitCode::computation_says_no);
 }
 
+TEST_F(VerifyCommand, ThePageHoldsPosesAndPiecesAndReplacesNothingUnasked) {
+  const std::string page = (folder.path() / "page.html").string(), trace = example("verify/cone-before.csv");
+  const std::vector<std::string> asked = {
+      "--poses", "50", "-o", page, "cone-frustum", "--before", trace, "--after", example("verify/cone-after.csv")};
+  ASSERT_EQ(verify(asked).exit_code, ExitCode::done);
+  const std::string text = folder.read("page.html");
+  EXPECT_THAT(text, HasSubstr("\"verification\""));
+  EXPECT_THAT(text, HasSubstr("Roundness at the foot"));
+  EXPECT_THAT(text, HasSubstr("\"predicted_um\""));
+  EXPECT_THAT(verify(asked).err, HasSubstr("the file exists"));
+  EXPECT_THAT(verify({"-o", "page.pdf"}).err, HasSubstr("a name ending in .html"));
+}
+
 TEST_F(VerifyCommand, TheSameSeedGivesTheSameFigures) {
   EXPECT_EQ(verify({"--poses", "60", "--json"}).out, verify({"--poses", "60", "--json", "--seed", "1"}).out);
   EXPECT_NE(verify({"--poses", "60", "--json"}).out, verify({"--poses", "60", "--json", "--seed", "2"}).out);

@@ -2,6 +2,7 @@
 
 import {PathBlock} from './path_data';
 import {SurfaceBlock} from './surface_data';
+import {VerificationBlock} from './verification_data';
 
 export type Column = (number | null)[];
 
@@ -28,6 +29,10 @@ export interface PoseErrors {
   outside_range?: number;
   coverage_percent?: number;
   remaining_percent?: number;
+  /// Mean before over mean after.
+  reduction?: number;
+  /// Root mean square after over that of the predicted standard uncertainty.
+  uncertainty_ratio?: number;
 }
 
 export interface Summary {
@@ -257,6 +262,7 @@ export interface Report {
   surface?: SurfaceBlock;
   path?: PathBlock;
   contour?: ContourBlock | ContourBlock[];
+  verification?: VerificationBlock;
   generator?: string;
   created?: string;
   study?: {name?: string; file?: string; seed?: number};

@@ -19,8 +19,10 @@ import {residualSection} from './residuals';
 import {surfaceSections} from './surface';
 import {parameterSection, tablesSection} from './table';
 import {themeButton} from './theme';
+import {verificationSections} from './verification';
 
 const kShort: Record<string, string> = {
+  unseen: 'Unseen poses',
   figures: 'Figures', surface: 'Deviation', section: 'Section', path: 'Path', contour: 'Contour error', map: 'Map', distribution: 'Distribution', machine: 'Machine', motions: 'Error motions', locations: 'Location errors', tables: 'Comparison',
   identification: 'Observability', advice: 'Unseen', 'monte-carlo': 'Monte Carlo', residuals: 'Residuals', parameters: 'Parameters', assumptions: 'Assumptions', references: 'References',
 };
@@ -43,6 +45,7 @@ function build(report: Report): void {
 
   const sections = [
     report.evaluation?.figures?.length ? evaluationSection(report.evaluation) : undefined,
+    ...verificationSections(report.verification),
     ...surfaceSections(report),
     pathSection(report),
     contourSection(report.contour),
@@ -62,7 +65,7 @@ function build(report: Report): void {
   ].filter((part): part is HTMLElement => Boolean(part));
 
   const links = html('nav', {'aria-label': 'Sections'}, ...sections.map((part) =>
-    html('a', {href: `#${part.id}`}, (report.evaluation && kShortEvaluation[part.id]) ?? kShort[part.id] ?? part.id)));
+    html('a', {href: `#${part.id}`}, (report.evaluation && kShortEvaluation[part.id]) ?? kShort[part.id] ?? part.dataset.short ?? part.id)));
   page.append(
     html('a', {class: 'skip', href: '#content'}, 'Skip to the report'),
     html('div', {class: 'bar'}, html('span', {class: 'brand'}, 'Abbe'), links, html('div', {class: 'actions'}, print, toggle)),

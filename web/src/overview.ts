@@ -90,6 +90,8 @@ function smallTiles(summary: Summary, errors: PoseErrors | undefined, key: strin
     tiles.push({label, key: path, value: digits ? number(value, digits) : count(value), unit, note});
   };
   if (errors) {
+    add('Reduction', `${key}.reduction`, errors.reduction, 3, 'times', 'mean before over mean after');
+    add('Against its prediction', `${key}.uncertainty_ratio`, errors.uncertainty_ratio, 3, '', 'error over predicted standard uncertainty, root mean squares; 1 if it is right');
     add('Remaining error', `${key}.remaining_percent`, errors.remaining_percent, 3, '%', 'of the mean before');
     add('Predicted uncertainty', `${key}.predicted_expanded_uncertainty_um.mean`, errors.predicted_expanded_uncertainty_um?.mean, 3, 'µm',
         [errors.uncertainty_covers && `of the ${errors.uncertainty_covers}`, 'k = 2, mean',

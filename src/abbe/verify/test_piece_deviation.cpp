@@ -194,16 +194,17 @@ PieceDeviation test_piece_deviation(const TestPiece& piece, const ToolPlaces& ac
     if (row == 0) continue;
     const double way = (point - actual.point.col(static_cast<Index>(row - 1))).norm();
     if (!cutting) {
-      // Where the tool waits or comes down there may be some way along the curve already; the cut begins there.
-      at = nearest(curve, Place{}, point, reach);
-      if (at.distance > reach) continue;
+      // The cut begins at a sample at the first point from which the tool goes on along the curve.
       const Place before = nearest(curve, Place{}, actual.point.col(static_cast<Index>(row - 1)), reach);
-      if (!(way > 0) || at.along - before.along < kAlong * way) continue;
+      at = nearest(curve, before, point, way + reach);
+      if (before.distance > reach || at.distance > reach || !(way > 0)) continue;
+      if (at.along - before.along < kAlong * way) continue;
       cutting = true;
+      cut.add(row - 1, before);
       cut.add(row, at);
       continue;
     }
-    const Place next = nearest(curve, at, point, 3 * way + reach);
+    const Place next = nearest(curve, at, point, way + reach);
     if (next.distance > reach) {
       if (at.along >= curve.end() - reach) break;
       result.status = PieceTraceStatus::leaves_piece;

@@ -209,6 +209,20 @@ TEST_F(TestPieceDeviations, TracesThatAreNotOfThePieceAreToldApart) {
   EXPECT_EQ(test_piece_deviation(cone, ToolPlaces{}).status, PieceTraceStatus::never_begins);
 }
 
+TEST_F(TestPieceDeviations, SamplesMayBeFartherApartThanTheReach) {
+  // Every 60th sample of 0.05 mm, but those at the first and at the last point of the piece.
+  PoseList sparse;
+  sparse.axis.resize(machine.axes.size());
+  const PieceDeviation dense = test_piece_deviation(cone, actual_tool(machine, ErrorSet{}, cone_trace));
+  for (std::size_t k = dense.rows.front() - 60; k <= dense.rows.back(); k += 60) {
+    for (std::size_t i = 0; i < sparse.axis.size(); ++i) sparse.axis[i].push_back(cone_trace.axis[i][k]);
+  }
+  const PieceDeviation cut = test_piece_deviation(cone, actual_tool(machine, ErrorSet{}, sparse), 0.5);
+  ASSERT_NE(cut.status, PieceTraceStatus::never_begins);
+  EXPECT_GT(cut.rows.size(), dense.rows.size() / 60 - 2);
+  EXPECT_LT(piece_figures(cut, false).foot.largest(), kChord + 2 * kStraight);
+}
+
 TEST_F(TestPieceDeviations, WaitingAtBothEndsAndOnTheWayChangesNothing) {
   PoseList waiting;
   waiting.axis.resize(machine.axes.size());
