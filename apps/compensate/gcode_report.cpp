@@ -136,6 +136,14 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
   add(status_count(report, CorrectionStatus::not_converged), allowed.not_converged, "no correction found",
       "not-converged");
   add(status_count(report, CorrectionStatus::not_finite), false, "position that is no number", nullptr);
+  add(report.bent_with_spindle, allowed.not_proven,
+      fmt::format(
+          "threads or taps, which are not split, not proven to stay within the tolerance, at most {:.3f} um from "
+          "their path",
+          1e3 * report.largest_bend.value),
+      "not-proven");
+  add(report.play_with_spindle, false, "threads or taps on a machine with reversal values, which they cannot take up",
+      nullptr);
   add(report.not_proven, allowed.not_proven, "path between corrected poses not proven to stay within the tolerance",
       "not-proven");
   return reasons;
@@ -252,6 +260,8 @@ nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& ma
   }
   json["held_at_travel"] = count_json(report.held_at_travel);
   json["held_at_travel"]["largest_left_um"] = 1e3 * report.largest_held.value;
+  json["bent_with_spindle"] = count_json(report.bent_with_spindle);
+  json["bent_with_spindle"]["largest_um"] = 1e3 * report.largest_bend.value;
   json["not_proven"] = count_json(report.not_proven);
   json["above_limit"] = count_json(report.above_limit);
   json["tool_length_changes"] = count_json(report.tool_changes);

@@ -337,6 +337,47 @@ TEST_F(CompensateGcode, RapidMovesAreKeptAtTheEndOfTheTravel) {
       ExitCode::computation_says_no);
 }
 
+TEST_F(CompensateGcode, ThreadsAndTapsStayOneMoveWithTheirPitch) {
+  write(
+      "thread.ngc",
+      "G21 G90\nM3 S500\nG0 X100 Y100 Z-100\nG33.1 Z-120 K1.5\nG33 X103 Z-140 K2\nG0 Z-100\nG84 X120 Z-130 R-110 F500\n"
+      "G80\nM2\n");
+  const auto mill = (kExamples / "machines/three-axis-mill.machine.toml").string();
+  const auto mill_errors = (kExamples / "compensate/mill.errors.toml").string();
+  std::vector<std::string> arguments = {"compensate", "gcode", "thread.ngc", "--machine",      mill, "--errors",
+                                        mill_errors,  "-o",    "out.ngc",    "--tolerance-um", "5"};
+  const CommandResult result = abbe(arguments);
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  NcProgramOptions options;
+  for (std::size_t i = 0; i < kAxisWords; ++i) options.words[i] = i < 3;
+  const auto moves_in = [&](const std::string& name) {
+    Recorder recorder;
+    correct_nc_program(folder.read(name), name, options, recorder, [](std::string_view) {});
+    std::vector<ProgramMove> chosen;
+    for (const ProgramMove& move : recorder.moves) {
+      if (move.spindle == SpindleMove::thread || move.spindle == SpindleMove::rigid_tapping) chosen.push_back(move);
+    }
+    return chosen;
+  };
+  const std::vector<ProgramMove> original = moves_in("thread.ngc"), corrected = moves_in("out.ngc");
+  ASSERT_EQ(original.size(), 2U);
+  ASSERT_EQ(corrected.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(corrected[i].spindle, original[i].spindle);
+    EXPECT_NE(corrected[i].end, original[i].end);
+    // As many turns of the spindle as programmed.
+    EXPECT_NEAR(feed_length(corrected[i].start, corrected[i].end) / corrected[i].feed,
+                feed_length(original[i].start, original[i].end) / original[i].feed, 2e-6);
+  }
+  // Both began where the tap had begun.
+  EXPECT_NEAR(corrected[0].start[2], corrected[1].start[2], 1e-9);
+  arguments.back() = "0.001";
+  const CommandResult bent = abbe(arguments);
+  EXPECT_EQ(bent.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(bent.err,
+              HasSubstr("threads or taps, which are not split, not proven to stay within the tolerance, at most "));
+}
+
 TEST_F(CompensateGcode, InputsAreNeverWritten) {
   write("p.ngc", "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nM2\n");
   const std::vector<std::string> base = {"compensate", "gcode", "p.ngc", "--machine", machine, "--errors", errors};

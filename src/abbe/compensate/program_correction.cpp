@@ -191,6 +191,11 @@ struct ProgramCorrection::Implementation {
                   const CorrectedNode& to, Chunk& chunk, const AxisApproach& approach = {}) const {
     CorrectedPiece piece{to.corrected, move.feed, move.feed_mode};
     set_piece_feed(move, duration, share, from, piece);
+    if (move.spindle == SpindleMove::thread || move.spindle == SpindleMove::rigid_tapping) {
+      // The pitch is along the actual path, which is as long as the commanded one.
+      const double length = feed_length(move.start, move.end);
+      if (length > 0) piece.feed *= feed_length(from, to.corrected) / length;
+    }
     if (piece.feed_mode != move.feed_mode) chunk.report.inverse_time.add(move.line);
     chunk.pieces.pieces.push_back(piece);
     state(move, to, chunk.report, approach);
@@ -210,6 +215,18 @@ struct ProgramCorrection::Implementation {
       give_piece(move, duration, shares[k] - shares[k - 1], nodes[k - 1].corrected, nodes[k], chunk);
   }
 
+  /// A move that is not split: how far its path may be from the commanded one.
+  void bound_single(const ProgramMove& move, std::size_t i, const CorrectedNode& start, const CorrectedNode& end,
+                    Chunk& chunk) const {
+    const MovePiece piece{&start, &end, nullptr, 1};
+    const PieceBound bound = bound_pieces(*bounder, machine.axes.size(), move.coordinates,
+                                          correction.tool_point(chunk.tool[i]), {&piece, 1});
+    if (bound_excess(*bounder, options.tolerance, bound, nullptr) <= 1) return;
+    chunk.report.bent_with_spindle.add(move.line);
+    chunk.report.largest_bend.take(
+        {bound.position, move.line, end.position, end.corrected_position, move.tool_length, end.status, {}});
+  }
+
   void give_move(const ProgramMove& move, std::size_t i, Chunk& chunk) const {
     if (chunk.tool[i] == kNoTool) {
       chunk.report.impossible.add(move.line);
@@ -223,6 +240,11 @@ struct ProgramCorrection::Implementation {
       // program, nothing needs to be; all else is said by its status.
       whole = true;
       if (move.kind != MoveKind::rapid && !start.point_reached()) chunk.report.not_proven.add(move.line);
+    }
+    if (move.spindle != SpindleMove::none) {
+      if (reversals.act()) chunk.report.play_with_spindle.add(move.line);
+      if (!whole) bound_single(move, i, start, end, chunk);
+      whole = true;
     }
     if (whole) {
       const std::array<CorrectedNode, 2> both = {start, end};

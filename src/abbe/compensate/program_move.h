@@ -22,6 +22,14 @@ enum class MoveKind : std::uint8_t {
   arc_counterclockwise,  ///< G3
 };
 
+/// How a straight move goes with the spindle. All but the first stay one piece: in between the control would slow down.
+enum class SpindleMove : std::uint8_t {
+  none,
+  tapping,        ///< G84, G74 at the feed F with a tap holder that gives way
+  thread,         ///< G33: feed per revolution is the pitch along the path
+  rigid_tapping,  ///< G33.1: the same, and back to where it began with the spindle reversed
+};
+
 // NOLINTNEXTLINE(readability-identifier-naming): planes have the names of their axes
 enum class ArcPlane : std::uint8_t { XY, ZX, YZ };  ///< G17, G18, G19
 
@@ -44,6 +52,7 @@ enum class ProgramCoordinates : std::uint8_t {
 struct ProgramMove {
   std::size_t line = 0;  ///< of the program, from 1
   MoveKind kind = MoveKind::rapid;
+  SpindleMove spindle = SpindleMove::none;
   ProgramCoordinates coordinates = ProgramCoordinates::axes;
   FeedMode feed_mode = FeedMode::per_minute;
   double feed = 0;                      ///< as FeedMode says; unused by rapid moves

@@ -37,6 +37,9 @@ void ProgramReport::add(const ProgramReport& later) {
   for (std::size_t i = 0; i < status.size(); ++i) status[i].add(later.status[i]);
   held_at_travel.add(later.held_at_travel);
   largest_held.take(later.largest_held);
+  bent_with_spindle.add(later.bent_with_spindle);
+  largest_bend.take(later.largest_bend);
+  play_with_spindle.add(later.play_with_spindle);
   not_proven.add(later.not_proven);
   tool_changes.add(later.tool_changes);
   inverse_time.add(later.inverse_time);

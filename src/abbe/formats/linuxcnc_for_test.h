@@ -21,7 +21,7 @@ namespace abbe::test {
 
 /// A move as LinuxCNC's interpreter gives it to the motion part: mm and degrees of the control, offsets added.
 struct CanonMove {
-  char kind = 0;  ///< T rapid, F straight, A arc
+  char kind = 0;  ///< T rapid, F straight, A arc, R rigid tapping (there and back)
   std::array<double, 6> end{};
   std::size_t first = 0;           ///< arcs: first axis of the plane (Z X Y: the second one is the next of them)
   std::array<double, 2> centre{};  ///< first and second axis of the plane
@@ -123,6 +123,12 @@ class CanonReader {
       move.kind = name == "STRAIGHT_FEED" ? 'F' : 'T';
       take(v, 0, move.end);
       give(move);
+    } else if (name == "RIGID_TAP") {
+      CanonMove move;
+      move.kind = 'R';
+      move.end = now_;
+      for (std::size_t k = 0; k < 3; ++k) move.end[k] = unit_ * v.at(k) + system_[k] + axis_offset_[k] + tool_[k];
+      canon_.moves.push_back(move);
     } else if (name == "ARC_FEED") {
       CanonMove move;
       move.kind = 'A';
@@ -189,7 +195,7 @@ inline const char* gcode_script() {
   return R"(
 import ctypes, gcode, sys
 ctypes.CDLL("libtooldata.so.0")._Z14tool_mmap_userv()
-names = {"straight_traverse": "STRAIGHT_TRAVERSE", "straight_feed": "STRAIGHT_FEED", "arc_feed": "ARC_FEED",
+names = {"straight_traverse": "STRAIGHT_TRAVERSE", "straight_feed": "STRAIGHT_FEED", "arc_feed": "ARC_FEED", "rigid_tap": "RIGID_TAP",
          "set_g5x_offset": "SET_G5X_OFFSET", "set_g92_offset": "SET_G92_OFFSET",
          "tool_offset": "USE_TOOL_LENGTH_OFFSET", "set_plane": "SELECT_PLANE"}
 class Canon:
@@ -268,6 +274,7 @@ inline std::vector<CanonMove> canon_moves(const std::vector<ProgramMove>& moves)
     if (!is_arc && move.start == move.end) continue;
     CanonMove& c = canon.emplace_back();
     c.kind = is_arc ? 'A' : move.kind == MoveKind::rapid ? 'T' : 'F';
+    if (move.spindle == SpindleMove::rigid_tapping) c.kind = 'R';
     for (std::size_t k = 0; k < 6; ++k) c.end[k] = k < 3 ? move.end[k] : move.end[k] * kToDegrees;
     if (!is_arc) continue;
     c.first = move.plane == ArcPlane::XY ? 0 : move.plane == ArcPlane::ZX ? 2 : 1;

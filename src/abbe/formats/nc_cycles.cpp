@@ -40,6 +40,14 @@ void NcInterpreter::cycle(NcCode motion) {
     take('p', cycle_.dwell, goes_on);
     if (cycle_.dwell < 0) block_.fail(word, "the time of the dwell is negative");
   }
+  if (motion == 740 || motion == 840) {
+    if (block_.has('p')) cycle_.dwell = block_.value('p');
+    if (!goes_on && !block_.has('p')) cycle_.dwell = 0;
+    if (cycle_.dwell < 0) block_.fail(word, "the time of the dwell is negative");
+    if (spindle_ != (motion == 840 ? 3 : 4)) {
+      block_.fail(word, "the spindle does not turn as this cycle needs it", motion == 840 ? "M3" : "M4");
+    }
+  }
   if (motion == 730 || motion == 830) {
     take('q', cycle_.step, goes_on);
     if (!(cycle_.step > 0)) block_.fail(word, "the step Q is not positive");
@@ -107,6 +115,20 @@ void NcInterpreter::drill(NcCode motion, const Words& above, double bottom, doub
       if (motion == 830) rapid(to(r), known_);
       rapid(to(height + kPeckClearance_mm), known_);
     }
+  }
+  if (motion == 740 || motion == 840) {
+    // Source: LinuxCNC 2.9, measured. At the feed, so the tap holder must give way; overrides would spoil the thread.
+    const bool right = motion == 840;
+    if (overrides_) writer_.line("M49");
+    straight(to(bottom), known_, SpindleMove::tapping);
+    writer_.line("M5");
+    writer_.line(right ? "M4" : "M3");
+    if (cycle_.dwell > 0) writer_.line(fmt::format("G4 P{}", cycle_.dwell));
+    straight(to(clear), known_, SpindleMove::tapping);
+    writer_.line("M5");
+    writer_.line(right ? "M3" : "M4");
+    if (overrides_) writer_.line("M48");
+    return;
   }
   straight(to(bottom), known_);
   if (motion == 820 || motion == 860 || motion == 890) writer_.line(fmt::format("G4 P{}", cycle_.dwell));

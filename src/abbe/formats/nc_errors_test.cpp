@@ -23,15 +23,18 @@ TEST(NcErrors, OfCodesThatAreNotHandled) {
   EXPECT_EQ(refusal("G42.1 D1\n"),
             "p.ngc:1:1: G42.1: cutter compensation is not handled: its path depends on the tool; expected a code of "
             "docs/nc-programs.md");
-  EXPECT_EQ(refusal("G33 Z1 K1\n"),
-            "p.ngc:1:1: G33: moves that are synchronised with the spindle are not handled: they cannot be split; "
-            "expected a code of docs/nc-programs.md");
-  EXPECT_EQ(refusal("G76 P1 Z1\n"),
-            "p.ngc:1:1: G76: moves that are synchronised with the spindle are not handled: they cannot be split; "
-            "expected a code of docs/nc-programs.md");
-  EXPECT_EQ(refusal("G84 X1 Z1 R2\n"),
-            "p.ngc:1:1: G84: moves that are synchronised with the spindle are not handled: they cannot be split; "
-            "expected a code of docs/nc-programs.md");
+  EXPECT_EQ(
+      refusal("G76 P1 Z1\n"),
+      "p.ngc:1:1: G76: this thread is not handled, only G33, G33.1, and the cycles G74 and G84; expected a code of "
+      "docs/nc-programs.md");
+  EXPECT_EQ(refusal("G33 Z1\n"), "p.ngc:1:1: G33: G33 without its pitch; expected K");
+  EXPECT_EQ(refusal("G33.1 Z1 K-1\n"), "p.ngc:1:10: K-1: the pitch is not positive");
+  EXPECT_EQ(refusal("G33 A1 K1\n"), "p.ngc:1:1: G33: G33 with words other than X, Y, Z");
+  EXPECT_EQ(refusal("G33 Z0 K1\n"), "p.ngc:1:1: G33: G33 that does not move");
+  EXPECT_EQ(refusal("M3 G84 X1 Z-1 R2\n"),
+            "p.ngc:1:4: G84: a canned cycle without a feed; expected F before or in this block");
+  EXPECT_EQ(refusal("F1 M4 G84 X1 Z-1 R2\n"),
+            "p.ngc:1:7: G84: the spindle does not turn as this cycle needs it; expected M3");
   EXPECT_EQ(refusal("G38.2 X1 F1\n"),
             "p.ngc:1:1: G38.2: only the control knows where probing ends; expected a code of docs/nc-programs.md");
   EXPECT_EQ(refusal("G5 X1 I1 J1\n"), "p.ngc:1:1: G5: splines are not handled; expected a code of docs/nc-programs.md");

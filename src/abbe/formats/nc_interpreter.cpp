@@ -154,8 +154,10 @@ void NcInterpreter::check_words() const {
   const bool is_g10 = codes_[NcGroup::non_modal] == 100;
   const bool is_user = codes_.has(NcMGroup::user) || codes_.has(NcMGroup::signals);
   const bool is_plane = codes_[NcGroup::tilt] == 682;
+  const bool is_thread = motion == 330 || motion == 331 ||
+                         (!codes_.has(NcGroup::motion) && (modes_.motion == 330 || modes_.motion == 331));
   for (const char letter : {'i', 'j', 'k'}) {
-    if (block_.has(letter) && !is_arc && !is_g10 && !is_plane)
+    if (block_.has(letter) && !is_arc && !is_g10 && !is_plane && !(is_thread && letter == 'k'))
       block_.fail(letter, "no code of this block uses it", "G2, G3 or G68.2");
   }
   if (block_.has('r') && !is_arc && !is_cycle && !is_g10) {
@@ -246,6 +248,10 @@ void NcInterpreter::execute() {
   if (codes_.has(NcMGroup::spindle)) {
     const double code = codes_.word(block_, NcMGroup::spindle).value;
     spindle_ = code == 3 || code == 4 ? static_cast<int>(code) : 0;
+  }
+  if (codes_.has(NcMGroup::overrides)) {
+    const double code = codes_.word(block_, NcMGroup::overrides).value;
+    if (code == 48 || code == 49) overrides_ = code == 48;
   }
   if (other == 40) {
     if (!block_.has('p'))

@@ -80,7 +80,8 @@ class NcInterpreter final : public NcSystemValues {
   void go_to_reference();
   Words ends(std::uint32_t& known) const;
   void rapid(const Words& end, std::uint32_t known);
-  void straight(const Words& end, std::uint32_t known);
+  void straight(const Words& end, std::uint32_t known, SpindleMove spindle = SpindleMove::none);
+  void thread(NcCode motion);
   void arc(NcCode motion);
   void arc_by_centre(ProgramMove& move, const Words& end, std::size_t first, std::size_t second);
   void arc_by_radius(ProgramMove& move, const Words& end, std::size_t first, std::size_t second);
@@ -129,6 +130,7 @@ class NcInterpreter final : public NcSystemValues {
   std::array<Reference, 2> home_{};  ///< G28, G30
   NcToolTable tools_;
   std::optional<int> tool_, selected_tool_;
+  bool overrides_ = true;   ///< M48, not M49
   int spindle_ = 0;         ///< 3 or 4: turns by M3 or M4; 0: is not known to turn
   std::string path_words_;  ///< "G64 P0.1", for after a cycle
 

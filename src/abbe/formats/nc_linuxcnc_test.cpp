@@ -148,6 +148,12 @@ const std::array kPrograms = {
     NamedProgram{"drilling_in_other_planes",
                  "G21 F100\nG18 G0 Y10\nG81 X1 Z1 Y-3 R2 L2\nG80\nG19 G0 X9\nG82 Y1 Z2 X-3 R1 P1\nZ5\nG80\nM2\n"},
     NamedProgram{"boring_with_the_spindle_stopped", "G21 F100 M3 S100\nG0 Z10\nG86 X1 Y1 Z-1 R2 P.5\nG80\nM2\n"},
+    NamedProgram{"tapping",
+                 "G21 F100 M3 S100\nG0 Z10\nG84 X1 Y1 Z-1 R2 P.5\nX2\nG98 X3\nG80\nM4\nG74 X5 Z-3 R1\nG80\nG0 "
+                 "X0\nM2\n"},
+    NamedProgram{"threads",
+                 "G21 M3 S100\nG0 X0 Y0 Z10\nG33 Z-5 K1.5\nX1 Z-8 K1\nG0 Z10\nG33.1 Z5 K1.5\nG0 X3\nG20\nG33.1 X.2 "
+                 "Z.1 K.05\nG91 G33 Z-.1 K.1\nM2\n"},
     NamedProgram{"subroutines",
                  "G21\nO100 sub\nG0 X#1 Y#2 Z#3\n#1=7\nO100 endsub [#1]\nO100 call [1] [2]\nG0 Y#<_value>\n"
                  "O<hole> sub\nO5 if [#1 GT 3]\nO<hole> return [2]\nO5 endif\nG0 Z#1\nO<hole> endsub\n"

@@ -25,11 +25,15 @@ NcGroup group_of(NcCode code) {
     case 10:
     case 20:
     case 30:
+    case 330:
+    case 331:
     case 730:
+    case 740:
     case 800:
     case 810:
     case 820:
     case 830:
+    case 840:
     case 850:
     case 860:
     case 890:
@@ -97,12 +101,10 @@ const char* reason(NcCode code) {
     case 420:
     case 421:
       return "cutter compensation is not handled: its path depends on the tool";
-    case 330:
-    case 331:
+    case 332:
+    case 333:
     case 760:
-    case 740:
-    case 840:
-      return "moves that are synchronised with the spindle are not handled: they cannot be split";
+      return "this thread is not handled, only G33, G33.1, and the cycles G74 and G84";
     case 382:
     case 383:
     case 384:

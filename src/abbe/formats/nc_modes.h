@@ -20,7 +20,7 @@ inline constexpr NcCode kNoCode = -1;
 enum class NcGroup : std::uint8_t {
   none,         ///< not a code that is handled
   non_modal,    ///< G4 G10 G28 G30 G52 G53 G53.1 G92
-  motion,       ///< G0 G1 G2 G3 G73 G80-G89
+  motion,       ///< G0 G1 G2 G3 G33 G33.1 G73 G74 G80-G86 G89
   plane,        ///< G17 G18 G19
   distance,     ///< G90 G91
   arc_centre,   ///< G90.1 G91.1

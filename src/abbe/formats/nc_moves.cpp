@@ -100,6 +100,10 @@ void NcInterpreter::emit(ProgramMove& move, const Words& end, std::uint32_t know
       move.feed *= kInch;
     }
   }
+  if (move.spindle == SpindleMove::thread || move.spindle == SpindleMove::rigid_tapping) {
+    move.feed_mode = FeedMode::per_revolution;
+    move.feed = block_.value('k') * unit(0);
+  }
   if (!system_is_said_[modes_.system] && first_assumed_offset_line_ == 0 && codes_[NcGroup::non_modal] != 530) {
     first_assumed_offset_line_ = move.line;
   }
@@ -118,13 +122,36 @@ void NcInterpreter::rapid(const Words& end, std::uint32_t known) {
   emit(move, end, known);
 }
 
-void NcInterpreter::straight(const Words& end, std::uint32_t known) {
+void NcInterpreter::straight(const Words& end, std::uint32_t known, SpindleMove spindle) {
   ProgramMove move;
   move.kind = MoveKind::straight;
+  move.spindle = spindle;
   emit(move, end, known);
 }
 
+void NcInterpreter::thread(NcCode motion) {
+  const NcWord& word = codes_.has(NcGroup::motion) ? codes_.word(block_, NcGroup::motion) : block_.words[0];
+  const char* const name = motion == 330 ? "G33" : "G33.1";
+  if (codes_.axes == 0) block_.fail(word, fmt::format("{} without axis words", name));
+  if ((codes_.axes & ~std::uint32_t{7}) != 0) block_.fail(word, fmt::format("{} with words other than X, Y, Z", name));
+  if (!block_.has('k')) block_.fail(word, fmt::format("{} without its pitch", name), "K");
+  if (!(block_.value('k') > 0)) block_.fail('k', "the pitch is not positive");
+  std::uint32_t known = 0;
+  const Words end = ends(known), before = position_, machine_before = machine_position_;
+  if (end == before) block_.fail(word, fmt::format("{} that does not move", name));
+  straight(end, known, motion == 330 ? SpindleMove::thread : SpindleMove::rigid_tapping);
+  if (motion == 331) {
+    // The control goes back by itself.
+    position_ = before;
+    machine_position_ = machine_before;
+  }
+}
+
 void NcInterpreter::move_by_word(NcCode motion) {
+  if (motion == 330 || motion == 331) {
+    thread(motion);
+    return;
+  }
   if (motion > 30) {
     cycle(motion);
     return;

@@ -129,7 +129,8 @@ void NcInterpreter::pass_block(bool has_motion) {
       for (const char letter : {'i', 'j', 'k', 'r'}) drop_letter(letter);
       for (const char letter : {'p', 'q', 'l'}) {
         if (!block_.has(letter)) continue;
-        const bool wanted = letter == 'p'   ? motion <= 30 || motion == 820 || motion == 860 || motion == 890
+        const bool wanted = letter == 'p' ? motion <= 30 || motion == 740 || motion == 820 || motion == 840 ||
+                                                motion == 860 || motion == 890
                             : letter == 'q' ? motion == 730 || motion == 830
                                             : motion > 30;
         if (wanted && is_shared && letter != 'l') {

@@ -254,6 +254,13 @@ void NcWriter::write_item(std::size_t i, const CorrectedPiece* pieces, std::size
     }
   }
   for (std::size_t k = 0; k < count; ++k) {
+    if (moves_[i].spindle == SpindleMove::rigid_tapping) {
+      // The control goes back to where it stood.
+      const std::array<std::int64_t, kAxisWords> said = said_;
+      write_piece(moves_[i], item, pieces[k], k == 0);
+      said_ = said;
+      continue;
+    }
     write_piece(moves_[i], item, pieces[k], k == 0);
     stands_ = pieces[k].end;
   }
@@ -297,7 +304,15 @@ void NcWriter::write_piece(const ProgramMove& move, const Item& item, const Corr
     FeedMode mode = piece.feed_mode;
     const double feed = feed_word(move, piece, moved, mode);
     at = write_modes(move, mode, at);
-    at = write_text(rapid ? "G0" : "G1", at);
+    const bool has_pitch = move.spindle == SpindleMove::thread || move.spindle == SpindleMove::rigid_tapping;
+    if (has_pitch && ((changed & ~std::uint32_t{7}) != 0 || (is_said_ & changed) != changed)) {
+      fail(move, "a thread whose correction moves other axes than X, Y, Z, or from an unknown place");
+    }
+    at = write_text(rapid                                        ? "G0"
+                    : move.spindle == SpindleMove::thread        ? "G33"
+                    : move.spindle == SpindleMove::rigid_tapping ? "G33.1"
+                                                                 : "G1",
+                    at);
     for (std::size_t k = 0; k < kAxisWords; ++k) {
       if ((changed >> k & 1) == 0) continue;
       *at++ = ' ';
@@ -306,7 +321,11 @@ void NcWriter::write_piece(const ProgramMove& move, const Item& item, const Corr
       said_[k] = words[k];
     }
     is_said_ |= changed;
-    if (!rapid) at = write_feed(move, mode, feed, at);
+    if (has_pitch) {
+      at = write_pitch(move, feed, at);
+    } else if (!rapid) {
+      at = write_feed(move, mode, feed, at);
+    }
     *at++ = ' ';
   }
   if (first && item.comments > item.words) {
@@ -344,13 +363,22 @@ char* NcWriter::write_modes(const ProgramMove& move, FeedMode mode, char* at) {
   if (!units_said_) at = write_text(frame_.inches ? "G20 " : "G21 ", at);
   if (!absolute_said_) at = write_text("G90 ", at);
   units_said_ = absolute_said_ = true;
-  if (move.kind != MoveKind::rapid && (!mode_said_ || mode_ != mode)) {
+  // G33 and G33.1 have their pitch in any mode.
+  const bool has_feed =
+      move.kind != MoveKind::rapid && move.spindle != SpindleMove::thread && move.spindle != SpindleMove::rigid_tapping;
+  if (has_feed && (!mode_said_ || mode_ != mode)) {
     at = write_text(mode_word(mode), at);
     mode_ = mode;
     mode_said_ = true;
     feed_ = -1;
   }
   return at;
+}
+
+char* NcWriter::write_pitch(const ProgramMove& move, double pitch, char* at) const {
+  if (!(pitch > 0) || !(pitch < 1e6)) fail(move, "the corrected pitch is not a positive number");
+  at = write_text(" K", at);
+  return write_scaled(std::max<std::int64_t>(std::llround(pitch * 1e9), 1), 9, true, at);
 }
 
 char* NcWriter::write_feed(const ProgramMove& move, FeedMode mode, double feed, char* at) {

@@ -83,6 +83,7 @@ class NcWriter {
   /// Feed of a piece as the control takes it; `mode` may become inverse time.
   double feed_word(const ProgramMove& move, const CorrectedPiece& piece, std::uint32_t moved, FeedMode& mode) const;
   char* write_modes(const ProgramMove& move, FeedMode mode, char* at);
+  char* write_pitch(const ProgramMove& move, double pitch, char* at) const;
   char* write_feed(const ProgramMove& move, FeedMode mode, double feed, char* at);
   void apply(const Events& events);
   void use_frame(std::size_t index);
