@@ -49,7 +49,7 @@ TEST(DocumentedExamples, AreAccepted) {
   EXPECT_EQ(parse_measurements(csv[1], "csv", machine).readings.stated, StatedUncertainty::covariance);
 
   const Study simulated = parse_study(toml[2], "a.study.toml", machine);
-  EXPECT_EQ(simulated.setups[0].plans.size(), 3U);
+  EXPECT_EQ(simulated.setups[0].plans.size(), 4U);
   EXPECT_EQ(simulated.identification->motions.size(), 12U);
   const Study measured = parse_study(toml[3], "b.study.toml", machine);
   EXPECT_TRUE(measured.setups[0].noise_from_data);

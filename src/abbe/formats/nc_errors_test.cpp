@@ -31,8 +31,8 @@ TEST(NcErrors, OfCodesThatAreNotHandled) {
   EXPECT_EQ(refusal("G33.1 Z1 K-1\n"), "p.ngc:1:10: K-1: the pitch is not positive");
   EXPECT_EQ(refusal("G33 A1 K1\n"), "p.ngc:1:1: G33: G33 with words other than X, Y, Z");
   EXPECT_EQ(refusal("G33 Z0 K1\n"), "p.ngc:1:1: G33: G33 that does not move");
-  EXPECT_EQ(refusal("M3 G84 X1 Z-1 R2\n"),
-            "p.ngc:1:4: G84: a canned cycle without a feed; expected F before or in this block");
+  EXPECT_EQ(refusal("G84 X1 Z-1 R2\n"),
+            "p.ngc:1:1: G84: a canned cycle without a feed; expected F before or in this block");
   EXPECT_EQ(refusal("F1 M4 G84 X1 Z-1 R2\n"),
             "p.ngc:1:7: G84: the spindle does not turn as this cycle needs it; expected M3");
   EXPECT_EQ(refusal("G38.2 X1 F1\n"),
