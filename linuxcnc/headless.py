@@ -18,11 +18,14 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 USER = "nobody"
 LOCK = pathlib.Path("/var/tmp/linuxcnc-ci.lock")
+SIGN = pathlib.Path("/tmp/linuxcnc.lock")  # by which LinuxCNC knows that it runs
 PROGRAMS_OF_LINUXCNC = {"milltask", "linuxcncsvr", "rtapi_app"}
 
 # Simulated drives: full speed within a servo cycle, so that the path is that of the program and not of the drives.
 VELOCITY = 1000  # mm/s, deg/s
 ACCELERATION = 2000000  # mm/s^2, deg/s^2
+
+LONGEST_END_S = 20  # LinuxCNC tidies up in two
 
 
 class NotHere(Exception):
@@ -84,8 +87,15 @@ def only_one(waiting=lambda: None):
         yield
 
 
-def running_linuxcnc():
-    """Process numbers of a LinuxCNC that runs: starting another would end it."""
+def running_linuxcnc(ending_s=0):
+    """Process numbers of a LinuxCNC that runs, and does not end in so many seconds: starting another would end it."""
+    end_of_waiting = time.monotonic() + ending_s
+    while (found := linuxcnc_processes()) and time.monotonic() < end_of_waiting:
+        time.sleep(0.1)
+    return found
+
+
+def linuxcnc_processes():
     found = []
     for process in pathlib.Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):
@@ -219,7 +229,33 @@ def write_configuration(folder, display, ini, hal, tool_table="", parameters="")
         subprocess.run(["chown", "-R", USER, str(folder)], check=True)
 
 
-def run(folder, limit_s, each=lambda: None):
+def processes_of(folder):
+    """Processes of the run in `folder`, which is the HOME of these and of no others: number and command line."""
+    home = f"HOME={folder}".encode()
+    for process in pathlib.Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if home in (process / "environ").read_bytes().split(b"\0"):
+                yield int(process.name), (process / "cmdline").read_bytes().split(b"\0")
+
+
+def end_run(folder, display, process):
+    """Ends the run in `folder`: its display, so that LinuxCNC tidies up, or all of it if that does not help."""
+    for number, words in list(processes_of(folder)):
+        if f"./{display}".encode() in words or b"/usr/bin/linuxcnc" in words:
+            with contextlib.suppress(OSError):
+                os.kill(number, signal.SIGTERM)
+    try:
+        process.wait(LONGEST_END_S)
+    except subprocess.TimeoutExpired:
+        for number, _ in list(processes_of(folder)):
+            with contextlib.suppress(OSError):
+                os.kill(number, signal.SIGKILL)
+        process.wait()
+        with contextlib.suppress(OSError):
+            SIGN.unlink()
+
+
+def run(folder, display, limit_s, each=lambda: None):
     """Runs LinuxCNC on what write_configuration() wrote until its display ends; `each` is called now and then.
 
     @return what it printed, and its exit code (None: no time left)
@@ -235,8 +271,7 @@ def run(folder, limit_s, each=lambda: None):
         finally:
             code = process.poll()
             if code is None:
-                os.killpg(process.pid, signal.SIGKILL)
-                process.wait()
+                end_run(folder, display, process)
             # What a display that failed may leave behind keeps the next one from starting.
             subprocess.run(cleanly(folder, "halrun", "-U"), cwd=folder, check=False, timeout=30,
                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL)

@@ -46,14 +46,14 @@ def test(case, folder, module):
     (folder / "module.txt").write_text(module)
 
     configure(folder, module, "damaged.abbec")
-    output, code = headless.run(folder, 40)
+    output, code = headless.run(folder, "drive.py", 40)
     if code == 0 or "its checksum is wrong" not in output or (folder / "driver.txt").exists():
         print(output)
         sys.exit("FAILED: LinuxCNC starts with a damaged file, or does not say why it does not")
     print("a damaged file: LinuxCNC does not start and says why")
 
     configure(folder, module, "mill.abbec")
-    output, code = headless.run(folder, LONGEST_S)
+    output, code = headless.run(folder, "drive.py", LONGEST_S)
     seen = (folder / "driver.txt").read_text() if (folder / "driver.txt").exists() else ""
     if "DONE" not in seen:
         print(output, seen, sep="\n")
