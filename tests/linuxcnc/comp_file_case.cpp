@@ -5,7 +5,7 @@
 //                                               against the true machine
 //
 // The machine has errors that a table per joint can carry: of every axis the positioning error, the zero position error
-// and play. They are hidden: tables are made from identified errors that differ by a few per cent.
+// and play (a reversal value). They are hidden: tables are made from identified errors that differ by a few per cent.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -42,6 +42,8 @@ struct Case {
     options.only = {"EXX", "EYY", "EZZ", "EAA", "ECC", "EX0X", "EY0Y", "EZ0Z", "EA0A", "EC0C"};
     truth = random_errors(machine, options);
     scale_errors(machine, truth, {.measure = VolumetricMeasure::mean, .value_um = 100, .remove_rigid_motion = false});
+    const double play[] = {0.012, 0.008, 0.006, 60e-6, 40e-6};  // mm, rad: lost motion, so negative reversal values
+    for (std::size_t k = 0; k < kAxes; ++k) truth.reversals.push_back({axis(k), -play[k], 0});
     identified = truth;
     std::vector<double> values = truth.parameters();
     std::mt19937_64 generator(6);
@@ -167,6 +169,12 @@ std::vector<Positions> trace(const std::string& path) {
   return all;
 }
 
+double largest_difference(const Positions& one, const Positions& other) {
+  double largest = 0;
+  for (std::size_t k = 0; k < kAxes; ++k) largest = std::max(largest, std::abs(one[k] - other[k]));
+  return largest;
+}
+
 /// Where LinuxCNC stood: each pose, first from below, then from above.
 void judge_poses(const Case& c, const std::string& file) {
   Slides slides(c);
@@ -176,7 +184,9 @@ void judge_poses(const Case& c, const std::string& file) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Positions& slide = slides.follow(all[k]);
     if (k > 0 && all[k] != all[k - 1]) since = k;
-    if (k - since == kStanding) {
+    // On a busy computer it may also stand where it turns round, 3 mm and degrees away.
+    const std::size_t n = motors.size();
+    if (k - since == kStanding && n < 2 * kPoses && largest_difference(all[k], c.poses[n / 2]) < 1) {
       motors.push_back(all[k]);
       standing.push_back(slide);
     }
@@ -225,13 +235,14 @@ void judge_circle(const Case& c, const std::string& file) {
     before.add((c.actual(uncompensated.follow(between)) - path.back()).norm());
   }
   Slides slides(c);
-  std::size_t on = 0, since = 0;
+  std::size_t on = 0, since = 0, turning = 0;
   bool started = false;
   const std::vector<Positions> all = trace(file);
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Positions& slide = slides.follow(all[k]);
     if (k > 0 && all[k] != all[k - 1]) since = k;
-    started = started || k - since == kStanding;  // it stands where the curve begins
+    // It stands where the curve begins.
+    started = started || (k - since == kStanding && largest_difference(all[k], circle(0)) < 1);
     if (!started) continue;
     const Eigen::Vector3d tool = c.actual(slide);
     double nearest = std::numeric_limits<double>::infinity();
@@ -245,14 +256,16 @@ void judge_circle(const Case& c, const std::string& file) {
     }
     on = best > 4 ? std::max(on, best - 4) : on;
     after.add(nearest);
+    turning += nearest > 2.5e-3;
   }
   if (!started || on + 10 < path.size() - 1) fail("LinuxCNC does not go round the curve");
   std::printf(
       "curve of five axes, %zu cycles: tool error mean %.1f um, largest %.1f um; compensated, from the path: mean "
-      "%.2f um, largest %.2f um\n",
-      after.count, 1e3 * before.mean(), 1e3 * before.largest, 1e3 * after.mean(), 1e3 * after.largest);
-  if (!(after.mean() < before.mean() / 20) || !(after.largest < before.largest / 10))
-    fail("the program is not compensated");
+      "%.2f um, largest %.2f um; %zu cycles more than 2.5 um from it, where axes turn round\n",
+      after.count, 1e3 * before.mean(), 1e3 * before.largest, 1e3 * after.mean(), 1e3 * after.largest, turning);
+  if (!(after.mean() < before.mean() / 20)) fail("the program is not compensated");
+  // LinuxCNC takes up play once an axis has turned round, within cycles.
+  if (!(after.largest < before.largest / 6) || turning > 150) fail("the program is not compensated where axes turn");
 }
 
 }  // namespace
