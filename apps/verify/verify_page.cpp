@@ -149,10 +149,10 @@ nlohmann::json piece_rows(const PieceResult& piece) {
   add("Flank at the foot, range, best fit", b.aligned.foot.range(), a.aligned.foot.range());
   add("Flank at the head, range, best fit", b.aligned.head.range(), a.aligned.head.range());
   add("Contour error, largest, best fit", b.aligned.contour.largest, a.aligned.contour.largest);
-  add("Flank at the foot, largest, as cut", b.as_cut.foot.largest(), a.as_cut.foot.largest());
-  add("Flank at the head, largest, as cut", b.as_cut.head.largest(), a.as_cut.head.largest());
-  add("Contour error, largest, as cut", b.as_cut.contour.largest, a.as_cut.contour.largest);
-  add("Contour error, mean, as cut", b.as_cut.contour.mean, a.as_cut.contour.mean);
+  add("Flank at the foot, largest, datum not probed", b.as_cut.foot.largest(), a.as_cut.foot.largest());
+  add("Flank at the head, largest, datum not probed", b.as_cut.head.largest(), a.as_cut.head.largest());
+  add("Contour error, largest, datum not probed", b.as_cut.contour.largest, a.as_cut.contour.largest);
+  add("Contour error, mean, datum not probed", b.as_cut.contour.mean, a.as_cut.contour.mean);
   return rows;
 }
 
@@ -205,7 +205,9 @@ nlohmann::json facts(const VerifyOptions& options, const VerifyResult& result, c
     add("Study", summary["study"].get<std::string>());
   }
   add("Measured with", measured_with(summary));
-  add("Identified", fmt::format("{} parameters", result.identified.errors.parameter_count()));
+  if (!summary.is_object()) {
+    add("Identified", fmt::format("{} parameters", result.identified.errors.parameter_count()));
+  }
   add("Unseen poses",
       ranges_text(result.machine, result.ranges) + (result.both_directions ? "; axes coming from either side" : ""));
   add("Data", "simulated, truth known");
@@ -239,7 +241,8 @@ nlohmann::json notes(const VerifyResult& result) {
         "Test pieces: what the axes were commanded, sample by sample, is carried out by the machine with its true "
         "errors and the play of its axes; deviations along the normals of the surface, positive where material is "
         "left. Best fit: the rigid displacement of the workpiece that explains most is taken out, as in a coordinate "
-        "measurement.");
+        "measurement. Datum not probed: where the program has the workpiece, with the displacement that an instrument "
+        "on the table cannot see and that probing takes out.");
   }
   return list;
 }
