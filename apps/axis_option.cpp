@@ -2,27 +2,48 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/number_text.h"
 
 namespace abbe {
 
-HeldAxis axis_option(const Machine& machine, const std::string& option, const std::string& text) {
+AxisNumbers axis_numbers_option(const Machine& machine, const std::string& option, const std::string& text,
+                                const std::string& expected) {
   const auto fail = [&](const std::string& problem) {
-    throw InputError({.field = option + " " + text}, problem, "AXIS_unit=position, such as C2_deg=30 or X_mm=100");
+    throw InputError({.field = option + " " + text}, problem, expected);
   };
   const std::size_t equals = text.find('='), underscore = text.rfind('_', equals);
   if (equals == std::string::npos || underscore == std::string::npos) fail("not understood");
-  const std::size_t axis = machine.find_axis(text.substr(0, underscore));
-  if (axis == Machine::npos) fail("the machine has no axis '" + text.substr(0, underscore) + "'");
-  const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
+  AxisNumbers result;
+  result.axis = machine.find_axis(text.substr(0, underscore));
+  if (result.axis == Machine::npos) fail("the machine has no axis '" + text.substr(0, underscore) + "'");
+  const bool rotary = machine.axes[result.axis].kind == AxisKind::rotary;
   const std::string unit = text.substr(underscore + 1, equals - underscore - 1);
   if (unit != (rotary ? "deg" : "mm")) fail(fmt::format("unit '{}' for a {} axis", unit, rotary ? "rotary" : "linear"));
-  double value = 0;
-  if (parse_number(std::string_view(text).substr(equals + 1), 0, value) != NumberProblem::none) fail("not a number");
-  return {axis, rotary ? value * std::numbers::pi / 180 : value};
+  result.unit = rotary ? std::numbers::pi / 180 : 1;
+  for (std::size_t start = equals + 1; start <= text.size();) {
+    const std::size_t end = std::min(text.find(':', start), text.size());
+    double value = 0;
+    if (parse_number(std::string_view(text).substr(start, end - start), 0, value) != NumberProblem::none) {
+      fail("not a number");
+    }
+    if (!(std::abs(value) <= kLargestInput)) fail("too large");
+    result.numbers.push_back(value);
+    start = end + 1;
+  }
+  return result;
+}
+
+HeldAxis axis_option(const Machine& machine, const std::string& option, const std::string& text) {
+  const std::string expected = "AXIS_unit=position, such as C2_deg=30 or X_mm=100";
+  const AxisNumbers given = axis_numbers_option(machine, option, text, expected);
+  if (given.numbers.size() != 1) throw InputError({.field = option + " " + text}, "not a number", expected);
+  return {given.axis, given.numbers[0] * given.unit};
 }
 
 }  // namespace abbe

@@ -1,11 +1,27 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "abbe/machine/inverse_plan.h"
 #include "abbe/machine/machine.h"
 
 namespace abbe {
+
+/// Numbers of an option such as "X_mm=0:1400:9", as they stand there.
+struct AxisNumbers {
+  std::size_t axis = 0;
+  double unit = 1;              ///< of a position, in mm or rad
+  std::vector<double> numbers;  ///< at least one
+};
+
+/// "AXIS_unit=a:b:..." with mm or deg.
+/// @param option    how the user calls it, for the error: "--grid"
+/// @param expected  what he should have written
+/// @throws InputError
+AxisNumbers axis_numbers_option(const Machine& machine, const std::string& option, const std::string& text,
+                                const std::string& expected);
 
 /// "C2_deg=30": an axis and its command, mm or rad. Whether it lies within the travel is not looked at.
 /// @param option  how the user calls it, for the error: "--hold"

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <numbers>
+#include <cmath>
 
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
@@ -8,9 +8,9 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/map_file.h"
 #include "abbe/formats/measurement_file.h"
-#include "abbe/formats/number_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/verify/error_map.h"
+#include "axis_option.h"
 #include "command.h"
 #include "study/job.h"
 #include "study/results.h"
@@ -28,34 +28,17 @@ struct MapOptions {
 /// "X_mm=0:1400:9" or "C_deg=30": from:to:count, or a fixed position.
 void apply_grid_option(const Machine& machine, const std::string& text, std::vector<AxisRange>& ranges,
                        std::vector<bool>& given) {
+  const std::string expected = "AXIS_unit=from:to:count or AXIS_unit=position, such as X_mm=0:1400:9";
   const auto fail = [&](const std::string& problem) {
-    throw InputError({.field = "--grid " + text}, problem,
-                     "AXIS_unit=from:to:count or AXIS_unit=position, such as X_mm=0:1400:9");
+    throw InputError({.field = "--grid " + text}, problem, expected);
   };
-  const std::size_t equals = text.find('='), underscore = text.rfind('_', equals);
-  if (equals == std::string::npos || underscore == std::string::npos) fail("not understood");
-  const std::size_t axis = machine.find_axis(text.substr(0, underscore));
-  if (axis == Machine::npos) fail("the machine has no axis '" + text.substr(0, underscore) + "'");
+  const auto [axis, unit, numbers] = axis_numbers_option(machine, "--grid", text, expected);
   if (given[axis]) fail("axis " + machine.axes[axis].name + " was given before");
   given[axis] = true;
-  const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
-  const std::string unit = text.substr(underscore + 1, equals - underscore - 1);
-  if (unit != (rotary ? "deg" : "mm")) fail(fmt::format("unit '{}' for a {} axis", unit, rotary ? "rotary" : "linear"));
-  std::vector<double> numbers;
-  std::size_t start = equals + 1;
-  while (start <= text.size()) {
-    const std::size_t end = std::min(text.find(':', start), text.size());
-    double value = 0;
-    if (parse_number(std::string_view(text).substr(start, end - start), 0, value) != NumberProblem::none)
-      fail("not a number");
-    numbers.push_back(value);
-    start = end + 1;
-  }
-  const double scale = rotary ? std::numbers::pi / 180 : 1;
   if (numbers.size() == 1) {
-    ranges[axis] = AxisRange::fixed(numbers[0] * scale);
+    ranges[axis] = AxisRange::fixed(numbers[0] * unit);
   } else if (numbers.size() == 3 && numbers[2] >= 2 && numbers[2] <= 1e6 && numbers[2] == std::floor(numbers[2])) {
-    ranges[axis] = {numbers[0] * scale, numbers[1] * scale, static_cast<std::size_t>(numbers[2]), 0};
+    ranges[axis] = {numbers[0] * unit, numbers[1] * unit, static_cast<std::size_t>(numbers[2]), 0};
   } else {
     fail("one or three numbers are needed, the count a whole number from 2 to 1,000,000");
   }

@@ -9,6 +9,7 @@ import fcntl
 import os
 import pathlib
 import pwd
+import re
 import shutil
 import signal
 import subprocess
@@ -18,7 +19,6 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 USER = "nobody"
 LOCK = pathlib.Path("/var/tmp/linuxcnc-ci.lock")
-SIGN = pathlib.Path("/tmp/linuxcnc.lock")  # by which LinuxCNC knows that it runs
 PROGRAMS_OF_LINUXCNC = {"milltask", "linuxcncsvr", "rtapi_app"}
 
 # Simulated drives: full speed within a servo cycle, so that the path is that of the program and not of the drives.
@@ -238,6 +238,15 @@ def processes_of(folder):
                 yield int(process.name), (process / "cmdline").read_bytes().split(b"\0")
 
 
+def sign_of_running():
+    """The file by which LinuxCNC knows that it runs, as its launcher names it. OSError if it does not."""
+    launcher = pathlib.Path(shutil.which("linuxcnc") or "linuxcnc").read_text(encoding="utf-8", errors="replace")
+    named = re.search(r"^LOCKFILE=(\S+)$", launcher, re.MULTILINE)
+    if named is None:
+        raise FileNotFoundError("no LOCKFILE in the launcher of LinuxCNC")
+    return pathlib.Path(named[1])
+
+
 def end_run(folder, display, process):
     """Ends the run in `folder`: its display, so that LinuxCNC tidies up, or all of it if that does not help."""
     for number, words in list(processes_of(folder)):
@@ -252,7 +261,7 @@ def end_run(folder, display, process):
                 os.kill(number, signal.SIGKILL)
         process.wait()
         with contextlib.suppress(OSError):
-            SIGN.unlink()
+            sign_of_running().unlink()
 
 
 def run(folder, display, limit_s, each=lambda: None):

@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <numbers>
 #include <stdexcept>
 
 #include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/machine_file.h"
-#include "abbe/formats/number_text.h"
 #include "abbe/formats/trace_file.h"
+#include "axis_option.h"
 #include "study/job.h"
 
 namespace abbe {
@@ -43,29 +42,14 @@ std::string found(const std::string& named, const std::string& results, const ch
 
 /// "X_mm=-100:100" or "C_deg=30".
 void apply_range(const Machine& machine, const std::string& text, std::vector<AxisRange>& ranges) {
-  const auto fail = [&](const std::string& problem) {
-    throw InputError({.field = "--range " + text}, problem,
-                     "AXIS_unit=from:to or AXIS_unit=position, such as X_mm=-100:100");
-  };
-  const std::size_t equals = text.find('='), underscore = text.rfind('_', equals);
-  if (equals == std::string::npos || underscore == std::string::npos) fail("not understood");
-  const std::size_t axis = machine.find_axis(text.substr(0, underscore));
-  if (axis == Machine::npos) fail("the machine has no axis '" + text.substr(0, underscore) + "'");
-  const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
-  const std::string unit = text.substr(underscore + 1, equals - underscore - 1);
-  if (unit != (rotary ? "deg" : "mm")) fail(fmt::format("unit '{}' for a {} axis", unit, rotary ? "rotary" : "linear"));
-  const std::size_t colon = text.find(':', equals);
-  const std::string_view all(text);
-  double from = 0, to = 0;
-  bool understood =
-      parse_number(all.substr(equals + 1, std::min(colon, text.size()) - equals - 1), 0, from) == NumberProblem::none;
-  to = from;
-  if (colon != std::string::npos) {
-    understood = parse_number(all.substr(colon + 1), 0, to) == NumberProblem::none && understood && from < to;
+  const std::string expected = "AXIS_unit=from:to or AXIS_unit=position, such as X_mm=-100:100";
+  const auto [axis, unit, numbers] = axis_numbers_option(machine, "--range", text, expected);
+  if (numbers.size() > 2 || !(numbers.size() == 1 || numbers[0] < numbers[1])) {
+    throw InputError({.field = "--range " + text}, "needs a position, or two with the larger one behind the smaller",
+                     expected);
   }
-  if (!understood) fail("needs a position, or two with the larger one behind the smaller");
-  const double scale = rotary ? std::numbers::pi / 180 : 1;
-  ranges[axis] = from == to ? AxisRange::fixed(from * scale) : AxisRange{from * scale, to * scale, 2, 0};
+  ranges[axis] =
+      numbers.size() == 1 ? AxisRange::fixed(numbers[0] * unit) : AxisRange{numbers[0] * unit, numbers[1] * unit, 2, 0};
 }
 
 PoseList unseen_poses(const VerifyOptions& options, VerifyResult& result) {

@@ -44,12 +44,8 @@ struct Case {
     scale_errors(machine, truth, {.measure = VolumetricMeasure::mean, .value_um = 100, .remove_rigid_motion = false});
     const double play[] = {0.012, 0.008, 0.006, 60e-6, 40e-6};  // mm, rad: lost motion, so negative reversal values
     for (std::size_t k = 0; k < kAxes; ++k) truth.reversals.push_back({axis(k), -play[k], 0});
-    identified = truth;
-    std::vector<double> values = truth.parameters();
     std::mt19937_64 generator(6);
-    std::normal_distribution<double> normal;
-    for (double& value : values) value *= 1 + 0.02 * normal(generator);
-    identified.set_parameters(values);
+    identified = nearly(truth, generator);
     const auto between = [&](double from, double to) {
       return std::uniform_real_distribution<double>(from, to)(generator);
     };

@@ -7,9 +7,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "abbe/errors/error_set.h"
 
 namespace abbe {
 
@@ -30,6 +33,16 @@ inline std::vector<std::vector<double>> rows(const std::string& path, std::size_
     if (row.size() == columns) all.push_back(row);
   }
   return all;
+}
+
+/// Errors as an identification could leave them: every parameter within 2 % (standard deviation) of the truth.
+inline ErrorSet nearly(const ErrorSet& truth, std::mt19937_64& generator) {
+  ErrorSet identified = truth;
+  std::vector<double> values = truth.parameters();
+  std::normal_distribution<double> normal;
+  for (double& value : values) value *= 1 + 0.02 * normal(generator);
+  identified.set_parameters(values);
+  return identified;
 }
 
 struct Mean {

@@ -40,12 +40,8 @@ struct Case {
     options.seed = 77;
     truth = random_errors(machine, options);
     scale_errors(machine, truth, {.measure = VolumetricMeasure::mean, .value_um = 100, .remove_rigid_motion = false});
-    identified = truth;
-    std::vector<double> values = truth.parameters();
     std::mt19937_64 generator(5);
-    std::normal_distribution<double> normal;
-    for (double& value : values) value *= 1 + 0.02 * normal(generator);
-    identified.set_parameters(values);
+    identified = nearly(truth, generator);
     machine.tool_offset.setZero();
     world_zero = nominal_workpiece_from_tool(machine, std::vector<double>(5, 0.0)).translation;
   }

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <vector>
 
 #include "abbe/compensate/program_move.h"
+#include "abbe/compensate/program_moves_for_test.h"
 #include "abbe/compensate/word_axes.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/machine/machine.h"
@@ -26,23 +26,7 @@ class MachineWithPlay {
   std::vector<double> commands(const ProgramMove& move, const WordValues& words) const {
     Machine machine = machine_;
     machine.tool_offset -= Eigen::Vector3d(move.tool_length[0], move.tool_length[1], move.tool_length[2]);
-    std::vector<double> axes(machine.axes.size(), 0.0);
-    for (std::size_t i = 0; i < kAxisWords; ++i) {
-      if (words_.axis[i] != Machine::npos) axes[words_.axis[i]] = words[i];
-    }
-    if (move.coordinates == ProgramCoordinates::axes) return axes;
-    // The nominal point is linear in X, Y, Z.
-    for (std::size_t i = 0; i < 3; ++i) axes[words_.axis[i]] = 0;
-    const Eigen::Vector3d zero = nominal_workpiece_from_tool(machine, axes).translation;
-    Eigen::Matrix3d by_axis;
-    for (std::size_t i = 0; i < 3; ++i) {
-      axes[words_.axis[i]] = 1;
-      by_axis.col(static_cast<Eigen::Index>(i)) = nominal_workpiece_from_tool(machine, axes).translation - zero;
-      axes[words_.axis[i]] = 0;
-    }
-    const Eigen::Vector3d solved = by_axis.inverse() * (Eigen::Vector3d(words[0], words[1], words[2]) - zero);
-    for (std::size_t i = 0; i < 3; ++i) axes[words_.axis[i]] = solved[static_cast<Eigen::Index>(i)];
-    return axes;
+    return commanded_axes(machine, words_, move.coordinates, words);
   }
 
   /// The drives go there; axes follow as far as they are carried.

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -14,6 +18,29 @@
 
 namespace abbe::test {
 
+/// Axis commands of a control's own kinematics for words.
+/// @param machine  with the tool length that is in force
+inline std::vector<double> commanded_axes(const Machine& machine, const WordAxes& word_axes,
+                                          ProgramCoordinates coordinates, const WordValues& words) {
+  std::vector<double> axes(machine.axes.size(), 0.0);
+  for (std::size_t i = 0; i < kAxisWords; ++i) {
+    if (word_axes.axis[i] != Machine::npos) axes[word_axes.axis[i]] = words[i];
+  }
+  if (coordinates == ProgramCoordinates::axes) return axes;
+  // The nominal point is linear in X, Y, Z.
+  for (std::size_t i = 0; i < 3; ++i) axes[word_axes.axis[i]] = 0;
+  const Eigen::Vector3d zero = nominal_workpiece_from_tool(machine, axes).translation;
+  Eigen::Matrix3d by_axis;
+  for (std::size_t i = 0; i < 3; ++i) {
+    axes[word_axes.axis[i]] = 1;
+    by_axis.col(static_cast<Eigen::Index>(i)) = nominal_workpiece_from_tool(machine, axes).translation - zero;
+    axes[word_axes.axis[i]] = 0;
+  }
+  const Eigen::Vector3d solved = by_axis.inverse() * (Eigen::Vector3d(words[0], words[1], words[2]) - zero);
+  for (std::size_t i = 0; i < 3; ++i) axes[word_axes.axis[i]] = solved[static_cast<Eigen::Index>(i)];
+  return axes;
+}
+
 /// A machine with errors behind a control that interpolates words: an independent route to where the tool goes.
 class ControlledMachine {
  public:
@@ -24,24 +51,7 @@ class ControlledMachine {
   RigidTransform pose(const ProgramMove& move, const WordValues& words, bool with_errors) const {
     Machine machine = machine_;
     machine.tool_offset -= Eigen::Vector3d(move.tool_length[0], move.tool_length[1], move.tool_length[2]);
-    std::vector<double> axes(machine.axes.size(), 0.0);
-    for (std::size_t i = 0; i < kAxisWords; ++i) {
-      if (words_.axis[i] != Machine::npos) axes[words_.axis[i]] = words[i];
-    }
-    if (move.coordinates == ProgramCoordinates::tool_centre) {
-      // Newton's method on nominal_workpiece_from_tool, which is linear in X, Y, Z.
-      const Eigen::Vector3d wanted(words[0], words[1], words[2]);
-      for (std::size_t i = 0; i < 3; ++i) axes[words_.axis[i]] = 0;
-      const Eigen::Vector3d zero = nominal_workpiece_from_tool(machine, axes).translation;
-      Eigen::Matrix3d by_axis;
-      for (std::size_t i = 0; i < 3; ++i) {
-        axes[words_.axis[i]] = 1;
-        by_axis.col(static_cast<Eigen::Index>(i)) = nominal_workpiece_from_tool(machine, axes).translation - zero;
-        axes[words_.axis[i]] = 0;
-      }
-      const Eigen::Vector3d solved = by_axis.inverse() * (wanted - zero);
-      for (std::size_t i = 0; i < 3; ++i) axes[words_.axis[i]] = solved[static_cast<Eigen::Index>(i)];
-    }
+    const std::vector<double> axes = commanded_axes(machine, words_, move.coordinates, words);
     return with_errors ? actual_workpiece_from_tool(machine, errors_, axes)
                        : nominal_workpiece_from_tool(machine, axes);
   }
@@ -59,6 +69,22 @@ class ControlledMachine {
   ErrorSet errors_;
   WordAxes words_;
 };
+
+/// Words and feeds of all pieces of moves that are given in batches, one after the other.
+inline std::vector<double> numbers_in_batches(MoveCorrector& correction, const std::vector<ProgramMove>& moves,
+                                              std::size_t batch) {
+  std::vector<double> numbers;
+  CorrectedPieces corrected;
+  for (std::size_t i = 0; i < moves.size(); i += batch) {
+    correction.correct({moves.data() + i, std::min(batch, moves.size() - i)}, corrected);
+    for (const CorrectedPiece& piece : corrected.pieces) {
+      numbers.insert(numbers.end(), piece.end.begin(), piece.end.end());
+      numbers.push_back(piece.feed);
+    }
+    EXPECT_EQ(corrected.first.back(), corrected.pieces.size());
+  }
+  return numbers;
+}
 
 inline WordValues between(const WordValues& a, const WordValues& b, double s) {
   WordValues words;

@@ -313,16 +313,7 @@ TEST(ProgramReversals, ResultsDoNotDependOnBatchesOrThreads) {
     ProgramCorrectionOptions options;
     options.threads = threads;
     ProgramCorrection correction(machine, errors, words, options);
-    std::vector<double> numbers;
-    CorrectedPieces corrected;
-    for (std::size_t i = 0; i < moves.size(); i += batch) {
-      correction.correct({moves.data() + i, std::min(batch, moves.size() - i)}, corrected);
-      for (const CorrectedPiece& piece : corrected.pieces) {
-        numbers.insert(numbers.end(), piece.end.begin(), piece.end.end());
-        numbers.push_back(piece.feed);
-      }
-      EXPECT_EQ(corrected.first.back(), corrected.pieces.size());
-    }
+    std::vector<double> numbers = test::numbers_in_batches(correction, moves, batch);
     taken_up = 0;
     for (const StatusCount& count : correction.report().take_ups) taken_up += count.count;
     return numbers;
