@@ -71,7 +71,10 @@ def cleanly(folder, *words):
 
 @contextlib.contextmanager
 def only_one(waiting=lambda: None):
-    """Waits until no other run of ours goes on; `waiting` is called if there is one."""
+    """Waits until no other run of ours goes on; `waiting` is called if there is one.
+
+    NotHere if a LinuxCNC runs that is not ours: starting another would end it.
+    """
     # Everybody's file, whoever came first; a system may forbid to create it a second time.
     if not LOCK.exists():
         mask = os.umask(0)
@@ -84,11 +87,14 @@ def only_one(waiting=lambda: None):
         except BlockingIOError:
             waiting()
             fcntl.flock(lock, fcntl.LOCK_EX)
+        running = running_linuxcnc(ending_s=5)
+        if running:
+            raise NotHere(f"LinuxCNC is running (process {running[0]}), and a second one would end it")
         yield
 
 
 def running_linuxcnc(ending_s=0):
-    """Process numbers of a LinuxCNC that runs, and does not end in so many seconds: starting another would end it."""
+    """Process numbers of a LinuxCNC that runs, and does not end in so many seconds."""
     end_of_waiting = time.monotonic() + ending_s
     while (found := linuxcnc_processes()) and time.monotonic() < end_of_waiting:
         time.sleep(0.1)

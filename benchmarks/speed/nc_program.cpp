@@ -18,6 +18,8 @@
 #include <string>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/formats/streamed_file.h"
+#include "abbe/formats/text_file.h"
 
 namespace {
 
@@ -59,7 +61,12 @@ void abbe_program(const std::string& path) {
   abbe::NcProgramOptions options;
   for (std::size_t k = 0; k < 6; ++k) options.start[k] = 0;
   Unchanged corrector;
-  abbe::correct_nc_program_file(path, path + ".out", options, corrector);
+  abbe::MappedFile program(path);
+  abbe::StreamedFile out(path + ".out");
+  abbe::correct_nc_program(
+      program.text(), path, options, corrector, [&](std::string_view text) { out.append(text); },
+      [&](std::size_t at) { program.forget(at); });
+  out.commit();
 }
 
 /// What anybody would write first.

@@ -109,6 +109,14 @@ def test_refusals(run):
     said = run(run.program("comp.ngc", PROGRAM), "-o", str(trace), "--comp",
                "X=" + run.program("x.comp", "0 0 0\n# a comment ends it for LinuxCNC\n1 0 0\n"), expected=2)
     check("x.comp:2: expected three numbers" in said, said)
+    said = run(run.program("comp.ngc", PROGRAM), "-o", str(trace), "--comp",
+               "X=" + run.program("y.comp", "0 0 0\n1 nan 0\n"), expected=2)
+    check("y.comp:2: expected three numbers" in said, said)
+    comp = run.program("z.comp", "0 0 0\n1 0 0\n")
+    said = run(run.program("comp.ngc", PROGRAM), "-o", comp, "--comp", "X=" + comp, expected=2)
+    check("replace neither an input" in said, said)
+    for option in ("--backlash=X=nan", "--limit-s=inf"):
+        run(run.program("comp.ngc", PROGRAM), "-o", str(trace), option, expected=2)
     check(not trace.exists(), "there is a trace of a program that was refused")
 
 
