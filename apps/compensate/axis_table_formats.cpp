@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/compensate/line_tables.h"
+#include "abbe/errors/reversal.h"
 #include "abbe/formats/table_linuxcnc.h"
 #include "abbe/formats/table_siemens.h"
 #include "compensate/reversal_words.h"

@@ -9,6 +9,7 @@
 #include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/compensate/line_tables.h"
 #include "abbe/compensate/point_correction.h"
+#include "abbe/errors/reversal.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/machine_file.h"
@@ -107,7 +108,7 @@ std::vector<double> table_uncertainties(const ErrorSet& errors, const Eigen::Mat
 /// Reversal values that are below a multiple of their standard uncertainty are taken for zero.
 void leave_out_reversals(const Machine& machine, const Eigen::MatrixXd& covariance, double times, ErrorSet& errors,
                          TableReport& report) {
-  const std::size_t first = errors.parameter_count() - 3 - errors.reversals.size();
+  const std::size_t first = first_reversal(errors);
   for (std::size_t r = 0; r < errors.reversals.size(); ++r) {
     Reversal& reversal = errors.reversals[r];
     const auto p = static_cast<Eigen::Index>(first + r);

@@ -45,12 +45,7 @@ Eigen::MatrixXd stated_variances(const ErrorSet& errors) {
   const std::vector<double> uncertainty = stated_uncertainties(errors);
   if (std::all_of(uncertainty.begin(), uncertainty.end(), [](double u) { return u == 0; })) return {};
   const auto size = static_cast<Eigen::Index>(uncertainty.size());
-  Eigen::MatrixXd variances = Eigen::MatrixXd::Zero(size, size);
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const double u = uncertainty[static_cast<std::size_t>(i)];
-    variances(i, i) = u * u;
-  }
-  return variances;
+  return Eigen::VectorXd(Eigen::VectorXd::Map(uncertainty.data(), size).cwiseAbs2()).asDiagonal();
 }
 
 }  // namespace abbe

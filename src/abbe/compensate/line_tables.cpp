@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "abbe/compensate/point_correction.h"
+#include "abbe/errors/reversal.h"
 
 namespace abbe {
 namespace {
@@ -43,13 +44,6 @@ double constant_of(const Machine& machine, const ErrorSet& errors, const std::ve
 }
 
 }  // namespace
-
-double reversal_of(const ErrorSet& errors, std::size_t axis) {
-  for (const Reversal& reversal : errors.reversals) {
-    if (reversal.axis == axis) return reversal.value;
-  }
-  return 0;
-}
 
 std::vector<double> middle_of_travel(const Machine& machine, const ErrorSet& errors) {
   std::vector<double> middle;

@@ -32,9 +32,6 @@ struct LineTables {
   std::vector<bool> within;                 ///< [tables] the tolerance is kept
 };
 
-/// Reversal value of an axis, mm or rad; 0 where the errors have none.
-double reversal_of(const ErrorSet& errors, std::size_t axis);
-
 /// Middle of the known travel of every axis; mm or rad.
 std::vector<double> middle_of_travel(const Machine& machine, const ErrorSet& errors);
 

@@ -4,8 +4,9 @@
 #include <Eigen/QR>
 #include <cmath>
 
+#include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/errors/actual_pose.h"
-#include "abbe/errors/stated_uncertainty.h"
+#include "abbe/errors/reversal.h"
 
 namespace abbe {
 namespace {
@@ -77,8 +78,9 @@ bool is_uncertain_everywhere(const Machine& machine, const ErrorSet& errors, con
 Eigen::MatrixXd parameter_covariance(const ErrorSet& errors, const Eigen::MatrixXd& covariance) {
   const auto n = static_cast<Eigen::Index>(errors.parameter_count());
   if (covariance.rows() == n) return covariance;
-  const std::vector<double> stated = stated_uncertainties(errors);
-  return Eigen::VectorXd(Eigen::VectorXd::Map(stated.data(), n).cwiseAbs2()).asDiagonal();
+  const Eigen::MatrixXd stated = stated_variances(errors);
+  if (stated.size() == 0) return Eigen::MatrixXd::Zero(n, n);
+  return stated;
 }
 
 PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
@@ -93,12 +95,12 @@ PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, 
   Eigen::MatrixXd by_parameters, by_positions;
   tool_deviation(with_tool, errors, position, deviation, &by_parameters, &by_positions);
   // An axis stands as if half of its reversal value had been commanded besides, in the direction of its approach.
-  const std::size_t first_reversal = errors.parameter_count() - 3 - errors.reversals.size();
+  const std::size_t first = first_reversal(errors);
   for (std::size_t r = 0; r < errors.reversals.size(); ++r) {
     const Reversal& reversal = errors.reversals[r];
     const Eigen::Matrix<double, 6, 1> by_value =
         0.5 * place.approach[reversal.axis] * by_positions.col(static_cast<Eigen::Index>(reversal.axis));
-    by_parameters.col(static_cast<Eigen::Index>(first_reversal + r)) = by_value;
+    by_parameters.col(static_cast<Eigen::Index>(first + r)) = by_value;
     deviation += reversal.value * by_value;
   }
   const Eigen::Matrix<double, 6, 6> spread = by_parameters * covariance * by_parameters.transpose();

@@ -8,6 +8,7 @@
 
 #include "abbe/errors/chain_kernel.h"
 #include "abbe/errors/chain_kernel_functions.h"
+#include "abbe/errors/reversal.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
@@ -88,7 +89,7 @@ struct ChainPlan::Implementation {
     for (int k = 0; k < 3; ++k) step.reference[k] = axis.point[k];
     step.has_reference = !axis.point.isZero(0);
     set_range(step, errors);
-    std::size_t parameter = errors.parameter_count() - 3 - errors.reversals.size() - errors.locations.size();
+    std::size_t parameter = first_reversal(errors) - errors.locations.size();
     for (const LocationError& location : errors.locations) {
       if (location.axis == index) {
         const int channel = is_zero_position_error(axis, location.component) ? 6 : static_cast<int>(location.component);

@@ -9,6 +9,12 @@
 
 namespace abbe {
 
+/// Index of the first reversal value among ErrorSet::parameters(); of none, where it would stand.
+std::size_t first_reversal(const ErrorSet& errors);
+
+/// Reversal value of an axis, mm or rad; 0 where the errors have none.
+double reversal_of(const ErrorSet& errors, std::size_t axis);
+
 /// Reversal at the poses of a list: a change of the commands before the chain is evaluated (see Reversal).
 ///
 /// The derivative of anything by the reversal value of an axis is therefore half the approach times the derivative by

@@ -54,6 +54,24 @@ TEST(Reversal, TheDifferenceOfBothDirectionsIsTheReversalValue) {
   EXPECT_DOUBLE_EQ(shift.shift(poses, 0, 4), -0.001);
 }
 
+TEST(Reversal, ReversalValuesStandTogetherAmongTheParameters) {
+  const Machine machine = test::three_axis_mill();
+  const std::size_t x = machine.find_axis("X"), z = machine.find_axis("Z");
+  ErrorSet errors;
+  errors.locations = {{x, Component::C, 1e-5, 0}};
+  errors.reversals = {{z, -0.008, 0}, {x, 0.002, 0}};
+  const std::vector<std::string> names = parameter_names(machine, errors);
+  const std::size_t first = first_reversal(errors);
+  ASSERT_LT(first + 1, names.size());
+  EXPECT_EQ(names[first], "reversal_Z");
+  EXPECT_EQ(names[first + 1], "reversal_X");
+  EXPECT_EQ(errors.parameters()[first], reversal_of(errors, z));
+  EXPECT_EQ(reversal_of(errors, x), 0.002);
+  EXPECT_EQ(reversal_of(errors, machine.find_axis("Y")), 0);
+  errors.reversals.clear();
+  EXPECT_EQ(parameter_names(machine, errors)[first_reversal(errors)], "tool_X");
+}
+
 TEST(Reversal, NothingActsWithoutAnApproachOrAReversal) {
   ErrorSet errors;
   PoseList poses = there_and_back();

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "abbe/compensate/compensated_inverse.h"
-#include "abbe/compensate/line_tables.h"
 #include "abbe/compensate/point_correction.h"
 #include "abbe/errors/actual_pose.h"
+#include "abbe/errors/reversal.h"
 
 namespace abbe {
 namespace {
