@@ -9,7 +9,7 @@
 #include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/compensate/line_tables.h"
 #include "abbe/compensate/point_correction.h"
-#include "abbe/errors/reversal.h"
+#include "abbe/compensate/program_uncertainty.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/machine_file.h"
@@ -103,22 +103,6 @@ std::vector<double> table_uncertainties(const ErrorSet& errors, const Eigen::Mat
     }
   }
   return largest;
-}
-
-/// Reversal values that are below a multiple of their standard uncertainty are taken for zero.
-void leave_out_reversals(const Machine& machine, const Eigen::MatrixXd& covariance, double times, ErrorSet& errors,
-                         TableReport& report) {
-  const std::size_t first = first_reversal(errors);
-  for (std::size_t r = 0; r < errors.reversals.size(); ++r) {
-    Reversal& reversal = errors.reversals[r];
-    const auto p = static_cast<Eigen::Index>(first + r);
-    const double uncertainty = std::sqrt(std::max(0.0, covariance(p, p)));
-    if (!(uncertainty > 0) || std::abs(reversal.value) >= times * uncertainty) continue;
-    report.left_out.push_back(fmt::format("{}: {:.2g} times its standard uncertainty",
-                                          reversal_name(machine, reversal.axis),
-                                          std::abs(reversal.value) / uncertainty));
-    reversal.value = 0;
-  }
 }
 
 /// What takes the reversal values that the tables do not carry.
@@ -268,7 +252,7 @@ int run_table(const TableCommand& command) {
   check_outputs(command);
   const Machine machine = read_machine(command.machine);
   const ErrorsFile file = read_errors(command.errors, machine);
-  ErrorSet errors = file.errors;
+  const ErrorSet& errors = file.errors;
   TableRequest request = request_of(command, machine, errors, format);
   TableReport report;
   report.format = &format;
@@ -276,20 +260,29 @@ int run_table(const TableCommand& command) {
   report.poses = travel_grid(machine, errors, checked_positions(command, machine), report.grid);
 
   const Eigen::MatrixXd covariance = file.covariance.size() > 0 ? file.covariance : stated_variances(errors);
-  if (covariance.size() > 0) leave_out_reversals(machine, covariance, command.times_uncertainty, errors, report);
-  ControllerTables tables = format.make(machine, errors, request);
+  // What the tables are made of; they are judged by the errors of the file.
+  ErrorSet carried = errors;
+  std::vector<LeftOutReversal> left_out;
+  if (covariance.size() > 0) {
+    left_out = leave_out_uncertain_reversals(carried, covariance, command.times_uncertainty);
+  }
+  for (const LeftOutReversal& one : left_out) {
+    report.left_out.push_back(
+        fmt::format("{}: {:.2g} times its standard uncertainty", reversal_name(machine, one.axis), one.times));
+  }
+  ControllerTables tables = format.make(machine, carried, request);
   if (command.times_uncertainty > 0 && covariance.size() == 0) {
     throw InputError({.file = command.errors}, "no standard uncertainties are stated",
                      "some, for --leave-out-below-uncertainty");
   }
   if (covariance.size() > 0) {
-    report.uncertainty = table_uncertainties(errors, covariance, tables.tables, command.times_uncertainty,
+    report.uncertainty = table_uncertainties(carried, covariance, tables.tables, command.times_uncertainty,
                                              request.left_out, report.left_out);
     if (!request.left_out.empty()) {
-      tables = format.make(machine, errors, request);
+      tables = format.make(machine, carried, request);
       std::set<std::string> none;
       std::vector<std::string> no_words;
-      report.uncertainty = table_uncertainties(errors, covariance, tables.tables, 0, none, no_words);
+      report.uncertainty = table_uncertainties(carried, covariance, tables.tables, 0, none, no_words);
     }
     ErrorMapOptions options;
     ParameterCovariance parameters;
@@ -309,10 +302,14 @@ int run_table(const TableCommand& command) {
     const PoseList few = travel_grid(machine, errors, machine.axes.size() > 3 ? 3 : 5, unused);
     TableRequest quick = request;
     quick.nodes = 33;
-    report.errors = carried_errors(
-        machine, errors, few, [&](const ErrorSet& alone) { return format.make(machine, alone, quick).correction; });
+    report.errors = carried_errors(machine, errors, few, [&](ErrorSet alone) {
+      for (Reversal& reversal : alone.reversals) {
+        for (const LeftOutReversal& one : left_out) reversal.value = reversal.axis == one.axis ? 0 : reversal.value;
+      }
+      return format.make(machine, alone, quick).correction;
+    });
   }
-  state_reversals(errors, request, report);
+  state_reversals(carried, request, report);
   look_at_limits(command, tables, report);
   const bool within =
       std::all_of(tables.tables.begin(), tables.tables.end(), [](const TableSummary& table) { return table.within; });

@@ -228,6 +228,14 @@ standard_uncertainty_um = 0.8
   const nlohmann::json left = with_play("linuxcnc", {"-o", "left", "--leave-out-below-uncertainty", "2"});
   EXPECT_THAT(left["left_out"].dump(), HasSubstr("reversal_Z: 1.2 times"));
   EXPECT_THAT(left["left_out"].dump(), Not(HasSubstr("reversal_X")));
+  // The machine has what is left out, and tables without it leave it.
+  const nlohmann::json all = with_play("linuxcnc", {"-o", "all"});
+  EXPECT_EQ(left["before"], all["before"]);
+  EXPECT_GT(left["after"]["mean_um"], all["after"]["mean_um"]);
+  EXPECT_EQ(left["ideal"], all["ideal"]);
+  EXPECT_EQ(error_named(left, "reversal_Z")["carried"], "not carried");
+  EXPECT_NEAR(error_named(left, "reversal_Z")["rms_after_um"].get<double>(), 0.5, 1e-6);
+  EXPECT_FALSE(error_named(left, "reversal_Z").contains("control"));
 }
 
 }  // namespace

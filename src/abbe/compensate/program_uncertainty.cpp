@@ -145,6 +145,20 @@ PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, 
   return result;
 }
 
+std::vector<LeftOutReversal> leave_out_uncertain_reversals(ErrorSet& errors, const Eigen::MatrixXd& covariance,
+                                                           double factor) {
+  std::vector<LeftOutReversal> left_out;
+  auto parameter = static_cast<Eigen::Index>(first_reversal(errors));
+  for (Reversal& reversal : errors.reversals) {
+    const double variance = covariance(parameter, parameter);
+    ++parameter;
+    if (!(variance > 0) || std::abs(reversal.value) >= factor * std::sqrt(variance)) continue;
+    left_out.push_back({reversal.axis, std::abs(reversal.value) / std::sqrt(variance)});
+    reversal.value = 0;
+  }
+  return left_out;
+}
+
 std::vector<std::string> leave_out_uncertain(const Machine& machine, ErrorSet& errors,
                                              const Eigen::MatrixXd& covariance, double factor) {
   std::vector<std::string> names;
@@ -169,13 +183,8 @@ std::vector<std::string> leave_out_uncertain(const Machine& machine, ErrorSet& e
     location.value = 0;
     names.push_back(location_error_name(machine, location.axis, location.component));
   }
-  for (Reversal& reversal : kept.reversals) {
-    const double variance = covariance(parameter, parameter);
-    ++parameter;
-    if (!(variance > 0) || std::abs(reversal.value) >= factor * std::sqrt(variance)) continue;
-    reversal.value = 0;
+  for (const LeftOutReversal& reversal : leave_out_uncertain_reversals(kept, covariance, factor))
     names.push_back(reversal_name(machine, reversal.axis));
-  }
   errors = kept;
   return names;
 }

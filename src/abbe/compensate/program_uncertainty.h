@@ -29,6 +29,16 @@ Eigen::MatrixXd parameter_covariance(const ErrorSet& errors, const Eigen::Matrix
 PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
                                 const ProgramPlace& place, const std::vector<bool>& moved);
 
+struct LeftOutReversal {
+  std::size_t axis = 0;
+  double times = 0;  ///< how many of its standard uncertainties the reversal value is
+};
+/// Reversal values smaller than `factor` times their own standard uncertainty are set to zero. Those without a stated
+/// uncertainty stay.
+/// @param covariance  as parameter_covariance() gives it
+std::vector<LeftOutReversal> leave_out_uncertain_reversals(ErrorSet& errors, const Eigen::MatrixXd& covariance,
+                                                           double factor);
+
 /// Error motions (all terms of one component of one axis together), location errors and reversal values that are
 /// smaller than `factor` times their own standard uncertainty everywhere on the travel: set to zero, and named. Those
 /// without a stated uncertainty stay.
