@@ -11,6 +11,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/trace_file.h"
+#include "abbe/verify/covariance_root.h"
 #include "axis_option.h"
 #include "study/job.h"
 
@@ -159,10 +160,10 @@ PieceResult verify_piece(const VerifyResult& result, const VerifyPiece& asked, d
 
 VerifyResult verify(const VerifyOptions& options) {
   VerifyResult result;
-  result.machine_file = found(options.machine, options.results, "machine.toml", "--machine");
+  const std::string machine_file = found(options.machine, options.results, "machine.toml", "--machine");
   result.errors_file = found(options.errors, options.results, "errors.toml", "--errors");
   result.truth_file = found(options.truth, options.results, "truth.errors.toml", "--truth");
-  result.machine = read_machine(result.machine_file);
+  result.machine = read_machine(machine_file);
   result.identified = read_errors(result.errors_file, result.machine);
   result.truth = read_errors(result.truth_file, result.machine);
   // Without correlations, which is the best that can be said of a file that states uncertainties only.
@@ -174,6 +175,12 @@ VerifyResult verify(const VerifyOptions& options) {
     throw InputError({.file = result.errors_file}, "states no uncertainties, and --largest-ratio asks for them",
                      "the errors.toml of an identification");
   }
+  try {
+    covariance_root(result.identified.covariance);
+  } catch (const std::invalid_argument& error) {
+    throw InputError({.file = result.errors_file, .field = "covariance"}, error.what(),
+                     "a covariance of an identification: symmetric, no variance below zero, in any direction");
+  }
   const PoseList poses = unseen_poses(options, result);
   try {
     result.poses = check_compensated_poses(result.machine, result.truth.errors, result.identified.errors,
@@ -182,13 +189,21 @@ VerifyResult verify(const VerifyOptions& options) {
     throw InputError({.file = result.errors_file}, error.what(), "errors that can be compensated on this machine");
   }
   // The best fit of the workpiece datum has six freedoms.
-  if (result.poses.after.size() < 10) {
-    throw InputError(
-        {.field = "--range"},
-        fmt::format("{} of {} poses have a result: {} outside the travel once corrected, {} where errors "
-                    "are not known",
-                    result.poses.after.size(), poses.count(), result.poses.outside_travel, result.poses.not_covered),
-        "ranges within travel and measured range, and at least 10 poses");
+  const std::size_t reached = poses.count() - result.poses.outside_travel - result.poses.not_covered;
+  if (reached < 10) {
+    throw InputError({.field = "--range"},
+                     fmt::format("{} of {} poses have a result: {} outside the travel once corrected, {} where errors "
+                                 "are not known",
+                                 reached, poses.count(), result.poses.outside_travel, result.poses.not_covered),
+                     "ranges within travel and measured range, and at least 10 poses");
+  }
+  if (result.poses.datum != BestFitStatus::ok) {
+    throw InputError({.field = "--range"},
+                     result.poses.datum == BestFitStatus::coincident
+                         ? "the tool is at one place at all poses, so the turn of the workpiece is not determined"
+                         : "the tool is on one line at all poses, so the turn of the workpiece about it is not "
+                           "determined",
+                     "ranges that spread the poses over an area, 1 mm or more across");
   }
   for (const VerifyPiece& piece : options.pieces) result.pieces.push_back(verify_piece(result, piece, options.reach));
   return result;

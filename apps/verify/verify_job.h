@@ -53,7 +53,7 @@ struct PieceResult {
 struct VerifyResult {
   Machine machine;
   ErrorsFile identified, truth;
-  std::string machine_file, errors_file, truth_file;
+  std::string errors_file, truth_file;
   std::vector<AxisRange> ranges;
   bool correlations_known = true;  ///< false: the errors file states standard uncertainties only
   bool both_directions = false;    ///< there are reversal values: axes come from either side

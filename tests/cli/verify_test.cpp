@@ -115,6 +115,21 @@ TEST_F(VerifyCommand, TracesThatAreWrongAreNamedWithLineAndField) {
   EXPECT_THAT(elsewhere.err, HasSubstr("with its sizes and centre as in abbe test-piece"));
 }
 
+TEST_F(VerifyCommand, ACovarianceThatIsNoneIsSaidToBeIt) {
+  const std::string errors = folder
+                                 .write("e.toml",
+                                        "machine = \"Trunnion mill\"\ncovariance = \"c.csv\"\n[[location]]\naxis = "
+                                        "\"Y\"\ncomponent = \"C\"\nvalue_urad = 20\n[[location]]\naxis = "
+                                        "\"Z\"\ncomponent = \"B\"\nvalue_urad = 20\n")
+                                 .string();
+  std::vector<std::string> arguments = files;
+  arguments[4] = errors;
+  folder.write("c.csv", "NOT YET");
+  const CommandResult result = abbe(arguments);
+  EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(result.err, HasSubstr("covariance: covariance is not positive semi-definite"));
+}
+
 TEST_F(VerifyCommand, WhatIsMissingOrOutOfRangeIsSaid) {
   EXPECT_THAT(abbe({"verify"}).err, HasSubstr("--machine"));
   EXPECT_THAT(abbe({"verify", "nowhere"}).err, HasSubstr("nowhere: is no folder"));
@@ -123,6 +138,11 @@ TEST_F(VerifyCommand, WhatIsMissingOrOutOfRangeIsSaid) {
   EXPECT_THAT(verify({"--range", "X_deg=0:1"}).err, HasSubstr("unit 'deg' for a linear axis"));
   EXPECT_THAT(verify({"--range", "B_deg=0:1"}).err, HasSubstr("the machine has no axis 'B'"));
   EXPECT_THAT(verify({"--range", "X_mm=5:1"}).err, HasSubstr("the larger one behind the smaller"));
+  const std::vector<std::string> line = {"--range", "A_deg=-20", "--range", "C_deg=0",
+                                         "--range", "Y_mm=0",    "--range", "Z_mm=-100"};
+  const CommandResult on_a_line = verify(line);
+  EXPECT_EQ(on_a_line.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(on_a_line.err, HasSubstr("--range: the tool is on one line at all poses"));
   EXPECT_THAT(verify({"--range", "X_mm=nan"}).err, HasSubstr("--range X_mm=nan"));
   EXPECT_EQ(verify({"cone-frustum", "--before", "a.csv"}).exit_code, ExitCode::bad_input);
 }

@@ -3,12 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
 #include "abbe/compensate/compensated_inverse.h"
+#include "abbe/errors/actual_pose.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/angle.h"
-#include "abbe/geometry/best_fit_transform.h"
 #include "abbe/verify/actual_tool.h"
 #include "abbe/verify/covariance_root.h"
 #include "abbe/verify/displacement_fields.h"
@@ -18,10 +19,58 @@ namespace {
 
 using Eigen::Index;
 
-constexpr std::uint8_t kUsed = 1, kNotCovered = 2;
+/// Points nearer to a line than this (root mean square) do not say how the workpiece is turned about it: what some
+/// micrometres of error make of that turn is no longer small against the errors of the tool's direction. mm
+constexpr double kLine = 1;
+
+/// What becomes of a command that is corrected.
+enum class Reach { reached, outside_travel, not_covered };
+
+/// Commands for identified errors, with their reversal values where the list knows the approach.
+/// @param reach  becomes [poses]
+PoseList corrected_commands(const Machine& machine, const ErrorSet& identified, const PoseList& commands,
+                            std::vector<Reach>& reach) {
+  ErrorSet mean = identified;
+  mean.reversals.clear();
+  const CompensatedInverse inverse(machine, mean);
+  if (!inverse.problem().empty()) throw std::invalid_argument("corrected commands: " + inverse.problem());
+  const std::size_t count = commands.count();
+  PoseList corrected;
+  corrected.axis.assign(machine.axes.size(), std::vector<double>(count));
+  std::vector<const double*> from;
+  std::vector<double*> to;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    from.push_back(commands.axis[i].data());
+    to.push_back(corrected.axis[i].data());
+  }
+  std::vector<CorrectionStatus> status(count);
+  CorrectedArrays arrays;
+  arrays.axis = to;
+  arrays.status = status.data();
+  inverse.correct({from, count}, arrays);
+  reach.assign(count, Reach::outside_travel);
+  for (std::size_t k = 0; k < count; ++k) {
+    const CorrectionStatus at = status[k];
+    if (at == CorrectionStatus::reached || at == CorrectionStatus::orientation_left ||
+        at == CorrectionStatus::turn_limited) {
+      reach[k] = Reach::reached;
+    } else if (at == CorrectionStatus::not_covered) {
+      reach[k] = Reach::not_covered;
+    }
+  }
+  const ReversalShift reversal(identified);
+  if (reversal.acts_on(commands)) {
+    for (std::size_t i = 0; i < corrected.axis.size(); ++i) {
+      for (std::size_t k = 0; k < count; ++k) corrected.axis[i][k] -= reversal.shift(commands, i, k);
+    }
+  }
+  corrected.approach = commands.approach;
+  return corrected;
+}
 
 /// The tools of used poses after the best fit of the workpiece datum, against where they should be.
 struct Left {
+  BestFitStatus status = BestFitStatus::not_run;  ///< not ok: nothing else is there
   Eigen::Matrix3Xd displacement;
   std::vector<double> norm, angle;
 };
@@ -32,8 +81,11 @@ Left left_after_datum(const ToolPlaces& actual, const ToolPlaces& wanted, const 
     source.emplace_back(actual.point.col(static_cast<Index>(k)));
     target.emplace_back(wanted.point.col(static_cast<Index>(k)));
   }
-  const RigidTransform datum = best_fit_transform(source, target).target_from_source;
+  const BestFitTransform fit = best_fit_transform(source, target, {}, kLine);
   Left left;
+  left.status = fit.status;
+  if (fit.status != BestFitStatus::ok) return left;
+  const RigidTransform& datum = fit.target_from_source;
   left.displacement.resize(3, static_cast<Index>(used.size()));
   for (std::size_t n = 0; n < used.size(); ++n) {
     const auto k = static_cast<Index>(used[n]);
@@ -46,24 +98,20 @@ Left left_after_datum(const ToolPlaces& actual, const ToolPlaces& wanted, const 
 }
 
 /// Adds what reversal values do to the columns of their parameters: half the approach times the derivative by the
-/// axis's command, by differences.
+/// axis's command.
 void add_reversal_columns(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
                           const std::vector<std::size_t>& used, Eigen::MatrixXd& by_parameter) {
   const ReversalShift reversal(errors);
   if (!reversal.acts_on(commands)) return;
-  constexpr double kStep = 1e-3;
-  for (std::size_t p = 0; p < errors.parameter_count(); ++p) {
-    const std::size_t axis = reversal.axis_of(p);
-    if (axis == ReversalShift::npos) continue;
-    PoseList up, down;
-    up.axis = down.axis = commands.axis;
-    for (double& value : up.axis[axis]) value += kStep;
-    for (double& value : down.axis[axis]) value -= kStep;
-    const ToolPlaces above = actual_tool(machine, errors, up), below = actual_tool(machine, errors, down);
-    for (std::size_t n = 0; n < used.size(); ++n) {
-      const auto k = static_cast<Index>(used[n]);
+  Deviation deviation;
+  Eigen::MatrixXd by_positions;
+  for (std::size_t n = 0; n < used.size(); ++n) {
+    tool_deviation(machine, errors, commands.pose(used[n]), deviation, nullptr, &by_positions);
+    for (std::size_t p = 0; p < errors.parameter_count(); ++p) {
+      const std::size_t axis = reversal.axis_of(p);
+      if (axis == ReversalShift::npos) continue;
       by_parameter.block<3, 1>(3 * static_cast<Index>(n), static_cast<Index>(p)) =
-          0.5 * commands.approach[axis][used[n]] * (above.point.col(k) - below.point.col(k)) / (2 * kStep);
+          0.5 * commands.approach[axis][used[n]] * by_positions.col(static_cast<Index>(axis)).head<3>();
     }
   }
 }
@@ -105,46 +153,6 @@ double CompensatedPoses::uncertainty_ratio() const {
   return uncertainty_statistics.rms > 0 ? after_statistics.rms / uncertainty_statistics.rms : 0;
 }
 
-PoseList corrected_commands(const Machine& machine, const ErrorSet& identified, const PoseList& commands,
-                            std::vector<std::uint8_t>& used) {
-  ErrorSet mean = identified;
-  mean.reversals.clear();
-  const CompensatedInverse inverse(machine, mean);
-  if (!inverse.problem().empty()) throw std::invalid_argument("corrected commands: " + inverse.problem());
-  const std::size_t count = commands.count();
-  PoseList corrected;
-  corrected.axis.assign(machine.axes.size(), std::vector<double>(count));
-  std::vector<const double*> from;
-  std::vector<double*> to;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    from.push_back(commands.axis[i].data());
-    to.push_back(corrected.axis[i].data());
-  }
-  std::vector<CorrectionStatus> status(count);
-  CorrectedArrays arrays;
-  arrays.axis = to;
-  arrays.status = status.data();
-  inverse.correct({from, count}, arrays);
-  used.assign(count, 0);
-  for (std::size_t k = 0; k < count; ++k) {
-    const CorrectionStatus at = status[k];
-    if (at == CorrectionStatus::reached || at == CorrectionStatus::orientation_left ||
-        at == CorrectionStatus::turn_limited) {
-      used[k] = kUsed;
-    } else if (at == CorrectionStatus::not_covered) {
-      used[k] = kNotCovered;
-    }
-  }
-  const ReversalShift reversal(identified);
-  if (reversal.acts_on(commands)) {
-    for (std::size_t i = 0; i < corrected.axis.size(); ++i) {
-      for (std::size_t k = 0; k < count; ++k) corrected.axis[i][k] -= reversal.shift(commands, i, k);
-    }
-  }
-  corrected.approach = commands.approach;
-  return corrected;
-}
-
 CompensatedPoses check_compensated_poses(const Machine& machine, const ErrorSet& truth, const ErrorSet& identified,
                                          const Eigen::MatrixXd& covariance, const PoseList& commands) {
   if (commands.axis.size() != machine.axes.size()) {
@@ -155,28 +163,28 @@ CompensatedPoses check_compensated_poses(const Machine& machine, const ErrorSet&
     throw std::invalid_argument("compensated poses: the covariance does not fit the errors");
   }
   CompensatedPoses result;
-  const PoseList corrected = corrected_commands(machine, identified, commands, result.used);
+  std::vector<Reach> reach;
+  const PoseList corrected = corrected_commands(machine, identified, commands, reach);
   const ToolPlaces wanted = actual_tool(machine, ErrorSet{}, commands);
   const ToolPlaces before = actual_tool(machine, truth, commands), after = actual_tool(machine, truth, corrected);
   std::vector<std::size_t> used;
   for (std::size_t k = 0; k < commands.count(); ++k) {
-    if (result.used[k] == kNotCovered || before.covered[k] == 0 || after.covered[k] == 0) {
+    if (reach[k] == Reach::not_covered || before.covered[k] == 0 || after.covered[k] == 0) {
       ++result.not_covered;
-      result.used[k] = 0;
-    } else if (result.used[k] != kUsed) {
+    } else if (reach[k] != Reach::reached) {
       ++result.outside_travel;
     } else {
       used.push_back(k);
     }
   }
   const Left left_before = left_after_datum(before, wanted, used), left_after = left_after_datum(after, wanted, used);
+  result.datum = left_before.status != BestFitStatus::ok ? left_before.status : left_after.status;
+  if (result.datum != BestFitStatus::ok) return result;
   result.before = left_before.norm;
   result.after = left_after.norm;
   result.direction_before = left_before.angle;
   result.direction_after = left_after.angle;
-  if (covariance.size() > 0 && !used.empty()) {
-    predict(machine, identified, covariance, commands, used, left_after, result);
-  }
+  if (covariance.size() > 0) predict(machine, identified, covariance, commands, used, left_after, result);
   result.before_statistics = sample_statistics(result.before);
   result.after_statistics = sample_statistics(result.after);
   result.direction_before_statistics = sample_statistics(result.direction_before);

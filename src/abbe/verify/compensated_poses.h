@@ -1,11 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
 #include "abbe/errors/error_set.h"
 #include "abbe/errors/poses.h"
+#include "abbe/geometry/best_fit_transform.h"
 #include "abbe/machine/machine.h"
 #include "abbe/verify/statistics.h"
 
@@ -13,9 +14,11 @@ namespace abbe {
 
 /// What a compensation leaves of the errors of a machine at poses, each pose one value.
 struct CompensatedPoses {
-  std::vector<std::uint8_t> used;  ///< [poses] 0: no result there; the lists below leave it out
   std::size_t outside_travel = 0;  ///< the corrected commands leave the travel or do not reach the point
   std::size_t not_covered = 0;     ///< outside the range in which one of the errors is known
+  /// Of the workpiece datum. Where it is not ok, the turn of the workpiece is not determined by the poses, and the
+  /// lists and figures below are empty.
+  BestFitStatus datum = BestFitStatus::not_run;
 
   std::vector<double> before, after;                      ///< volumetric error, mm
   std::vector<double> direction_before, direction_after;  ///< angle of the tool's direction to the wanted one, rad
@@ -44,15 +47,9 @@ struct CompensatedPoses {
 /// (I - P) J C J' (I - P), to first order (verify/determined_part.h).
 /// @param commands    [axes][poses]; with approach where reversal values are to act
 /// @param covariance  of identified.parameters(), or 0 x 0
-/// @throws std::invalid_argument if the commands do not fit the machine or cannot be corrected at all
+/// @throws std::invalid_argument if the commands do not fit the machine or cannot be corrected at all, and as
+///         covariance_root()
 CompensatedPoses check_compensated_poses(const Machine& machine, const ErrorSet& truth, const ErrorSet& identified,
                                          const Eigen::MatrixXd& covariance, const PoseList& commands);
-
-/// Commands for identified errors, with their reversal values where the list knows the approach.
-/// @param used  becomes [poses]: 1 where the tool's point is reached, 2 outside the range in which the errors are
-/// known,
-///              0 otherwise
-PoseList corrected_commands(const Machine& machine, const ErrorSet& identified, const PoseList& commands,
-                            std::vector<std::uint8_t>& used);
 
 }  // namespace abbe

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -77,10 +78,35 @@ TEST_F(PosesOfACompensatedMachine, AnotherWorkpieceDatumChangesNothing) {
   Machine turned = machine;
   // The workpiece stands elsewhere on the table and is turned: same errors, same machine.
   turned.bed_from_workpiece.translation += Eigen::Vector3d(20, -30, 10);
+  turned.bed_from_workpiece.rotation *=
+      Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, -2, 3).normalized()).toRotationMatrix();
   const CompensatedPoses again = check_compensated_poses(turned, truth, identified, nothing, list);
   EXPECT_NEAR(again.before_statistics.mean, check.before_statistics.mean, 1e-6);
   EXPECT_NEAR(again.after_statistics.mean, check.after_statistics.mean, 1e-6);
+  EXPECT_NEAR(again.direction_before_statistics.mean, check.direction_before_statistics.mean, 1e-9);
+  EXPECT_NEAR(again.direction_after_statistics.mean, check.direction_after_statistics.mean, 1e-9);
   EXPECT_GT(check.after_statistics.mean, 0.02);
+  EXPECT_GT(check.direction_after_statistics.mean, 2e-5);
+}
+
+TEST_F(PosesOfACompensatedMachine, PosesOnALineDoNotSayHowTheWorkpieceIsTurned) {
+  ErrorSet truth = test::tens_of_micrometres(machine, 7);
+  PoseList list = poses(40);
+  const auto fix = [&](const char* axis) {
+    for (double& value : list.axis[machine.find_axis(axis)]) value = list.axis[machine.find_axis(axis)].front();
+  };
+  for (const char* const axis : {"A", "C", "Z"}) fix(axis);
+  const CompensatedPoses area = check_compensated_poses(machine, truth, identified, nothing, list);
+  EXPECT_EQ(area.datum, BestFitStatus::ok);
+  EXPECT_EQ(area.after.size(), 40u);
+  fix("Y");
+  const CompensatedPoses line = check_compensated_poses(machine, truth, identified, nothing, list);
+  EXPECT_EQ(line.datum, BestFitStatus::collinear);
+  EXPECT_TRUE(line.after.empty());
+  EXPECT_TRUE(line.direction_before.empty());
+  EXPECT_EQ(line.outside_travel + line.not_covered, 0u);
+  fix("X");
+  EXPECT_EQ(check_compensated_poses(machine, truth, identified, nothing, list).datum, BestFitStatus::coincident);
 }
 
 TEST_F(PosesOfACompensatedMachine, ThePredictionIsWhatErrorsOfThatCovarianceLeave) {
@@ -123,6 +149,26 @@ TEST_F(PosesOfACompensatedMachine, ThePredictionIsWhatErrorsOfThatCovarianceLeav
   EXPECT_NEAR(one.uncertainty_statistics.rms, 0.5e-3, 0.03e-3);
 }
 
+TEST_F(PosesOfACompensatedMachine, AReversalValueThatIsABitWrongLeavesWhatIsPredictedAtEveryPose) {
+  // Displacements by the axes of a machine without other errors, so that the first order is all there is.
+  ErrorSet only;
+  only.reversals = identified.reversals;
+  const PoseList list = poses(80);
+  const auto n = static_cast<Index>(only.parameter_count());
+  for (std::size_t r = 0; r < only.reversals.size(); ++r) {
+    const double change = machine.axes[only.reversals[r].axis].kind == AxisKind::rotary ? 2e-6 : 1e-3;
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+    const Index parameter = n - 3 - static_cast<Index>(only.reversals.size()) + static_cast<Index>(r);
+    covariance(parameter, parameter) = change * change;
+    ErrorSet truth = only;
+    truth.reversals[r].value += change;
+    const CompensatedPoses check = check_compensated_poses(machine, truth, only, covariance, list);
+    ASSERT_EQ(check.uncertainty.size(), check.after.size());
+    EXPECT_GT(check.uncertainty_statistics.maximum, 1e-4);
+    for (std::size_t k = 0; k < check.after.size(); ++k) EXPECT_NEAR(check.after[k], check.uncertainty[k], 1e-7);
+  }
+}
+
 TEST_F(PosesOfACompensatedMachine, PosesAtTheEndOfTravelAreLeftOutAndCounted) {
   PoseList list = poses(60);
   const std::size_t z = machine.find_axis("Z");
@@ -137,6 +183,9 @@ TEST_F(PosesOfACompensatedMachine, WhatDoesNotFitIsRefused) {
   EXPECT_THROW(check_compensated_poses(machine, identified, identified, nothing, PoseList{{{0}}}),
                std::invalid_argument);
   EXPECT_THROW(check_compensated_poses(machine, identified, identified, Eigen::MatrixXd::Zero(2, 2), poses(20)),
+               std::invalid_argument);
+  const auto n = static_cast<Index>(identified.parameter_count());
+  EXPECT_THROW(check_compensated_poses(machine, identified, identified, -Eigen::MatrixXd::Identity(n, n), poses(20)),
                std::invalid_argument);
 }
 
