@@ -45,10 +45,12 @@ void add_common(CLI::App& piece, TestPieceOptions& options) {
   piece.add_option("-o,--output", options.output,
                    "CSV to write: points and directions of the tool (default: standard output)");
   piece.add_option("--feed-mm-per-min", options.feed_mm_per_min, "Feed of the middle of the tool's end")
+      ->check(CLI::Range(0.001, 1e6))
       ->capture_default_str();
   piece
       .add_option("--chord-um", options.chord_um,
                   "Largest distance of the tool's path from the lines between its points")
+      ->check(CLI::Range(0.001, 1000.0))
       ->capture_default_str();
   piece.add_flag("--force", options.force, "Replace an existing file");
 }

@@ -40,6 +40,18 @@ TEST_F(TestPieceCommand, AnExistingFileStaysAndWrongSizesAreSaid) {
   const CommandResult wrong = abbe({"test-piece", "s-shape", "--tool-diameter-mm", "60"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("a tool too thick for the inner curve"));
+  const auto refused = [&](const std::string& piece, const std::string& option, const char* value) {
+    const CommandResult result = abbe({"test-piece", piece, option, value});
+    EXPECT_EQ(result.exit_code, 2) << option;
+    EXPECT_THAT(result.err, HasSubstr(option));
+  };
+  for (const char* const option : {"--base-diameter-mm", "--tool-diameter-mm", "--height-mm", "--azimuth-deg",
+                                   "--half-apex-deg", "--inclination-deg", "--feed-mm-per-min", "--chord-um"}) {
+    refused("cone-frustum", option, "1e300");
+  }
+  for (const char* const option : {"--length-mm", "--amplitude-mm", "--lean-deg", "--twist-deg"}) {
+    refused("s-shape", option, "1e300");
+  }
 }
 
 TEST_F(TestPieceCommand, TheCurveIsPrintedWithoutAFile) {

@@ -116,15 +116,18 @@ TEST_F(VerifyCommand, TracesThatAreWrongAreNamedWithLineAndField) {
 }
 
 TEST_F(VerifyCommand, ACovarianceThatIsNoneIsSaidToBeIt) {
-  const std::string errors = folder
-                                 .write("e.toml",
-                                        "machine = \"Trunnion mill\"\ncovariance = \"c.csv\"\n[[location]]\naxis = "
-                                        "\"Y\"\ncomponent = \"C\"\nvalue_urad = 20\n[[location]]\naxis = "
-                                        "\"Z\"\ncomponent = \"B\"\nvalue_urad = 20\n")
-                                 .string();
+  const std::string errors =
+      folder
+          .write("e.toml",
+                 "covariance = \"c.csv\"\n[[location]]\nname = \"EC0Y\"\nvalue_urad = 20\n[[location]]\nname = "
+                 "\"EB0Z\"\nvalue_urad = 20\n")
+          .string();
   std::vector<std::string> arguments = files;
   arguments[4] = errors;
-  folder.write("c.csv", "NOT YET");
+  // A correlation of 2.
+  folder.write("c.csv",
+               "parameter,unit,EC0Y,EB0Z,tool_X,tool_Y,tool_Z\nEC0Y,urad,1,2,0,0,0\nEB0Z,urad,2,1,0,0,0\n"
+               "tool_X,um,0,0,0,0,0\ntool_Y,um,0,0,0,0,0\ntool_Z,um,0,0,0,0,0\n");
   const CommandResult result = abbe(arguments);
   EXPECT_EQ(result.exit_code, ExitCode::bad_input);
   EXPECT_THAT(result.err, HasSubstr("covariance: covariance is not positive semi-definite"));

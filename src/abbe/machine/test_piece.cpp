@@ -32,11 +32,22 @@ void add(TestPiece& piece, const Ruling& ruling, double feed) {
   piece.curve.points.back().working = piece.curve.points.size() > 1;
 }
 
+/// More points than a control takes; a program of them would be some 100 MB.
+constexpr double kMostPieces = 1e6;
+
+/// @throws std::invalid_argument if it is not finite or so large that the sizes are mistaken
+std::size_t count_of(double wanted, std::size_t least) {
+  if (!(wanted <= kMostPieces)) {
+    throw std::invalid_argument("test piece: a tolerance for which a million points are enough");
+  }
+  return std::max(least, static_cast<std::size_t>(std::ceil(wanted)));
+}
+
 /// Pieces of equal parameter over a curve of so much turning and such a radius, each within the tolerance of its chord.
 std::size_t pieces(double turning, double radius, double tolerance) {
   // Sagitta r (1 - cos(a / 2)) of an arc of the angle a.
   const double angle = 2 * std::acos(std::max(0.0, 1 - tolerance / radius));
-  return std::max<std::size_t>(8, static_cast<std::size_t>(std::ceil(turning / angle)));
+  return count_of(turning / angle, 8);
 }
 
 /// The S with what its normals need.
@@ -124,7 +135,7 @@ TestPiece s_shape(const SShape& shape) {
     bend = std::max(bend, (tool_at(s - kStep) - 2 * tool_at(s) + tool_at(s + kStep)).norm() / (kStep * kStep));
   }
   const double wanted = 1.01 * std::sqrt(bend / (8 * shape.chord_tolerance));
-  const auto count = std::max<std::size_t>(16, static_cast<std::size_t>(std::ceil(wanted)));
+  const std::size_t count = count_of(wanted, 16);
   for (std::size_t k = 0; k <= count; ++k) {
     const double s = static_cast<double>(k) / static_cast<double>(count);
     Ruling ruling;
@@ -135,16 +146,6 @@ TestPiece s_shape(const SShape& shape) {
     add(piece, ruling, shape.feed);
   }
   return piece;
-}
-
-FlankDeviation flank_deviation(const TestPiece& piece, std::size_t index, const Vector3d& point,
-                               const Vector3d& direction) {
-  const Ruling& ruling = piece.rulings.at(index);
-  const CurvePoint& wanted = piece.curve.points.at(index);
-  const double length = (ruling.head + piece.tool_radius * ruling.head_normal - wanted.point).norm();
-  const Vector3d at_foot = point - wanted.point;
-  const Vector3d at_head = at_foot + length * (direction - wanted.direction);
-  return {ruling.foot_normal.dot(at_foot), ruling.head_normal.dot(at_head)};
 }
 
 }  // namespace abbe

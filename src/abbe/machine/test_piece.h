@@ -46,7 +46,8 @@ struct ConeFrustum {
   double chord_tolerance = 0.001;  ///< mm, of the base circle from the chords between the points
 };
 
-/// @throws std::invalid_argument for sizes that make no frustum: height up to the apex, angles outside 0 to 90 degrees
+/// @throws std::invalid_argument for sizes that make no frustum: height up to the apex, angles outside 0 to 90 degrees;
+///         for a tolerance that takes more than a million points
 TestPiece cone_frustum(const ConeFrustum& frustum);
 
 /// Wall with a foot in the shape of an S whose lean changes along it: the tool axis has to swing from one side to the
@@ -69,18 +70,9 @@ struct SShape {
   double chord_tolerance = 0.001;                      ///< mm, of the foot from the chords between the points
 };
 
-/// @throws std::invalid_argument for sizes that make no wall, and a tool too thick for the inner curve
+/// @throws std::invalid_argument for sizes that make no wall, a tool too thick for the inner curve, and a tolerance
+/// that
+///         takes more than a million points
 TestPiece s_shape(const SShape& shape);
-
-/// What the flank of a tool that is not where it should be leaves on the surface: displacement of the tool at the ends
-/// of a ruling, along the normals there; positive: material is left.
-struct FlankDeviation {
-  double foot = 0;  ///< mm
-  double head = 0;  ///< mm
-};
-
-/// @param point, direction  of the actual tool while it should cut ruling `index` (workpiece frame, mm; unit)
-FlankDeviation flank_deviation(const TestPiece& piece, std::size_t index, const Eigen::Vector3d& point,
-                               const Eigen::Vector3d& direction);
 
 }  // namespace abbe

@@ -142,27 +142,21 @@ TEST(TestPiece, ATrunnionMillFollowsBothWithAllAxesInMotion) {
   }
 }
 
-TEST(TestPiece, DeviationIsThatOfTheToolAcrossTheSurface) {
-  const TestPiece piece = s_shape({});
-  const std::size_t k = 40;
-  const CurvePoint& tool = piece.curve.points[k];
-  const Ruling& ruling = piece.rulings[k];
-  FlankDeviation deviation = flank_deviation(piece, k, tool.point, tool.direction);
-  EXPECT_NEAR(deviation.foot, 0, 1e-12);
-  EXPECT_NEAR(deviation.head, 0, 1e-12);
-  deviation = flank_deviation(piece, k, tool.point + 0.01 * ruling.foot_normal, tool.direction);
-  EXPECT_NEAR(deviation.foot, 0.01, 1e-12);
-  EXPECT_NEAR(deviation.head, 0.01 * ruling.foot_normal.dot(ruling.head_normal), 1e-12);
-  // A shift along the tool leaves nothing.
-  deviation = flank_deviation(piece, k, tool.point + 0.01 * (ruling.head - ruling.foot).normalized(), tool.direction);
-  EXPECT_NEAR(deviation.foot, 0, 1e-12);
-  // A turn about the foot shows at the head.
-  const Vector3d across = ruling.head_normal.cross(tool.direction).normalized();
-  const Vector3d turned = Eigen::AngleAxisd(-1e-4, across) * tool.direction;
-  deviation = flank_deviation(piece, k, tool.point, turned);
-  EXPECT_NEAR(deviation.foot, 0, 1e-12);
-  const double length = (ruling.head + piece.tool_radius * ruling.head_normal - tool.point).norm();
-  EXPECT_NEAR(std::abs(deviation.head), 1e-4 * length, 1e-3 * 1e-4 * length);
+TEST(TestPiece, MorePointsThanAnybodyWantsAreRefused) {
+  ConeFrustum frustum;
+  frustum.chord_tolerance = 1e-12;
+  EXPECT_THROW(cone_frustum(frustum), std::invalid_argument);
+  frustum.chord_tolerance = 1e-300;  // the angle of a chord is zero then
+  EXPECT_THROW(cone_frustum(frustum), std::invalid_argument);
+  frustum = {};
+  frustum.base_diameter = 1e300;
+  EXPECT_THROW(cone_frustum(frustum), std::invalid_argument);
+  SShape shape;
+  shape.chord_tolerance = 1e-12;
+  EXPECT_THROW(s_shape(shape), std::invalid_argument);
+  shape = {};
+  shape.length = 1e300;
+  EXPECT_THROW(s_shape(shape), std::invalid_argument);
 }
 
 TEST(TestPiece, SizesThatMakeNoPieceAreRefused) {

@@ -42,11 +42,9 @@ Roundness cone_roundness(const ConeFrustum& frustum, const PieceDeviation& devia
   result.evaluated = true;
   result.centre = circle.centre;
   result.radius_deviation = circle.radius - nominal;
-  for (std::size_t n = 0; n < values.size(); ++n) {
-    result.angle.push_back(all.angle[n]);
-    result.radial.push_back(radius_about(all, n, circle.centre) - circle.radius);
-  }
-  const auto [lowest, highest] = std::minmax_element(result.radial.begin(), result.radial.end());
+  std::vector<double> radii;
+  for (std::size_t n = 0; n < values.size(); ++n) radii.push_back(radius_about(all, n, circle.centre));
+  const auto [lowest, highest] = std::minmax_element(radii.begin(), radii.end());
   result.roundness = *highest - *lowest;
   return result;
 }

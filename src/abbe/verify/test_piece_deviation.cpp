@@ -236,9 +236,10 @@ PieceFigures piece_figures(const PieceDeviation& deviation, bool best_fit) {
   figures.foot_left = deviation.foot;
   figures.head_left = deviation.head;
   const std::vector<double> weight = weights(deviation.along);
+  SmallMotion contour_datum;
   if (best_fit) {
     figures.datum = fit_flank(deviation, weight);
-    figures.contour_datum = fit_contour(deviation, weight);
+    contour_datum = fit_contour(deviation, weight);
   }
   double sum = 0, all = 0;
   for (std::size_t n = 0; n < deviation.rows.size(); ++n) {
@@ -248,7 +249,7 @@ PieceFigures piece_figures(const PieceDeviation& deviation, bool best_fit) {
       figures.head_left[n] -= deviation.head_normal.col(k).dot(figures.datum.at(deviation.head_point.col(k)));
     }
     Vector3d off = deviation.contour.col(k);
-    if (best_fit) off -= figures.contour_datum.at(deviation.tool.col(k));
+    if (best_fit) off -= contour_datum.at(deviation.tool.col(k));
     const Vector3d tangent = deviation.tangent.col(k);
     const double distance = (off - tangent.dot(off) * tangent).norm();
     figures.contour.largest = std::max(figures.contour.largest, distance);

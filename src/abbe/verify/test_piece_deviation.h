@@ -28,7 +28,7 @@ struct PieceDeviation {
 
   std::vector<std::size_t> rows;              ///< [n] of the samples
   std::vector<double> along;                  ///< [n] place along the curve of the functional point, increasing
-  std::vector<double> foot, head;             ///< [n] flank deviation, positive: material is left (flank_deviation())
+  std::vector<double> foot, head;             ///< [n] flank deviation, positive: material is left
   Eigen::Matrix3Xd contour;                   ///< [3, n] functional point from the nearest place of its curve
   Eigen::Matrix3Xd foot_point, head_point;    ///< [3, n] of the surface there
   Eigen::Matrix3Xd foot_normal, head_normal;  ///< [3, n] unit, out of the material
@@ -43,6 +43,9 @@ struct PieceDeviation {
 /// points of the curve as dense as the figures are to be fine (ConeFrustum::chord_tolerance). A sample counts where the
 /// tool moves along the curve, nearer to it than `reach`: not on the way to its first point, nor behind the last one,
 /// nor at rest.
+///
+/// What the flank leaves at an end of a ruling is the displacement of the tool there along the normal: at the foot of
+/// the functional point, at the head of the point of the tool's axis beside it, which a wrong direction displaces too.
 /// @param actual  tool in the order of time, workpiece frame
 /// @param reach   mm, larger than the errors of the machine and smaller than the way between the bows of the piece
 PieceDeviation test_piece_deviation(const TestPiece& piece, const ToolPlaces& actual, double reach = 1);
@@ -64,7 +67,6 @@ struct PieceFigures {
   FlankFigures foot, head;
   PieceContour contour;
   SmallMotion datum;                         ///< taken out of foot and head
-  SmallMotion contour_datum;                 ///< taken out of the contour
   std::vector<double> foot_left, head_left;  ///< [n] deviations that the figures are of, mm
 };
 
@@ -79,7 +81,6 @@ struct Roundness {
   double roundness = 0;  ///< largest less smallest radius about the least-squares centre, mm
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< mm, from the axis of the cone; +X, as the lean turns it, first
   double radius_deviation = 0;                       ///< mean radius less nominal, mm
-  std::vector<double> angle, radial;  ///< [n] rad from that +X; radius about the centre less the mean, mm
 };
 
 /// Section of a cut cone at the height of the feet or of the heads of its rulings: a deviation d along the normal is

@@ -134,6 +134,25 @@ TEST_F(TestPieceDeviations, ADisplacedWorkpieceIsSeenAlongTheNormalsAndTakenOutB
   }
 }
 
+TEST_F(TestPieceDeviations, AToolTurnedAboutItsEndShowsAtTheHeadOnly) {
+  ToolPlaces tool = actual_tool(machine, ErrorSet{}, cone_trace);
+  const PieceDeviation still = test_piece_deviation(cone, tool);
+  for (std::size_t n = 0; n < still.rows.size(); ++n) {
+    // Across the cone the tool stands at right angles to the normal.
+    const auto row = static_cast<Index>(still.rows[n]);
+    tool.direction.col(row) =
+        (tool.direction.col(row) + 1e-4 * still.head_normal.col(static_cast<Index>(n))).normalized();
+  }
+  const PieceDeviation cut = test_piece_deviation(cone, tool);
+  ASSERT_EQ(cut.rows, still.rows);
+  const ConeFrustum sizes;
+  const double slant = sizes.height / std::cos(sizes.half_apex_angle);
+  for (std::size_t n = 0; n < cut.rows.size(); ++n) {
+    EXPECT_NEAR(cut.foot[n], still.foot[n], 1e-12);
+    EXPECT_NEAR(cut.head[n] - still.head[n], 1e-4 * slant, 1e-6);
+  }
+}
+
 TEST_F(TestPieceDeviations, AZeroPositionErrorOfALinearAxisMakesItsPatternThroughTheRotaryAxes) {
   const std::size_t x = machine.find_axis("X");
   ErrorSet errors;
