@@ -76,7 +76,7 @@ const abbe::MachinePlanes& planes() {
       axis.travel_max = -axis.travel_min;
     }
     machine.axes[0].endless = true;
-    return abbe::MachinePlanes(machine, abbe::word_axes_by_name(machine), {});
+    return abbe::MachinePlanes(machine, abbe::word_axes_by_name(machine));
   }();
   return made;
 }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -8,6 +10,7 @@
 #include "abbe/compensate/program_correction.h"
 #include "abbe/compensate/program_uncertainty.h"
 #include "abbe/compensate/tool_centre_moves.h"
+#include "abbe/errors/reversal.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
@@ -41,6 +44,14 @@ void state_uncertainties(const Machine& machine, const ErrorsFile& errors, const
   };
   result.largest = at(result.report.largest_shift);
   for (std::size_t i = 0; i < machine.axes.size(); ++i) result.by_axis.push_back(at(result.report.by_axis[i]));
+  for (const ReversalAxis& axis : result.reversals) {
+    auto parameter = static_cast<Eigen::Index>(first_reversal(errors.errors));
+    for (const Reversal& reversal : errors.errors.reversals) {
+      if (reversal.axis == axis.axis)
+        result.reversal_uncertainty.push_back(std::sqrt(std::max(0.0, covariance(parameter, parameter))));
+      ++parameter;
+    }
+  }
 }
 
 int run_gcode(const GcodeOptions& options) {
@@ -53,7 +64,7 @@ int run_gcode(const GcodeOptions& options) {
   const WordAxes words = gcode_words(options, machine);
   NcProgramOptions text_options = gcode_text_options(options, machine, words);
   const AllowedProblems allowed = allowed_problems(options);
-  const MachinePlanes planes(machine, words, {});
+  const MachinePlanes planes(machine, words);
   text_options.planes = &planes;
   text_options.tool_centre = options.tool_centre;
 
@@ -84,11 +95,6 @@ int run_gcode(const GcodeOptions& options) {
       });
   result.report = correction.report();
   result.reversals = correction.reversals();
-  for (const ReversalAxis& axis : result.reversals) {
-    for (const Reversal& reversal : errors.errors.reversals) {
-      if (reversal.axis == axis.axis) result.reversal_uncertainty.push_back(reversal.standard_uncertainty);
-    }
-  }
   if (result.report.impossible.count > 0) {
     throw InputError({.file = options.program, .line = result.report.impossible.line[0]},
                      "a tool centre move, for which the machine has no solution here",
@@ -136,9 +142,11 @@ void add_compensate_gcode(CLI::App& compensate, CommandLine& line) {
       ->add_option("--orientation-tolerance-urad", options->orientation_tolerance_urad,
                    "the same for the direction of the tool")
       ->capture_default_str();
-  command->add_option("--reversal-dead-band-um", options->dead_band_um,
-                      "axes with reversal values have turned round when they have come back by more than this "
-                      "(default: an eighth of the tolerance, in which it is then; else it comes on top)");
+  command->add_option(
+      "--reversal-dead-band-um", options->dead_band_um,
+      "axes with reversal values have turned round when they have come back by more than this "
+      "(default: an eighth of the tolerance, in which it is then; else it comes on top); of rotary axes at "
+      "the longest lever of the tool in force");
   command->add_option("--limit-um", options->limit_um,
                       "corrections of the functional point above it are refused and nothing is written");
   command->add_option("--leave-out-below-uncertainty", options->leave_out_factor,

@@ -67,7 +67,9 @@ void print_reversals(const Machine& machine, const GcodeResult& result) {
     }
     fmt::print(": taken up {} time{}", taken_up.count, taken_up.count == 1 ? "" : "s");
     if (taken_up.count > 0) fmt::print(", {}", lines_text(taken_up));
-    fmt::print("; dead band {}\n", reversal_size(machine, axis.axis, axis.dead_band));
+    // Longer tools make it smaller for rotary axes.
+    const bool rotary = machine.axes[axis.axis].kind == AxisKind::rotary;
+    fmt::print("; dead band {}{}\n", rotary ? "at most " : "", reversal_size(machine, axis.axis, axis.dead_band));
     if (unknown.count > 0) {
       fmt::print("  nothing is added before {} has moved: {} pose{}, {}\n", machine.axes[axis.axis].name, unknown.count,
                  unknown.count == 1 ? "" : "s", lines_text(unknown));
@@ -142,7 +144,9 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
           "their path",
           1e3 * report.largest_bend.value),
       "not-proven");
-  add(report.play_with_spindle, false, "threads or taps on a machine with reversal values, which they cannot take up",
+  add(report.play_with_spindle, false,
+      "threads or taps in which axes with reversal values turn round, which cannot be taken up there (where they "
+      "turn round for a correction only, a larger --reversal-dead-band-um)",
       nullptr);
   add(report.not_proven, allowed.not_proven, "path between corrected poses not proven to stay within the tolerance",
       "not-proven");

@@ -11,6 +11,8 @@
 #include "abbe/compensate/machine_planes.h"
 #include "abbe/compensate/machine_with_play_for_test.h"
 #include "abbe/compensate/program_moves_for_test.h"
+#include "abbe/compensate/program_uncertainty.h"
+#include "abbe/errors/reversal.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/linuxcnc_for_test.h"
 #include "abbe/formats/machine_file.h"
@@ -160,7 +162,7 @@ TEST_F(CompensateGcode, TheToolFollowsATiltedPlane) {
       abbe({"compensate", "gcode", "tilted.ngc", "--machine", machine, "--errors", errors, "-o", "out.ngc"});
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   const Machine read = read_machine(machine);
-  const MachinePlanes planes(read, word_axes_by_name(read), {});
+  const MachinePlanes planes(read, word_axes_by_name(read));
   expect_followed(moves_of(folder.path() / "tilted.ngc", false, &planes), moves_of(folder.path() / "out.ngc"), 1.1e-3);
 }
 
@@ -263,6 +265,22 @@ standard_uncertainty_urad = 2
   EXPECT_EQ(json.at("reversals")[0].at("value_um"), -9);
   EXPECT_EQ(json.at("reversals")[0].at("dead_band_um"), 0.125);
   EXPECT_GT(json.at("reversals")[0].at("taken_up").at("count"), 1);
+}
+
+TEST_F(CompensateGcode, UncertaintiesOfReversalValuesAreThoseOfTheCovariance) {
+  const Machine read = read_machine(machine);
+  ErrorsFile contents = read_errors(errors, read);
+  contents.errors.reversals = {{read.find_axis("C"), -55e-6, 2e-6}, {read.find_axis("X"), -0.009, 0}};
+  contents.covariance = parameter_covariance(contents.errors, {});
+  const auto first = static_cast<Eigen::Index>(first_reversal(contents.errors));
+  contents.covariance(first, first) = 3e-6 * 3e-6;
+  contents.covariance(first + 1, first + 1) = 0.0007 * 0.0007;
+  write_errors(folder.path() / "c.errors.toml", read, contents);
+  const CommandResult result = abbe({"compensate", "gcode", (kExamples / "compensate/plate.ngc").string(), "--machine",
+                                     machine, "--errors", "c.errors.toml", "--dry-run"});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("reversal of C -55 urad, standard uncertainty 3 urad: taken up "));
+  EXPECT_THAT(result.out, HasSubstr("reversal of X -9 um, standard uncertainty 0.7 um: taken up "));
 }
 
 TEST_F(CompensateGcode, ADryRunWritesNothing) {

@@ -15,7 +15,7 @@ void AxisDirections::stand(std::size_t i, double position) {
   state.seen = true;
 }
 
-bool AxisDirections::move(std::size_t i, double position) {
+void AxisDirections::move(std::size_t i, double position) {
   State& state = state_[i];
   if (!state.seen) stand(i, position);
   const std::int8_t before = state.direction;
@@ -23,11 +23,10 @@ bool AxisDirections::move(std::size_t i, double position) {
   if (before >= 0 && position < state.highest - state.dead_band) state.direction = -1;
   if (state.direction != before) {
     state.lowest = state.highest = position;
-    return true;
+    return;
   }
   state.lowest = std::min(state.lowest, position);
   state.highest = std::max(state.highest, position);
-  return false;
 }
 
 }  // namespace abbe

@@ -35,11 +35,13 @@ class AxisDirections {
   /// @param dead_bands  [axes followed] mm or rad
   explicit AxisDirections(const std::vector<double>& dead_bands);
 
+  /// From the next motion on; mm or rad.
+  void set_dead_band(std::size_t i, double dead_band) { state_[i].dead_band = dead_band; }
+
   /// The axis stands at a place to which it came in a way that was not seen.
   void stand(std::size_t i, double position);
-  /// The axis moves there straight from where it is.
-  /// @returns true if its direction is another one from where it is on
-  bool move(std::size_t i, double position);
+  /// The axis moves there straight from where it is; a new direction lasts from where it is on.
+  void move(std::size_t i, double position);
 
   std::int8_t direction(std::size_t i) const { return state_[i].direction; }
   bool stands(std::size_t i) const { return state_[i].seen; }

@@ -7,14 +7,21 @@
 namespace abbe {
 namespace {
 
+/// Moves an axis; true if that is another direction than before.
+bool turns(AxisDirections& directions, double position) {
+  const int before = directions.direction(0);
+  directions.move(0, position);
+  return directions.direction(0) != before;
+}
+
 TEST(AxisDirections, BeforeItMovesByMoreThanTheDeadBandAnAxisHasNone) {
   AxisDirections directions({0.5, 0.5});
   directions.stand(0, 10);
-  EXPECT_FALSE(directions.move(0, 10.4));
-  EXPECT_FALSE(directions.move(0, 9.95));
+  EXPECT_FALSE(turns(directions, 10.4));
+  EXPECT_FALSE(turns(directions, 9.95));
   EXPECT_EQ(directions.direction(0), 0);
   // From the highest place so far, not from where it began.
-  EXPECT_TRUE(directions.move(0, 9.85));
+  EXPECT_TRUE(turns(directions, 9.85));
   EXPECT_EQ(directions.direction(0), -1);
   EXPECT_TRUE(directions.stands(0));
   EXPECT_FALSE(directions.stands(1));
@@ -23,20 +30,31 @@ TEST(AxisDirections, BeforeItMovesByMoreThanTheDeadBandAnAxisHasNone) {
 TEST(AxisDirections, GoingBackByLessThanTheDeadBandIsNoReversal) {
   AxisDirections directions({0.5});
   directions.stand(0, 0);
-  EXPECT_TRUE(directions.move(0, 3));
-  EXPECT_FALSE(directions.move(0, 2.6));
-  EXPECT_FALSE(directions.move(0, 2.9));
-  EXPECT_FALSE(directions.move(0, 3.1));
-  EXPECT_FALSE(directions.move(0, 2.65));
-  EXPECT_TRUE(directions.move(0, 2.5));
+  EXPECT_TRUE(turns(directions, 3));
+  EXPECT_FALSE(turns(directions, 2.6));
+  EXPECT_FALSE(turns(directions, 2.9));
+  EXPECT_FALSE(turns(directions, 3.1));
+  EXPECT_FALSE(turns(directions, 2.65));
+  EXPECT_TRUE(turns(directions, 2.5));
   EXPECT_EQ(directions.direction(0), -1);
-  EXPECT_FALSE(directions.move(0, 2.5));
+  EXPECT_FALSE(turns(directions, 2.5));
   EXPECT_EQ(directions.direction(0), -1);
   // Small steps add up.
-  EXPECT_FALSE(directions.move(0, 2.7));
-  EXPECT_FALSE(directions.move(0, 2.9));
-  EXPECT_TRUE(directions.move(0, 3.1));
+  EXPECT_FALSE(turns(directions, 2.7));
+  EXPECT_FALSE(turns(directions, 2.9));
+  EXPECT_TRUE(turns(directions, 3.1));
   EXPECT_EQ(directions.direction(0), 1);
+}
+
+TEST(AxisDirections, ASmallerDeadBandHoldsFromTheNextMotionOn) {
+  AxisDirections directions({0.5});
+  directions.stand(0, 0);
+  EXPECT_TRUE(turns(directions, 3));
+  EXPECT_FALSE(turns(directions, 2.6));
+  directions.set_dead_band(0, 0.2);
+  EXPECT_EQ(directions.direction(0), 1);
+  EXPECT_TRUE(turns(directions, 2.7));
+  EXPECT_EQ(directions.direction(0), -1);
 }
 
 TEST(AxisDirections, AnAxisIsNeverBehindItsFurthestPlaceByMoreThanTheDeadBand) {
@@ -49,7 +67,7 @@ TEST(AxisDirections, AnAxisIsNeverBehindItsFurthestPlaceByMoreThanTheDeadBand) {
     int turned = 0;
     for (int k = 0; k < 5000; ++k) {
       position += normal(generator);
-      if (directions.move(0, position)) {
+      if (turns(directions, position)) {
         furthest = position;
         ++turned;
       }

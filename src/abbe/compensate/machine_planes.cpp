@@ -9,13 +9,12 @@ namespace {
 
 constexpr double kSameTurn = 1e-9;  // rad
 
-InverseOptions held_axes(const Machine& machine, const WordAxes& words, std::vector<double> rest) {
-  rest.resize(machine.axes.size(), 0.0);
+InverseOptions held_axes(const Machine& machine, const WordAxes& words) {
   InverseOptions options;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    if (!words.moves(i)) options.held.push_back({i, rest[i]});
+    if (!words.moves(i)) options.held.push_back({i, 0});
   }
-  options.reference = rest;
+  options.reference.assign(machine.axes.size(), 0.0);
   return options;
 }
 
@@ -33,10 +32,10 @@ double from_whole_turn(double angle) { return std::abs(std::remainder(angle, 2 *
 
 }  // namespace
 
-MachinePlanes::MachinePlanes(const Machine& machine, const WordAxes& words, const std::vector<double>& rest)
+MachinePlanes::MachinePlanes(const Machine& machine, const WordAxes& words)
     : machine_(machine),
-      kinematics_(machine, words, rest),
-      inverse_(machine, held_axes(machine, words, rest)),
+      kinematics_(machine, words, {}),
+      inverse_(machine, held_axes(machine, words)),
       rotary_(rotary_axes(machine, words)),
       problem_(inverse_.problem()) {
   if (!problem_.empty()) return;

@@ -21,8 +21,8 @@ namespace abbe {
 /// Source: FANUC Series 16i/18i operator's manual, tilted working plane command, "output judgement conditions".
 class MachinePlanes final : public PlaneKinematics {
  public:
-  /// @param rest  [axes] commands of axes that no word moves, mm or rad; empty: zero
-  MachinePlanes(const Machine& machine, const WordAxes& words, const std::vector<double>& rest);
+  /// Axes that no word moves rest at zero.
+  MachinePlanes(const Machine& machine, const WordAxes& words);
 
   const std::string& problem() const override { return problem_; }
   void turn_with_workpiece(const WordValues& at_zero, const std::array<double, 3>& tool,

@@ -13,7 +13,7 @@ namespace {
 std::vector<test::NamedMachine> machines_with_planes() {
   std::vector<test::NamedMachine> chosen;
   for (const test::NamedMachine& named : test::all_machines()) {
-    if (MachinePlanes(named.machine, test::words_of(named.machine), {}).problem().empty()) chosen.push_back(named);
+    if (MachinePlanes(named.machine, test::words_of(named.machine)).problem().empty()) chosen.push_back(named);
   }
   return chosen;
 }
@@ -25,7 +25,7 @@ TEST(MachinePlanes, PlacesOfTheWorkpieceTurnWithIt) {
     SCOPED_TRACE(named.name);
     ++machines;
     const WordAxes axes = test::words_of(named.machine);
-    const MachinePlanes planes(named.machine, axes, {});
+    const MachinePlanes planes(named.machine, axes);
     const test::ControlledMachine control(named.machine, {}, axes);
     for (int i = 0; i < 20; ++i) {
       ProgramMove move;
@@ -47,7 +47,7 @@ TEST(MachinePlanes, TheToolTurnsToWhereItHadBeenByTheNearestWay) {
   for (const test::NamedMachine& named : machines_with_planes()) {
     SCOPED_TRACE(named.name);
     const WordAxes axes = test::words_of(named.machine);
-    const MachinePlanes planes(named.machine, axes, {});
+    const MachinePlanes planes(named.machine, axes);
     const test::ControlledMachine control(named.machine, {}, axes);
     for (int i = 0; i < 20; ++i) {
       const WordValues target = test::random_axis_words(named.machine, axes, generator);
@@ -67,8 +67,8 @@ TEST(MachinePlanes, TheToolTurnsToWhereItHadBeenByTheNearestWay) {
 }
 
 TEST(MachinePlanes, MachinesWithoutThemSayWhy) {
-  EXPECT_NE(MachinePlanes(test::three_axis_mill(), word_axes_by_name(test::three_axis_mill()), {}).problem(), "");
-  EXPECT_NE(MachinePlanes(test::three_axis_head(), test::words_of(test::three_axis_head()), {}).problem(), "");
+  EXPECT_NE(MachinePlanes(test::three_axis_mill(), word_axes_by_name(test::three_axis_mill())).problem(), "");
+  EXPECT_NE(MachinePlanes(test::three_axis_head(), test::words_of(test::three_axis_head())).problem(), "");
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ double bound_excess(const PieceBounder& bounder, const PathTolerance& tolerance,
   const PlayBounds& play = bounder.play();
   if (!play.any || !(bound.axis_bend > 0)) return excess;
   for (std::size_t i = 0; i < kMaxAxes; ++i) {
-    if (!play.has[i] || !bounder.is_point_axis(i)) continue;
+    if (!(play.lag[i] > 0) || !bounder.is_point_axis(i)) continue;
     // A curve with |l''| <= b that goes from 0 to d leaves this interval by at most (b / 2 - d)^2 / (2 b).
     const double way =
         piece == nullptr ? 0 : std::abs(piece->to->corrected_position[i] - piece->from->corrected_position[i]);

@@ -242,7 +242,6 @@ TEST(MoveSplitting, BoundsHoldWithReversalValuesInAnyDirections) {
     play.any = true;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
       if (generator() % 4 == 0) continue;
-      play.has[i] = true;
       play.offset[i] = machine.axes[i].kind == AxisKind::rotary ? 2e-3 : 0.4;
       play.lag[i] = 1e-9;
     }

@@ -46,8 +46,7 @@ struct PieceBound {
 /// Axes that have play: their commands are offset by up to half of the reversal value in either direction.
 struct PlayBounds {
   std::array<double, kMaxAxes> offset{};  ///< of commands, mm or rad
-  std::array<double, kMaxAxes> lag{};     ///< of the actual position behind that commanded, mm or rad
-  std::array<bool, kMaxAxes> has{};       ///< the axis has a reversal value
+  std::array<double, kMaxAxes> lag{};     ///< of the actual position behind that commanded, mm or rad; 0: no play
   bool any = false;
   bool lags_count = true;  ///< as part of the tolerance
 };

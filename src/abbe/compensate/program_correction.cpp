@@ -57,9 +57,8 @@ struct ProgramCorrection::Implementation {
     if (!turns) options.tolerance.orientation = std::numeric_limits<double>::infinity();
     const bool part = !(options.reversal_dead_band > 0);
     const double dead_band = part ? kDeadBandShare * options.tolerance.position : options.reversal_dead_band;
-    const double no_limit = std::numeric_limits<double>::infinity();
     reversals = ProgramReversals(machine, errors, words, *bounder, dead_band,
-                                 part ? kDeadBandShare * options.tolerance.orientation : no_limit);
+                                 (part ? kDeadBandShare : 1) * options.tolerance.orientation);
     bounder->set_play(reversals.play(part));
   }
 
@@ -242,7 +241,6 @@ struct ProgramCorrection::Implementation {
       if (move.kind != MoveKind::rapid && !start.point_reached()) chunk.report.not_proven.add(move.line);
     }
     if (move.spindle != SpindleMove::none) {
-      if (reversals.act()) chunk.report.play_with_spindle.add(move.line);
       if (!whole) bound_single(move, i, start, end, chunk);
       whole = true;
     }
@@ -258,12 +256,26 @@ struct ProgramCorrection::Implementation {
     give_nodes(move, splitter.nodes(), splitter.shares(), chunk);
   }
 
+  /// Whether an axis with a reversal value turns round in a move with the spindle: where it begins, or where a tap
+  /// does.
+  bool turns_with_spindle(const ProgramMove& move, std::size_t i, const ProgramWay& way) const {
+    if (move.spindle == SpindleMove::none) return false;
+    const std::size_t first = way.first[i], last = way.first[i + 1] - 1;
+    return std::any_of(reversals.axes().begin(), reversals.axes().end(), [&](const ReversalAxis& axis) {
+      const std::size_t a = axis.axis;
+      const double moved = std::abs(way.nodes[last].corrected_position[a] - way.nodes[first].corrected_position[a]);
+      return way.approach[last][a] != way.approach[first][a] ||
+             (move.spindle == SpindleMove::rigid_tapping && moved > axis.dead_band);
+    });
+  }
+
   void give_steps(const ProgramMove& move, std::size_t i, Chunk& chunk) const {
     const ProgramWay& way = chunk.way;
     if (way.first[i] == way.first[i + 1]) {
       chunk.pieces.pieces.push_back({move.end, move.feed, move.feed_mode});
       return;
     }
+    if (turns_with_spindle(move, i, way)) chunk.report.play_with_spindle.add(move.line);
     const double duration = move_duration(move);
     reversals.steps(correction, move, chunk.tool[i], way, i, chunk.steps);
     WordValues at =
@@ -281,6 +293,7 @@ struct ProgramCorrection::Implementation {
         CorrectedPiece piece{step.node.corrected, move.feed, move.feed_mode};
         set_take_up_feed(move, rotary, step.way, duration * share,
                          reversals.moved(way.nodes[step.to - 1], way.nodes[step.to]), piece);
+        if (piece.feed_mode != move.feed_mode) chunk.report.inverse_time.add(move.line);
         chunk.pieces.pieces.push_back(piece);
         chunk.report.take_ups[step.taken_up].add(move.line);
       }
@@ -331,7 +344,7 @@ struct ProgramCorrection::Implementation {
       work(moves_of(c), before, *chunks[c]);
     });
     if (reversals.act()) {
-      for (std::size_t c = 0; c < count; ++c) reversals.follow(chunks[c]->way);
+      for (std::size_t c = 0; c < count; ++c) reversals.follow(moves_of(c), chunks[c]->way);
       for_each_block(count, options.threads, [&](std::size_t c) { give_all_steps(moves_of(c), *chunks[c]); });
     }
     std::size_t pieces = corrected.pieces.size();

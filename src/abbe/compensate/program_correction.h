@@ -19,8 +19,9 @@ struct ProgramCorrectionOptions {
   CorrectionOptions inverse;
   PathTolerance tolerance;        ///< of feed moves
   double rapid_tolerance = 0.01;  ///< mm, of rapid moves, whose orientation is not looked at between their ends
-  /// mm, of axes with reversal values, of rotary ones at the longest lever; 0: an eighth of the tolerance and part of
-  /// it, else what it costs comes on top of the tolerance.
+  /// mm, of axes with reversal values, of rotary ones at the longest lever of the functional point with the tool in
+  /// force and no more than the tolerance of the orientation; 0: an eighth of the tolerances and part of them, else
+  /// what it costs comes on top of them.
   double reversal_dead_band = 0;
   double limit = 0;                     ///< mm; corrections of the functional point above it are counted; 0: no limit
   std::vector<double> rest;             ///< [axes] commands of axes that no word moves, mm or rad; empty: zero
@@ -49,7 +50,7 @@ class ProgramCorrection : public MoveCorrector {
 
   /// Of all moves so far.
   const ProgramReport& report() const;
-  /// Axes whose reversal values are compensated, with their dead bands.
+  /// Axes whose reversal values are compensated, with their dead bands for the machine file's tool.
   const std::vector<ReversalAxis>& reversals() const;
   /// What makes this object unusable; empty if it is sound. Unusable, moves come back as they are.
   const std::string& problem() const;

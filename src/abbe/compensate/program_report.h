@@ -50,7 +50,7 @@ struct ProgramReport {
   ProgramPlace largest_held;      ///< mm, by which the actual point misses the place there
   StatusCount bent_with_spindle;  ///< moves with the spindle, which are not split, whose path leaves the tolerance
   ProgramPlace largest_bend;      ///< mm, by the bound of their paths
-  StatusCount play_with_spindle;  ///< moves with the spindle on a machine with reversal values
+  StatusCount play_with_spindle;  ///< moves with the spindle in which axes with reversal values turn round
   StatusCount not_proven;         ///< moves whose path could not be shown to stay within the tolerance
   StatusCount tool_changes;       ///< moves that begin where the machine stood with another tool length
   StatusCount inverse_time;       ///< moves per minute with pieces whose duration needs inverse time

@@ -3,28 +3,28 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
+
+#include "abbe/errors/random_stream.h"
 
 namespace abbe {
 namespace {
 
 constexpr double kSamePlace = 1e-6;  // mm or rad; between two ways of reckoning one
 
-/// Longest lever of the functional point about a rotary axis over the travel, mm: at places that are as good as any.
+/// Longest lever of the functional point of the machine's tool about a rotary axis over the travel, mm: at places that
+/// are as good as any.
 double longest_lever(const Machine& machine, const PieceBounder& bounder, std::size_t axis) {
   constexpr int kPlaces = 256;
-  constexpr double kUnlimited_mm = 500;
-  std::mt19937_64 generator(1);
+  RandomStream random(1);
   std::vector<double> positions(machine.axes.size());
   ChainLevers levers;
   double longest = 1;
   for (int k = 0; k < kPlaces; ++k) {
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const Axis& one = machine.axes[i];
-      const double share = static_cast<double>(generator() >> 11) * 0x1p-53;
       const bool limited = !one.endless && one.travel_max > one.travel_min;
-      const double half = one.kind == AxisKind::rotary ? std::numbers::pi : kUnlimited_mm;
-      positions[i] = limited ? one.travel_min + share * (one.travel_max - one.travel_min) : (2 * share - 1) * half;
+      const double half = one.kind == AxisKind::rotary ? std::numbers::pi : 0;
+      positions[i] = limited ? random.uniform(one.travel_min, one.travel_max) : random.uniform(-half, half);
     }
     bounder.levers(positions.data(), machine.tool_offset, levers);
     longest = std::max(longest, levers.from_line[axis]);
@@ -43,7 +43,7 @@ void ProgramWay::clear() {
 
 ProgramReversals::ProgramReversals(const Machine& machine, const ErrorSet& errors, const WordAxes& words,
                                    const PieceBounder& bounder, double dead_band, double dead_band_turn)
-    : directions_(std::vector<double>{}) {
+    : directions_(std::vector<double>{}), dead_band_(dead_band), dead_band_turn_(dead_band_turn) {
   std::vector<double> dead_bands;
   for (std::size_t i = 0; i < machine.axes.size() && !errors.reversals.empty(); ++i) {
     rotary_.push_back(machine.axes[i].kind == AxisKind::rotary);
@@ -51,8 +51,7 @@ ProgramReversals::ProgramReversals(const Machine& machine, const ErrorSet& error
   }
   for (const Reversal& reversal : errors.reversals) {
     if (reversal.value == 0 || !words.moves(reversal.axis)) continue;
-    double band = dead_band / lever_[reversal.axis];
-    if (rotary_[reversal.axis]) band = std::min(band, dead_band_turn);
+    const double band = dead_band_of(reversal.axis, 0);
     axes_.push_back({reversal.axis, reversal.value, band});
     dead_bands.push_back(band);
   }
@@ -66,14 +65,28 @@ PlayBounds ProgramReversals::play(bool lags_count) const {
   for (const ReversalAxis& axis : axes_) {
     play.offset[axis.axis] = 0.5 * std::abs(axis.value);
     play.lag[axis.axis] = axis.dead_band;
-    play.has[axis.axis] = play.any = true;
+    play.any = true;
   }
   return play;
 }
 
-void ProgramReversals::follow(ProgramWay& way) {
+double ProgramReversals::dead_band_of(std::size_t axis, double tool_length) const {
+  if (!rotary_[axis]) return dead_band_;
+  // A tool that is longer by a vector has its functional point further from any line by no more than that.
+  return std::min(dead_band_ / (lever_[axis] + tool_length), dead_band_turn_);
+}
+
+void ProgramReversals::take_tool(const std::array<double, 3>& length) {
+  if (length == tool_length_) return;
+  tool_length_ = length;
+  const double longer = Eigen::Vector3d(length[0], length[1], length[2]).norm();
+  for (std::size_t r = 0; r < axes_.size(); ++r) directions_.set_dead_band(r, dead_band_of(axes_[r].axis, longer));
+}
+
+void ProgramReversals::follow(std::span<const ProgramMove> moves, ProgramWay& way) {
   way.approach.assign(way.nodes.size(), AxisApproach{});
   for (std::size_t m = 0; m + 1 < way.first.size(); ++m) {
+    take_tool(moves[m].tool_length);
     for (std::size_t k = way.first[m]; k < way.first[m + 1]; ++k) {
       const CorrectedNode& node = way.nodes[k];
       for (std::size_t r = 0; r < axes_.size(); ++r) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -30,8 +31,9 @@ struct ProgramStep {
 
   CorrectedNode node;
   std::size_t taken_up = npos;  ///< axis
-  double way = 0;               ///< of the functional point by that axis, mm; of rotary axes at the longest lever
-  std::size_t to = 0;           ///< ProgramWay::nodes; of a take-up the end of the piece that follows
+  double way =
+      0;  ///< of the functional point by that axis, mm; of rotary axes at the longest lever of the machine's tool
+  std::size_t to = 0;  ///< ProgramWay::nodes; of a take-up the end of the piece that follows
   AxisApproach approach{};
 };
 
@@ -43,18 +45,21 @@ struct ProgramStep {
 class ProgramReversals {
  public:
   ProgramReversals() : directions_(std::vector<double>{}) {}
-  /// @param dead_band       mm; of rotary axes at the longest lever that the functional point has over the travel
+  /// @param dead_band       mm; of rotary axes at the longest lever that the functional point of the machine's tool has
+  ///                        over the travel, with ProgramMove::tool_length on top
   /// @param dead_band_turn  rad; of rotary axes no more than this
   ProgramReversals(const Machine& machine, const ErrorSet& errors, const WordAxes& words, const PieceBounder& bounder,
                    double dead_band, double dead_band_turn);
 
   bool act() const { return !axes_.empty(); }
+  /// Dead bands with the machine's own tool: with a tool length those of rotary axes are smaller.
   const std::vector<ReversalAxis>& axes() const { return axes_; }
   /// @param lags_count  the dead bands are part of the tolerance of the path
   PlayBounds play(bool lags_count) const;
 
   /// Directions at all nodes of moves that follow those given before.
-  void follow(ProgramWay& way);
+  /// @param moves  those of the way
+  void follow(std::span<const ProgramMove> moves, ProgramWay& way);
 
   /// Motions of one move. Thread-safe.
   void steps(const NodeCorrection& correction, const ProgramMove& move, std::size_t tool, const ProgramWay& way,
@@ -66,11 +71,17 @@ class ProgramReversals {
                           const CorrectedNode& node, const AxisApproach& approach) const;
 
  private:
+  /// @param tool_length  mm, of the vector by which the tool is longer than the machine's
+  double dead_band_of(std::size_t axis, double tool_length) const;
+  void take_tool(const std::array<double, 3>& length);
+
   std::vector<ReversalAxis> axes_;
   AxisDirections directions_;
-  std::vector<double> lever_;  ///< [axes] mm of the point per unit of the axis
-  std::vector<bool> rotary_;   ///< [axes]
-  std::vector<double> stood_;  ///< [axes_] commands as programmed, where the way so far ends
+  double dead_band_ = 0, dead_band_turn_ = 0;
+  std::array<double, 3> tool_length_{};  ///< mm, that the dead bands are for
+  std::vector<double> lever_;            ///< [axes] mm of the point of the machine's tool per unit of the axis
+  std::vector<bool> rotary_;             ///< [axes]
+  std::vector<double> stood_;            ///< [axes_] commands as programmed, where the way so far ends
 };
 
 }  // namespace abbe

@@ -358,5 +358,109 @@ TEST(ProgramReversals, ALargerDeadBandComesOnTopOfTheTolerance) {
   EXPECT_LT(taken_up[1], taken_up[0]);
 }
 
+TEST(ProgramReversals, TheDeadBandOfARotaryAxisIsThatOfTheToolInForce) {
+  // The machine file's tool is short, that of the program is not.
+  Machine machine = test::swivel_head_mill();
+  machine.tool_offset = {0, 0, -2};
+  machine.tool_reference = machine.axes[machine.find_axis("B")].point;
+  const std::size_t b = machine.find_axis("B");
+  const WordAxes words = test::words_of(machine);
+  ErrorSet errors;
+  errors.reversals = {{b, -400e-6, 0}};
+  std::vector<ProgramMove> moves;
+  ProgramMove move;
+  move.line = 1;
+  move.kind = MoveKind::straight;
+  move.feed = 1000;
+  move.tool_length = {0, 0, 300};
+  move.start[0] = move.end[0] = 1000;
+  move.start[2] = move.end[2] = -300;
+  move.end[4] = 0.02;
+  moves.push_back(move);
+  for (const double turn : {-390e-6, -80e-6, 300e-6, -20e-6, 0.001}) {
+    WordValues end = moves.back().end;
+    end[4] += turn;
+    moves.push_back(next_move(moves.back(), MoveKind::straight, end));
+  }
+  for (const bool wide : {false, true}) {
+    SCOPED_TRACE(wide);
+    ProgramCorrectionOptions options;
+    options.reversal_dead_band = 0.01;
+    if (wide) options.tolerance.orientation = 0.1;  // so that the lever decides
+    ProgramCorrection correction(machine, errors, words, options);
+    ASSERT_EQ(correction.problem(), "");
+    CorrectedPieces corrected;
+    correction.correct(moves, corrected);
+    EXPECT_EQ(correction.report().not_proven.count, 0U);
+    if (wide) {
+      EXPECT_NEAR(correction.reversals().at(0).dead_band, 0.01 / 2, 1e-5);
+    } else {
+      EXPECT_EQ(correction.reversals().at(0).dead_band, options.tolerance.orientation);
+    }
+    MachineWithPlay driven(machine, errors, words), plain(machine, errors, words);
+    EXPECT_LE(drive(driven, moves, corrected, 1, 4).point, kTolerance + 0.01);
+    EXPECT_GE(drive(plain, moves, as_programmed(moves), 1, 4).point, 0.05);
+    // The start and every turn back; with the wide dead band not that of the smallest motion.
+    EXPECT_EQ(correction.report().take_ups[b].count, wide ? 3U : 5U);
+  }
+}
+
+TEST(ProgramReversals, ThreadsAndTapsCountWhereTheirAxesTurnRound) {
+  const Machine machine = test::three_axis_mill();
+  const WordAxes words = test::words_of(machine);
+  const auto counted = [&](const char* axis, SpindleMove spindle, double z_before) {
+    ErrorSet errors;
+    errors.reversals = {{machine.find_axis(axis), -0.01, 0}};
+    ProgramMove there;
+    there.line = 1;
+    there.start[0] = 100;
+    there.end[0] = 110;
+    there.start[2] = z_before;
+    there.end[2] = -50;
+    ProgramMove cut = there;
+    cut.line = 2;
+    cut.kind = MoveKind::straight;
+    cut.spindle = spindle;
+    cut.feed_mode = FeedMode::per_revolution;
+    cut.feed = 1.5;
+    cut.start = cut.end = there.end;
+    cut.end[2] = -70;
+    ProgramCorrection correction(machine, errors, words);
+    CorrectedPieces corrected;
+    correction.correct(std::vector<ProgramMove>{there, cut}, corrected);
+    return correction.report().play_with_spindle.count;
+  };
+  const SpindleMove thread = SpindleMove::thread, tap = SpindleMove::rigid_tapping;
+  for (const SpindleMove spindle : {thread, tap}) {
+    EXPECT_EQ(counted("X", spindle, -60), 0U);
+    EXPECT_EQ(counted("Z", spindle, -60), 1U);
+    EXPECT_EQ(counted("Z", spindle, -50), 1U);  // the direction before is not known
+  }
+  EXPECT_EQ(counted("Z", thread, -40), 0U);
+  EXPECT_EQ(counted("Z", tap, -40), 1U);  // at the bottom
+}
+
+TEST(ProgramReversals, TakeUpsInInverseTimeAreCounted) {
+  const Machine machine = test::trunnion_mill();
+  const WordAxes words = test::words_of(machine);
+  ErrorSet errors;
+  errors.reversals = {{machine.find_axis("C"), -50e-6, 0}};
+  ProgramMove out;
+  out.line = 1;
+  out.kind = MoveKind::straight;
+  out.feed = 600;
+  out.end[0] = 20;
+  out.end[5] = 0.5;
+  const ProgramMove back = next_move(out, MoveKind::straight, out.start);
+  ProgramCorrection correction(machine, errors, words);
+  CorrectedPieces corrected;
+  correction.correct(std::vector<ProgramMove>{out, back}, corrected);
+  std::size_t in_inverse_time = 0;
+  for (const CorrectedPiece& piece : corrected.pieces) in_inverse_time += piece.feed_mode == FeedMode::inverse_time;
+  EXPECT_GE(in_inverse_time, 2U);
+  EXPECT_EQ(correction.report().inverse_time.count, in_inverse_time);
+  EXPECT_EQ(correction.report().take_ups[machine.find_axis("C")].count, 2U);
+}
+
 }  // namespace
 }  // namespace abbe

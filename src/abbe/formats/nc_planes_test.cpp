@@ -39,7 +39,7 @@ const Vector3d kOrigin(10, -20, 30);
 class TiltedPlanes : public testing::Test {
  protected:
   explicit TiltedPlanes(const Machine& given = test::trunnion_mill())
-      : machine(given), axes(test::words_of(given)), planes(given, axes, {}), control(given, {}, axes) {
+      : machine(given), axes(test::words_of(given)), planes(given, axes), control(given, {}, axes) {
     for (std::size_t k = 0; k < kAxisWords; ++k) options.words[k] = axes.axis[k] != Machine::npos;
     for (std::size_t k = 0; k < kAxisWords; ++k) options.start[k] = 0.0;
     options.tools = NcToolTable{{1, {0, 0, 50}}};
