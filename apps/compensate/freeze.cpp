@@ -23,8 +23,8 @@
 namespace abbe {
 namespace {
 
-/// A frozen compensation that differs more from the full model is not given out, mm.
-constexpr double kWorstAccuracy = 1e-6;
+/// A frozen compensation that differs more from the full model of the same errors is not given out, mm.
+constexpr double kLargestDifference = 1e-6;
 
 struct FreezeArguments {
   std::string machine, errors, output, world = "joints";
@@ -82,8 +82,8 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
     fmt::print("  largest correction of {}: {:.4g} {}\n", machine.axes[i].name,
                frozen.largest_joint[i] * (rotary ? 180 / std::numbers::pi : 1e3), rotary ? "deg" : "um");
   }
-  fmt::print("  after it, by the full model: {:.1e} mm and {:.1e} rad at most\n", frozen.accuracy,
-             frozen.accuracy_turn);
+  fmt::print("  after it, by the full model{}: {:.1e} mm and {:.1e} rad at most\n",
+             left_out.empty() ? "" : " with what is left out", frozen.accuracy, frozen.accuracy_turn);
   if (frozen.largest_uncertainty > 0) {
     fmt::print(
         "  standard uncertainty of the tool's correction: {:.2f} um on average, at most {:.2f} um; in the file to "
@@ -132,6 +132,7 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
   json["largest_joint_corrections"] = joints;
   json["accuracy_mm"] = frozen.accuracy;
   json["accuracy_rad"] = frozen.accuracy_turn;
+  json["difference_by_freezing_mm"] = frozen.difference;
   if (frozen.largest_uncertainty > 0) {
     json["largest_standard_uncertainty_um"] = 1e3 * frozen.largest_uncertainty;
     json["mean_standard_uncertainty_um"] = 1e3 * frozen.mean_uncertainty;
@@ -152,16 +153,18 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
 
 int run_freeze(const FreezeArguments& arguments) {
   const Machine machine = read_machine(arguments.machine);
-  ErrorsFile errors = read_errors(arguments.errors, machine);
+  const ErrorsFile errors = read_errors(arguments.errors, machine);
   if (!(arguments.leave_out_factor >= 0 && arguments.leave_out_factor <= 1000)) {
     throw InputError({.field = "--leave-out-below-uncertainty"}, "out of range", "0 to 1000 standard uncertainties");
   }
+  FreezeOptions options = options_of(arguments, machine, errors);
+  ErrorSet frozen_errors = errors.errors;
   std::vector<std::string> left_out;
   if (arguments.leave_out_factor > 0) {
-    left_out = leave_out_uncertain(machine, errors.errors, parameter_covariance(errors.errors, errors.covariance),
-                                   arguments.leave_out_factor);
+    left_out = leave_out_uncertain(machine, frozen_errors, options.covariance, arguments.leave_out_factor);
+    options.all_errors = errors.errors;
   }
-  const FrozenCompensation frozen = freeze(machine, errors.errors, options_of(arguments, machine, errors));
+  const FrozenCompensation frozen = freeze(machine, frozen_errors, options);
   if (!frozen.problem.empty()) throw InputError({.file = arguments.errors}, "cannot be frozen: " + frozen.problem);
   if (1e3 * frozen.largest_correction > arguments.limit_um) {
     fmt::print(stderr,
@@ -171,17 +174,17 @@ int run_freeze(const FreezeArguments& arguments) {
                frozen.tool_length_there);
     return kNegative;
   }
-  if (!(frozen.accuracy <= kWorstAccuracy)) {
+  if (!(frozen.difference <= kLargestDifference)) {
     fmt::print(stderr, "abbe: refused: the frozen compensation differs by {:.2e} mm from the full model\n",
-               frozen.accuracy);
+               frozen.difference);
     return kNegative;
   }
   write_file_atomically(arguments.output, {reinterpret_cast<const char*>(frozen.bytes.data()), frozen.bytes.size()});
   if (arguments.json) {
-    print_json(arguments, machine, errors.errors, frozen, left_out);
+    print_json(arguments, machine, frozen_errors, frozen, left_out);
   } else {
     print_result(arguments, machine, frozen, left_out);
-    print_linuxcnc_backlash(machine, errors.errors);
+    print_linuxcnc_backlash(machine, frozen_errors);
   }
   return kDone;
 }

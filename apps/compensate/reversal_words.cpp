@@ -2,20 +2,24 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string_view>
+
+#include "compensate/joint_order.h"
 
 namespace abbe {
+namespace {
+
+/// Digits of a position in mm or degrees: "0.012000".
+std::string number_in_units(double value, bool rotary) {
+  return rotary ? fmt::format("{:.7f}", value * 180 / std::numbers::pi) : fmt::format("{:.6f}", value);
+}
+
+}  // namespace
 
 std::string reversal_size(const Machine& machine, std::size_t axis, double value) {
   const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
   return fmt::format("{:.4g} {}", (rotary ? 1e6 : 1e3) * value, rotary ? "urad" : "um");
-}
-
-std::string number_in_units(double value, bool rotary) {
-  return rotary ? fmt::format("{:.7f}", value * 180 / std::numbers::pi) : fmt::format("{:.6f}", value);
 }
 
 std::string lost_motion_words(double lost_motion, bool rotary) {
@@ -24,14 +28,7 @@ std::string lost_motion_words(double lost_motion, bool rotary) {
 }
 
 std::vector<JointBacklash> linuxcnc_backlash(const Machine& machine, const ErrorSet& errors) {
-  std::vector<std::size_t> order;
-  for (const char letter : std::string_view("XYZABCUVW")) {
-    const std::size_t axis = machine.find_axis(std::string(1, letter));
-    if (axis != Machine::npos) order.push_back(axis);
-  }
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    if (std::find(order.begin(), order.end(), i) == order.end()) order.push_back(i);
-  }
+  const std::vector<std::size_t> order = joint_order(machine);
   std::vector<JointBacklash> all;
   for (std::size_t joint = 0; joint < order.size(); ++joint) {
     for (const Reversal& reversal : errors.reversals) {

@@ -11,9 +11,6 @@ namespace abbe {
 /// "-12 um", "35 urad".
 std::string reversal_size(const Machine& machine, std::size_t axis, double value);
 
-/// Digits of a position in mm or degrees: "0.012000".
-std::string number_in_units(double value, bool rotary);
-
 /// "0.012000 mm more than when the errors were measured"; less where the lost motion is below zero.
 std::string lost_motion_words(double lost_motion, bool rotary);
 

@@ -6,6 +6,7 @@
 
 #include "abbe/formats/input_error.h"
 #include "axis_option.h"
+#include "compensate/joint_order.h"
 
 namespace abbe {
 
@@ -36,14 +37,7 @@ std::vector<bool> chosen_axes(const Machine& machine, const std::vector<std::str
 
 std::vector<TableAxisName> table_axis_names(const Machine& machine, const TableFormat& format,
                                             const std::vector<std::string>& names) {
-  // Controls count their axes by letter, X Y Z A B C U V W, whatever carries what.
-  std::vector<std::size_t> order(machine.axes.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto rank = [&](std::size_t i) {
-    const std::string letters = "XYZABCUVWPQRDE";
-    return std::pair(letters.find(machine.axes[i].name[0]), machine.axes[i].name);
-  };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+  const std::vector<std::size_t> order = joint_order(machine);
   std::vector<TableAxisName> known;
   for (std::size_t k = 0; k < order.size(); ++k) {
     const Axis& axis = machine.axes[order[k]];

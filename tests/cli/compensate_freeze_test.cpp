@@ -45,6 +45,14 @@ TEST_F(CompensateFreezeTest, TheFileCarriesTheUncertaintyOfTheErrors) {
   // As `abbe compensate gcode` leaves it out.
   const auto left_out = json["left_out"].get<std::vector<std::string>>();
   EXPECT_NE(std::find(left_out.begin(), left_out.end(), "EAX"), left_out.end());
+  // The machine has what is left out, and the file names the errors that it comes from.
+  const nlohmann::json all = nlohmann::json::parse(
+      abbe({"compensate", "freeze", machine, uncertain, "-o", (folder.path() / "all.abbec").string(), "--json"}).out);
+  EXPECT_LT(all["accuracy_mm"].get<double>(), 1e-9);
+  EXPECT_GT(json["accuracy_mm"].get<double>(), 1e-4);
+  EXPECT_LT(json["difference_by_freezing_mm"].get<double>(), 1e-9);
+  EXPECT_EQ(json["source_checksum"], all["source_checksum"]);
+  EXPECT_NE(json["checksum"], all["checksum"]);
   const CommandResult without = abbe({"compensate", "freeze", machine, errors, "-o", output});
   EXPECT_NE(without.out.find("not stated by the errors file"), std::string::npos) << without.out;
 }
@@ -87,6 +95,51 @@ TEST_F(CompensateFreezeTest, ReversalValuesAreLinesForTheControlsOwnBacklash) {
   ASSERT_EQ(json["backlash"].size(), 2U);
   EXPECT_EQ(json["backlash"][0]["axis"], "Y");
   EXPECT_NEAR(json["backlash"][0]["lost_motion_mm"].get<double>(), 0.012, 1e-12);
+}
+
+TEST_F(CompensateFreezeTest, JointsAreNumberedAsInTablesAndByTheLinuxCncModule) {
+  const std::string axes = folder
+                               .write("five.machine.toml", R"(
+name = "five"
+chain = "w C1' Y' X' b Z U t"
+[axis.C1]
+endless = true
+[axis.Y]
+travel_mm = [-100, 100]
+[axis.X]
+travel_mm = [-100, 100]
+[axis.Z]
+travel_mm = [-100, 100]
+[axis.U]
+direction = [1, 0, 0]
+travel_mm = [-50, 50]
+)")
+                               .string();
+  const std::string play = folder
+                               .write("five.errors.toml", R"(
+[[reversal]]
+axis = "C1"
+value_urad = -35
+[[reversal]]
+axis = "U"
+value_um = -12
+)")
+                               .string();
+  const CommandResult result = abbe({"compensate", "freeze", axes, play, "-o", output, "--json"});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  const nlohmann::json backlash = nlohmann::json::parse(result.out)["backlash"];
+  ASSERT_EQ(backlash.size(), 2U);
+  EXPECT_EQ(backlash[0]["axis"], "U");
+  EXPECT_EQ(backlash[0]["setting"], "[JOINT_3]BACKLASH");
+  EXPECT_EQ(backlash[1]["axis"], "C1");
+  EXPECT_EQ(backlash[1]["setting"], "[JOINT_4]BACKLASH");
+  const CommandResult table = abbe({"compensate", "table", axes, play, "--for", "linuxcnc", "--dry-run", "--json"});
+  const nlohmann::json tables = nlohmann::json::parse(table.out, nullptr, false);
+  ASSERT_TRUE(tables.is_object()) << table.err;
+  for (const nlohmann::json& error : tables["errors"]) {
+    const std::string joint = error["name"] == "reversal_C1" ? "of joint 4;" : "of joint 3;";
+    EXPECT_NE(error["control"].get<std::string>().find(joint), std::string::npos) << error;
+  }
 }
 
 }  // namespace

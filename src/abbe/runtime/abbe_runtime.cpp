@@ -52,8 +52,11 @@ int flags(const abbe_runtime& machine, const FrozenCommands& nominal, const Froz
     if (!axis.endless && !(joints.q[i] >= axis.travel_min && joints.q[i] <= axis.travel_max))
       result |= ABBE_OUTSIDE_TRAVEL;
   }
+  // Of a tool of exactly one length the last digit may be another one.
+  constexpr double kSpare = 1e-9;
   const double tool_length = -dot(tool, machine.tool_direction);
-  if (enable > 0 && !(tool_length >= machine.tool_length_min && tool_length <= machine.tool_length_max))
+  if (enable > 0 &&
+      !(tool_length >= machine.tool_length_min - kSpare && tool_length <= machine.tool_length_max + kSpare))
     result |= ABBE_OUTSIDE_TOOL;
   return result;
 }
@@ -219,10 +222,12 @@ int abbe_runtime_uncertainty(const abbe_runtime* runtime, const double* joints, 
   if (runtime->uncertainty.dimensions == 0) return ABBE_NOT_STATED;
   Triple of_tool{};
   if (!tool_of(*runtime, tool, of_tool)) return ABBE_NOT_FINITE;
-  for (std::size_t i = 0; i < runtime->axes; ++i) {
-    if (!(std::abs(joints[i]) <= frozen::kLongest)) return ABBE_NOT_FINITE;
-  }
-  return runtime->uncertainty.at(joints, -dot(of_tool, runtime->tool_direction), *uncertainty_mm);
+  if (!usable(joints, runtime->axes)) return ABBE_NOT_FINITE;
+  FrozenCommands commands;
+  std::copy_n(joints, runtime->axes, commands.q.begin());
+  *uncertainty_mm = runtime->uncertainty.at(joints, -dot(of_tool, runtime->tool_direction));
+  // The lattice has not all axes and tools: what it leaves out has ends as well.
+  return flags(*runtime, commands, commands, of_tool, 1);
 }
 
 const char* abbe_runtime_text(int result) ABBE_NOEXCEPT {

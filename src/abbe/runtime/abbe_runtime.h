@@ -89,7 +89,7 @@ typedef struct abbe_runtime_information {
   double tool_length_max;       /**< mm */
   double largest_correction_mm; /**< by how much the tool point is moved, over the poses tried when the file was made */
   double largest_correction_rad; /**< by how much the tool direction is turned there */
-  double accuracy_mm;            /**< largest difference of the actual tool to where it should be, by the full model */
+  double accuracy_mm;            /**< largest difference of the actual tool to where it should be, by all errors */
   double accuracy_rad;
   int worst_iterations;
   int has_uncertainty;           /**< 1: abbe_runtime_uncertainty() works */
@@ -143,8 +143,9 @@ int abbe_runtime_uncorrect(const abbe_runtime* runtime, abbe_runtime_state* stat
 
 /** Standard uncertainty (GUM, one standard deviation) of the wholly enabled correction of the tool point at these
  * nominal joints, in the direction in which it is largest; mm. It comes from the uncertainties of the errors that were
- * frozen, linear between the nodes of a lattice over axes and tool lengths; beyond its ends it is that of the end, and
- *  ABBE_OUTSIDE_MAP or ABBE_OUTSIDE_TOOL is raised. Takes no iterations.
+ * frozen, linear between the nodes of a lattice over axes and tool lengths; beyond its ends it is that of the end.
+ *  ABBE_OUTSIDE_MAP, ABBE_OUTSIDE_TRAVEL and ABBE_OUTSIDE_TOOL are raised as for a correction, also for axes and tools
+ *  that the lattice leaves out. Takes no iterations.
  *  @return ABBE_OK with flags, ABBE_NOT_STATED, ABBE_NOT_FINITE, ABBE_NULL */
 int abbe_runtime_uncertainty(const abbe_runtime* runtime, const double* joints, const double* tool,
                              double* uncertainty_mm) ABBE_NOEXCEPT;

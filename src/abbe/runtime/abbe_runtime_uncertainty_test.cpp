@@ -7,6 +7,7 @@
 #include "abbe/runtime/allocations_for_test.h"
 #include "abbe/runtime/frozen_for_test.h"
 #include "abbe/runtime/frozen_layout.h"
+#include "abbe/runtime/frozen_uncertainty.h"
 
 namespace abbe {
 namespace {
@@ -116,7 +117,7 @@ TEST(RuntimeUncertainty, StaysAtTheEndsAndTurnsWithEndlessAxes) {
   joints[z] = -510;
   const double end = at(joints, 150, ABBE_OK);
   joints[z] = -520;
-  EXPECT_EQ(at(joints, 150, ABBE_OUTSIDE_MAP), end);
+  EXPECT_EQ(at(joints, 150, ABBE_OUTSIDE_MAP | ABBE_OUTSIDE_TRAVEL), end);
   joints[z] = -100;
   joints[c] = 0.3;
   const double turned = at(joints, 150, ABBE_OK);
@@ -127,6 +128,56 @@ TEST(RuntimeUncertainty, StaysAtTheEndsAndTurnsWithEndlessAxes) {
   EXPECT_EQ(at(joints, 150, ABBE_NOT_FINITE), -1);
   double found = 0;
   EXPECT_EQ(abbe_runtime_uncertainty(nullptr, joints.data(), nullptr, &found), ABBE_NULL);
+}
+
+TEST(RuntimeUncertainty, ToolsAndAxesThatTheLatticeLeavesOutAreFlaggedAsWell) {
+  Uncertain made;
+  made.options.tool_length_min = 100;
+  made.options.tool_length_max = 100;
+  const std::size_t x = made.machine.find_axis("X");
+  made.machine.axes[x].travel_min = made.machine.axes[x].travel_max = 20;
+  const FrozenCompensation frozen = freeze(made.machine, made.errors, made.options);
+  const test::RuntimePointer runtime = test::loaded(frozen.bytes);
+  std::vector<double> joints(made.machine.axes.size(), 0.0);
+  joints[x] = 20;
+  const auto result = [&](double length) {
+    const Eigen::Vector3d tool = -length * made.machine.tool_direction;
+    double found = 0;
+    return abbe_runtime_uncertainty(runtime.get(), joints.data(), tool.data(), &found);
+  };
+  EXPECT_EQ(result(100), ABBE_OK);
+  EXPECT_EQ(result(300), ABBE_OUTSIDE_TOOL);
+  EXPECT_EQ(result(99), ABBE_OUTSIDE_TOOL);
+  joints[x] = 21;
+  EXPECT_EQ(result(100), ABBE_OUTSIDE_TRAVEL);
+}
+
+TEST(RuntimeUncertainty, WhatTheLatticeLeavesOutIsInTheDifferenceThatIsStated) {
+  // Eight axes: the one nearest the workpiece is not in the lattice, and the uncertainty is that of a slope over it:
+  // zero in its middle.
+  Machine machine;
+  machine.name = "eight";
+  for (const char* name : {"X1", "Y1", "Z1", "X", "Y", "Z", "U", "V"}) {
+    Axis axis;
+    axis.name = name;
+    axis.side = machine.axes.empty() ? ChainSide::workpiece : ChainSide::tool;
+    axis.kind = AxisKind::linear;
+    axis.direction = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(machine.axes.size() % 3));
+    axis.travel_min = -100;
+    axis.travel_max = 100;
+    machine.axes.push_back(axis);
+  }
+  ErrorSet errors;
+  errors.motions.push_back({0, Component::X, {BasisKind::legendre, 1, -100, 100}, {0, 0}, {}});
+  FreezeOptions options;
+  options.poses = 5;
+  options.tool_length_max = 0;
+  options.covariance = Eigen::MatrixXd::Zero(5, 5);
+  options.covariance(1, 1) = 1e-6;
+  const FrozenCompensation frozen = freeze(machine, errors, options);
+  ASSERT_EQ(frozen.problem, "");
+  EXPECT_GT(frozen.largest_uncertainty, 0);
+  EXPECT_NEAR(frozen.uncertainty_lattice, frozen.largest_uncertainty, 1e-9);
 }
 
 TEST(RuntimeUncertainty, AllocatesNothing) {
@@ -158,14 +209,47 @@ TEST(RuntimeUncertainty, FilesOfTheVersionBeforeAndBrokenLatticesAreRefused) {
   old[frozen::kFormatAt] = 1;
   EXPECT_EQ(abbe_runtime_load(old.data(), old.size(), text, sizeof text, &runtime), ABBE_FILE_VERSION);
   EXPECT_STREQ(text, "the file has another version of the format: freeze the compensation again");
-  // The last value is an uncertainty; none is negative.
-  std::vector<unsigned char> negative = sound;
-  const double value = -1;
-  std::memcpy(negative.data() + negative.size() - 8, &value, sizeof value);
-  const std::uint64_t sum = frozen::checksum(negative.data(), negative.size());
-  std::memcpy(negative.data() + frozen::kChecksumAt, &sum, sizeof sum);
-  EXPECT_EQ(abbe_runtime_load(negative.data(), negative.size(), text, sizeof text, &runtime), ABBE_FILE_CONTENT);
-  EXPECT_STREQ(text, "the content of the file is not usable: uncertainty of the correction");
+  // Behind the groups, to the end: values, dimensions (five axes and the tool), one uncertainty per node.
+  using namespace frozen;
+  const auto value_at = [&](std::size_t place) {
+    double value = 0;
+    std::memcpy(&value, sound.data() + kHeaderBytes + 8 * place, sizeof value);
+    return value;
+  };
+  const std::size_t count = (sound.size() - kHeaderBytes) / 8;
+  std::size_t dimension = 0;
+  for (std::size_t at = kMachineValues; at + 6 * kDimensionValues < count && dimension == 0; ++at) {
+    double nodes = 1;
+    for (std::size_t k = 0; k < 6; ++k) nodes *= value_at(at + k * kDimensionValues + kNodes);
+    const bool ends = nodes == static_cast<double>(count - at - 6 * kDimensionValues);
+    if (ends &&
+        value_at(at + 5 * kDimensionValues + kDimensionAxis) == static_cast<double>(FrozenUncertainty::kToolLength))
+      dimension = at;
+  }
+  ASSERT_GT(dimension, 0U);
+  const std::size_t first = dimension - kUncertaintyValues;
+  ASSERT_EQ(value_at(first + kDimensions), 6);
+  const struct {
+    std::size_t place;
+    double value;
+  } changes[] = {{first + kDimensions, 9},
+                 {first + kDimensions, 5},
+                 {first + kUncertainties, -1},
+                 {dimension + kDimensionAxis, 7},
+                 {dimension + kNodes, 1},
+                 {dimension + kNodes, 1e5},
+                 {dimension + kEnds + 1, value_at(dimension + kEnds)},
+                 {dimension + kPeriodic, 2},
+                 {count - 1, -1}};
+  for (const auto& change : changes) {
+    std::vector<unsigned char> broken = sound;
+    std::memcpy(broken.data() + kHeaderBytes + 8 * change.place, &change.value, sizeof change.value);
+    const std::uint64_t sum = checksum(broken.data(), broken.size());
+    std::memcpy(broken.data() + kChecksumAt, &sum, sizeof sum);
+    EXPECT_EQ(abbe_runtime_load(broken.data(), broken.size(), text, sizeof text, &runtime), ABBE_FILE_CONTENT)
+        << change.place - first << " " << change.value;
+    EXPECT_STREQ(text, "the content of the file is not usable: uncertainty of the correction");
+  }
 }
 
 }  // namespace

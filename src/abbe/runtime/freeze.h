@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,10 @@ struct FreezeOptions {
   std::size_t poses = 4000;    ///< tried for the statement, per tool length
   /// Of all parameters of the errors, in their order (square of mm, rad); empty: the file states no uncertainty.
   Eigen::MatrixXd covariance;
-  std::size_t uncertainty_nodes = 20000;  ///< at most so many poses and tools at which the file has it
-  std::string source;                     ///< machine and errors as text, whose checksum the file keeps
-  std::string version;                    ///< of the program
+  /// Of the machine, where those that are frozen leave some out: what remains is judged by them.
+  std::optional<ErrorSet> all_errors;
+  std::string source;   ///< machine and errors as text, whose checksum the file keeps
+  std::string version;  ///< of the program
 };
 
 /// A frozen compensation and what was found by trying it against the full model at poses all over travel and map.
@@ -38,8 +40,9 @@ struct FrozenCompensation {
   std::vector<double> where;           ///< nominal commands of largest_correction; mm, rad
   double tool_length_there = 0;        ///< mm
   std::vector<double> largest_joint;   ///< [axes] largest correction of each joint, mm or rad
-  double accuracy = 0;                 ///< mm, actual tool at the compensated joints against where it should be
-  double accuracy_turn = 0;            ///< rad
+  double accuracy = 0;       ///< mm, actual tool at the compensated joints against where it should be, by all errors
+  double accuracy_turn = 0;  ///< rad
+  double difference = 0;     ///< mm, the same by the errors that are frozen: what freezing itself changes
   double largest_uncertainty = 0, mean_uncertainty = 0;  ///< mm, of the point's correction; 0: not stated
   double uncertainty_lattice = 0;  ///< mm, largest difference of the file's uncertainty from the full model's
   int worst_iterations = 0;        ///< of all calls, both directions

@@ -93,7 +93,10 @@ void freeze_check(const Machine& machine, const ErrorSet& errors, const FreezeOp
         result.largest_joint[i] = std::max(result.largest_joint[i], std::abs(joints[i] - nominal[i]));
       // Beyond the map nothing is known, by the full model neither.
       if (status == ABBE_POSITION_LEFT || !within_map(*runtime, joints)) continue;
-      const RigidTransform after = actual_workpiece_from_tool(with_tool, errors, joints);
+      const RigidTransform alone = actual_workpiece_from_tool(with_tool, errors, joints);
+      result.difference = std::max(result.difference, (alone.translation - wanted.translation).norm());
+      const RigidTransform after =
+          options.all_errors ? actual_workpiece_from_tool(with_tool, *options.all_errors, joints) : alone;
       result.accuracy = std::max(result.accuracy, (after.translation - wanted.translation).norm());
       if (status != ABBE_OK) continue;
       const double turned = angle(after.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction);

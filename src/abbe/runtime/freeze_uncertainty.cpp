@@ -14,6 +14,11 @@ namespace {
 
 using Dimension = FrozenUncertainty::Dimension;
 
+/// Poses and tools at which the file has the uncertainty, at most.
+constexpr std::size_t kNodes = 20000;
+static_assert(kNodes <= FrozenUncertainty::kMostNodes, "what is written is read again");
+static_assert(std::size_t{1} << FrozenUncertainty::kMostDimensions <= kNodes, "two nodes of each dimension have room");
+
 /// From end to end of travel and of where the errors are known.
 Dimension dimension_of(const Machine& machine, const ErrorSet& errors, std::size_t axis) {
   const Axis& a = machine.axes[axis];
@@ -73,11 +78,10 @@ double node(const Dimension& d, std::size_t i) {
   return d.from + (d.to - d.from) * static_cast<double>(i) / static_cast<double>(d.nodes - 1);
 }
 
-void choose_dimensions(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
-                       std::vector<double>& middle, std::vector<Dimension>& dimensions) {
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const Dimension d = dimension_of(machine, errors, i);
-    middle[i] = 0.5 * (d.from + d.to);
+/// @param axes  [axes] from end to end of all axes
+std::vector<Dimension> choose_dimensions(const std::vector<Dimension>& axes, const FreezeOptions& options) {
+  std::vector<Dimension> dimensions;
+  for (const Dimension& d : axes) {
     if (d.to - d.from > 1e-6) dimensions.push_back(d);
   }
   while (dimensions.size() + 1 > FrozenUncertainty::kMostDimensions) dimensions.erase(dimensions.begin());
@@ -90,12 +94,12 @@ void choose_dimensions(const Machine& machine, const ErrorSet& errors, const Fre
     for (const Dimension& d : dimensions) product *= d.nodes;
     return product;
   };
-  while (nodes() > options.uncertainty_nodes) {
+  while (nodes() > kNodes) {
     const auto largest = std::max_element(dimensions.begin(), dimensions.end(),
                                           [](const Dimension& a, const Dimension& b) { return a.nodes < b.nodes; });
-    if (largest->nodes == 2) return;
     --largest->nodes;
   }
+  return dimensions;
 }
 
 }  // namespace
@@ -103,10 +107,14 @@ void choose_dimensions(const Machine& machine, const ErrorSet& errors, const Fre
 UncertaintyLattice uncertainty_lattice(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options) {
   UncertaintyLattice lattice;
   if (options.covariance.rows() == 0 || options.covariance.isZero(0)) return lattice;
-  std::vector<double> position(machine.axes.size());
-  std::vector<Dimension>& dimensions = lattice.dimensions;
-  choose_dimensions(machine, errors, options, position, dimensions);
-  const std::vector<double> middle = position;
+  std::vector<Dimension> axes;
+  std::vector<double> position;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    axes.push_back(dimension_of(machine, errors, i));
+    position.push_back(0.5 * (axes[i].from + axes[i].to));
+  }
+  lattice.dimensions = choose_dimensions(axes, options);
+  const std::vector<Dimension>& dimensions = lattice.dimensions;
   PointUncertainty uncertainty(machine, errors, options);
 
   const bool has_lengths = dimensions.back().axis == FrozenUncertainty::kToolLength;
@@ -135,16 +143,13 @@ UncertaintyLattice uncertainty_lattice(const Machine& machine, const ErrorSet& e
   for (const double value : lattice.values) lattice.largest = std::max(lattice.largest, value);
   constexpr int kTried = 500;
   RandomStream random(11);
-  position = middle;
   for (int i = 0; i < kTried; ++i) {
-    for (std::size_t k = 0; k < turning; ++k) {
-      position[dimensions[k].axis] = random.uniform(dimensions[k].from, dimensions[k].to);
-    }
-    const double length = has_lengths ? random.uniform(options.tool_length_min, options.tool_length_max) : lengths[0];
+    // Those that the lattice leaves out as well, so that what this costs is seen.
+    for (const Dimension& d : axes) position[d.axis] = random.uniform(d.from, d.to);
+    const double length = random.uniform(options.tool_length_min, options.tool_length_max);
     std::vector<double> there;
     uncertainty.at(position, {length}, there);
-    double between = 0;
-    frozen.at(position.data(), length, between);
+    const double between = frozen.at(position.data(), length);
     lattice.mean += there[0] / kTried;
     lattice.largest = std::max(lattice.largest, there[0]);
     lattice.interpolation = std::max(lattice.interpolation, std::abs(between - there[0]));

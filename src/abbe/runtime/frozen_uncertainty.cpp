@@ -9,18 +9,14 @@ constexpr double kTurn = 6.283185307179586476925286766559;
 
 }  // namespace
 
-int FrozenUncertainty::at(const double* joints, double tool_length, double& uncertainty) const noexcept {
-  int result = ABBE_OK;
+double FrozenUncertainty::at(const double* joints, double tool_length) const noexcept {
   std::array<std::size_t, kMostDimensions> stride, first;
   std::array<double, kMostDimensions> part;
   std::size_t step = 1;
   for (std::size_t k = dimensions; k-- > 0;) {
     const Dimension& d = dimension[k];
-    const bool is_tool = d.axis == kToolLength;
-    double position = is_tool ? tool_length : joints[d.axis];
+    double position = d.axis == kToolLength ? tool_length : joints[d.axis];
     if (d.is_periodic) position -= kTurn * std::floor((position - d.from) / kTurn);
-    const double spare = 1e-9 * (d.to - d.from);
-    if (position < d.from - spare || position > d.to + spare) result |= is_tool ? ABBE_OUTSIDE_TOOL : ABBE_OUTSIDE_MAP;
     double at = (position - d.from) / (d.to - d.from) * static_cast<double>(d.nodes - 1);
     const double last = static_cast<double>(d.nodes - 1);
     if (!(at > 0)) at = 0;
@@ -44,8 +40,7 @@ int FrozenUncertainty::at(const double* joints, double tool_length, double& unce
     const std::size_t half = std::size_t{1} << k;
     for (std::size_t c = 0; c < half; ++c) corner[c] += part[k] * (corner[c + half] - corner[c]);
   }
-  uncertainty = corner[0];
-  return result;
+  return corner[0];
 }
 
 }  // namespace abbe

@@ -27,8 +27,8 @@ struct FrozenUncertainty {
 
   /// Linear between the nodes; beyond the ends as at the end.
   /// @param joints  [axes] mm, rad; finite and not beyond 1e6
-  /// @returns ABBE_OK, or with ABBE_OUTSIDE_MAP, ABBE_OUTSIDE_TOOL where it is beyond
-  int at(const double* joints, double tool_length, double& uncertainty) const noexcept;
+  /// @returns mm
+  double at(const double* joints, double tool_length) const noexcept;
 };
 
 }  // namespace abbe
