@@ -20,24 +20,39 @@ namespace {
 // A stream of its own, apart from those of the readings.
 constexpr std::uint64_t kTruthStream = 1'000'000'007;
 
-/// Poses of a file for one target.
-PoseList planned_poses(const Machine& machine, const Setup& setup, const MeasurementPlan& plan, std::size_t target) {
-  const PlannedPoses planned = read_planned_poses(plan.file, machine, setup);
+/// A pose of a file with what is measured there.
+struct PlannedTargets {
   PoseList poses;
-  poses.axis.resize(machine.axes.size());
+  std::vector<std::size_t> target;  ///< [poses]
+};
+
+/// The rows of a file in their order, each with its target, or with all of the plan where the file names none; repeated
+/// as the plan says.
+PlannedTargets planned_targets(const Machine& machine, const Setup& setup, const MeasurementPlan& plan) {
+  const PlannedPoses planned = read_planned_poses(plan.file, machine, setup);
+  PlannedTargets once;
   for (std::size_t k = 0; k < planned.poses.count(); ++k) {
-    if (planned.target.empty() || planned.target[k] == target) poses.append(planned.poses.pose(k));
+    for (const std::size_t target : planned.target.empty() ? plan.targets : std::vector{planned.target[k]}) {
+      once.poses.append(planned.poses.pose(k));
+      once.target.push_back(target);
+    }
   }
-  return poses;
+  PlannedTargets all;
+  all.poses = repeated(once.poses, plan.repeats, plan.there_and_back);
+  for (std::size_t r = 0; r < plan.repeats; ++r) {
+    if (plan.there_and_back && r % 2 == 1) {
+      all.target.insert(all.target.end(), once.target.rbegin(), once.target.rend());
+    } else {
+      all.target.insert(all.target.end(), once.target.begin(), once.target.end());
+    }
+  }
+  return all;
 }
 
 /// Poses of a plan for one target; those with points that meet are items.
 PoseList target_poses(const Machine& machine, const Setup& setup, const MeasurementPlan& plan, std::size_t target,
                       std::uint64_t seed) {
   const Instrument& device = *setup.device;
-  if (plan.kind == PlanKind::poses) {
-    return repeated(planned_poses(machine, setup, plan, target), plan.repeats, plan.there_and_back);
-  }
   if (plan.kind != PlanKind::circle && plan.kind != PlanKind::follow) return plan_poses(machine, plan, seed);
   const std::optional<MeetingPoints> points = device.meeting_points(target);
   if (!points) {
@@ -191,15 +206,23 @@ InstrumentReadings planned_readings(const Machine& machine, const Setup& setup, 
                                     std::uint64_t seed) {
   const Instrument& device = *setup.device;
   InstrumentReadings readings;
-  for (const std::size_t target : plan.targets) {
+  const auto append = [&](const std::vector<double>& pose, std::size_t target) {
+    const std::size_t item = device.item_at(machine, target, pose);
+    for (const std::vector<double>& inputs : device.planned_inputs(item)) readings.append(pose, item, inputs);
+  };
+  PlannedTargets planned;
+  if (plan.kind == PlanKind::poses) planned = planned_targets(machine, setup, plan);
+  // A file goes from row to row, whatever their targets; all other plans from target to target.
+  const std::size_t rows = planned.target.size();
+  for (std::size_t n = 0; n < (rows > 0 ? rows : plan.targets.size()); ++n) {
+    const std::size_t target = rows > 0 ? planned.target[n] : plan.targets[n];
     try {
-      const PoseList poses = target_poses(machine, setup, plan, target, seed);
-      for (std::size_t k = 0; k < poses.count(); ++k) {
-        const std::size_t item = device.item_at(machine, target, poses.pose(k));
-        for (const std::vector<double>& inputs : device.planned_inputs(item)) {
-          readings.append(poses.pose(k), item, inputs);
-        }
+      if (rows > 0) {
+        append(planned.poses.pose(n), target);
+        continue;
       }
+      const PoseList poses = target_poses(machine, setup, plan, target, seed);
+      for (std::size_t k = 0; k < poses.count(); ++k) append(poses.pose(k), target);
     } catch (const std::invalid_argument& error) {
       throw InputError({.file = setup.name, .field = "plan"},
                        fmt::format("{}: {}", device.target_names()[target], error.what()),

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <filesystem>
+
 namespace abbe {
 namespace {
 
@@ -99,6 +102,52 @@ TEST_F(InstrumentStudies, ACircleOutOfReachIsSaid) {
   const CommandResult result = abbe({"run", "bar.study.toml", "-o", "out"});
   EXPECT_EQ(result.exit_code, bad_input);
   EXPECT_THAT(result.err, HasSubstr("the circle is out of reach of the linear axes at"));
+}
+
+TEST_F(InstrumentStudies, PosesOfAFileAreVisitedInItsOrderWhateverTheirItems) {
+  const std::string machine = std::string(ABBE_SOURCE_DIR) + "/examples/machines/trunnion-mill.machine.toml";
+  const auto study = [&](const char* more) {
+    folder.write("s.study.toml",
+                 "name = \"s\"\nmachine = \"" + machine +
+                     "\"\n[simulate]\n[simulate.generator]\nseed = 1\nmean_volumetric_um = 40\n[[setup]]\nname = "
+                     "\"bar\"\ninstrument = \"ball-bar\"\nspindle_ball_mm = [0, 0, -150]\nnoise = { length_um = 1 "
+                     "}\n[[setup.ball]]\nname = \"B1\"\ncentre_mm = [0, 0, 60]\n[[setup.ball]]\nname = \"B2\"\n"
+                     "centre_mm = [70, 0, 60]\n[[setup.plan]]\nkind = \"poses\"\nfile = \"poses.csv\"\n" +
+                     more);
+  };
+  /// Items and X of the readings, in their order.
+  const auto visited = [&] {
+    const CommandResult result = abbe({"simulate", "s.study.toml", "-o", "readings"});
+    EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
+    std::istringstream lines(folder.read("readings/bar.csv"));
+    std::string text, line;
+    std::size_t item = 0, x = 0;
+    while (std::getline(lines, line)) {
+      std::vector<std::string> fields;
+      std::istringstream row(line);
+      for (std::string field; std::getline(row, field, ',');) fields.push_back(field);
+      const auto column = [&](const char* name) {
+        return static_cast<std::size_t>(std::find(fields.begin(), fields.end(), name) - fields.begin());
+      };
+      if (column("X_mm") < fields.size()) {
+        x = column("X_mm");
+        item = column("item");
+      } else if (x > 0 && item < fields.size()) {
+        text += fields[item] + "@" + fields[x] + " ";
+      }
+    }
+    std::filesystem::remove_all(folder.path() / "readings");
+    return text;
+  };
+  folder.write("poses.csv", "C_deg,A_deg,Y_mm,X_mm,Z_mm,item\n0,0,0,10,-250,B2\n0,0,0,20,-250,B1\n0,0,0,30,-250,B2\n");
+  study("");
+  EXPECT_EQ(visited(), "B2@10 B1@20 B2@30 ");
+  study("repeats = 2\nthere_and_back = true\n");
+  EXPECT_EQ(visited(), "B2@10 B1@20 B2@30 B2@30 B1@20 B2@10 ");
+  // Without a column every item is measured at a pose before the next one.
+  folder.write("poses.csv", "C_deg,A_deg,Y_mm,X_mm,Z_mm\n0,0,0,10,-250\n0,0,0,20,-250\n");
+  study("");
+  EXPECT_EQ(visited(), "B1@10 B2@10 B1@20 B2@20 ");
 }
 
 }  // namespace

@@ -169,6 +169,12 @@ void NcInterpreter::turn_arc_to_axes(ProgramMove& move) const {
     block_.fail(block_.words[0], "an arc in a plane that is not one of two axes of the machine, as it is tilted",
                 "G53.1 before it on machines that turn the workpiece; straight moves on others");
   }
+  // Axes that are not at right angles show a circle of a turned workpiece as an ellipse.
+  if ((tilt_.axes_from_plane.transpose() * tilt_.axes_from_plane - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() >
+      kSameNormal) {
+    block_.fail(block_.words[0], "an arc in a tilted plane, on a machine whose X, Y and Z are not at right angles",
+                "straight moves: in these axes it is no arc");
+  }
   move.plane = along == 2 ? ArcPlane::XY : along == 1 ? ArcPlane::ZX : ArcPlane::YZ;
   // Seen from the other side where the normal points against the axis, or the words are left-handed.
   if ((turned[along] < 0) != (tilt_.axes_from_plane.determinant() < 0)) {

@@ -262,5 +262,33 @@ TEST_F(TiltedPlanes, WhatIsNotSimpleIsAnErrorWithLineAndWord) {
   EXPECT_THAT(message_of([&] { run_program("G68.2 J40\n", unknown); }), HasSubstr("the machine is not known"));
 }
 
+class TiltedPlanesOfASkewMachine : public TiltedPlanes {
+ protected:
+  TiltedPlanesOfASkewMachine() : TiltedPlanes(skew()) {}
+
+  static Machine skew() {
+    Machine machine = test::trunnion_mill();
+    machine.axes[machine.find_axis("X")].direction = Vector3d(1, 0.001, 0).normalized();
+    return machine;
+  }
+};
+
+TEST_F(TiltedPlanesOfASkewMachine, AnArcOfATurnedWorkpieceIsRefusedBecauseItIsNone) {
+  const auto turned = [](const char* c) {
+    return fmt::format("G21 G90\nG54 G0 X0 Y0 Z0 A0 B0 C{}\nG68.2 X10 Y-20 Z30 I0 J0 K0\nG0 X5 Y0 Z0\n", c);
+  };
+  const std::string arc = "G2 X-5 I-5 F100\nM2\n";
+  EXPECT_THAT(failure(turned("30") + arc), HasSubstr("X, Y and Z are not at right angles"));
+  EXPECT_EQ(run(turned("30") + "G1 X-5 F100\nM2\n").moves.size(), 3U);
+  // The words themselves are turned, and the control makes circles of words.
+  EXPECT_EQ(run(turned("0") + arc).moves.back().kind, MoveKind::arc_clockwise);
+}
+
+TEST_F(TiltedPlanes, AnArcOfATurnedWorkpieceIsOneOnAMachineAtRightAngles) {
+  const RunProgram r =
+      run("G21 G90\nG54 G0 X0 Y0 Z0 A0 B0 C30\nG68.2 X10 Y-20 Z30 I0 J0 K0\nG0 X5 Y0 Z0\nG2 X-5 I-5 F100\nM2\n");
+  EXPECT_EQ(r.moves.back().kind, MoveKind::arc_clockwise);
+}
+
 }  // namespace
 }  // namespace abbe

@@ -170,6 +170,33 @@ TEST(StudyInstrument, PosesOfAFileNameTheirItems) {
   EXPECT_NE(message_of([&] { read("C_deg,X_mm,Z_mm\n0,10,900\n"); }).find("poses.csv:2"), std::string::npos);
 }
 
+TEST(StudyInstrument, PosesOfATrackersFileNameTheirStations) {
+  const Study study = parsed(with_plan("kind = \"random\"\npoints = 4\naxis.X = {}\n"));
+  abbe::Setup tracker;
+  tracker.name = "tracker";
+  tracker.stations.resize(2);
+  tracker.stations[0].name = "S1";
+  tracker.stations[1].name = "S2";
+  tracker.reflectors.resize(1);
+  tracker.reflectors[0].name = "R1";
+  const auto read = [&](const char* text) { return parse_planned_poses(text, "poses.csv", study.machine, tracker); };
+  const PlannedPoses named = read("C_deg,X_mm,Z_mm,station\n0,10,20,S2\n90,30,40,S1\n");
+  EXPECT_EQ(named.station, (std::vector<std::size_t>{1, 0}));
+  EXPECT_TRUE(named.target.empty());
+  EXPECT_EQ(read("C_deg,X_mm,Z_mm,station,reflector\n0,10,20,S2,R1\n").target, (std::vector<std::size_t>{0}));
+  EXPECT_NE(message_of([&] {
+              read("C_deg,X_mm,Z_mm,station\n0,10,20,S3\n");
+            }).find("poses.csv:2: station: 'S3' is not in the set-up 'tracker'; expected one of S1, S2"),
+            std::string::npos);
+  // With one station there is nothing to choose, with two there is.
+  EXPECT_NE(message_of([&] {
+              read("C_deg,X_mm,Z_mm\n0,10,20\n");
+            }).find("poses.csv:2: station: is missing; expected one of S1, S2"),
+            std::string::npos);
+  tracker.stations.pop_back();
+  EXPECT_EQ(read("C_deg,X_mm,Z_mm\n0,10,20\n").station, (std::vector<std::size_t>{0}));
+}
+
 TEST(StudyInstrument, RefusesAFallingRangeWhereTheOrderSaysNothing) {
   const std::string message =
       message_of([] { parsed(with_plan("kind = \"random\"\npoints = 4\naxis.X = { range_mm = [900, 100] }\n")); });

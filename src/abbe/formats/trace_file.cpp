@@ -9,7 +9,7 @@
 
 namespace abbe {
 
-TraceFile parse_trace(std::string_view text, const std::string& file, const Machine& machine, int threads) {
+TraceFile parse_trace(std::string_view text, const std::string& file, const Machine& machine) {
   std::vector<CsvColumn> columns = axis_columns(machine);
   const std::size_t time = columns.size();
   columns.push_back({"time", Quantity::time, false, false, CsvColumn::Range::any});
@@ -19,7 +19,7 @@ TraceFile parse_trace(std::string_view text, const std::string& file, const Mach
   }
   columns.push_back({"length", Quantity::length, false, false, CsvColumn::Range::any});
   columns.push_back({"dwell", Quantity::time, false, false, CsvColumn::Range::any});
-  CsvTable table = read_csv(text, file, columns, {}, threads);
+  CsvTable table = read_csv(text, file, columns);
   if (table.rows < 2) {
     throw InputError({file, 0, 0, ""}, fmt::format("{} sample{}", table.rows, table.rows == 1 ? "" : "s"),
                      "two or more: one row for each servo cycle or so");

@@ -16,12 +16,14 @@ struct TraceFile {
   std::vector<double> time_s;  ///< [samples], never decreasing; empty if the file does not say
 };
 
-/// Reads a CSV with a column for each axis (X_mm, A_deg, ...) and one row per sample; `time_s` may be there, and
-/// `line`, the line of the program (not read further). Commands may leave the travel as far as a correction does.
+/// Reads a CSV with a column for each axis (X_mm, A_deg, ...) and one row per sample; `time_s` may be there. What else
+/// a trace or the commands that `abbe path` writes may have is checked to be numbers and not used: `line` (of the
+/// program), `step`, `point`, `region`, `beam`, `feed_mm_per_min`, `length_mm`, `dwell_s`. Commands may leave the
+/// travel as far as a correction does.
 /// @throws InputError for a file with less than two samples, times that decrease, and as read_csv()
 TraceFile read_trace(const std::filesystem::path& path, const Machine& machine);
 /// The same from text. @param file  name for messages
-TraceFile parse_trace(std::string_view text, const std::string& file, const Machine& machine, int threads = 0);
+TraceFile parse_trace(std::string_view text, const std::string& file, const Machine& machine);
 
 /// Line of the file in which a sample stands, from 1, for messages.
 std::size_t trace_line(const std::filesystem::path& path, std::size_t sample);

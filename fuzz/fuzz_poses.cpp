@@ -1,0 +1,73 @@
+// Files of poses of a fixed machine, traces of programs and planned poses of a tracker and of a ball bar: any bytes
+// give poses that fit what they name, or an InputError.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/planned_poses.h"
+#include "abbe/formats/study_file.h"
+#include "abbe/formats/trace_file.h"
+#include "fuzz_machine_data.h"
+
+namespace {
+
+bool fits(const abbe::PoseList& poses, const abbe::Machine& machine) {
+  for (const std::vector<double>& values : poses.axis) {
+    if (values.size() != poses.count()) return false;
+    if (!std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); })) return false;
+  }
+  return poses.axis.size() == machine.axes.size() && poses.count() > 0;
+}
+
+bool below(const std::vector<std::size_t>& indices, std::size_t count) {
+  return std::all_of(indices.begin(), indices.end(), [count](std::size_t index) { return index < count; });
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const abbe::Machine machine = fuzz_machine();
+  static const abbe::Study study = abbe::parse_study(
+      "name = \"s\"\nmachine = \"m.toml\"\n[simulate]\n[simulate.generator]\nseed = 1\nmean_volumetric_um = 40\n"
+      "[[setup]]\nname = \"bar\"\ninstrument = \"ball-bar\"\nspindle_ball_mm = [0, 0, -150]\n"
+      "noise = { length_um = 1 }\n[[setup.ball]]\nname = \"B1\"\ncentre_mm = [0, 0, 0]\n[[setup.ball]]\nname = \"B2\"\n"
+      "centre_mm = [70, 0, 0]\n[[setup.plan]]\nkind = \"random\"\npoints = 4\naxis.X = {}\n[identify]\nlocations = "
+      "[\"EX0C\"]\n",
+      "no-folder/s.study.toml", machine);
+  abbe::Setup tracker;
+  tracker.name = "tracker";
+  tracker.stations.resize(2);
+  tracker.stations[0].name = "S1";
+  tracker.stations[1].name = "S2";
+  tracker.reflectors.resize(2);
+  tracker.reflectors[0].name = "R1";
+  tracker.reflectors[1].name = "R2";
+
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  try {
+    const abbe::TraceFile trace = abbe::parse_trace(text, "trace.csv", machine);
+    const bool timed = trace.time_s.empty() || trace.time_s.size() == trace.commands.count();
+    if (!fits(trace.commands, machine) || trace.commands.count() < 2 || !timed ||
+        !std::is_sorted(trace.time_s.begin(), trace.time_s.end())) {
+      std::abort();
+    }
+  } catch (const abbe::InputError&) {
+  }
+  for (const abbe::Setup* const setup : {&study.setups[0], static_cast<const abbe::Setup*>(&tracker)}) {
+    try {
+      const abbe::PlannedPoses planned = abbe::parse_planned_poses(text, "poses.csv", machine, *setup);
+      const std::size_t count = planned.poses.count();
+      if (!fits(planned.poses, machine) || planned.station.size() != (setup->device ? 0 : count) ||
+          !(planned.target.empty() || planned.target.size() == count) || !below(planned.station, 2) ||
+          !below(planned.target, 2)) {
+        std::abort();
+      }
+    } catch (const abbe::InputError&) {
+    }
+  }
+  return 0;
+}
