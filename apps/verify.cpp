@@ -29,12 +29,11 @@ int run_verify(const VerifyOptions& options) {
   if (options.json) {
     fmt::print("{}", json_text(verify_json(options, result)));
   } else {
-    print_verify(options, result);
+    print_verify(result);
     if (!options.output.empty()) fmt::print("\npage: {}\n", options.output);
   }
-  const std::vector<VerifyVerdict> verdicts = verify_verdicts(options, result);
-  const bool met =
-      std::all_of(verdicts.begin(), verdicts.end(), [](const VerifyVerdict& verdict) { return verdict.met; });
+  const bool met = std::all_of(result.verdicts.begin(), result.verdicts.end(),
+                               [](const VerifyVerdict& verdict) { return verdict.met; });
   return met ? kDone : kNegative;
 }
 

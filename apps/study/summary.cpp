@@ -61,7 +61,9 @@ nlohmann::ordered_json scaled(const SampleStatistics& s, double unit) {
 
 nlohmann::ordered_json statistics_um(const SampleStatistics& s) { return scaled(s, 1e3); }
 
-nlohmann::ordered_json orientation_urad(const ErrorMap& map) { return scaled(orientation_statistics(map), 1e6); }
+nlohmann::ordered_json statistics_urad(const SampleStatistics& s) { return scaled(s, 1e6); }
+
+nlohmann::ordered_json orientation_urad(const ErrorMap& map) { return statistics_urad(orientation_statistics(map)); }
 
 std::string study_verdict(const Study& study, const StudyResult& result) {
   if (!study.identification) return "";

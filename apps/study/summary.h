@@ -11,6 +11,8 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
 
 /// Statistics of lengths in mm as the report writes them, in um.
 nlohmann::ordered_json statistics_um(const SampleStatistics& statistics);
+/// Statistics of angles in rad, in urad.
+nlohmann::ordered_json statistics_urad(const SampleStatistics& statistics);
 
 /// Angle between the actual and the nominal orientation over the covered poses of a map, rad.
 SampleStatistics orientation_statistics(const ErrorMap& map);

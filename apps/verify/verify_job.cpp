@@ -156,6 +156,25 @@ PieceResult verify_piece(const VerifyResult& result, const VerifyPiece& asked, d
   return piece;
 }
 
+std::vector<VerifyVerdict> verdicts_on(const VerifyOptions& options, const CompensatedPoses& poses) {
+  std::vector<VerifyVerdict> verdicts;
+  if (options.least_reduction) {
+    const double value = poses.reduction();
+    const bool met = value >= *options.least_reduction;
+    verdicts.push_back({fmt::format("{:.1f} times smaller: {} the wanted {:g} times", value,
+                                    met ? "at least" : "LESS than", *options.least_reduction),
+                        met});
+  }
+  if (options.largest_ratio) {
+    const double value = poses.uncertainty_ratio();
+    const bool met = value > 0 && value <= *options.largest_ratio;
+    verdicts.push_back({fmt::format("{:.2f} times the predicted uncertainty: {} the permitted {:g} times", value,
+                                    met ? "within" : "ABOVE", *options.largest_ratio),
+                        met});
+  }
+  return verdicts;
+}
+
 }  // namespace
 
 VerifyResult verify(const VerifyOptions& options) {
@@ -205,27 +224,9 @@ VerifyResult verify(const VerifyOptions& options) {
                            "determined",
                      "ranges that spread the poses over an area, 1 mm or more across");
   }
+  result.verdicts = verdicts_on(options, result.poses);
   for (const VerifyPiece& piece : options.pieces) result.pieces.push_back(verify_piece(result, piece, options.reach));
   return result;
-}
-
-std::vector<VerifyVerdict> verify_verdicts(const VerifyOptions& options, const VerifyResult& result) {
-  std::vector<VerifyVerdict> verdicts;
-  if (options.least_reduction) {
-    const double value = result.poses.reduction();
-    const bool met = value >= *options.least_reduction;
-    verdicts.push_back({fmt::format("{:.1f} times smaller: {} the wanted {:g} times", value,
-                                    met ? "at least" : "LESS than", *options.least_reduction),
-                        met});
-  }
-  if (options.largest_ratio) {
-    const double value = result.poses.uncertainty_ratio();
-    const bool met = value > 0 && value <= *options.largest_ratio;
-    verdicts.push_back({fmt::format("{:.2f} times the predicted uncertainty: {} the permitted {:g} times", value,
-                                    met ? "within" : "ABOVE", *options.largest_ratio),
-                        met});
-  }
-  return verdicts;
 }
 
 }  // namespace abbe

@@ -50,6 +50,12 @@ struct PieceResult {
   PieceRun before, after;
 };
 
+/// Verdict on one of the two figures that may be asked for.
+struct VerifyVerdict {
+  std::string text;
+  bool met = true;
+};
+
 struct VerifyResult {
   Machine machine;
   ErrorsFile identified, truth;
@@ -59,16 +65,10 @@ struct VerifyResult {
   bool both_directions = false;    ///< there are reversal values: axes come from either side
   CompensatedPoses poses;
   std::vector<PieceResult> pieces;
+  std::vector<VerifyVerdict> verdicts;
 };
 
 /// @throws InputError
 VerifyResult verify(const VerifyOptions& options);
-
-/// Verdicts on the two figures that may be asked for.
-struct VerifyVerdict {
-  std::string text;
-  bool met = true;
-};
-std::vector<VerifyVerdict> verify_verdicts(const VerifyOptions& options, const VerifyResult& result);
 
 }  // namespace abbe

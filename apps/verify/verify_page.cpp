@@ -12,7 +12,6 @@
 #include "abbe/formats/text_file.h"
 #include "abbe/report/report.h"
 #include "study/report_data.h"
-#include "study/summary.h"
 #include "verify/verify_text.h"
 
 namespace abbe {
@@ -257,26 +256,7 @@ std::string verify_page(const VerifyOptions& options, const VerifyResult& result
   data["title"] = "Compensation of the " + result.machine.name + ", verified";
   data["subtitle"] = "What is left at poses that nobody measured, and on test pieces";
   data["evaluation"] = {{"kind", "verify"}, {"facts", facts(options, result, summary)}};
-  nlohmann::json held_out;
-  held_out["poses"] = poses.after.size();
-  held_out["position_before_um"] = statistics_um(poses.before_statistics);
-  held_out["position_after_um"] = statistics_um(poses.after_statistics);
-  held_out["reduction"] = poses.reduction();
-  held_out["remaining_percent"] =
-      poses.before_statistics.mean > 0 ? 100 * poses.after_statistics.mean / poses.before_statistics.mean : 0;
-  const auto urad = [](const SampleStatistics& s) {
-    return nlohmann::json{{"mean", 1e6 * s.mean}, {"rms", 1e6 * s.rms}, {"p95", 1e6 * s.p95}, {"max", 1e6 * s.maximum}};
-  };
-  held_out["orientation_before_urad"] = urad(poses.direction_before_statistics);
-  held_out["orientation_after_urad"] = urad(poses.direction_after_statistics);
-  if (poses.uncertainty_statistics.maximum > 0) {
-    std::vector<double> expanded = poses.uncertainty;
-    for (double& value : expanded) value *= 2;
-    held_out["predicted_expanded_uncertainty_um"] = statistics_um(sample_statistics(expanded));
-    held_out["coverage_percent"] = 100 * poses.coverage;
-    held_out["uncertainty_ratio"] = poses.uncertainty_ratio();
-  }
-  data["summary"] = {{"verdict", verify_sentence(result)}, {"held_out", held_out}};
+  data["summary"] = {{"verdict", verify_sentence(result)}, {"held_out", nlohmann::json(unseen_poses_json(poses))}};
   if (summary.is_object()) {
     for (const char* const key : {"readings", "outliers", "parameters", "machine_parameters", "setup_parameters",
                                   "rank", "null_space", "normalised_residual_rms"}) {
@@ -288,7 +268,7 @@ std::string verify_page(const VerifyOptions& options, const VerifyResult& result
   verification["poses"] = poses.after.size();
   verification["pieces"] = nlohmann::json::array();
   for (const PieceResult& piece : result.pieces) verification["pieces"].push_back(piece_data(piece));
-  for (const VerifyVerdict& verdict : verify_verdicts(options, result)) {
+  for (const VerifyVerdict& verdict : result.verdicts) {
     verification["wanted"].push_back({{"text", verdict.text}, {"met", verdict.met}});
   }
   data["machine"] = nlohmann::json(report_machine(result.machine));

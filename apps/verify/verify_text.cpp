@@ -105,7 +105,27 @@ std::string ranges_text(const Machine& machine, const std::vector<AxisRange>& ra
   return text;
 }
 
-void print_verify(const VerifyOptions& options, const VerifyResult& result) {
+nlohmann::ordered_json unseen_poses_json(const CompensatedPoses& poses) {
+  nlohmann::ordered_json json;
+  json["poses"] = poses.after.size();
+  json["position_before_um"] = statistics_um(poses.before_statistics);
+  json["position_after_um"] = statistics_um(poses.after_statistics);
+  json["reduction"] = poses.reduction();
+  json["remaining_percent"] =
+      poses.before_statistics.mean > 0 ? 100 * poses.after_statistics.mean / poses.before_statistics.mean : 0;
+  json["orientation_before_urad"] = statistics_urad(poses.direction_before_statistics);
+  json["orientation_after_urad"] = statistics_urad(poses.direction_after_statistics);
+  if (poses.uncertainty_statistics.maximum > 0) {
+    std::vector<double> expanded = poses.uncertainty;
+    for (double& value : expanded) value *= 2;
+    json["predicted_expanded_uncertainty_um"] = statistics_um(sample_statistics(expanded));
+    json["coverage_percent"] = 100 * poses.coverage;
+    json["uncertainty_ratio"] = poses.uncertainty_ratio();
+  }
+  return json;
+}
+
+void print_verify(const VerifyResult& result) {
   const CompensatedPoses& poses = result.poses;
   fmt::print("{}\n\n", verify_sentence(result));
   fmt::print("{}: {}{}\n", result.machine.name, ranges_text(result.machine, result.ranges),
@@ -127,9 +147,8 @@ void print_verify(const VerifyOptions& options, const VerifyResult& result) {
                poses.outside_travel, poses.not_covered);
   }
   for (const PieceResult& piece : result.pieces) print_piece(piece);
-  const std::vector<VerifyVerdict> verdicts = verify_verdicts(options, result);
-  if (!verdicts.empty()) fmt::print("\n");
-  for (const VerifyVerdict& verdict : verdicts) fmt::print("{}\n", verdict.text);
+  if (!result.verdicts.empty()) fmt::print("\n");
+  for (const VerifyVerdict& verdict : result.verdicts) fmt::print("{}\n", verdict.text);
 }
 
 nlohmann::ordered_json verify_json(const VerifyOptions& options, const VerifyResult& result) {
@@ -138,27 +157,12 @@ nlohmann::ordered_json verify_json(const VerifyOptions& options, const VerifyRes
   json["format"] = "abbe-verify/1";
   json["machine"] = result.machine.name;
   json["verdict"] = verify_sentence(result);
-  nlohmann::ordered_json unseen;
-  unseen["poses"] = poses.after.size();
+  nlohmann::ordered_json unseen = unseen_poses_json(poses);
   unseen["seed"] = options.seed;
   unseen["ranges"] = ranges_text(result.machine, result.ranges);
   unseen["both_directions"] = result.both_directions;
   unseen["outside_travel"] = poses.outside_travel;
-  unseen["outside_known_range"] = poses.not_covered;
-  unseen["position_before_um"] = statistics_um(poses.before_statistics);
-  unseen["position_after_um"] = statistics_um(poses.after_statistics);
-  const auto urad = [](const SampleStatistics& s) {
-    return nlohmann::ordered_json{
-        {"mean", 1e6 * s.mean}, {"rms", 1e6 * s.rms}, {"p95", 1e6 * s.p95}, {"max", 1e6 * s.maximum}};
-  };
-  unseen["direction_before_urad"] = urad(poses.direction_before_statistics);
-  unseen["direction_after_urad"] = urad(poses.direction_after_statistics);
-  unseen["reduction"] = poses.reduction();
-  if (!poses.uncertainty.empty()) {
-    unseen["predicted_standard_uncertainty_um"] = statistics_um(poses.uncertainty_statistics);
-    unseen["uncertainty_ratio"] = poses.uncertainty_ratio();
-    unseen["coverage_percent"] = 100 * poses.coverage;
-  }
+  unseen["outside_range"] = poses.not_covered;
   json["unseen_poses"] = unseen;
   json["test_pieces"] = nlohmann::ordered_json::array();
   for (const PieceResult& piece : result.pieces) {
@@ -168,7 +172,7 @@ nlohmann::ordered_json verify_json(const VerifyOptions& options, const VerifyRes
                                    {"after", run_json(piece.after, piece.is_cone)}});
   }
   json["wanted"] = nlohmann::ordered_json::array();
-  for (const VerifyVerdict& verdict : verify_verdicts(options, result)) {
+  for (const VerifyVerdict& verdict : result.verdicts) {
     json["wanted"].push_back({{"text", verdict.text}, {"met", verdict.met}});
   }
   return json;

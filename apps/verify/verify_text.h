@@ -13,8 +13,11 @@ std::string verify_sentence(const VerifyResult& result);
 /// "X -200 to 200 mm, ..."
 std::string ranges_text(const Machine& machine, const std::vector<AxisRange>& ranges);
 
+/// Figures of the unseen poses, with the keys of `held_out` in docs/report-data.md.
+nlohmann::ordered_json unseen_poses_json(const CompensatedPoses& poses);
+
 /// For people.
-void print_verify(const VerifyOptions& options, const VerifyResult& result);
+void print_verify(const VerifyResult& result);
 
 /// For programs; units in the keys.
 nlohmann::ordered_json verify_json(const VerifyOptions& options, const VerifyResult& result);

@@ -51,11 +51,20 @@ TEST_F(VerifyCommand, BothTestPiecesAndUnseenPosesGetBetter) {
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out);
   const nlohmann::json& unseen = json["unseen_poses"];
-  EXPECT_EQ(unseen["poses"].get<int>() + unseen["outside_travel"].get<int>() + unseen["outside_known_range"].get<int>(),
+  EXPECT_EQ(unseen["poses"].get<int>() + unseen["outside_travel"].get<int>() + unseen["outside_range"].get<int>(),
             1000);
   EXPECT_GT(unseen["reduction"].get<double>(), 15);
   EXPECT_LT(unseen["uncertainty_ratio"].get<double>(), 1.5);
   EXPECT_GT(unseen["coverage_percent"].get<double>(), 80);
+  EXPECT_NEAR(unseen["remaining_percent"].get<double>() * unseen["reduction"].get<double>(), 100, 1e-6);
+  EXPECT_NEAR(unseen["uncertainty_ratio"].get<double>(),
+              2 * unseen["position_after_um"]["rms"].get<double>() /
+                  unseen["predicted_expanded_uncertainty_um"]["rms"].get<double>(),
+              1e-6);
+  EXPECT_GT(unseen["orientation_before_urad"]["mean"].get<double>(),
+            unseen["orientation_after_urad"]["mean"].get<double>());
+  ASSERT_EQ(json["wanted"].size(), 2u);
+  for (const nlohmann::json& wanted : json["wanted"]) EXPECT_TRUE(wanted["met"].get<bool>());
   ASSERT_EQ(json["test_pieces"].size(), 2u);
   for (const nlohmann::json& piece : json["test_pieces"]) {
     for (const char* const edge : {"foot", "head"}) {
