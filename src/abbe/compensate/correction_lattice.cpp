@@ -178,23 +178,45 @@ void LatticeFunction::evaluate(const PoseList& commands, PoseList& correction) c
   for (const std::size_t output : options.outputs) correction.axis[output] = found.axis[output];
 }
 
-BuiltLattice build_lattice(const Machine& machine, const ErrorSet& errors, const LatticeOptions& options) {
-  const LatticeFunction function(machine, errors, options);
-  std::vector<KnownTravel> travels;
-  for (const std::size_t input : options.inputs) travels.push_back(known_travel(machine, errors, input));
+namespace {
+
+/// [outputs] mm or rad
+std::vector<double> output_tolerance(const Machine& machine, const LatticeOptions& options) {
   std::vector<double> tolerance;
   for (const std::size_t output : options.outputs) {
     tolerance.push_back(machine.axes[output].kind == AxisKind::rotary ? options.tolerance_rad : options.tolerance_mm);
   }
+  return tolerance;
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> lattice_nodes(const Machine& machine, const ErrorSet& errors,
+                                               const LatticeOptions& options) {
+  const LatticeFunction function(machine, errors, options);
+  std::vector<KnownTravel> travels;
+  for (const std::size_t input : options.inputs) travels.push_back(known_travel(machine, errors, input));
+  const std::vector<double> tolerance = output_tolerance(machine, options);
+  std::vector<std::vector<double>> positions;
+  for (std::size_t a = 0; a < options.inputs.size(); ++a) {
+    positions.push_back(nodes_along(function, options, a, travels, machine.axes.size(), tolerance).positions);
+  }
+  fit_into(positions, options.most_nodes);
+  return positions;
+}
+
+BuiltLattice lattice_over(const Machine& machine, const ErrorSet& errors, const LatticeOptions& options,
+                          std::vector<std::vector<double>> positions) {
+  const LatticeFunction function(machine, errors, options);
+  const std::vector<double> tolerance = output_tolerance(machine, options);
   BuiltLattice built;
   CorrectionLattice& lattice = built.lattice;
   lattice.inputs = options.inputs;
   lattice.outputs = options.outputs;
-  for (std::size_t a = 0; a < options.inputs.size(); ++a) {
-    lattice.positions.push_back(nodes_along(function, options, a, travels, machine.axes.size(), tolerance).positions);
-    lattice.modulo.push_back(travels[a].whole_turn);
+  lattice.positions = std::move(positions);
+  for (const std::size_t input : options.inputs) {
+    lattice.modulo.push_back(known_travel(machine, errors, input).whole_turn);
   }
-  fit_into(lattice.positions, options.most_nodes);
   // In pieces of one row of the first input, so that large lattices need little more memory than they are.
   const std::size_t row = lattice.positions.empty() ? 1 : lattice.positions[0].size();
   const std::size_t rows = lattice.count() / row;
@@ -221,6 +243,10 @@ BuiltLattice build_lattice(const Machine& machine, const ErrorSet& errors, const
     built.within = built.within && built.interpolation_error[o] <= tolerance[o];
   }
   return built;
+}
+
+BuiltLattice build_lattice(const Machine& machine, const ErrorSet& errors, const LatticeOptions& options) {
+  return lattice_over(machine, errors, options, lattice_nodes(machine, errors, options));
 }
 
 }  // namespace abbe

@@ -65,12 +65,21 @@ struct BuiltLattice {
   bool within = true;
 };
 
-/// Lattice whose straight lines keep within the tolerance, with evenly spaced nodes.
+/// Evenly spaced nodes along every input, from end to end of its known travel, with which straight lines keep within
+/// the tolerance; fewer where there is no room for them.
 ///
 /// The error of multilinear interpolation is at most the sum of those along each input, so nodes along one input are
 /// chosen for an equal share of the tolerance, on the lines through the corners and the middle of the others' travel.
-/// What is stated was looked at in 4000 random places and in the middles of cells. Source: tensor product
-/// interpolation, de Boor, A Practical Guide to Splines, ch. XVII.
+/// Source: tensor product interpolation, de Boor, A Practical Guide to Splines, ch. XVII.
+std::vector<std::vector<double>> lattice_nodes(const Machine& machine, const ErrorSet& errors,
+                                               const LatticeOptions& options);
+
+/// Lattice over these nodes, [inputs][nodes]. What is stated of its interpolation was looked at in 4000 places between
+/// them, half of them middles of cells.
+BuiltLattice lattice_over(const Machine& machine, const ErrorSet& errors, const LatticeOptions& options,
+                          std::vector<std::vector<double>> positions);
+
+/// lattice_over() lattice_nodes().
 BuiltLattice build_lattice(const Machine& machine, const ErrorSet& errors, const LatticeOptions& options);
 
 }  // namespace abbe
