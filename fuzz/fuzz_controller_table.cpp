@@ -1,14 +1,17 @@
 // Tables of controls, the first byte chooses the format: any bytes give tables of finite numbers with increasing
 // positions, or an InputError; what was read is written and read again.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <string>
 #include <string_view>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/table_fanuc.h"
+#include "abbe/formats/table_fanuc_lattice.h"
 #include "abbe/formats/table_heidenhain.h"
 #include "abbe/formats/table_lattice.h"
 #include "abbe/formats/table_linuxcnc.h"
@@ -36,6 +39,7 @@ void check(const std::vector<abbe::AxisTable>& tables) {
 
 const std::vector<abbe::TableAxisName> kNumbers = {{0, "1", false}, {1, "2", false}, {2, "3", true}};
 const std::vector<abbe::TableAxisName> kLetters = {{0, "X", false}, {1, "Y", false}, {2, "C", true}};
+const std::vector<abbe::TableAxisName> kLinear = {{0, "1", false}, {1, "2", false}, {2, "3", false}};
 
 void check(const abbe::CorrectionLattice& lattice) {
   if (lattice.inputs.size() != lattice.positions.size() || lattice.inputs.size() != lattice.modulo.size()) std::abort();
@@ -47,6 +51,22 @@ void check(const abbe::CorrectionLattice& lattice) {
   abbe::LatticeCorrection(lattice).evaluate(pose, found);
   for (const std::vector<double>& values : found.axis) {
     if (!std::isfinite(values[0])) std::abort();
+  }
+}
+
+void check_fanuc_lattice(std::string_view parameters, std::string_view points) {
+  const abbe::FanucLattice lattice = abbe::parse_fanuc_lattice(parameters, "fuzz", points, "fuzz", kLinear);
+  const abbe::CorrectionLattice corrections = abbe::fanuc_lattice_corrections(lattice, 1e-3, {0, -5, 100});
+  check(corrections);
+  for (const std::vector<double>& nodes : corrections.positions) {
+    if (std::adjacent_find(nodes.begin(), nodes.end(), std::greater_equal<>()) != nodes.end()) std::abort();
+  }
+  const abbe::FanucLattice again =
+      abbe::parse_fanuc_lattice(abbe::fanuc_lattice_parameter_text(lattice, kLinear), "fuzz",
+                                abbe::fanuc_lattice_point_text(lattice, kLinear), "fuzz", kLinear);
+  if (again.values != lattice.values || again.points != lattice.points || again.axes != lattice.axes ||
+      again.magnification != lattice.magnification || again.reference_point != lattice.reference_point) {
+    std::abort();
   }
 }
 
@@ -70,7 +90,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
   const std::string file = "fuzz";
   try {
-    switch (data[0] % 12) {
+    switch (data[0] % 13) {
       case 0:
         check({abbe::parse_linuxcnc(text, file, false, abbe::LinuxCncCompensation::trim)});
         break;
@@ -106,6 +126,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
           check({abbe::fanuc_table(pitch, 1e-3)});
         }
         break;
+      case 12: {
+        // Two files, a form feed between them.
+        const std::size_t end = std::min(text.find('\f'), text.size());
+        const std::string_view points = text.substr(std::min(end + 1, text.size()));
+        check_fanuc_lattice(text.substr(0, end), points);
+        break;
+      }
       default:
         check(abbe::parse_siemens_eec(text, file, kAxes));
         break;

@@ -178,7 +178,7 @@ TableFormat linuxcnc_format() {
       "and is added to the motor command. Type 0: nominal and actual positions, actual = nominal + error. Straight "
       "lines between points, the end values outside";
   format.axis_names = "number of the joint";
-  format.several_files = true;
+  format.file_per_axis = true;
   format.most_nodes = kLinuxCncPoints;
   format.cannot =
       "a joint is corrected by its own position only, so errors across it are not, and an angle times a lever only on "

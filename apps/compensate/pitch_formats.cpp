@@ -120,7 +120,6 @@ TableFormat heidenhain_format() {
         lost_motion_words(lost_motion, rotary));
   };
   format.axis_names = "axis key of CfgAxes/axisList";
-  format.several_files = true;
   format.most_nodes = kHeidenhainPoints;
   format.cannot =
       "tables add up, each of one axis's position: an angle times a lever that another axis changes is right "

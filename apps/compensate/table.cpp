@@ -31,8 +31,9 @@ constexpr double kWorse = 1.02;
 
 struct TableCommand {
   std::string machine, errors, format, output, map;
-  std::vector<std::string> at, axes, names;
-  double interpolation_um = 0.1, interpolation_urad = 0.1, limit_um = 0, limit_urad = 0, times_uncertainty = 0;
+  std::vector<std::string> at, axes, names, reference_position;
+  std::optional<double> interpolation_um;
+  double interpolation_urad = 0.1, limit_um = 0, limit_urad = 0, times_uncertainty = 0;
   std::size_t max_points = 0, positions = 0, first_table = 0, encoder = 0;
   double unit_um = 1;
   int type = 1;
@@ -215,7 +216,8 @@ void write_tables(const TableCommand& command, const ControllerTables& tables, T
   }
   if (tables.files.size() > 1) {
     throw InputError({.field = "-o " + command.output}, fmt::format("{} files are to be written", tables.files.size()),
-                     "a folder (a name without ending), or one axis with --axis");
+                     std::string("a folder (a name without ending)") +
+                         (report.format->file_per_axis ? ", or one axis with --axis" : ""));
   }
   write_file_atomically(command.output, tables.files.front().second);
   report.written.push_back(command.output);
@@ -224,12 +226,14 @@ void write_tables(const TableCommand& command, const ControllerTables& tables, T
 TableRequest request_of(const TableCommand& command, const Machine& machine, const ErrorSet& errors,
                         const TableFormat& format) {
   TableRequest request;
-  request.tolerance_mm = 1e-3 * command.interpolation_um;
+  request.tolerance_mm = 1e-3 * command.interpolation_um.value_or(format.default_interpolation_um);
   request.tolerance_rad = 1e-6 * command.interpolation_urad;
   if (!(request.tolerance_mm > 0 && request.tolerance_rad > 0)) {
     throw InputError({.field = "--interpolation-um, --interpolation-urad"}, "not above zero", "a positive number");
   }
-  request.reference = reference_pose(machine, middle_of_travel(machine, errors), command.at);
+  request.reference = pose_option(machine, "--at", middle_of_travel(machine, errors), command.at);
+  request.reference_position =
+      pose_option(machine, "--reference-position", machine_zero(machine), command.reference_position);
   request.axes = chosen_axes(machine, command.axes);
   request.names = table_axis_names(machine, format, command.names);
   request.most_nodes = command.max_points;
@@ -311,6 +315,7 @@ int run_table(const TableCommand& command) {
   }
   state_reversals(carried, request, report);
   look_at_limits(command, tables, report);
+  report.refused.insert(report.refused.end(), tables.problems.begin(), tables.problems.end());
   const bool within =
       std::all_of(tables.tables.begin(), tables.tables.end(), [](const TableSummary& table) { return table.within; });
   const bool refused = !report.refused.empty();
@@ -365,8 +370,9 @@ void add_compensate_table(CLI::App& compensate, CommandLine& line) {
   command->add_option("--axis", options->axes, "Only tables over this axis's position; repeatable");
   command->add_option("--name", options->names,
                       "AXIS=NAME: what the control calls an axis (joint, number); repeatable");
-  command->add_option("--interpolation-um", options->interpolation_um,
-                      "Largest error of straight lines between nodes, um (0.1)");
+  command->add_option(
+      "--interpolation-um", options->interpolation_um,
+      "Largest error of straight lines between nodes, um (0.1; fanuc-3d, with the rounding of its data: 1)");
   command->add_option("--interpolation-urad", options->interpolation_urad, "The same of rotary axes, urad (0.1)");
   command->add_option("--max-points", options->max_points, "Nodes per table the control has room for");
   command->add_option("--positions", options->positions,
@@ -378,10 +384,15 @@ void add_compensate_table(CLI::App& compensate, CommandLine& line) {
   command->add_option("--type", options->type, "linuxcnc: COMP_FILE_TYPE, 0 or 1 (1)");
   command->add_option("--first-table", options->first_table, "siemens-cec: index of the first table (0)");
   command->add_option("--encoder", options->encoder, "siemens-eec: measuring system, 0 or 1 (0)");
-  command->add_flag("--negate", options->negate,
-                    "siemens-cec, heidenhain, fanuc-pitch: values with the other sign (theirs is not known for sure)");
+  command->add_flag(
+      "--negate", options->negate,
+      "siemens-cec, heidenhain, fanuc-pitch, fanuc-3d: values with the other sign (theirs is not known for "
+      "sure)");
   command->add_option("--detection-unit-um", options->unit_um,
-                      "fanuc-pitch: unit of the data, um; of rotary axes thousandths of a degree (1)");
+                      "fanuc-pitch, fanuc-3d: unit of the data, um; of rotary axes thousandths of a degree (1)");
+  command->add_option("--reference-position", options->reference_position,
+                      "fanuc-3d: AXIS_mm=position, where the control's reference position is in the machine file; "
+                      "default 0, or the end of the travel next to it; repeatable");
   command->add_option("--map", options->map, "Map of the error before, after and ideal: .csv, .vts or .vtu");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options]() -> int { return run_table(*options); }; });

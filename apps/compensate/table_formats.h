@@ -21,15 +21,16 @@ struct TableRequest {
   std::vector<bool> axes;         ///< [axes] wanted
   double tolerance_mm = 1e-4;
   double tolerance_rad = 1e-7;
-  std::size_t most_nodes = 0;        ///< 0: what the control has room for
-  std::size_t nodes = 0;             ///< if not 0: exactly so many per table, to compare quickly
-  std::vector<TableAxisName> names;  ///< as the control calls the axes
-  std::set<std::string> left_out;    ///< names of tables (TableSummary::name) that are not written
-  int type = 1;                      ///< linuxcnc: COMP_FILE_TYPE
-  std::size_t encoder = 0;           ///< siemens-eec
-  std::size_t first_table = 0;       ///< siemens-cec
-  bool negate = false;               ///< values with the other sign, where the control's is not known for sure
-  double unit_mm = 1e-3;             ///< fanuc-pitch: detection unit; of rotary axes as many degrees
+  std::size_t most_nodes = 0;              ///< 0: what the control has room for
+  std::size_t nodes = 0;                   ///< if not 0: exactly so many per table, to compare quickly
+  std::vector<TableAxisName> names;        ///< as the control calls the axes
+  std::set<std::string> left_out;          ///< names of tables (TableSummary::name) that are not written
+  int type = 1;                            ///< linuxcnc: COMP_FILE_TYPE
+  std::size_t encoder = 0;                 ///< siemens-eec
+  std::size_t first_table = 0;             ///< siemens-cec
+  bool negate = false;                     ///< values with the other sign, where the control's is not known for sure
+  double unit_mm = 1e-3;                   ///< FANUC: detection unit; of rotary axes as many degrees
+  std::vector<double> reference_position;  ///< [axes] fanuc-3d: reference position of the control, mm or rad
 };
 
 /// A part of the tables that can be left out, and what it says.
@@ -54,17 +55,19 @@ struct ControllerTables {
   std::vector<std::pair<std::string, std::string>> files;  ///< name proposed, text
   std::vector<TableSummary> tables;
   std::vector<std::string> remarks;
+  std::vector<std::string> problems;              ///< why the control could not hold them; then nothing is written
   std::unique_ptr<CommandCorrection> correction;  ///< of the text as it is read back
 };
 
 struct TableFormat {
   std::string name;
-  std::string what;        ///< one line
-  std::string convention;  ///< sign and units of the values, how the control uses them
-  std::string unverified;  ///< what of the syntax is not known for sure; empty: all of it is documented
-  std::string axis_names;  ///< what --name gives: "joint number", empty: the format names no axes
-  bool several_files = false;
+  std::string what;            ///< one line
+  std::string convention;      ///< sign and units of the values, how the control uses them
+  std::string unverified;      ///< what of the syntax is not known for sure; empty: all of it is documented
+  std::string axis_names;      ///< what --name gives: "joint number", empty: the format names no axes
+  bool file_per_axis = false;  ///< one axis alone is one file
   std::size_t most_nodes = 10000;
+  double default_interpolation_um = 0.1;
   std::string cannot;       ///< why what is not carried is not
   bool directions = false;  ///< tables differ by direction: reversal values are in them
   /// What of the control takes a lost motion (minus the reversal value) of an axis by its name there: "12 um", where

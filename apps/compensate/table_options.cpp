@@ -10,17 +10,25 @@
 
 namespace abbe {
 
-std::vector<double> reference_pose(const Machine& machine, std::vector<double> positions,
-                                   const std::vector<std::string>& at) {
+std::vector<double> pose_option(const Machine& machine, const std::string& option, std::vector<double> positions,
+                                const std::vector<std::string>& at) {
   for (const std::string& text : at) {
-    const HeldAxis at_position = axis_option(machine, "--at", text);
+    const HeldAxis at_position = axis_option(machine, option, text);
     const Axis& axis = machine.axes[at_position.axis];
     if (!axis.endless && (at_position.position < axis.travel_min || at_position.position > axis.travel_max)) {
-      throw InputError({.field = "--at " + text}, "outside the axis's travel", "a position within it");
+      throw InputError({.field = option + " " + text}, "outside the axis's travel", "a position within it");
     }
     positions[at_position.axis] = at_position.position;
   }
   return positions;
+}
+
+std::vector<double> machine_zero(const Machine& machine) {
+  std::vector<double> zero;
+  for (const Axis& axis : machine.axes) {
+    zero.push_back(axis.endless ? 0 : std::clamp(0.0, axis.travel_min, axis.travel_max));
+  }
+  return zero;
 }
 
 std::vector<bool> chosen_axes(const Machine& machine, const std::vector<std::string>& names) {

@@ -9,8 +9,12 @@
 namespace abbe {
 
 /// Pose from "AXIS_unit=position" options; what is not given stays. @throws InputError
-std::vector<double> reference_pose(const Machine& machine, std::vector<double> positions,
-                                   const std::vector<std::string>& at);
+/// @param option  how the user calls them: "--at"
+std::vector<double> pose_option(const Machine& machine, const std::string& option, std::vector<double> positions,
+                                const std::vector<std::string>& at);
+
+/// The machine's zero, or the end of the travel that is next to it.
+std::vector<double> machine_zero(const Machine& machine);
 
 /// [axes] true where named; all without names. @throws InputError
 std::vector<bool> chosen_axes(const Machine& machine, const std::vector<std::string>& names);

@@ -158,7 +158,6 @@ TableFormat beckhoff_format() {
       "(alternative_model), its kinematic chain (Chain), how it counts the sign of errors of axes that carry the "
       "workpiece, and position errors (it offers `negate` per axis)";
   format.axis_names = "letter X Y Z A B C";
-  format.several_files = true;
   format.most_nodes = 10000;
   format.cannot =
       "tool offset errors are not written, and the control corrects X, Y and Z only: the direction of the "
@@ -173,7 +172,6 @@ TableFormat etalon_format() {
   TableFormat format = beckhoff_format();
   format.name = "etalon";
   format.what = "exchange format of Etalon, variant \"Vendor\": one grid of points per error motion, position errors";
-  format.several_files = false;
   format.unverified += "; of the exchange format only what the manual of the ISG control shows is known";
   format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
     return make_volumetric(false, format, machine, errors, request);

@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -92,7 +95,7 @@ TEST_F(CompensateTable, EveryFormatReducesTheErrorWhenTheControlIsSimulatedWithT
   for (const Expected& one : {Expected{"linuxcnc", 0.7}, Expected{"siemens-cec", 0.2}, Expected{"siemens-eec", 0.7},
                               Expected{"beckhoff-isg", 0.01}, Expected{"etalon", 0.01}, Expected{"lattice-csv", 0.01},
                               Expected{"lattice-vtk", 0.01}, Expected{"heidenhain", 0.2}, Expected{"fanuc-pitch", 0.9},
-                              Expected{"klipper", 1.0}, Expected{"marlin", 1.0}}) {
+                              Expected{"fanuc-3d", 0.05}, Expected{"klipper", 1.0}, Expected{"marlin", 1.0}}) {
     const std::string folder_name = std::string("out-") + one.format;
     const nlohmann::json json = json_of(table(one.format, {"-o", folder_name, "--json"}));
     EXPECT_LT(json["after"]["mean_um"].get<double>(), one.left * json["before"]["mean_um"].get<double>()) << one.format;
@@ -102,6 +105,110 @@ TEST_F(CompensateTable, EveryFormatReducesTheErrorWhenTheControlIsSimulatedWithT
       EXPECT_GT(std::filesystem::file_size(folder.path() / file.get<std::string>()), 0U);
     }
   }
+}
+
+/// "N10803P21" as 10803 and 21.
+std::map<int, double> grid_parameters(const std::string& text) {
+  std::map<int, double> parameters;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    int number = 0;
+    double value = 0;
+    if (std::sscanf(line.c_str(), "N%dP%lf", &number, &value) == 2) parameters[number] = value;
+  }
+  return parameters;
+}
+
+/// Values of the points, three per block.
+std::vector<std::array<int, 3>> grid_points(const std::string& text) {
+  std::vector<std::array<int, 3>> points;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    int number = 0;
+    std::array<int, 3> values{};
+    if (std::sscanf(line.c_str(), "N%dA1P%dA2P%dA3P%d", &number, values.data(), &values[1], &values[2]) != 4) continue;
+    points.push_back(values);
+    EXPECT_EQ(number, static_cast<int>(points.size()));
+  }
+  return points;
+}
+
+TEST_F(CompensateTable, FanucsGridCarriesEveryShiftOfThePointWithinTheLimitAndSaysWhatIsNotVerified) {
+  const nlohmann::json json = json_of(table("fanuc-3d", {"-o", "grid", "--json"}));
+  for (const nlohmann::json& error : json["errors"]) {
+    EXPECT_EQ(error["carried"], "carried") << error["name"];
+  }
+  ASSERT_EQ(json["tables"].size(), 3U);
+  for (const nlohmann::json& one : json["tables"]) {
+    EXPECT_LE(one["interpolation_um"].get<double>(), 1);
+    EXPECT_GE(one["interpolation_um"].get<double>(), 0.4) << "rounding to whole units of 1 um is a part of it";
+  }
+  // Interpolation with rounded data 1 um and whole units added 0.5 um, in three axes.
+  EXPECT_LT(json["after"]["max_um"].get<double>(), 1.5 * std::sqrt(3.0));
+  for (const char* word : {"punch", "record form", "order of the points", "sign", "10800"}) {
+    EXPECT_THAT(json["unverified"].get<std::string>(), HasSubstr(word));
+  }
+  const std::map<int, double> grid = grid_parameters(folder.read("grid/3D-GRID.PRM"));
+  ASSERT_EQ(grid.size(), 15U);
+  double points = 1;
+  const double travel[3] = {760, 440, 460};
+  for (int a = 0; a < 3; ++a) {
+    EXPECT_EQ(grid.at(10800 + a), a + 1);
+    EXPECT_LE(grid.at(10803 + a), 25);
+    // Zero is the lower end of the travel of X and Y and the upper one of Z.
+    EXPECT_EQ(grid.at(10806 + a), a < 2 ? 1 : grid.at(10803 + a));
+    EXPECT_GE((grid.at(10803 + a) - 1) * grid.at(10812 + a), travel[a]);
+    EXPECT_LT((grid.at(10803 + a) - 2) * grid.at(10812 + a), travel[a]);
+    points *= grid.at(10803 + a);
+  }
+  EXPECT_EQ(static_cast<double>(grid_points(folder.read("grid/3D-POINTS.PRM")).size()), points);
+}
+
+TEST_F(CompensateTable, FanucsGridIsTiedToTheReferencePositionAndCanBeNegated) {
+  ASSERT_EQ(table("fanuc-3d", {"-o", "plain"}).exit_code, ExitCode::done);
+  ASSERT_EQ(table("fanuc-3d", {"-o", "turned", "--negate"}).exit_code, ExitCode::done);
+  const auto plain = grid_points(folder.read("plain/3D-POINTS.PRM"));
+  const auto turned = grid_points(folder.read("turned/3D-POINTS.PRM"));
+  ASSERT_EQ(plain.size(), turned.size());
+  ASSERT_FALSE(plain.empty());
+  for (std::size_t k = 0; k < plain.size(); ++k) {
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_EQ(plain[k][a], -turned[k][a]);
+  }
+  const nlohmann::json tied = json_of(table("fanuc-3d", {"-o", "tied", "--json", "--reference-position", "X_mm=200"}));
+  EXPECT_THAT(tied["settings"].dump(), HasSubstr("at 200 mm"));
+  const std::map<int, double> grid = grid_parameters(folder.read("tied/3D-GRID.PRM"));
+  EXPECT_GT(grid.at(10806), 1);
+  EXPECT_GE((grid.at(10806) - 1) * grid.at(10812), 200);
+  EXPECT_GE((grid.at(10803) - grid.at(10806)) * grid.at(10812), 560);
+  EXPECT_LT(tied["after"]["max_um"].get<double>(), 1.5 * std::sqrt(3.0));
+  EXPECT_THAT(table("fanuc-3d", {"-o", "x", "--reference-position", "X_mm=900"}).err,
+              HasSubstr("--reference-position X_mm=900"));
+}
+
+TEST_F(CompensateTable, WhatFanucsGridCannotHoldIsSaidAndNothingIsWritten) {
+  const auto refused = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"-o", "none"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = table("fanuc-3d", arguments);
+    EXPECT_EQ(result.exit_code, ExitCode::computation_says_no) << result.out;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "none"));
+    return result.err;
+  };
+  EXPECT_THAT(refused({"--detection-unit-um", "2"}), HasSubstr("rounded by up to 1 um"));
+  // 127 units of 0.1 um need a magnification, and its rounding is what the limit leaves room for.
+  EXPECT_THAT(refused({"--detection-unit-um", "0.1", "--interpolation-um", "0.1"}), HasSubstr("magnification"));
+  EXPECT_EQ(table("fanuc-3d", {"-o", "fine", "--detection-unit-um", "0.1"}).exit_code, ExitCode::done);
+  EXPECT_GT(grid_parameters(folder.read("fine/3D-GRID.PRM")).at(10809), 1);
+  EXPECT_THAT(refused({"--detection-unit-um", "0.001"}), HasSubstr("magnification of at most 100"));
+  EXPECT_THAT(refused({"--max-points", "40"}), HasSubstr("between the nodes that fanuc-3d has room for"));
+  EXPECT_THAT(refused({"--max-points", "7"}), HasSubstr("--max-points"));
+  EXPECT_THAT(refused({"--limit-um", "20"}), HasSubstr("above --limit-um 20"));
+  const CommandResult two = table("fanuc-3d", {"-o", "none", "--axis", "X", "--axis", "Y"});
+  EXPECT_EQ(two.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(two.err, HasSubstr("three linear axes"));
+  const CommandResult one_file = table("fanuc-3d", {"-o", "grid.prm"});
+  EXPECT_EQ(one_file.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(one_file.err, testing::AllOf(HasSubstr("2 files"), Not(HasSubstr("--axis"))));
 }
 
 TEST_F(CompensateTable, PrintersGetAnglesOnly) {

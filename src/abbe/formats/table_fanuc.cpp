@@ -7,32 +7,15 @@
 #include <cstdlib>
 #include <map>
 
+#include "abbe/formats/fanuc_blocks.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/table_numbers.h"
-#include "abbe/formats/text_cursor.h"
 
 namespace abbe {
 namespace {
 
 constexpr std::size_t kMostPoint = 9999;
 constexpr std::size_t kDataBlock = 10000;
-
-/// Letters and what follows each, up to the next letter: "N03624A1P50.0" is N 03624, A 1, P 50.0.
-struct Word {
-  char letter = 0;
-  std::string_view text;
-};
-
-std::vector<Word> words_of_block(std::string_view block) {
-  std::vector<Word> words;
-  for (std::size_t at = 0; at < block.size();) {
-    std::size_t end = at + 1;
-    while (end < block.size() && !(block[end] >= 'A' && block[end] <= 'Z')) ++end;
-    words.push_back({block[at], without_blanks(block.substr(at + 1, end - at - 1))});
-    at = end;
-  }
-  return words;
-}
 
 }  // namespace
 
@@ -92,10 +75,7 @@ std::string fanuc_pitch_text(const std::vector<FanucPitch>& pitches, const std::
     }
     text += "\n";
   };
-  const auto real = [](double value, bool rotary) {
-    std::string number = trimmed_decimals(shown_position(value, rotary), 6);
-    return number.find('.') == std::string::npos ? number + ".0" : number;
-  };
+  const auto real = [](double value, bool rotary) { return fanuc_real(shown_position(value, rotary)); };
   block(1240, [&](const FanucPitch& p, bool rotary) { return real(p.reference_position, rotary); });
   block(3620, [](const FanucPitch& p, bool /*rotary*/) { return fmt::format("{}", p.reference_point); });
   block(3621, [](const FanucPitch& p, bool /*rotary*/) { return fmt::format("{}", p.first_point); });
@@ -116,11 +96,8 @@ std::vector<FanucPitch> parse_fanuc_pitch(std::string_view text, const std::stri
   std::map<std::size_t, std::map<std::size_t, double>> parameters;  // by number, by axis
   std::map<std::size_t, int> data;                                  // by point
   TableLines lines(text, file);
-  while (lines.next()) {
-    const std::string_view line = without_blanks(lines.line().substr(0, lines.line().find(';')));
-    if (line.empty() || line == "%") continue;
-    const std::vector<Word> words = words_of_block(line);
-    if (words[0].letter != 'N') lines.fail("", fmt::format("'{}' is no block", shown_word(line)), "N12345...");
+  std::vector<FanucWord> words;
+  while (next_fanuc_block(lines, words)) {
     const std::size_t number = lines.whole(words[0].text, "N", 0, 99999);
     const std::string field = fmt::format("N{:05}", number);
     if (number >= kDataBlock) {
