@@ -175,11 +175,11 @@ TableFormat fanuc_lattice_format() {
       "corrections (minus the error) of every axis at numbered points, in whole detection units times the "
       "magnification, to be added to the commands; linear in every position between the points, the end values outside";
   format.unverified =
-      "FANUC's record form of the points is not public: blocks as in a parameter file (N point, A axis, P value) are "
-      "an assumption, so compare with an output (punch) of your own control before loading. Nor are verified the "
-      "numbers of the parameters (10800 to 10814), the order of the points (first axis fastest, from 1), their number "
-      "(25 per axis, 15625), the range of values (-128 to 127) and magnification (100), the sign (--negate), and what "
-      "holds outside the grid";
+      "the record form of the points, which is not public (blocks as in a parameter file, N point, A axis, P value, "
+      "are an assumption: compare with an output (punch) of your own control before loading); the numbers of the "
+      "parameters (10800 to 10814), the order of the points (first axis fastest, from 1), their largest number (25 "
+      "per axis, 15625), the range of values (-128 to 127) and magnification (100), the sign (--negate), that "
+      "values are whole corrections and not steps, and what holds outside the grid";
   format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
     return fmt::format("parameter 1851 of axis {} takes it, in detection units (sign not verified): {}", axis,
                        lost_motion_words(lost_motion, rotary));

@@ -351,7 +351,8 @@ void add_compensate_table(CLI::App& compensate, CommandLine& line) {
   std::string formats = "Formats:\n";
   for (const TableFormat& format : table_formats()) {
     formats += fmt::format("  {:<16} {}\n", format.name, format.what);
-    if (!format.unverified.empty()) formats += fmt::format("  {:<16} EXPERIMENTAL: {}\n", "", format.unverified);
+    if (format.unverified.empty()) continue;
+    formats += fmt::format("  {:<16} EXPERIMENTAL, not verified: {}\n", "", format.unverified);
   }
   CLI::App* const command = compensate.add_subcommand("table", "Tables for a control, and what they do not carry");
   command->footer(formats +
@@ -366,7 +367,8 @@ void add_compensate_table(CLI::App& compensate, CommandLine& line) {
                       "File to write, or a folder (a name without ending) where there are several");
   command->add_flag("--dry-run", options->dry_run, "Say all, write no table");
   command->add_option("--at", options->at,
-                      "AXIS_unit=position: where an axis stands while another moves; default the middle of its travel");
+                      "AXIS_unit=position: where an axis stands while another moves or that is not in a grid; default "
+                      "the middle of its travel");
   command->add_option("--axis", options->axes, "Only tables over this axis's position; repeatable");
   command->add_option("--name", options->names,
                       "AXIS=NAME: what the control calls an axis (joint, number); repeatable");
@@ -374,7 +376,8 @@ void add_compensate_table(CLI::App& compensate, CommandLine& line) {
       "--interpolation-um", options->interpolation_um,
       "Largest error of straight lines between nodes, um (0.1; fanuc-3d, with the rounding of its data: 1)");
   command->add_option("--interpolation-urad", options->interpolation_urad, "The same of rotary axes, urad (0.1)");
-  command->add_option("--max-points", options->max_points, "Nodes per table the control has room for");
+  command->add_option("--max-points", options->max_points,
+                      "Nodes per table the control has room for; of a grid in all");
   command->add_option("--positions", options->positions,
                       "Positions per axis for the volumetric error (9, 5 above 3 axes)");
   command->add_option("--limit-um", options->limit_um, "Refuse any correction of a linear axis above this, um");
