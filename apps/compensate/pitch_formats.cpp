@@ -73,8 +73,8 @@ ControllerTables make_fanuc(const TableFormat& format, const Machine& machine, c
     first_point += table.positions.size();
     made.remarks.push_back(
         fmt::format("{}: data rounded to {:g} {}; they are zero at the reference position {:g} {}, which has to be "
-                    "shifted by {:.2f} {} "
-                    "(the figures above take it that it is)",
+                    "shifted by {:.2f} {} (the figures above take it that it is); the file sets parameter 1240 to it, "
+                    "which moves the machine coordinates of a control that has another value there",
                     machine.axes[table.input].name, (rotary ? 1e6 : 1e3) * unit * pitch.magnification,
                     rotary ? "urad" : "um", pitch.reference_position * (rotary ? 180 / std::numbers::pi : 1),
                     rotary ? "deg" : "mm", (rotary ? 1e6 : 1e3) * constants.back(), rotary ? "urad" : "um"));
