@@ -70,6 +70,7 @@ struct Module {
   int tran[ABBE_RUNTIME_AXES] = {};               // 0 1 2: x y z; -1: see word
   int axis_of_joint[ABBE_RUNTIME_AXES] = {};
   double ramp = 0;  // 0 to 1, linear in time
+  double part = 0;  // of the errors that is compensated now
   long long last_time = 0;
 };
 Module module;
@@ -81,9 +82,10 @@ double& world_value(EmcPose& pose, int axis) {
   return pose.*module.word[axis];
 }
 
-/// The part of the errors that is compensated now: it follows the pin within the stated time, with a smooth start and
-/// end so that no joint is asked for a sudden speed.
-double enabled_part() {
+/// The part of the errors that is compensated follows the pin within the stated time, with a smooth start and end so
+/// that no joint is asked for a sudden speed. To be called once per servo cycle, because a longer pause counts once per
+/// call.
+void advance_ramp() {
   const long long now = rtapi_get_time();
   double passed = 1e-9 * static_cast<double>(now - module.last_time);
   if (module.last_time == 0 || passed < 0) passed = 0;
@@ -94,9 +96,8 @@ double enabled_part() {
   module.ramp += *module.pins->enable ? step : -step;
   if (!(module.ramp > 0)) module.ramp = 0;
   if (module.ramp > 1) module.ramp = 1;
-  const double part = module.ramp * module.ramp * (3 - 2 * module.ramp);
-  *module.pins->enabled = part;
-  return part;
+  module.part = module.ramp * module.ramp * (3 - 2 * module.ramp);
+  *module.pins->enabled = module.part;
 }
 
 /// Tool length from HAL: the offset as LinuxCNC adds it to world coordinates, and the functional point from the gauge
@@ -121,10 +122,12 @@ void report(int result, const abbe_runtime_state& state) {
   }
 }
 
-/// Standard uncertainty of the correction where the joints are; -1 if the file has none.
+/// Standard uncertainty of the correction that was computed last; -1 if the file has none. It is a matter of nominal
+/// joints, so it is the same however much of the correction is enabled.
 void report_uncertainty(const double* joints, const double* tool) {
-  double uncertainty = 0;
-  const int result = abbe_runtime_uncertainty(module.runtime, joints, tool, &uncertainty);
+  double nominal[ABBE_RUNTIME_AXES], uncertainty = 0;
+  for (int i = 0; i < module.axes; ++i) nominal[i] = joints[i] - module.inverse_state.correction[i];
+  const int result = abbe_runtime_uncertainty(module.runtime, nominal, tool, &uncertainty);
   *module.pins->uncertainty = result >= 0 ? 1e3 * uncertainty : -1;
 }
 
@@ -319,11 +322,13 @@ int kinematicsForward(const double* joints, EmcPose* world, const KINEMATICS_FOR
     const int axis = module.axis_of_joint[j];
     q[axis] = joints[j] * (module.rotary[axis] ? kDegree : 1);
   }
-  const double part = enabled_part();
+  // LinuxCNC calls this once per servo cycle as soon as all joints are homed, before the inverse.
+  advance_ramp();
   current_tool(offset, tool);
-  const int result = module.tool_space
-                         ? abbe_runtime_forward(module.runtime, &module.forward_state, q, tool, part, point, words)
-                         : abbe_runtime_uncorrect(module.runtime, &module.forward_state, q, tool, part, words);
+  const int result =
+      module.tool_space
+          ? abbe_runtime_forward(module.runtime, &module.forward_state, q, tool, module.part, point, words)
+          : abbe_runtime_uncorrect(module.runtime, &module.forward_state, q, tool, module.part, words);
   report(result, module.forward_state);
   if (result < 0) return -1;
   for (int i = 0; i < module.axes; ++i) {
@@ -344,12 +349,12 @@ int kinematicsInverse(const EmcPose* world, double* joints, const KINEMATICS_INV
   for (int i = 0; i < module.axes; ++i) {
     if (!module.solved[i]) words[i] = world_value(pose, i) * (module.rotary[i] ? kDegree : 1);
   }
-  const double part = enabled_part();
   current_tool(offset, tool);
   const double point[3] = {pose.tran.x - offset[0], pose.tran.y - offset[1], pose.tran.z - offset[2]};
-  const int result = module.tool_space
-                         ? abbe_runtime_inverse(module.runtime, &module.inverse_state, point, words, tool, part, q)
-                         : abbe_runtime_correct(module.runtime, &module.inverse_state, words, tool, part, q);
+  const int result =
+      module.tool_space
+          ? abbe_runtime_inverse(module.runtime, &module.inverse_state, point, words, tool, module.part, q)
+          : abbe_runtime_correct(module.runtime, &module.inverse_state, words, tool, module.part, q);
   report(result, module.inverse_state);
   if (result < 0) return -1;
   report_uncertainty(q, tool);

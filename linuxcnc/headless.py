@@ -39,6 +39,7 @@ class Joint:
     minimum: float | None = None
     maximum: float | None = None
     home: float = 0.0
+    world: tuple[float, float] | None = None  # limits of the axis, where they are not those of the joint
     settings: list[str] = dataclasses.field(default_factory=list)  # further lines of its [JOINT_n]
 
     def rotary(self):
@@ -179,17 +180,19 @@ TOOL_TABLE = run.tbl
 KINEMATICS = {kinematics}
 JOINTS = {len(joints)}
 """
+    drive = [f"MAX_VELOCITY = {velocity}", f"MAX_ACCELERATION = {ACCELERATION}"]
     for number, joint in enumerate(joints):
-        lines = [f"MAX_VELOCITY = {velocity}", f"MAX_ACCELERATION = {ACCELERATION}"]
-        if joint.minimum is not None:
-            lines.append(f"MIN_LIMIT = {joint.minimum:.9f}")
-        if joint.maximum is not None:
-            lines.append(f"MAX_LIMIT = {joint.maximum:.9f}")
-        text += "\n".join([f"[AXIS_{joint.letter}]", *lines]) + "\n"
-        lines += [f"TYPE = {'ANGULAR' if joint.rotary() else 'LINEAR'}", f"HOME = {joint.home:.9f}",
-                  f"HOME_OFFSET = {joint.home:.9f}", "HOME_SEQUENCE = 0", "FERROR = 3000", "MIN_FERROR = 3000"]
-        text += "\n".join([f"[JOINT_{number}]", *lines, *joint.settings]) + "\n"
+        limits = (joint.minimum, joint.maximum)
+        text += "\n".join([f"[AXIS_{joint.letter}]", *drive, *limit_lines(*(joint.world or limits))]) + "\n"
+        lines = [f"TYPE = {'ANGULAR' if joint.rotary() else 'LINEAR'}", f"HOME = {joint.home:.9f}",
+                 f"HOME_OFFSET = {joint.home:.9f}", "HOME_SEQUENCE = 0", "FERROR = 3000", "MIN_FERROR = 3000"]
+        text += "\n".join([f"[JOINT_{number}]", *drive, *limit_lines(*limits), *lines, *joint.settings]) + "\n"
     return text
+
+
+def limit_lines(minimum, maximum):
+    named = (("MIN_LIMIT", minimum), ("MAX_LIMIT", maximum))
+    return [f"{name} = {value:.9f}" for name, value in named if value is not None]
 
 
 def hal_text(joint_count, recorded, lines=(), period_us=1000):

@@ -45,7 +45,7 @@ struct Case {
     const double play[] = {0.012, 0.008, 0.006, 60e-6, 40e-6};  // mm, rad: lost motion, so negative reversal values
     for (std::size_t k = 0; k < kAxes; ++k) truth.reversals.push_back({axis(k), -play[k], 0});
     std::mt19937_64 generator(6);
-    identified = nearly(truth, generator);
+    identified = nearly(truth, 0.02, generator);
     const auto between = [&](double from, double to) {
       return std::uniform_real_distribution<double>(from, to)(generator);
     };

@@ -35,12 +35,13 @@ inline std::vector<std::vector<double>> rows(const std::string& path, std::size_
   return all;
 }
 
-/// Errors as an identification could leave them: every parameter within 2 % (standard deviation) of the truth.
-inline ErrorSet nearly(const ErrorSet& truth, std::mt19937_64& generator) {
+/// Errors as an identification could leave them.
+/// @param part  standard deviation of every parameter from the truth, of itself
+inline ErrorSet nearly(const ErrorSet& truth, double part, std::mt19937_64& generator) {
   ErrorSet identified = truth;
   std::vector<double> values = truth.parameters();
   std::normal_distribution<double> normal;
-  for (double& value : values) value *= 1 + 0.02 * normal(generator);
+  for (double& value : values) value *= 1 + part * normal(generator);
   identified.set_parameters(values);
   return identified;
 }
