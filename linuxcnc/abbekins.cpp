@@ -69,8 +69,9 @@ struct Module {
   double EmcPose::*word[ABBE_RUNTIME_AXES] = {};  // of x, y, z: null
   int tran[ABBE_RUNTIME_AXES] = {};               // 0 1 2: x y z; -1: see word
   int axis_of_joint[ABBE_RUNTIME_AXES] = {};
-  double ramp = 0;  // 0 to 1, linear in time
-  double part = 0;  // of the errors that is compensated now
+  double ramp = 0;       // 0 to 1, linear in time
+  double part = 0;       // of the errors that is compensated now
+  bool refused = false;  // the last pose
   long long last_time = 0;
 };
 Module module;
@@ -356,7 +357,13 @@ int kinematicsInverse(const EmcPose* world, double* joints, const KINEMATICS_INV
           ? abbe_runtime_inverse(module.runtime, &module.inverse_state, point, words, tool, module.part, q)
           : abbe_runtime_correct(module.runtime, &module.inverse_state, words, tool, module.part, q);
   report(result, module.inverse_state);
-  if (result < 0) return -1;
+  if (result < 0) {
+    // LinuxCNC stops then and says no more than that kinematics failed; soon the forward's result is in the pin.
+    if (!module.refused) complain("no joints for a pose", abbe_runtime_text(result));
+    module.refused = true;
+    return -1;
+  }
+  module.refused = false;
   report_uncertainty(q, tool);
   for (int j = 0; j < module.axes; ++j) {
     const int axis = module.axis_of_joint[j];

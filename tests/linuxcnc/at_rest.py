@@ -46,6 +46,9 @@ class Pins:
                              f"world at {world}")
         return self.here()
 
+    def joints_now(self):
+        return [hal.get_value(name) for name in self.joints]
+
     def here(self):
         """Tool offset, world, joints and corrections, uncertainty, status and part enabled, once nothing moves."""
         before = None

@@ -25,7 +25,8 @@ namespace abbe {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kSpare = 2;  // mm, degrees; joints of LinuxCNC may leave the travel by it: room for corrections
+constexpr double kOnTheWay = 1;        // mm, degrees; nominal joints may leave the travel by it between poses,
+constexpr double kSpare = 12;          // and joints of LinuxCNC by it: corrections are up to 10 mm near singularities
 constexpr double kLargestTurn = 2e-3;  // rad, of corrections: some ten times the errors of direction
 constexpr int kProgramBlocks = 180;
 
@@ -96,7 +97,7 @@ class Planner {
   bool within_travel(const std::vector<double>& commands) const {
     for (std::size_t i = 0; i < commands.size(); ++i) {
       const Axis& axis = hidden_.machine.axes[i];
-      const double spare = 0.5 * kSpare * (axis.kind == AxisKind::rotary ? kDegree : 1);
+      const double spare = kOnTheWay * (axis.kind == AxisKind::rotary ? kDegree : 1);
       if (!axis.endless && !(commands[i] > axis.travel_min - spare && commands[i] < axis.travel_max + spare))
         return false;
     }
@@ -115,12 +116,15 @@ std::vector<Place> choose_poses(const Job& job, const Planner& planner, std::mt1
   for (int tried = 0; places.size() < job.poses; ++tried) {
     if (tried > 200000) fail("too few poses can be reached by straight moves");
     Place next{last.commands, places.size() < job.poses / 2 ? 0 : 1};
+    if (next.tool != last.tool) last = {planner.home(), next.tool};
     for (std::size_t i = 0; i < next.commands.size(); ++i) {
       double from = 0, to = 0;
       planner.range(i, from, to);
       next.commands[i] = std::uniform_real_distribution<double>(from, to)(generator);
     }
     if (!planner.can_move(last, next) || !planner.can_stand(next)) continue;
+    // The tool is changed at home.
+    if (places.size() + 1 == job.poses / 2 && !planner.can_move(next, {planner.home(), 0})) continue;
     places.push_back(next);
     last = next;
   }
@@ -181,11 +185,15 @@ void prepare(const Job& job) {
   std::mt19937_64 generator(9);
   const std::vector<Place> places = choose_poses(job, planner, generator);
   std::ofstream poses = file("poses.txt");
-  for (const Place& place : places) {
+  const auto write = [&](const Place& place, bool judged) {
     const Eigen::Vector3d offset = planner.offset(place.tool);
-    poses << place.tool << " " << offset[0] << " " << offset[1] << " " << offset[2];
+    poses << judged << " " << place.tool << " " << offset[0] << " " << offset[1] << " " << offset[2];
     for (const double value : hidden.world_of(place.commands, offset)) poses << " " << value;
     poses << "\n";
+  };
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (k > 0 && places[k].tool != places[k - 1].tool) write({home, 0}, false);
+    write(places[k], true);
   }
   // With G43 the program is that of the tool's point.
   std::ofstream program = file("program.ngc"), start = file("start.ngc");

@@ -53,6 +53,7 @@ def drive(operation, job, say):
     for number, x, y, z, *world in others:
         if number != tool:
             tool = number
+            operation.mdi("G0 A0 C0")
             pins.tool(int(tool))
         reached.append(pins.go(world, (x, y, z)))
     write("reached.txt", reached)

@@ -142,10 +142,11 @@ int abbe_runtime_uncorrect(const abbe_runtime* runtime, abbe_runtime_state* stat
                            const double* tool, double enable, double* nominal) ABBE_NOEXCEPT;
 
 /** Standard uncertainty (GUM, one standard deviation) of the wholly enabled correction of the tool point at these
- * nominal joints, in the direction in which it is largest; mm. It comes from the uncertainties of the errors that were
- * frozen, linear between the nodes of a lattice over axes and tool lengths; beyond its ends it is that of the end.
- *  ABBE_OUTSIDE_MAP, ABBE_OUTSIDE_TRAVEL and ABBE_OUTSIDE_TOOL are raised as for a correction, also for axes and tools
- *  that the lattice leaves out. Takes no iterations.
+ * nominal joints (after abbe_runtime_inverse(): joints less state->correction), in the direction in which it is
+ * largest; mm. It comes from the uncertainties of the errors that were frozen, linear between the nodes of a lattice
+ * over axes and tool lengths; beyond its ends it is that of the end. ABBE_OUTSIDE_MAP, ABBE_OUTSIDE_TRAVEL and
+ * ABBE_OUTSIDE_TOOL are raised as for a correction, also for axes and tools that the lattice leaves out. Takes no
+ * iterations.
  *  @return ABBE_OK with flags, ABBE_NOT_STATED, ABBE_NOT_FINITE, ABBE_NULL */
 int abbe_runtime_uncertainty(const abbe_runtime* runtime, const double* joints, const double* tool,
                              double* uncertainty_mm) ABBE_NOEXCEPT;

@@ -249,6 +249,39 @@ TEST(RuntimeUse, IterationsAreFewEvenAtSingularPoses) {
   EXPECT_LE(worst_back, 16);
 }
 
+TEST(RuntimeUse, PathsLeaveSingularPosesWhereThereAreNoErrors) {
+  // Location errors do nothing where all axes are at zero, and there A is parallel to the tool: the error of direction
+  // is far smaller than what the errors change of its derivative.
+  const Machine machine = test::trunnion_mill();
+  ErrorSet errors;
+  const std::size_t a = machine.find_axis("A"), c = machine.find_axis("C");
+  errors.locations = {{c, Component::A, 45e-6},
+                      {c, Component::B, -30e-6},
+                      {a, Component::B, 38e-6},
+                      {a, Component::C, -52e-6},
+                      {c, Component::X, 0.014}};
+  const test::RuntimePointer runtime = test::runtime_of(machine, errors);
+  for (const double c_by_a : {-1.5, 0.0, 4.0}) {
+    abbe_runtime_state there, back_there;
+    abbe_runtime_start(&there);
+    abbe_runtime_start(&back_there);
+    double last_turn = 0;
+    for (double tilt = 1e-9; tilt < 0.05; tilt *= 1.01) {
+      std::vector<double> pose(5, 0.0), joints(5), back(5);
+      pose[a] = -tilt;
+      pose[c] = c_by_a * tilt;
+      const int result = abbe_runtime_correct(runtime.get(), &there, pose.data(), nullptr, 1, joints.data());
+      ASSERT_GE(result, 0) << tilt << " " << c_by_a;
+      EXPECT_LE(there.iterations, 20) << tilt << " " << c_by_a;
+      ASSERT_GE(abbe_runtime_uncorrect(runtime.get(), &back_there, joints.data(), nullptr, 1, back.data()), 0);
+      for (std::size_t i = 0; i < 5; ++i) ASSERT_NEAR(back[i], pose[i], 1e-9) << tilt << " " << c_by_a;
+      const double turn = joints[c] - pose[c];
+      EXPECT_LT(std::abs(turn - last_turn), 1e-3) << tilt << " " << c_by_a;
+      last_turn = turn;
+    }
+  }
+}
+
 TEST(RuntimeUse, CallsDoNotAllocate) {
   const Machine machine = test::trunnion_mill();
   const test::RuntimePointer runtime = test::runtime_of(machine, test::tens_of_micrometres(machine, 5));

@@ -209,13 +209,18 @@ FrozenCompensation freeze(const Machine& machine, const ErrorSet& errors, const 
   result.uncertainty_lattice = uncertainty.interpolation;
   std::vector<double> values = out.values();
   result.bytes = file_of(machine, options, values);
-  freeze_check(machine, errors, options, result);
+  survey_corrections(machine, errors, options, result);
+  // Before the file is tried: near singularities the calls go by them.
+  values[frozen::kLargestCorrection] = result.largest_correction;
+  values[frozen::kLargestCorrection + 1] = result.largest_correction_turn;
+  if (result.problem.empty()) {
+    result.bytes = file_of(machine, options, values);
+    freeze_check(machine, errors, options, result);
+  }
   if (!result.problem.empty()) {
     result.bytes.clear();
     return result;
   }
-  values[frozen::kLargestCorrection] = result.largest_correction;
-  values[frozen::kLargestCorrection + 1] = result.largest_correction_turn;
   values[frozen::kAccuracy] = result.accuracy;
   values[frozen::kAccuracy + 1] = result.accuracy_turn;
   values[frozen::kWorstIterations] = result.worst_iterations;

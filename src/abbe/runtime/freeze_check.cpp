@@ -45,65 +45,83 @@ bool within_map(const abbe_runtime& runtime, const std::vector<double>& joints) 
   return true;
 }
 
-}  // namespace
-
-void freeze_check(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
-                  FrozenCompensation& result) {
+std::unique_ptr<abbe_runtime, Free> load(FrozenCompensation& result) {
   abbe_runtime* handle = nullptr;
   char text[128];
-  if (abbe_runtime_load(result.bytes.data(), result.bytes.size(), text, sizeof text, &handle) != ABBE_OK) {
+  if (abbe_runtime_load(result.bytes.data(), result.bytes.size(), text, sizeof text, &handle) != ABBE_OK)
     result.problem = text;
-    return;
-  }
-  const std::unique_ptr<abbe_runtime, Free> runtime(handle);
-  result.largest_joint.assign(machine.axes.size(), 0.0);
+  return std::unique_ptr<abbe_runtime, Free>(handle);
+}
+
+/// Calls `each` with the machine with a tool and nominal commands, for the poses that are tried: always the same ones.
+template <typename Each>
+void for_each_pose(const Machine& machine, const FreezeOptions& options, const abbe_runtime& runtime, Each each) {
   RandomStream random(5);
   Machine with_tool = machine;
   const Eigen::Vector3d tools[] = {options.tool, -options.tool_length_min * machine.tool_direction,
                                    -options.tool_length_max * machine.tool_direction};
   for (const Eigen::Vector3d& tool : tools) {
     with_tool.tool_offset = tool;
-    for (std::size_t k = 0; k < options.poses; ++k) {
-      const std::vector<double> nominal = some_commands(machine, *runtime, random);
-      std::vector<double> joints(nominal), back(nominal);
-      const RigidTransform wanted = nominal_workpiece_from_tool(with_tool, nominal);
-      const RigidTransform before = actual_workpiece_from_tool(with_tool, errors, nominal);
-      const double moved = (before.translation - wanted.translation).norm();
-      if (result.where.empty() || moved > result.largest_correction) {
-        result.largest_correction = moved;
-        result.where = nominal;
-        result.tool_length_there = -tool.dot(machine.tool_direction);
-      }
-      result.largest_correction_turn =
-          std::max(result.largest_correction_turn,
-                   angle(before.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction));
-      ++result.poses;
-      abbe_runtime_state state;
-      abbe_runtime_start(&state);
-      const int called = abbe_runtime_correct(runtime.get(), &state, nominal.data(), tool.data(), 1, joints.data());
-      const int status = called < 0 ? ABBE_POSITION_LEFT : called & ABBE_RESULT_MASK;
-      if (status == ABBE_POSITION_LEFT) ++result.unreached;
-      if (status == ABBE_TURN_LIMITED) ++result.limited;
-      if (called < 0) continue;
-      result.worst_iterations = std::max(result.worst_iterations, state.iterations);
-      abbe_runtime_start(&state);
-      if (abbe_runtime_uncorrect(runtime.get(), &state, joints.data(), tool.data(), 1, back.data()) >= 0)
-        result.worst_iterations = std::max(result.worst_iterations, state.iterations);
-      for (std::size_t i = 0; i < joints.size(); ++i)
-        result.largest_joint[i] = std::max(result.largest_joint[i], std::abs(joints[i] - nominal[i]));
-      // Beyond the map nothing is known, by the full model neither.
-      if (status == ABBE_POSITION_LEFT || !within_map(*runtime, joints)) continue;
-      const RigidTransform alone = actual_workpiece_from_tool(with_tool, errors, joints);
-      result.difference = std::max(result.difference, (alone.translation - wanted.translation).norm());
-      const RigidTransform after =
-          options.all_errors ? actual_workpiece_from_tool(with_tool, *options.all_errors, joints) : alone;
-      result.accuracy = std::max(result.accuracy, (after.translation - wanted.translation).norm());
-      if (status != ABBE_OK) continue;
-      const double turned = angle(after.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction);
-      // Machines without rotary axes for it do not correct the direction.
-      if (runtime->turning.count > 0) result.accuracy_turn = std::max(result.accuracy_turn, turned);
-    }
+    for (std::size_t k = 0; k < options.poses; ++k) each(with_tool, some_commands(machine, runtime, random));
   }
+}
+
+}  // namespace
+
+void survey_corrections(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
+                        FrozenCompensation& result) {
+  const std::unique_ptr<abbe_runtime, Free> runtime = load(result);
+  if (!runtime) return;
+  for_each_pose(machine, options, *runtime, [&](const Machine& with_tool, const std::vector<double>& nominal) {
+    const RigidTransform wanted = nominal_workpiece_from_tool(with_tool, nominal);
+    const RigidTransform before = actual_workpiece_from_tool(with_tool, errors, nominal);
+    const double moved = (before.translation - wanted.translation).norm();
+    if (result.where.empty() || moved > result.largest_correction) {
+      result.largest_correction = moved;
+      result.where = nominal;
+      result.tool_length_there = -with_tool.tool_offset.dot(machine.tool_direction);
+    }
+    result.largest_correction_turn =
+        std::max(result.largest_correction_turn,
+                 angle(before.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction));
+  });
+}
+
+void freeze_check(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
+                  FrozenCompensation& result) {
+  const std::unique_ptr<abbe_runtime, Free> runtime = load(result);
+  if (!runtime) return;
+  result.largest_joint.assign(machine.axes.size(), 0.0);
+  for_each_pose(machine, options, *runtime, [&](const Machine& with_tool, const std::vector<double>& nominal) {
+    const double* const tool = with_tool.tool_offset.data();
+    std::vector<double> joints(nominal), back(nominal);
+    const RigidTransform wanted = nominal_workpiece_from_tool(with_tool, nominal);
+    ++result.poses;
+    abbe_runtime_state state;
+    abbe_runtime_start(&state);
+    const int called = abbe_runtime_correct(runtime.get(), &state, nominal.data(), tool, 1, joints.data());
+    const int status = called < 0 ? ABBE_POSITION_LEFT : called & ABBE_RESULT_MASK;
+    if (status == ABBE_POSITION_LEFT) ++result.unreached;
+    if (status == ABBE_TURN_LIMITED) ++result.limited;
+    if (called < 0) return;
+    result.worst_iterations = std::max(result.worst_iterations, state.iterations);
+    abbe_runtime_start(&state);
+    if (abbe_runtime_uncorrect(runtime.get(), &state, joints.data(), tool, 1, back.data()) >= 0)
+      result.worst_iterations = std::max(result.worst_iterations, state.iterations);
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      result.largest_joint[i] = std::max(result.largest_joint[i], std::abs(joints[i] - nominal[i]));
+    // Beyond the map nothing is known, by the full model neither.
+    if (status == ABBE_POSITION_LEFT || !within_map(*runtime, joints)) return;
+    const RigidTransform alone = actual_workpiece_from_tool(with_tool, errors, joints);
+    result.difference = std::max(result.difference, (alone.translation - wanted.translation).norm());
+    const RigidTransform after =
+        options.all_errors ? actual_workpiece_from_tool(with_tool, *options.all_errors, joints) : alone;
+    result.accuracy = std::max(result.accuracy, (after.translation - wanted.translation).norm());
+    if (status != ABBE_OK) return;
+    const double turned = angle(after.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction);
+    // Machines without rotary axes for it do not correct the direction.
+    if (runtime->turning.count > 0) result.accuracy_turn = std::max(result.accuracy_turn, turned);
+  });
 }
 
 }  // namespace abbe

@@ -1,5 +1,6 @@
 #include "abbe/runtime/frozen_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -305,6 +306,17 @@ void choose(Values& values, abbe_runtime& m) {
   }
   // The point in the world is then found without them.
   values.require(m.solved.count == 0 || m.reaching_linear, "axes that correct the point");
+  // By so many errors of direction (point) do the actual derivatives differ from the nominal ones at most, with room
+  // for errors that change several times along a turn, so that the iterations converge.
+  constexpr double kErrors = 10, kMostOfThem = 0.05;
+  const double turned = m.information.largest_correction_rad;
+  double moved = turned;
+  for (std::size_t k = 0; k < m.reaching.count; ++k) {
+    if (m.axis[m.reaching.axis[k]].rotary)
+      moved = std::max(moved, m.reaching_unit[k] * m.information.largest_correction_mm);
+  }
+  m.least_turning = std::min(kErrors * turned, kMostOfThem);
+  m.least_reaching = std::min(kErrors * moved, kMostOfThem);
 }
 
 }  // namespace

@@ -87,6 +87,9 @@ struct abbe_runtime {
   std::array<double, 3> reaching_unit{};       ///< mm or rad that count as 1 mm
   bool reaching_linear = false;                ///< the same three axes are solved and correct
   double largest_turn = 0, largest_shift = 0;  ///< rad, mm: bounds of a correction
+  /// Singular values of the nominal derivative below these say nothing of the actual machine's: turns and shifts are
+  /// bounded there however small the error is.
+  double least_turning = 0, least_reaching = 0;
   abbe::Triple tool_reference{}, tool{}, tool_error{}, tool_direction{};
   double tool_length_min = 0, tool_length_max = 0;
   abbe::Triple world_zero{};          ///< of the world in the workpiece frame

@@ -46,7 +46,8 @@ void symmetric_eigen(double a[3][3], double v[3][3]) {
 
 }  // namespace
 
-TurnSystem::TurnSystem(const abbe_runtime& machine, const NominalView& view) : count_(machine.turning.count) {
+TurnSystem::TurnSystem(const abbe_runtime& machine, const NominalView& view)
+    : count_(machine.turning.count), least_(machine.least_turning) {
   for (std::size_t i = 0; i < count_; ++i) {
     const Triple& w = view.column[machine.turning.axis[i]];
     across_[i] = w - dot(w, view.direction) * view.direction;
@@ -63,7 +64,7 @@ Triple TurnSystem::of(const std::array<double, 2>& y) const { return y[0] * acro
 std::array<double, 2> TurnSystem::solve(const Triple& c, double largest, bool& bounded) const {
   bounded = false;
   if (count_ == 0) return {};
-  const double t = length(c) / largest;
+  const double t = std::max(length(c) / largest, least_);
   const double b0 = dot(across_[0], c), b1 = dot(across_[1], c);
   if (count_ == 2 && area_ > std::max(t, kWellSpread * norm_) * norm_) {
     const double by = 1 / (area_ * area_);
@@ -93,7 +94,7 @@ std::array<double, 2> TurnSystem::solve(const Triple& c, double largest, bool& b
 }
 
 ReachSystem::ReachSystem(const abbe_runtime& machine, const NominalView& view, const Triple& goal)
-    : count_(machine.reaching.count) {
+    : count_(machine.reaching.count), least_(machine.least_reaching) {
   for (std::size_t k = 0; k < count_; ++k) {
     const std::size_t i = machine.reaching.axis[k];
     column_[k] = machine.axis[i].rotary ? machine.reaching_unit[k] * cross(view.column[i], goal - view.origin[i])
@@ -108,7 +109,7 @@ ReachSystem::ReachSystem(const abbe_runtime& machine, const NominalView& view, c
 
 Triple ReachSystem::solve(const Triple& rest, double largest, bool& bounded) const {
   bounded = false;
-  const double t = length(rest) / largest;
+  const double t = std::max(length(rest) / largest, least_);
   if (count_ == 3 && std::abs(determinant_) > std::max(t, kWellSpread * norm_) * square_) {
     return {dot(row_[0], rest) / determinant_, dot(row_[1], rest) / determinant_, dot(row_[2], rest) / determinant_};
   }

@@ -7,7 +7,8 @@
 namespace abbe {
 
 /// Turns y of up to two rotary axes that take an orientation error c, as bounded_least_squares() gives them: exact
-/// where the axes are independent, never longer than `largest`, and going to zero with the singular value. Written on
+/// where the axes are independent (more so than the errors change the derivative), never longer than `largest`, and
+/// going to zero with the singular value. Written on
 /// the normal equations, whose loss of digits the iterations around it make good.
 class TurnSystem {
  public:
@@ -20,6 +21,7 @@ class TurnSystem {
 
  private:
   std::size_t count_ = 0;
+  double least_ = 0;  // singular value that counts
   std::array<Triple, 2> across_{};
   double first_ = 0, mixed_ = 0, second_ = 0;  // of the matrix of products
   double area_ = 0, norm_ = 0;
@@ -37,6 +39,7 @@ class ReachSystem {
   Triple solve_generally(const Triple& rest, double bound, bool& bounded) const;
 
   std::size_t count_ = 0;
+  double least_ = 0;  // singular value that counts
   std::array<Triple, 3> column_{};
   std::array<Triple, 3> row_{};  // of the inverse times the determinant
   double determinant_ = 0, square_ = 0, norm_ = 0;
