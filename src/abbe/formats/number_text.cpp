@@ -26,6 +26,7 @@ struct Decimal {
   long exponent = 0;          // of ten, belongs to `digits`
   std::string_view mantissa;  // as written, without sign and exponent
   long written_exponent = 0;
+  long significant = 0;  // digits, from the first that is not zero
 };
 
 bool split(std::string_view text, Decimal& decimal) {
@@ -47,6 +48,7 @@ bool split(std::string_view text, Decimal& decimal) {
   }
   if (!any) return false;
   decimal.fits = significant <= kFullWord;
+  decimal.significant = significant;
   decimal.mantissa = {mantissa, static_cast<std::size_t>(at - mantissa)};
   if (at != end && (*at == 'e' || *at == 'E')) {
     ++at;
@@ -103,7 +105,7 @@ NumberProblem parse_number(std::string_view text, int decimal_shift, double& val
   } else {
     const auto result = parse_long_way(decimal, decimal_shift, value);
     if (result.ec == std::errc::result_out_of_range) {
-      if (decimal.written_exponent + decimal_shift > 0) return NumberProblem::too_large;
+      if (decimal.significant + exponent > 0) return NumberProblem::too_large;
       value = 0;
     } else if (result.ec != std::errc()) {
       return NumberProblem::not_a_number;

@@ -107,6 +107,10 @@ TEST(NumberText, RefusesWhatIsNoDecimalNumber) {
     EXPECT_EQ(parse_number(text, 0, value), NumberProblem::not_finite) << text;
   }
   EXPECT_EQ(parse_number("1e400", 0, value), NumberProblem::too_large);
+  // Of its digits alone, however the exponent is written.
+  EXPECT_EQ(parse_number(std::string(400, '7'), 0, value), NumberProblem::too_large);
+  EXPECT_EQ(parse_number(std::string(800, '7') + "e-400", 0, value), NumberProblem::too_large);
+  EXPECT_EQ(parse_number("0." + std::string(700, '0') + "1e400", 0, value), NumberProblem::none);
   EXPECT_EQ(parse_number("1e-400", 0, value), NumberProblem::none);
   EXPECT_EQ(value, 0);
   EXPECT_EQ(parse_number("+.5", 0, value), NumberProblem::none);
