@@ -32,27 +32,69 @@ bool moves_only_rotary_axes(const ProgramMove& move) {
   return rotary && !linear;
 }
 
+double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// X, Y, Z of words from a point.
+std::array<double, 3> difference(const WordValues& words, const std::array<double, 3>& from) {
+  return {words[0] - from[0], words[1] - from[1], words[2] - from[2]};
+}
+
+/// What of a vector is at right angles to a normal of length one.
+std::array<double, 3> across(const std::array<double, 3>& vector, const std::array<double, 3>& normal) {
+  const double along = dot(vector, normal);
+  return {vector[0] - along * normal[0], vector[1] - along * normal[1], vector[2] - along * normal[2]};
+}
+
 }  // namespace
 
 MovePath::MovePath(const ProgramMove& move) : move_(&move) {
   if (move.kind != MoveKind::arc_clockwise && move.kind != MoveKind::arc_counterclockwise) return;
   arc_ = true;
-  first_ = move.plane == ArcPlane::XY ? 0 : move.plane == ArcPlane::ZX ? 2 : 1;
-  second_ = (first_ + 1) % 3;
-  const double x = move.start[first_] - move.arc_centre[first_], y = move.start[second_] - move.arc_centre[second_];
-  const double u = move.end[first_] - move.arc_centre[first_], v = move.end[second_] - move.arc_centre[second_];
-  radius_ = std::hypot(x, y);
-  radius_end_ = std::hypot(u, v);
-  angle_ = std::atan2(y, x);
-  const double sense = move.kind == MoveKind::arc_counterclockwise ? 1 : -1;
-  double turn = std::remainder(sense * (std::atan2(v, u) - angle_), kTwoPi);
-  if (turn < kSmallestArc) turn += kTwoPi;
-  turn_ = sense * (turn + kTwoPi * std::max(move.arc_turns - 1, 0));
+  tilted_ = move.plane == ArcPlane::tilted;
+  double along = 0;  // the normal
+  std::array<double, 3> normal{};
+  if (tilted_) {
+    normal = move.arc_normal;
+    const std::array<double, 3> start = across(difference(move.start, move.arc_centre), normal);
+    const std::array<double, 3> end = across(difference(move.end, move.arc_centre), normal);
+    radius_ = std::sqrt(dot(start, start));
+    radius_end_ = std::sqrt(dot(end, end));
+    for (std::size_t k = 0; k < 3; ++k) outwards_[k] = radius_ > 0 ? start[k] / radius_ : 0;
+    onwards_ = {normal[1] * outwards_[2] - normal[2] * outwards_[1],
+                normal[2] * outwards_[0] - normal[0] * outwards_[2],
+                normal[0] * outwards_[1] - normal[1] * outwards_[0]};
+    set_turn(0, std::atan2(dot(end, onwards_), dot(end, outwards_)));
+    along = dot(difference(move.end, {move.start[0], move.start[1], move.start[2]}), normal);
+  } else {
+    first_ = move.plane == ArcPlane::XY ? 0 : move.plane == ArcPlane::ZX ? 2 : 1;
+    second_ = (first_ + 1) % 3;
+    const double x = move.start[first_] - move.arc_centre[first_], y = move.start[second_] - move.arc_centre[second_];
+    const double u = move.end[first_] - move.arc_centre[first_], v = move.end[second_] - move.arc_centre[second_];
+    radius_ = std::hypot(x, y);
+    radius_end_ = std::hypot(u, v);
+    set_turn(std::atan2(y, x), std::atan2(v, u));
+    const std::size_t third = 3 - first_ - second_;
+    normal[third] = 1;
+    along = move.end[third] - move.start[third];
+  }
   const double radius = std::max(radius_, radius_end_), drift = radius_end_ - radius_;
   bend_ = std::hypot(radius * turn_ * turn_, 2 * drift * turn_);
-  speed_[first_] = speed_[second_] = std::hypot(radius * turn_, drift);
-  const std::size_t normal = 3 - first_ - second_;
-  speed_[normal] = std::abs(move.end[normal] - move.start[normal]);
+  const double in_plane = std::hypot(radius * turn_, drift);
+  arc_length_ = std::hypot(in_plane, along);
+  for (std::size_t k = 0; k < 3; ++k) {
+    // A direction lies in the plane by the sine of its angle to the normal.
+    speed_[k] = in_plane * std::sqrt(std::max(0.0, 1 - normal[k] * normal[k])) + std::abs(along * normal[k]);
+  }
+}
+
+void MovePath::set_turn(double from, double to) {
+  angle_ = from;
+  const double sense = move_->kind == MoveKind::arc_counterclockwise ? 1 : -1;
+  double turn = std::remainder(sense * (to - from), kTwoPi);
+  if (turn < kSmallestArc) turn += kTwoPi;
+  turn_ = sense * (turn + kTwoPi * std::max(move_->arc_turns - 1, 0));
 }
 
 void MovePath::at(double s, WordValues& words) const {
@@ -67,8 +109,17 @@ void MovePath::at(double s, WordValues& words) const {
   for (std::size_t i = 0; i < kAxisWords; ++i) words[i] = move_->start[i] + s * (move_->end[i] - move_->start[i]);
   if (!arc_) return;
   const double radius = radius_ + s * (radius_end_ - radius_), angle = angle_ + s * turn_;
-  words[first_] = move_->arc_centre[first_] + radius * std::cos(angle);
-  words[second_] = move_->arc_centre[second_] + radius * std::sin(angle);
+  const double x = radius * std::cos(angle), y = radius * std::sin(angle);
+  if (!tilted_) {
+    words[first_] = move_->arc_centre[first_] + x;
+    words[second_] = move_->arc_centre[second_] + y;
+    return;
+  }
+  const std::array<double, 3>& normal = move_->arc_normal;
+  const double along = dot(difference(words, move_->arc_centre), normal);
+  for (std::size_t k = 0; k < 3; ++k) {
+    words[k] = move_->arc_centre[k] + along * normal[k] + x * outwards_[k] + y * onwards_[k];
+  }
 }
 
 double feed_length(const WordValues& start, const WordValues& end) {
@@ -85,9 +136,7 @@ double move_duration(const ProgramMove& move) {
   if (move.feed_mode == FeedMode::inverse_time) return 1 / move.feed;
   const MovePath path(move);
   if (!path.is_arc()) return feed_length(move.start, move.end) / move.feed;
-  const std::array<double, 3> speed = path.speed();
-  const std::size_t normal = move.plane == ArcPlane::XY ? 2 : move.plane == ArcPlane::ZX ? 1 : 0;
-  return std::hypot(speed[(normal + 1) % 3], speed[normal]) / move.feed;
+  return path.arc_length() / move.feed;
 }
 
 void set_piece_feed(const ProgramMove& move, double duration, double share, const WordValues& start,

@@ -20,13 +20,18 @@ class MovePath {
   double bend() const { return bend_; }
   /// Bound of the rates of X, Y, Z by s, each; mm.
   std::array<double, 3> speed() const { return speed_; }
+  /// Of an arc or helix, mm; where the radii differ, a bound of it.
+  double arc_length() const { return arc_length_; }
 
  private:
+  void set_turn(double from, double to);
+
   const ProgramMove* move_;
-  bool arc_ = false;
+  bool arc_ = false, tilted_ = false;
   std::size_t first_ = 0, second_ = 1;  ///< words of the plane, from the first to the second counterclockwise
   double radius_ = 0, radius_end_ = 0, angle_ = 0, turn_ = 0;
-  double bend_ = 0;
+  std::array<double, 3> outwards_{}, onwards_{};  ///< tilted: from the centre to the start, and ahead from there
+  double bend_ = 0, arc_length_ = 0;
   std::array<double, 3> speed_{};
 };
 

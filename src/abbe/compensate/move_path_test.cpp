@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
@@ -67,6 +69,46 @@ TEST(MovePath, AnArcToItsStartIsAFullCircle) {
     EXPECT_NEAR(words[kX], 0, 1e-7);
     EXPECT_NEAR(words[kY], -3, 1e-7);
     EXPECT_NEAR(move_duration(move), 6 * kPi / 100, 1e-9);
+  }
+}
+
+TEST(MovePath, AnArcOfATiltedPlaneIsThatOfAPlaneOfTwoAxesTurned) {
+  const Eigen::Matrix3d turn =
+      (Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(-1.1, Eigen::Vector3d::UnitX()) *
+       Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()))
+          .toRotationMatrix();
+  const auto turned = [&](auto values) {
+    const Eigen::Vector3d there = turn * Eigen::Vector3d(values[0], values[1], values[2]);
+    for (std::size_t k = 0; k < 3; ++k) values[k] = there[static_cast<Eigen::Index>(k)];
+    return values;
+  };
+  for (const MoveKind kind : {MoveKind::arc_clockwise, MoveKind::arc_counterclockwise}) {
+    for (const int turns : {1, 3}) {
+      ProgramMove flat = arc(kind, ArcPlane::XY);
+      flat.arc_turns = turns;
+      flat.arc_centre = {10, 20, 1};
+      flat.start[kX] = 15, flat.start[kY] = 20, flat.start[kZ] = 1, flat.start[kC] = 0.2;
+      flat.end[kX] = 10, flat.end[kY] = 25.02, flat.end[kZ] = 8, flat.end[kC] = 0.4;
+      ProgramMove tilted = flat;
+      tilted.plane = ArcPlane::tilted;
+      tilted.start = turned(flat.start);
+      tilted.end = turned(flat.end);
+      tilted.arc_centre = turned(flat.arc_centre);
+      tilted.arc_normal = turned(std::array<double, 3>{0, 0, 1});
+      const MovePath expected(flat), path(tilted);
+      WordValues wanted, words, before = tilted.start;
+      for (int i = 0; i <= 100; ++i) {
+        expected.at(i / 100.0, wanted);
+        wanted = turned(wanted);
+        path.at(i / 100.0, words);
+        for (std::size_t k = 0; k < kAxisWords; ++k) ASSERT_NEAR(words[k], wanted[k], 1e-12);
+        for (std::size_t k = 0; k < 3; ++k)
+          ASSERT_LE(std::abs(words[k] - before[k]), path.speed()[k] / 100 * (1 + 1e-12));
+        before = words;
+      }
+      EXPECT_NEAR(path.bend(), expected.bend(), 1e-9);
+      EXPECT_NEAR(move_duration(tilted), move_duration(flat), 1e-12);
+    }
   }
 }
 

@@ -18,7 +18,7 @@ using WordValues = std::array<double, kAxisWords>;
 enum class MoveKind : std::uint8_t {
   rapid,                 ///< G0, and the rapid parts of canned cycles
   straight,              ///< G1
-  arc_clockwise,         ///< G2, seen from the positive end of the plane's normal
+  arc_clockwise,         ///< G2, seen from the positive end of the plane's normal: X x Y = Z in words
   arc_counterclockwise,  ///< G3
 };
 
@@ -31,7 +31,12 @@ enum class SpindleMove : std::uint8_t {
 };
 
 // NOLINTNEXTLINE(readability-identifier-naming): planes have the names of their axes
-enum class ArcPlane : std::uint8_t { XY, ZX, YZ };  ///< G17, G18, G19
+enum class ArcPlane : std::uint8_t {
+  XY,      ///< G17
+  ZX,      ///< G18
+  YZ,      ///< G19
+  tilted,  ///< at right angles to ProgramMove::arc_normal
+};
 
 enum class FeedMode : std::uint8_t {
   inverse_time,    ///< G93: 1/min, of this move
@@ -60,6 +65,7 @@ struct ProgramMove {
   WordValues end{};                     ///< mm, rad
   ArcPlane plane = ArcPlane::XY;        ///< arcs
   std::array<double, 3> arc_centre{};   ///< X, Y, Z, mm; the coordinate along the normal is unused
+  std::array<double, 3> arc_normal{};   ///< of a tilted plane, in words X, Y, Z; of length one
   int arc_turns = 1;                    ///< full circles begun, P of RS274/NGC: 1 for up to one turn
   std::array<double, 3> tool_length{};  ///< X, Y, Z of the tool length offset in force, mm (G43, G43.1, G43.2)
 };

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "abbe/compensate/move_path.h"
 #include "abbe/formats/nc_program.h"
 
 namespace abbe {
@@ -34,6 +35,16 @@ class UnchangedMoves final : public MoveCorrector {
 
  private:
   void arc(const ProgramMove& move, std::vector<CorrectedPiece>& pieces) const {
+    if (move.plane == ArcPlane::tilted) {
+      const MovePath path(move);
+      constexpr int kPieces = 100;
+      for (int i = 1; i <= kPieces; ++i) {
+        CorrectedPiece& piece = pieces.emplace_back();
+        piece.feed = move.feed;
+        path.at(static_cast<double>(i) / kPieces, piece.end);
+      }
+      return;
+    }
     const std::size_t a = move.plane == ArcPlane::XY ? 0 : move.plane == ArcPlane::ZX ? 2 : 1, b = (a + 1) % 3;
     const double from_a = move.start[a] - move.arc_centre[a], from_b = move.start[b] - move.arc_centre[b];
     const double to_a = move.end[a] - move.arc_centre[a], to_b = move.end[b] - move.arc_centre[b];

@@ -15,7 +15,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::uint32_t kLinear = 0b111, kRotary = 0b111000;
 /// Over which the map of a plane to the axes is taken: rounding falls with it.
 constexpr double kSpan_mm = 1000;
-/// An arc stays in a plane of the axes if the normal is that of one, rad.
+/// An arc is in a plane of the axes if the normal is that of one, rad.
 constexpr double kSameNormal = 1e-9;
 
 std::size_t axis_index(Eigen::Index k) { return static_cast<std::size_t>(k); }
@@ -162,22 +162,26 @@ void NcInterpreter::turn_arc_to_axes(ProgramMove& move) const {
   }
   centre = axes_of_plane(centre);
   for (std::size_t k = 0; k < 3; ++k) move.arc_centre[k] = centre[k];
-  const Eigen::Vector3d turned = tilt_.axes_from_plane.col(static_cast<Eigen::Index>(normal));
-  Eigen::Index along = 0;
-  const double largest = turned.cwiseAbs().maxCoeff(&along);
-  if ((turned.cwiseAbs() - largest * Eigen::Vector3d::Unit(along)).cwiseAbs().maxCoeff() > kSameNormal) {
-    block_.fail(block_.words[0], "an arc in a plane that is not one of two axes of the machine, as it is tilted",
-                "G53.1 before it on machines that turn the workpiece; straight moves on others");
-  }
   // Axes that are not at right angles show a circle of a turned workpiece as an ellipse.
   if ((tilt_.axes_from_plane.transpose() * tilt_.axes_from_plane - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() >
       kSameNormal) {
     block_.fail(block_.words[0], "an arc in a tilted plane, on a machine whose X, Y and Z are not at right angles",
                 "straight moves: in these axes it is no arc");
   }
-  move.plane = along == 2 ? ArcPlane::XY : along == 1 ? ArcPlane::ZX : ArcPlane::YZ;
-  // Seen from the other side where the normal points against the axis, or the words are left-handed.
-  if ((turned[along] < 0) != (tilt_.axes_from_plane.determinant() < 0)) {
+  // Seen from the other side where the words are left-handed.
+  bool other_side = tilt_.axes_from_plane.determinant() < 0;
+  const Eigen::Vector3d turned = tilt_.axes_from_plane.col(static_cast<Eigen::Index>(normal)).normalized();
+  Eigen::Index along = 0;
+  const double largest = turned.cwiseAbs().maxCoeff(&along);
+  if ((turned.cwiseAbs() - largest * Eigen::Vector3d::Unit(along)).cwiseAbs().maxCoeff() > kSameNormal) {
+    move.plane = ArcPlane::tilted;
+    move.arc_normal = {turned[0], turned[1], turned[2]};
+  } else {
+    move.plane = along == 2 ? ArcPlane::XY : along == 1 ? ArcPlane::ZX : ArcPlane::YZ;
+    // And where the normal points against the axis.
+    other_side = other_side != (turned[along] < 0);
+  }
+  if (other_side) {
     move.kind = move.kind == MoveKind::arc_clockwise ? MoveKind::arc_counterclockwise : MoveKind::arc_clockwise;
   }
 }

@@ -79,6 +79,25 @@ class TiltedPlanes : public testing::Test {
     EXPECT_NEAR((there.rotation * machine.tool_direction - plane_rotation().col(2)).norm(), 0, 1e-9);
   }
 
+  void expect_arcs_of_the_plane(const std::string& turning) const {
+    const RunProgram r =
+        run(std::string(kPlane) + turning + "G0 X10 Y0 Z5\nG2 X0 Y10 I-10 J0 Z2 F100\nG2 X10 Y0 R10\nM2\n");
+    ASSERT_GE(r.moves.size(), 4U);
+    const std::size_t last = r.moves.size() - 1;
+    for (const std::size_t i : {last - 1, last}) {
+      const MovePath path(r.moves[i]);
+      ASSERT_TRUE(path.is_arc());
+      for (int k = 0; k <= 8; ++k) {
+        // Clockwise by 270 degrees from X 10, and then the last 90.
+        const double s = k / 8.0, angle = i == last - 1 ? -270 * kDegree * s : 90 * kDegree * (1 - s);
+        const double height = i == last - 1 ? 5 - 3 * s : 2;
+        ProgramMove move = r.moves[i];
+        path.at(s, move.end);
+        expect_at(move, {10 * std::cos(angle), 10 * std::sin(angle), height});
+      }
+    }
+  }
+
   Machine machine;
   WordAxes axes;
   MachinePlanes planes;
@@ -139,26 +158,37 @@ TEST_F(TiltedPlanes, WithoutG531ThePlaneCountsWithTheToolAsItIs) {
   EXPECT_EQ(r.moves[1].end[3], 0);
 }
 
-TEST_F(TiltedPlanes, ArcsAndHelicesAreThoseOfThePlane) {
-  const RunProgram r = run(std::string(kPlane) + "G53.1\nG0 X10 Y0 Z5\nG2 X0 Y10 I-10 J0 Z2 F100\nG2 X10 Y0 R10\nM2\n");
-  ASSERT_EQ(r.moves.size(), 5U);
-  for (const std::size_t i : {std::size_t{3}, std::size_t{4}}) {
-    const MovePath path(r.moves[i]);
-    ASSERT_TRUE(path.is_arc());
-    for (int k = 0; k <= 8; ++k) {
-      // Clockwise by 270 degrees from X 10, and then the last 90.
-      const double s = k / 8.0, angle = i == 3 ? -270 * kDegree * s : 90 * kDegree * (1 - s);
-      const double height = i == 3 ? 5 - 3 * s : 2;
-      ProgramMove move = r.moves[i];
-      path.at(s, move.end);
-      expect_at(move, {10 * std::cos(angle), 10 * std::sin(angle), height});
-    }
-  }
+TEST_F(TiltedPlanes, ArcsAndHelicesAreThoseOfThePlane) { expect_arcs_of_the_plane("G53.1\n"); }
+
+TEST_F(TiltedPlanes, ArcsOfAPlaneToWhichTheToolDoesNotTurn) { expect_arcs_of_the_plane(""); }
+
+TEST_F(TiltedPlanesOfAHead, ArcsLieInNoPlaneOfTwoAxes) {
+  expect_arcs_of_the_plane("G53.1\n");
+  const RunProgram r = run(std::string(kPlane) + "G53.1\nG0 X10 Y0 Z5\nG2 X0 Y10 I-10 J0 F100\nM2\n");
+  EXPECT_EQ(r.moves.back().plane, ArcPlane::tilted);
 }
 
-TEST_F(TiltedPlanesOfAHead, ArcsThatLieInNoPlaneOfTheAxesAreRefused) {
-  EXPECT_THAT(failure(std::string(kPlane) + "G53.1\nG0 X10 Y0 Z5\nG2 X0 Y10 I-10 J0 F100\n"),
-              HasSubstr("an arc in a plane that is not one of two axes of the machine"));
+TEST_F(TiltedPlanes, ArcsOfTheOtherPlanesOfAPlane) {
+  const RunProgram r =
+      run(std::string(kPlane) + "G18 G0 X10 Y3 Z0\nG3 X0 Z-10 I-10 K0 F100\nG19 G2 Y13 Z0 J10 K0 P2\nM2\n");
+  ASSERT_EQ(r.moves.size(), 4U);
+  for (int k = 0; k <= 8; ++k) {
+    const double s = k / 8.0;
+    // G18: counterclockwise is from Z to X; G19: clockwise from Z to Y, from below the centre by a quarter and a turn.
+    const auto at = [&](std::size_t i) {
+      ProgramMove move = r.moves[i];
+      MovePath(r.moves[i]).at(s, move.end);
+      return move;
+    };
+    const double first = 90 * kDegree + 90 * kDegree * s;
+    expect_at(at(2), {10 * std::sin(first), 3, 10 * std::cos(first)});
+  }
+  const Vector3d centre(0, 13, -10);
+  ProgramMove end = r.moves[3];
+  expect_at(end, {0, 13, 0});
+  MovePath(r.moves[3]).at(0.2, end.end);
+  // A fifth of 90 + 360 degrees, clockwise seen from X: from minus Y to Z.
+  expect_at(end, centre + Vector3d(0, 0, 10));
 }
 
 TEST_F(TiltedPlanes, CyclesDrillAlongTheNormal) {
