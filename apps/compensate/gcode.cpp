@@ -168,8 +168,8 @@ void add_compensate_gcode(CLI::App& compensate, CommandLine& line) {
   command->add_flag("--block-delete", options->block_delete, "leave out blocks that begin with a slash");
   command->add_option("--decimals", options->decimals, "of mm and degrees")->check(CLI::Range(0, 9));
   command->add_option("--allow", options->allow,
-                      "write the program in spite of: not-covered, outside-travel, position-left, not-converged, "
-                      "not-proven");
+                      "write the program in spite of: not-covered, outside-travel, held-start, position-left, "
+                      "not-converged, not-proven");
   command->add_flag("--dry-run", options->dry_run, "only the report: largest corrections and where; writes nothing");
   command->add_flag("--json", options->json);
   command->callback([&line, options] { line.run = [options] { return run_gcode(*options); }; });

@@ -51,9 +51,11 @@ AllowedProblems allowed_problems(const GcodeOptions& options) {
       allowed.not_converged = true;
     } else if (name == "not-proven") {
       allowed.not_proven = true;
+    } else if (name == "held-start") {
+      allowed.held_start = true;
     } else {
       throw InputError({.field = "--allow " + name}, "unknown",
-                       "not-covered, outside-travel, position-left, not-converged or not-proven");
+                       "not-covered, outside-travel, held-start, position-left, not-converged or not-proven");
     }
   }
   return allowed;

@@ -24,7 +24,8 @@ struct GcodeOptions {
 
 /// What a program may meet and still be written, by its name for --allow.
 struct AllowedProblems {
-  bool not_covered = false, outside_travel = false, position_left = false, not_converged = false, not_proven = false;
+  bool not_covered = false, outside_travel = false, held_start = false, position_left = false, not_converged = false;
+  bool not_proven = false;
 };
 
 /// @throws InputError for an unknown name

@@ -133,6 +133,12 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
       "outside the range over which the errors are known", "not-covered");
   add(status_count(report, CorrectionStatus::outside_travel), allowed.outside_travel,
       "corrected position outside the travel", "outside-travel");
+  add(report.held_starts, allowed.held_start,
+      fmt::format(
+          "work that begins at the end of a travel, out of which its correction leads, so that the point is off "
+          "by at most {:.3f} um there; begin it further inside the travel",
+          1e3 * report.largest_held_start.value),
+      "held-start");
   add(status_count(report, CorrectionStatus::position_left), allowed.position_left, "point not reached",
       "position-left");
   add(status_count(report, CorrectionStatus::not_converged), allowed.not_converged, "no correction found",
@@ -189,6 +195,13 @@ void print_gcode_report(const GcodeOptions& options, const Machine& machine, con
         "misses its place by at most {:.3f} um, in line {}\n",
         report.held_at_travel.count, report.held_at_travel.count == 1 ? "" : "s", lines_text(report.held_at_travel),
         1e3 * report.largest_held.value, report.largest_held.line);
+  }
+  if (report.held_starts.count > 0) {
+    fmt::print(
+        "work that begins at the end of a travel, out of which its correction leads: {} move{}, {}; the point is off "
+        "by at most {:.3f} um there, and within the tolerance from where the correction is within the travel\n",
+        report.held_starts.count, report.held_starts.count == 1 ? "" : "s", lines_text(report.held_starts),
+        1e3 * report.largest_held_start.value);
   }
   if (report.not_proven.count > 0) {
     fmt::print("not proven to stay within the tolerance: {} move{}, {}\n", report.not_proven.count,
@@ -264,6 +277,8 @@ nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& ma
   }
   json["held_at_travel"] = count_json(report.held_at_travel);
   json["held_at_travel"]["largest_left_um"] = 1e3 * report.largest_held.value;
+  json["held_starts"] = count_json(report.held_starts);
+  json["held_starts"]["largest_left_um"] = 1e3 * report.largest_held_start.value;
   json["bent_with_spindle"] = count_json(report.bent_with_spindle);
   json["bent_with_spindle"]["largest_um"] = 1e3 * report.largest_bend.value;
   json["not_proven"] = count_json(report.not_proven);

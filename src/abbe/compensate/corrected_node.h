@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -31,6 +32,10 @@ struct CorrectedNode {
   bool point_reached() const {
     return status == CorrectionStatus::reached || status == CorrectionStatus::orientation_left ||
            status == CorrectionStatus::turn_limited;
+  }
+  /// Besides, the point is known where it is not reached because the axes are kept at the end of a travel.
+  bool point_known() const {
+    return point_reached() || (status == CorrectionStatus::outside_travel && std::isfinite(position_left));
   }
 };
 

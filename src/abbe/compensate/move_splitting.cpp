@@ -11,6 +11,7 @@ namespace {
 constexpr double kEndResidual = 2e-9;
 constexpr std::size_t kMostParts = 8;  // per round: later rounds see what is local
 constexpr double kShortestShare = 1e-9;
+constexpr int kHalvings = 26;  // 100 mm to 2 nm
 
 void raise(double& bound, double value) { bound = std::max(bound, value); }
 
@@ -87,6 +88,24 @@ double bound_excess(const PieceBounder& bounder, const PathTolerance& tolerance,
   return excess;
 }
 
+void MoveSplitter::part_at_travel(const MovePath& path, ProgramCoordinates coordinates, std::size_t tool) {
+  const bool reached_first = nodes_.front().point_reached();
+  double reached = reached_first ? 0 : 1, missed = 1 - reached;
+  CorrectedNode best = reached_first ? nodes_.front() : nodes_.back();
+  for (int i = 0; i < kHalvings; ++i) {
+    const double s = 0.5 * (reached + missed);
+    fresh_.assign(1, CorrectedNode{});
+    path.at(s, fresh_[0].words);
+    correction_->correct(coordinates, tool, fresh_);
+    (fresh_[0].point_reached() ? reached : missed) = s;
+    if (fresh_[0].point_reached()) best = fresh_[0];
+  }
+  if (reached == 0 || reached == 1) return;
+  nodes_.insert(nodes_.begin() + 1, best);
+  at_.insert(at_.begin() + 1, reached);
+  proven_.push_back(0);
+}
+
 bool MoveSplitter::split(const ProgramMove& move, std::size_t tool, const PathTolerance& tolerance,
                          const CorrectedNode& start, const CorrectedNode& end) {
   const MovePath path(move);
@@ -94,13 +113,14 @@ bool MoveSplitter::split(const ProgramMove& move, std::size_t tool, const PathTo
   nodes_.assign({start, end});
   at_.assign({0.0, 1.0});
   proven_.assign(1, 0);
+  if (start.point_reached() != end.point_reached()) part_at_travel(path, move.coordinates, tool);
   for (;;) {
     parts_.assign(proven_.size(), 1);
     fresh_.clear();
     for (std::size_t k = 0; k < proven_.size(); ++k) {
       const MovePiece piece{&nodes_[k], &nodes_[k + 1], path.is_arc() ? &path : nullptr, at_[k + 1] - at_[k]};
       // What has no correction has no bound either; its status is said.
-      if (proven_[k] != 0 || !piece.from->point_reached() || !piece.to->point_reached()) continue;
+      if (proven_[k] != 0 || !piece.from->point_known() || !piece.to->point_known()) continue;
       const PieceBound bound = bound_pieces(*bounder_, axes_, move.coordinates, tool_point, {&piece, 1});
       const double excess = bound_excess(*bounder_, tolerance, bound, &piece);
       if (excess <= 1) {

@@ -33,6 +33,9 @@ double bound_excess(const PieceBounder& bounder, const PathTolerance& tolerance,
                     const MovePiece* piece);
 
 /// Splits one move until every piece stays within the tolerance. Keeps its memory for the next move.
+///
+/// Where an end is kept at the end of a travel, a piece as short as can be leads to where the point is reached: the
+/// rest stays within the tolerance, and that piece within what is missing at its end and the tolerance.
 class MoveSplitter {
  public:
   MoveSplitter(const NodeCorrection& correction, const PieceBounder& bounder, std::size_t axes,
@@ -48,6 +51,8 @@ class MoveSplitter {
   const std::vector<double>& shares() const { return at_; }  ///< [nodes] s of each, from 0 to 1
 
  private:
+  void part_at_travel(const MovePath& path, ProgramCoordinates coordinates, std::size_t tool);
+
   const NodeCorrection* correction_;
   const PieceBounder* bounder_;
   std::size_t axes_, largest_pieces_;

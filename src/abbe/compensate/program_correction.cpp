@@ -149,16 +149,16 @@ struct ProgramCorrection::Implementation {
     }
   }
 
-  /// A rapid move to the end of a travel, where the correction points outwards: it does not cut, and the axes stay.
-  bool is_held(const ProgramMove& move, const CorrectedNode& node) const {
-    if (move.kind != MoveKind::rapid || node.status != CorrectionStatus::outside_travel) return false;
+  /// A place within the travel whose correction points outwards at its end, where the axes stay.
+  bool is_held(const CorrectedNode& node) const {
+    if (node.status != CorrectionStatus::outside_travel) return false;
     constexpr double kSpare = 1e-9;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
       const Axis& axis = machine.axes[i];
       const double position = node.position[i];
       if (!axis.endless && (position < axis.travel_min - kSpare || position > axis.travel_max + kSpare)) return false;
     }
-    return std::isfinite(node.position_left);
+    return node.point_known();
   }
 
   void state(const ProgramMove& move, const CorrectedNode& node, ProgramReport& report,
@@ -167,7 +167,8 @@ struct ProgramCorrection::Implementation {
       return ProgramPlace{value,       move.line, node.position, node.corrected_position, move.tool_length,
                           node.status, approach};
     };
-    if (is_held(move, node)) {
+    // A rapid move does not cut.
+    if (move.kind == MoveKind::rapid && is_held(node)) {
       report.held_at_travel.add(move.line);
       report.largest_held.take(place(node.position_left));
     } else {
@@ -226,7 +227,28 @@ struct ProgramCorrection::Implementation {
         {bound.position, move.line, end.position, end.corrected_position, move.tool_length, end.status, {}});
   }
 
-  void give_move(const ProgramMove& move, std::size_t i, Chunk& chunk) const {
+  /// Whether what of a move can be proven is: one at work with ends within the travel.
+  /// @param earlier  the move before; null: none
+  bool goes_from_or_to_held(const ProgramMove& move, const ProgramMove* earlier, const CorrectedNode& start,
+                            const CorrectedNode& end, Chunk& chunk) const {
+    if (move.kind == MoveKind::rapid || move.spindle != SpindleMove::none) return false;
+    if ((!start.point_reached() && !is_held(start)) || (!end.point_reached() && !is_held(end))) return false;
+    // What work leaves at its end is counted there.
+    const bool after_work = earlier != nullptr && earlier->kind != MoveKind::rapid && earlier->end == move.start;
+    if (!start.point_reached() && !after_work) {
+      chunk.report.held_starts.add(move.line);
+      chunk.report.largest_held_start.take({start.position_left,
+                                            move.line,
+                                            start.position,
+                                            start.corrected_position,
+                                            move.tool_length,
+                                            start.status,
+                                            {}});
+    }
+    return true;
+  }
+
+  void give_move(const ProgramMove& move, const ProgramMove* earlier, std::size_t i, Chunk& chunk) const {
     if (chunk.tool[i] == kNoTool) {
       chunk.report.impossible.add(move.line);
       if (!reversals.act()) chunk.pieces.pieces.push_back({move.end, move.feed, move.feed_mode});
@@ -234,7 +256,8 @@ struct ProgramCorrection::Implementation {
     }
     const CorrectedNode &start = chunk.nodes[chunk.start[i]], &end = chunk.nodes[chunk.end[i]];
     bool whole = chunk.proven[i] != 0;
-    if (!whole && (!start.point_reached() || !end.point_reached())) {
+    if (!whole && (!start.point_reached() || !end.point_reached()) &&
+        !goes_from_or_to_held(move, earlier, start, end, chunk)) {
       // Nothing is proven about it. Where a rapid move comes from a place unknown to the errors, as at the start of a
       // program, nothing needs to be; all else is said by its status.
       whole = true;
@@ -325,7 +348,7 @@ struct ProgramCorrection::Implementation {
       const ProgramMove* earlier = i > 0 ? &moves[i - 1] : before;
       if (chunk.from_before[i] != 0 && earlier->tool_length != moves[i].tool_length)
         chunk.report.tool_changes.add(moves[i].line);
-      give_move(moves[i], i, chunk);
+      give_move(moves[i], earlier, i, chunk);
     }
     chunk.way.first.push_back(chunk.way.nodes.size());
     chunk.report.moves = moves.size();

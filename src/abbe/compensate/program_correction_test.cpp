@@ -216,6 +216,94 @@ TEST(ProgramCorrection, HelicesAreFollowedWithinTheTolerance) {
   }
 }
 
+TEST(ProgramCorrection, ArcsOfTiltedPlanesAreFollowedWithinTheTolerance) {
+  for (const Machine& machine : {test::swivel_head_mill(), test::trunnion_mill()}) {
+    for (const ProgramCoordinates coordinates : {ProgramCoordinates::axes, ProgramCoordinates::tool_centre}) {
+      SCOPED_TRACE(machine.name);
+      const WordAxes words = test::words_of(machine);
+      const ErrorSet errors = test::mixed_errors(machine, 17);
+      std::vector<ProgramMove> moves = random_program(machine, words, coordinates, 1, 1e-3, 8);
+      ProgramMove arc = moves[0];
+      arc.line = 2;
+      arc.kind = MoveKind::arc_counterclockwise;
+      arc.plane = ArcPlane::tilted;
+      arc.arc_normal = {0.48, -0.6, 0.64};
+      // From the centre along (0.8, 0, -0.6), which is at right angles to the normal, and half round with a pitch of 4.
+      arc.start = arc.end = moves[0].end;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double outwards = std::array<double, 3>{0.8, 0, -0.6}[k];
+        arc.arc_centre[k] = arc.start[k] - 25 * outwards;
+        arc.end[k] = arc.start[k] - 50 * outwards + 4 * arc.arc_normal[k];
+      }
+      moves.push_back(arc);
+      ProgramCorrection correction(machine, errors, words);
+      CorrectedPieces corrected;
+      correction.correct(moves, corrected);
+      EXPECT_EQ(correction.report().not_proven.count, 0U);
+      EXPECT_GE(corrected.first[2] - corrected.first[1], 100U);
+      const Missed missed = drive(machine, errors, words, moves, corrected, 2);
+      EXPECT_LE(missed.point, 1e-3);
+      EXPECT_GE(missed.uncorrected, 0.01);
+    }
+  }
+}
+
+TEST(ProgramCorrection, WorkFromAndToTheEndOfATravelIsProvenBetween) {
+  // The correction of Z leads out of the travel at its top, by 20 um there.
+  Machine machine = test::three_axis_mill();
+  const WordAxes words = test::words_of(machine);
+  const std::size_t z = machine.find_axis("Z");
+  const double top = machine.axes[z].travel_max;
+  ErrorSet errors;
+  const Basis basis{.kind = BasisKind::monomial, .order = 2, .from = machine.axes[z].travel_min, .to = top};
+  errors.motions.push_back({z, Component::Z, basis, {-0.01, -0.006, -0.004}, {}});
+  errors.motions.push_back({z, Component::X, basis, {0, 0.02, 0.03}, {}});
+  ProgramMove up, down, back;
+  up.line = 3, down.line = 4, back.line = 5;
+  up.kind = MoveKind::rapid;
+  down.kind = back.kind = MoveKind::straight;
+  down.feed = back.feed = 100;
+  for (ProgramMove* move : {&up, &down, &back}) move->start[0] = move->end[0] = 100;
+  up.start[2] = top - 50;
+  up.end[2] = down.start[2] = top;
+  down.end[2] = back.start[2] = top - 200;
+  down.end[0] = back.start[0] = back.end[0] = 130;
+  back.end[2] = top;
+  const std::vector<ProgramMove> moves = {up, down, back};
+  ProgramCorrection correction(machine, errors, words);
+  CorrectedPieces corrected;
+  correction.correct(moves, corrected);
+  const ProgramReport& report = correction.report();
+  EXPECT_EQ(report.held_at_travel.line[0], 3U);
+  EXPECT_EQ(report.held_starts.count, 1U);
+  EXPECT_EQ(report.held_starts.line[0], 4U);
+  EXPECT_NEAR(report.largest_held_start.value, 0.02, 1e-4);
+  // The end at work is another matter than the beginning.
+  EXPECT_EQ(report.status[static_cast<std::size_t>(CorrectionStatus::outside_travel)].line[0], 5U);
+  EXPECT_EQ(report.not_proven.count, 0U);
+  const test::ControlledMachine control(machine, errors, words);
+  WordValues at = corrected.pieces[corrected.first[1] - 1].end;
+  for (std::size_t i = 1; i < moves.size(); ++i) {
+    ASSERT_GE(corrected.first[i + 1] - corrected.first[i], 3U);
+    for (std::size_t k = corrected.first[i]; k < corrected.first[i + 1]; ++k) {
+      const WordValues& end = corrected.pieces[k].end;
+      for (int j = 0; j <= 8; ++j) {
+        const WordValues driven = test::between(at, end, j / 8.0);
+        EXPECT_LE(driven[2], top);
+        const Eigen::Vector3d actual = control.pose(moves[i], driven, true).translation;
+        const Eigen::Vector3d first = control.pose(moves[i], moves[i].start, false).translation;
+        const Eigen::Vector3d last = control.pose(moves[i], moves[i].end, false).translation;
+        const Eigen::Vector3d along = (last - first).normalized();
+        const Eigen::Vector3d off =
+            actual - first - along * std::clamp(along.dot(actual - first), 0.0, (last - first).norm());
+        // Near the end of the travel by what is missing there, to its side by no more than the tolerance.
+        EXPECT_LE(off.norm(), driven[2] > top - 0.05 ? 0.0201 : 1e-3);
+      }
+      at = end;
+    }
+  }
+}
+
 TEST(ProgramCorrection, WhatCannotBeCorrectedIsSaidByLine) {
   Machine machine = test::three_axis_mill();
   const WordAxes words = test::words_of(machine);

@@ -37,6 +37,8 @@ void ProgramReport::add(const ProgramReport& later) {
   for (std::size_t i = 0; i < status.size(); ++i) status[i].add(later.status[i]);
   held_at_travel.add(later.held_at_travel);
   largest_held.take(later.largest_held);
+  held_starts.add(later.held_starts);
+  largest_held_start.take(later.largest_held_start);
   bent_with_spindle.add(later.bent_with_spindle);
   largest_bend.take(later.largest_bend);
   play_with_spindle.add(later.play_with_spindle);

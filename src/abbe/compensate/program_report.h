@@ -47,14 +47,18 @@ struct ProgramReport {
   /// Ends of rapid moves to a place within the travel whose correction would lead out of it and was kept at its end:
   /// not among `status`.
   StatusCount held_at_travel;
-  ProgramPlace largest_held;      ///< mm, by which the actual point misses the place there
-  StatusCount bent_with_spindle;  ///< moves with the spindle, which are not split, whose path leaves the tolerance
-  ProgramPlace largest_bend;      ///< mm, by the bound of their paths
-  StatusCount play_with_spindle;  ///< moves with the spindle in which axes with reversal values turn round
-  StatusCount not_proven;         ///< moves whose path could not be shown to stay within the tolerance
-  StatusCount tool_changes;       ///< moves that begin where the machine stood with another tool length
-  StatusCount inverse_time;       ///< moves per minute with pieces whose duration needs inverse time
-  StatusCount above_limit;        ///< ends where the point's correction is above the limit
+  ProgramPlace largest_held;  ///< mm, by which the actual point misses the place there
+  /// Moves at work that begin where a rapid move was kept at the end of a travel; from where the point is reached on
+  /// they are proven as all others.
+  StatusCount held_starts;
+  ProgramPlace largest_held_start;  ///< mm, by which the actual point misses their beginning
+  StatusCount bent_with_spindle;    ///< moves with the spindle, which are not split, whose path leaves the tolerance
+  ProgramPlace largest_bend;        ///< mm, by the bound of their paths
+  StatusCount play_with_spindle;    ///< moves with the spindle in which axes with reversal values turn round
+  StatusCount not_proven;           ///< moves whose path could not be shown to stay within the tolerance
+  StatusCount tool_changes;         ///< moves that begin where the machine stood with another tool length
+  StatusCount inverse_time;         ///< moves per minute with pieces whose duration needs inverse time
+  StatusCount above_limit;          ///< ends where the point's correction is above the limit
   std::array<StatusCount, kMaxAxes> take_ups;           ///< of axes with reversal values, where they turn round
   std::array<StatusCount, kMaxAxes> direction_unknown;  ///< poses before the axis has moved
   /// Words that move an axis that the machine does not have, or tool centre moves it cannot make.

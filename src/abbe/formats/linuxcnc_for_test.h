@@ -26,6 +26,7 @@ struct CanonMove {
   std::size_t first = 0;           ///< arcs: first axis of the plane (Z X Y: the second one is the next of them)
   std::array<double, 2> centre{};  ///< first and second axis of the plane
   int turns = 0;                   ///< signed
+  std::array<double, 3> tool{};    ///< length offset in force, which is in `end`; X, Y, Z, mm
 };
 
 struct Canon {
@@ -127,7 +128,10 @@ class CanonReader {
       CanonMove move;
       move.kind = 'R';
       move.end = now_;
-      for (std::size_t k = 0; k < 3; ++k) move.end[k] = unit_ * v.at(k) + system_[k] + axis_offset_[k] + tool_[k];
+      for (std::size_t k = 0; k < 3; ++k) {
+        move.end[k] = unit_ * v.at(k) + system_[k] + axis_offset_[k] + tool_[k];
+        move.tool[k] = tool_[k];
+      }
       canon_.moves.push_back(move);
     } else if (name == "ARC_FEED") {
       CanonMove move;
@@ -159,6 +163,7 @@ class CanonReader {
       move.end[k] += system_[k] + axis_offset_[k] + tool_[k];
       moves = moves || std::abs(move.end[k] - now_[k]) > 1e-10;
     }
+    for (std::size_t k = 0; k < 3; ++k) move.tool[k] = tool_[k];
     // It repeats where it stands between the holes of a cycle.
     if (moves) canon_.moves.push_back(move);
     now_ = move.end;
@@ -255,6 +260,7 @@ inline std::vector<ProgramMove> program_moves(const Canon& canon) {
     move.start = here;
     for (std::size_t k = 0; k < 6; ++k) move.end[k] = k < 3 ? c.end[k] : c.end[k] * kToRadians;
     here = move.end;
+    move.tool_length = c.tool;
     move.kind = c.kind == 'T' ? MoveKind::rapid : MoveKind::straight;
     if (c.kind != 'A') continue;
     move.kind = c.turns < 0 ? MoveKind::arc_clockwise : MoveKind::arc_counterclockwise;
