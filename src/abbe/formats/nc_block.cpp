@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "abbe/formats/number_text.h"
@@ -27,6 +28,9 @@ constexpr std::array<std::pair<std::string_view, NcFlowWord>, 16> kFlowWords = {
     {"continue", NcFlowWord::continue_loop},
     {"", NcFlowWord::label},
 }};
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+bool is_letter(char c) { return lower(c) >= 'a' && lower(c) <= 'z'; }
 
 /// The comment that begins at the cursor, with its parentheses or its semicolon.
 std::string_view read_comment(NcCursor& cursor) {
@@ -123,9 +127,27 @@ bool NcBlockReader::read_flow(std::string_view line, std::size_t number, NcBlock
   return true;
 }
 
+void NcBlockReader::refuse_statement(NcCursor& cursor) {
+  const char* const begin = cursor.at;
+  std::string name;
+  const char* at = begin;
+  for (; at != cursor.end && is_letter(*at) && name.size() < 20; ++at) name += lower(*at);
+  if (name.size() < 2 || NcExpression::is_function(std::string_view(name).substr(1))) return;
+  if (name.size() == 2 && name != "if" && name != "do") return;
+  // In front of [ ] it may be meant for a function.
+  const char* next = at;
+  while (next != cursor.end && *next == ' ') ++next;
+  if (next != cursor.end && *next == '[' && name != "if" && name != "while") return;
+  cursor.at = at;
+  cursor.fail(begin, "is a statement of another language, or no word",
+              "a letter and its value; loops, branches and calls by O words");
+}
+
 void NcBlockReader::read_word(NcBlock& block, char letter) {
   NcCursor& cursor = block.cursor;
-  const char* const begin = cursor.at++;
+  const char* const begin = cursor.at;
+  if (begin + 1 != cursor.end && is_letter(begin[1])) refuse_statement(cursor);
+  ++cursor.at;
   if (letter == 'n') cursor.fail(begin, "a line number stands first in its block");
   if (block.word_count == NcBlock::kMostWords) cursor.fail(begin, "more than 64 words in one block");
   NcWord& word = block.words[block.word_count];

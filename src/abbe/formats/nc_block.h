@@ -95,6 +95,8 @@ class NcBlockReader {
   bool read_flow(std::string_view line, std::size_t number, NcBlock& block) const;
 
  private:
+  /// @throws InputError where more letters follow each other than a word and a function have
+  static void refuse_statement(NcCursor& cursor);
   void read_word(NcBlock& block, char letter);
   void read_assignment(NcBlock& block);
   static void begin(NcBlock& block);

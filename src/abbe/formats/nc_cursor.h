@@ -20,10 +20,12 @@ struct NcCursor {
   void skip_blanks() {
     while (at != end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
   }
-  /// Next character that is no blank, in lower case; 0 at the end.
+  /// Next character that is no blank, in lower case; 0 at the end. A zero byte is not the end: what comes behind it
+  /// would be lost.
   char peek() {
     skip_blanks();
     if (at == end) return 0;
+    if (*at == 0) return '\1';
     return *at >= 'A' && *at <= 'Z' ? static_cast<char>(*at - 'A' + 'a') : *at;
   }
 

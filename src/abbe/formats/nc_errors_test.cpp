@@ -37,7 +37,9 @@ TEST(NcErrors, OfCodesThatAreNotHandled) {
             "p.ngc:1:7: G84: the spindle does not turn as this cycle needs it; expected M3");
   EXPECT_EQ(refusal("G38.2 X1 F1\n"),
             "p.ngc:1:1: G38.2: only the control knows where probing ends; expected a code of docs/nc-programs.md");
-  EXPECT_EQ(refusal("G5 X1 I1 J1\n"), "p.ngc:1:1: G5: splines are not handled; expected a code of docs/nc-programs.md");
+  EXPECT_EQ(refusal("G5 X1 I1 J1\n"),
+            "p.ngc:1:1: G5: splines are not handled, nor is smoothing by the control (G5.1 Q1); expected a code of "
+            "docs/nc-programs.md");
   EXPECT_EQ(refusal("G7\n"),
             "p.ngc:1:1: G7: diameter programming is not handled; expected a code of docs/nc-programs.md");
   EXPECT_EQ(refusal("G68.2 X0 Y0 Z0 I0 J0 K0\n"),
@@ -271,10 +273,85 @@ TEST(NcErrors, OfSubroutinesAndLoops) {
   EXPECT_EQ(refusal("M98 P5\n"),
             "p.ngc:1:1: M98: there is no subprogram O5 in the file; expected a subprogram in the same file: those of "
             "other files are not read");
-  EXPECT_EQ(refusal("M98 P5 G0 X1\n"), "p.ngc:1:1: M98: M98 and M99 stand alone in their block");
+  EXPECT_EQ(
+      refusal("M98 P5 G0 X1\n"),
+      "p.ngc:1:8: G0: stands beside M98 or M99, which have no other words; expected a block of its own before it");
   EXPECT_EQ(
       refusal("M99\n"),
       "p.ngc:1:1: M99: M99 outside a subprogram begins the program again without end; expected M2 or M30 at the end");
+}
+
+TEST(NcErrors, OfProgramsForOtherControls) {
+  const std::vector<std::pair<std::string, std::string>> errors = {
+      // FANUC
+      {"G5.1 Q1", "p.ngc:2:1: G5.1: splines are not handled, nor is smoothing by the control"},
+      {"G65 P9010 A1.", "p.ngc:2:1: G65: macro calls"},
+      {"G54.1 P3", "p.ngc:2:1: G54.1: further work offsets"},
+      {"G50 S2000", "p.ngc:2:1: G50: scaling, mirroring"},
+      {"G92 S2000", "p.ngc:2:1: G92: axis words are missing"},
+      {"IF [#1 EQ 1] GOTO 10", "p.ngc:2:1: IF: is a statement of another language"},
+      {"N5 GOTO 100", "p.ngc:2:4: GOTO: is a statement of another language"},
+      {"WHILE [#1 LT 3] DO1", "p.ngc:2:1: WHILE: is a statement of another language"},
+      {"DO1", "p.ngc:2:1: DO1: is a statement of another language"},
+      {"G54 M98 P100\nM2\nO100\nM99", "p.ngc:2:1: G54: stands beside M98"},
+      {"M98 P100 F5\nM2\nO100\nM99", "p.ngc:2:10: F5: stands beside M98"},
+      {"M98 P100\nM2\nO100\nM99 P10", "p.ngc:5:5: P10: no code of this block uses it"},
+      {"M98 P51001", "p.ngc:2:1: M98: there is no subprogram O51001"},
+      {"M30 P1", "p.ngc:2:5: P1: no code of this block uses it"},
+      {"M30 L1", "p.ngc:2:5: L1: no code of this block uses it"},
+      {"G30 P2 Z0", "p.ngc:2:5: P2: no code of this block uses it"},
+      {"G4 X1.", "p.ngc:2:4: X1.: axis words without a code"},
+      {"F9\nG81 X1 Z-1 R1 K3", "p.ngc:3:15: K3: no code of this block uses it"},
+      {"F9\nG81 X1 Z-1 R1 P3", "p.ngc:3:15: P3: no code of this block uses it"},
+      {"F9\nG83 X1 Z-1 R1 Q1 P3", "p.ngc:3:18: P3: no code of this block uses it"},
+      {"F9\nG81 X1 Z-1 R1 Q3", "p.ngc:3:15: Q3: no code of this block uses it"},
+      {"G10 L2 P1.5 X1", "p.ngc:2:8: P1.5: is not a whole number"},
+      {"G10 L20 P48 X0", "p.ngc:2:9: P48: is not a work offset"},
+      {"G0 X1 D5", "p.ngc:2:7: D5: no code of this block uses it"},
+      {"/2 G0 X1", "p.ngc:2:2: 2: is not a word"},
+      {"G1 X1 ,R2 F1", "p.ngc:2:7: ,R2: is not a word"},
+      {":1000", "p.ngc:2:1: :1000: is not a word"},
+      // Haas
+      {"G187 P1 E.01", "p.ngc:2:1: G187: is not a G code"},
+      {"G234 H1", "p.ngc:2:1: G234: tool centre control is not asked for so here; expected G43.4"},
+      {"G254", "p.ngc:2:1: G254: work offsets that turn with the workpiece"},
+      {"M97 P100", "p.ngc:2:1: M97: is not an M code that is handled"},
+      // Siemens, Heidenhain
+      {"TRAORI(1)", "p.ngc:2:1: TRAORI(1): is a statement of another language"},
+      {"CYCLE800(1)", "p.ngc:2:1: CYCLE800(1): is a statement of another language"},
+      {"R1=5", "p.ngc:2:3: =5: is not a word"},
+      {"G1 X=R1 F5", "p.ngc:2:5: =R1: is not a value"},
+      {"G54 D1", "p.ngc:2:5: D1: no code of this block uses it"},
+      {"G290", "p.ngc:2:1: G290: is not a G code"},
+      {"BEGIN PGM PLATE MM", "p.ngc:2:1: BEGIN: is a statement of another language"},
+  };
+  for (const auto& [text, message] : errors) {
+    EXPECT_EQ(refusal("G21\n" + text + "\n").substr(0, message.size()), message);
+  }
+}
+
+TEST(NcErrors, OfTextsThatAreNoPrograms) {
+  EXPECT_EQ(refusal(std::string("G0 X1\0X2\n", 10)).substr(0, 31), "p.ngc:1:6: ?X2: is not a word; ");
+  EXPECT_EQ(refusal(std::string("G0 X[1\0+2]\n", 12)).substr(0, 50),
+            "p.ngc:1:5: [1?+2]: the expression does not end wit");
+  EXPECT_EQ(refusal(std::string(100, '\0')).substr(0, 11), "p.ngc:1:1: ");
+  EXPECT_EQ(refusal("\xFF\xFEG\0").substr(0, 27), "p.ngc:1:1: ??G: is not a wo");
+  EXPECT_EQ(refusal("G0 X" + std::string(400, '1') + "\n").substr(0, 60),
+            "p.ngc:1:5: 11111111111111111111111111111111: is not a number");
+  EXPECT_EQ(refusal("G0 X" + std::string(10'000'000, '-') + "1\n").substr(46), "the expression is nested too deeply");
+}
+
+TEST(NcErrors, OfALoopThatReachesNoNewLine) {
+  NcProgramOptions options = options_at_zero();
+  options.most_repeated_moves = 100;
+  const auto run = [&](const std::string& text) { return message_of([&] { run_program(text, options); }); };
+  EXPECT_EQ(run("O1 while [1]\nG0 X1\nX0\nO1 endwhile\n"),
+            "p.ngc:2: 100 moves in a loop that reaches no new line of the program; expected a loop that ends");
+  // A subroutine in front of its calls, one behind them, and one that calls another.
+  std::string calls;
+  for (int i = 0; i < 200; ++i) calls += "O1 call\nM98 P2\n";
+  const std::string subroutines = "O1 sub\nG0 X1\nM98 P2\nG0 X2\nO1 endsub\n" + calls + "M2\nO2\nG0 Y1\nY2\nM99\n";
+  EXPECT_EQ(run_program(subroutines, options).moves.size(), 200U * (4 + 2));
 }
 
 TEST(NcErrors, OfAProgramWithoutAToolTable) {

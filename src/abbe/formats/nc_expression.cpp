@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -310,6 +311,12 @@ double NcExpression::read_parameter(NcCursor& cursor) {
                 "a parameter that the program or the parameter file has set");
   }
   return value;
+}
+
+bool NcExpression::is_function(std::string_view name) {
+  constexpr std::array<std::string_view, 14> kFunctions = {"abs", "acos", "asin", "atan",  "cos", "exists", "exp",
+                                                           "fix", "fup",  "ln",   "round", "sin", "sqrt",   "tan"};
+  return std::find(kFunctions.begin(), kFunctions.end(), name) != kFunctions.end();
 }
 
 double NcExpression::read_function(NcCursor& cursor) {

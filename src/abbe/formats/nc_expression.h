@@ -20,6 +20,9 @@ class NcExpression {
 
   /// @throws InputError if there is none, or if it is not finite
   double read_value(NcCursor& cursor);
+  /// Whether expressions have a function of this name, in lower case.
+  static bool is_function(std::string_view name);
+
   /// A plain number without sign rules of expressions: "-1.5", "+.5", "12."; blanks between digits are allowed.
   static double read_number(NcCursor& cursor);
   /// Whether what was read since it was last asked was anything but plain numbers.

@@ -18,7 +18,12 @@ namespace {
 
 NcFlow::NcFlow(std::string_view text, const std::string& file, NcParameters& parameters, NcExpression& expression,
                const Limits& limits)
-    : text_(text), file_(file), parameters_(parameters), expression_(expression), limits_(limits) {}
+    : text_(text),
+      file_(file),
+      parameters_(parameters),
+      expression_(expression),
+      limits_(limits),
+      furthest_(limits.depth + 1) {}
 
 bool NcFlow::next_line(std::string_view& line, std::size_t& number) {
   if (place_.offset >= text_.size()) return false;
@@ -30,6 +35,11 @@ bool NcFlow::next_line(std::string_view& line, std::size_t& number) {
   line = {begin, length};
   place_.offset += length + (end == nullptr ? 0 : 1);
   number = ++place_.line;
+  std::size_t& furthest = furthest_[calls_.size()];
+  if (place_.offset > furthest) {
+    furthest = place_.offset;
+    repeated_moves_ = 0;
+  }
   return true;
 }
 

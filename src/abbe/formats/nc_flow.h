@@ -37,7 +37,11 @@ class NcFlow {
   /// M99. @throws InputError outside a subprogram
   void end_subprogram(const NcBlock& block, const NcWord& word);
   /// A move happens: the loop that it stands in goes on.
-  void moves() { idle_jumps_ = 0; }
+  /// @returns how many did since a line was reached for the first time
+  std::size_t moves() {
+    idle_jumps_ = 0;
+    return ++repeated_moves_;
+  }
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -93,7 +97,8 @@ class NcFlow {
   std::map<std::string, std::size_t> subs_;
   std::vector<Call> calls_;
   std::vector<Loop> loops_;
-  std::size_t idle_jumps_ = 0;
+  std::size_t idle_jumps_ = 0, repeated_moves_ = 0;
+  std::vector<std::size_t> furthest_;  ///< byte reached, by the depth of calls
 };
 
 }  // namespace abbe

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,6 +12,13 @@ namespace {
 constexpr double kInch = 25.4;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kForgetEvery = std::size_t{1} << 22;
+constexpr std::size_t kTellEvery = std::size_t{1} << 18;  // lines, of loops
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+/// Some editors put it before a text.
+std::string_view without_byte_order_mark(std::string_view text) {
+  return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
+}
 
 bool is_rotary(std::size_t axis) { return axis >= 3 && axis <= 5; }
 
@@ -18,12 +26,12 @@ bool is_rotary(std::size_t axis) { return axis >= 3 && axis <= 5; }
 
 NcInterpreter::NcInterpreter(std::string_view text, const std::string& file, const NcProgramOptions& options,
                              NcWriter& writer)
-    : text_(text),
+    : text_(without_byte_order_mark(text)),
       file_(file),
       options_(options),
       writer_(writer),
       expression_(parameters_),
-      flow_(text, file, parameters_, expression_, {.idle_jumps = options.most_idle_rounds}),
+      flow_(text_, file, parameters_, expression_, {.idle_jumps = options.most_idle_rounds}),
       reader_(file, expression_) {
   modes_.inches = modes_.feed_inches = options.inches;
   for (std::size_t k = 0; k < kAxisWords; ++k) {
@@ -107,7 +115,9 @@ std::size_t NcInterpreter::run(const std::function<void(std::size_t)>& read_to) 
   bool percent = false;
   while (flow_.next_line(line, number)) {
     ++lines;
-    if (read_to && flow_.offset() > told + kForgetEvery) read_to(told = flow_.offset());
+    if (read_to && (flow_.offset() > told + kForgetEvery || lines % kTellEvery == 0)) {
+      read_to(told = std::max(told, flow_.offset()));
+    }
     reader_.read(line, number, block_);
     if (block_.is_percent) {
       writer_.line("%");
@@ -150,10 +160,12 @@ void NcInterpreter::check_words() const {
   const NcCode motion = codes_[NcGroup::motion];
   const bool is_arc =
       motion == 20 || motion == 30 || (!codes_.has(NcGroup::motion) && modes_.motion >= 20 && modes_.motion <= 30);
-  const bool is_cycle = motion >= 730 || (!codes_.has(NcGroup::motion) && modes_.motion >= 730 && modes_.motion != 800);
+  const NcCode cycle_code = codes_.has(NcGroup::motion) ? motion : modes_.motion;
+  const bool is_cycle = cycle_code >= 730 && cycle_code != 800;
   const bool is_g10 = codes_[NcGroup::non_modal] == 100;
   const bool is_user = codes_.has(NcMGroup::user) || codes_.has(NcMGroup::signals);
   const bool is_plane = codes_[NcGroup::tilt] == 682;
+  const bool calls = codes_.has(NcMGroup::stop) && codes_.word(block_, NcMGroup::stop).value == 98;
   const bool is_thread = motion == 330 || motion == 331 ||
                          (!codes_.has(NcGroup::motion) && (modes_.motion == 330 || modes_.motion == 331));
   for (const char letter : {'i', 'j', 'k'}) {
@@ -164,16 +176,21 @@ void NcInterpreter::check_words() const {
     block_.fail('r', "no code of this block uses it", "G2, G3 or a canned cycle");
   }
   if (block_.has('h') && !codes_.has(NcGroup::tool_length)) block_.fail('h', "no code of this block uses it", "G43");
-  if (block_.has('l') && !is_cycle && !is_g10 && !is_user && !codes_.has(NcMGroup::stop)) {
+  if (block_.has('l') && !is_cycle && !is_g10 && !is_user && !calls) {
     block_.fail('l', "no code of this block uses it", "G10, a canned cycle, M66 or M98");
   }
-  if (block_.has('q') && !is_cycle && !is_g10 && !is_user && codes_[NcGroup::path] != 640 &&
+  const bool has_step = cycle_code == 730 || cycle_code == 830,
+             has_dwell = is_cycle && !has_step && cycle_code != 810 && cycle_code != 850;
+  if (block_.has('d') && codes_[NcGroup::spindle] != 960) {
+    block_.fail('d', "no code of this block uses it", "G96; cutter compensation is not handled");
+  }
+  if (block_.has('q') && !has_step && !is_g10 && !is_user && codes_[NcGroup::path] != 640 &&
       !codes_.has(NcMGroup::spindle) && !codes_.has(NcMGroup::tool)) {
     block_.fail('q', "no code of this block uses it", "G64, G73, G83, M19, M61, M66 or M100-M199");
   }
-  if (block_.has('p') && !is_arc && !is_cycle && !is_g10 && !is_user && codes_[NcGroup::non_modal] != 40 &&
-      codes_[NcGroup::path] != 640 && !codes_.has(NcMGroup::overrides) && !codes_.has(NcMGroup::stop) &&
-      !codes_.has(NcMGroup::spindle) && !is_plane && codes_[NcGroup::non_modal] != 531) {
+  if (block_.has('p') && !is_arc && !has_dwell && !is_g10 && !is_user && codes_[NcGroup::non_modal] != 40 &&
+      codes_[NcGroup::path] != 640 && !codes_.has(NcMGroup::overrides) && !calls && !codes_.has(NcMGroup::spindle) &&
+      !is_plane && codes_[NcGroup::non_modal] != 531) {
     block_.fail('p', "no code of this block uses it",
                 "G2, G3, G4, G10, G64, a canned cycle, M50-M68, M98 or M100-M199");
   }
@@ -223,7 +240,11 @@ void NcInterpreter::execute() {
   if (codes_.has(NcMGroup::stop)) {
     const NcWord& word = codes_.word(block_, NcMGroup::stop);
     if (word.value == 98 || word.value == 99) {
-      if (codes_.m_count > 1 || motion != kNoCode) block_.fail(word, "M98 and M99 stand alone in their block");
+      for (std::size_t i = 0; i < block_.word_count; ++i) {
+        const NcWord& beside = block_.words[i];
+        if (&beside == &word || (word.value == 98 && (beside.letter == 'p' || beside.letter == 'l'))) continue;
+        block_.fail(beside, "stands beside M98 or M99, which have no other words", "a block of its own before it");
+      }
       pass_comments(true);
       if (word.value == 98) {
         if (!block_.has('p')) block_.fail(word, "the number of the subprogram is missing", "P");

@@ -142,6 +142,9 @@ const std::array kPrograms = {
                  "G21 F100\nG0 Z10\nG99 G81 X1 Y1 Z-1 R2\nX2\nG98 G82 X3 Z-1 R2 P.1\nG83 X4 Z-3 R1 Q1.2\n"
                  "G73 X5 Z-3 R1 Q1.2\nG85 X6 Z-1 R3\nG89 X7 Z-1 R3 P.2\nX8 R4\nG99 X9 Z-2\nG98 X10 R12\nX11 R2\nG99 "
                  "X12 R5\nX13 R1\nG80\nG0 X0\nM2\n"},
+    NamedProgram{"cycles_that_are_cancelled",
+                 "G21 F100\nG0 G17 G40 G49 G80 Z9\nG80 G81 X1 Y1 Z1 R2\nX2\nG81 G80 X3\nG80 G1 X4\nX5\nG81 X6 Z1 "
+                 "R2\nG80 G0 X7\nG80 G80\nG0 X8\nM2\n"},
     NamedProgram{"drilling_by_increments",
                  "G21 F100\nG0 Z10\nG91 G81 X1 Y1 Z-3 R-2 L3\nX1\nG98 G81 X1 Y1 Z-3 R-2 L2\nX1\nG99 X1\nX1\nX1 R1\nG90 "
                  "G0 Z20\nM2\n"},

@@ -114,7 +114,7 @@ const char* reason(NcCode code) {
     case 51:
     case 52:
     case 53:
-      return "splines are not handled";
+      return "splines are not handled, nor is smoothing by the control (G5.1 Q1)";
     case 70:
       return "diameter programming is not handled";
     case 680:
@@ -131,6 +131,15 @@ const char* reason(NcCode code) {
       return "this cycle is not handled: it needs the operator or an oriented spindle";
     case 435:
       return "tool centre control by direction vectors is not handled";
+    case 500:
+    case 510:
+      return "scaling, mirroring and limits of the spindle are not handled";
+    case 541:
+      return "further work offsets are not handled, only G54 to G59.3";
+    case 650:
+    case 660:
+    case 670:
+      return "macro calls are not handled, only O words and M98";
     default:
       return "is not a G code that is handled";
   }
@@ -235,6 +244,7 @@ void sort_nc_codes(const NcBlock& block, NcCodes& codes) {
   codes.axes = 0;
   codes.m_place.fill(NcBlock::kNoWord);
   codes.m_count = 0;
+  codes.cancel_place = NcBlock::kNoWord;
   for (std::size_t i = 0; i < block.word_count; ++i) {
     const NcWord& word = block.words[i];
     const std::size_t axis = nc_axis(word.letter);
@@ -244,16 +254,32 @@ void sort_nc_codes(const NcBlock& block, NcCodes& codes) {
       sort_m_code(block, i, codes);
     } else if (word.letter == 'g') {
       const double tenths = std::round(word.value * 10);
+      if (word.value == 234 || word.value == 254) {
+        block.fail(word,
+                   word.value == 234 ? "tool centre control is not asked for so here"
+                                     : "work offsets that turn with the workpiece are not handled",
+                   word.value == 234 ? "G43.4 until G49, or --tool-centre for the whole program" : "G68.2, or G43.4");
+      }
       if (std::abs(word.value * 10 - tenths) > 1e-3 || tenths < 0 || tenths > 999) {
         block.fail(word, "is not a G code", "G0 to G99.9 in tenths");
       }
       const auto code = static_cast<NcCode>(tenths);
       const auto group = static_cast<std::size_t>(group_of(code));
       if (group == 0) block.fail(word, reason(code), "a code of docs/nc-programs.md");
+      // G80 may stand beside the code that goes on.
+      std::uint8_t& place = codes.place[group];
+      if (code == 800 && codes.code[group] != kNoCode) {
+        codes.cancel_place = static_cast<std::uint8_t>(i);
+        continue;
+      }
+      if (code != 800 && codes.code[group] == 800) {
+        codes.cancel_place = place;
+        codes.code[group] = kNoCode;
+      }
       // G53 stands beside the motion that it is for, like no other code of its group; LinuxCNC says the same.
       if (codes.code[group] != kNoCode) block.fail(word, "a second G code of the same modal group in one block");
       codes.code[group] = code;
-      codes.place[group] = static_cast<std::uint8_t>(i);
+      place = static_cast<std::uint8_t>(i);
     }
   }
 }

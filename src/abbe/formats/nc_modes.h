@@ -59,6 +59,7 @@ struct NcCodes {
   std::uint32_t axes = 0;                          ///< bits of the axis words
   std::array<std::uint8_t, kNcMGroups> m_place{};  ///< the word of an M code of each group, or kNoWord
   std::size_t m_count = 0;
+  std::uint8_t cancel_place = NcBlock::kNoWord;  ///< the word G80 beside another code of the motion
 
   NcCode operator[](NcGroup group) const { return code[static_cast<std::size_t>(group)]; }
   bool has(NcGroup group) const { return (*this)[group] != kNoCode; }

@@ -107,7 +107,12 @@ void NcInterpreter::emit(ProgramMove& move, const Words& end, std::uint32_t know
   if (!system_is_said_[modes_.system] && first_assumed_offset_line_ == 0 && codes_[NcGroup::non_modal] != 530) {
     first_assumed_offset_line_ = move.line;
   }
-  flow_.moves();
+  if (flow_.moves() > options_.most_repeated_moves) {
+    throw InputError(
+        {.file = file_, .line = move.line},
+        fmt::format("{} moves in a loop that reaches no new line of the program", options_.most_repeated_moves),
+        "a loop that ends");
+  }
   // Where a rapid move begins does not matter to where it ends.
   if (unknown != 0) move.start = move.end;
   writer_.move(move, known & machine_words_, (machine_words_ & ~known) == 0);

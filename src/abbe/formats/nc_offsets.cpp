@@ -158,7 +158,9 @@ void NcInterpreter::set_origin(bool moves) {
     block_.fail(block_.has('l') ? block_.word('l') : word, "is not a G10 that is handled", "L1, L2 or L20");
   }
   if (!block_.has('p')) block_.fail(word, "P is missing", kind == 1 ? "the tool" : "0 (current) to 9 (G59.3)");
-  const auto number = static_cast<int>(block_.value('p'));
+  const double written = block_.value('p');
+  if (std::abs(written - std::round(written)) > 1e-4) block_.fail('p', "is not a whole number");
+  const auto number = static_cast<int>(std::lround(written));
   if (kind == 1) {
     if (!options_.tools) block_.fail(word, "there is no tool table");
     Words& tool = tools_[number];

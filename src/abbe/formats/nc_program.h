@@ -26,18 +26,19 @@ struct NcProgramOptions {
   std::array<std::optional<double>, kAxisWords> start{};
   /// Parameters that are set: work offsets (5221 ...), G92 (5210 ...), G28 (5161 ...), as in a file of LinuxCNC.
   std::map<int, double> parameters;
-  bool parameters_in_inches = false;         ///< lengths among them, which are mm otherwise
-  std::optional<NcToolTable> tools;          ///< for G43 H
-  std::optional<int> tool;                   ///< in the spindle, for G43 without H
-  const PlaneKinematics* planes = nullptr;   ///< for G68.2; not owned
-  bool tool_centre = false;                  ///< X, Y, Z are the functional point in the workpiece throughout
-  bool inches = false;                       ///< G20 in force when the program begins
-  bool block_delete = false;                 ///< leave out blocks that begin with a slash
-  int decimals_mm = 6;                       ///< of lengths in mm, 0 to 9; one more in inches
-  int decimals_deg = 6;                      ///< of angles, 0 to 9
-  std::size_t batch = 4096;                  ///< moves that are corrected together
-  std::size_t most_moves = 100'000'000;      ///< more are an error: a loop that does not end
-  std::size_t most_idle_rounds = 1'000'000;  ///< of loops and calls without a move
+  bool parameters_in_inches = false;             ///< lengths among them, which are mm otherwise
+  std::optional<NcToolTable> tools;              ///< for G43 H
+  std::optional<int> tool;                       ///< in the spindle, for G43 without H
+  const PlaneKinematics* planes = nullptr;       ///< for G68.2; not owned
+  bool tool_centre = false;                      ///< X, Y, Z are the functional point in the workpiece throughout
+  bool inches = false;                           ///< G20 in force when the program begins
+  bool block_delete = false;                     ///< leave out blocks that begin with a slash
+  int decimals_mm = 6;                           ///< of lengths in mm, 0 to 9; one more in inches
+  int decimals_deg = 6;                          ///< of angles, 0 to 9
+  std::size_t batch = 4096;                      ///< moves that are corrected together
+  std::size_t most_moves = 100'000'000;          ///< more are an error: a loop that does not end
+  std::size_t most_repeated_moves = 10'000'000;  ///< in loops and subroutines without a new line of what calls them
+  std::size_t most_idle_rounds = 1'000'000;      ///< of loops and calls without a move
 };
 
 /// What was done with a program.

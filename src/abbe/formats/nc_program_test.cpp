@@ -86,6 +86,20 @@ TEST(NcProgram, CyclesBecomeMovesAndDwells) {
       "G0 X2.000000\nG0 Z1.000000\nG1 Z-1.000000\nG0 Z5.000000\nG64 P.1\nM2\n");
 }
 
+TEST(NcProgram, G80BesideAnotherCodeEndsTheCycleAndIsNotRepeated) {
+  EXPECT_EQ(run_program("G21 G90\nG0 G17 G40 G49 G80 G90\nG0 X0 Y0 Z5 A0 B0 C0\nN5 G80 G0 X1 M8\nM2\n").text,
+            "G21 G90\nG0 G17 G40 G49 G80 G90\nG0 X0.000000 Y0.000000 Z5.000000 A0.000000 B0.000000 C0.000000\n"
+            "N5 M8 G0 X1.000000\nM2\n");
+}
+
+TEST(NcProgram, AByteOrderMarkIsLeftOut) { EXPECT_EQ(run_program("\xEF\xBB\xBFG21\nM2").text, "G21\nM2\n"); }
+
+TEST(NcProgram, BytesOfCommentsPassWhateverTheirCode) {
+  const std::string text = "G21 (\xFF\xFE \xE4)\n; \xC3\xA4\x80\nM2\n";
+  EXPECT_EQ(run_program(text).text, text);
+  EXPECT_EQ(run_program("G21 (\xFF)\r\nM5 ; a\r\n%\r\nM2\r\n").text, "G21 (\xFF)\nM5 ; a\n%\nM2\n%\n");
+}
+
 /// Adds to X, and says the moves in inverse time.
 class ShiftedMoves final : public MoveCorrector {
  public:

@@ -114,6 +114,7 @@ void NcInterpreter::pass_block(bool has_motion) {
       for (const char letter : {'x', 'y', 'z', 'a', 'b', 'c', 'u', 'v', 'w'}) drop_letter(letter);
     }
     drop(NcGroup::motion);
+    if (codes_.cancel_place != NcBlock::kNoWord) consumed |= bit(codes_.cancel_place);
     drop(NcGroup::feed_mode);
     drop(NcGroup::retract);
     drop(NcGroup::arc_centre);
