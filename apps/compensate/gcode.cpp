@@ -101,7 +101,7 @@ int run_gcode(const GcodeOptions& options) {
                      "X, Y and Z as three independent linear axes without a rotary axis between them");
   }
   state_uncertainties(machine, errors, words, result);
-  result.refused = reasons_to_refuse(options, allowed, result.report);
+  result.refused = reasons_to_refuse(options, allowed, machine, result.report);
   if (out && result.refused.empty()) out->commit();
   if (options.json) {
     fmt::print("{}", json_text(gcode_json(options, machine, result)));

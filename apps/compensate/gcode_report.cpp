@@ -56,6 +56,19 @@ nlohmann::ordered_json position_json(const Machine& machine, const ProgramPlace&
   return json;
 }
 
+/// Axes that a place has outside their travel.
+std::string travel_text(const Machine& machine, const ProgramPlace& place) {
+  std::string text;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const Axis& axis = machine.axes[i];
+    if (axis.endless || (place.position[i] >= axis.travel_min && place.position[i] <= axis.travel_max)) continue;
+    const double unit = axis.kind == AxisKind::rotary ? kDegree : 1;
+    text += fmt::format("; the travel of {} is {:g} to {:g} {}", axis.name, axis.travel_min / unit,
+                        axis.travel_max / unit, axis.kind == AxisKind::rotary ? "deg" : "mm");
+  }
+  return text;
+}
+
 void print_reversals(const Machine& machine, const GcodeResult& result) {
   for (std::size_t r = 0; r < result.reversals.size(); ++r) {
     const ReversalAxis& axis = result.reversals[r];
@@ -119,20 +132,26 @@ constexpr NamedStatus kStatuses[] = {
 }  // namespace
 
 std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const AllowedProblems& allowed,
-                                           const ProgramReport& report) {
+                                           const Machine& machine, const ProgramReport& report) {
   std::vector<std::string> reasons;
-  const auto add = [&](const StatusCount& count, bool is_allowed, const std::string& text, const char* allow) {
+  const auto add = [&](const StatusCount& count, bool is_allowed, const std::string& text, const char* allow,
+                       const ProgramPlace& first = {}) {
     if (count.count == 0 || is_allowed) return;
     std::string reason =
         fmt::format("{}: {} pose{}, {}", text, count.count, count.count == 1 ? "" : "s", lines_text(count));
+    if (first.line != 0)
+      reason += fmt::format(", first at {}", position_text(machine, first) + travel_text(machine, first));
     if (allow != nullptr) reason += fmt::format(" (--allow {} to write it all the same)", allow);
     reasons.push_back(reason);
   };
+  const auto first_place = [&](CorrectionStatus status) -> const ProgramPlace& {
+    return report.first_place[static_cast<std::size_t>(status)];
+  };
   add(report.above_limit, false, fmt::format("correction above the limit of {:g} um", options.limit_um), nullptr);
   add(status_count(report, CorrectionStatus::not_covered), allowed.not_covered,
-      "outside the range over which the errors are known", "not-covered");
+      "outside the range over which the errors are known", "not-covered", first_place(CorrectionStatus::not_covered));
   add(status_count(report, CorrectionStatus::outside_travel), allowed.outside_travel,
-      "corrected position outside the travel", "outside-travel");
+      "corrected position outside the travel", "outside-travel", first_place(CorrectionStatus::outside_travel));
   add(report.held_starts, allowed.held_start,
       fmt::format(
           "work that begins at the end of a travel, out of which its correction leads, so that the point is off "
@@ -140,9 +159,9 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
           1e3 * report.largest_held_start.value),
       "held-start");
   add(status_count(report, CorrectionStatus::position_left), allowed.position_left, "point not reached",
-      "position-left");
+      "position-left", first_place(CorrectionStatus::position_left));
   add(status_count(report, CorrectionStatus::not_converged), allowed.not_converged, "no correction found",
-      "not-converged");
+      "not-converged", first_place(CorrectionStatus::not_converged));
   add(status_count(report, CorrectionStatus::not_finite), false, "position that is no number", nullptr);
   add(report.bent_with_spindle, allowed.not_proven,
       fmt::format(

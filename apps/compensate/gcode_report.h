@@ -26,7 +26,7 @@ struct GcodeResult {
 
 /// Reasons not to write the program that are not allowed.
 std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const AllowedProblems& allowed,
-                                           const ProgramReport& report);
+                                           const Machine& machine, const ProgramReport& report);
 void print_gcode_report(const GcodeOptions& options, const Machine& machine, const GcodeResult& result);
 nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& machine, const GcodeResult& result);
 

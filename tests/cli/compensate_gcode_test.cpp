@@ -197,7 +197,8 @@ TEST_F(CompensateGcode, PosesThatCannotBeCorrectedAreRefusedUnlessAllowed) {
     result = abbe(arguments);
   }
   EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
-  EXPECT_THAT(result.err, HasSubstr("outside the travel: 1 pose, line 3"));
+  EXPECT_THAT(result.err,
+              HasSubstr("outside the travel: 1 pose, line 3, first at C 0.000 A -20.000 Y 0.000 X 0.000 Z"));
   EXPECT_FALSE(exists("out.ngc"));
   arguments.insert(arguments.end(), {"--allow", "outside-travel"});
   EXPECT_EQ(abbe(arguments).exit_code, ExitCode::done);
@@ -227,9 +228,10 @@ TEST_F(CompensateGcode, RapidMovesAreKeptAtTheEndOfTheTravel) {
   EXPECT_TRUE(least == -510 || largest == 0);
   // Where the program itself leaves the travel it is refused, and so is work that begins where the tool is not.
   write("beyond.ngc", "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nG0 Z1\nM2\n");
-  EXPECT_EQ(
-      abbe({"compensate", "gcode", "beyond.ngc", "--machine", machine, "--errors", errors, "-o", "b.ngc"}).exit_code,
-      ExitCode::computation_says_no);
+  const CommandResult beyond =
+      abbe({"compensate", "gcode", "beyond.ngc", "--machine", machine, "--errors", errors, "-o", "b.ngc"});
+  EXPECT_EQ(beyond.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(beyond.err, HasSubstr("Z 1.000; the travel of Z is -510 to 0 mm (--allow"));
   write("work.ngc", "G21 G90\nG0 X0 Y0 Z0 A-20 C0\nG1 Z-5 F100\nG0 Z-510\nG1 Z-505\nM2\n");
   std::vector<std::string> work = {"compensate", "gcode", "work.ngc", "--machine", machine,
                                    "--errors",   errors,  "-o",       "w.ngc",     "--json"};

@@ -172,7 +172,11 @@ struct ProgramCorrection::Implementation {
       report.held_at_travel.add(move.line);
       report.largest_held.take(place(node.position_left));
     } else {
-      report.status[static_cast<std::size_t>(node.status)].add(move.line);
+      const auto status = static_cast<std::size_t>(node.status);
+      report.status[status].add(move.line);
+      if (report.first_place[status].line == 0 && !node.point_reached()) {
+        report.first_place[status] = place(node.position_left);
+      }
     }
     const double shift =
         std::sqrt(node.shift[0] * node.shift[0] + node.shift[1] * node.shift[1] + node.shift[2] * node.shift[2]);

@@ -34,7 +34,10 @@ void ProgramReport::add(const ProgramReport& later) {
   largest_shift.take(later.largest_shift);
   for (std::size_t i = 0; i < by_axis.size(); ++i) by_axis[i].take(later.by_axis[i]);
   largest_orientation_left.take(later.largest_orientation_left);
-  for (std::size_t i = 0; i < status.size(); ++i) status[i].add(later.status[i]);
+  for (std::size_t i = 0; i < status.size(); ++i) {
+    status[i].add(later.status[i]);
+    if (first_place[i].line == 0) first_place[i] = later.first_place[i];
+  }
   held_at_travel.add(later.held_at_travel);
   largest_held.take(later.largest_held);
   held_starts.add(later.held_starts);

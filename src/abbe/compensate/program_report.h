@@ -43,7 +43,8 @@ struct ProgramReport {
   ProgramPlace largest_shift;                  ///< of the functional point by the correction, mm
   std::array<ProgramPlace, kMaxAxes> by_axis;  ///< |corrected - programmed|, mm or rad
   ProgramPlace largest_orientation_left;       ///< rad, of the tool direction, where the machine cannot turn it
-  std::array<StatusCount, kCorrectionStatuses> status;  ///< by CorrectionStatus, of the ends of moves and pieces
+  std::array<StatusCount, kCorrectionStatuses> status;        ///< by CorrectionStatus, of the ends of moves and pieces
+  std::array<ProgramPlace, kCorrectionStatuses> first_place;  ///< of each status; mm, by which the point is missed
   /// Ends of rapid moves to a place within the travel whose correction would lead out of it and was kept at its end:
   /// not among `status`.
   StatusCount held_at_travel;
