@@ -24,7 +24,7 @@ struct Wiring {
 /// uncertainty that is stated.
 class HiddenMachine {
  public:
-  explicit HiddenMachine(const Wiring& wiring);
+  explicit HiddenMachine(const Wiring& given);
 
   std::size_t count() const { return axis_of_joint.size(); }
   bool is_rotary(std::size_t joint) const;
