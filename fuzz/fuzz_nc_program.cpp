@@ -27,13 +27,15 @@ class StraightMoves final : public abbe::MoveCorrector {
         if (!std::isfinite(value)) std::abort();
       }
       ends.push_back(move.end);
+      // After G33.1 the control is where it began.
+      stands.push_back(move.spindle == abbe::SpindleMove::rigid_tapping ? move.start : move.end);
       // A feed that no program can say is the corrector's to refuse.
       const double feed = std::clamp(move.feed, 1e-3, 1e6);
       corrected.pieces.push_back({move.end, feed, move.feed_mode});
       corrected.first.push_back(corrected.pieces.size());
     }
   }
-  std::vector<abbe::WordValues> ends;
+  std::vector<abbe::WordValues> ends, stands;
 };
 
 bool is_near(const abbe::WordValues& a, const abbe::WordValues& b) {
@@ -44,7 +46,7 @@ bool is_near(const abbe::WordValues& a, const abbe::WordValues& b) {
 }
 
 struct Run {
-  std::vector<abbe::WordValues> ends;
+  std::vector<abbe::WordValues> ends, stands;
   std::string text;
   std::size_t uncorrected = 0;
 };
@@ -56,6 +58,7 @@ Run run(std::string_view text, const abbe::NcProgramOptions& options) {
                          result.text += part;
                        }).uncorrected_moves;
   result.ends = std::move(corrector.ends);
+  result.stands = std::move(corrector.stands);
   return result;
 }
 
@@ -87,13 +90,14 @@ void check_again(const Run& first, const abbe::NcProgramOptions& options) {
   std::size_t at = 0;
   abbe::WordValues stands{};
   bool known = false;
-  for (const abbe::WordValues& end : first.ends) {
+  for (std::size_t i = 0; i < first.ends.size(); ++i) {
+    const abbe::WordValues& end = first.ends[i];
     if (at < second.ends.size() && is_near(second.ends[at], end)) {
       ++at;
     } else if (!known || !is_near(stands, end)) {
       std::abort();
     }
-    stands = end;
+    stands = first.stands[i];
     known = true;
   }
   if (at != second.ends.size()) std::abort();
