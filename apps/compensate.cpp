@@ -11,12 +11,15 @@ void add_compensate_command(CommandLine& line) {
                "  abbe compensate table examples/machines/three-axis-mill.machine.toml "
                "examples/compensate/mill.errors.toml --for linuxcnc -o comp\n"
                "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml "
-               "examples/trunnion/table.errors.toml -o mill.abbec\n\n"
+               "examples/trunnion/table.errors.toml -o mill.abbec\n"
+               "  abbe compensate poses examples/machines/trunnion-mill.machine.toml "
+               "examples/compensate/trunnion.errors.toml examples/compensate/poses.csv --dry-run\n\n"
                "abbe compensate gcode --help says what X, Y and Z mean, abbe compensate table --help which controls "
                "have tables here.");
   command->require_subcommand(1);
   add_compensate_freeze(*command, line);
   add_compensate_gcode(*command, line);
+  add_compensate_poses(*command, line);
   add_compensate_table(*command, line);
 }
 

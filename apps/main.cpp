@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/interruption.h"
+#include "abbe/formats/kept_inputs.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "scan/scan.h"
@@ -67,5 +69,8 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}abbe: interrupted; what was not finished is removed\n",
                isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "");
   });
+  // A limit on the size of files is then an error of writing, with a message and nothing half done, not the end.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const abbe::KeptInputs kept;
   return abbe::run_command(argc, argv);
 }

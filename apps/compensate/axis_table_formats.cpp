@@ -132,6 +132,9 @@ ControllerTables make_linuxcnc(const TableFormat& format, const Machine& machine
           fmt::format("outside 0 to 360 degrees LinuxCNC keeps the end values for {}", machine.axes[table.input].name));
     }
   }
+  if (!read.empty())
+    made.remarks.emplace_back(
+        "[TRAJ] LINEAR_UNITS = mm, ANGULAR_UNITS = degree: the files are in these, not in inches");
   made.correction = std::make_unique<AxisTableCorrection>(std::move(read));
   return made;
 }
@@ -151,6 +154,9 @@ ControllerTables make_siemens(bool cross, const TableFormat& format, const Machi
     read = cross ? with_sign(parse_siemens_cec(text, name, request.names), request.negate)
                  : parse_siemens_eec(text, name, request.names);
     made.files.emplace_back(name, text);
+    made.remarks.emplace_back(
+        std::string(cross ? "MD32711 $MA_CEC_SCALING_SYSTEM_METRIC" : "MD10240 $MN_SCALING_SYSTEM_IS_METRIC") +
+        " = 1: values in mm and degrees, not in inches");
     std::size_t longest = 0;
     for (const AxisTable& table : tables) longest = std::max(longest, table.positions.size());
     if (cross) {

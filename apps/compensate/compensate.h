@@ -9,6 +9,8 @@ void add_compensate_command(CommandLine& line);
 void add_compensate_freeze(CLI::App& compensate, CommandLine& line);
 /// abbe compensate gcode: programs whose actual tool follows the commanded path.
 void add_compensate_gcode(CLI::App& compensate, CommandLine& line);
+/// abbe compensate poses: corrected axis commands, pose by pose.
+void add_compensate_poses(CLI::App& compensate, CommandLine& line);
 /// abbe compensate table: tables of controls, and what they do not carry.
 void add_compensate_table(CLI::App& compensate, CommandLine& line);
 

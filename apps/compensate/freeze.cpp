@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,11 +14,13 @@
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
+#include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/runtime/abbe_runtime.h"
 #include "compensate/compensate.h"
 #include "compensate/reversal_words.h"
+#include "compensate/safety.h"
 
 namespace abbe {
 namespace {
@@ -29,10 +31,10 @@ constexpr double kLargestDifference = 1e-6;
 struct FreezeArguments {
   std::string machine, errors, output, world = "joints";
   std::vector<double> tool, lengths{0, 300};
-  double limit_um = std::numeric_limits<double>::infinity();
+  std::optional<double> limit_um;
   double largest_turn_deg = 0.57;
   double leave_out_factor = 0;
-  bool json = false;
+  bool json = false, dry_run = false;
 };
 
 std::string command_words(const Machine& machine, const std::vector<double>& commands) {
@@ -55,7 +57,6 @@ FreezeOptions options_of(const FreezeArguments& arguments, const Machine& machin
   options.tool_length_max = arguments.lengths[1];
   if (!(arguments.lengths[0] <= arguments.lengths[1]) || !std::isfinite(arguments.lengths[1] - arguments.lengths[0]))
     throw InputError({.field = "--tool-length-mm"}, "the range is empty", "the lower end first, in mm");
-  if (!(arguments.limit_um > 0)) throw InputError({.field = "--limit-um"}, "not positive", "a length in um");
   if (!(arguments.largest_turn_deg > 0) || !(arguments.largest_turn_deg <= 10))
     throw InputError({.field = "--largest-turn-deg"}, "out of range", "more than 0 and at most 10 degrees");
   options.largest_turn = arguments.largest_turn_deg * std::numbers::pi / 180;
@@ -69,9 +70,9 @@ FreezeOptions options_of(const FreezeArguments& arguments, const Machine& machin
 void print_result(const FreezeArguments& arguments, const Machine& machine, const FrozenCompensation& frozen,
                   const std::vector<std::string>& left_out) {
   fmt::print("{}: errors of {} frozen\n", machine.name, arguments.errors);
-  fmt::print("  {}: {} bytes, format {}, abbe {}, checksum {:016x} (machine and errors {:016x})\n", arguments.output,
-             frozen.bytes.size(), static_cast<int>(ABBE_RUNTIME_FORMAT), ABBE_VERSION, frozen.checksum,
-             frozen.source_checksum);
+  fmt::print("  {}: {} bytes, format {}, abbe {}, checksum {:016x} (machine and errors {:016x})\n",
+             arguments.dry_run ? "dry run, nothing written" : arguments.output, frozen.bytes.size(),
+             static_cast<int>(ABBE_RUNTIME_FORMAT), ABBE_VERSION, frozen.checksum, frozen.source_checksum);
   fmt::print("  tried at {} poses, tools of {:g} to {:g} mm\n", frozen.poses, arguments.lengths[0],
              arguments.lengths[1]);
   fmt::print("  largest correction of the tool: {:.1f} um at {}, tool {:g} mm\n", 1e3 * frozen.largest_correction,
@@ -79,8 +80,9 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
   fmt::print("  largest correction of its direction: {:.1f} urad\n", 1e6 * frozen.largest_correction_turn);
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    fmt::print("  largest correction of {}: {:.4g} {}\n", machine.axes[i].name,
-               frozen.largest_joint[i] * (rotary ? 180 / std::numbers::pi : 1e3), rotary ? "deg" : "um");
+    fmt::print("  largest correction of {}: {:.4g} {}", machine.axes[i].name,
+               frozen.largest_joint[i] * (rotary ? 1e6 : 1e3), rotary ? "urad" : "um");
+    fmt::print("{}\n", frozen.largest_joint[i] > 0 ? " at " + command_words(machine, frozen.largest_joint_at[i]) : "");
   }
   fmt::print("  after it, by the full model{}: {:.1e} mm and {:.1e} rad at most\n",
              left_out.empty() ? "" : " with what is left out", frozen.accuracy, frozen.accuracy_turn);
@@ -113,6 +115,7 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
   json["machine"] = machine.name;
   json["errors"] = arguments.errors;
   json["output"] = arguments.output;
+  json["written"] = !arguments.dry_run;
   json["bytes"] = frozen.bytes.size();
   json["format"] = static_cast<int>(ABBE_RUNTIME_FORMAT);
   json["version"] = ABBE_VERSION;
@@ -154,9 +157,12 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
 int run_freeze(const FreezeArguments& arguments) {
   const Machine machine = read_machine(arguments.machine);
   const ErrorsFile errors = read_errors(arguments.errors, machine);
-  if (!(arguments.leave_out_factor >= 0 && arguments.leave_out_factor <= 1000)) {
-    throw InputError({.field = "--leave-out-below-uncertainty"}, "out of range", "0 to 1000 standard uncertainties");
+  if (arguments.output.empty() && !arguments.dry_run) {
+    throw InputError({.field = "-o"}, "missing", "a file for the frozen compensation (*.abbec), or --dry-run");
   }
+  if (!arguments.output.empty()) refuse_input_as_output(arguments.output);
+  check_leave_out(arguments.leave_out_factor, errors, arguments.errors);
+  const double limit_um = refusal_limit("--limit-um", arguments.limit_um, "um");
   FreezeOptions options = options_of(arguments, machine, errors);
   ErrorSet frozen_errors = errors.errors;
   std::vector<std::string> left_out;
@@ -166,11 +172,11 @@ int run_freeze(const FreezeArguments& arguments) {
   }
   const FrozenCompensation frozen = freeze(machine, frozen_errors, options);
   if (!frozen.problem.empty()) throw InputError({.file = arguments.errors}, "cannot be frozen: " + frozen.problem);
-  if (1e3 * frozen.largest_correction > arguments.limit_um) {
+  if (!(1e3 * frozen.largest_correction <= limit_um)) {
     fmt::print(stderr,
                "abbe: refused: the correction is {:.1f} um, above --limit-um {:g}, at {}, tool {:g} mm; nothing was "
                "written\n",
-               1e3 * frozen.largest_correction, arguments.limit_um, command_words(machine, frozen.where),
+               1e3 * frozen.largest_correction, limit_um, command_words(machine, frozen.where),
                frozen.tool_length_there);
     return kNegative;
   }
@@ -179,7 +185,9 @@ int run_freeze(const FreezeArguments& arguments) {
                frozen.difference);
     return kNegative;
   }
-  write_file_atomically(arguments.output, {reinterpret_cast<const char*>(frozen.bytes.data()), frozen.bytes.size()});
+  if (!arguments.dry_run) {
+    write_file_atomically(arguments.output, {reinterpret_cast<const char*>(frozen.bytes.data()), frozen.bytes.size()});
+  }
   if (arguments.json) {
     print_json(arguments, machine, frozen_errors, frozen, left_out);
   } else {
@@ -207,7 +215,8 @@ void add_compensate_freeze(CLI::App& compensate, CommandLine& line) {
       "mill.abbec --tool-length-mm 60 220 --limit-um 500");
   command->add_option("machine", arguments->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("errors", arguments->errors, "Errors file (*.errors.toml)")->required();
-  command->add_option("-o,--output", arguments->output, "File to write (*.abbec)")->required();
+  command->add_option("-o,--output", arguments->output, "File to write (*.abbec)");
+  command->add_flag("--dry-run", arguments->dry_run, "Say all, largest corrections and where; write nothing");
   command
       ->add_option("--tool-mm", arguments->tool,
                    "Functional point from the gauge point, of calls that give no tool (default: that of the machine)")

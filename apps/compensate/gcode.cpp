@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <optional>
-#include <system_error>
 
 #include "abbe/compensate/machine_planes.h"
 #include "abbe/compensate/program_correction.h"
@@ -14,6 +12,7 @@
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
+#include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/nc_program.h"
 #include "abbe/formats/streamed_file.h"
@@ -21,19 +20,10 @@
 #include "compensate/compensate.h"
 #include "compensate/gcode_options.h"
 #include "compensate/gcode_report.h"
+#include "compensate/safety.h"
 
 namespace abbe {
 namespace {
-
-void refuse_input_as_output(const GcodeOptions& options) {
-  for (const std::string& input :
-       {options.program, options.machine, options.errors, options.tool_table, options.parameters}) {
-    std::error_code ignored;
-    if (!input.empty() && std::filesystem::equivalent(input, options.output, ignored)) {
-      throw InputError({.file = options.output}, "is an input", "another name for the corrected program");
-    }
-  }
-}
 
 void state_uncertainties(const Machine& machine, const ErrorsFile& errors, const WordAxes& words, GcodeResult& result) {
   const Eigen::MatrixXd covariance = parameter_covariance(errors.errors, errors.covariance);
@@ -58,9 +48,9 @@ int run_gcode(const GcodeOptions& options) {
   if (options.output.empty() && !options.dry_run) {
     throw InputError({.field = "-o"}, "missing", "a file for the corrected program, or --dry-run");
   }
-  if (!options.output.empty()) refuse_input_as_output(options);
   const Machine machine = read_machine(options.machine);
   const ErrorsFile errors = read_errors(options.errors, machine);
+  check_leave_out(options.leave_out_factor, errors, options.errors);
   const WordAxes words = gcode_words(options, machine);
   NcProgramOptions text_options = gcode_text_options(options, machine, words);
   const AllowedProblems allowed = allowed_problems(options);
@@ -81,6 +71,7 @@ int run_gcode(const GcodeOptions& options) {
 
   MappedFile program(options.program);
   std::optional<StreamedFile> out;
+  if (!options.output.empty()) refuse_input_as_output(options.output);
   if (!options.dry_run) out.emplace(options.output);
   Progress progress("correcting the program");
   const std::size_t size = program.text().size();

@@ -7,6 +7,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/path_program.h"
 #include "axis_option.h"
+#include "compensate/safety.h"
 
 namespace abbe {
 namespace {
@@ -113,7 +114,7 @@ ProgramCorrectionOptions gcode_correction_options(const GcodeOptions& options) {
   if (options.dead_band_um != 0) {
     correction.reversal_dead_band = 1e-3 * positive("--reversal-dead-band-um", options.dead_band_um, "um");
   }
-  correction.limit = 1e-3 * options.limit_um;
+  correction.limit = 1e-3 * refusal_limit("--limit-um", options.limit_um, "um");
   return correction;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace abbe {
 /// What `abbe compensate gcode` is told.
 struct GcodeOptions {
   std::string program, machine, errors, output;
-  double tolerance_um = 1, rapid_tolerance_um = 10, orientation_tolerance_urad = 10, limit_um = 0;
+  double tolerance_um = 1, rapid_tolerance_um = 10, orientation_tolerance_urad = 10;
+  std::optional<double> limit_um;
   double dead_band_um = 0;
   double leave_out_factor = 0, largest_turn_deg = 0.5;
   std::vector<std::string> words, start, allow;

@@ -41,8 +41,8 @@ std::string position_text(const Machine& machine, const ProgramPlace& place) {
   std::string text;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    text += fmt::format("{}{} {:.3f}", text.empty() ? "" : " ", machine.axes[i].name,
-                        place.position[i] / (rotary ? kDegree : 1));
+    text += fmt::format("{}{} {:.3f} {}", text.empty() ? "" : ", ", machine.axes[i].name,
+                        place.position[i] / (rotary ? kDegree : 1), rotary ? "deg" : "mm");
   }
   return text;
 }
@@ -147,7 +147,8 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
   const auto first_place = [&](CorrectionStatus status) -> const ProgramPlace& {
     return report.first_place[static_cast<std::size_t>(status)];
   };
-  add(report.above_limit, false, fmt::format("correction above the limit of {:g} um", options.limit_um), nullptr);
+  add(report.above_limit, false, fmt::format("correction above the limit of {:g} um", options.limit_um.value_or(0)),
+      nullptr);
   add(status_count(report, CorrectionStatus::not_covered), allowed.not_covered,
       "outside the range over which the errors are known", "not-covered", first_place(CorrectionStatus::not_covered));
   add(status_count(report, CorrectionStatus::outside_travel), allowed.outside_travel,

@@ -12,11 +12,13 @@
 #include "abbe/compensate/program_uncertainty.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/verify/error_map.h"
 #include "compensate/compensate.h"
 #include "compensate/reversal_words.h"
+#include "compensate/safety.h"
 #include "compensate/table_formats.h"
 #include "compensate/table_options.h"
 #include "compensate/table_report.h"
@@ -32,8 +34,8 @@ constexpr double kWorse = 1.02;
 struct TableCommand {
   std::string machine, errors, format, output, map;
   std::vector<std::string> at, axes, names, reference_position;
-  std::optional<double> interpolation_um;
-  double interpolation_urad = 0.1, limit_um = 0, limit_urad = 0, times_uncertainty = 0;
+  std::optional<double> interpolation_um, limit_um, limit_urad;
+  double interpolation_urad = 0.1, times_uncertainty = 0;
   std::size_t max_points = 0, positions = 0, first_table = 0, encoder = 0;
   double unit_um = 1;
   int type = 1;
@@ -153,9 +155,10 @@ void look_at_limits(const TableCommand& command, const ControllerTables& tables,
     }
   }
   const auto refuse = [&](double value, bool is_angle, const std::string& where) {
-    const double limit = is_angle ? command.limit_urad : command.limit_um;
+    const double limit = is_angle ? refusal_limit("--limit-urad", command.limit_urad, "urad")
+                                  : refusal_limit("--limit-um", command.limit_um, "um");
     const double shown = is_angle ? 1e6 * value : 1e3 * value;
-    if (limit > 0 && shown > limit) {
+    if (!(shown <= limit)) {
       const char* const unit = is_angle ? "urad" : "um";
       report.refused.push_back(fmt::format("{:.3f} {} is above --limit-{} {:g}: {}", shown, unit, unit, limit, where));
     }
@@ -174,15 +177,6 @@ void look_at_limits(const TableCommand& command, const ControllerTables& tables,
   refuse(report.largest_rad, true, report.largest_rad_at);
 }
 
-void check_not_an_input(const TableCommand& command, const std::string& name) {
-  for (const std::string& input : {command.machine, command.errors}) {
-    std::error_code none;
-    if (std::filesystem::equivalent(input, name, none)) {
-      throw InputError({.file = name}, "this is an input of the command", "another name for the output");
-    }
-  }
-}
-
 bool is_folder_name(const std::string& name) {
   return name.back() == '/' || std::filesystem::is_directory(name) || !std::filesystem::path(name).has_extension();
 }
@@ -192,11 +186,17 @@ void check_outputs(const TableCommand& command) {
     throw InputError({.field = "-o"}, "no output", "a file, a folder, or --dry-run");
   }
   if (!command.output.empty()) {
-    check_not_an_input(command, command.output);
+    refuse_input_as_output(command.output);
     if (is_folder_name(command.output)) check_results_folder(command.output);
   }
   if (command.map.empty()) return;
-  check_not_an_input(command, command.map);
+  refuse_input_as_output(command.map);
+  const auto place = [](const std::string& name) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(name));
+  };
+  if (!command.output.empty() && place(command.map) == place(command.output)) {
+    throw InputError({.field = "--map " + command.map}, "is where the tables go", "another name for the map");
+  }
   const std::string extension = std::filesystem::path(command.map).extension().string();
   if (extension != ".csv" && extension != ".vts" && extension != ".vtu") {
     throw InputError({.file = command.map}, "unknown kind of map file", "a name ending in .csv, .vts or .vtu");
@@ -253,9 +253,12 @@ TableRequest request_of(const TableCommand& command, const Machine& machine, con
 
 int run_table(const TableCommand& command) {
   const TableFormat& format = table_format(command.format);
-  check_outputs(command);
   const Machine machine = read_machine(command.machine);
   const ErrorsFile file = read_errors(command.errors, machine);
+  check_outputs(command);
+  check_leave_out(command.times_uncertainty, file, command.errors);
+  refusal_limit("--limit-um", command.limit_um, "um");
+  refusal_limit("--limit-urad", command.limit_urad, "urad");
   const ErrorSet& errors = file.errors;
   TableRequest request = request_of(command, machine, errors, format);
   TableReport report;
@@ -275,10 +278,6 @@ int run_table(const TableCommand& command) {
         fmt::format("{}: {:.2g} times its standard uncertainty", reversal_name(machine, one.axis), one.times));
   }
   ControllerTables tables = format.make(machine, carried, request);
-  if (command.times_uncertainty > 0 && covariance.size() == 0) {
-    throw InputError({.file = command.errors}, "no standard uncertainties are stated",
-                     "some, for --leave-out-below-uncertainty");
-  }
   if (covariance.size() > 0) {
     report.uncertainty = table_uncertainties(carried, covariance, tables.tables, command.times_uncertainty,
                                              request.left_out, report.left_out);
@@ -319,13 +318,13 @@ int run_table(const TableCommand& command) {
   const bool within =
       std::all_of(tables.tables.begin(), tables.tables.end(), [](const TableSummary& table) { return table.within; });
   const bool refused = !report.refused.empty();
+  const std::string extension = std::filesystem::path(command.map).extension().string();
+  if (!command.map.empty() && extension != ".csv" && (extension == ".vts") != table_map_is_structured(report)) {
+    throw InputError({.file = command.map}, "wrong kind of map file",
+                     table_map_is_structured(report) ? ".vts for these poses" : ".vtu for these poses");
+  }
   if (!refused && within && !command.dry_run) write_tables(command, tables, report);
   if (!refused && !command.map.empty()) {
-    const std::string extension = std::filesystem::path(command.map).extension().string();
-    if (extension != ".csv" && (extension == ".vts") != table_map_is_structured(report)) {
-      throw InputError({.file = command.map}, "wrong kind of map file",
-                       table_map_is_structured(report) ? ".vts for these poses" : ".vtu for these poses");
-    }
     write_file_atomically(command.map, table_map_text(report, extension == ".csv"));
     report.written.push_back(command.map);
   }

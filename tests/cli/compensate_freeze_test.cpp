@@ -64,6 +64,32 @@ TEST_F(CompensateFreezeTest, ACorrectionAboveTheLimitIsRefusedWithItsPlace) {
   EXPECT_FALSE(std::filesystem::exists(output));
 }
 
+TEST_F(CompensateFreezeTest, ADryRunSaysWhereEveryJointIsCorrectedMostAndWritesNothing) {
+  const CommandResult result = abbe({"compensate", "freeze", machine, errors, "--dry-run"});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_NE(result.out.find("dry run, nothing written"), std::string::npos) << result.out;
+  for (const std::string joint : {"C", "A", "Y", "X", "Z"}) {
+    const std::size_t at = result.out.find("largest correction of " + joint + ":");
+    ASSERT_NE(at, std::string::npos) << joint;
+    EXPECT_NE(result.out.substr(at, result.out.find('\n', at) - at).find(" at C "), std::string::npos) << joint;
+  }
+  EXPECT_EQ(abbe({"compensate", "freeze", machine, errors, "--dry-run", "-o", output}).exit_code, done);
+  EXPECT_FALSE(std::filesystem::exists(output));
+  EXPECT_EQ(abbe({"compensate", "freeze", machine, errors}).exit_code, bad_input);
+}
+
+TEST_F(CompensateFreezeTest, InputsAreNeverWrittenOver) {
+  std::filesystem::copy(errors, folder.path() / "mine.errors.toml");
+  std::filesystem::create_symlink("mine.errors.toml", folder.path() / "link.abbec");
+  const std::string before = folder.read("mine.errors.toml");
+  for (const std::string name : {"mine.errors.toml", "./mine.errors.toml", "link.abbec"}) {
+    const CommandResult result = abbe({"compensate", "freeze", machine, "mine.errors.toml", "-o", name});
+    EXPECT_EQ(result.exit_code, bad_input);
+    EXPECT_NE(result.err.find("is an input of the command"), std::string::npos) << result.err;
+    EXPECT_EQ(folder.read("mine.errors.toml"), before);
+  }
+}
+
 TEST_F(CompensateFreezeTest, BadOptionsAreNamed) {
   const auto refused = [&](std::vector<std::string> options, const std::string& name) {
     std::vector<std::string> arguments{"compensate", "freeze", machine, errors, "-o", output};
@@ -74,6 +100,9 @@ TEST_F(CompensateFreezeTest, BadOptionsAreNamed) {
   };
   refused({"--tool-length-mm", "200", "100"}, "--tool-length-mm");
   refused({"--limit-um", "-3"}, "--limit-um");
+  refused({"--limit-um", "nan"}, "--limit-um");
+  // These errors state no uncertainties.
+  refused({"--leave-out-below-uncertainty", "2"}, "no standard uncertainties are stated");
   refused({"--world", "moon"}, "--world");
   refused({"--largest-turn-deg", "40"}, "--largest-turn-deg");
   refused({"--leave-out-below-uncertainty", "-1"}, "--leave-out-below-uncertainty");

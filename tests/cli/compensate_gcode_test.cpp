@@ -304,6 +304,11 @@ TEST_F(CompensateGcode, InputsAreNeverWritten) {
     EXPECT_EQ(result.exit_code, ExitCode::bad_input);
     EXPECT_THAT(result.err, HasSubstr("is an input"));
   }
+  for (const std::string limit : {"0", "-5", "nan", "inf"}) {
+    std::vector<std::string> arguments = base;
+    arguments.insert(arguments.end(), {"--dry-run", "--limit-um", limit});
+    EXPECT_EQ(abbe(arguments).exit_code, ExitCode::bad_input) << limit;
+  }
   EXPECT_EQ(folder.read("p.ngc"), "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nM2\n");
   EXPECT_EQ(abbe(base).exit_code, ExitCode::bad_input);
 }

@@ -272,8 +272,17 @@ TEST_F(CompensateTable, InputsAreNeverWrittenOverAndWrongOptionsAreNamed) {
   const CommandResult over =
       abbe({"compensate", "table", mill, "mine.errors.toml", "--for", "siemens-cec", "-o", "mine.errors.toml"});
   EXPECT_EQ(over.exit_code, ExitCode::bad_input);
-  EXPECT_THAT(over.err, HasSubstr("this is an input"));
+  EXPECT_THAT(over.err, HasSubstr("is an input of the command"));
   EXPECT_EQ(folder.read("mine.errors.toml"), before);
+  EXPECT_THAT(table("siemens-eec", {"-o", "both.csv", "--map", "./both.csv"}).err, HasSubstr("is where the tables go"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "both.csv"));
+  // A map of the wrong kind is found before anything is written.
+  EXPECT_EQ(table("siemens-eec", {"-o", "eec.ini", "--map", "map.vtu"}).exit_code, ExitCode::bad_input);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "eec.ini"));
+  for (const std::string limit : {"0", "-1", "nan", "inf"}) {
+    EXPECT_EQ(table("siemens-eec", {"--dry-run", "--limit-um", limit}).exit_code, ExitCode::bad_input) << limit;
+    EXPECT_EQ(table("siemens-eec", {"--dry-run", "--limit-urad", limit}).exit_code, ExitCode::bad_input) << limit;
+  }
   EXPECT_THAT(table("linuxcnc", {"-o", "x.comp"}).err, HasSubstr("3 files are to be written"));
   EXPECT_EQ(table("linuxcnc", {"-o", "x.comp", "--axis", "X"}).exit_code, ExitCode::done);
   EXPECT_THAT(table("heidenhain-9", {"-o", "x"}).err, HasSubstr("unknown format"));
@@ -281,6 +290,27 @@ TEST_F(CompensateTable, InputsAreNeverWrittenOverAndWrongOptionsAreNamed) {
   EXPECT_THAT(table("linuxcnc", {"-o", "c", "--at", "X_deg=3"}).err, HasSubstr("unit 'deg' for a linear axis"));
   EXPECT_THAT(table("siemens-cec", {"-o", "c.ini", "--name", "X=AX2"}).err, HasSubstr("two axes are called AX2"));
   EXPECT_THAT(table("linuxcnc", {"-o", "c", "--axis", "Q"}).err, HasSubstr("no such axis"));
+}
+
+TEST_F(CompensateTable, TheUnitThatTheControlHasToBeSetToIsSaid) {
+  EXPECT_THAT(json_of(table("linuxcnc", {"--dry-run", "--json"}))["settings"].dump(), HasSubstr("LINEAR_UNITS = mm"));
+  EXPECT_THAT(json_of(table("siemens-cec", {"--dry-run", "--json"}))["settings"].dump(), HasSubstr("MD32711"));
+  EXPECT_THAT(json_of(table("siemens-eec", {"--dry-run", "--json"}))["settings"].dump(), HasSubstr("MD10240"));
+}
+
+TEST_F(CompensateTable, AFolderOfResultsWithAnInputInItIsNotReplaced) {
+  const std::filesystem::path results = folder.path() / "results";
+  std::filesystem::create_directory(results);
+  std::filesystem::copy(errors, results / "errors.toml");
+  std::ofstream(results / ".abbe-results") << "as abbe run leaves it";
+  const CommandResult over =
+      abbe({"compensate", "table", mill, "results/errors.toml", "--for", "linuxcnc", "-o", "results"});
+  EXPECT_EQ(over.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(over.err, HasSubstr("results/errors.toml lies in it"));
+  EXPECT_TRUE(std::filesystem::exists(results / "errors.toml"));
+  const CommandResult beside =
+      abbe({"compensate", "table", mill, "results/errors.toml", "--for", "linuxcnc", "-o", "results/comp"});
+  EXPECT_EQ(beside.exit_code, ExitCode::done) << beside.err;
 }
 
 TEST_F(CompensateTable, ReversalValuesAreInTablesOfBothDirectionsOrNamedWithWhatTakesThem) {

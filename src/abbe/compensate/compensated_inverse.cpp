@@ -120,10 +120,17 @@ struct CompensatedInverse::Implementation {
                           {actual_tool[0].data(), actual_tool[1].data(), actual_tool[2].data()},
                           {seen.x, seen.y, seen.z}, {rows.data(), 3 + orientation_rows}, {}, nullptr, 0, nullptr,
                           block.by_command.data());
+    for (std::size_t i = 0; block.any_at_end && i < machine.axes.size(); ++i) {
+      for (std::size_t row = 0; row < 3 + orientation_rows; ++row) {
+        for (std::size_t k = 0; k < block.count; ++k) {
+          if (block.at_end[i][k] != 0) block.by_command[(i * (3 + orientation_rows) + row) * block.count + k] = 0;
+        }
+      }
+    }
     stepper->take_derivative(block);
   }
 
-  /// Commands kept within travel; true if one had to be.
+  /// Commands kept within travel, there to stay; true if one had to be.
   bool keep_within_travel(Block& block, std::size_t k) const {
     bool kept = false;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
@@ -131,6 +138,11 @@ struct CompensatedInverse::Implementation {
       double& position = block.position[i][k];
       if (axis.endless || (position >= axis.travel_min && position <= axis.travel_max)) continue;
       position = std::clamp(position, axis.travel_min, axis.travel_max);
+      if (!block.any_at_end) {
+        block.any_at_end = true;
+        for (auto& lanes : block.at_end) lanes.fill(0);
+      }
+      block.at_end[i][k] = 1;
       kept = true;
     }
     return kept;
@@ -145,15 +157,8 @@ struct CompensatedInverse::Implementation {
                        [](std::uint8_t active) { return active != 0; });
   }
 
-  void solve(Block& block) const {
-    evaluate(block);
-    for (std::size_t k = 0; k < block.count; ++k) {
-      if (block.active[k] == 0) continue;
-      if (block.covered[k] == 0) {
-        CorrectionStep::finish(block, k, CorrectionStatus::not_covered);
-        block.position_residual[k] = block.orientation_residual[k] = kUnknown;
-      }
-    }
+  /// Steps of the poses that are active, which stand evaluated, until each has come to its end or there were too many.
+  void iterate(Block& block) const {
     for (int i = 0; i < options.largest_iterations; ++i) {
       if (!any_active(block)) break;
       if (i % kRefresh == 0) differentiate(block);
@@ -163,16 +168,45 @@ struct CompensatedInverse::Implementation {
       if (!any_active(block)) break;
       evaluate(block);
     }
-    bool again = false;
-    std::array<std::uint8_t, kBlock> moved{};
+  }
+
+  void solve(Block& block) const {
+    evaluate(block);
     for (std::size_t k = 0; k < block.count; ++k) {
-      if (block.active[k] != 0) {
+      if (block.active[k] == 0) continue;
+      if (block.covered[k] == 0) {
+        CorrectionStep::finish(block, k, CorrectionStatus::not_covered);
+        block.position_residual[k] = block.orientation_residual[k] = kUnknown;
+      }
+    }
+    iterate(block);
+    std::array<std::uint8_t, kBlock> kept{}, moved{};
+    // An axis at its end stays there, and the others take what they can of the rest: each round holds at least one
+    // more.
+    for (std::size_t round = 0; round <= machine.axes.size(); ++round) {
+      bool again = false;
+      for (std::size_t k = 0; k < block.count; ++k) {
+        const bool fixed = block.active[k] != 0 || block.status[k] == CorrectionStatus::not_covered ||
+                           block.status[k] == CorrectionStatus::not_finite;
+        if (fixed || !keep_within_travel(block, k)) continue;
+        kept[k] = block.active[k] = 1;
+        again = true;
+      }
+      if (!again) break;
+      evaluate(block);
+      iterate(block);
+    }
+    bool again = false;
+    for (std::size_t k = 0; k < block.count; ++k) {
+      if (kept[k] != 0 && block.status[k] != CorrectionStatus::reached) {
+        block.status[k] = CorrectionStatus::outside_travel;
+        // Steps without an end: no better place is known than the one they led to.
+        if (block.active[k] != 0) keep_within_travel(block, k);
+        moved[k] = block.active[k];
+        block.active[k] = 0;
+      } else if (block.active[k] != 0) {
         CorrectionStep::finish(block, k, CorrectionStatus::not_converged);
         as_they_came(block, k);
-        moved[k] = 1;
-      } else if (block.status[k] != CorrectionStatus::not_covered && block.status[k] != CorrectionStatus::not_finite &&
-                 keep_within_travel(block, k)) {
-        block.status[k] = CorrectionStatus::outside_travel;
         moved[k] = 1;
       }
       again = again || moved[k] != 0;
@@ -186,6 +220,7 @@ struct CompensatedInverse::Implementation {
 
   /// Marks poses without numbers; their places are filled with harmless ones.
   void load(Block& block, PositionArrays commands, std::size_t first) const {
+    block.any_at_end = false;
     for (std::size_t k = 0; k < block.count; ++k) {
       block.status[k] = CorrectionStatus::not_run;
       block.active[k] = 1;

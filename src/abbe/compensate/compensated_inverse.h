@@ -21,7 +21,7 @@ enum class CorrectionStatus : std::uint8_t {
   turn_limited,      ///< the point is reached; near a singularity the turn is bounded, a part of the orientation error
                      ///< stays
   position_left,     ///< the working axes do not reach the point, or only by too long a way
-  outside_travel,    ///< as above, but a command would leave its travel and was kept at its end
+  outside_travel,    ///< a command would leave its travel and was kept at its end; the other axes take what they can
   not_covered,       ///< the errors are not known there (extrapolation): commands as they came, residuals NaN
   not_converged,     ///< commands as they came, residuals as they are there
   not_finite         ///< a command or the target is no number: commands as they came, residuals NaN

@@ -232,6 +232,72 @@ TEST(CompensatedInverse, TravelIsKeptAndSaid) {
   EXPECT_NEAR(poses.position_residual[0], 0.05, 1e-9);
 }
 
+TEST(CompensatedInverse, WhereARotaryAxisIsAtItsEndThePointIsStillReached) {
+  const Machine machine = test::trunnion_mill();
+  const ErrorSet errors = test::tens_of_micrometres(machine, 53);
+  const std::size_t a = machine.find_axis("A"), c = machine.find_axis("C");
+  std::vector<std::vector<double>> list = random_poses(machine, 400, 59);
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    list[k][a] = k % 2 == 0 ? machine.axes[a].travel_min : machine.axes[a].travel_max;
+  }
+  Corrections poses(machine, list);
+  poses.correct(CompensatedInverse(machine, errors));
+  int at_end = 0;
+  for (std::size_t k = 0; k < poses.count; ++k) {
+    const RigidTransform wanted = nominal_workpiece_from_tool(machine, poses.command(k));
+    const RigidTransform after = actual_workpiece_from_tool(machine, errors, poses.result(k));
+    EXPECT_GE(poses.result(k)[a], machine.axes[a].travel_min);
+    EXPECT_LE(poses.result(k)[a], machine.axes[a].travel_max);
+    EXPECT_LE(missed_point(after, wanted), 1.1e-9) << k;
+    EXPECT_NEAR(poses.orientation_residual[k], missed_direction(machine, after, wanted), 1e-13);
+    if (poses.status[k] != CorrectionStatus::outside_travel) continue;
+    ++at_end;
+    EXPECT_EQ(poses.result(k)[a], list[k][a]);
+    // No turn of C leaves less of the orientation.
+    for (const double turn : {-1e-5, 1e-5}) {
+      std::vector<double> other = poses.result(k);
+      other[c] += turn;
+      const RigidTransform there = actual_workpiece_from_tool(machine, errors, other);
+      EXPECT_GE(missed_direction(machine, there, wanted), poses.orientation_residual[k]) << k;
+    }
+  }
+  EXPECT_GE(at_end, 100);
+  EXPECT_LE(at_end, 300);
+}
+
+TEST(CompensatedInverse, WhereALinearAxisIsAtItsEndTheOthersAreCorrected) {
+  const Machine machine = test::trunnion_mill();
+  const ErrorSet errors = test::tens_of_micrometres(machine, 61);
+  const std::size_t a = machine.find_axis("A"), x = machine.find_axis("X");
+  std::vector<std::vector<double>> list = random_poses(machine, 200, 67);
+  for (std::vector<double>& pose : list) {
+    pose[x] = machine.axes[x].travel_max;
+    if (std::abs(pose[a]) < 5 * kDegree) pose[a] += 10 * kDegree;
+  }
+  Corrections poses(machine, list);
+  poses.correct(CompensatedInverse(machine, errors));
+  int at_end = 0;
+  for (std::size_t k = 0; k < poses.count; ++k) {
+    if (poses.status[k] != CorrectionStatus::outside_travel) continue;
+    ++at_end;
+    const RigidTransform wanted = nominal_workpiece_from_tool(machine, poses.command(k));
+    const RigidTransform after = actual_workpiece_from_tool(machine, errors, poses.result(k));
+    EXPECT_EQ(poses.result(k)[x], list[k][x]);
+    EXPECT_LE(missed_direction(machine, after, wanted), 1.1e-11);
+    EXPECT_NEAR(poses.position_residual[k], missed_point(after, wanted), 1e-11);
+    // The other linear axes have nothing to gain.
+    const Eigen::Vector3d missing = wanted.translation - after.translation;
+    for (const char* const name : {"Y", "Z"}) {
+      std::vector<double> beyond = poses.result(k);
+      beyond[machine.find_axis(name)] += 0.01;
+      const Eigen::Vector3d along =
+          (actual_workpiece_from_tool(machine, errors, beyond).translation - after.translation).normalized();
+      EXPECT_LE(std::abs(missing.dot(along)), 1e-6 * missing.norm() + 2e-9) << k;
+    }
+  }
+  EXPECT_GE(at_end, 40);
+}
+
 TEST(CompensatedInverse, WhatIsNotKnownIsLeftAlone) {
   const Machine machine = test::three_axis_mill();
   ErrorSet errors;

@@ -124,7 +124,8 @@ void CorrectionStep::load_turns(const CorrectionBlock& block, std::size_t k, Sma
     for (std::size_t c = 0; c < turning_.size(); ++c) a(entry(r), entry(c)) = derivative(block, turning_[c], 3 + r, k);
   }
   for (std::size_t c = 0; c < turning_.size(); ++c)
-    turned[entry(c)] = block.position[turning_[c]][k] - block.command[turning_[c]][k];
+    turned[entry(c)] =
+        at_end(block, turning_[c], k) ? 0 : block.position[turning_[c]][k] - block.command[turning_[c]][k];
 }
 
 /// Point by the reaching axes, and how far they have gone. The rotary axis of a polar machine counts in units that
@@ -139,7 +140,7 @@ void CorrectionStep::load_shifts(const CorrectionBlock& block, std::size_t k, Sm
     const double unit =
         machine_.axes[axis].kind == AxisKind::rotary ? options_.largest_turn / options_.largest_shift : 1;
     scale[entry(c)] = unit;
-    shifted[entry(c)] = (block.position[axis][k] - block.command[axis][k]) / unit;
+    shifted[entry(c)] = at_end(block, axis, k) ? 0 : (block.position[axis][k] - block.command[axis][k]) / unit;
     for (std::size_t r = 0; r < 3; ++r) a(entry(r), entry(c)) = unit * derivative(block, axis, r, k);
   }
 }
@@ -158,6 +159,9 @@ SmallVector CorrectionStep::missing_after(const CorrectionBlock& block, std::siz
 /// comes first.
 double CorrectionStep::part_that_can_be_followed(const SmallMatrix& a, const SmallVector& rest) const {
   if (a.cols() < 3) return 1;
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    if (a.col(c).isZero(0)) return 1;  // at the end of its travel: the point is missed all the same
+  }
   const double square = a.squaredNorm() / 2;  // above the product of the two larger singular values
   const double smallest = std::abs(Eigen::Matrix3d(a).determinant()) / square;
   const double needed = rest.norm() / options_.largest_shift;

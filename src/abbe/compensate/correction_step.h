@@ -31,6 +31,9 @@ struct CorrectionBlock {
   std::array<Lanes, 9> reach_inverse;
   Lanes turn_spread, reach_spread;
   std::array<std::uint8_t, kCorrectionBlock> covered, active;
+  /// Axes that were kept at an end of their travel and work no more: their derivative is zero. Set only if any is.
+  std::array<std::array<std::uint8_t, kCorrectionBlock>, kMaxAxes> at_end;
+  bool any_at_end = false;
   std::array<CorrectionStatus, kCorrectionBlock> status;
   Lanes position_residual, orientation_residual;
 };
@@ -68,6 +71,9 @@ class CorrectionStep {
   Eigen::Vector3d orientation_error(const CorrectionBlock& block, std::size_t k) const;
   double derivative(const CorrectionBlock& block, std::size_t axis, std::size_t row, std::size_t k) const {
     return block.by_command[(axis * (3 + orientation_rows_) + row) * block.count + k];
+  }
+  static bool at_end(const CorrectionBlock& block, std::size_t axis, std::size_t k) {
+    return block.any_at_end && block.at_end[axis][k] != 0;
   }
   void load_turns(const CorrectionBlock& block, std::size_t k, SmallMatrix& a, SmallVector& b,
                   SmallVector& turned) const;

@@ -31,7 +31,7 @@ Terms terms_of(const ErrorSet& errors, std::size_t axis, Component component) {
   return terms;
 }
 
-/// Whether |value| < factor * u at every sampled position, some u above zero.
+/// Whether |value| < factor * u at every sampled position where they are not both zero, and there is one.
 bool is_uncertain_everywhere(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
                              const Terms& terms, double factor) {
   const ErrorMotion& first = errors.motions[terms.motion[0]];
@@ -55,6 +55,7 @@ bool is_uncertain_everywhere(const Machine& machine, const ErrorSet& errors, con
       block(i, k) = covariance(parameter[static_cast<std::size_t>(i)], parameter[static_cast<std::size_t>(k)]);
     }
   }
+  bool uncertain = false;
   constexpr int kSamples = 400;
   for (int s = 0; s <= kSamples; ++s) {
     const double position = from + (to - from) * s / kSamples;
@@ -68,9 +69,12 @@ bool is_uncertain_everywhere(const Machine& machine, const ErrorSet& errors, con
       at += size;
     }
     const double variance = values.dot(block * values);
+    // Where all functions are zero, such as a slope in the middle of its range, both are, and nothing is said.
+    if (value == 0 && !(variance > 0)) continue;
     if (!(variance > 0) || std::abs(value) >= factor * std::sqrt(variance)) return false;
+    uncertain = true;
   }
-  return true;
+  return uncertain;
 }
 
 }  // namespace

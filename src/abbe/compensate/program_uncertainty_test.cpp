@@ -98,11 +98,13 @@ TEST(ProgramUncertainty, ErrorsBelowTheirUncertaintyEverywhereAreLeftOutByName) 
   errors.motions.push_back({x, Component::Y, line, {1e-3, 0}, {1e-3, 0}});
   errors.motions.push_back({x, Component::Z, line, {0, 5e-3}, {1e-3, 0}});
   errors.motions.push_back({x, Component::A, line, {1e-9, 0}, {}});  // nothing is stated about it
+  // A slope and its uncertainty are zero together in the middle.
+  errors.motions.push_back({x, Component::B, line, {0, 1e-6}, {0, 1e-6}});
   errors.locations.push_back({y, Component::C, 5e-6, 3e-6});
   errors.locations.push_back({y, Component::A, 9e-6, 3e-6});
   ErrorSet kept = errors;
   const std::vector<std::string> names = leave_out_uncertain(machine, kept, parameter_covariance(errors, {}), 2);
-  EXPECT_THAT(names, testing::ElementsAre("EYX", "EC0Y"));
+  EXPECT_THAT(names, testing::ElementsAre("EYX", "EBX", "EC0Y"));
   EXPECT_EQ(kept.motions[0].coefficients, (std::vector<double>{0, 0}));
   EXPECT_EQ(kept.motions[1].coefficients, errors.motions[1].coefficients);
   EXPECT_EQ(kept.locations[0].value, 0);
@@ -110,7 +112,8 @@ TEST(ProgramUncertainty, ErrorsBelowTheirUncertaintyEverywhereAreLeftOutByName) 
   // Two terms of one motion count together.
   errors.motions.push_back({x, Component::Y, line, {4e-3, 0}, {1e-4, 0}});
   kept = errors;
-  EXPECT_THAT(leave_out_uncertain(machine, kept, parameter_covariance(errors, {}), 2), testing::ElementsAre("EC0Y"));
+  EXPECT_THAT(leave_out_uncertain(machine, kept, parameter_covariance(errors, {}), 2),
+              testing::ElementsAre("EBX", "EC0Y"));
 }
 
 TEST(ProgramUncertainty, ReversalValuesEnterByHalfInTheDirectionOfTheApproach) {

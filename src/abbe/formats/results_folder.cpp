@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/partial_names.h"
 
 namespace abbe {
@@ -118,6 +119,7 @@ void check_results_folder(const fs::path& name) {
   const auto status = fs::status(name, error);
   if (!fs::exists(status)) return;
   if (!fs::is_directory(status)) throw InputError({name.string(), 0, 0, ""}, "is a file", "a folder for results");
+  refuse_input_as_output(name);
   for (const char* const own : {kMarker, "summary.json", "evaluation.json"}) {
     if (fs::exists(name / own, error)) return;
   }
@@ -189,6 +191,7 @@ void ResultsFolder::commit() {
 }
 
 void write_file_atomically(const fs::path& path, std::string_view contents) {
+  refuse_input_as_output(path);
   const fs::path partial = partial_name(path);
   remove_partials_of_killed_writers(path);
   const UnfinishedPath unfinished(partial);

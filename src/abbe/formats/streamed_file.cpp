@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/partial_names.h"
 
 namespace abbe {
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 }  // namespace
 
 StreamedFile::StreamedFile(fs::path path) : path_(std::move(path)), partial_(partial_name(path_)) {
+  refuse_input_as_output(path_);
   remove_partials_of_killed_writers(path_);
   std::error_code ignored;
   if (fs::is_directory(path_, ignored)) fail(path_, EISDIR);

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/kept_inputs.h"
 
 namespace abbe {
 
@@ -31,6 +32,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     if (memory == MAP_FAILED) fail(error);
     ::madvise(memory, size_, MADV_WILLNEED);
     data_ = static_cast<const char*>(memory);
+    note_input(path);
     return;
   }
   ::close(file);

@@ -40,6 +40,7 @@ struct FrozenCompensation {
   std::vector<double> where;           ///< nominal commands of largest_correction; mm, rad
   double tool_length_there = 0;        ///< mm
   std::vector<double> largest_joint;   ///< [axes] largest correction of each joint, mm or rad
+  std::vector<std::vector<double>> largest_joint_at;  ///< [axes] nominal commands there
   double accuracy = 0;       ///< mm, actual tool at the compensated joints against where it should be, by all errors
   double accuracy_turn = 0;  ///< rad
   double difference = 0;     ///< mm, the same by the errors that are frozen: what freezing itself changes

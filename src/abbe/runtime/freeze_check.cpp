@@ -92,6 +92,7 @@ void freeze_check(const Machine& machine, const ErrorSet& errors, const FreezeOp
   const std::unique_ptr<abbe_runtime, Free> runtime = load(result);
   if (!runtime) return;
   result.largest_joint.assign(machine.axes.size(), 0.0);
+  result.largest_joint_at.assign(machine.axes.size(), {});
   for_each_pose(machine, options, *runtime, [&](const Machine& with_tool, const std::vector<double>& nominal) {
     const double* const tool = with_tool.tool_offset.data();
     std::vector<double> joints(nominal), back(nominal);
@@ -108,8 +109,12 @@ void freeze_check(const Machine& machine, const ErrorSet& errors, const FreezeOp
     abbe_runtime_start(&state);
     if (abbe_runtime_uncorrect(runtime.get(), &state, joints.data(), tool, 1, back.data()) >= 0)
       result.worst_iterations = std::max(result.worst_iterations, state.iterations);
-    for (std::size_t i = 0; i < joints.size(); ++i)
-      result.largest_joint[i] = std::max(result.largest_joint[i], std::abs(joints[i] - nominal[i]));
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      const double correction = std::abs(joints[i] - nominal[i]);
+      if (!result.largest_joint_at[i].empty() && !(correction > result.largest_joint[i])) continue;
+      result.largest_joint[i] = correction;
+      result.largest_joint_at[i] = nominal;
+    }
     // Beyond the map nothing is known, by the full model neither.
     if (status == ABBE_POSITION_LEFT || !within_map(*runtime, joints)) return;
     const RigidTransform alone = actual_workpiece_from_tool(with_tool, errors, joints);

@@ -1,0 +1,32 @@
+#include "compensate/safety.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "abbe/compensate/correction_uncertainty.h"
+#include "abbe/formats/input_error.h"
+
+namespace abbe {
+
+double refusal_limit(const char* option, const std::optional<double>& given, const char* unit) {
+  if (!given) return std::numeric_limits<double>::infinity();
+  if (!(*given > 0) || !std::isfinite(*given)) {
+    throw InputError({.field = option}, fmt::format("{:g} is no limit", *given),
+                     fmt::format("a number above zero in {}, or no limit at all", unit));
+  }
+  return *given;
+}
+
+void check_leave_out(double factor, const ErrorsFile& errors, const std::string& file) {
+  const char* const option = "--leave-out-below-uncertainty";
+  if (!(factor >= 0 && factor <= 1000)) {
+    throw InputError({.field = option}, "out of range", "0 to 1000 standard uncertainties");
+  }
+  if (factor > 0 && errors.covariance.size() == 0 && stated_variances(errors.errors).size() == 0) {
+    throw InputError({.file = file}, "no standard uncertainties are stated", fmt::format("some, for {}", option));
+  }
+}
+
+}  // namespace abbe

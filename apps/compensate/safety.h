@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "abbe/formats/errors_file.h"
+
+namespace abbe {
+
+/// Limit above which corrections are refused, in the option's unit; infinite if it was not given.
+/// @throws InputError unless it is a finite number above zero: a limit that cannot be understood is not "no limit"
+double refusal_limit(const char* option, const std::optional<double>& given, const char* unit);
+
+/// What --leave-out-below-uncertainty needs: a factor of 0 (leave out nothing) to 1000, and stated uncertainties.
+/// @param file  name of the errors file. @throws InputError
+void check_leave_out(double factor, const ErrorsFile& errors, const std::string& file);
+
+}  // namespace abbe

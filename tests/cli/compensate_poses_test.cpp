@@ -1,0 +1,159 @@
+// `abbe compensate poses`: corrected commands are judged by the exact model of the errors, not by the command's own
+// word.
+#include <gmock/gmock.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "abbe/errors/actual_pose.h"
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/machine_file.h"
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+using testing::HasSubstr;
+
+struct Row {
+  std::vector<double> commands;  // mm, rad
+  std::vector<std::string> rest;
+};
+
+std::vector<Row> rows_of(const std::string& text, const Machine& machine) {
+  std::vector<Row> rows;
+  std::istringstream stream(text);
+  std::string line;
+  std::getline(stream, line);
+  while (std::getline(stream, line)) {
+    Row row;
+    std::istringstream fields(line);
+    for (std::string field; std::getline(fields, field, ',');) {
+      const std::size_t i = row.commands.size();
+      if (i < machine.axes.size()) {
+        const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+        row.commands.push_back(std::stod(field) * (rotary ? std::numbers::pi / 180 : 1));
+      } else {
+        row.rest.push_back(field);
+      }
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+class CompensatePoses : public CommandTest {
+ protected:
+  const std::filesystem::path source = ABBE_SOURCE_DIR;
+  const std::string mill = (source / "examples/machines/trunnion-mill.machine.toml").string();
+  const std::string errors = (source / "examples/compensate/trunnion.errors.toml").string();
+  const Machine machine = read_machine(mill);
+  const ErrorSet known = read_errors(errors, machine).errors;
+
+  CommandResult poses(const std::string& file, const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {"compensate", "poses", mill, errors, file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return abbe(arguments);
+  }
+  Eigen::Vector3d missed(const std::vector<double>& nominal, const std::vector<double>& commands) const {
+    return actual_workpiece_from_tool(machine, known, commands).translation -
+           nominal_workpiece_from_tool(machine, nominal).translation;
+  }
+};
+
+TEST_F(CompensatePoses, BringTheActualToolToItsPlaceAndSaySoRowByRow) {
+  // Chain order C A Y X Z; the second pose is where C hardly turns the tool.
+  folder.write("poses.csv",
+               "C_deg,A_deg,Y_mm,X_mm,Z_mm\n30,-40,20,100,-200\n35,0.001,-30,20,-250\n200,25,0,-150,-80\n");
+  const CommandResult result = poses("poses.csv", {"-o", "out.csv", "--json"});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  const std::string text = folder.read("out.csv");
+  EXPECT_THAT(text, HasSubstr("C_deg,A_deg,Y_mm,X_mm,Z_mm,status,correction_um,u_correction_um,position_left_um,"
+                              "orientation_left_urad\n"));
+  const std::vector<Row> rows = rows_of(text, machine), in = rows_of(folder.read("poses.csv"), machine);
+  ASSERT_EQ(rows.size(), 3U);
+  double largest = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double before = missed(in[k].commands, in[k].commands).norm();
+    EXPECT_GT(before, 1e-3);
+    EXPECT_LE(missed(in[k].commands, rows[k].commands).norm(), 1.1e-9);
+    EXPECT_NEAR(std::stod(rows[k].rest[1]), 1e3 * before, 1e-6);
+    EXPECT_GT(std::stod(rows[k].rest[2]), 0.1);
+    EXPECT_EQ(rows[k].rest[0], k == 1 ? "turn limited" : "reached");
+    const Eigen::Vector3d wanted = nominal_workpiece_from_tool(machine, in[k].commands).rotation.col(2);
+    const Eigen::Vector3d there = actual_workpiece_from_tool(machine, known, rows[k].commands).rotation.col(2);
+    EXPECT_NEAR(1e-6 * std::stod(rows[k].rest[4]), std::atan2(wanted.cross(there).norm(), wanted.dot(there)), 1e-12);
+    largest = std::max(largest, before);
+  }
+  EXPECT_NEAR(json["largest_correction_um"].get<double>(), 1e3 * largest, 1e-6);
+  EXPECT_EQ(json["status"]["turn limited"], 1);
+}
+
+TEST_F(CompensatePoses, ADryRunSaysWhereTheCorrectionsAreLargestAndWritesNothing) {
+  const std::string example = (source / "examples/compensate/poses.csv").string();
+  const CommandResult result = poses(example, {"--dry-run", "-o", "out.csv"});
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("largest correction of the functional point "));
+  EXPECT_THAT(result.out, HasSubstr(", row "));
+  EXPECT_THAT(result.out, HasSubstr("dry run: nothing written"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out.csv"));
+}
+
+TEST_F(CompensatePoses, WhatIsNotReachedIsInItsRowAndInTheExitCode) {
+  folder.write("part.errors.toml",
+               "[[motion]]\nname = \"EXX\"\nbasis = \"legendre\"\norder = 0\nfrom_mm = -50\nto_mm = "
+               "300\ncoefficients_um = [-30]\n");
+  folder.write("poses.csv", "C_deg,A_deg,Y_mm,X_mm,Z_mm\n0,-30,0,0,-100\n0,-30,0,-200,-100\n0,-30,0,300,-100\n");
+  const CommandResult result = abbe({"compensate", "poses", mill, "part.errors.toml", "poses.csv", "-o", "out.csv"});
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.err, HasSubstr("not brought to 2 of 3 poses"));
+  EXPECT_THAT(result.out, HasSubstr("not covered: 1, first in row 2"));
+  EXPECT_THAT(result.out, HasSubstr("outside travel: 1, first in row 3"));
+  const std::vector<Row> rows = rows_of(folder.read("out.csv"), machine);
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].rest[0], "reached");
+  EXPECT_EQ(rows[1].rest[0], "not covered");
+  EXPECT_EQ(rows[1].commands[3], -200);
+  EXPECT_EQ(rows[1].rest[1], "");
+  EXPECT_EQ(rows[2].commands[3], 300);
+  EXPECT_NEAR(std::stod(rows[2].rest[2]), 30, 1e-6);
+}
+
+TEST_F(CompensatePoses, LimitsAndInputsAreKept) {
+  folder.write("poses.csv", "C_deg,A_deg,Y_mm,X_mm,Z_mm\n30,-40,20,100,-200\n");
+  const CommandResult above = poses("poses.csv", {"-o", "out.csv", "--limit-um", "2"});
+  EXPECT_EQ(above.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(above.err, HasSubstr("above --limit-um 2: row 1, C 30 deg"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out.csv"));
+  for (const std::string limit : {"0", "-1", "nan", "inf"}) {
+    const CommandResult none = poses("poses.csv", {"-o", "out.csv", "--limit-um", limit});
+    EXPECT_EQ(none.exit_code, ExitCode::bad_input) << limit;
+    EXPECT_THAT(none.err, HasSubstr("--limit-um")) << limit;
+  }
+  const CommandResult over = poses("poses.csv", {"-o", "./poses.csv"});
+  EXPECT_EQ(over.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(over.err, HasSubstr("is an input of the command"));
+  EXPECT_THAT(folder.read("poses.csv"), HasSubstr("30,-40,20,100,-200"));
+  // What only the errors file names is an input too.
+  folder.write("t.errors.toml", "[[motion]]\nname = \"EXX\"\nbasis = \"table-linear\"\ntable = \"exx.csv\"\n");
+  folder.write("exx.csv", "X_mm,EXX_um\n-300,4\n300,-4\n");
+  const CommandResult beside = abbe({"compensate", "poses", mill, "t.errors.toml", "poses.csv", "-o", "exx.csv"});
+  EXPECT_EQ(beside.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(beside.err, HasSubstr("exx.csv: is an input"));
+  EXPECT_THAT(folder.read("exx.csv"), HasSubstr("300,-4"));
+  EXPECT_THAT(poses("poses.csv", {}).err, HasSubstr("--dry-run"));
+  EXPECT_THAT(poses("poses.csv", {"--dry-run", "--hold", "Q"}).err, HasSubstr("no such axis"));
+  // Without the rotary axes the point alone is corrected.
+  ASSERT_EQ(poses("poses.csv", {"-o", "held.csv", "--hold", "A", "--hold", "C"}).exit_code, ExitCode::done);
+  const std::vector<Row> rows = rows_of(folder.read("held.csv"), machine);
+  EXPECT_NEAR(rows[0].commands[0], 30 * std::numbers::pi / 180, 1e-15);
+  EXPECT_LE(missed(rows_of(folder.read("poses.csv"), machine)[0].commands, rows[0].commands).norm(), 1.1e-9);
+}
+
+}  // namespace
+}  // namespace abbe
