@@ -332,6 +332,7 @@ int run_table(const TableCommand& command) {
     print_table_json(report);
   } else {
     print_table_report(report);
+    if (command.dry_run) fmt::print("dry run: no table is written\n");
   }
   for (const std::string& words : report.refused) fmt::print(stderr, "abbe: {}; nothing is written\n", words);
   if (!refused && !within) {

@@ -132,6 +132,9 @@ nlohmann::json edge_data(const PieceResult& piece, bool head) {
   json["out_y"] = out_y;
   json["before_um"] = in_um(before_values);
   json["after_um"] = in_um(after_values);
+  // Of all samples; those that are drawn may miss the extremes.
+  json["range_before_um"] = 1e3 * (head ? before.aligned.head : before.aligned.foot).range();
+  json["range_after_um"] = 1e3 * (head ? after.aligned.head : after.aligned.foot).range();
   return json;
 }
 
@@ -254,7 +257,11 @@ std::string verify_page(const VerifyOptions& options, const VerifyResult& result
   nlohmann::json data;
   data["format"] = "abbe-report/1";
   data["title"] = "Compensation of the " + result.machine.name + ", verified";
-  data["subtitle"] = "What is left at poses that nobody measured, and on test pieces";
+  data["subtitle"] =
+      std::string(
+          "A simulated machine, whose errors are therefore known, carries out the same commands without and "
+          "with the compensation: what is left at poses that nobody measured") +
+      (result.pieces.empty() ? "" : ", and on test pieces");
   data["evaluation"] = {{"kind", "verify"}, {"facts", facts(options, result, summary)}};
   data["summary"] = {{"verdict", verify_sentence(result)}, {"held_out", nlohmann::json(unseen_poses_json(poses))}};
   if (summary.is_object()) {

@@ -287,6 +287,7 @@ TEST_F(CompensateTable, InputsAreNeverWrittenOverAndWrongOptionsAreNamed) {
   EXPECT_EQ(table("linuxcnc", {"-o", "x.comp", "--axis", "X"}).exit_code, ExitCode::done);
   EXPECT_THAT(table("heidenhain-9", {"-o", "x"}).err, HasSubstr("unknown format"));
   EXPECT_THAT(table("linuxcnc", {}).err, HasSubstr("--dry-run"));
+  EXPECT_THAT(table("linuxcnc", {"--dry-run"}).out, HasSubstr("dry run: no table is written"));
   EXPECT_THAT(table("linuxcnc", {"-o", "c", "--at", "X_deg=3"}).err, HasSubstr("unit 'deg' for a linear axis"));
   EXPECT_THAT(table("siemens-cec", {"-o", "c.ini", "--name", "X=AX2"}).err, HasSubstr("two axes are called AX2"));
   EXPECT_THAT(table("linuxcnc", {"-o", "c", "--axis", "Q"}).err, HasSubstr("no such axis"));

@@ -127,13 +127,14 @@ export function dots(target: Plot, xs: Values, ys: Values, style: string): void 
   target.layer.append(svg('path', {d: path, class: `dots ${style}`}));
 }
 
-export function rule(target: Plot, at: number, direction: 'x' | 'y', style: string, label?: string, row = 0): void {
+export function rule(target: Plot, at: number, direction: 'x' | 'y', style: string, label?: string, row = 0, before = false): void {
   const {left, right, top, bottom} = target.area;
   if (direction === 'x') {
     const x = target.x(at);
     target.root.append(svg('line', {x1: x, x2: x, y1: top + 14 * row, y2: bottom, class: `rule ${style}`}));
     if (label) {
-      const atEnd = x > (left + right) / 2 + (right - left) / 4;
+      // Over a curve that rises the room is before the line.
+      const atEnd = (before && x - left > 150) || x > (left + right) / 2 + (right - left) / 4;
       target.root.append(
         svg('text', {x: x + (atEnd ? -5 : 5), y: top + 9 + 14 * row, class: `rule-label ${style} ${atEnd ? 'end' : ''}`}, label),
       );

@@ -31,7 +31,7 @@ function cumulative(data: CompensationDistribution): HTMLElement {
       description: sets.map((set) => `${set.name}: half of the poses below ${quantity(at(data, set.values, 50), 'µm')}, 95 percent below ${quantity(at(data, set.values, 95), 'µm')}`).join('; '),
     });
     for (const set of [...sets].reverse()) line(target, set.values.map((v) => (v > 0 ? v : null)), data.percent, `of-${set.style}`);
-    sets.filter((set) => set.style !== 'predicted').forEach((set, i) => rule(target, at(data, set.values, 50), 'x', set.style, `${set.name}, median ${quantity(at(data, set.values, 50), 'µm')}`, i));
+    sets.filter((set) => set.style !== 'predicted').forEach((set, i) => rule(target, at(data, set.values, 50), 'x', set.style, `${set.name}, median ${quantity(at(data, set.values, 50), 'µm')}`, i, true));
     return target.root;
   });
   return box;
@@ -42,6 +42,11 @@ function key(entries: [style: string, text: string][]): HTMLElement {
 }
 
 const round = (v: number) => Math.round(v * 100) / 100;
+
+function ranges(edge: PieceEdge): [number, number] {
+  const drawn = (values: number[]) => extent(values)[1] - extent(values)[0];
+  return [edge.range_before_um ?? drawn(edge.before_um), edge.range_after_um ?? drawn(edge.after_um)];
+}
 
 /// The edge with its deviations magnified, before and after over one another.
 function outline(edge: PieceEdge, closed: boolean, name: string, largest: number): HTMLElement {
@@ -65,7 +70,7 @@ function outline(edge: PieceEdge, closed: boolean, name: string, largest: number
       return `M${forth.join('L')}L${back.join('L')}Z`;
     };
     const root = svg('svg', {viewBox: `0 0 ${width} ${height}`, width, height, class: 'piece-drawing', role: 'img',
-      'aria-label': `${name}, ${edge.name}: deviation before within ${quantity(extent(edge.before_um)[1] - extent(edge.before_um)[0], 'µm')}, after within ${quantity(extent(edge.after_um)[1] - extent(edge.after_um)[0], 'µm')}`});
+      'aria-label': `${name}, ${edge.name}: deviation before within ${quantity(ranges(edge)[0], 'µm')}, after within ${quantity(ranges(edge)[1], 'µm')}`});
     root.append(
       svg('path', {d: band(edge.before_um), class: 'left of-before'}),
       svg('path', {d: path(), class: 'outline'}),
@@ -115,8 +120,8 @@ function pieceSection(piece: VerifiedPiece, index: number): HTMLElement {
   const largest = Math.max(Math.abs(low), Math.abs(high));
   part.append(key([['of-before', 'before'], ['of-after', 'after'], ['nominal', 'wanted']]),
     html('div', {class: 'columns'}, ...piece.edges.map((edge) => {
-      const [b, a] = [extent(edge.before_um), extent(edge.after_um)];
-      return figure(`At the ${edge.name}: within ${quantity(b[1] - b[0], 'µm')} before, ${quantity(a[1] - a[0], 'µm')} after.`,
+      const [b, a] = ranges(edge);
+      return figure(`At the ${edge.name}: within ${quantity(b, 'µm')} before, ${quantity(a, 'µm')} after.`,
         outline(edge, piece.closed ?? false, piece.name, largest), along(edge, [Math.min(low, 0), Math.max(high, 0)], piece.name));
     })));
   const table = figuresTable(piece);

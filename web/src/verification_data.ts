@@ -20,6 +20,9 @@ export interface PieceEdge {
   out_y: number[];
   before_um: number[];
   after_um: number[];
+  /// Of all samples, where more were taken than are drawn.
+  range_before_um?: number;
+  range_after_um?: number;
 }
 
 export interface VerifiedPiece {
