@@ -197,8 +197,9 @@ TEST_F(CompensateGcode, PosesThatCannotBeCorrectedAreRefusedUnlessAllowed) {
     result = abbe(arguments);
   }
   EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
-  EXPECT_THAT(result.err,
-              HasSubstr("outside the travel: 1 pose, line 3, first at C 0.000 A -20.000 Y 0.000 X 0.000 Z"));
+  EXPECT_THAT(
+      result.err,
+      HasSubstr("outside the travel: 1 pose, line 3, first at C 0.000 deg, A -20.000 deg, Y 0.000 mm, X 0.000"));
   EXPECT_FALSE(exists("out.ngc"));
   arguments.insert(arguments.end(), {"--allow", "outside-travel"});
   EXPECT_EQ(abbe(arguments).exit_code, ExitCode::done);
@@ -231,7 +232,7 @@ TEST_F(CompensateGcode, RapidMovesAreKeptAtTheEndOfTheTravel) {
   const CommandResult beyond =
       abbe({"compensate", "gcode", "beyond.ngc", "--machine", machine, "--errors", errors, "-o", "b.ngc"});
   EXPECT_EQ(beyond.exit_code, ExitCode::computation_says_no);
-  EXPECT_THAT(beyond.err, HasSubstr("Z 1.000; the travel of Z is -510 to 0 mm (--allow"));
+  EXPECT_THAT(beyond.err, HasSubstr("Z 1.000 mm; the travel of Z is -510 to 0 mm (--allow"));
   write("work.ngc", "G21 G90\nG0 X0 Y0 Z0 A-20 C0\nG1 Z-5 F100\nG0 Z-510\nG1 Z-505\nM2\n");
   std::vector<std::string> work = {"compensate", "gcode", "work.ngc", "--machine", machine,
                                    "--errors",   errors,  "-o",       "w.ngc",     "--json"};
