@@ -123,7 +123,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
       case 11:
         for (const abbe::FanucPitch& pitch : abbe::parse_fanuc_pitch(text, file, kNumbers)) {
-          check({abbe::fanuc_table(pitch, 1e-3)});
+          check({abbe::fanuc_table(pitch, 1e-3, 0)});
         }
         break;
       case 12: {

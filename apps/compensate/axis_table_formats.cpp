@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/compensate/line_tables.h"
+#include "abbe/compensate/point_correction.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/formats/table_linuxcnc.h"
 #include "abbe/formats/table_siemens.h"
@@ -22,16 +23,18 @@ std::string table_name(const Machine& machine, const AxisTable& table) {
   return table.input == table.output ? input : input + " for " + machine.axes[table.output].name;
 }
 
-/// Every k-th position, so that long tables are looked at in at most some forty places.
-std::vector<std::size_t> some_of(std::size_t count) {
+/// Every k-th position within the travel, so that long tables are looked at in at most some forty places.
+std::vector<std::size_t> some_of(const std::vector<double>& positions, const KnownTravel& travel) {
   std::vector<std::size_t> chosen;
-  const std::size_t stride = count / 40 + 1;
-  for (std::size_t k = 0; k < count; k += stride) chosen.push_back(k);
+  const std::size_t stride = positions.size() / 40 + 1;
+  for (std::size_t k = 0; k < positions.size(); k += stride) {
+    if (positions[k] >= travel.from - 1e-9 && positions[k] <= travel.to + 1e-9) chosen.push_back(k);
+  }
   return chosen;
 }
 
-TableSummary summary_of(const Machine& machine, const AxisTable& table, double interpolation_error, bool within,
-                        const std::vector<double>& reference, bool cross) {
+TableSummary summary_of(const Machine& machine, const ErrorSet& known, const AxisTable& table,
+                        double interpolation_error, bool within, const std::vector<double>& reference, bool cross) {
   TableSummary summary;
   summary.name = table_name(machine, table);
   summary.nodes = table.positions.size();
@@ -47,7 +50,7 @@ TableSummary summary_of(const Machine& machine, const AxisTable& table, double i
     summary.largest_at = table.positions[k];
   }
   const bool directions = table.forward != table.reverse;
-  const std::vector<std::size_t> chosen = some_of(table.positions.size());
+  const std::vector<std::size_t> chosen = some_of(table.positions, known_travel(machine, known, table.input));
   for (const std::size_t k : chosen) {
     summary.positions.push_back(table.positions[k]);
     summary.corrections.push_back(table.forward[k]);
@@ -94,7 +97,7 @@ std::vector<AxisTable> wanted_tables(const Machine& machine, const ErrorSet& err
   const LineTables found = line_tables(machine, errors, options);
   std::vector<AxisTable> tables;
   for (std::size_t t = 0; t < found.tables.size(); ++t) {
-    TableSummary summary = summary_of(machine, found.tables[t], found.interpolation_error[t], found.within[t],
+    TableSummary summary = summary_of(machine, errors, found.tables[t], found.interpolation_error[t], found.within[t],
                                       request.reference, options.cross);
     if (request.left_out.count(summary.name) != 0) continue;
     made.tables.push_back(std::move(summary));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "abbe/formats/input_error.h"
 #include "abbe/formats/table_fanuc.h"
 #include "abbe/formats/table_heidenhain.h"
 #include "compensate/axis_table_formats.h"
@@ -64,20 +65,26 @@ ControllerTables make_fanuc(const TableFormat& format, const Machine& machine, c
   std::vector<FanucPitch> pitches;
   std::vector<double> constants;  // of the tables at their reference positions, where the data are zero
   std::size_t first_point = 0;
-  for (const AxisTable& table : wanted_tables(machine, errors, request, line_options(request, format), made)) {
+  LineTableOptions options = line_options(request, format);
+  options.anchors = request.reference_position;
+  for (const AxisTable& table : wanted_tables(machine, errors, request, options, made)) {
     const bool rotary = machine.axes[table.input].kind == AxisKind::rotary;
-    const double unit = unit_of(table.input);
-    pitches.push_back(fanuc_pitch(with_sign({table}, request.negate).front(), unit, first_point));
+    const double unit = unit_of(table.input), reference = request.reference_position[table.input];
+    if (table.modulo && reference != 0) {
+      throw InputError({.field = "--reference-position"}, machine.axes[table.input].name + " is endless",
+                       "its reference position at zero");
+    }
+    pitches.push_back(fanuc_pitch(with_sign({table}, request.negate).front(), unit, first_point, reference));
     const FanucPitch& pitch = pitches.back();
     constants.push_back(table.forward[pitch.reference_point - first_point]);
     first_point += table.positions.size();
-    made.remarks.push_back(
-        fmt::format("{}: data rounded to {:g} {}; they are zero at the reference position {:g} {}, which has to be "
-                    "shifted by {:.2f} {} (the figures above take it that it is); the file sets parameter 1240 to it, "
-                    "which moves the machine coordinates of a control that has another value there",
-                    machine.axes[table.input].name, (rotary ? 1e6 : 1e3) * unit * pitch.magnification,
-                    rotary ? "urad" : "um", pitch.reference_position * (rotary ? 180 / std::numbers::pi : 1),
-                    rotary ? "deg" : "mm", (rotary ? 1e6 : 1e3) * constants.back(), rotary ? "urad" : "um"));
+    made.remarks.push_back(fmt::format(
+        "{}: data rounded to {:g} {}; they are zero at the reference position of the control (its parameter "
+        "1240, machine coordinate {:g} {} of the machine file; --reference-position says where else it is), "
+        "which has to be shifted by {:.2f} {} (the figures above take it that it is)",
+        machine.axes[table.input].name, (rotary ? 1e6 : 1e3) * unit * pitch.magnification, rotary ? "urad" : "um",
+        reference * (rotary ? 180 / std::numbers::pi : 1), rotary ? "deg" : "mm",
+        (rotary ? 1e6 : 1e3) * constants.back(), rotary ? "urad" : "um"));
   }
   std::vector<AxisTable> read;
   if (!pitches.empty()) {
@@ -85,7 +92,9 @@ ControllerTables make_fanuc(const TableFormat& format, const Machine& machine, c
     const std::string text = fanuc_pitch_text(pitches, request.names);
     made.files.emplace_back(name, text);
     for (const FanucPitch& pitch : parse_fanuc_pitch(text, name, request.names)) {
-      AxisTable table = with_sign({fanuc_table(pitch, unit_of(pitch.axis))}, request.negate).front();
+      AxisTable table =
+          with_sign({fanuc_table(pitch, unit_of(pitch.axis), request.reference_position[pitch.axis])}, request.negate)
+              .front();
       for (std::size_t p = 0; p < pitches.size(); ++p) {
         if (pitches[p].axis != pitch.axis) continue;
         for (double& value : table.forward) value += constants[p];

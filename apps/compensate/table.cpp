@@ -393,9 +393,10 @@ void add_compensate_table(CLI::App& compensate, CommandLine& line) {
       "sure)");
   command->add_option("--detection-unit-um", options->unit_um,
                       "fanuc-pitch, fanuc-3d: unit of the data, um; of rotary axes thousandths of a degree (1)");
-  command->add_option("--reference-position", options->reference_position,
-                      "fanuc-3d: AXIS_mm=position, where the control's reference position is in the machine file; "
-                      "default 0, or the end of the travel next to it; repeatable");
+  command->add_option(
+      "--reference-position", options->reference_position,
+      "fanuc-pitch, fanuc-3d: AXIS_unit=position, where the control's reference position is in the machine file; "
+      "default 0, or the end of the travel next to it; repeatable");
   command->add_option("--map", options->map, "Map of the error before, after and ideal: .csv, .vts or .vtu");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options]() -> int { return run_table(*options); }; });

@@ -30,7 +30,7 @@ struct TableRequest {
   std::size_t first_table = 0;             ///< siemens-cec
   bool negate = false;                     ///< values with the other sign, where the control's is not known for sure
   double unit_mm = 1e-3;                   ///< FANUC: detection unit; of rotary axes as many degrees
-  std::vector<double> reference_position;  ///< [axes] fanuc-3d: reference position of the control, mm or rad
+  std::vector<double> reference_position;  ///< [axes] FANUC: reference position of the control, mm or rad
 };
 
 /// A part of the tables that can be left out, and what it says.

@@ -185,6 +185,25 @@ TEST_F(CompensateTable, FanucsGridIsTiedToTheReferencePositionAndCanBeNegated) {
               HasSubstr("--reference-position X_mm=900"));
 }
 
+TEST_F(CompensateTable, FanucsPitchPointsAreTiedToTheReferencePosition) {
+  const nlohmann::json tied =
+      json_of(table("fanuc-pitch", {"-o", "tied", "--json", "--reference-position", "X_mm=200"}));
+  EXPECT_THAT(tied["settings"].dump(), HasSubstr("machine coordinate 200 mm"));
+  const std::string text = folder.read("tied/PITCH.PRM");
+  EXPECT_THAT(text, testing::Not(HasSubstr("N01240")));
+  std::map<int, double> first_axis;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    int number = 0;
+    double value = 0;
+    if (std::sscanf(line.c_str(), "N%dA1P%lf", &number, &value) == 2) first_axis[number] = value;
+  }
+  EXPECT_GE((first_axis.at(3620) - first_axis.at(3621)) * first_axis.at(3624), 200);
+  EXPECT_GE((first_axis.at(3622) - first_axis.at(3620)) * first_axis.at(3624), 560);
+  const nlohmann::json zero = json_of(table("fanuc-pitch", {"-o", "zero", "--json"}));
+  EXPECT_NEAR(tied["after"]["mean_um"].get<double>(), zero["after"]["mean_um"].get<double>(), 1);
+}
+
 TEST_F(CompensateTable, WhatFanucsGridCannotHoldIsSaidAndNothingIsWritten) {
   const auto refused = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {"-o", "none"};

@@ -3,19 +3,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "abbe/compensate/anchored_nodes.h"
 #include "abbe/compensate/correction_lattice.h"
 
 namespace abbe {
-
-/// Evenly spaced nodes, one of them at a given place, that cover a travel.
-struct AnchoredNodes {
-  double interval = 0;
-  std::size_t anchor = 0;         ///< index of the node at the given place
-  std::vector<double> positions;  ///< the first and the last may lie outside the travel
-  std::vector<double> inside;     ///< the ends of the travel and the nodes between them
-};
-/// @param interval  above zero
-AnchoredNodes anchored_nodes(double from, double to, double anchor, double interval);
 
 /// The same function inside the old ends, over nodes of which the outer ones lie further out: cells at the ends are
 /// continued in straight lines as far as the first node outside, and keep its value beyond it.

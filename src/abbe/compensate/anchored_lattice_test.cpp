@@ -14,24 +14,6 @@
 namespace abbe {
 namespace {
 
-using testing::ElementsAre;
-
-TEST(AnchoredLattice, NodesPassThroughTheAnchorAndCoverTheTravel) {
-  const AnchoredNodes end = anchored_nodes(0, 100, 0, 30);
-  EXPECT_THAT(end.positions, ElementsAre(0, 30, 60, 90, 120));
-  EXPECT_THAT(end.inside, ElementsAre(0, 30, 60, 90, 100));
-  EXPECT_EQ(end.anchor, 0U);
-  const AnchoredNodes within = anchored_nodes(-50, 100, 10, 50);
-  EXPECT_THAT(within.positions, ElementsAre(-90, -40, 10, 60, 110));
-  EXPECT_THAT(within.inside, ElementsAre(-50, -40, 10, 60, 100));
-  EXPECT_EQ(within.anchor, 2U);
-  const AnchoredNodes outside = anchored_nodes(-50, 100, 160, 50);
-  EXPECT_THAT(outside.positions, ElementsAre(-90, -40, 10, 60, 110, 160));
-  EXPECT_EQ(outside.anchor, 5U);
-  // Whole intervals, written in decimals, need no node further.
-  EXPECT_EQ(anchored_nodes(0, 0.3, 0.3, 0.1).positions.size(), 4U);
-}
-
 CorrectionLattice uneven_lattice() {
   CorrectionLattice lattice;
   lattice.inputs = {0, 2};

@@ -19,7 +19,10 @@ struct LineTableOptions {
   double tolerance_mm = 1e-4;     ///< between straight lines and the function
   double tolerance_rad = 1e-7;
   std::size_t most_nodes = 10000;
-  std::size_t nodes = 0;        ///< if not 0: exactly so many, whatever the tolerance
+  std::size_t nodes = 0;  ///< if not 0: exactly so many, whatever the tolerance
+  /// [axes] where a node has to be, mm or rad (NodeSpacing::anchor); empty: anywhere. Axes with a whole turn have one
+  /// at zero in any case.
+  std::vector<double> anchors;
   double step_multiple_mm = 0;  ///< see NodeSpacing::step_multiple
   double step_multiple_rad = 0;
   double negligible_mm = 0;  ///< tables that nowhere correct by more are left out

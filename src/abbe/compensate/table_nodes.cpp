@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/compensate/anchored_nodes.h"
 #include "abbe/errors/poses.h"
 
 namespace abbe {
@@ -25,6 +26,19 @@ bool within(const TableNodes& nodes, const std::vector<double>& tolerance) {
   return true;
 }
 
+/// Instead of nodes at the ends of the travel those of a grid that may lie further out.
+void continue_to(const AnchoredNodes& grid, TableNodes& nodes) {
+  const std::vector<Continuation> places = continuations(nodes.positions, grid.positions);
+  for (std::vector<double>& values : nodes.values) {
+    std::vector<double> wider;
+    for (const Continuation& place : places) {
+      wider.push_back(values[place.index] + place.share * (values[place.index + 1] - values[place.index]));
+    }
+    values = std::move(wider);
+  }
+  nodes.positions = grid.positions;
+}
+
 }  // namespace
 
 TableNodes nodes_at(const SampledFunctions& functions, const NodeSpacing& spacing, std::size_t count) {
@@ -36,10 +50,18 @@ TableNodes nodes_at(const SampledFunctions& functions, const NodeSpacing& spacin
     return nodes;
   }
   count = std::max<std::size_t>(count, 2);
-  nodes.positions = evenly_spaced(spacing.from, spacing.to, count);
-  nodes.positions.back() = spacing.to;
+  AnchoredNodes grid;
+  if (spacing.anchor) {
+    const double interval = (spacing.to - spacing.from) / static_cast<double>(count - 1);
+    grid =
+        anchored_nodes_within(spacing.from, spacing.to, *spacing.anchor, interval, spacing.step_multiple, spacing.most);
+    nodes.positions = grid.inside;
+  } else {
+    nodes.positions = evenly_spaced(spacing.from, spacing.to, count);
+    nodes.positions.back() = spacing.to;
+  }
   functions(nodes.positions, nodes.values);
-  const std::size_t intervals = count - 1;
+  const std::size_t intervals = nodes.positions.size() - 1;
   const std::size_t places = std::max<std::size_t>(16, spacing.places / intervals + 1);
   // In pieces, so that long tables need no more memory than short ones.
   std::vector<std::vector<double>> found;
@@ -69,6 +91,7 @@ TableNodes nodes_at(const SampledFunctions& functions, const NodeSpacing& spacin
   }
   for (double& error : nodes.error) error *= kUnseen;
   nodes.within = within(nodes, spacing.tolerance);
+  if (spacing.anchor) continue_to(grid, nodes);
   return nodes;
 }
 
@@ -94,7 +117,7 @@ TableNodes choose_nodes(const SampledFunctions& functions, const NodeSpacing& sp
       bad = middle;
     }
   }
-  if (!(spacing.step_multiple > 0)) return best;
+  if (!(spacing.step_multiple > 0) || spacing.anchor) return best;
   const double length = spacing.to - spacing.from;
   for (std::size_t count = good; count <= std::min(most, 2 * good); ++count) {
     if (!is_multiple(length / static_cast<double>(count - 1), spacing.step_multiple)) continue;

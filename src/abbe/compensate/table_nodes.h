@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct NodeSpacing {
   /// Where it can be done with at most twice the nodes, the step is a multiple of this (0: any step), so that it is
   /// written in few digits; mm or rad.
   double step_multiple = 0;
+  /// Where a node has to be, mm or rad. The outer nodes then may lie outside, on straight continuations of the cells at
+  /// the ends, where the functions are not asked; the step is a multiple of `step_multiple` in any case.
+  std::optional<double> anchor;
 };
 
 /// Evenly spaced nodes and how well straight lines between them follow.
@@ -38,7 +42,7 @@ struct TableNodes {
 /// narrower than an interval is seen too.
 TableNodes choose_nodes(const SampledFunctions& functions, const NodeSpacing& spacing);
 
-/// Exactly so many nodes.
+/// Exactly so many nodes; with an anchor, nodes as close as so many over the travel, or as `most` allows.
 TableNodes nodes_at(const SampledFunctions& functions, const NodeSpacing& spacing, std::size_t count);
 
 }  // namespace abbe

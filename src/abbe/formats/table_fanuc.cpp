@@ -19,16 +19,18 @@ constexpr std::size_t kDataBlock = 10000;
 
 }  // namespace
 
-FanucPitch fanuc_pitch(const AxisTable& table, double unit, std::size_t first_point) {
+FanucPitch fanuc_pitch(const AxisTable& table, double unit, std::size_t first_point, double reference_position) {
   const std::vector<double>& nodes = table.positions;
   FanucPitch pitch;
   pitch.axis = table.input;
   pitch.first_point = first_point;
-  const auto nearest = static_cast<std::size_t>(
-      std::min_element(nodes.begin(), nodes.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }) -
-      nodes.begin());
+  const auto nearest = static_cast<std::size_t>(std::min_element(nodes.begin(), nodes.end(),
+                                                                 [&](double a, double b) {
+                                                                   return std::abs(a - reference_position) <
+                                                                          std::abs(b - reference_position);
+                                                                 }) -
+                                                nodes.begin());
   pitch.reference_point = first_point + nearest;
-  pitch.reference_position = nodes[nearest];
   pitch.interval = nodes.size() > 1 ? (nodes.back() - nodes.front()) / static_cast<double>(nodes.size() - 1) : 1;
   // Rounding the correction and not its steps keeps the rounding from adding up.
   for (pitch.magnification = 1; pitch.magnification <= 100; ++pitch.magnification) {
@@ -49,7 +51,7 @@ FanucPitch fanuc_pitch(const AxisTable& table, double unit, std::size_t first_po
   return pitch;
 }
 
-AxisTable fanuc_table(const FanucPitch& pitch, double unit) {
+AxisTable fanuc_table(const FanucPitch& pitch, double unit, double reference_position) {
   AxisTable table;
   table.input = table.output = pitch.axis;
   const std::size_t reference = pitch.reference_point - pitch.first_point;
@@ -57,7 +59,7 @@ AxisTable fanuc_table(const FanucPitch& pitch, double unit) {
   double sum = 0;
   for (const int step : pitch.steps) sums.push_back(sum += step);
   for (std::size_t k = 0; k < sums.size(); ++k) {
-    table.positions.push_back(pitch.reference_position +
+    table.positions.push_back(reference_position +
                               pitch.interval * (static_cast<double>(k) - static_cast<double>(reference)));
     table.forward.push_back(unit * pitch.magnification * (sums[k] - sums[reference]));
   }
@@ -76,7 +78,6 @@ std::string fanuc_pitch_text(const std::vector<FanucPitch>& pitches, const std::
     text += "\n";
   };
   const auto real = [](double value, bool rotary) { return fanuc_real(shown_position(value, rotary)); };
-  block(1240, [&](const FanucPitch& p, bool rotary) { return real(p.reference_position, rotary); });
   block(3620, [](const FanucPitch& p, bool /*rotary*/) { return fmt::format("{}", p.reference_point); });
   block(3621, [](const FanucPitch& p, bool /*rotary*/) { return fmt::format("{}", p.first_point); });
   block(3622,
@@ -110,8 +111,8 @@ std::vector<FanucPitch> parse_fanuc_pitch(std::string_view text, const std::stri
       if (!data.emplace(point, static_cast<int>(value)).second) lines.fail(field, "is given twice", "every point once");
       continue;
     }
-    if (number != 1240 && (number < 3620 || number > 3624)) {
-      lines.fail(field, "unknown parameter", "1240 and 3620 to 3624");
+    if (number < 3620 || number > 3624) {
+      lines.fail(field, "unknown parameter", "3620 to 3624");
     }
     if (words.size() % 2 == 0) lines.fail(field, "not understood", "A and P in turns");
     for (std::size_t k = 1; k + 1 < words.size(); k += 2) {
@@ -131,7 +132,7 @@ std::vector<FanucPitch> parse_fanuc_pitch(std::string_view text, const std::stri
     };
     const auto whole = [&](std::size_t number, double least, double most) {
       const auto found = parameters[number].find(axis.axis);
-      if (found == parameters[number].end()) fail(fmt::format("no parameter {}", number), "1240 and 3620 to 3624");
+      if (found == parameters[number].end()) fail(fmt::format("no parameter {}", number), "3620 to 3624");
       if (!(found->second >= least && found->second <= most) || found->second != std::floor(found->second)) {
         fail(fmt::format("parameter {} is out of range", number), fmt::format("a whole number up to {}", most));
       }
@@ -145,8 +146,6 @@ std::vector<FanucPitch> parse_fanuc_pitch(std::string_view text, const std::stri
     pitch.magnification = static_cast<int>(whole(3623, 0, 100));
     pitch.interval = inside_position(parameters[3624][axis.axis], axis.rotary);
     if (!(pitch.interval > 1e-6)) fail("parameter 3624 is too small", "an interval above zero");
-    if (parameters[1240].count(axis.axis) == 0) fail("no parameter 1240", "1240 and 3620 to 3624");
-    pitch.reference_position = inside_position(parameters[1240][axis.axis], axis.rotary);
     for (std::size_t point = pitch.first_point; point <= last; ++point) {
       const auto found = data.find(point);
       if (found == data.end()) fail(fmt::format("no data for point {}", point), "data for every point of the axis");
@@ -154,7 +153,7 @@ std::vector<FanucPitch> parse_fanuc_pitch(std::string_view text, const std::stri
     }
     pitches.push_back(std::move(pitch));
   }
-  if (pitches.empty()) throw InputError({.file = file}, "no axis", "parameters 1240, 3620 to 3624 and data");
+  if (pitches.empty()) throw InputError({.file = file}, "no axis", "parameters 3620 to 3624 and data");
   return pitches;
 }
 

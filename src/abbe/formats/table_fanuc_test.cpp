@@ -21,15 +21,15 @@ AxisTable pitch_table() {
 }
 
 TEST(FanucTable, PitchDataAreStepsFromPointToPointWithZeroAtTheReference) {
-  const FanucPitch pitch = fanuc_pitch(pitch_table(), 0.001, 40);
+  const FanucPitch pitch = fanuc_pitch(pitch_table(), 0.001, 40, 0);
   EXPECT_EQ(pitch.reference_point, 42U);
   EXPECT_EQ(pitch.magnification, 1);
   // Minus the value at the reference, in um: 3, 2.1, 0, 0.4, -4.
   EXPECT_EQ(pitch.steps, (std::vector<int>{0, -1, -2, 0, -4}));
   EXPECT_EQ(fanuc_pitch_text({pitch}, kNumbers),
-            "%\nN01240A1P0.0\nN03620A1P42\nN03621A1P40\nN03622A1P44\nN03623A1P1\nN03624A1P50.0\n"
+            "%\nN03620A1P42\nN03621A1P40\nN03622A1P44\nN03623A1P1\nN03624A1P50.0\n"
             "N10040P0\nN10041P-1\nN10042P-2\nN10043P0\nN10044P-4\n%\n");
-  const AxisTable table = fanuc_table(pitch, 0.001);
+  const AxisTable table = fanuc_table(pitch, 0.001, 0);
   for (const double q : {-100.0, -50.0, 0.0, 50.0, 100.0}) {
     EXPECT_NEAR(table.at(q), pitch_table().at(q) - 0.001, 0.00051) << q;
   }
@@ -37,7 +37,7 @@ TEST(FanucTable, PitchDataAreStepsFromPointToPointWithZeroAtTheReference) {
 
 TEST(FanucTable, LargeStepsRaiseTheMagnificationAndWhatIsWrittenIsReadBack) {
   AxisTable steep = test::some_table(1, 1, 31, 6);
-  const FanucPitch a = fanuc_pitch(pitch_table(), 0.001, 0), b = fanuc_pitch(steep, 0.001, 5);
+  const FanucPitch a = fanuc_pitch(pitch_table(), 0.001, 0, -50), b = fanuc_pitch(steep, 0.001, 5, steep.positions[7]);
   EXPECT_GT(b.magnification, 1);
   for (const int step : b.steps) EXPECT_LE(std::abs(step), kFanucLargestStep);
   const std::vector<FanucPitch> read = parse_fanuc_pitch(fanuc_pitch_text({a, b}, kNumbers), "p", kNumbers);
@@ -46,14 +46,14 @@ TEST(FanucTable, LargeStepsRaiseTheMagnificationAndWhatIsWrittenIsReadBack) {
   EXPECT_EQ(read[1].steps, b.steps);
   EXPECT_EQ(read[1].reference_point, b.reference_point);
   EXPECT_NEAR(read[1].interval, b.interval, 1e-6);
-  EXPECT_NEAR(read[1].reference_position, b.reference_position, 1e-6);
+  EXPECT_EQ(b.reference_point, 12U);
   for (const double q : {-100.0, 100.0, 500.0}) {
-    EXPECT_NEAR(fanuc_table(read[1], 0.001).at(q), fanuc_table(b, 0.001).at(q), 1e-6);
+    EXPECT_NEAR(fanuc_table(read[1], 0.001, 3).at(q), fanuc_table(b, 0.001, 3).at(q), 1e-6);
   }
 }
 
 TEST(FanucTable, WhatIsWrongIsRefused) {
-  const std::string good = fanuc_pitch_text({fanuc_pitch(pitch_table(), 0.001, 0)}, kNumbers);
+  const std::string good = fanuc_pitch_text({fanuc_pitch(pitch_table(), 0.001, 0, -50)}, kNumbers);
   const auto changed = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     text.replace(text.find(from), from.size(), to);
@@ -63,7 +63,7 @@ TEST(FanucTable, WhatIsWrongIsRefused) {
   EXPECT_THAT(changed("N03623A1P1", "N03623A1P1.5"), HasSubstr("3623 is out of range"));
   EXPECT_THAT(changed("N03620A1P", "N03620A7P"), HasSubstr("axes 1, 2 or 4"));
   EXPECT_THAT(changed("N03624A1P50.0", "N03624A1P0"), HasSubstr("3624 is too small"));
-  EXPECT_THAT(changed("N01240", "N01815"), HasSubstr("unknown parameter"));
+  EXPECT_THAT(changed("N03624", "N01240"), HasSubstr("unknown parameter"));
   EXPECT_THAT(changed("N10001P", "N10000P"), HasSubstr("is given twice"));
   EXPECT_THAT(changed("N10001P-1", "N10001P-900"), HasSubstr("out of range"));
   EXPECT_THAT(test::refusal([&] { parse_fanuc_pitch("%\n%\n", "p", kNumbers); }), HasSubstr("no axis"));

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace abbe {
+
+/// Evenly spaced nodes, one of them at a given place, that cover a travel.
+struct AnchoredNodes {
+  double interval = 0;
+  std::size_t anchor = 0;         ///< index of the node at the given place
+  std::vector<double> positions;  ///< the first and the last may lie outside the travel
+  std::vector<double> inside;     ///< the ends of the travel and the nodes between them
+};
+/// @param interval  above zero
+AnchoredNodes anchored_nodes(double from, double to, double anchor, double interval);
+
+/// Nodes as close as asked for, or as there is room for; an anchor between the ends takes three nodes, however few are
+/// asked for.
+/// @param multiple  the interval is rounded up to a whole number of these; 0: it is not
+AnchoredNodes anchored_nodes_within(double from, double to, double anchor, double interval, double multiple,
+                                    std::size_t most);
+
+/// Interval and share of the way through it; below 0 and above 1 outside.
+struct Continuation {
+  std::size_t index = 0;
+  double share = 0;
+};
+/// Where places lie in a grid whose cells at the ends are continued in straight lines as far as the first place
+/// outside; what is further out is there, too.
+/// @param from  at least two nodes, ascending
+/// @param to    ascending
+std::vector<Continuation> continuations(const std::vector<double>& from, const std::vector<double>& to);
+
+}  // namespace abbe
