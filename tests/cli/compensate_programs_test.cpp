@@ -25,19 +25,8 @@ class CommandedPath {
   bool may_end() { return ++pieces_ >= fewest_; }
 
   double distance(const Eigen::Vector3d& point) {
-    double least = 1e300;
     const std::size_t first = near_ > 20 ? near_ - 20 : 0;
-    for (std::size_t k = first, last = std::min(near_ + window_, kSteps); k < last; ++k) {
-      const Eigen::Vector3d along = points_[k + 1] - points_[k];
-      const double length = along.squaredNorm();
-      const double s = length > 0 ? std::clamp((point - points_[k]).dot(along) / length, 0.0, 1.0) : 0.0;
-      const double d = (point - points_[k] - s * along).norm();
-      if (d < least) {
-        least = d;
-        near_ = k;
-      }
-    }
-    return least;
+    return distance_between(point, points_, first, std::min(near_ + window_, kSteps), near_);
   }
 
  private:

@@ -107,14 +107,16 @@ TEST_F(CompensateTable, EveryFormatReducesTheErrorWhenTheControlIsSimulatedWithT
   }
 }
 
-/// "N10803P21" as 10803 and 21.
-std::map<int, double> grid_parameters(const std::string& text) {
+/// "N10803P21" as 10803 and 21, or of "N03620A1P65A2P80" the number behind the words "A1P".
+std::map<int, double> fanuc_parameters(const std::string& text, const std::string& words = "P") {
   std::map<int, double> parameters;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    int number = 0;
-    double value = 0;
-    if (std::sscanf(line.c_str(), "N%dP%lf", &number, &value) == 2) parameters[number] = value;
+    int number = 0, used = 0;
+    if (std::sscanf(line.c_str(), "N%d%n", &number, &used) != 1) continue;
+    const auto begin = static_cast<std::size_t>(used);
+    if (line.compare(begin, words.size(), words) == 0)
+      parameters[number] = std::stod(line.substr(begin + words.size()));
   }
   return parameters;
 }
@@ -148,7 +150,7 @@ TEST_F(CompensateTable, FanucsGridCarriesEveryShiftOfThePointWithinTheLimitAndSa
   for (const char* word : {"punch", "record form", "order of the points", "sign", "10800"}) {
     EXPECT_THAT(json["unverified"].get<std::string>(), HasSubstr(word));
   }
-  const std::map<int, double> grid = grid_parameters(folder.read("grid/3D-GRID.PRM"));
+  const std::map<int, double> grid = fanuc_parameters(folder.read("grid/3D-GRID.PRM"));
   ASSERT_EQ(grid.size(), 15U);
   double points = 1;
   const double travel[3] = {760, 440, 460};
@@ -176,7 +178,7 @@ TEST_F(CompensateTable, FanucsGridIsTiedToTheReferencePositionAndCanBeNegated) {
   }
   const nlohmann::json tied = json_of(table("fanuc-3d", {"-o", "tied", "--json", "--reference-position", "X_mm=200"}));
   EXPECT_THAT(tied["settings"].dump(), HasSubstr("at 200 mm"));
-  const std::map<int, double> grid = grid_parameters(folder.read("tied/3D-GRID.PRM"));
+  const std::map<int, double> grid = fanuc_parameters(folder.read("tied/3D-GRID.PRM"));
   EXPECT_GT(grid.at(10806), 1);
   EXPECT_GE((grid.at(10806) - 1) * grid.at(10812), 200);
   EXPECT_GE((grid.at(10803) - grid.at(10806)) * grid.at(10812), 560);
@@ -191,13 +193,7 @@ TEST_F(CompensateTable, FanucsPitchPointsAreTiedToTheReferencePosition) {
   EXPECT_THAT(tied["settings"].dump(), HasSubstr("machine coordinate 200 mm"));
   const std::string text = folder.read("tied/PITCH.PRM");
   EXPECT_THAT(text, testing::Not(HasSubstr("N01240")));
-  std::map<int, double> first_axis;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    int number = 0;
-    double value = 0;
-    if (std::sscanf(line.c_str(), "N%dA1P%lf", &number, &value) == 2) first_axis[number] = value;
-  }
+  const std::map<int, double> first_axis = fanuc_parameters(text, "A1P");
   EXPECT_GE((first_axis.at(3620) - first_axis.at(3621)) * first_axis.at(3624), 200);
   EXPECT_GE((first_axis.at(3622) - first_axis.at(3620)) * first_axis.at(3624), 560);
   const nlohmann::json zero = json_of(table("fanuc-pitch", {"-o", "zero", "--json"}));
@@ -217,7 +213,7 @@ TEST_F(CompensateTable, WhatFanucsGridCannotHoldIsSaidAndNothingIsWritten) {
   // 127 units of 0.1 um need a magnification, and its rounding is what the limit leaves room for.
   EXPECT_THAT(refused({"--detection-unit-um", "0.1", "--interpolation-um", "0.1"}), HasSubstr("magnification"));
   EXPECT_EQ(table("fanuc-3d", {"-o", "fine", "--detection-unit-um", "0.1"}).exit_code, ExitCode::done);
-  EXPECT_GT(grid_parameters(folder.read("fine/3D-GRID.PRM")).at(10809), 1);
+  EXPECT_GT(fanuc_parameters(folder.read("fine/3D-GRID.PRM")).at(10809), 1);
   EXPECT_THAT(refused({"--detection-unit-um", "0.001"}), HasSubstr("magnification of at most 100"));
   EXPECT_THAT(refused({"--max-points", "40"}), HasSubstr("between the nodes that fanuc-3d has room for"));
   EXPECT_THAT(refused({"--max-points", "7"}), HasSubstr("--max-points"));

@@ -56,24 +56,30 @@ struct Distance {
   std::size_t samples = 0;
 };
 
+/// Distance of a point from the straight lines [first, last) of a chain; the nearest one is written to `near`.
+inline double distance_between(const Eigen::Vector3d& point, const std::vector<Eigen::Vector3d>& chain,
+                               std::size_t first, std::size_t last, std::size_t& near) {
+  double least = 1e300;
+  for (std::size_t k = first; k < last; ++k) {
+    const Eigen::Vector3d along = chain[k + 1] - chain[k];
+    const double length = along.squaredNorm();
+    const double s = length > 0 ? std::clamp((point - chain[k]).dot(along) / length, 0.0, 1.0) : 0.0;
+    const double d = (point - chain[k] - s * along).norm();
+    if (d < least) {
+      least = d;
+      near = k;
+    }
+  }
+  return least;
+}
+
 /// Largest distance of points, in their order, from a chain of straight lines.
 inline Distance distance_from(const std::vector<Eigen::Vector3d>& points, const std::vector<Eigen::Vector3d>& chain) {
   Distance distance;
   std::size_t near = 0;
   for (const Eigen::Vector3d& point : points) {
     const std::size_t first = near > 60 ? near - 60 : 0, last = std::min(chain.size() - 1, near + 600);
-    double least = 1e300;
-    for (std::size_t k = first; k < last; ++k) {
-      const Eigen::Vector3d along = chain[k + 1] - chain[k];
-      const double length = along.squaredNorm();
-      const double s = length > 0 ? std::clamp((point - chain[k]).dot(along) / length, 0.0, 1.0) : 0.0;
-      const double d = (point - chain[k] - s * along).norm();
-      if (d < least) {
-        least = d;
-        near = k;
-      }
-    }
-    distance.largest = std::max(distance.largest, least);
+    distance.largest = std::max(distance.largest, distance_between(point, chain, first, last, near));
     ++distance.samples;
   }
   return distance;

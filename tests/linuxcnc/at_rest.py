@@ -59,13 +59,3 @@ class Pins:
             if before and max(abs(a - b) for a, b in zip(now, before)) < 1e-11:
                 return now + [self.get(name) for name in ("uncertainty-um", "status", "enabled")]
             before = now
-
-
-def numbers(name):
-    with open(name, encoding="ascii") as file:
-        return [[float(value) for value in line.split()] for line in file]
-
-
-def write(name, rows):
-    with open(name, "w", encoding="ascii") as out:
-        out.writelines(" ".join(f"{value:.17g}" for value in row) + "\n" for row in rows)

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "abbe/compensate/one_pose_for_test.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/random_errors.h"
 #include "abbe/formats/machine_file.h"
@@ -104,15 +105,7 @@ std::vector<double> Library::nominal(const double* world) const {
 }
 
 std::vector<double> Library::compensated(const std::vector<double>& nominal, CorrectionStatus& status) const {
-  std::vector<double> joints(nominal);
-  std::vector<const double*> in;
-  std::vector<double*> out;
-  for (std::size_t i = 0; i < nominal.size(); ++i) {
-    in.push_back(&nominal[i]);
-    out.push_back(&joints[i]);
-  }
-  inverse_.correct({in, 1}, {out, &status, nullptr, nullptr});
-  return joints;
+  return test::corrected(inverse_, nominal, status);
 }
 
 Eigen::Matrix3d Library::point_covariance(const std::vector<double>& nominal) const {

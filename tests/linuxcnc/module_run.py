@@ -55,6 +55,12 @@ def place_to_run(module_file, place):
     print(f"{time.monotonic() - started:.1f} s")
 
 
+def copy_display_modules(folder):
+    """What displays import besides linuxcnc/operating.py."""
+    for name in ("at_rest.py", "display_job.py"):
+        shutil.copy(HERE / name, folder)
+
+
 def configure(folder, display, kinematics, joints, job, recorded, settings=()):
     """The files of a run.
 
@@ -66,7 +72,7 @@ def configure(folder, display, kinematics, joints, job, recorded, settings=()):
     lines = [f"setp {module}.{setting}" for setting in settings]
     lines += [f"net tool-{axis} motion.tooloffset.{axis} => {module}.tooloffset-{axis}" for axis in "xyz"]
     (folder / "job.json").write_text(json.dumps(job))
-    shutil.copy(HERE / "at_rest.py", folder)
+    copy_display_modules(folder)
     headless.write_configuration(folder, HERE / display,
                                  headless.ini_text(display, kinematics, joints, velocity=20000),
                                  headless.hal_text(len(joints), recorded, lines),

@@ -3,12 +3,11 @@
 
 Everything is read from and written to the current folder; the last line written to driver.txt is DONE.
 """
-import json
-import sys
 import time
 
-from at_rest import Pins, numbers, write
-from operating import Operation, Stopped
+from at_rest import Pins
+from display_job import do_job, numbers, write
+from operating import Stopped
 
 SINGLE = ("outside-map", "outside-tool", "turn-limited", "largest-correction")
 
@@ -74,17 +73,6 @@ def drive(operation, job, say):
         say("no limit")
     except Stopped as why:
         say(f"limit: {why}")
-    say("DONE")
 
 
-def main():
-    with open("job.json", encoding="ascii") as file, open("driver.txt", "w", buffering=1, encoding="utf-8") as log:
-        operation = Operation(limit_s=90)
-        try:
-            drive(operation, json.load(file), lambda text: log.write(text + "\n"))
-        except Stopped as why:
-            log.write(f"FAILED {why}\n")
-            sys.exit(1)
-
-
-main()
+do_job(drive, limit_s=90)

@@ -3,12 +3,10 @@
 
 The last line written to driver.txt is DONE.
 """
-import json
-import sys
-
 import hal
 from at_rest import Pins
-from operating import Operation, Stopped
+from display_job import do_job
+from operating import Stopped
 
 # From home A stands parallel to the tool: a singular pose, left and reached again at ordinary speeds.
 MOVES = ["G0 X10 Y20 Z-100 A-30 C45", "G0 A0 C0", "T1 M6", "G43 H1", "G1 X50 Y-40 Z-400 A-45 C120 F6000", "G0 X-20 Y15 Z-350 A0 C0",
@@ -20,8 +18,8 @@ def check(holds, what):
         raise Stopped(what)
 
 
-def drive(operation, module):
-    pins = Pins(operation, module, "XYZAC", "XYZAC")
+def drive(operation, job, _say):
+    pins = Pins(operation, job["module"], "XYZAC", "XYZAC")
     operation.switch_on()
     operation.until(lambda: pins.get("enabled") == 1, "the ramp of the example")
     operation.mdi("G21 G90 G49")
@@ -40,14 +38,4 @@ def drive(operation, module):
     check(0.01 < largest < 4, f"the largest correction of a joint is {largest} mm")
 
 
-def main():
-    with open("job.json", encoding="ascii") as file, open("driver.txt", "w", buffering=1, encoding="utf-8") as log:
-        try:
-            drive(Operation(limit_s=90), json.load(file)["module"])
-        except Stopped as why:
-            log.write(f"FAILED {why}\n")
-            sys.exit(1)
-        log.write("DONE\n")
-
-
-main()
+do_job(drive, limit_s=90)

@@ -56,7 +56,7 @@ def main():
         example = source / copied
         ini = example / pathlib.Path(started).name
         (folder / "job.json").write_text(json.dumps({"module": module}))
-        shutil.copy(module_run.HERE / "at_rest.py", folder)
+        module_run.copy_display_modules(folder)
         # Its cycles are counted, and its files have the names of every run here.
         counted = "loadrt integ\naddf integ.0 servo-thread\nsetp integ.0.in 1000\n"
         headless.write_configuration(

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "abbe/compensate/compensated_inverse.h"
+#include "abbe/compensate/one_pose_for_test.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/machine/inverse_kinematics.h"
 #include "abbe/runtime/frozen_for_test.h"
@@ -12,28 +12,13 @@
 namespace abbe {
 namespace {
 
-/// What the library makes of one set of commands, with tolerances below those of the comparison.
-struct Library {
-  Library(const Machine& machine, const ErrorSet& errors) : inverse(machine, errors, tight()) {}
-  static CorrectionOptions tight() {
-    CorrectionOptions options;
-    options.position_tolerance = 5e-11;
-    options.orientation_tolerance = 3e-13;
-    return options;
-  }
-  std::vector<double> correct(const std::vector<double>& nominal, CorrectionStatus& status) const {
-    std::vector<double> joints(nominal);
-    std::vector<const double*> in;
-    std::vector<double*> out;
-    for (std::size_t i = 0; i < nominal.size(); ++i) {
-      in.push_back(&nominal[i]);
-      out.push_back(&joints[i]);
-    }
-    inverse.correct({in, 1}, {out, &status, nullptr, nullptr});
-    return joints;
-  }
-  CompensatedInverse inverse;
-};
+/// Tolerances below those of the comparison.
+CorrectionOptions tight() {
+  CorrectionOptions options;
+  options.position_tolerance = 5e-11;
+  options.orientation_tolerance = 3e-13;
+  return options;
+}
 
 double missed_direction(const Machine& machine, const RigidTransform& a, const RigidTransform& b) {
   const Eigen::Vector3d one = a.rotation * machine.tool_direction, other = b.rotation * machine.tool_direction;
@@ -55,7 +40,7 @@ TEST(Runtime, CorrectsCommandsOfEveryMachineAsTheLibraryDoes) {
     const Machine& machine = named.machine;
     const ErrorSet errors = test::tens_of_micrometres(machine, 3);
     const test::RuntimePointer runtime = test::runtime_of(machine, errors);
-    const Library library(machine, errors);
+    const CompensatedInverse library(machine, errors, tight());
     std::mt19937_64 generator(7);
     int compared = 0;
     for (int k = 0; k < 200; ++k) {
@@ -63,7 +48,7 @@ TEST(Runtime, CorrectsCommandsOfEveryMachineAsTheLibraryDoes) {
       std::vector<double> joints(nominal);
       int result = abbe_runtime_correct(runtime.get(), nullptr, nominal.data(), nullptr, 1, joints.data());
       CorrectionStatus status = CorrectionStatus::not_run;
-      const std::vector<double> expected = library.correct(nominal, status);
+      const std::vector<double> expected = test::corrected(library, nominal, status);
       if (status != CorrectionStatus::reached) continue;
       const RigidTransform wanted = nominal_workpiece_from_tool(machine, nominal);
       const RigidTransform there = actual_workpiece_from_tool(machine, errors, joints);
