@@ -8,7 +8,6 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -19,7 +18,6 @@
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kEdge = 300;            // mm; the errors of X are known to here,
 constexpr double kHeldFrom = kEdge + 1;  // and from here on they stay as they are: docs/runtime.md
 constexpr double kLongestPause = 0.005;  // s; what the module counts of a longer one
