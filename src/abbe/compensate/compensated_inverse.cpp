@@ -170,6 +170,24 @@ struct CompensatedInverse::Implementation {
     }
   }
 
+  /// Ends poses whose steps did not come to an end, so that no pose goes on because another one does.
+  /// @param kept   [poses] an axis is at the end of its travel: no better place is known than the one they led to
+  /// @param moved  becomes 1 where the residuals are no longer those of the commands
+  void give_up(Block& block, const std::array<std::uint8_t, kBlock>& kept,
+               std::array<std::uint8_t, kBlock>& moved) const {
+    for (std::size_t k = 0; k < block.count; ++k) {
+      if (block.active[k] == 0) continue;
+      if (kept[k] != 0) {
+        CorrectionStep::finish(block, k, CorrectionStatus::outside_travel);
+        keep_within_travel(block, k);
+      } else {
+        CorrectionStep::finish(block, k, CorrectionStatus::not_converged);
+        as_they_came(block, k);
+      }
+      moved[k] = 1;
+    }
+  }
+
   void solve(Block& block) const {
     evaluate(block);
     for (std::size_t k = 0; k < block.count; ++k) {
@@ -179,15 +197,17 @@ struct CompensatedInverse::Implementation {
         block.position_residual[k] = block.orientation_residual[k] = kUnknown;
       }
     }
-    iterate(block);
     std::array<std::uint8_t, kBlock> kept{}, moved{};
+    iterate(block);
+    give_up(block, kept, moved);
     // An axis at its end stays there, and the others take what they can of the rest: each round holds at least one
     // more.
     for (std::size_t round = 0; round <= machine.axes.size(); ++round) {
       bool again = false;
       for (std::size_t k = 0; k < block.count; ++k) {
-        const bool fixed = block.active[k] != 0 || block.status[k] == CorrectionStatus::not_covered ||
-                           block.status[k] == CorrectionStatus::not_finite;
+        const CorrectionStatus status = block.status[k];
+        const bool fixed = status == CorrectionStatus::not_covered || status == CorrectionStatus::not_converged ||
+                           status == CorrectionStatus::not_finite;
         if (fixed || !keep_within_travel(block, k)) continue;
         kept[k] = block.active[k] = 1;
         again = true;
@@ -195,20 +215,12 @@ struct CompensatedInverse::Implementation {
       if (!again) break;
       evaluate(block);
       iterate(block);
+      give_up(block, kept, moved);
     }
     bool again = false;
     for (std::size_t k = 0; k < block.count; ++k) {
-      if (kept[k] != 0 && block.status[k] != CorrectionStatus::reached) {
+      if (kept[k] != 0 && block.status[k] != CorrectionStatus::reached)
         block.status[k] = CorrectionStatus::outside_travel;
-        // Steps without an end: no better place is known than the one they led to.
-        if (block.active[k] != 0) keep_within_travel(block, k);
-        moved[k] = block.active[k];
-        block.active[k] = 0;
-      } else if (block.active[k] != 0) {
-        CorrectionStep::finish(block, k, CorrectionStatus::not_converged);
-        as_they_came(block, k);
-        moved[k] = 1;
-      }
       again = again || moved[k] != 0;
     }
     if (!again) return;

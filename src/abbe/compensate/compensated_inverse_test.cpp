@@ -298,6 +298,47 @@ TEST(CompensatedInverse, WhereALinearAxisIsAtItsEndTheOthersAreCorrected) {
   EXPECT_GE(at_end, 40);
 }
 
+TEST(CompensatedInverse, TooFewIterationsAreTheSameBesidePosesAtTheEndOfATravel) {
+  const Machine machine = test::trunnion_mill();
+  Machine wide = machine;
+  const std::size_t a = machine.find_axis("A");
+  wide.axes[a].travel_min -= 1;
+  wide.axes[a].travel_max += 1;
+  const ErrorSet errors = test::tens_of_micrometres(machine, 71);
+  std::vector<std::vector<double>> list = random_poses(machine, 200, 73);
+  for (std::size_t k = 0; k < list.size(); k += 2) list[k][a] = machine.axes[a].travel_max;
+  int not_converged = 0, at_end = 0;
+  for (int iterations = 2; iterations <= 8; ++iterations) {
+    SCOPED_TRACE(iterations);
+    CorrectionOptions options;
+    options.largest_iterations = iterations;
+    const CompensatedInverse inverse(machine, errors, options);
+    Corrections poses(machine, list), free(wide, list);
+    poses.correct(inverse);
+    free.correct(CompensatedInverse(wide, errors, options));
+    for (std::size_t k = 0; k < poses.count; ++k) {
+      const std::vector<double> found = poses.result(k);
+      EXPECT_LE(found[a], machine.axes[a].travel_max) << k;
+      const bool ended = poses.status[k] != CorrectionStatus::not_converged;
+      EXPECT_EQ(ended, free.status[k] != CorrectionStatus::not_converged) << k;
+      if (!ended) {
+        EXPECT_EQ(found, list[k]);
+        ++not_converged;
+      }
+      at_end += poses.status[k] == CorrectionStatus::outside_travel ? 1 : 0;
+      const RigidTransform wanted = nominal_workpiece_from_tool(machine, list[k]);
+      const RigidTransform after = actual_workpiece_from_tool(machine, errors, found);
+      EXPECT_NEAR(poses.position_residual[k], missed_point(after, wanted), 2e-11) << k;
+      Corrections alone(machine, {list[k]});
+      alone.correct(inverse);
+      EXPECT_EQ(alone.status[0], poses.status[k]) << k;
+      EXPECT_EQ(alone.result(0), found) << k;
+    }
+  }
+  EXPECT_GE(not_converged, 100);
+  EXPECT_GE(at_end, 100);
+}
+
 TEST(CompensatedInverse, WhatIsNotKnownIsLeftAlone) {
   const Machine machine = test::three_axis_mill();
   ErrorSet errors;

@@ -157,10 +157,11 @@ SmallVector CorrectionStep::missing_after(const CorrectionBlock& block, std::siz
 
 /// 1, and less where linear axes are so nearly dependent that they could not follow a turn with the point: the point
 /// comes first.
-double CorrectionStep::part_that_can_be_followed(const SmallMatrix& a, const SmallVector& rest) const {
+double CorrectionStep::part_that_can_be_followed(const CorrectionBlock& block, std::size_t k, const SmallMatrix& a,
+                                                 const SmallVector& rest) const {
   if (a.cols() < 3) return 1;
-  for (Eigen::Index c = 0; c < 3; ++c) {
-    if (a.col(c).isZero(0)) return 1;  // at the end of its travel: the point is missed all the same
+  for (const std::size_t axis : reaching_) {
+    if (at_end(block, axis, k)) return 1;  // the point is missed all the same
   }
   const double square = a.squaredNorm() / 2;  // above the product of the two larger singular values
   const double smallest = std::abs(Eigen::Matrix3d(a).determinant()) / square;
@@ -211,7 +212,8 @@ void CorrectionStep::general_step(CorrectionBlock& block, std::size_t k, const E
   SmallVector by_turn = bounded_least_squares(a, b, options_.largest_turn, turn_bounded);
   SmallVector scale;
   load_shifts(block, k, a, shifted, scale);
-  const double part = part_that_can_be_followed(a, missing_after(block, k, missing, by_turn - turned) + a * shifted);
+  const double part =
+      part_that_can_be_followed(block, k, a, missing_after(block, k, missing, by_turn - turned) + a * shifted);
   turn_bounded = turn_bounded || part < 1;
   by_turn = part * by_turn - turned;
   const SmallVector rest = missing_after(block, k, missing, by_turn) + a * shifted;

@@ -81,7 +81,8 @@ class CorrectionStep {
                    SmallVector& scale) const;
   SmallVector missing_after(const CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing,
                             const SmallVector& by_turn) const;
-  double part_that_can_be_followed(const SmallMatrix& a, const SmallVector& rest) const;
+  double part_that_can_be_followed(const CorrectionBlock& block, std::size_t k, const SmallMatrix& a,
+                                   const SmallVector& rest) const;
   bool usual_step(CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing,
                   const Eigen::Vector3d& turn) const;
   void general_step(CorrectionBlock& block, std::size_t k, const Eigen::Vector3d& missing) const;
