@@ -142,6 +142,18 @@ TEST_F(VerifyCommand, ACovarianceThatIsNoneIsSaidToBeIt) {
   EXPECT_THAT(result.err, HasSubstr("covariance: covariance is not positive semi-definite"));
 }
 
+TEST_F(VerifyCommand, ErrorsWithoutUncertaintiesAreComparedWithoutAPrediction) {
+  std::vector<std::string> arguments = files;
+  arguments[4] = folder.write("e.toml", "[[location]]\nname = \"EC0Y\"\nvalue_urad = 20\n").string();
+  arguments.insert(arguments.end(), {"--poses", "50"});
+  const CommandResult result = abbe(arguments);
+  EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("Volumetric error at 50 unseen poses"));
+  EXPECT_THAT(result.out, testing::Not(HasSubstr("predicted")));
+  arguments.insert(arguments.end(), {"--largest-ratio", "1.5"});
+  EXPECT_EQ(abbe(arguments).exit_code, ExitCode::bad_input);
+}
+
 TEST_F(VerifyCommand, WhatIsMissingOrOutOfRangeIsSaid) {
   EXPECT_THAT(abbe({"verify"}).err, HasSubstr("--machine"));
   EXPECT_THAT(abbe({"verify", "nowhere"}).err, HasSubstr("nowhere: is no folder"));
