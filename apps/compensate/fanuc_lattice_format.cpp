@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "abbe/compensate/anchored_lattice.h"
-#include "abbe/compensate/point_correction.h"
 #include "abbe/compensate/whole_unit_correction.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/table_fanuc_lattice.h"

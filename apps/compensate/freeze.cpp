@@ -7,7 +7,6 @@
 #include <numbers>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "abbe/compensate/program_uncertainty.h"
@@ -57,9 +56,7 @@ FreezeOptions options_of(const FreezeArguments& arguments, const Machine& machin
   options.tool_length_max = arguments.lengths[1];
   if (!(arguments.lengths[0] <= arguments.lengths[1]) || !std::isfinite(arguments.lengths[1] - arguments.lengths[0]))
     throw InputError({.field = "--tool-length-mm"}, "the range is empty", "the lower end first, in mm");
-  if (!(arguments.largest_turn_deg > 0) || !(arguments.largest_turn_deg <= 10))
-    throw InputError({.field = "--largest-turn-deg"}, "out of range", "more than 0 and at most 10 degrees");
-  options.largest_turn = arguments.largest_turn_deg * std::numbers::pi / 180;
+  options.largest_turn = largest_turn_option(arguments.largest_turn_deg);
   options.world_zero_at_joints = arguments.world == "joints";
   options.covariance = parameter_covariance(errors.errors, errors.covariance);
   options.source = machine_text(machine) + errors_text(machine, errors);

@@ -24,7 +24,6 @@ namespace abbe {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::size_t kStatuses = static_cast<std::size_t>(CorrectionStatus::not_finite) + 1;
 
 struct PosesCommand {
   std::string machine, errors, poses, output;
@@ -50,16 +49,11 @@ struct CorrectedPoses {
   std::vector<CorrectionStatus> status;
   std::vector<double> position_left, orientation_left;  // mm, rad; NaN where not known
   std::vector<double> shift, uncertainty;               // mm, of the functional point; NaN and empty likewise
-  std::array<std::size_t, kStatuses> count{}, first_row{};
+  std::array<std::size_t, kCorrectionStatuses> count{}, first_row{};
   Largest largest_shift, largest_position_left, largest_orientation_left;
   std::vector<Largest> by_axis;
   std::vector<std::string> left_out;
 };
-
-bool is_corrected(CorrectionStatus status) {
-  return status == CorrectionStatus::reached || status == CorrectionStatus::orientation_left ||
-         status == CorrectionStatus::turn_limited;
-}
 
 std::vector<std::size_t> held_axes(const PosesCommand& command, const Machine& machine) {
   std::vector<std::size_t> held;
@@ -94,7 +88,7 @@ CorrectedPoses corrected_poses(const PosesCommand& command, const Machine& machi
   if (command.leave_out_factor > 0)
     result.left_out = leave_out_uncertain(machine, corrected, covariance, command.leave_out_factor);
   CorrectionOptions options;
-  options.largest_turn = kDegree * command.largest_turn_deg;
+  options.largest_turn = largest_turn_option(command.largest_turn_deg);
   const CompensatedInverse inverse(machine, corrected, options, held_axes(command, machine));
   if (!inverse.problem().empty()) throw InputError({.file = command.machine}, inverse.problem());
 
@@ -161,7 +155,7 @@ std::string pose_words(const Machine& machine, const PoseList& poses, std::size_
 void print_poses(const PosesCommand& command, const Machine& machine, const PoseList& poses,
                  const CorrectedPoses& result) {
   fmt::print("{} poses of {}\n", poses.count(), machine.name);
-  for (std::size_t s = 0; s < kStatuses; ++s) {
+  for (std::size_t s = 0; s < kCorrectionStatuses; ++s) {
     if (result.count[s] == 0) continue;
     fmt::print("  {}: {}{}\n", correction_status_text(static_cast<CorrectionStatus>(s)), result.count[s],
                s == static_cast<std::size_t>(CorrectionStatus::reached)
@@ -198,7 +192,7 @@ nlohmann::ordered_json poses_json(const PosesCommand& command, const Machine& ma
   json["machine"] = machine.name;
   json["poses"] = poses.count();
   json["written"] = written;
-  for (std::size_t s = 1; s < kStatuses; ++s)
+  for (std::size_t s = 1; s < kCorrectionStatuses; ++s)
     json["status"][correction_status_text(static_cast<CorrectionStatus>(s))] = result.count[s];
   json["largest_correction_um"] = 1e3 * result.largest_shift.value;
   json["largest_correction_row"] = result.largest_shift.row;
@@ -226,8 +220,6 @@ int run_poses(const PosesCommand& command) {
   if (!command.output.empty()) refuse_input_as_output(command.output);
   check_leave_out(command.leave_out_factor, errors, command.errors);
   const double limit_um = refusal_limit("--limit-um", command.limit_um, "um");
-  if (!(command.largest_turn_deg > 0 && command.largest_turn_deg <= 10))
-    throw InputError({.field = "--largest-turn-deg"}, "out of range", "more than 0 and at most 10 degrees");
 
   const CorrectedPoses result = corrected_poses(command, machine, errors, poses);
   const bool refused = !(1e3 * result.largest_shift.value <= limit_um);
@@ -247,7 +239,7 @@ int run_poses(const PosesCommand& command) {
     return kNegative;
   }
   const auto wrong = std::count_if(result.status.begin(), result.status.end(),
-                                   [](CorrectionStatus status) { return !is_corrected(status); });
+                                   [](CorrectionStatus status) { return !reaches_point(status); });
   if (wrong > 0) {
     fmt::print(stderr, "abbe: the tool is not brought to {} of {} poses; the column status says where and why\n", wrong,
                poses.count());

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/formats/input_error.h"
@@ -17,6 +18,12 @@ double refusal_limit(const char* option, const std::optional<double>& given, con
                      fmt::format("a number above zero in {}, or no limit at all", unit));
   }
   return *given;
+}
+
+double largest_turn_option(double degrees) {
+  if (!(degrees > 0 && degrees <= 10))
+    throw InputError({.field = "--largest-turn-deg"}, "out of range", "more than 0 and at most 10 degrees");
+  return degrees * std::numbers::pi / 180;
 }
 
 void check_leave_out(double factor, const ErrorsFile& errors, const std::string& file) {

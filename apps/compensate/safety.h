@@ -11,6 +11,9 @@ namespace abbe {
 /// @throws InputError unless it is a finite number above zero: a limit that cannot be understood is not "no limit"
 double refusal_limit(const char* option, const std::optional<double>& given, const char* unit);
 
+/// How far rotary axes may turn near a singularity, in rad. @throws InputError unless it is above 0 and at most 10 deg
+double largest_turn_option(double degrees);
+
 /// What --leave-out-below-uncertainty needs: a factor of 0 (leave out nothing) to 1000, and stated uncertainties.
 /// @param file  name of the errors file. @throws InputError
 void check_leave_out(double factor, const ErrorsFile& errors, const std::string& file);

@@ -206,28 +206,30 @@ InstrumentReadings planned_readings(const Machine& machine, const Setup& setup, 
                                     std::uint64_t seed) {
   const Instrument& device = *setup.device;
   InstrumentReadings readings;
-  const auto append = [&](const std::vector<double>& pose, std::size_t target) {
+  std::size_t target = 0;
+  const auto append = [&](const std::vector<double>& pose) {
     const std::size_t item = device.item_at(machine, target, pose);
     for (const std::vector<double>& inputs : device.planned_inputs(item)) readings.append(pose, item, inputs);
   };
-  PlannedTargets planned;
-  if (plan.kind == PlanKind::poses) planned = planned_targets(machine, setup, plan);
-  // A file goes from row to row, whatever their targets; all other plans from target to target.
-  const std::size_t rows = planned.target.size();
-  for (std::size_t n = 0; n < (rows > 0 ? rows : plan.targets.size()); ++n) {
-    const std::size_t target = rows > 0 ? planned.target[n] : plan.targets[n];
-    try {
-      if (rows > 0) {
-        append(planned.poses.pose(n), target);
-        continue;
+  try {
+    // A file goes from row to row, whatever their targets; all other plans from target to target.
+    if (plan.kind == PlanKind::poses) {
+      const PlannedTargets planned = planned_targets(machine, setup, plan);
+      for (std::size_t n = 0; n < planned.poses.count(); ++n) {
+        target = planned.target[n];
+        append(planned.poses.pose(n));
       }
-      const PoseList poses = target_poses(machine, setup, plan, target, seed);
-      for (std::size_t k = 0; k < poses.count(); ++k) append(poses.pose(k), target);
-    } catch (const std::invalid_argument& error) {
-      throw InputError({.file = setup.name, .field = "plan"},
-                       fmt::format("{}: {}", device.target_names()[target], error.what()),
-                       "poses at which it can be measured, within the travel of the machine");
+      return readings;
     }
+    for (const std::size_t one : plan.targets) {
+      target = one;
+      const PoseList poses = target_poses(machine, setup, plan, target, seed);
+      for (std::size_t k = 0; k < poses.count(); ++k) append(poses.pose(k));
+    }
+  } catch (const std::invalid_argument& error) {
+    throw InputError({.file = setup.name, .field = "plan"},
+                     fmt::format("{}: {}", device.target_names()[target], error.what()),
+                     "poses at which it can be measured, within the travel of the machine");
   }
   return readings;
 }

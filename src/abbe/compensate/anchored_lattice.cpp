@@ -1,7 +1,6 @@
 #include "abbe/compensate/anchored_lattice.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "abbe/compensate/point_correction.h"
 

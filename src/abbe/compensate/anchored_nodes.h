@@ -5,7 +5,7 @@
 
 namespace abbe {
 
-/// Evenly spaced nodes, one of them at a given place, that cover a travel.
+/// Evenly spaced nodes, one of them at a given place, that cover a travel; positions and lengths in mm or rad.
 struct AnchoredNodes {
   double interval = 0;
   std::size_t anchor = 0;         ///< index of the node at the given place

@@ -26,6 +26,13 @@ enum class CorrectionStatus : std::uint8_t {
   not_converged,     ///< commands as they came, residuals as they are there
   not_finite         ///< a command or the target is no number: commands as they came, residuals NaN
 };
+inline constexpr std::size_t kCorrectionStatuses = static_cast<std::size_t>(CorrectionStatus::not_finite) + 1;
+
+/// The point is where it is wanted; the orientation as well as the machine can.
+inline bool reaches_point(CorrectionStatus status) {
+  return status == CorrectionStatus::reached || status == CorrectionStatus::orientation_left ||
+         status == CorrectionStatus::turn_limited;
+}
 
 /// "reached", "orientation left", ...
 const char* correction_status_text(CorrectionStatus status);

@@ -28,11 +28,7 @@ struct CorrectedNode {
   double orientation_left = 0;    ///< rad
   CorrectionStatus status = CorrectionStatus::not_run;
 
-  /// The point is where it shall be; the orientation as well as the machine can.
-  bool point_reached() const {
-    return status == CorrectionStatus::reached || status == CorrectionStatus::orientation_left ||
-           status == CorrectionStatus::turn_limited;
-  }
+  bool point_reached() const { return reaches_point(status); }
   /// Besides, the point is known where it is not reached because the axes are kept at the end of a travel.
   bool point_known() const {
     return point_reached() || (status == CorrectionStatus::outside_travel && std::isfinite(position_left));

@@ -161,12 +161,14 @@ struct ProgramCorrection::Implementation {
     return node.point_known();
   }
 
+  static ProgramPlace place_of(double value, const ProgramMove& move, const CorrectedNode& node,
+                               const AxisApproach& approach = {}) {
+    return {value, move.line, node.position, node.corrected_position, move.tool_length, node.status, approach};
+  }
+
   void state(const ProgramMove& move, const CorrectedNode& node, ProgramReport& report,
              const AxisApproach& approach = {}) const {
-    const auto place = [&](double value) {
-      return ProgramPlace{value,       move.line, node.position, node.corrected_position, move.tool_length,
-                          node.status, approach};
-    };
+    const auto place = [&](double value) { return place_of(value, move, node, approach); };
     // A rapid move does not cut.
     if (move.kind == MoveKind::rapid && is_held(node)) {
       report.held_at_travel.add(move.line);
@@ -227,8 +229,7 @@ struct ProgramCorrection::Implementation {
                                           correction.tool_point(chunk.tool[i]), {&piece, 1});
     if (bound_excess(*bounder, options.tolerance, bound, nullptr) <= 1) return;
     chunk.report.bent_with_spindle.add(move.line);
-    chunk.report.largest_bend.take(
-        {bound.position, move.line, end.position, end.corrected_position, move.tool_length, end.status, {}});
+    chunk.report.largest_bend.take(place_of(bound.position, move, end));
   }
 
   /// Whether what of a move can be proven is: one at work with ends within the travel.
@@ -241,13 +242,7 @@ struct ProgramCorrection::Implementation {
     const bool after_work = earlier != nullptr && earlier->kind != MoveKind::rapid && earlier->end == move.start;
     if (!start.point_reached() && !after_work) {
       chunk.report.held_starts.add(move.line);
-      chunk.report.largest_held_start.take({start.position_left,
-                                            move.line,
-                                            start.position,
-                                            start.corrected_position,
-                                            move.tool_length,
-                                            start.status,
-                                            {}});
+      chunk.report.largest_held_start.take(place_of(start.position_left, move, start));
     }
     return true;
   }

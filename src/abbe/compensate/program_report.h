@@ -33,8 +33,6 @@ struct StatusCount {
   void add(const StatusCount& later);
 };
 
-inline constexpr std::size_t kCorrectionStatuses = 9;
-
 /// What was done to a program.
 struct ProgramReport {
   std::size_t moves = 0;

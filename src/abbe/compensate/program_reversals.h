@@ -31,8 +31,8 @@ struct ProgramStep {
 
   CorrectedNode node;
   std::size_t taken_up = npos;  ///< axis
-  double way =
-      0;  ///< of the functional point by that axis, mm; of rotary axes at the longest lever of the machine's tool
+  /// Of the functional point by that axis, mm; of rotary axes at the longest lever of the machine's tool.
+  double way = 0;
   std::size_t to = 0;  ///< ProgramWay::nodes; of a take-up the end of the piece that follows
   AxisApproach approach{};
 };

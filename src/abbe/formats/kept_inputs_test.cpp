@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <optional>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/message_of.h"

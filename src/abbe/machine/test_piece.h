@@ -71,8 +71,7 @@ struct SShape {
 };
 
 /// @throws std::invalid_argument for sizes that make no wall, a tool too thick for the inner curve, and a tolerance
-/// that
-///         takes more than a million points
+///         that takes more than a million points
 TestPiece s_shape(const SShape& shape);
 
 }  // namespace abbe

@@ -87,8 +87,8 @@ struct abbe_runtime {
   std::array<double, 3> reaching_unit{};       ///< mm or rad that count as 1 mm
   bool reaching_linear = false;                ///< the same three axes are solved and correct
   double largest_turn = 0, largest_shift = 0;  ///< rad, mm: bounds of a correction
-  /// Singular values of the nominal derivative below these say nothing of the actual machine's: turns and shifts are
-  /// bounded there however small the error is.
+  /// Singular values of the nominal derivative (per unit of an axis: no unit) below these say nothing of the actual
+  /// machine's: turns and shifts are bounded there however small the error is.
   double least_turning = 0, least_reaching = 0;
   abbe::Triple tool_reference{}, tool{}, tool_error{}, tool_direction{};
   double tool_length_min = 0, tool_length_max = 0;

@@ -8,8 +8,8 @@ namespace abbe {
 
 /// Turns y of up to two rotary axes that take an orientation error c, as bounded_least_squares() gives them: exact
 /// where the axes are independent (more so than the errors change the derivative), never longer than `largest`, and
-/// going to zero with the singular value. Written on
-/// the normal equations, whose loss of digits the iterations around it make good.
+/// going to zero with the singular value. Written on the normal equations, whose loss of digits the iterations around
+/// it make good.
 class TurnSystem {
  public:
   /// @param across  parts of the axes' directions at right angles to the tool, [count]

@@ -50,11 +50,9 @@ PoseList corrected_commands(const Machine& machine, const ErrorSet& identified, 
   inverse.correct({from, count}, arrays);
   reach.assign(count, Reach::outside_travel);
   for (std::size_t k = 0; k < count; ++k) {
-    const CorrectionStatus at = status[k];
-    if (at == CorrectionStatus::reached || at == CorrectionStatus::orientation_left ||
-        at == CorrectionStatus::turn_limited) {
+    if (reaches_point(status[k])) {
       reach[k] = Reach::reached;
-    } else if (at == CorrectionStatus::not_covered) {
+    } else if (status[k] == CorrectionStatus::not_covered) {
       reach[k] = Reach::not_covered;
     }
   }

@@ -105,9 +105,7 @@ PoseDeviations ideal_deviations(const Machine& machine, const ErrorSet& errors, 
   not_reached = 0;
   PoseDeviations deviations;
   for (std::size_t k = 0; k < commands.count(); ++k) {
-    const bool point = status[k] == CorrectionStatus::reached || status[k] == CorrectionStatus::orientation_left ||
-                       status[k] == CorrectionStatus::turn_limited;
-    if (!point) ++not_reached;
+    if (!reaches_point(status[k])) ++not_reached;
     add_deviation(machine, errors, commands.pose(k), reached.pose(k), deviations);
   }
   summarise(deviations);
