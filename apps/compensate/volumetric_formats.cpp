@@ -156,7 +156,8 @@ TableFormat beckhoff_format() {
   format.unverified =
       "that the control composes error motions as ISO 230-1 does with the reference points of the machine file "
       "(alternative_model), its kinematic chain (Chain), how it counts the sign of errors of axes that carry the "
-      "workpiece, and position errors (it offers `negate` per axis)";
+      "workpiece, and position errors (it offers `negate` per axis); that it takes errors where the corrected axes "
+      "stand";
   format.axis_names = "letter X Y Z A B C";
   format.most_nodes = 10000;
   format.cannot =
