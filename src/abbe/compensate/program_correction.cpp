@@ -316,6 +316,8 @@ struct ProgramCorrection::Implementation {
         set_take_up_feed(move, rotary, step.way, duration * share,
                          reversals.moved(way.nodes[step.to - 1], way.nodes[step.to]), piece);
         if (piece.feed_mode != move.feed_mode) chunk.report.inverse_time.add(move.line);
+        // Between moves of a cycle or two, LinuxCNC 2.9 loses its way where it may round corners (docs/programs.md).
+        piece.exact = move.kind == MoveKind::rapid;
         chunk.pieces.pieces.push_back(piece);
         chunk.report.take_ups[step.taken_up].add(move.line);
       }

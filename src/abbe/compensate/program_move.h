@@ -75,6 +75,7 @@ struct CorrectedPiece {
   WordValues end{};  ///< mm, rad
   double feed = 0;   ///< as `feed_mode`
   FeedMode feed_mode = FeedMode::per_minute;
+  bool exact = false;  ///< the control goes through its end and does not round the corner to the next piece
 };
 
 /// Pieces of several moves, in their order: those of move i are pieces[first[i]] to pieces[first[i + 1] - 1].

@@ -273,6 +273,28 @@ TEST(ProgramReversals, CommandsGetHalfOfItAgainstTheDirectionOfTheirLastMotion) 
   EXPECT_EQ(report.largest_shift.approach[machine.find_axis("Y")], 1);
 }
 
+// LinuxCNC 2.9 may stand beside its place after rapid moves of a cycle or two between which it rounds corners.
+TEST(ProgramReversals, TakeUpsOfRapidMovesAreExactAndNothingElseIs) {
+  const Machine machine = test::three_axis_mill();
+  const WordAxes words = test::words_of(machine);
+  ErrorSet errors;
+  errors.reversals = {{machine.find_axis("X"), -0.012, 0}};
+  ProgramMove out;
+  out.line = 1;
+  out.kind = MoveKind::rapid;
+  out.end[0] = 30;
+  WordValues end = out.end;
+  end[0] = 10;
+  ProgramMove back = next_move(out, MoveKind::straight, end);
+  back.feed = 600;
+  ProgramCorrection correction(machine, errors, words);
+  CorrectedPieces corrected;
+  correction.correct(std::vector<ProgramMove>{out, back}, corrected);
+  ASSERT_EQ(corrected.first, (std::vector<std::size_t>{0, 2, 4}));
+  const bool exact[] = {true, false, false, false};
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(corrected.pieces[k].exact, exact[k]) << k;
+}
+
 TEST(ProgramReversals, MotionsBesideTheProgramLeaveTheDirectionOfTheirAxesUnknown) {
   const Machine machine = test::three_axis_mill();
   const WordAxes words = test::words_of(machine);

@@ -77,7 +77,9 @@ void NcInterpreter::cycle(NcCode motion) {
     up[depth] = r;
     rapid(up, known_);
   }
-  if (!modes_.exact_path) writer_.line("G61");
+  const std::string path = modes_.exact_path ? "" : path_words_.empty() ? "G64" : path_words_;
+  if (!path.empty()) writer_.line("G61");
+  writer_.set_path("");
   for (long i = 0; i < std::lround(repeats); ++i) {
     Words above = position_;
     std::uint32_t known = known_;
@@ -95,7 +97,8 @@ void NcInterpreter::cycle(NcCode motion) {
     }
     drill(motion, above, bottom, clear, depth);
   }
-  if (!modes_.exact_path) writer_.line(path_words_.empty() ? "G64" : path_words_);
+  if (!path.empty()) writer_.line(path);
+  writer_.set_path(path);
 }
 
 void NcInterpreter::drill(NcCode motion, const Words& above, double bottom, double clear, std::size_t depth) {

@@ -52,6 +52,7 @@ void NcInterpreter::set_modes() {
     for (const char letter : {'p', 'q'}) {
       if (!modes_.exact_path && block_.has(letter)) append_word(path_words_, block_.word(letter));
     }
+    writer_.set_path(modes_.exact_path ? "" : path_words_);
   }
   if (codes_.has(NcGroup::distance)) modes_.absolute = codes_[NcGroup::distance] == 900;
   if (codes_.has(NcGroup::arc_centre)) modes_.arc_absolute = codes_[NcGroup::arc_centre] == 901;

@@ -137,6 +137,52 @@ TEST(NcProgram, PiecesOfAMoveFollowEachOtherAndModesAreSaidWhereTheyChange) {
       "G21 G90 G94 F3\nG0 X0.250 Y0.000\nN9 M8 G93 G1 X1.250 F6 (cut)\nG1 X2.250 F6\nG1 Y1.000 F6\nG1 Y2.000 F6\nM2\n");
 }
 
+/// Every rapid move goes a little ahead first, exactly.
+class AheadFirst final : public MoveCorrector {
+ public:
+  explicit AheadFirst(double way) : way_(way) {}
+  void correct(std::span<const ProgramMove> moves, CorrectedPieces& corrected) override {
+    corrected.pieces.clear();
+    corrected.first.assign(1, 0);
+    for (const ProgramMove& move : moves) {
+      if (move.kind == MoveKind::rapid) {
+        CorrectedPiece& piece = corrected.pieces.emplace_back();
+        piece.end = move.start;
+        piece.end[0] += way_;
+        piece.exact = true;
+      }
+      corrected.pieces.push_back({move.end, move.feed, move.feed_mode});
+      corrected.first.push_back(corrected.pieces.size());
+    }
+  }
+
+ private:
+  double way_;
+};
+
+std::string ahead_first(std::string_view text, double way = 0.25) {
+  NcProgramOptions options = options_at_zero();
+  options.words = {true, true, true, false, false, false, false, false, false};
+  options.decimals_mm = 2;
+  AheadFirst corrector(way);
+  std::string out;
+  correct_nc_program(text, "p.ngc", options, corrector, [&](std::string_view part) { out += part; });
+  return out;
+}
+
+TEST(NcProgram, ExactPiecesStandInExactPathModeAndTheProgramsOwnModeIsSaidAgain) {
+  EXPECT_EQ(ahead_first("G21 G90 G94 F9\nN5 G0 X1 Y0 Z0 M8 (there)\nG1 X2\nG0 X3\nM5\nM2\n"),
+            "G21 G90 G94 F9\nG61\nN5 M8 G0 X0.25 Y0.00 Z0.00 (there)\nG64\nG0 X1.00\nG1 X2.00 F9\n"
+            "G61\nG0 X2.25\nG64\nG0 X3.00\nM5\nM2\n");
+  // The mode that is in force where the move stands, and none where the path is exact by itself.
+  EXPECT_EQ(ahead_first("G21 G90 G64 P.5\nG0 X1 Y0 Z0\nG61\nG0 X2\nG61.1\nG0 X3\nG64\nG0 X4\nM2\n"),
+            "G21 G90 G64 P.5\nG61\nG0 X0.25 Y0.00 Z0.00\nG64 P.5\nG0 X1.00\nG61\nG0 X1.25\nG0 X2.00\nG61.1\nG0 X2.25\n"
+            "G0 X3.00\nG64\nG61\nG0 X3.25\nG64\nG0 X4.00\nM2\n");
+  // A piece that changes no word is not written, nor are modes for it.
+  EXPECT_EQ(ahead_first("G21 G90 G94\nG1 X1 Y0 Z0 F9\nG0 X2\nM2\n", 1e-3),
+            "G21 G90 G94\nG1 X1.00 Y0.00 Z0.00 F9\nG0 X2.00\nM2\n");
+}
+
 TEST(NcProgram, G92TellsTheControlTheSameOffsetFromWhereItStands) {
   // The control stands at 1.25, not at 1: with X0 its offset would be 0.25 too large.
   EXPECT_EQ(shifted("G21 G90\nG0 X1 Y1\nG92 X0\nG0 X0\nX5\nM2\n"),

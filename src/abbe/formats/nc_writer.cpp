@@ -65,7 +65,7 @@ std::string_view mode_word(FeedMode mode) {
 
 NcWriter::NcWriter(const std::string& file, const NcProgramOptions& options, MoveCorrector& corrector,
                    const std::function<void(std::string_view)>& write)
-    : file_(file), options_(options), corrector_(corrector), write_(write), frames_(1) {
+    : file_(file), options_(options), corrector_(corrector), write_(write), frames_(1), paths_{"G64"} {
   out_.resize(kChunk + kLongestLine);
   at_ = out_.data();
   frames_[0].inches = options.inches;
@@ -118,6 +118,8 @@ void NcWriter::said_feed_mode(FeedMode mode) {
   events_.mode = mode;
 }
 
+void NcWriter::set_path(std::string_view block) { paths_.emplace_back(block); }
+
 void NcWriter::set_frame(const NcProgramFrame& frame) { frames_.push_back(frame); }
 
 void NcWriter::forget_linear_axes() { events_.forget_linear = true; }
@@ -154,6 +156,7 @@ void NcWriter::move(const ProgramMove& move, std::uint32_t words, bool is_correc
   item.axes = words;
   item.frame = static_cast<std::uint32_t>(frames_.size() - 1);
   item.events = events_;
+  item.path = static_cast<std::uint32_t>(paths_.size() - 1);
   item.is_corrected = is_corrected;
   events_ = {};
   moves_.push_back(move);
@@ -187,6 +190,7 @@ void NcWriter::flush() {
   items_.clear();
   use_frame(frames_.size() - 1);
   frames_.erase(frames_.begin(), frames_.end() - 1);
+  paths_.erase(paths_.begin(), paths_.end() - 1);
 }
 
 void NcWriter::finish() {
@@ -264,7 +268,16 @@ void NcWriter::write_item(std::size_t i, const CorrectedPiece* pieces, std::size
     write_piece(moves_[i], item, pieces[k], k == 0);
     stands_ = pieces[k].end;
   }
+  write_path(item, false);
   piece_count_ += count;
+}
+
+void NcWriter::write_path(const Item& item, bool exact) {
+  const std::string& path = paths_[item.path];
+  if (path.empty() || exact == exact_) return;
+  append(exact ? "G61" : path);
+  append("\n");
+  exact_ = exact;
 }
 
 void NcWriter::write_piece(const ProgramMove& move, const Item& item, const CorrectedPiece& piece, bool first) {
@@ -287,6 +300,7 @@ void NcWriter::write_piece(const ProgramMove& move, const Item& item, const Corr
   const std::string_view texts = texts_;
   const bool has_text = first && item.comments > item.lines;
   if (changed == 0 && !has_text) return;
+  write_path(item, piece.exact);
   reserve(kLongestLine + (first ? item.comments - item.lines : 0));
   char* at = at_;
   if (first && item.words > item.lines) {

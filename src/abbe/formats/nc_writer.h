@@ -42,6 +42,8 @@ class NcWriter {
   /// The number, words and comments as a line, if there are any.
   void words_as_line();
 
+  /// The block that puts the control's path mode into force, such as "G64 P0.1"; empty: an exact path is in force.
+  void set_path(std::string_view block);
   /// From now on positions are said like this.
   void set_frame(const NcProgramFrame& frame);
   /// Positions of X, Y, Z mean something else now: what was said of them is not where the control is.
@@ -72,7 +74,7 @@ class NcWriter {
   struct Item {
     std::uint32_t lines = 0, number = 0, words = 0, comments = 0;  ///< where each ends in `texts_`
     std::uint32_t axes = 0;
-    std::uint32_t frame = 0;
+    std::uint32_t frame = 0, path = 0;
     Events events;
     bool is_corrected = true;
   };
@@ -85,6 +87,8 @@ class NcWriter {
   char* write_modes(const ProgramMove& move, FeedMode mode, char* at);
   char* write_pitch(const ProgramMove& move, double pitch, char* at) const;
   char* write_feed(const ProgramMove& move, FeedMode mode, double feed, char* at);
+  /// Exact path for a piece, or the path mode of its move again.
+  void write_path(const Item& item, bool exact);
   void apply(const Events& events);
   void use_frame(std::size_t index);
   double program_scale(std::size_t axis) const;
@@ -104,6 +108,7 @@ class NcWriter {
   std::vector<ProgramMove> moves_;
   std::vector<Item> items_;
   std::vector<NcProgramFrame> frames_;
+  std::vector<std::string> paths_;
   std::string texts_;  ///< of the items, and behind them the lines before the next one
   std::string number_, words_, comments_;
   Events events_;
@@ -119,6 +124,7 @@ class NcWriter {
   std::uint32_t is_said_ = 0;
   WordValues stands_{};  ///< end of the piece before, without rounding
   bool units_said_ = false, absolute_said_ = false, mode_said_ = false;
+  bool exact_ = false;  ///< G61 stands before a piece, and has to be taken back
   FeedMode mode_ = FeedMode::per_minute;
   double feed_ = -1;
   std::size_t move_count_ = 0, piece_count_ = 0, uncorrected_ = 0, first_uncorrected_line_ = 0;
