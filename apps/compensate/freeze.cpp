@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/compensate/left_out_errors.h"
 #include "abbe/compensate/program_uncertainty.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
@@ -65,11 +66,14 @@ FreezeOptions options_of(const FreezeArguments& arguments, const Machine& machin
 }
 
 void print_result(const FreezeArguments& arguments, const Machine& machine, const FrozenCompensation& frozen,
-                  const std::vector<std::string>& left_out) {
+                  const LeftOutErrors& left_out, bool written) {
   fmt::print("{}: errors of {} frozen\n", machine.name, arguments.errors);
   fmt::print("  {}: {} bytes, format {}, abbe {}, checksum {:016x} (machine and errors {:016x})\n",
-             arguments.dry_run ? "dry run, nothing written" : arguments.output, frozen.bytes.size(),
-             static_cast<int>(ABBE_RUNTIME_FORMAT), ABBE_VERSION, frozen.checksum, frozen.source_checksum);
+             written             ? arguments.output
+             : arguments.dry_run ? "dry run, nothing written"
+                                 : "nothing written",
+             frozen.bytes.size(), static_cast<int>(ABBE_RUNTIME_FORMAT), ABBE_VERSION, frozen.checksum,
+             frozen.source_checksum);
   fmt::print("  tried at {} poses, tools of {:g} to {:g} mm\n", frozen.poses, arguments.lengths[0],
              arguments.lengths[1]);
   fmt::print("  largest correction of the tool: {:.1f} um at {}, tool {:g} mm\n", 1e3 * frozen.largest_correction,
@@ -82,7 +86,7 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
     fmt::print("{}\n", frozen.largest_joint[i] > 0 ? " at " + command_words(machine, frozen.largest_joint_at[i]) : "");
   }
   fmt::print("  after it, by the full model{}: {:.1e} mm and {:.1e} rad at most\n",
-             left_out.empty() ? "" : " with what is left out", frozen.accuracy, frozen.accuracy_turn);
+             left_out.names.empty() ? "" : " with what is left out", frozen.accuracy, frozen.accuracy_turn);
   if (frozen.largest_uncertainty > 0) {
     fmt::print(
         "  standard uncertainty of the tool's correction: {:.2f} um on average, at most {:.2f} um; in the file to "
@@ -91,12 +95,8 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
   } else {
     fmt::print("  standard uncertainty of the tool's correction: not stated by the errors file\n");
   }
-  if (arguments.leave_out_factor > 0) {
-    std::string names;
-    for (const std::string& name : left_out) names += (names.empty() ? "" : ", ") + name;
-    fmt::print("  left out, below {:g} standard uncertainties everywhere: {}\n", arguments.leave_out_factor,
-               names.empty() ? "none" : names);
-  }
+  if (arguments.leave_out_factor > 0)
+    fmt::print("{}", left_out_text(machine, arguments.leave_out_factor, left_out, "  "));
   fmt::print("  iterations of one call: at most {}\n", frozen.worst_iterations);
   if (frozen.limited > 0)
     fmt::print("  near singularities the turn is bounded: at {} poses a part of the orientation error stays\n",
@@ -107,12 +107,12 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
 }
 
 void print_json(const FreezeArguments& arguments, const Machine& machine, const ErrorSet& errors,
-                const FrozenCompensation& frozen, const std::vector<std::string>& left_out) {
+                const FrozenCompensation& frozen, const LeftOutErrors& left_out, bool written) {
   nlohmann::ordered_json json;
   json["machine"] = machine.name;
   json["errors"] = arguments.errors;
   json["output"] = arguments.output;
-  json["written"] = !arguments.dry_run;
+  json["written"] = written;
   json["bytes"] = frozen.bytes.size();
   json["format"] = static_cast<int>(ABBE_RUNTIME_FORMAT);
   json["version"] = ABBE_VERSION;
@@ -138,7 +138,7 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
     json["mean_standard_uncertainty_um"] = 1e3 * frozen.mean_uncertainty;
     json["standard_uncertainty_in_file_to_um"] = 1e3 * frozen.uncertainty_lattice;
   }
-  json["left_out"] = left_out;
+  state_left_out(machine, left_out, json);
   json["backlash"] = nlohmann::ordered_json::array();
   for (const JointBacklash& one : linuxcnc_backlash(machine, errors)) {
     json["backlash"].push_back({{"axis", one.axis},
@@ -162,36 +162,35 @@ int run_freeze(const FreezeArguments& arguments) {
   const double limit_um = refusal_limit("--limit-um", arguments.limit_um, "um");
   FreezeOptions options = options_of(arguments, machine, errors);
   ErrorSet frozen_errors = errors.errors;
-  std::vector<std::string> left_out;
+  LeftOutErrors left_out;
   if (arguments.leave_out_factor > 0) {
-    left_out = leave_out_uncertain(machine, frozen_errors, options.covariance, arguments.leave_out_factor);
+    left_out = leave_out_uncertain(machine, frozen_errors, options.covariance, arguments.leave_out_factor,
+                                   tools_tried(machine, options));
     options.all_errors = errors.errors;
   }
   const FrozenCompensation frozen = freeze(machine, frozen_errors, options);
   if (!frozen.problem.empty()) throw InputError({.file = arguments.errors}, "cannot be frozen: " + frozen.problem);
+  std::string refused;
   if (!(1e3 * frozen.largest_correction <= limit_um)) {
-    fmt::print(stderr,
-               "abbe: refused: the correction is {:.1f} um, above --limit-um {:g}, at {}, tool {:g} mm; nothing was "
-               "written\n",
-               1e3 * frozen.largest_correction, limit_um, command_words(machine, frozen.where),
-               frozen.tool_length_there);
-    return kNegative;
+    refused = fmt::format("the correction is {:.1f} um, above --limit-um {:g}, at {}, tool {:g} mm",
+                          1e3 * frozen.largest_correction, limit_um, command_words(machine, frozen.where),
+                          frozen.tool_length_there);
+  } else if (!(frozen.difference <= kLargestDifference)) {
+    refused = fmt::format("the frozen compensation differs by {:.2e} mm from the full model", frozen.difference);
   }
-  if (!(frozen.difference <= kLargestDifference)) {
-    fmt::print(stderr, "abbe: refused: the frozen compensation differs by {:.2e} mm from the full model\n",
-               frozen.difference);
-    return kNegative;
-  }
-  if (!arguments.dry_run) {
+  const bool written = refused.empty() && !arguments.dry_run;
+  if (written) {
     write_file_atomically(arguments.output, {reinterpret_cast<const char*>(frozen.bytes.data()), frozen.bytes.size()});
   }
   if (arguments.json) {
-    print_json(arguments, machine, frozen_errors, frozen, left_out);
+    print_json(arguments, machine, frozen_errors, frozen, left_out, written);
   } else {
-    print_result(arguments, machine, frozen, left_out);
+    print_result(arguments, machine, frozen, left_out, written);
     print_linuxcnc_backlash(machine, frozen_errors);
   }
-  return kDone;
+  if (refused.empty()) return kDone;
+  fmt::print(stderr, "abbe: refused: {}; nothing was written\n", refused);
+  return kNegative;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "abbe/compensate/left_out_errors.h"
 #include "abbe/compensate/machine_planes.h"
 #include "abbe/compensate/program_correction.h"
 #include "abbe/compensate/program_uncertainty.h"

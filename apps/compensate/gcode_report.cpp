@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "compensate/reversal_words.h"
+#include "compensate/safety.h"
 
 namespace abbe {
 namespace {
@@ -243,12 +244,8 @@ void print_gcode_report(const GcodeOptions& options, const Machine& machine, con
     fmt::print("work offset taken for zero, as neither --parameters nor the program says it: from line {}\n",
                result.text.first_assumed_offset_line);
   }
-  if (options.leave_out_factor > 0) {
-    std::string names;
-    for (const std::string& name : result.left_out) names += (names.empty() ? "" : ", ") + name;
-    fmt::print("left out, below {:g} standard uncertainties everywhere: {}\n", options.leave_out_factor,
-               names.empty() ? "none" : names);
-  }
+  if (options.leave_out_factor > 0)
+    fmt::print("{}", left_out_text(machine, options.leave_out_factor, result.left_out, ""));
   if (!result.refused.empty()) return;
   if (options.dry_run) {
     fmt::print("dry run: nothing written\n");
@@ -307,7 +304,7 @@ nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& ma
   json["inverse_time_pieces"] = count_json(report.inverse_time);
   json["uncorrected_rapid_moves"] = result.text.uncorrected_moves;
   json["first_line_in_assumed_work_offset"] = result.text.first_assumed_offset_line;
-  json["left_out"] = result.left_out;
+  state_left_out(machine, result.left_out, json);
   return json;
 }
 

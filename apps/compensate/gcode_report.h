@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/compensate/left_out_errors.h"
 #include "abbe/compensate/program_report.h"
 #include "abbe/compensate/program_uncertainty.h"
 #include "abbe/formats/nc_program.h"
@@ -20,7 +21,7 @@ struct GcodeResult {
   std::vector<PlaceUncertainty> by_axis;     ///< [axes] at ProgramReport::by_axis
   std::vector<ReversalAxis> reversals;       ///< compensated reversal values
   std::vector<double> reversal_uncertainty;  ///< [reversals] mm or rad, 0: not stated
-  std::vector<std::string> left_out;         ///< errors below their uncertainty
+  LeftOutErrors left_out;                    ///< errors below their uncertainty
   std::vector<std::string> refused;          ///< why nothing is written; empty: it is
 };
 

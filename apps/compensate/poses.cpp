@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "abbe/compensate/compensated_inverse.h"
+#include "abbe/compensate/left_out_errors.h"
 #include "abbe/compensate/program_uncertainty.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/formats/errors_file.h"
@@ -17,6 +18,7 @@
 #include "abbe/formats/measurement_file.h"
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/geometry/angle.h"
 #include "compensate/compensate.h"
 #include "compensate/safety.h"
 
@@ -52,7 +54,7 @@ struct CorrectedPoses {
   std::array<std::size_t, kCorrectionStatuses> count{}, first_row{};
   Largest largest_shift, largest_position_left, largest_orientation_left;
   std::vector<Largest> by_axis;
-  std::vector<std::string> left_out;
+  LeftOutErrors left_out;
 };
 
 std::vector<std::size_t> held_axes(const PosesCommand& command, const Machine& machine) {
@@ -77,6 +79,18 @@ void state_statistics(const Machine& machine, const PoseList& poses, CorrectedPo
     result.largest_orientation_left.take(result.orientation_left[k], k + 1);
     for (std::size_t i = 0; i < machine.axes.size(); ++i)
       result.by_axis[i].take(result.commands.axis[i][k] - poses.axis[i][k], k + 1);
+  }
+}
+
+/// What stays of all errors, those included that were left out.
+void state_left_by_all(const Machine& machine, const ErrorSet& errors, const PoseList& poses, CorrectedPoses& result) {
+  for (std::size_t k = 0; k < poses.count(); ++k) {
+    if (!std::isfinite(result.position_left[k])) continue;
+    const RigidTransform wanted = nominal_workpiece_from_tool(machine, poses.pose(k));
+    const RigidTransform actual = actual_workpiece_from_tool(machine, errors, result.commands.pose(k));
+    result.position_left[k] = (actual.translation - wanted.translation).norm();
+    result.orientation_left[k] =
+        angle_between(actual.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction);
   }
 }
 
@@ -106,6 +120,7 @@ CorrectedPoses corrected_poses(const PosesCommand& command, const Machine& machi
   inverse.correct({in, count},
                   {out, result.status.data(), result.position_left.data(), result.orientation_left.data()});
 
+  if (!result.left_out.names.empty()) state_left_by_all(machine, errors.errors, poses, result);
   const bool stated = !covariance.isZero(0);
   const std::vector<bool> moved(machine.axes.size(), true);
   for (std::size_t k = 0; k < count; ++k) {
@@ -180,10 +195,8 @@ void print_poses(const PosesCommand& command, const Machine& machine, const Pose
       result.largest_orientation_left.value,
       result.largest_orientation_left.value > 1e-11 ? fmt::format(" in row {}", result.largest_orientation_left.row)
                                                     : "");
-  if (command.leave_out_factor > 0) {
-    fmt::print("left out, below {:g} standard uncertainties everywhere: {}\n", command.leave_out_factor,
-               result.left_out.empty() ? "none" : fmt::format("{}", fmt::join(result.left_out, ", ")));
-  }
+  if (command.leave_out_factor > 0)
+    fmt::print("{}", left_out_text(machine, command.leave_out_factor, result.left_out, ""));
 }
 
 nlohmann::ordered_json poses_json(const PosesCommand& command, const Machine& machine, const PoseList& poses,
@@ -206,7 +219,7 @@ nlohmann::ordered_json poses_json(const PosesCommand& command, const Machine& ma
   }
   json["largest_position_left_um"] = 1e3 * result.largest_position_left.value;
   json["largest_orientation_left_urad"] = 1e6 * result.largest_orientation_left.value;
-  json["left_out"] = result.left_out;
+  state_left_out(machine, result.left_out, json);
   json["output"] = command.output;
   return json;
 }

@@ -10,6 +10,11 @@
 #include "abbe/formats/input_error.h"
 
 namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+}  // namespace
 
 double refusal_limit(const char* option, const std::optional<double>& given, const char* unit) {
   if (!given) return std::numeric_limits<double>::infinity();
@@ -23,7 +28,7 @@ double refusal_limit(const char* option, const std::optional<double>& given, con
 double largest_turn_option(double degrees) {
   if (!(degrees > 0 && degrees <= 10))
     throw InputError({.field = "--largest-turn-deg"}, "out of range", "more than 0 and at most 10 degrees");
-  return degrees * std::numbers::pi / 180;
+  return degrees * kDegree;
 }
 
 void check_leave_out(double factor, const ErrorsFile& errors, const std::string& file) {
@@ -33,6 +38,40 @@ void check_leave_out(double factor, const ErrorsFile& errors, const std::string&
   }
   if (factor > 0 && errors.covariance.size() == 0 && stated_variances(errors.errors).size() == 0) {
     throw InputError({.file = file}, "no standard uncertainties are stated", fmt::format("some, for {}", option));
+  }
+}
+
+std::string left_out_text(const Machine& machine, double factor, const LeftOutErrors& left_out, const char* indent) {
+  const auto listed = [](const std::vector<std::string>& names) {
+    return names.empty() ? std::string("none") : fmt::format("{}", fmt::join(names, ", "));
+  };
+  std::string text = fmt::format("{}left out, below {:g} standard uncertainties everywhere: {}\n", indent, factor,
+                                 listed(left_out.names));
+  if (!left_out.kept.empty()) {
+    text += fmt::format("{}kept, as they are below it by themselves but not together with others: {}\n", indent,
+                        listed(left_out.kept));
+  }
+  if (left_out.where.empty()) return text;
+  std::string where;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    where += fmt::format("{}{} {:.6g} {}", i == 0 ? "" : ", ", machine.axes[i].name,
+                         rotary ? left_out.where[i] / kDegree : left_out.where[i], rotary ? "deg" : "mm");
+  }
+  return text +
+         fmt::format("{}what is left out shifts the functional point by at most {:.3f} um over the travel, at {}\n",
+                     indent, 1e3 * left_out.largest_shift, where);
+}
+
+void state_left_out(const Machine& machine, const LeftOutErrors& left_out, nlohmann::ordered_json& json) {
+  json["left_out"] = left_out.names;
+  json["left_out_kept"] = left_out.kept;
+  json["left_out_largest_um"] = 1e3 * left_out.largest_shift;
+  if (left_out.where.empty()) return;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    json["left_out_largest_at"][machine.axes[i].name + (rotary ? "_deg" : "_mm")] =
+        left_out.where[i] / (rotary ? kDegree : 1);
   }
 }
 

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "abbe/compensate/correction_uncertainty.h"
+#include "abbe/compensate/left_out_errors.h"
 #include "abbe/compensate/line_tables.h"
 #include "abbe/compensate/point_correction.h"
-#include "abbe/compensate/program_uncertainty.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/kept_inputs.h"
@@ -20,6 +20,7 @@
 #include "compensate/reversal_words.h"
 #include "compensate/safety.h"
 #include "compensate/table_formats.h"
+#include "compensate/table_left_out.h"
 #include "compensate/table_options.h"
 #include "compensate/table_report.h"
 
@@ -83,29 +84,6 @@ std::size_t checked_positions(const TableCommand& command, const Machine& machin
                      "at least 2 positions per axis and at most 1,000,000 poses");
   }
   return command.positions;
-}
-
-/// Largest standard uncertainty of every table, and the tables that are below a multiple of it everywhere.
-std::vector<double> table_uncertainties(const ErrorSet& errors, const Eigen::MatrixXd& covariance,
-                                        const std::vector<TableSummary>& tables, double times,
-                                        std::set<std::string>& below, std::vector<std::string>& words) {
-  std::vector<double> largest;
-  for (const TableSummary& table : tables) {
-    const std::vector<double> uncertainty = propagated_uncertainty(errors, covariance, table.values);
-    double ratio = 0;
-    bool known = false;
-    for (std::size_t k = 0; k < uncertainty.size(); ++k) {
-      if (table.corrections[k] == 0) continue;
-      known = known || uncertainty[k] > 0;
-      ratio = uncertainty[k] > 0 ? std::max(ratio, std::abs(table.corrections[k]) / uncertainty[k]) : HUGE_VAL;
-    }
-    largest.push_back(uncertainty.empty() ? 0 : *std::max_element(uncertainty.begin(), uncertainty.end()));
-    if (times > 0 && known && ratio < times) {
-      below.insert(table.name);
-      words.push_back(fmt::format("{}: at most {:.2g} times its standard uncertainty", table.name, ratio));
-    }
-  }
-  return largest;
 }
 
 /// What takes the reversal values that the tables do not carry.
@@ -279,14 +257,14 @@ int run_table(const TableCommand& command) {
   }
   ControllerTables tables = format.make(machine, carried, request);
   if (covariance.size() > 0) {
-    report.uncertainty = table_uncertainties(carried, covariance, tables.tables, command.times_uncertainty,
-                                             request.left_out, report.left_out);
-    if (!request.left_out.empty()) {
-      tables = format.make(machine, carried, request);
-      std::set<std::string> none;
-      std::vector<std::string> no_words;
-      report.uncertainty = table_uncertainties(carried, covariance, tables.tables, 0, none, no_words);
+    std::vector<SmallTable> small, unused;
+    report.uncertainty = table_uncertainties(carried, covariance, tables.tables, command.times_uncertainty, small);
+    for (const SmallTable& table : leave_out_tables(machine, carried, covariance, report.poses, format, request,
+                                                    command.times_uncertainty, tables, small)) {
+      report.left_out_kept.push_back(table.text());
     }
+    for (const SmallTable& table : small) report.left_out.push_back(table.text());
+    if (!small.empty()) report.uncertainty = table_uncertainties(carried, covariance, tables.tables, 0, unused);
     ErrorMapOptions options;
     ParameterCovariance parameters;
     parameters.covariance = covariance;

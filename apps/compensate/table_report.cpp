@@ -93,6 +93,8 @@ void print_table_report(const TableReport& report) {
   }
   if (report.tables->tables.empty()) fmt::print("  no table is needed: nothing that this format carries is there\n");
   for (const std::string& name : report.left_out) fmt::print("  left out: {}\n", name);
+  for (const std::string& name : report.left_out_kept)
+    fmt::print("  kept, as not small together with others: {}\n", name);
   print_errors(report);
   fmt::print("volumetric error over {} poses:\n", report.poses.count());
   print_deviations("before", report.before);
@@ -141,6 +143,7 @@ void print_table_json(const TableReport& report) {
     json["tables"].push_back(one);
   }
   json["left_out"] = report.left_out;
+  json["left_out_kept"] = report.left_out_kept;
   json["refused"] = report.refused;
   json["errors"] = nlohmann::ordered_json::array();
   for (const CarriedError& error : report.errors) {

@@ -23,6 +23,7 @@ struct TableReport {
   std::vector<double>
       uncertainty;  ///< [tables] largest standard uncertainty of a correction, mm or rad; empty: not stated
   std::vector<std::string> left_out;                           ///< "X: at most 1.2 times its standard uncertainty"
+  std::vector<std::string> left_out_kept;                      ///< small by themselves, but not together
   std::vector<std::pair<std::string, std::string>> reversals;  ///< name and where it is, or what takes it
   std::vector<std::string> refused;                            ///< what is above a limit
   std::vector<std::string> written;

@@ -11,7 +11,6 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/trace_file.h"
-#include "abbe/verify/covariance_root.h"
 #include "axis_option.h"
 #include "study/job.h"
 
@@ -193,12 +192,6 @@ VerifyResult verify(const VerifyOptions& options) {
   if (options.largest_ratio && result.identified.covariance.size() == 0) {
     throw InputError({.file = result.errors_file}, "states no uncertainties, and --largest-ratio asks for them",
                      "the errors.toml of an identification");
-  }
-  try {
-    covariance_root(result.identified.covariance);
-  } catch (const std::invalid_argument& error) {
-    throw InputError({.file = result.errors_file, .field = "covariance"}, error.what(),
-                     "a covariance of an identification: symmetric, no variance below zero, in any direction");
   }
   const PoseList poses = unseen_poses(options, result);
   try {

@@ -4,7 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "abbe/compensate/working_axes.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
@@ -30,20 +32,10 @@ CorrectionStep::CorrectionStep(const Machine& machine, const CorrectionOptions& 
 }
 
 void CorrectionStep::choose_axes(const std::vector<HeldAxis>& kept) {
-  const std::vector<double> reference(machine_.axes.size(), 0.0);
-  InversePlan plan = make_inverse_plan(machine_, options_.target, kept, reference);
-  if (plan.rotary_count == 0 && options_.target != TargetKind::point) {
-    plan = make_inverse_plan(machine_, TargetKind::point, kept, reference);
-  }
-  turning_.assign(plan.rotary.begin(), plan.rotary.begin() + static_cast<std::ptrdiff_t>(plan.rotary_count));
-  reaching_.assign(plan.linear.begin(), plan.linear.begin() + static_cast<std::ptrdiff_t>(plan.linear_count));
-  if (reaching_.size() < 3 && plan.polar_count > 0) reaching_.push_back(plan.polar[0]);
-  if (turning_.empty() || options_.target == TargetKind::point) {
-    turning_.clear();
-    orientation_rows_ = 0;
-  } else {
-    orientation_rows_ = options_.target == TargetKind::full_pose ? 3 : 2;
-  }
+  WorkingAxes working = working_axes(machine_, options_.target, kept);
+  turning_ = std::move(working.turning);
+  reaching_ = std::move(working.reaching);
+  orientation_rows_ = working.orientation_rows;
   usual_ = orientation_rows_ == 2 && turning_.size() == 2 && reaching_.size() == 3;
   for (const std::size_t axis : reaching_) usual_ = usual_ && machine_.axes[axis].kind == AxisKind::linear;
 }

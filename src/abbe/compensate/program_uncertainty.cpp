@@ -1,83 +1,17 @@
 #include "abbe/compensate/program_uncertainty.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 
 #include "abbe/compensate/correction_uncertainty.h"
+#include "abbe/compensate/working_axes.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/reversal.h"
 
 namespace abbe {
-namespace {
-
-/// Terms of one component of one axis and where their coefficients stand among all parameters.
-struct Terms {
-  std::vector<std::size_t> motion;
-  std::vector<std::size_t> first_parameter;
-};
-
-Terms terms_of(const ErrorSet& errors, std::size_t axis, Component component) {
-  Terms terms;
-  std::size_t parameter = 0;
-  for (std::size_t m = 0; m < errors.motions.size(); ++m) {
-    const ErrorMotion& motion = errors.motions[m];
-    if (motion.axis == axis && motion.component == component) {
-      terms.motion.push_back(m);
-      terms.first_parameter.push_back(parameter);
-    }
-    parameter += motion.coefficients.size();
-  }
-  return terms;
-}
-
-/// Whether |value| < factor * u at every sampled position where they are not both zero, and there is one.
-bool is_uncertain_everywhere(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
-                             const Terms& terms, double factor) {
-  const ErrorMotion& first = errors.motions[terms.motion[0]];
-  const Axis& axis = machine.axes[first.axis];
-  double from = axis.travel_min, to = axis.travel_max;
-  if (axis.endless || !(to > from)) {
-    from = first.basis.from;
-    to = first.basis.to > from ? first.basis.to : from + first.basis.period;
-  }
-  std::size_t count = 0;
-  for (const std::size_t m : terms.motion) count += errors.motions[m].coefficients.size();
-  Eigen::VectorXd values(static_cast<Eigen::Index>(count));
-  Eigen::MatrixXd block(values.size(), values.size());
-  std::vector<Eigen::Index> parameter;
-  for (std::size_t t = 0; t < terms.motion.size(); ++t) {
-    for (std::size_t i = 0; i < errors.motions[terms.motion[t]].coefficients.size(); ++i)
-      parameter.push_back(static_cast<Eigen::Index>(terms.first_parameter[t] + i));
-  }
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    for (Eigen::Index k = 0; k < values.size(); ++k) {
-      block(i, k) = covariance(parameter[static_cast<std::size_t>(i)], parameter[static_cast<std::size_t>(k)]);
-    }
-  }
-  bool uncertain = false;
-  constexpr int kSamples = 400;
-  for (int s = 0; s <= kSamples; ++s) {
-    const double position = from + (to - from) * s / kSamples;
-    double value = 0;
-    std::size_t at = 0;
-    for (const std::size_t m : terms.motion) {
-      const ErrorMotion& motion = errors.motions[m];
-      const std::size_t size = motion.coefficients.size();
-      motion.basis.values(position, motion.coefficients, {values.data() + at, size});
-      value += motion.basis.evaluate(position, motion.coefficients);
-      at += size;
-    }
-    const double variance = values.dot(block * values);
-    // Where all functions are zero, such as a slope in the middle of its range, both are, and nothing is said.
-    if (value == 0 && !(variance > 0)) continue;
-    if (!(variance > 0) || std::abs(value) >= factor * std::sqrt(variance)) return false;
-    uncertain = true;
-  }
-  return uncertain;
-}
-
-}  // namespace
 
 Eigen::MatrixXd parameter_covariance(const ErrorSet& errors, const Eigen::MatrixXd& covariance) {
   const auto n = static_cast<Eigen::Index>(errors.parameter_count());
@@ -110,87 +44,66 @@ PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, 
   const Eigen::Matrix<double, 6, 6> spread = by_parameters * covariance * by_parameters.transpose();
   result.stated = true;
   const Eigen::Vector3d shift = deviation.head<3>();
-  if (shift.norm() > 0) {
-    const Eigen::Vector3d along = shift.normalized();
-    result.point = std::sqrt(std::max(0.0, along.dot(spread.topLeftCorner<3, 3>() * along)));
-  }
+  const Eigen::Matrix3d of_point = spread.topLeftCorner<3, 3>();
+  const double variance = shift.norm() > 0 ? shift.normalized().dot(of_point * shift.normalized())
+                                           : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(of_point).eigenvalues()[2];
+  result.point = std::sqrt(std::max(0.0, variance));
 
-  // Where the orientation is not wholly corrected, the commands do not follow from the deviation.
-  if (place.status != CorrectionStatus::reached) return result;
-  // Point, and the two components of the rotation across the tool where a rotary axis works.
-  std::vector<std::size_t> working;
-  bool turns = false;
+  std::vector<HeldAxis> held;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    if (!moved[i]) continue;
-    working.push_back(i);
-    turns = turns || machine.axes[i].kind == AxisKind::rotary;
+    if (!moved[i]) held.push_back({i, 0});
   }
-  const Eigen::Index rows = turns ? 5 : 3;
-  Eigen::MatrixXd seen = Eigen::MatrixXd::Zero(rows, 6);
-  seen.topLeftCorner<3, 3>().setIdentity();
-  if (turns) {
+  const WorkingAxes working = working_axes(with_tool, TargetKind::point_and_direction, held);
+  // With fewer rotary axes than the direction needs a part of the orientation error stays as a rule.
+  const bool follows = place.status == CorrectionStatus::reached ||
+                       (place.status == CorrectionStatus::orientation_left && working.turning.size() == 1);
+  if (!follows) return result;
+  const auto columns = [&](const std::vector<std::size_t>& axes) {
+    Eigen::MatrixXd chosen(6, static_cast<Eigen::Index>(axes.size()));
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      chosen.col(static_cast<Eigen::Index>(k)) = by_positions.col(static_cast<Eigen::Index>(axes[k]));
+    return chosen;
+  };
+  // As the inverse does it: rotary axes take the turn of the tool's direction, the others what is then missing of the
+  // point.
+  const Eigen::MatrixXd turns = columns(working.turning), reaches = columns(working.reaching);
+  Eigen::MatrixXd turned = Eigen::MatrixXd::Zero(turns.cols(), 6);
+  if (turns.cols() > 0) {
     const Eigen::Vector3d tool = nominal_workpiece_from_tool(with_tool, position).rotation * machine.tool_direction;
     const Eigen::Vector3d across = tool.unitOrthogonal();
-    seen.row(3).tail<3>() = across.transpose();
-    seen.row(4).tail<3>() = tool.cross(across).transpose();
+    Eigen::Matrix<double, 2, 6> seen = Eigen::Matrix<double, 2, 6>::Zero();
+    seen.row(0).tail<3>() = across.transpose();
+    seen.row(1).tail<3>() = tool.cross(across).transpose();
+    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(seen * turns);
+    if (solver.rank() < turns.cols()) return result;
+    turned = solver.pseudoInverse() * seen;
   }
-  Eigen::MatrixXd by_working(6, static_cast<Eigen::Index>(working.size()));
-  for (std::size_t k = 0; k < working.size(); ++k)
-    by_working.col(static_cast<Eigen::Index>(k)) = by_positions.col(static_cast<Eigen::Index>(working[k]));
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(seen * by_working);
-  if (solver.rank() < std::min(rows, by_working.cols())) return result;
-  const Eigen::MatrixXd to_commands = solver.pseudoInverse() * seen;
-  const Eigen::MatrixXd command_spread = to_commands * spread * to_commands.transpose();
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(reaches.topRows<3>());
+  if (solver.rank() < reaches.cols()) return result;
+  Eigen::MatrixXd missing = -turns.topRows<3>() * turned;
+  missing.leftCols<3>() += Eigen::Matrix3d::Identity();
+  const Eigen::MatrixXd reached = solver.pseudoInverse() * missing;
   result.axes_known = true;
-  for (std::size_t k = 0; k < working.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    result.axis[working[k]] = std::sqrt(std::max(0.0, command_spread(i, i)));
+  // Every axis takes its own reversal value, whether it works or not.
+  Eigen::MatrixXd apart = by_parameters;
+  Eigen::MatrixXd by_axis = Eigen::MatrixXd::Zero(by_positions.cols(), by_parameters.cols());
+  for (std::size_t r = 0; r < errors.reversals.size(); ++r) {
+    const auto column = static_cast<Eigen::Index>(first + r);
+    const std::size_t axis = errors.reversals[r].axis;
+    apart.col(column).setZero();
+    by_axis(static_cast<Eigen::Index>(axis), column) = 0.5 * place.approach[axis];
+  }
+  const auto take = [&](const std::vector<std::size_t>& axes, const Eigen::MatrixXd& by_deviation) {
+    for (std::size_t k = 0; k < axes.size(); ++k)
+      by_axis.row(static_cast<Eigen::Index>(axes[k])) += by_deviation.row(static_cast<Eigen::Index>(k)) * apart;
+  };
+  take(working.turning, turned);
+  take(working.reaching, reached);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const Eigen::RowVectorXd row = by_axis.row(static_cast<Eigen::Index>(i));
+    result.axis[i] = std::sqrt(std::max(0.0, row.dot(row * covariance)));
   }
   return result;
-}
-
-std::vector<LeftOutReversal> leave_out_uncertain_reversals(ErrorSet& errors, const Eigen::MatrixXd& covariance,
-                                                           double factor) {
-  std::vector<LeftOutReversal> left_out;
-  auto parameter = static_cast<Eigen::Index>(first_reversal(errors));
-  for (Reversal& reversal : errors.reversals) {
-    const double variance = covariance(parameter, parameter);
-    ++parameter;
-    if (!(variance > 0) || std::abs(reversal.value) >= factor * std::sqrt(variance)) continue;
-    left_out.push_back({reversal.axis, std::abs(reversal.value) / std::sqrt(variance)});
-    reversal.value = 0;
-  }
-  return left_out;
-}
-
-std::vector<std::string> leave_out_uncertain(const Machine& machine, ErrorSet& errors,
-                                             const Eigen::MatrixXd& covariance, double factor) {
-  std::vector<std::string> names;
-  ErrorSet kept = errors;
-  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
-    for (int c = 0; c < kComponentCount; ++c) {
-      const Component component = static_cast<Component>(c);
-      const Terms terms = terms_of(errors, axis, component);
-      if (terms.motion.empty() || !is_uncertain_everywhere(machine, errors, covariance, terms, factor)) continue;
-      // Zero and not taken away, so that the range over which they are known still counts.
-      for (const std::size_t m : terms.motion)
-        kept.motions[m].coefficients.assign(kept.motions[m].coefficients.size(), 0.0);
-      names.push_back(error_motion_name(machine, axis, component));
-    }
-  }
-  Eigen::Index parameter = 0;
-  for (const ErrorMotion& motion : errors.motions) parameter += static_cast<Eigen::Index>(motion.coefficients.size());
-  for (LocationError& location : kept.locations) {
-    const double variance = covariance(parameter, parameter);
-    ++parameter;
-    if (!(variance > 0) || std::abs(location.value) >= factor * std::sqrt(variance)) continue;
-    location.value = 0;
-    names.push_back(location_error_name(machine, location.axis, location.component));
-  }
-  for (const LeftOutReversal& reversal : leave_out_uncertain_reversals(kept, covariance, factor))
-    names.push_back(reversal_name(machine, reversal.axis));
-  errors = kept;
-  return names;
 }
 
 }  // namespace abbe

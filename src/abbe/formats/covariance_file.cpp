@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
+#include <cmath>
 #include <vector>
 
 #include "abbe/formats/csv_header.h"
@@ -32,6 +34,16 @@ std::vector<std::string> next_fields(std::string_view text, std::size_t& at, std
     break;
   }
   return fields;
+}
+
+/// A combination of parameters with a variance below zero, beyond what rounding makes of one that is zero, would give
+/// uncertainties that are too small or none. In correlations, because mm and rad differ by orders of magnitude.
+bool is_semi_definite(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd scale =
+      covariance.diagonal().unaryExpr([](double variance) { return variance > 0 ? 1 / std::sqrt(variance) : 0.0; });
+  Eigen::MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  correlation.diagonal().array() += 5e-9 * static_cast<double>(covariance.rows());
+  return correlation.llt().info() == Eigen::Success;
 }
 
 }  // namespace
@@ -85,6 +97,10 @@ Eigen::MatrixXd parse_covariance(std::string_view text, const std::string& file,
   }
   if (!next_fields(text, at, line, file).empty()) {
     throw InputError({file, line, 0, ""}, "more rows than parameters", fmt::format("{} rows", count));
+  }
+  if (!is_semi_definite(covariance)) {
+    throw InputError({.file = file, .field = "covariance"}, "covariance is not positive semi-definite",
+                     "a covariance matrix: no variance below zero in any direction");
   }
   return covariance;
 }

@@ -207,6 +207,15 @@ TEST(ErrorsFile, RefusesCovariancesThatDoNotFit) {
             file + ":3: EC0X: is not symmetric; expected a covariance matrix");
   EXPECT_EQ(with(header + "EC0X,urad,1,0,0,0\n"),
             file + ":2: tool_X: the row has 0 fields; expected 6 as in the header");
+  // A correlation of 2 between the tool's offsets in X and Y; one of 1 is one.
+  const auto tool = [&](const std::string& xy) {
+    return header + "EC0X,urad,1,0,0,0\ntool_X,um,0,1," + xy + ",0\ntool_Y,um,0," + xy + ",1,0\ntool_Z,um,0,0,0,0\n";
+  };
+  EXPECT_EQ(with(tool("2")), file +
+                                 ": covariance: covariance is not positive semi-definite; expected a covariance "
+                                 "matrix: no variance below zero in any direction");
+  write(folder / "c.csv", tool("1"));
+  EXPECT_EQ(read_errors(folder / "e.toml", machine()).covariance(1, 2), 1e-6);
 }
 
 }  // namespace

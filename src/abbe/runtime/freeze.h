@@ -50,6 +50,10 @@ struct FrozenCompensation {
   std::size_t poses = 0, limited = 0, unreached = 0;  ///< tried; turn bounded; point not reached
 };
 
+/// Functional points from the gauge point with which a frozen compensation is tried, mm: that of the default tool, of
+/// the shortest and of the longest one.
+std::vector<Eigen::Vector3d> tools_tried(const Machine& machine, const FreezeOptions& options);
+
 FrozenCompensation freeze(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options);
 
 }  // namespace abbe

@@ -4,8 +4,9 @@
 
 namespace abbe {
 
-/// Largest corrections at poses all over travel and map and at three tool lengths: FrozenCompensation's
-/// largest_correction, with where, and largest_correction_turn; or a problem. The bytes are read for the ranges alone.
+/// Largest corrections at poses all over travel and map and at three tool lengths, and uphill from there:
+/// FrozenCompensation's largest_correction, with where, and largest_correction_turn; or a problem. The bytes are read
+/// for the ranges alone.
 void survey_corrections(const Machine& machine, const ErrorSet& errors, const FreezeOptions& options,
                         FrozenCompensation& result);
 
