@@ -150,6 +150,10 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
   };
   add(report.above_limit, false, fmt::format("correction above the limit of {:g} um", options.limit_um.value_or(0)),
       nullptr);
+  if (report.above_limit.count > 0) {
+    reasons.back() += fmt::format(", the largest {:.3f} um in line {} at {}", 1e3 * report.largest_shift.value,
+                                  report.largest_shift.line, position_text(machine, report.largest_shift));
+  }
   add(status_count(report, CorrectionStatus::not_covered), allowed.not_covered,
       "outside the range over which the errors are known", "not-covered", first_place(CorrectionStatus::not_covered));
   add(status_count(report, CorrectionStatus::outside_travel), allowed.outside_travel,

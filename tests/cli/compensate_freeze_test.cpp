@@ -64,6 +64,30 @@ TEST_F(CompensateFreezeTest, ACorrectionAboveTheLimitIsRefusedWithItsPlace) {
   EXPECT_FALSE(std::filesystem::exists(output));
 }
 
+TEST_F(CompensateFreezeTest, TheLargestCorrectionIsThatOfTheCornerWhereErrorsAddUp) {
+  // Along X from 0 to 60 um over the travel of each axis; those that carry the workpiece count against the others.
+  std::string text;
+  for (const std::string axis : {"X", "Z", "Y", "A"}) {
+    const std::string size = axis == "X" || axis == "Z" ? "30" : "-30";
+    text += "[[motion]]\nname = \"EX" + axis + "\"\nbasis = \"legendre\"\norder = 1\ncoefficients_um = [" + size +
+            ", " + size + "]\n";
+  }
+  text += "[[motion]]\nname = \"EXC\"\nbasis = \"fourier\"\norder = 1\ncoefficients_um = [-30, -30, 0]\n";
+  folder.write("corner.errors.toml", text);
+  const CommandResult result = abbe(
+      {"compensate", "freeze", machine, "corner.errors.toml", "--dry-run", "--json", "--tool-length-mm", "100", "100"});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_NEAR(nlohmann::json::parse(result.out)["largest_correction_um"].get<double>(), 300, 1e-3);
+  // The limit goes by it; what is refused is reported all the same.
+  const CommandResult above =
+      abbe({"compensate", "freeze", machine, "corner.errors.toml", "-o", output, "--json", "--limit-um", "299.99"});
+  EXPECT_EQ(above.exit_code, computation_says_no);
+  const nlohmann::json json = nlohmann::json::parse(above.out);
+  EXPECT_EQ(json["written"], false);
+  EXPECT_NEAR(json["largest_correction_um"].get<double>(), 300, 1e-3);
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
 TEST_F(CompensateFreezeTest, ADryRunSaysWhereEveryJointIsCorrectedMostAndWritesNothing) {
   const CommandResult result = abbe({"compensate", "freeze", machine, errors, "--dry-run"});
   ASSERT_EQ(result.exit_code, done) << result.err;

@@ -176,6 +176,7 @@ TEST_F(CompensateGcode, CorrectionsAboveTheLimitAreRefusedByLine) {
   const CommandResult result = run("cone.ngc", {"-o", "out.ngc", "--limit-um", "15"});
   EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
   EXPECT_THAT(result.err, HasSubstr("correction above the limit of 15 um"));
+  EXPECT_THAT(result.err, testing::ContainsRegex(", the largest 34\\.1[0-9]+ um in line [0-9]+ at C "));
   EXPECT_THAT(result.err, HasSubstr("lines "));
   EXPECT_THAT(result.err, HasSubstr("nothing written"));
   EXPECT_FALSE(exists("out.ngc"));

@@ -155,5 +155,52 @@ TEST_F(CompensatePoses, LimitsAndInputsAreKept) {
   EXPECT_LE(missed(rows_of(folder.read("poses.csv"), machine)[0].commands, rows[0].commands).norm(), 1.1e-9);
 }
 
+/// X and Y, which carries the workpiece, both shift the tool by 10 um along X: each known to 20 um, their sum to 28 um
+/// or, correlated, to 2.8 um.
+std::string two_in_one(double correlation) {
+  const std::string both = std::to_string(400 * correlation);
+  return "parameter,unit,EXX[P0],EXY[P0],tool_X,tool_Y,tool_Z\nEXX[P0],um,400," + both + ",0,0,0\nEXY[P0],um," + both +
+         ",400,0,0,0\ntool_X,um,0,0,0,0,0\ntool_Y,um,0,0,0,0,0\ntool_Z,um,0,0,0,0,0\n";
+}
+
+TEST_F(CompensatePoses, WhatIsLeftOutIsSmallTogetherAndInWhatIsLeft) {
+  folder.write("two.errors.toml",
+               "covariance = \"c.csv\"\n[[motion]]\nname = \"EXX\"\nbasis = \"legendre\"\norder = 0\ncoefficients_um = "
+               "[10]\n[[motion]]\nname = \"EXY\"\nbasis = \"legendre\"\norder = 0\ncoefficients_um = [-10]\n");
+  folder.write("poses.csv", "C_deg,A_deg,Y_mm,X_mm,Z_mm\n30,-40,20,100,-200\n200,25,0,-150,-80\n");
+  const auto run = [&](double correlation) {
+    folder.write("c.csv", two_in_one(correlation));
+    const CommandResult result = abbe({"compensate", "poses", mill, "two.errors.toml", "poses.csv", "-o", "out.csv",
+                                       "--leave-out-below-uncertainty", "1", "--json"});
+    EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  const nlohmann::json apart = run(0);
+  EXPECT_EQ(apart["left_out"].size(), 2U);
+  EXPECT_EQ(apart["largest_correction_um"], 0);
+  // The machine has all of it, and what the command says of it is that.
+  const ErrorSet both = read_errors(folder.path() / "two.errors.toml", machine).errors;
+  const std::vector<Row> rows = rows_of(folder.read("out.csv"), machine),
+                         in = rows_of(folder.read("poses.csv"), machine);
+  double most = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const double left = (actual_workpiece_from_tool(machine, both, rows[k].commands).translation -
+                         nominal_workpiece_from_tool(machine, in[k].commands).translation)
+                            .norm();
+    EXPECT_GT(left, 1e-4);
+    EXPECT_NEAR(std::stod(rows[k].rest[3]), 1e3 * left, 1e-9);
+    most = std::max(most, 1e3 * left);
+  }
+  EXPECT_NEAR(apart["largest_position_left_um"].get<double>(), most, 1e-9);
+  EXPECT_GE(apart["left_out_largest_um"].get<double>(), most - 1e-3);
+  EXPECT_TRUE(apart["left_out_largest_at"].contains("A_deg"));
+
+  const nlohmann::json correlated = run(0.99);
+  EXPECT_TRUE(correlated["left_out"].empty());
+  EXPECT_EQ(correlated["left_out_kept"].size(), 2U);
+  EXPECT_NEAR(correlated["largest_correction_um"].get<double>(), 20, 1e-6);
+  EXPECT_LT(correlated["largest_position_left_um"].get<double>(), 1e-6);
+}
+
 }  // namespace
 }  // namespace abbe

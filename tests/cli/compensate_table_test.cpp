@@ -274,6 +274,28 @@ TEST_F(CompensateTable, TablesBelowTheirUncertaintyAreLeftOutAndNamed) {
   EXPECT_THAT(folder.read("CEC.INI"), Not(HasSubstr("$AN_CEC_INPUT_AXIS[8]")));
 }
 
+TEST_F(CompensateTable, TablesThatAreWellKnownTogetherStay) {
+  // Both move X alike over their travels: each is known to 20 um at an end, their sum to 2.8 um or 28 um.
+  folder.write("two.errors.toml",
+               "covariance = \"c.csv\"\n[[motion]]\nname = \"EXX\"\nbasis = \"legendre\"\norder = 0\ncoefficients_um = "
+               "[10]\n[[motion]]\nname = \"EXY\"\nbasis = \"legendre\"\norder = 0\ncoefficients_um = [10]\n");
+  const auto run = [&](double correlation) {
+    const std::string both = std::to_string(400 * correlation);
+    folder.write("c.csv", "parameter,unit,EXX[P0],EXY[P0],tool_X,tool_Y,tool_Z\nEXX[P0],um,400," + both +
+                              ",0,0,0\nEXY[P0],um," + both +
+                              ",400,0,0,0\ntool_X,um,0,0,0,0,0\ntool_Y,um,0,0,0,0,0\ntool_Z,um,0,0,0,0,0\n");
+    return json_of(abbe({"compensate", "table", mill, "two.errors.toml", "--for", "beckhoff-isg", "--dry-run", "--json",
+                         "--leave-out-below-uncertainty", "1"}));
+  };
+  const nlohmann::json apart = run(0), correlated = run(-0.99);
+  EXPECT_EQ(apart["left_out"].size(), 2U);
+  EXPECT_TRUE(apart["left_out_kept"].empty());
+  EXPECT_NEAR(apart["after"]["max_um"].get<double>(), 20, 1e-3);
+  EXPECT_TRUE(correlated["left_out"].empty());
+  EXPECT_EQ(correlated["left_out_kept"].size(), 2U);
+  EXPECT_LT(correlated["after"]["max_um"].get<double>(), 0.1);
+}
+
 TEST_F(CompensateTable, MapHasTheErrorBeforeAfterAndIdeal) {
   ASSERT_EQ(table("siemens-cec", {"--dry-run", "--map", "map.csv", "--positions", "3"}).exit_code, ExitCode::done);
   EXPECT_THAT(folder.read("map.csv"), HasSubstr("before_um"));

@@ -76,11 +76,11 @@ void for_each_pose(const Machine& machine, const FreezeOptions& options, const a
   }
 }
 
-/// A larger value of a function of the commands than at `start`, by steps along the axes of a half to a 64th of their
+/// A larger value of a function of the commands than at `start`, by steps along the axes of a half to a 1024th of their
 /// ranges: random poses seldom come near a corner of the travel, where errors that add up are largest.
 template <typename Function>
 double climb(const std::vector<Range>& ranges, std::vector<double>& at, Function function) {
-  constexpr int kHalvings = 6, kRounds = 20;
+  constexpr int kHalvings = 10, kRounds = 20;
   double best = function(at);
   double share = 1;
   for (int halving = 0; halving < kHalvings; ++halving) {
