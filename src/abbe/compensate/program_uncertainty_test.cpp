@@ -24,7 +24,8 @@ ErrorSet with_uncertainties(const Machine& machine, std::uint64_t seed) {
   return errors;
 }
 
-void compare_with_corrections_with_errors_shifted(const Machine& machine) {
+void compare_with_corrections_with_errors_shifted(const Machine& machine,
+                                                  CorrectionStatus status = CorrectionStatus::reached) {
   SCOPED_TRACE(machine.name);
   const ErrorSet errors = with_uncertainties(machine, 3);
   const WordAxes words = test::words_of(machine);
@@ -36,7 +37,7 @@ void compare_with_corrections_with_errors_shifted(const Machine& machine) {
     NodeCorrection correction(machine, set, words, {}, {});
     CorrectedNode there = node;
     correction.correct(ProgramCoordinates::axes, correction.tool(length), {&there, 1});
-    EXPECT_EQ(there.status, CorrectionStatus::reached);
+    EXPECT_EQ(there.status, status);
     return there;
   };
   const CorrectedNode at = corrected(errors);
@@ -64,7 +65,7 @@ void compare_with_corrections_with_errors_shifted(const Machine& machine) {
   ProgramPlace place;
   place.position = at.position;
   place.tool_length = length;
-  place.status = CorrectionStatus::reached;
+  place.status = status;
   const PlaceUncertainty stated =
       uncertainty_at(machine, errors, covariance, place, std::vector<bool>(machine.axes.size(), true));
   ASSERT_TRUE(stated.stated);
@@ -84,6 +85,12 @@ TEST(ProgramUncertainty, OfAxesThatKeepTheirCommandsIsZeroAndTheOthersTakeAll) {
   // Six axes, of which one is set beforehand.
   compare_with_corrections_with_errors_shifted(test::wang_grinder());
   compare_with_corrections_with_errors_shifted(test::yin_engraver('U'));
+}
+
+TEST(ProgramUncertainty, OfAMachineWithOneRotaryAxisIsThatOfTheTurnThatIsNearest) {
+  Machine machine = test::trunnion_mill();
+  machine.axes.erase(machine.axes.begin() + static_cast<std::ptrdiff_t>(machine.find_axis("C")));
+  compare_with_corrections_with_errors_shifted(machine, CorrectionStatus::orientation_left);
 }
 
 TEST(ProgramUncertainty, WhereNothingIsCorrectedItIsThatOfTheDirectionInWhichItIsLargest) {
