@@ -14,6 +14,8 @@
 namespace abbe {
 namespace {
 
+constexpr double kSymmetry = 1e-10;  // of correlations
+
 int shift(bool is_angle) { return is_angle ? 6 : 3; }
 const char* unit(bool is_angle) { return is_angle ? "urad" : "um"; }
 
@@ -42,8 +44,28 @@ bool is_semi_definite(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale =
       covariance.diagonal().unaryExpr([](double variance) { return variance > 0 ? 1 / std::sqrt(variance) : 0.0; });
   Eigen::MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    if (!(covariance(i, i) > 0) && (covariance.row(i).array() != 0).any()) return false;
+  }
   correlation.diagonal().array() += 5e-9 * static_cast<double>(covariance.rows());
   return correlation.llt().info() == Eigen::Success;
+}
+
+/// Takes the mean of the two entries of a pair, which programs give with different last digits.
+/// @param lines  [row] of the file
+void make_symmetric(Eigen::MatrixXd& covariance, const std::vector<std::string>& names,
+                    const std::vector<std::size_t>& lines, const std::string& file) {
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const double difference = std::abs(covariance(i, j) - covariance(j, i));
+      if (!(difference <= kSymmetry * std::sqrt(covariance(i, i) * covariance(j, j)))) {
+        throw InputError({file, lines[static_cast<std::size_t>(i)], 0, names[static_cast<std::size_t>(j)]},
+                         "is not symmetric",
+                         fmt::format("a covariance matrix, symmetric to {:g} in its correlations", kSymmetry));
+      }
+      covariance(i, j) = covariance(j, i) = (covariance(i, j) + covariance(j, i)) / 2;
+    }
+  }
 }
 
 }  // namespace
@@ -69,6 +91,7 @@ Eigen::MatrixXd parse_covariance(std::string_view text, const std::string& file,
   }
 
   Eigen::MatrixXd covariance(count, count);
+  std::vector<std::size_t> lines;
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto row = static_cast<std::size_t>(i);
     const std::vector<std::string> fields = next_fields(text, at, line, file);
@@ -89,15 +112,15 @@ Eigen::MatrixXd parse_covariance(std::string_view text, const std::string& file,
                          fmt::format("a covariance in {} {}", unit(angles[row]), unit(angles[column])));
       }
       covariance(i, j) = value;
-      if ((j < i && covariance(j, i) != value) || (j == i && value < 0)) {
-        throw InputError({file, line, 0, names[column]}, j == i ? "the variance is negative" : "is not symmetric",
-                         "a covariance matrix");
-      }
+      if (j == i && value < 0)
+        throw InputError({file, line, 0, names[column]}, "the variance is negative", "a covariance matrix");
     }
+    lines.push_back(line);
   }
   if (!next_fields(text, at, line, file).empty()) {
     throw InputError({file, line, 0, ""}, "more rows than parameters", fmt::format("{} rows", count));
   }
+  make_symmetric(covariance, names, lines, file);
   if (!is_semi_definite(covariance)) {
     throw InputError({.file = file, .field = "covariance"}, "covariance is not positive semi-definite",
                      "a covariance matrix: no variance below zero in any direction");

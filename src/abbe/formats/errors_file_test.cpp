@@ -203,19 +203,33 @@ TEST(ErrorsFile, RefusesCovariancesThatDoNotFit) {
   EXPECT_EQ(with(header + "EC0X,um,1,0,0,0\n"), file + ":2: EC0X: unit 'um'; expected urad");
   EXPECT_EQ(with(header + "EC0X,urad,1,0,0,x\n"),
             file + ":2: tool_Z: 'x' is not a finite number; expected a covariance in urad um");
-  EXPECT_EQ(with(header + "EC0X,urad,1,2,0,0\ntool_X,um,3,1,0,0\n"),
-            file + ":3: EC0X: is not symmetric; expected a covariance matrix");
+  const auto pair = [&](const std::string& above, const std::string& below, const std::string& variance = "4") {
+    return header + "EC0X,urad,1," + above + ",0,0\ntool_X,um," + below + "," + variance +
+           ",0,0\ntool_Y,um,0,0,1,0\ntool_Z,um,0,0,0,0\n";
+  };
+  EXPECT_EQ(with(pair("1", "1.00000001")), file +
+                                               ":3: EC0X: is not symmetric; expected a covariance matrix, symmetric "
+                                               "to 1e-10 in its correlations");
+  EXPECT_EQ(with(pair("1", "1", "-4")), file + ":3: tool_X: the variance is negative; expected a covariance matrix");
+  const std::string indefinite =
+      file +
+      ": covariance: covariance is not positive semi-definite; expected a covariance matrix: no variance below zero "
+      "in any direction";
+  EXPECT_EQ(with(pair("1e-3", "1e-3", "0")), indefinite);  // of a parameter that is known exactly
   EXPECT_EQ(with(header + "EC0X,urad,1,0,0,0\n"),
             file + ":2: tool_X: the row has 0 fields; expected 6 as in the header");
   // A correlation of 2 between the tool's offsets in X and Y; one of 1 is one.
   const auto tool = [&](const std::string& xy) {
     return header + "EC0X,urad,1,0,0,0\ntool_X,um,0,1," + xy + ",0\ntool_Y,um,0," + xy + ",1,0\ntool_Z,um,0,0,0,0\n";
   };
-  EXPECT_EQ(with(tool("2")), file +
-                                 ": covariance: covariance is not positive semi-definite; expected a covariance "
-                                 "matrix: no variance below zero in any direction");
+  EXPECT_EQ(with(tool("2")), indefinite);
   write(folder / "c.csv", tool("1"));
   EXPECT_EQ(read_errors(folder / "e.toml", machine()).covariance(1, 2), 1e-6);
+  // Other programs write the two entries of a pair with different last digits.
+  write(folder / "c.csv", pair("1", "1.0000000000000002"));
+  const Eigen::MatrixXd found = read_errors(folder / "e.toml", machine()).covariance;
+  EXPECT_EQ(found(0, 1), found(1, 0));
+  EXPECT_NEAR(found(0, 1), 1e-9, 1e-24);
 }
 
 }  // namespace
