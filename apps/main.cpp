@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "abbe/formats/input_error.h"
@@ -16,6 +18,23 @@
 
 namespace abbe {
 namespace {
+
+/// What was said comes before what went wrong, also where both go to one file.
+void complain(const std::string& message) {
+  std::fflush(stdout);
+  fmt::print(stderr, "abbe: {}\n", message);
+}
+
+/// Results that were printed and did not arrive are not done. @returns the code of the command if they did
+int printed(int code) {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  const int error = errno;
+  complain("standard output: cannot be written" +
+           (error == 0 ? std::string() : ": " + std::generic_category().message(error)) +
+           "; expected a place with enough space");
+  return kBadInput;
+}
 
 int run_command(int argc, char** argv) {
   CommandLine line;
@@ -48,15 +67,16 @@ int run_command(int argc, char** argv) {
   }
   try {
     line.app.parse(argc, argv);
-    return line.run ? line.run() : static_cast<int>(kInternalError);
+    return printed(line.run ? line.run() : static_cast<int>(kInternalError));
   } catch (const CLI::ParseError& error) {
     // Help and version come this way too, with code 0.
-    return line.app.exit(error) == 0 ? kDone : kBadInput;
+    return printed(line.app.exit(error) == 0 ? kDone : kBadInput);
   } catch (const InputError& error) {
-    fmt::print(stderr, "abbe: {}\n", error.what());
+    complain(error.what());
     return kBadInput;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "abbe: internal error: {}\n", error.what());
+    if (std::ferror(stdout) != 0) return printed(kBadInput);
+    complain(std::string("internal error: ") + error.what());
     return kInternalError;
   }
 }

@@ -32,5 +32,15 @@ TEST_F(CommandLine, VersionIsOneLine) {
   EXPECT_TRUE(std::regex_match(result.out, std::regex("abbe [0-9]+\\.[0-9]+\\.[0-9]+\n"))) << result.out;
 }
 
+TEST_F(CommandLine, WhatDoesNotArriveIsNotDone) {
+  if (!std::filesystem::is_character_file("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  for (const std::string& command : {std::string("--help"), std::string("test-piece cone-frustum")}) {
+    const CommandResult result =
+        run_program("/bin/sh", {"-c", "exec " ABBE_COMMAND " " + command + " > /dev/full"}, folder.path());
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input) << command;
+    EXPECT_THAT(result.err, HasSubstr("standard output: cannot be written")) << command;
+  }
+}
+
 }  // namespace
 }  // namespace abbe

@@ -115,6 +115,11 @@ def test_refusals(run):
     comp = run.program("z.comp", "0 0 0\n1 0 0\n")
     said = run(run.program("comp.ngc", PROGRAM), "-o", comp, "--comp", "X=" + comp, expected=2)
     check("replace neither an input" in said, said)
+    check("the file is empty" in run(run.program("empty.ngc", ""), "-o", str(trace), expected=2), "an empty program")
+    device = run.folder / "device"
+    device.symlink_to("/dev/null")
+    said = run(run.program("comp.ngc", PROGRAM), "-o", str(device), expected=2)
+    check("is no file" in said and device.is_symlink(), said)
     for option in ("--backlash=X=nan", "--limit-s=inf"):
         run(run.program("comp.ngc", PROGRAM), "-o", str(trace), option, expected=2)
     check(not trace.exists(), "there is a trace of a program that was refused")

@@ -4,16 +4,21 @@
 
 #include <utility>
 
+#include "abbe/formats/utf8.h"
+
 namespace abbe {
 namespace {
 
+/// Of a binary file a line can be everything, and any byte.
+constexpr std::size_t kLongestField = 120, kLongestProblem = 2000;
+
 std::string message(const InputError::Place& place, const std::string& problem, const std::string& expected) {
-  std::string text = place.file;
+  std::string text = printable(place.file, kLongestProblem);
   if (place.line > 0) text += fmt::format(":{}", place.line);
   if (place.line > 0 && place.column > 0) text += fmt::format(":{}", place.column);
   if (!text.empty()) text += ": ";
-  if (!place.field.empty()) text += place.field + ": ";
-  text += problem;
+  if (!place.field.empty()) text += printable(place.field, kLongestField) + ": ";
+  text += printable(problem, kLongestProblem);
   if (!expected.empty()) text += "; expected " + expected;
   return text;
 }

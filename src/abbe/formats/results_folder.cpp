@@ -61,16 +61,17 @@ int made(const fs::path& path) {
   return ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
 }
 
-void write_and_flush(const fs::path& path, std::string_view contents) {
+/// @param called  what messages call it: its name when all is done
+void write_and_flush(const fs::path& path, std::string_view contents, const fs::path& called) {
   Descriptor file(made(path));
-  if (file.number() < 0) fail(path, errno);
+  if (file.number() < 0) fail(called, errno);
   while (!contents.empty()) {
     const ssize_t written = ::write(file.number(), contents.data(), contents.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(path, errno);
+    if (written < 0) fail(called, errno);
     contents.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::fsync(file.number()) != 0 || file.close() != 0) fail(path, errno);
+  if (::fsync(file.number()) != 0 || file.close() != 0) fail(called, errno);
 }
 
 fs::path with_suffix(const fs::path& path, std::string_view suffix) {
@@ -93,6 +94,20 @@ int exchange(const fs::path& a, const fs::path& b) {
 }
 
 }  // namespace
+
+fs::path file_to_write(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) return path;
+  if (fs::is_directory(status)) fail(path, EISDIR);
+  if (!fs::is_regular_file(status)) {
+    throw InputError({path.string(), 0, 0, ""}, "is a device, a pipe or a socket", "the name of a file to write");
+  }
+  if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
+  fs::path target = fs::canonical(path, error);
+  if (error) fail(path, error.value());
+  return target;
+}
 
 fs::path partial_name(const fs::path& path) { return with_suffix(path, kPartial); }
 
@@ -142,7 +157,7 @@ ResultsFolder::ResultsFolder(fs::path name) : name_(std::move(name)) {
   const UninterruptedSteps steps;
   fs::remove_all(partial_, error);
   fs::create_directory(partial_, error);
-  if (error) fail(partial_, error.value());
+  if (error) fail(name_, error.value());
 }
 
 ResultsFolder::~ResultsFolder() {
@@ -157,8 +172,9 @@ void ResultsFolder::write(const fs::path& relative, std::string_view contents) {
     const UninterruptedSteps steps;
     fs::create_directories(path.parent_path(), error);
   }
-  if (error) fail(path.parent_path(), error.value());
-  write_and_flush(path, contents);
+  const fs::path called = name_ / relative;
+  if (error) fail(called.parent_path(), error.value());
+  write_and_flush(path, contents, called);
 }
 
 void ResultsFolder::commit() {
@@ -167,7 +183,7 @@ void ResultsFolder::commit() {
   for (fs::recursive_directory_iterator entry(partial_, error), end; !error && entry != end; entry.increment(error)) {
     if (entry->is_directory()) flush_folder(entry->path());
   }
-  if (error) fail(partial_, error.value());
+  if (error) fail(name_, error.value());
   flush_folder(partial_);
 
   const UninterruptedSteps steps;
@@ -190,15 +206,16 @@ void ResultsFolder::commit() {
   if (!aside.empty()) fs::remove_all(aside, error);
 }
 
-void write_file_atomically(const fs::path& path, std::string_view contents) {
-  refuse_input_as_output(path);
+void write_file_atomically(const fs::path& name, std::string_view contents) {
+  refuse_input_as_output(name);
+  const fs::path path = file_to_write(name);
   const fs::path partial = partial_name(path);
   remove_partials_of_killed_writers(path);
   const UnfinishedPath unfinished(partial);
   try {
-    write_and_flush(partial, contents);
+    write_and_flush(partial, contents, name);
     const UninterruptedSteps steps;
-    if (::rename(partial.c_str(), path.c_str()) != 0) fail(path, errno);
+    if (::rename(partial.c_str(), path.c_str()) != 0) fail(name, errno);
   } catch (...) {
     ::unlink(partial.c_str());
     throw;

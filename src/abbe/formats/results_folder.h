@@ -44,7 +44,8 @@ class ResultsFolder {
   bool committed_ = false;
 };
 
-/// One file that appears whole or not at all; an older file of that name stays until then. @throws InputError
-void write_file_atomically(const std::filesystem::path& path, std::string_view contents);
+/// One file that appears whole or not at all; an older file of that name stays until then. Through a link the file it
+/// leads to is written. @throws InputError, also where the name is that of a folder or a device
+void write_file_atomically(const std::filesystem::path& name, std::string_view contents);
 
 }  // namespace abbe

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/message_of.h"
+#include "abbe/formats/streamed_file.h"
 
 namespace abbe {
 namespace {
@@ -193,6 +195,46 @@ TEST(AtomicFile, ReplacesOrLeavesTheOldOne) {
   EXPECT_EQ(WEXITSTATUS(status), 7);
   EXPECT_EQ(contents(folder / "a.txt"), "two");
   EXPECT_EQ(entries(folder), 1U);
+}
+
+TEST(AtomicFile, DevicesPipesAndFoldersAreNotReplaced) {
+  const fs::path folder = test_folder("abbe_no_files");
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  fs::create_symlink("/dev/null", folder / "device");
+  fs::create_directory(folder / "folder");
+  for (const char* const name : {"pipe", "device"}) {
+    const std::string refused =
+        (folder / name).string() + ": is a device, a pipe or a socket; expected the name of a file to write";
+    EXPECT_EQ(message_of([&] { write_file_atomically(folder / name, "x"); }), refused);
+    EXPECT_EQ(message_of([&] { StreamedFile file(folder / name); }), refused);
+  }
+  EXPECT_NE(message_of([&] { write_file_atomically(folder / "folder", "x"); }).find("Is a directory"),
+            std::string::npos);
+  EXPECT_TRUE(fs::is_fifo(folder / "pipe"));
+  EXPECT_TRUE(fs::is_symlink(folder / "device"));
+  EXPECT_EQ(entries(folder), 3U);
+}
+
+TEST(AtomicFile, ThroughALinkTheFileIsWritten) {
+  const fs::path folder = test_folder("abbe_linked");
+  fs::create_directory(folder / "elsewhere");
+  fs::create_symlink("elsewhere/a.txt", folder / "link");
+  std::ofstream(folder / "elsewhere/a.txt") << "old";
+  write_file_atomically(folder / "link", "one");
+  EXPECT_EQ(contents(folder / "elsewhere/a.txt"), "one");
+  StreamedFile file(folder / "link");
+  file.append("two");
+  file.commit();
+  EXPECT_EQ(contents(folder / "elsewhere/a.txt"), "two");
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(entries(folder) + entries(folder / "elsewhere"), 3U);
+}
+
+TEST(AtomicFile, MessagesNameTheFileThatWasAskedFor) {
+  const fs::path name = test_folder("abbe_named") / "none" / "a.csv";
+  EXPECT_EQ(
+      message_of([&] { write_file_atomically(name, "x"); }),
+      name.string() + ": cannot be written: No such file or directory; expected a writable folder with enough space");
 }
 
 }  // namespace

@@ -24,11 +24,9 @@ namespace fs = std::filesystem;
 
 }  // namespace
 
-StreamedFile::StreamedFile(fs::path path) : path_(std::move(path)), partial_(partial_name(path_)) {
+StreamedFile::StreamedFile(const fs::path& path) : path_(file_to_write(path)), partial_(partial_name(path_)) {
   refuse_input_as_output(path_);
   remove_partials_of_killed_writers(path_);
-  std::error_code ignored;
-  if (fs::is_directory(path_, ignored)) fail(path_, EISDIR);
   unfinished_.emplace(partial_);
   const UninterruptedSteps steps;
   const fs::path folder = path_.parent_path().empty() ? fs::path(".") : path_.parent_path();

@@ -18,7 +18,7 @@ namespace abbe {
 class StreamedFile {
  public:
   /// @throws InputError if the file cannot be made
-  explicit StreamedFile(std::filesystem::path path);
+  explicit StreamedFile(const std::filesystem::path& path);
   ~StreamedFile();
   StreamedFile(const StreamedFile&) = delete;
   StreamedFile& operator=(const StreamedFile&) = delete;

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "abbe/formats/utf8.h"
+
 namespace abbe {
 namespace {
 
@@ -44,26 +46,6 @@ std::string number(double value) {
 
 std::string pair(DrawingPoint point) { return number(point.x) + " " + number(point.y); }
 
-/// Length of the UTF-8 sequence that begins there, or 0 if there is none.
-std::size_t sequence_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-  const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
-  const unsigned lead = byte(at), second = byte(at + 1);
-  if (lead < 0x80U) return 1;
-  if (lead >= 0xC2U && lead <= 0xDFU) return follows(at + 1) ? 2 : 0;
-  if (lead >= 0xE0U && lead <= 0xEFU) {
-    const bool overlong = lead == 0xE0U && second < 0xA0U, surrogate = lead == 0xEDU && second > 0x9FU;
-    // U+FFFE and U+FFFF are no characters of XML.
-    const bool none = lead == 0xEFU && second == 0xBFU && byte(at + 2) >= 0xBEU;
-    return follows(at + 1) && follows(at + 2) && !overlong && !surrogate && !none ? 3 : 0;
-  }
-  if (lead >= 0xF0U && lead <= 0xF4U) {
-    const bool outside = (lead == 0xF0U && second < 0x90U) || (lead == 0xF4U && second > 0x8FU);
-    return follows(at + 1) && follows(at + 2) && follows(at + 3) && !outside ? 4 : 0;
-  }
-  return 0;
-}
-
 int decimals_of(double step) {
   for (int decimals = 0; decimals < 9; ++decimals) {
     const double scaled = step * std::pow(10, decimals);
@@ -85,9 +67,11 @@ std::string tick_label(double value, double step) {
 std::string xml_text(std::string_view text) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = sequence_length(text, at);
+    const std::size_t length = utf8_length(text, at);
     const char c = text[at];
-    if (length == 0) {
+    // U+FFFE and U+FFFF are no characters of XML.
+    const bool none = text.substr(at, length) == "\xEF\xBF\xBE" || text.substr(at, length) == "\xEF\xBF\xBF";
+    if (length == 0 || none) {
       out += "\xEF\xBF\xBD";
     } else if (length > 1) {
       out += text.substr(at, length);
