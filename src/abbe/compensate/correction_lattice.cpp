@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "abbe/compensate/point_correction.h"
 #include "abbe/compensate/table_nodes.h"
@@ -31,8 +32,8 @@ Place place_of(const std::vector<double>& nodes, bool modulo, double position) {
 
 /// Nodes that one axis needs on lines through the corners and the middle of the others' travel.
 TableNodes nodes_along(const LatticeFunction& function, const LatticeOptions& options, std::size_t input,
-                       const std::vector<KnownTravel>& travels, std::size_t axes,
-                       const std::vector<double>& tolerance) {
+                       const std::vector<KnownTravel>& travels, std::size_t axes, const std::vector<double>& tolerance,
+                       std::vector<double> kinks) {
   std::vector<std::vector<double>> lines;
   const std::size_t others = options.inputs.size() - 1;
   // Beyond five inputs the corners are too many; those of the first four others are taken.
@@ -67,6 +68,7 @@ TableNodes nodes_along(const LatticeFunction& function, const LatticeOptions& op
   spacing.from = travels[input].from;
   spacing.to = travels[input].to;
   spacing.places = 250;
+  spacing.kinks = std::move(kinks);
   // One axis can have no more than what is left when all others have two.
   spacing.most = std::min(options.most_per_axis, options.most_nodes >> others);
   for (std::size_t line = 0; line < lines.size(); ++line) {
@@ -199,7 +201,9 @@ std::vector<std::vector<double>> lattice_nodes(const Machine& machine, const Err
   const std::vector<double> tolerance = output_tolerance(machine, options);
   std::vector<std::vector<double>> positions;
   for (std::size_t a = 0; a < options.inputs.size(); ++a) {
-    positions.push_back(nodes_along(function, options, a, travels, machine.axes.size(), tolerance).positions);
+    positions.push_back(
+        nodes_along(function, options, a, travels, machine.axes.size(), tolerance, kinks_of(errors, options.inputs[a]))
+            .positions);
   }
   fit_into(positions, options.most_nodes);
   return positions;

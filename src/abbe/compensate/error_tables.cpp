@@ -53,6 +53,7 @@ BuiltErrorTables build_error_tables(const Machine& machine, const ErrorSet& erro
     spacing.most = options.most_nodes;
     spacing.step_multiple =
         machine.axes[i].kind == AxisKind::rotary ? options.step_multiple_rad : options.step_multiple_mm;
+    spacing.kinks = kinks_of(errors, i);
     for (const Component component : table.components) {
       spacing.tolerance.push_back(is_rotation(component) ? options.tolerance_rad : options.tolerance_mm);
     }

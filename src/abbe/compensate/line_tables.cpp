@@ -89,6 +89,8 @@ LineTables line_tables(const Machine& machine, const ErrorSet& errors, const Lin
     spacing.step_multiple =
         machine.axes[i].kind == AxisKind::rotary ? options.step_multiple_rad : options.step_multiple_mm;
     if (!options.anchors.empty() && !travel.whole_turn) spacing.anchor = options.anchors[i];
+    spacing.kinks = kinks_of(errors, i);
+    if (spacing.anchor && !spacing.kinks.empty()) spacing.kinks.push_back(*spacing.anchor);
     for (std::size_t j = 0; j < axes; ++j) {
       const bool rotary = machine.axes[j].kind == AxisKind::rotary;
       if (i == j ? !options.own : !options.cross || rotary) continue;

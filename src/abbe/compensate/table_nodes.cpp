@@ -95,21 +95,45 @@ TableNodes nodes_at(const SampledFunctions& functions, const NodeSpacing& spacin
   return nodes;
 }
 
-TableNodes choose_nodes(const SampledFunctions& functions, const NodeSpacing& spacing) {
-  const std::size_t most = std::max<std::size_t>(spacing.most, 2);
-  std::size_t good = std::clamp<std::size_t>(spacing.fewest, 2, most);
-  TableNodes best = nodes_at(functions, spacing, good);
+namespace {
+
+/// Fewest intervals with which every kink is on a node (to a thousandth of an interval: the corrections themselves move
+/// it by as much as they are), or 0.
+std::size_t intervals_on_kinks(const NodeSpacing& spacing, std::size_t most) {
+  std::vector<double> shares;
+  for (const double kink : spacing.kinks) {
+    const double share = (kink - spacing.from) / (spacing.to - spacing.from);
+    if (share > 1e-9 && share < 1 - 1e-9) shares.push_back(share);
+  }
+  for (std::size_t intervals = 1; !shares.empty() && intervals <= most; ++intervals) {
+    if (std::all_of(shares.begin(), shares.end(), [&](double share) {
+          const double place = share * static_cast<double>(intervals);
+          return std::abs(place - std::round(place)) < 1e-3;
+        })) {
+      return intervals;
+    }
+  }
+  return 0;
+}
+
+/// Few multiples of `unit` intervals.
+TableNodes fewest_nodes(const SampledFunctions& functions, const NodeSpacing& spacing, std::size_t unit) {
+  const std::size_t most = std::max<std::size_t>((std::max<std::size_t>(spacing.most, 2) - 1) / unit, 1);
+  const auto nodes_of = [&](std::size_t units) { return units * unit + 1; };
+  const std::size_t wanted = std::max<std::size_t>(spacing.fewest, 2) - 1;
+  std::size_t good = std::clamp<std::size_t>((wanted + unit - 1) / unit, 1, most);
+  TableNodes best = nodes_at(functions, spacing, nodes_of(good));
   std::size_t bad = good;
   while (!best.within && good < most) {
     bad = good;
-    good = std::min(most, 2 * good - 1);
-    best = nodes_at(functions, spacing, good);
+    good = std::min(most, 2 * good);
+    best = nodes_at(functions, spacing, nodes_of(good));
   }
   if (!best.within || best.positions.size() < 2) return best;
   // To three parts in a hundred is near enough.
-  while (good > bad + 1 + good / 32) {
+  while (good > bad + 1 + (good + 1) / 32) {
     const std::size_t middle = bad + (good - bad) / 2;
-    TableNodes tried = nodes_at(functions, spacing, middle);
+    TableNodes tried = nodes_at(functions, spacing, nodes_of(middle));
     if (tried.within) {
       good = middle;
       best = std::move(tried);
@@ -119,13 +143,36 @@ TableNodes choose_nodes(const SampledFunctions& functions, const NodeSpacing& sp
   }
   if (!(spacing.step_multiple > 0) || spacing.anchor) return best;
   const double length = spacing.to - spacing.from;
-  for (std::size_t count = good; count <= std::min(most, 2 * good); ++count) {
-    if (!is_multiple(length / static_cast<double>(count - 1), spacing.step_multiple)) continue;
-    TableNodes rounded = nodes_at(functions, spacing, count);
+  for (std::size_t units = good; units <= most && nodes_of(units) <= 2 * nodes_of(good); ++units) {
+    if (!is_multiple(length / static_cast<double>(units * unit), spacing.step_multiple)) continue;
+    TableNodes rounded = nodes_at(functions, spacing, nodes_of(units));
     // More nodes can be worse where the function has a kink that a node was on.
     if (rounded.within) return rounded;
   }
   return best;
+}
+
+}  // namespace
+
+TableNodes choose_nodes(const SampledFunctions& functions, const NodeSpacing& spacing) {
+  const std::size_t unit =
+      spacing.to > spacing.from ? intervals_on_kinks(spacing, std::max<std::size_t>(spacing.most, 2) - 1) : 0;
+  if (unit < 2) return fewest_nodes(functions, spacing, 1);
+  TableNodes on_kinks = fewest_nodes(functions, spacing, unit);
+  if (!on_kinks.within) return fewest_nodes(functions, spacing, 1);
+  NodeSpacing fewer = spacing;
+  fewer.most = on_kinks.positions.size() - 1;
+  TableNodes anywhere = fewest_nodes(functions, fewer, 1);
+  return anywhere.within && anywhere.positions.size() < on_kinks.positions.size() ? anywhere : on_kinks;
+}
+
+std::vector<double> kinks_of(const ErrorSet& errors, std::size_t axis) {
+  std::vector<double> kinks;
+  for (const ErrorMotion& motion : errors.motions) {
+    if (motion.axis != axis || motion.basis.kind != BasisKind::table_linear) continue;
+    kinks.insert(kinks.end(), motion.basis.nodes.begin(), motion.basis.nodes.end());
+  }
+  return kinks;
 }
 
 }  // namespace abbe

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "abbe/errors/error_set.h"
+
 namespace abbe {
 
 /// Functions of one position that share the nodes of a table: values[function][k] at positions[k].
@@ -25,6 +27,8 @@ struct NodeSpacing {
   /// Where a node has to be, mm or rad. The outer nodes then may lie outside, on straight continuations of the cells at
   /// the ends, where the functions are not asked; the step is a multiple of `step_multiple` in any case.
   std::optional<double> anchor;
+  /// Where the functions may have kinks (kinks_of), mm or rad. Grids with nodes on all of them are tried too.
+  std::vector<double> kinks;
 };
 
 /// Evenly spaced nodes and how well straight lines between them follow.
@@ -38,9 +42,15 @@ struct TableNodes {
 /// Few evenly spaced nodes (to three parts in a hundred the fewest) that keep straight lines within the tolerance, or
 /// `most` of them.
 ///
+/// Near a kink straight lines are off by as much as the kink is away from a node, so that grids in general come near
+/// only with very many nodes; those on all kinks need no more than the function between them.
+///
 /// The difference is looked at in 16 places of every interval, and at no fewer than `places` in all, so that what is
 /// narrower than an interval is seen too.
 TableNodes choose_nodes(const SampledFunctions& functions, const NodeSpacing& spacing);
+
+/// Nodes of the error motions of an axis that are straight-line tables.
+std::vector<double> kinks_of(const ErrorSet& errors, std::size_t axis);
 
 /// Exactly so many nodes; with an anchor, nodes as close as so many over the travel, or as `most` allows.
 TableNodes nodes_at(const SampledFunctions& functions, const NodeSpacing& spacing, std::size_t count);

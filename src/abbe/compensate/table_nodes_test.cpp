@@ -98,6 +98,57 @@ TEST(TableNodes, AQuadraticNeedsTheNodesThatItsCurvatureAsksFor) {
   EXPECT_EQ(rounded.positions.size(), 26U) << "400 / 25 = 16 is the first step in halves";
 }
 
+TEST(TableNodes, AGridOnAllKinksIsTakenWhereItNeedsFewerNodes) {
+  Curve steps{"table-linear", {}, {}};
+  steps.basis.kind = BasisKind::table_linear;
+  steps.basis.to = 600;
+  for (int k = 0; k <= 10; ++k) {
+    steps.basis.nodes.push_back(60 * k);
+    steps.coefficients.push_back(k % 2 == 0 ? 0.004 : -0.003);
+  }
+  NodeSpacing spacing;
+  spacing.to = 600;
+  spacing.tolerance = {1e-4};
+  spacing.step_multiple = 0.001;
+  spacing.most = 250;
+  EXPECT_FALSE(choose_nodes(sampled(steps), spacing).within) << "halving intervals does not come upon it";
+  spacing.kinks = steps.basis.nodes;
+  const TableNodes nodes = choose_nodes(sampled(steps), spacing);
+  EXPECT_TRUE(nodes.within);
+  EXPECT_EQ(nodes.positions.size(), 11U);
+  EXPECT_LE(dense_error(steps, nodes), 1e-15);
+  spacing.most = 8;
+  EXPECT_FALSE(choose_nodes(sampled(steps), spacing).within);
+  // No even grid has few nodes on all of these: as without them.
+  const Curve uneven = curves()[5];
+  NodeSpacing other;
+  other.to = 600;
+  other.tolerance = {1e-4};
+  const TableNodes without = choose_nodes(sampled(uneven), other);
+  other.kinks = uneven.basis.nodes;
+  EXPECT_LE(choose_nodes(sampled(uneven), other).positions.size(), without.positions.size());
+  // Where much is allowed, fewer nodes beside the kinks do.
+  spacing.tolerance = {0.1};
+  spacing.most = 250;
+  EXPECT_LT(choose_nodes(sampled(steps), spacing).positions.size(), 11U);
+}
+
+TEST(TableNodes, KinksAreTheNodesOfStraightLineTablesOfTheAxis) {
+  ErrorSet errors;
+  for (const BasisKind kind : {BasisKind::table_linear, BasisKind::table_monotone}) {
+    for (const std::size_t axis : {0U, 1U}) {
+      ErrorMotion motion;
+      motion.axis = axis;
+      motion.basis.kind = kind;
+      motion.basis.nodes = {0, 10.0 + static_cast<double>(axis), 30};
+      motion.coefficients = {0, 1e-3, 2e-3};
+      errors.motions.push_back(motion);
+    }
+  }
+  EXPECT_EQ(kinks_of(errors, 1), (std::vector<double>{0, 11, 30}));
+  EXPECT_TRUE(kinks_of(errors, 2).empty());
+}
+
 TEST(TableNodes, TooFewNodesAreSaidWithTheErrorReached) {
   const std::vector<Curve> all = curves();
   NodeSpacing spacing;
