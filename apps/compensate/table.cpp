@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <numbers>
 #include <optional>
@@ -37,10 +38,12 @@ struct TableCommand {
   std::vector<std::string> at, axes, names, reference_position;
   std::optional<double> interpolation_um, limit_um, limit_urad;
   double interpolation_urad = 0.1, times_uncertainty = 0;
-  std::size_t max_points = 0, positions = 0, first_table = 0, encoder = 0;
+  std::optional<std::size_t> max_points, positions;
+  std::size_t first_table = 0, encoder = 0;
   double unit_um = 1;
   int type = 1;
   bool json = false, dry_run = false, negate = false;
+  std::vector<std::string> given;  ///< of the options that not every format has
 };
 
 /// Grid over what is known of the travel; of a whole turn the end, which is its beginning, is left out.
@@ -75,15 +78,16 @@ PoseList travel_grid(const Machine& machine, const ErrorSet& errors, std::size_t
 }
 
 std::size_t checked_positions(const TableCommand& command, const Machine& machine) {
-  if (command.positions == 0) return machine.axes.size() > 3 ? 5 : 9;
+  if (!command.positions) return machine.axes.size() > 3 ? 5 : 9;
+  const std::size_t positions = *command.positions;
   double poses = 1;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) poses *= static_cast<double>(command.positions);
-  if (command.positions < 2 || poses > 1e6) {
-    throw InputError({.field = fmt::format("--positions {}", command.positions)},
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) poses *= static_cast<double>(positions);
+  if (positions < 2 || poses > 1e6) {
+    throw InputError({.field = fmt::format("--positions {}", positions)},
                      fmt::format("{:.0f} poses for {} axes", poses, machine.axes.size()),
                      "at least 2 positions per axis and at most 1,000,000 poses");
   }
-  return command.positions;
+  return positions;
 }
 
 /// What takes the reversal values that the tables do not carry.
@@ -214,7 +218,10 @@ TableRequest request_of(const TableCommand& command, const Machine& machine, con
       pose_option(machine, "--reference-position", machine_zero(machine), command.reference_position);
   request.axes = chosen_axes(machine, command.axes);
   request.names = table_axis_names(machine, format, command.names);
-  request.most_nodes = command.max_points;
+  if (command.max_points && *command.max_points < 2) {
+    throw InputError({.field = fmt::format("--max-points {}", *command.max_points)}, "is no table", "at least 2 nodes");
+  }
+  request.most_nodes = command.max_points.value_or(0);
   if (command.type != 0 && command.type != 1) throw InputError({.field = "--type"}, "unknown type", "0 or 1");
   request.type = command.type;
   if (command.encoder > 1) throw InputError({.field = "--encoder"}, "unknown measuring system", "0 or 1");
@@ -231,6 +238,7 @@ TableRequest request_of(const TableCommand& command, const Machine& machine, con
 
 int run_table(const TableCommand& command) {
   const TableFormat& format = table_format(command.format);
+  refuse_options_of_other_formats(format, command.given);
   const Machine machine = read_machine(command.machine);
   const ErrorsFile file = read_errors(command.errors, machine);
   check_outputs(command);
@@ -275,6 +283,8 @@ int run_table(const TableCommand& command) {
     report.uncertainty_statistics = sample_statistics(map.norm_uncertainty, map.covered);
   }
   report.tables = &tables;
+  report.tolerance_mm = request.tolerance_mm;
+  report.tolerance_rad = request.tolerance_rad;
   report.before = deviations_with(machine, errors, report.poses, NoCorrection());
   report.after = deviations_with(machine, errors, report.poses, *tables.correction);
   report.ideal = ideal_deviations(machine, errors, report.poses, report.ideal_not_reached);
@@ -312,6 +322,7 @@ int run_table(const TableCommand& command) {
     print_table_report(report);
     if (command.dry_run) fmt::print("dry run: no table is written\n");
   }
+  std::fflush(stdout);
   for (const std::string& words : report.refused) fmt::print(stderr, "abbe: {}; nothing is written\n", words);
   if (!refused && !within) {
     fmt::print(stderr,
@@ -377,7 +388,12 @@ void add_compensate_table(CLI::App& compensate, CommandLine& line) {
       "default 0, or the end of the travel next to it; repeatable");
   command->add_option("--map", options->map, "Map of the error before, after and ideal: .csv, .vts or .vtu");
   command->add_flag("--json", options->json, "Print JSON for programs");
-  command->callback([&line, options] { line.run = [options]() -> int { return run_table(*options); }; });
+  command->callback([&line, options, command] {
+    for (const FormatOption& option : format_options()) {
+      if (command->count(option.name) > 0) options->given.push_back(option.name);
+    }
+    line.run = [options]() -> int { return run_table(*options); };
+  });
 }
 
 }  // namespace abbe

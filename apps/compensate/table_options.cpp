@@ -43,6 +43,45 @@ std::vector<bool> chosen_axes(const Machine& machine, const std::vector<std::str
   return chosen;
 }
 
+const std::vector<FormatOption>& format_options() {
+  static const std::vector<FormatOption> kOptions = [] {
+    const auto all_but = [](const std::vector<std::string>& others) {
+      std::vector<std::string> names;
+      for (const TableFormat& format : table_formats()) {
+        if (std::find(others.begin(), others.end(), format.name) == others.end()) names.push_back(format.name);
+      }
+      return names;
+    };
+    const std::vector<std::string> with_nodes = all_but({"klipper", "marlin"});
+    return std::vector<FormatOption>{
+        {"--type", {"linuxcnc"}},
+        {"--first-table", {"siemens-cec"}},
+        {"--encoder", {"siemens-eec"}},
+        {"--negate", {"siemens-cec", "heidenhain", "fanuc-pitch", "fanuc-3d"}},
+        {"--detection-unit-um", {"fanuc-pitch", "fanuc-3d"}},
+        {"--reference-position", {"fanuc-pitch", "fanuc-3d"}},
+        {"--at", all_but({"beckhoff-isg", "etalon"})},
+        {"--name", with_nodes},
+        {"--axis", with_nodes},
+        {"--interpolation-um", with_nodes},
+        {"--interpolation-urad", all_but({"klipper", "marlin", "fanuc-3d"})},
+        {"--max-points", with_nodes},
+    };
+  }();
+  return kOptions;
+}
+
+void refuse_options_of_other_formats(const TableFormat& format, const std::vector<std::string>& given) {
+  for (const FormatOption& option : format_options()) {
+    if (std::find(given.begin(), given.end(), option.name) == given.end()) continue;
+    if (std::find(option.formats.begin(), option.formats.end(), format.name) != option.formats.end()) continue;
+    std::string others;
+    for (const std::string& name : option.formats) others += (others.empty() ? "" : ", ") + name;
+    throw InputError({.field = option.name}, "would change nothing in tables for " + format.name,
+                     "--for " + others + "; or to leave it out");
+  }
+}
+
 std::vector<TableAxisName> table_axis_names(const Machine& machine, const TableFormat& format,
                                             const std::vector<std::string>& names) {
   const std::vector<std::size_t> order = joint_order(machine);
@@ -67,6 +106,8 @@ std::vector<TableAxisName> table_axis_names(const Machine& machine, const TableF
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
     });
     if (name.empty() || name.size() > 32 || !plain) fail("not a name of letters and digits");
+    const bool number = std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (format.axis_names.starts_with("number") && (!number || name.size() > 4)) fail("'" + name + "' is not a number");
     for (TableAxisName& one : known) {
       if (one.axis == axis) one.name = name;
     }

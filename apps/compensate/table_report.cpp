@@ -77,21 +77,29 @@ void print_table_report(const TableReport& report) {
   fmt::print("tables of {} for {}: {}\n", report.machine->name, format.name, format.what);
   fmt::print("convention: {}\n", format.convention);
   if (!format.unverified.empty()) fmt::print("EXPERIMENTAL, not verified: {}\n", format.unverified);
-  for (std::size_t t = 0; t < report.tables->tables.size(); ++t) {
-    const TableSummary& table = report.tables->tables[t];
-    fmt::print("  {:<10} {:>5} nodes", table.name, table.nodes);
+  const std::vector<TableSummary>& tables = report.tables->tables;
+  if (std::any_of(tables.begin(), tables.end(), [](const TableSummary& table) { return table.nodes > 1; })) {
+    fmt::print("nodes: evenly spaced, few that keep straight lines between them within {:g} um and {:g} urad\n",
+               in_um(report.tolerance_mm), in_micro(report.tolerance_rad));
+  }
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    const TableSummary& table = tables[t];
+    fmt::print("  {:<10} {:>5} {}", table.name, table.nodes, table.nodes == 1 ? "value" : "nodes");
     if (table.step > 0) fmt::print(", step {}", position_words(table.step, table.step_is_angle));
-    fmt::print("; largest correction {}{}; between nodes within {}", size_words(table.largest, table.is_angle),
-               table.step > 0 ? " at " + position_words(table.largest_at, table.step_is_angle) : "",
-               table.is_angle ? fmt::format("{:.3f} urad", in_micro(table.interpolation_error))
-                              : fmt::format("{:.4f} um", in_um(table.interpolation_error)));
+    fmt::print("; largest correction {}{}", size_words(table.largest, table.is_angle),
+               table.step > 0 ? " at " + position_words(table.largest_at, table.step_is_angle) : "");
+    if (table.nodes > 1) {
+      fmt::print("; between nodes within {}", table.is_angle
+                                                  ? fmt::format("{:.3f} urad", in_micro(table.interpolation_error))
+                                                  : fmt::format("{:.4f} um", in_um(table.interpolation_error)));
+    }
     if (!table.within) fmt::print(" (ABOVE the limit: no more nodes)");
     if (!report.uncertainty.empty()) {
       fmt::print("; standard uncertainty up to {}", size_words(report.uncertainty[t], table.is_angle));
     }
     fmt::print("\n");
   }
-  if (report.tables->tables.empty()) fmt::print("  no table is needed: nothing that this format carries is there\n");
+  if (tables.empty()) fmt::print("  no table is needed: nothing that this format carries is there\n");
   for (const std::string& name : report.left_out) fmt::print("  left out: {}\n", name);
   for (const std::string& name : report.left_out_kept)
     fmt::print("  kept, as not small together with others: {}\n", name);

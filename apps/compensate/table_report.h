@@ -15,6 +15,7 @@ struct TableReport {
   const TableFormat* format = nullptr;
   const Machine* machine = nullptr;
   const ControllerTables* tables = nullptr;
+  double tolerance_mm = 0, tolerance_rad = 0;  ///< of straight lines between nodes
   PoseList poses;
   std::vector<std::size_t> grid;  ///< positions per axis, chain order
   PoseDeviations before, after, ideal;

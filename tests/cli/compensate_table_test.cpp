@@ -330,6 +330,40 @@ TEST_F(CompensateTable, InputsAreNeverWrittenOverAndWrongOptionsAreNamed) {
   EXPECT_THAT(table("linuxcnc", {"-o", "c", "--axis", "Q"}).err, HasSubstr("no such axis"));
 }
 
+TEST_F(CompensateTable, OptionsThatWouldChangeNothingAreRefused) {
+  const auto refused = [&](const std::string& format, const std::vector<std::string>& more) {
+    const CommandResult result = table(format, more);
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input) << format << ' ' << more[0];
+    EXPECT_THAT(result.err, HasSubstr(more[0])) << format;
+    return result.err;
+  };
+  EXPECT_THAT(refused("linuxcnc", {"--negate", "-o", "c"}), HasSubstr("would change nothing in tables for linuxcnc"));
+  EXPECT_THAT(refused("linuxcnc", {"--detection-unit-um", "2", "-o", "c"}), HasSubstr("--for fanuc-pitch, fanuc-3d"));
+  refused("siemens-cec", {"--type", "0", "-o", "c"});
+  refused("linuxcnc", {"--encoder", "1", "-o", "c"});
+  refused("siemens-eec", {"--first-table", "3", "-o", "c"});
+  refused("klipper", {"--axis", "X", "-o", "c"});
+  refused("marlin", {"--interpolation-um", "1", "-o", "c"});
+  refused("etalon", {"--at", "X_mm=1", "-o", "c"});
+  refused("lattice-csv", {"--max-points", "0", "-o", "c"});
+  refused("linuxcnc", {"--positions", "0", "-o", "c"});
+  EXPECT_THAT(refused("linuxcnc", {"--name", "X=X1", "-o", "c"}), HasSubstr("'X1' is not a number"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "c"));
+}
+
+TEST_F(CompensateTable, ATableOfAnAxisGetsNodesWhereItsKinksAre) {
+  const auto mill5 = (source / "examples/machines/trunnion-mill.machine.toml").string();
+  const auto errors5 = (source / "examples/compensate/trunnion.errors.toml").string();
+  const nlohmann::json json =
+      json_of(abbe({"compensate", "table", mill5, errors5, "--for", "linuxcnc", "-o", "comp", "--json"}));
+  ASSERT_EQ(json["files"].size(), 5U);
+  // EAA is a table every 15 degrees.
+  EXPECT_EQ(json["tables"][1]["name"], "A");
+  EXPECT_EQ(json["tables"][1]["nodes"], 11);
+  EXPECT_NEAR(json["tables"][1]["step_deg"].get<double>(), 15, 1e-9);
+  EXPECT_LT(error_named(json, "EAA")["rms_after_um"], 0.01);
+}
+
 TEST_F(CompensateTable, TheUnitThatTheControlHasToBeSetToIsSaid) {
   EXPECT_THAT(json_of(table("linuxcnc", {"--dry-run", "--json"}))["settings"].dump(), HasSubstr("LINEAR_UNITS = mm"));
   EXPECT_THAT(json_of(table("siemens-cec", {"--dry-run", "--json"}))["settings"].dump(), HasSubstr("MD32711"));
