@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
@@ -15,7 +17,15 @@
 namespace abbe {
 namespace {
 
+/// Without it, a condition that nothing meets, or everything.
+void check_condition(const char* option, std::optional<double> value) {
+  if (!value || (*value > 0 && std::isfinite(*value))) return;
+  throw InputError({.field = option}, fmt::format("{} is no condition", *value), "a number above zero");
+}
+
 int run_verify(const VerifyOptions& options) {
+  check_condition("--least-reduction", options.least_reduction);
+  check_condition("--largest-ratio", options.largest_ratio);
   if (!options.output.empty()) {
     if (!std::filesystem::path(options.output).extension().string().starts_with(".htm")) {
       throw InputError({.file = options.output}, "unknown kind of page", "a name ending in .html");
@@ -84,16 +94,12 @@ void add_verify_command(CommandLine& line) {
                    "AXIS_unit=from:to or AXIS_unit=position; repeatable (default: where the errors are known)")
       ->allow_extra_args(false);
   CLI::Option* const reduction =
-      command
-          ->add_option("--least-reduction", asked->reduction,
-                       "Wanted: mean volumetric error so many times smaller; exit code 1 if it is not")
-          ->check(CLI::PositiveNumber);
+      command->add_option("--least-reduction", asked->reduction,
+                          "Wanted: mean volumetric error so many times smaller; exit code 1 if it is not");
   CLI::Option* const ratio =
-      command
-          ->add_option("--largest-ratio", asked->ratio,
-                       "Wanted: volumetric error (root mean square) at most so many times its predicted standard "
-                       "uncertainty; exit code 1 if it is more")
-          ->check(CLI::PositiveNumber);
+      command->add_option("--largest-ratio", asked->ratio,
+                          "Wanted: volumetric error (root mean square) at most so many times its predicted standard "
+                          "uncertainty; exit code 1 if it is more");
   command->add_option("--reach-mm", options.reach, "A sample farther from the test piece's tool path does not cut it")
       ->check(CLI::Range(0.01, 10.0))
       ->capture_default_str();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 
 #include "abbe/compensate/left_out_errors.h"
@@ -100,6 +101,7 @@ int run_gcode(const GcodeOptions& options) {
   } else {
     print_gcode_report(options, machine, result);
   }
+  std::fflush(stdout);
   for (const std::string& reason : result.refused) fmt::print(stderr, "abbe: {}\n", reason);
   if (!result.refused.empty() && !options.dry_run) fmt::print(stderr, "abbe: nothing written\n");
   return result.refused.empty() ? kDone : kNegative;
@@ -150,10 +152,12 @@ void add_compensate_gcode(CLI::App& compensate, CommandLine& line) {
   command->add_option("--word", options->words, "word of an axis in the program: C1=C");
   command->add_option("--start", options->start, "where an axis stands when the program begins: X_mm=0, C_deg=30");
   command->add_option("--tool-table", options->tool_table, "tool table of LinuxCNC, for G43 H");
-  command->add_flag("--tool-table-in-inches", options->tool_table_in_inches);
+  command->add_flag("--tool-table-in-inches", options->tool_table_in_inches,
+                    "the lengths of the tool table are in inches");
   command->add_option("--tool", options->tool, "number of the tool in the spindle");
   command->add_option("--parameters", options->parameters, "parameter file of LinuxCNC (.var), for work offsets");
-  command->add_flag("--parameters-in-inches", options->parameters_in_inches);
+  command->add_flag("--parameters-in-inches", options->parameters_in_inches,
+                    "the offsets of the parameter file are in inches");
   command->add_flag("--tool-centre", options->tool_centre,
                     "X Y Z are the functional point in the workpiece frame throughout: the control has the kinematics");
   command->add_flag("--inches", options->inches, "G20 is in force when the program begins");
@@ -163,7 +167,7 @@ void add_compensate_gcode(CLI::App& compensate, CommandLine& line) {
                       "write the program in spite of: not-covered, outside-travel, held-start, position-left, "
                       "not-converged, not-proven");
   command->add_flag("--dry-run", options->dry_run, "only the report: largest corrections and where; writes nothing");
-  command->add_flag("--json", options->json);
+  command->add_flag("--json", options->json, "print JSON for programs");
   command->callback([&line, options] { line.run = [options] { return run_gcode(*options); }; });
 }
 

@@ -17,13 +17,23 @@ constexpr double kDegree = std::numbers::pi / 180;
 bool is_rotary(std::size_t word) { return word >= 3 && word < 6; }
 
 /// "X_mm=100", "C_deg=30": the word of an axis in the program and where the axis stands.
-void read_start(const std::string& text, const Machine& machine, const WordAxes& words, NcProgramOptions& options) {
+/// @param on_axes  X Y Z are positions of the axes: what lies outside the travel is a mistake
+void read_start(const std::string& text, const Machine& machine, const WordAxes& words, bool on_axes,
+                NcProgramOptions& options) {
   const std::string name = text.substr(0, text.find('_'));
   for (std::size_t i = 0; i < kAxisWords; ++i) {
     if (name != axis_word_text(static_cast<AxisWord>(i)) || words.axis[i] == Machine::npos) continue;
     // The axis may have another name than its word.
     const std::string of_axis = machine.axes[words.axis[i]].name + text.substr(name.size());
-    options.start[i] = axis_option(machine, "--start", of_axis).position;
+    const double position = axis_option(machine, "--start", of_axis).position;
+    const Axis& axis = machine.axes[words.axis[i]];
+    if ((on_axes || is_rotary(i)) && !axis.endless && !(position >= axis.travel_min && position <= axis.travel_max)) {
+      const double unit = is_rotary(i) ? kDegree : 1;
+      throw InputError(
+          {.field = "--start " + text}, "outside the axis's travel",
+          fmt::format("{:g} to {:g} {}", axis.travel_min / unit, axis.travel_max / unit, is_rotary(i) ? "deg" : "mm"));
+    }
+    options.start[i] = position;
     return;
   }
   throw InputError({.field = "--start " + text}, fmt::format("'{}' is no word of an axis of the machine", name),
@@ -92,7 +102,9 @@ WordAxes gcode_words(const GcodeOptions& options, const Machine& machine) {
 NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& machine, const WordAxes& words) {
   NcProgramOptions text;
   for (std::size_t i = 0; i < kAxisWords; ++i) text.words[i] = words.axis[i] != Machine::npos;
-  for (const std::string& start : options.start) read_start(start, machine, words, text);
+  for (const std::string& start : options.start) {
+    read_start(start, machine, words, !options.tool_centre, text);
+  }
   if (!options.parameters.empty()) text.parameters = read_nc_parameters(options.parameters);
   text.parameters_in_inches = options.parameters_in_inches;
   if (!options.tool_table.empty()) text.tools = read_nc_tools(options.tool_table, options.tool_table_in_inches);

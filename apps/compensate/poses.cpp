@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <optional>
 
@@ -246,6 +247,7 @@ int run_poses(const PosesCommand& command) {
       fmt::print("reversal values are not in these commands: a pose has no direction of approach\n");
     fmt::print("{}", written ? command.output + " written\n" : command.dry_run ? "dry run: nothing written\n" : "");
   }
+  std::fflush(stdout);
   if (refused) {
     fmt::print(stderr, "abbe: correction of {:.3f} um above --limit-um {:g}: {}; nothing written\n",
                1e3 * result.largest_shift.value, limit_um, pose_words(machine, poses, result.largest_shift.row));

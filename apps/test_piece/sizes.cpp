@@ -39,7 +39,11 @@ TestPiece made(const Piece& sizes, TestPiece (*make)(const Piece&), const char* 
   try {
     return make(sizes);
   } catch (const std::invalid_argument& error) {
-    throw InputError({.field = what}, "these sizes make no test piece", error.what());
+    // What is wanted, behind the name of the piece.
+    const std::string wanted = error.what();
+    const std::size_t colon = wanted.find(": ");
+    throw InputError({.field = what}, "these sizes make no test piece",
+                     colon == std::string::npos ? wanted : wanted.substr(colon + 2));
   }
 }
 

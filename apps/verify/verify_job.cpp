@@ -32,7 +32,6 @@ std::string found(const std::string& named, const std::string& results, const ch
   }
   const fs::path path = fs::path(results) / in_results;
   std::error_code ignored;
-  if (!fs::is_directory(results, ignored)) throw InputError({.file = results}, "is no folder", "results of abbe run");
   if (!fs::exists(path, ignored)) {
     throw InputError({.file = path.string()}, "these results have no such file",
                      fmt::format("results of a simulated study, or {} with a file", option));
@@ -47,6 +46,12 @@ void apply_range(const Machine& machine, const std::string& text, std::vector<Ax
   if (numbers.size() > 2 || !(numbers.size() == 1 || numbers[0] < numbers[1])) {
     throw InputError({.field = "--range " + text}, "needs a position, or two with the larger one behind the smaller",
                      expected);
+  }
+  const Axis& moved = machine.axes[axis];
+  if (!moved.endless && !(numbers.front() * unit >= moved.travel_min && numbers.back() * unit <= moved.travel_max)) {
+    throw InputError({.field = "--range " + text}, "outside the axis's travel",
+                     fmt::format("positions within the travel, {:g} to {:g} in this unit", moved.travel_min / unit,
+                                 moved.travel_max / unit));
   }
   ranges[axis] =
       numbers.size() == 1 ? AxisRange::fixed(numbers[0] * unit) : AxisRange{numbers[0] * unit, numbers[1] * unit, 2, 0};
@@ -178,6 +183,10 @@ std::vector<VerifyVerdict> verdicts_on(const VerifyOptions& options, const Compe
 
 VerifyResult verify(const VerifyOptions& options) {
   VerifyResult result;
+  std::error_code ignored;
+  if (!options.results.empty() && !fs::is_directory(options.results, ignored)) {
+    throw InputError({.file = options.results}, "is no folder", "results of abbe run");
+  }
   const std::string machine_file = found(options.machine, options.results, "machine.toml", "--machine");
   result.errors_file = found(options.errors, options.results, "errors.toml", "--errors");
   result.truth_file = found(options.truth, options.results, "truth.errors.toml", "--truth");

@@ -315,6 +315,25 @@ TEST_F(CompensateGcode, InputsAreNeverWritten) {
   EXPECT_EQ(abbe(base).exit_code, ExitCode::bad_input);
 }
 
+TEST_F(CompensateGcode, AStartOutsideTheTravelIsAnErrorUnlessItIsAPoint) {
+  write("s.ngc", "G21 G90 G94 F1000\nG1 X0 Y0 Z-5 A-20 C0\nM2\n");
+  const auto from = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"compensate", "gcode",  "s.ngc",   "--machine", machine,   "--errors", errors,
+                                    "--start",    "Y_mm=0", "--start", "Z_mm=-10",  "--start", "C_deg=0",  "--dry-run"};
+    all.insert(all.end(), more.begin(), more.end());
+    return abbe(all);
+  };
+  EXPECT_EQ(from({"--start", "X_mm=5", "--start", "A_deg=0"}).exit_code, ExitCode::done);
+  const CommandResult linear = from({"--start", "X_mm=9999", "--start", "A_deg=0"});
+  EXPECT_EQ(linear.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(linear.err, HasSubstr("--start X_mm=9999: outside the axis's travel; expected -300 to 300 mm"));
+  const CommandResult rotary = from({"--start", "X_mm=5", "--start", "A_deg=31", "--tool-centre"});
+  EXPECT_EQ(rotary.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(rotary.err, HasSubstr("expected -120 to 30 deg"));
+  EXPECT_THAT(from({"--start", "X_mm=9999", "--start", "A_deg=0", "--tool-centre"}).err,
+              testing::Not(HasSubstr("outside the axis's travel; expected")));
+}
+
 TEST_F(CompensateGcode, WordsWithoutAnAxisAreErrorsWithTheirLine) {
   write("b.ngc", "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nG0 B5\nM2\n");
   const CommandResult result =

@@ -39,7 +39,7 @@ TEST_F(TestPieceCommand, AnExistingFileStaysAndWrongSizesAreSaid) {
   EXPECT_EQ(abbe({"test-piece", "cone-frustum", "-o", cone, "--force"}).exit_code, 0);
   const CommandResult wrong = abbe({"test-piece", "s-shape", "--tool-diameter-mm", "60"});
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.err, HasSubstr("a tool too thick for the inner curve"));
+  EXPECT_THAT(wrong.err, HasSubstr("expected a tool of a smaller radius than its crests have"));
   const auto refused = [&](const std::string& piece, const std::string& option, const char* value) {
     const CommandResult result = abbe({"test-piece", piece, option, value});
     EXPECT_EQ(result.exit_code, 2) << option;

@@ -118,7 +118,7 @@ TestPiece s_shape(const SShape& shape) {
   // The sine is bent most at its crests: curvature amplitude (2 pi / length)^2.
   const double curvature = std::abs(shape.amplitude) * std::pow(kTurn / shape.length, 2);
   if (curvature * shape.tool_radius >= 1) {
-    throw std::invalid_argument("S shape: a tool too thick for the inner curve");
+    throw std::invalid_argument("S shape: a tool of a smaller radius than its crests have");
   }
   TestPiece piece;
   piece.tool_radius = shape.tool_radius;

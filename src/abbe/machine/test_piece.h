@@ -70,7 +70,8 @@ struct SShape {
   double chord_tolerance = 0.001;                      ///< mm, of the foot from the chords between the points
 };
 
-/// @throws std::invalid_argument for sizes that make no wall, a tool too thick for the inner curve, and a tolerance
+/// @throws std::invalid_argument for sizes that make no wall, a tool too thick for the inside of its crests, and a
+/// tolerance
 ///         that takes more than a million points
 TestPiece s_shape(const SShape& shape);
 
