@@ -55,8 +55,14 @@ nlohmann::json distribution(const CompensatedPoses& poses) {
   std::vector<double> shares, before, after;
   nlohmann::json percent = nlohmann::json::array();
   for (std::size_t i = 0; i <= kQuantiles; ++i) {
-    const double share = 0.002 + 0.996 * static_cast<double>(i) / kQuantiles;
-    shares.push_back(share);
+    shares.push_back(0.002 + 0.996 * static_cast<double>(i) / kQuantiles);
+  }
+  // Those that the page states are among them, so that its words agree with its tables.
+  for (const double stated : {0.5, 0.95}) {
+    const auto place = std::lower_bound(shares.begin(), shares.end(), stated);
+    if (place == shares.end() || *place != stated) shares.insert(place, stated);
+  }
+  for (const double share : shares) {
     percent.push_back(for_drawing(100 * share));
     before.push_back(percentile(poses.before, share));
     after.push_back(percentile(poses.after, share));

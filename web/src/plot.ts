@@ -133,10 +133,11 @@ export function rule(target: Plot, at: number, direction: 'x' | 'y', style: stri
     const x = target.x(at);
     target.root.append(svg('line', {x1: x, x2: x, y1: top + 14 * row, y2: bottom, class: `rule ${style}`}));
     if (label) {
-      // Over a curve that rises the room is before the line.
+      // Over a curve that rises the room is before the line, or else under it behind the line.
       const atEnd = (before && x - left > 150) || x > (left + right) / 2 + (right - left) / 4;
+      const under = before && !atEnd;
       target.root.append(
-        svg('text', {x: x + (atEnd ? -5 : 5), y: top + 9 + 14 * row, class: `rule-label ${style} ${atEnd ? 'end' : ''}`}, label),
+        svg('text', {x: x + (atEnd ? -5 : 5), y: (under ? (top + bottom) / 2 + 20 : top + 9) + 14 * row, class: `rule-label ${style} ${atEnd ? 'end' : ''}`}, label),
       );
     }
   } else {

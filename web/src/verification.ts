@@ -7,11 +7,12 @@ import {extent, roundFactor} from './scale';
 import {CompensationDistribution, PieceEdge, VerificationBlock, VerifiedPiece} from './verification_data';
 
 function at(distribution: CompensationDistribution, values: number[], percent: number): number {
-  let nearest = 0;
-  distribution.percent.forEach((p, i) => {
-    if (Math.abs(p - percent) < Math.abs(distribution.percent[nearest] - percent)) nearest = i;
-  });
-  return values[nearest];
+  // Between two shares the error is on a straight line, so that it is that of the figures of all poses.
+  const after = distribution.percent.findIndex((p) => p >= percent);
+  if (after <= 0) return values[after === 0 ? 0 : values.length - 1];
+  const [low, high] = [distribution.percent[after - 1], distribution.percent[after]];
+  const part = high > low ? Math.min(1, Math.max(0, (percent - low) / (high - low))) : 0;
+  return values[after - 1] + part * (values[after] - values[after - 1]);
 }
 
 function cumulative(data: CompensationDistribution): HTMLElement {
