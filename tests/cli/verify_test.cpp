@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -92,6 +93,10 @@ TEST_F(VerifyCommand, ThePageHoldsPosesAndPiecesAndReplacesNothingUnasked) {
   EXPECT_THAT(text, HasSubstr("\"verification\""));
   EXPECT_THAT(text, HasSubstr("Roundness at the foot"));
   EXPECT_THAT(text, HasSubstr("\"predicted_um\""));
+  // The shares that the caption states are there as they are, not beside others.
+  const std::size_t begin = text.find("\"percent\":") + std::string("\"percent\":").size();
+  const auto percent = nlohmann::json::parse(text.substr(begin, text.find(']', begin) + 1 - begin));
+  for (const double stated : {50.0, 95.0}) EXPECT_EQ(std::count(percent.begin(), percent.end(), stated), 1) << stated;
   EXPECT_THAT(verify(asked).err, HasSubstr("the file exists"));
   EXPECT_THAT(verify({"-o", "page.pdf"}).err, HasSubstr("a name ending in .html"));
 }
