@@ -10,6 +10,7 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/machine/drawing.h"
 #include "abbe/machine/machine_check.h"
+#include "check_frozen.h"
 #include "check_geometry.h"
 #include "command.h"
 
@@ -114,16 +115,17 @@ void add_check_command(CommandLine& line) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = line.add(
-      "check", "Validate a machine file, a mesh or a point cloud and show what is in it",
+      "check", "Validate a machine file, a frozen compensation, a mesh or a point cloud and show what is in it",
       "  abbe check examples/machines/trunnion-mill.machine.toml\n"
       "  abbe check examples/machines/aguado.machine.toml --errors examples/aguado/results/aguado/errors.toml\n"
       "  abbe check examples/parts/wedge.stl --unit mm\n"
+      "A frozen compensation (abbe compensate freeze) is refused here as a controller would refuse it.\n"
       "Exit code 1: a mesh in which inside and outside are not told apart everywhere (turned or branching edges,\n"
       "duplicate triangles, inside out). Holes are counted and are no error.");
   command
-      ->add_option(
-          "file", options->file,
-          "Machine file (*.machine.toml), mesh (.stl .ply .obj .step .stp) or point cloud (.xyz .asc .pts .csv .ply)")
+      ->add_option("file", options->file,
+                   "Machine file (*.machine.toml), frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or "
+                   "point cloud (.xyz .asc .pts .csv .ply)")
       ->required();
   const CLI::Option* errors_option =
       command->add_option("--errors", options->errors, "Errors file of this machine to validate too (*.errors.toml)");
@@ -142,6 +144,12 @@ void add_check_command(CommandLine& line) {
         options->geometry.file = options->file;
         options->geometry.json = options->json;
         return check_geometry(options->geometry);
+      }
+      if (is_frozen_file(options->file)) {
+        for (const CLI::Option* const option : {errors_option, unit, chord}) {
+          refuse_if_given(option, "a frozen compensation has all of it in it");
+        }
+        return check_frozen(options->file, options->json);
       }
       refuse_if_given(unit, "a machine file states its units");
       refuse_if_given(chord, "a machine file has no faces");

@@ -57,6 +57,29 @@ TEST_F(CompensateFreezeTest, TheFileCarriesTheUncertaintyOfTheErrors) {
   EXPECT_NE(without.out.find("not stated by the errors file"), std::string::npos) << without.out;
 }
 
+TEST_F(CompensateFreezeTest, CheckSaysWhatIsInAFileAndRefusesADamagedOne) {
+  const nlohmann::json made =
+      nlohmann::json::parse(abbe({"compensate", "freeze", machine, errors, "-o", output, "--json"}).out);
+  const CommandResult whole = abbe({"check", output, "--json"});
+  ASSERT_EQ(whole.exit_code, done) << whole.err;
+  const nlohmann::json json = nlohmann::json::parse(whole.out);
+  EXPECT_EQ(json["checksum"], made["checksum"]);
+  EXPECT_EQ(json["source_checksum"], made["source_checksum"]);
+  EXPECT_NEAR(json["largest_correction_um"].get<double>(), made["largest_correction_um"].get<double>(), 1e-6);
+  EXPECT_NE(abbe({"check", output}).out.find("frozen compensation of trunnion mill, whole"), std::string::npos);
+  const std::string bytes = folder.read(std::filesystem::path(output).filename().string());
+  std::string changed = bytes;
+  changed[changed.size() / 2] = static_cast<char>(changed[changed.size() / 2] ^ 1);
+  for (const std::string& damaged :
+       {bytes.substr(0, bytes.size() - 1), bytes.substr(0, 100), bytes + "x", changed, std::string("chain = 1")}) {
+    const CommandResult refused = abbe({"check", folder.write("damaged.abbec", damaged).string()});
+    EXPECT_EQ(refused.exit_code, bad_input) << damaged.size();
+    EXPECT_NE(refused.err.find("damaged.abbec: "), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("expected a whole file of abbe compensate freeze"), std::string::npos) << refused.err;
+  }
+  EXPECT_EQ(abbe({"check", output, "--errors", errors}).exit_code, bad_input);
+}
+
 TEST_F(CompensateFreezeTest, ACorrectionAboveTheLimitIsRefusedWithItsPlace) {
   const CommandResult result = abbe({"compensate", "freeze", machine, errors, "-o", output, "--limit-um", "1"});
   EXPECT_EQ(result.exit_code, computation_says_no);
