@@ -11,7 +11,7 @@ constexpr double kTwoPi = 2 * std::numbers::pi;
 // rad; a smaller arc is a full circle, as in LinuxCNC: start and end are the same but for rounding.
 constexpr double kSmallestArc = 1e-6;
 // mm or rad; less is no motion to a control.
-constexpr double kNoMotion = 1e-7;
+constexpr double kNoMotion = kNoMotion_mm;
 
 double length(const WordValues& a, const WordValues& b, std::size_t first) {
   double sum = 0;
@@ -20,16 +20,6 @@ double length(const WordValues& a, const WordValues& b, std::size_t first) {
     if (std::abs(d) > kNoMotion) sum += d * d;
   }
   return std::sqrt(sum);
-}
-
-/// Such a move has its feed per minute in angles.
-bool moves_only_rotary_axes(const ProgramMove& move) {
-  if (move.kind != MoveKind::straight) return false;
-  bool linear = false, rotary = false;
-  for (std::size_t i = 0; i < kAxisWords; ++i) {
-    if (move.start[i] != move.end[i]) (i >= 3 && i < 6 ? rotary : linear) = true;
-  }
-  return rotary && !linear;
 }
 
 double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -69,6 +70,24 @@ struct ProgramMove {
   int arc_turns = 1;                    ///< full circles begun, P of RS274/NGC: 1 for up to one turn
   std::array<double, 3> tool_length{};  ///< X, Y, Z of the tool length offset in force, mm (G43, G43.1, G43.2)
 };
+
+/// mm; a shorter way is none to a control, but what rounding leaves of the same place. LinuxCNC 2.9 has it so too
+/// (emccanon.cc).
+inline constexpr double kNoMotion_mm = 1e-7;
+
+/// Such a straight move has its feed per minute in angles.
+inline bool moves_only_rotary_axes(const ProgramMove& move) {
+  if (move.kind != MoveKind::straight) return false;
+  bool linear = false, rotary = false;
+  for (std::size_t k = 0; k < kAxisWords; ++k) {
+    if (k >= 3 && k < 6) {
+      rotary = rotary || move.start[k] != move.end[k];
+    } else {
+      linear = linear || std::abs(move.end[k] - move.start[k]) > kNoMotion_mm;
+    }
+  }
+  return rotary && !linear;
+}
 
 /// A piece of a corrected move: where the control is to go in a straight line of all words.
 struct CorrectedPiece {

@@ -41,8 +41,8 @@ void NcInterpreter::cycle(NcCode motion) {
     if (cycle_.dwell < 0) block_.fail(word, "the time of the dwell is negative");
   }
   if (motion == 740 || motion == 840) {
+    // Without P that of the cycle before it, as in LinuxCNC 2.9; none in the beginning.
     if (block_.has('p')) cycle_.dwell = block_.value('p');
-    if (!goes_on && !block_.has('p')) cycle_.dwell = 0;
     if (cycle_.dwell < 0) block_.fail(word, "the time of the dwell is negative");
     if (spindle_ != (motion == 840 ? 3 : 4)) {
       block_.fail(word, "the spindle does not turn as this cycle needs it", motion == 840 ? "M3" : "M4");
@@ -89,7 +89,8 @@ void NcInterpreter::cycle(NcCode motion) {
       above[k] = modes_.absolute ? value + offset_[k] : position_[k] + value;
       known |= std::uint32_t{1} << k;
     }
-    above[depth] = std::max(position_[depth], clear);
+    // From above R at the height where it stands, though it be below that to which G98 has it return again.
+    if (!(position_[depth] > r)) above[depth] = clear;
     rapid(above, known);
     if (position_[depth] != r) {
       above[depth] = r;

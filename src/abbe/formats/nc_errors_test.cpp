@@ -1,6 +1,10 @@
 // What an NC program may not say, and how it is told.
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "abbe/formats/message_of.h"
 #include "abbe/formats/nc_correctors_for_test.h"
 
@@ -128,6 +132,50 @@ TEST(NcErrors, OfWordsThatAreWrongOrHaveNoUse) {
   EXPECT_EQ(refusal("G4\n"), "p.ngc:1:1: G4: the time of the dwell is missing; expected P in s");
   EXPECT_EQ(refusal("G4 P-1\n"), "p.ngc:1:4: P-1: the time of the dwell is negative");
   EXPECT_EQ(refusal("G91 G53 G0 X1\n"), "p.ngc:1:5: G53: G53 in incremental distances; expected G90");
+}
+
+TEST(NcErrors, OfWordsThatBelongToOtherCodesOrAreMissing) {
+  const std::string unused = ": no code of this block uses it; expected ";
+  for (const auto& [text, word] : std::vector<std::pair<std::string, std::string>>{{"M62 P1 Q1", "8: Q1"},
+                                                                                   {"M3 Q1", "4: Q1"},
+                                                                                   {"M6 Q1", "4: Q1"},
+                                                                                   {"M48 P1", "5: P1"},
+                                                                                   {"M3 P1", "4: P1"},
+                                                                                   {"M67 E1 P1", "8: P1"},
+                                                                                   {"M62 P1 E1", "8: E1"},
+                                                                                   {"M100 E1", "6: E1"},
+                                                                                   {"M100 L1", "6: L1"},
+                                                                                   {"M63 P1 L1", "8: L1"},
+                                                                                   {"G43.1 Z1 H1", "10: H1"},
+                                                                                   {"G49 H1", "5: H1"},
+                                                                                   {"G10 L2 P1 X1 I1", "14: I1"},
+                                                                                   {"G80 Q2 M1", "5: Q2"}}) {
+    EXPECT_TRUE(refusal(text + "\n").starts_with("p.ngc:1:" + word + unused)) << refusal(text + "\n");
+  }
+  // Of codes in force that do nothing in this block.
+  EXPECT_TRUE(refusal("F9\nG83 X1 Y1 Z-1 R1 Q1\nF5 R1\n").starts_with("p.ngc:3:4: R1" + unused));
+  EXPECT_TRUE(refusal("F9\nG2 X3 I1.5\nG43.1 X1 K1\n").starts_with("p.ngc:3:10: K1" + unused));
+  EXPECT_EQ(refusal("M62\n"), "p.ngc:1:1: M62: a word of this code is missing; expected P, the number of the output");
+  EXPECT_EQ(refusal("M67 Q1\n"),
+            "p.ngc:1:1: M67: a word of this code is missing; expected E, the number of the output");
+  EXPECT_EQ(refusal("M68 E-1 Q1\n"), "p.ngc:1:5: E-1: is not the number of an output");
+  EXPECT_EQ(refusal("M66\n"), "p.ngc:1:1: M66: it is not said which input is waited for; expected P or E");
+  EXPECT_EQ(refusal("M61\n"), "p.ngc:1:1: M61: a word of this code is missing; expected Q, the number of the tool");
+  EXPECT_EQ(refusal("M61 Q-1\n"), "p.ngc:1:5: Q-1: is not the number of a tool");
+  EXPECT_EQ(refusal("G96\n"), "p.ngc:1:1: G96: a word of this code is missing; expected S, the cutting speed");
+  EXPECT_EQ(refusal("G43.2\n"), "p.ngc:1:1: G43.2: the offset that is added is not said; expected H, or axis words");
+  EXPECT_EQ(refusal("G0 X1\nG43.2 H1 X1\n"),
+            "p.ngc:2:1: G43.2: the offset that is added is not said; expected H, or axis words");
+  EXPECT_EQ(refusal("G10 L1 P7 Z1\n"), "p.ngc:1:8: P7: the tool table has no tool 7");
+  EXPECT_EQ(refusal("G33 Z1 K1\n"), "p.ngc:1:1: G33: G33 and the spindle does not turn; expected M3 or M4 before it");
+  EXPECT_EQ(refusal("G95 F.1\nG1 X1\n"),
+            "p.ngc:2:1: G1: G1 with a feed per revolution and without a speed of the spindle; expected S before or in "
+            "this block");
+  EXPECT_EQ(refusal("F9\nG81 M19 R90 X1 Z-1\n"),
+            "p.ngc:2:9: R90: two codes of this block use it; expected a block of its own for one of them");
+  EXPECT_EQ(refusal("#1=3 M98 P100\nM2\nO100\nM99\n"),
+            "p.ngc:1:6: M98: a parameter is set beside M98 or M99; expected a block of its own before it");
+  EXPECT_TRUE(refusal("G93\nG1 X1 F2\nG0 X#<_feed>\n").starts_with("p.ngc:3:5: #<_feed>: this parameter has no value"));
 }
 
 TEST(NcErrors, OfParametersAndExpressions) {

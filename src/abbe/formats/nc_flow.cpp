@@ -221,7 +221,9 @@ void NcFlow::call_subprogram(const NcBlock& block, const NcWord& word, double la
     block.fail(word, fmt::format("there is no subprogram O{} in the file", std::llround(label)),
                "a subprogram in the same file: those of other files are not read");
   }
-  if (std::llround(repeats) >= 1) enter(block, sub->second, true, std::llround(repeats));
+  if (std::llround(repeats) < 1) return;
+  enter(block, sub->second, true, std::llround(repeats));
+  parameters_.enter_subprogram();
 }
 
 void NcFlow::end_subprogram(const NcBlock& block, const NcWord& word) {
@@ -236,10 +238,16 @@ void NcFlow::leave(const NcBlock& block) {
   if (call.left > 0) {
     --call.left;
     call.loops.clear();
+    parameters_.leave_subprogram();
+    parameters_.enter_subprogram();
     jump(block, entries_[call.sub].behind);
     return;
   }
-  if (!call.is_subprogram) parameters_.leave();
+  if (call.is_subprogram) {
+    parameters_.leave_subprogram();
+  } else {
+    parameters_.leave();
+  }
   const Place back = call.back;
   calls_.pop_back();
   jump(block, back);

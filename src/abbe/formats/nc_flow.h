@@ -65,7 +65,7 @@ class NcFlow {
   struct Call {
     Place back;
     std::size_t sub = kNone;     ///< the entry
-    bool is_subprogram = false;  ///< by M98: parameters are the caller's
+    bool is_subprogram = false;  ///< by M98: numbered parameters are the caller's
     long long left = 0;          ///< further times
     std::vector<Loop> loops;
   };

@@ -151,58 +151,6 @@ bool NcInterpreter::ends_program() const {
   return code == 2 || code == 30;
 }
 
-void NcInterpreter::check_words() const {
-  for (std::size_t k = 0; k < kAxisWords; ++k) {
-    if ((codes_.axes & ~machine_words_ & (std::uint32_t{1} << k)) != 0) {
-      block_.fail("xyzabcuvw"[k], "the machine has no axis of this word");
-    }
-  }
-  const NcCode motion = codes_[NcGroup::motion];
-  const bool is_arc =
-      motion == 20 || motion == 30 || (!codes_.has(NcGroup::motion) && modes_.motion >= 20 && modes_.motion <= 30);
-  const NcCode cycle_code = codes_.has(NcGroup::motion) ? motion : modes_.motion;
-  const bool is_cycle = cycle_code >= 730 && cycle_code != 800;
-  const bool is_g10 = codes_[NcGroup::non_modal] == 100;
-  const bool is_user = codes_.has(NcMGroup::user) || codes_.has(NcMGroup::signals);
-  const bool is_plane = codes_[NcGroup::tilt] == 682;
-  const bool calls = codes_.has(NcMGroup::stop) && codes_.word(block_, NcMGroup::stop).value == 98;
-  const bool is_thread = motion == 330 || motion == 331 ||
-                         (!codes_.has(NcGroup::motion) && (modes_.motion == 330 || modes_.motion == 331));
-  for (const char letter : {'i', 'j', 'k'}) {
-    if (block_.has(letter) && !is_arc && !is_g10 && !is_plane && !(is_thread && letter == 'k'))
-      block_.fail(letter, "no code of this block uses it", "G2, G3 or G68.2");
-  }
-  if (block_.has('r') && !is_arc && !is_cycle && !is_g10) {
-    block_.fail('r', "no code of this block uses it", "G2, G3 or a canned cycle");
-  }
-  if (block_.has('h') && !codes_.has(NcGroup::tool_length)) block_.fail('h', "no code of this block uses it", "G43");
-  if (block_.has('l') && !is_cycle && !is_g10 && !is_user && !calls) {
-    block_.fail('l', "no code of this block uses it", "G10, a canned cycle, M66 or M98");
-  }
-  const bool has_step = cycle_code == 730 || cycle_code == 830,
-             has_dwell = is_cycle && !has_step && cycle_code != 810 && cycle_code != 850;
-  if (block_.has('d') && codes_[NcGroup::spindle] != 960) {
-    block_.fail('d', "no code of this block uses it", "G96; cutter compensation is not handled");
-  }
-  if (block_.has('q') && !has_step && !is_g10 && !is_user && codes_[NcGroup::path] != 640 &&
-      !codes_.has(NcMGroup::spindle) && !codes_.has(NcMGroup::tool)) {
-    block_.fail('q', "no code of this block uses it", "G64, G73, G83, M19, M61, M66 or M100-M199");
-  }
-  if (block_.has('p') && !is_arc && !has_dwell && !is_g10 && !is_user && codes_[NcGroup::non_modal] != 40 &&
-      codes_[NcGroup::path] != 640 && !codes_.has(NcMGroup::overrides) && !calls && !codes_.has(NcMGroup::spindle) &&
-      !is_plane && codes_[NcGroup::non_modal] != 531) {
-    block_.fail('p', "no code of this block uses it",
-                "G2, G3, G4, G10, G64, a canned cycle, M50-M68, M98 or M100-M199");
-  }
-  if (block_.has('e') && !is_user) block_.fail('e', "no code of this block uses it", "M66, M67 or M68");
-  if (block_.has('f') && block_.value('f') < 0) block_.fail('f', "the feed is negative");
-  if (block_.has('s') && block_.value('s') < 0) block_.fail('s', "the speed of the spindle is negative");
-  if (block_.has('t')) {
-    const double tool = block_.value('t');
-    if (tool < 0 || std::abs(tool - std::round(tool)) > 1e-4) block_.fail('t', "is not the number of a tool");
-  }
-}
-
 void NcInterpreter::execute() {
   sort_nc_codes(block_, codes_);
   check_words();
@@ -245,6 +193,9 @@ void NcInterpreter::execute() {
         if (&beside == &word || (word.value == 98 && (beside.letter == 'p' || beside.letter == 'l'))) continue;
         block_.fail(beside, "stands beside M98 or M99, which have no other words", "a block of its own before it");
       }
+      if (!block_.assignments.empty()) {
+        block_.fail(word, "a parameter is set beside M98 or M99", "a block of its own before it");
+      }
       pass_comments(true);
       if (word.value == 98) {
         if (!block_.has('p')) block_.fail(word, "the number of the subprogram is missing", "P");
@@ -252,11 +203,13 @@ void NcInterpreter::execute() {
       } else {
         flow_.end_subprogram(block_, word);
       }
-      apply_assignments();
       return;
     }
   }
+  // The words have been read; comments say what the parameters are now, as in LinuxCNC 2.9.
+  if (!block_.assignments.empty()) apply_assignments();
   set_feed();
+  if (block_.has('s')) spindle_speed_ = block_.value('s');
   if (block_.has('t')) selected_tool_ = static_cast<int>(std::lround(block_.value('t')));
   if (codes_.has(NcMGroup::tool)) {
     const NcWord& word = codes_.word(block_, NcMGroup::tool);
@@ -279,6 +232,7 @@ void NcInterpreter::execute() {
       block_.fail(codes_.word(block_, NcGroup::non_modal), "the time of the dwell is missing", "P in s");
     if (block_.value('p') < 0) block_.fail('p', "the time of the dwell is negative");
   }
+  const bool was_in_inches = modes_.inches;
   set_modes();
   if (codes_.has(NcGroup::tilt)) set_plane();
   set_tool_length();
@@ -300,7 +254,7 @@ void NcInterpreter::execute() {
       home_[other == 281 ? 0 : 1] = {position_, machine_words_};
     }
     if (turns_to_plane) block_.comments.push_back("(G53.1)");
-    pass_block(moves);
+    pass_block(moves, modes_.inches != was_in_inches);
   }
   if (to_reference) go_to_reference();
   if (turns_to_plane) turn_to_plane();
@@ -313,7 +267,6 @@ void NcInterpreter::execute() {
     append_word(stop, codes_.word(block_, NcMGroup::stop));
     writer_.line(stop);
   }
-  if (!block_.assignments.empty()) apply_assignments();
 }
 
 void NcInterpreter::apply_assignments() {
@@ -380,7 +333,8 @@ bool NcInterpreter::named(std::string_view name, double& value) const {
     return true;
   };
   if (name == "_line") return say(static_cast<double>(block_.cursor.line));
-  if (name == "_feed") return say(modes_.feed);
+  // In inverse time LinuxCNC 2.9 says the speed of the last move instead, and its documentation F.
+  if (name == "_feed" && modes_.feed_mode != FeedMode::inverse_time) return say(modes_.feed);
   if (name == "_metric") return say(modes_.inches ? 0 : 1);
   if (name == "_imperial") return say(modes_.inches ? 1 : 0);
   if (name == "_absolute") return say(modes_.absolute ? 1 : 0);

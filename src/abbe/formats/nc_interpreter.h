@@ -46,12 +46,16 @@ class NcInterpreter final : public NcSystemValues {
   // nc_interpreter.cpp
   void take_parameters();
   void execute();
+  /// The code of motion that this block carries out, by its own word or by the one in force.
+  NcCode motion_that_runs() const;
   void check_words() const;
+  void check_missing_words() const;
   void apply_assignments();
   bool ends_program() const;
 
   // nc_words.cpp: what passes to the control
-  void pass_block(bool has_motion);
+  /// @param unit_changes  by a word of this block
+  void pass_block(bool has_motion, bool unit_changes = false);
   /// The block with its code of offsets and axis words said in another way.
   /// @param replaced  letters of further words that belong to the code
   void pass_block_with(const std::string& code, std::string_view replaced);
@@ -130,9 +134,10 @@ class NcInterpreter final : public NcSystemValues {
   std::array<Reference, 2> home_{};  ///< G28, G30
   NcToolTable tools_;
   std::optional<int> tool_, selected_tool_;
-  bool overrides_ = true;   ///< M48, not M49
-  int spindle_ = 0;         ///< 3 or 4: turns by M3 or M4; 0: is not known to turn
-  std::string path_words_;  ///< "G64 P0.1", for after a cycle
+  bool overrides_ = true;     ///< M48, not M49
+  double spindle_speed_ = 0;  ///< S
+  int spindle_ = 0;           ///< 3 or 4: turns by M3 or M4; 0: is not known to turn
+  std::string path_words_;    ///< "G64 P0.1", for after a cycle
 
   /// G68.2: place in the workpiece = origin + rotation * X, Y, Z of the plane, each in the directions of X, Y, Z words.
   struct Tilt {

@@ -145,6 +145,9 @@ const std::array kPrograms = {
     NamedProgram{"cycles_that_are_cancelled",
                  "G21 F100\nG0 G17 G40 G49 G80 Z9\nG80 G81 X1 Y1 Z1 R2\nX2\nG81 G80 X3\nG80 G1 X4\nX5\nG81 X6 Z1 "
                  "R2\nG80 G0 X7\nG80 G80\nG0 X8\nM2\n"},
+    NamedProgram{"drilling_from_hole_to_hole",
+                 "G21 F100\nG0 Z10\nG98 G81 X1 Y1 Z-1 R2\nX2 G99 R4\nX3 G98 R3\nX4 R12\nX5 G99 R2\nX6 G98 R2\nG80\n"
+                 "G0 Z1\nG98 G81 X7 R3 Z-1 L2\nX8 G99 R5\nX9 G98 R4\nG80\nM2\n"},
     NamedProgram{"drilling_by_increments",
                  "G21 F100\nG0 Z10\nG91 G81 X1 Y1 Z-3 R-2 L3\nX1\nG98 G81 X1 Y1 Z-3 R-2 L2\nX1\nG99 X1\nX1\nX1 R1\nG90 "
                  "G0 Z20\nM2\n"},
@@ -167,6 +170,9 @@ const std::array kPrograms = {
                  "O6 while [#1 LT 6]\n#1=[#1+1]\nO7 if [[#1 MOD 2] EQ 0]\nO6 continue\nO7 elseif [#1 EQ 3]\nG0 Z3\n"
                  "O7 else\nG0 Z[10+#1]\nO7 endif\nG0 A#1\nO8 if [#1 EQ 5]\nO6 break\nO8 endif\nO6 endwhile\nM2\n"},
     NamedProgram{"subprograms", "G21\n#1=5\nM98 P100 L2\nG0 Y#1\nM2\nO100\nG91 G0 X1\n#1=7\nG90\nM99\n"},
+    NamedProgram{"subprograms_with_names",
+                 "G21\n#<a>=5\n#1=1\nM98 P100 L2\nG0 X#<a> Y#1\nM2\nO100\nG0 Z[EXISTS[#<a>]]\n#<a>=3\n#1=[#1+1]\n"
+                 "G0 A#<a>\nM99\n"},
     NamedProgram{
         "expressions",
         "G21\n#1=[2**3**2]\n#2=[1 EQ 1.00005]\n#3=[-5 MOD 3]\n#<tall>=ATAN[1]/[-1]\n#6=ROUND[-2.5]\n#7=FIX[-2.5]\n"

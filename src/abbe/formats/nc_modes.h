@@ -2,6 +2,7 @@
 
 // Internal to formats: what is in force in an NC program.
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -70,6 +71,9 @@ struct NcCodes {
   const NcWord& word(const NcBlock& block, NcMGroup group) const {
     return block.words[m_place[static_cast<std::size_t>(group)]];
   }
+  bool is_m(const NcBlock& block, NcMGroup group, int number) const {
+    return has(group) && std::lround(word(block, group).value) == number;
+  }
 };
 
 /// Sorts the codes of a block by their groups.
@@ -92,7 +96,7 @@ struct NcModes {
   bool feed_inches = false;  ///< the unit in which it was
   bool tool_centre = false;  ///< G43.4
   std::size_t system = 0;    ///< G54 is 0
-  bool exact_path = false;   ///< G61, G61.1
+  bool exact_path = false;   ///< G61; G61.1 stops in every corner
 };
 
 }  // namespace abbe

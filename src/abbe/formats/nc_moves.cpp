@@ -69,6 +69,9 @@ void NcInterpreter::check_feed(const char* what) {
     missing("with inverse time and without F", "F in 1/min in every block of such moves");
   }
   if (!(modes_.feed > 0)) missing("without a feed", "F before or in this block");
+  if (modes_.feed_mode == FeedMode::per_revolution && !(spindle_speed_ > 0)) {
+    missing("with a feed per revolution and without a speed of the spindle", "S before or in this block");
+  }
 }
 
 void NcInterpreter::emit(ProgramMove& move, const Words& end, std::uint32_t known) {
@@ -76,7 +79,6 @@ void NcInterpreter::emit(ProgramMove& move, const Words& end, std::uint32_t know
   move.coordinates = modes_.tool_centre ? ProgramCoordinates::tool_centre : ProgramCoordinates::axes;
   move.feed_mode = modes_.feed_mode;
   const std::uint32_t unknown = machine_words_ & ~known_;
-  bool linear_moves = false, rotary_moves = false;
   if (tilt_.counts) {
     constexpr std::uint32_t kLinear = 7;
     if ((kLinear & ~known) != 0) fail_unknown(kLinear & ~known, "in a tilted plane every move takes all three");
@@ -88,13 +90,12 @@ void NcInterpreter::emit(ProgramMove& move, const Words& end, std::uint32_t know
     const double to = is_rotary(k) ? kDegree : 1;
     move.start[k] = start[k] * to;
     move.end[k] = target[k] * to;
-    if (move.end[k] != move.start[k]) (is_rotary(k) ? rotary_moves : linear_moves) = true;
   }
   for (std::size_t k = 0; k < 3; ++k) move.tool_length[k] = tool_offset_[k];
   if (move.kind != MoveKind::rapid) {
     if (unknown != 0) fail_unknown(unknown, "a move at work begins there");
     move.feed = modes_.feed;
-    if (modes_.feed_mode == FeedMode::per_minute && rotary_moves && !linear_moves && move.kind == MoveKind::straight) {
+    if (modes_.feed_mode == FeedMode::per_minute && moves_only_rotary_axes(move)) {
       move.feed *= kDegree;
     } else if (modes_.feed_mode != FeedMode::inverse_time && modes_.feed_inches) {
       move.feed *= kInch;
@@ -144,6 +145,7 @@ void NcInterpreter::thread(NcCode motion) {
   std::uint32_t known = 0;
   const Words end = ends(known), before = position_, machine_before = machine_position_;
   if (end == before) block_.fail(word, fmt::format("{} that does not move", name));
+  if (spindle_ == 0) block_.fail(word, fmt::format("{} and the spindle does not turn", name), "M3 or M4 before it");
   straight(end, known, motion == 330 ? SpindleMove::thread : SpindleMove::rigid_tapping);
   if (motion == 331) {
     // The control goes back by itself.

@@ -46,11 +46,11 @@ void NcInterpreter::set_modes() {
     }
   }
   if (codes_.has(NcGroup::path)) {
-    modes_.exact_path = codes_[NcGroup::path] != 640;
+    modes_.exact_path = codes_[NcGroup::path] == 610;
     path_words_.clear();
     append_word(path_words_, codes_.word(block_, NcGroup::path));
     for (const char letter : {'p', 'q'}) {
-      if (!modes_.exact_path && block_.has(letter)) append_word(path_words_, block_.word(letter));
+      if (codes_[NcGroup::path] == 640 && block_.has(letter)) append_word(path_words_, block_.word(letter));
     }
     writer_.set_path(modes_.exact_path ? "" : path_words_);
   }
@@ -118,6 +118,9 @@ void NcInterpreter::set_tool_length() {
       break;
     case 431:
     case 432: {
+      if (code == 432 && block_.has('h') == (codes_.axes != 0)) {
+        block_.fail(word, "the offset that is added is not said", "H, or axis words");
+      }
       if (code == 431 && codes_.axes == 0) block_.fail(word, "the offset of the tool is missing", "axis words");
       Words added{};
       if (code == 432 && block_.has('h')) {
@@ -164,7 +167,9 @@ void NcInterpreter::set_origin(bool moves) {
   const auto number = static_cast<int>(std::lround(written));
   if (kind == 1) {
     if (!options_.tools) block_.fail(word, "there is no tool table");
-    Words& tool = tools_[number];
+    const auto found = tools_.find(number);
+    if (found == tools_.end()) block_.fail('p', fmt::format("the tool table has no tool {}", number));
+    Words& tool = found->second;
     for (std::size_t k = 0; k < kAxisWords; ++k) {
       if ((codes_.axes >> k & 1) != 0) tool[k] = block_.value("xyzabcuvw"[k]) * unit(k);
     }

@@ -1,6 +1,7 @@
 #include "abbe/formats/nc_parameters.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace abbe {
 
@@ -64,6 +65,19 @@ void NcParameters::enter(const std::vector<double>& arguments) {
               frame.numbered.begin() + 1);
 }
 
+void NcParameters::enter_subprogram() {
+  Frame frame = frames_.back();
+  frame.named.clear();
+  frames_.push_back(std::move(frame));
+}
+
 void NcParameters::leave() { frames_.pop_back(); }
+
+void NcParameters::leave_subprogram() {
+  Frame& caller = frames_[frames_.size() - 2];
+  caller.numbered = frames_.back().numbered;
+  caller.is_set = frames_.back().is_set;
+  frames_.pop_back();
+}
 
 }  // namespace abbe

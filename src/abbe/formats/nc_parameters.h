@@ -43,7 +43,10 @@ class NcParameters {
 
   /// Enters a subroutine: its #1 to #30 are the arguments, then zeros.
   void enter(const std::vector<double>& arguments);
+  /// Enters a subprogram (M98): it has the numbers of what calls it, and local names of its own.
+  void enter_subprogram();
   void leave();
+  void leave_subprogram();
   std::size_t depth() const { return frames_.size() - 1; }
 
  private:

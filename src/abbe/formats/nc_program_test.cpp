@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
 #include "abbe/formats/message_of.h"
 #include "abbe/formats/nc_correctors_for_test.h"
 
@@ -28,7 +33,7 @@ TEST(NcProgram, AMoveStatesWhatIsInForce) {
 
 TEST(NcProgram, AFeedIsPerMinuteOfLengthOfAngleOrOfTheMove) {
   const RunProgram run =
-      run_program("G20\nF2\nG1 X1\nA90\nX2 A0\nG93 X3 F4\nG95 F.1\nX4\nG94 G21 F6\nG1 X0\nG20 X1\nM2\n");
+      run_program("G20\nF2\nG1 X1\nA90\nX2 A0\nG93 X3 F4\nG95 F.1 S100\nX4\nG94 G21 F6\nG1 X0\nG20 X1\nM2\n");
   ASSERT_EQ(run.moves.size(), 7U);
   EXPECT_DOUBLE_EQ(run.moves[0].feed, 50.8);
   EXPECT_DOUBLE_EQ(run.moves[1].feed, 2 * kDegree);
@@ -217,6 +222,18 @@ class HairsBreadth final : public MoveCorrector {
   }
 };
 
+TEST(NcProgram, AWayThatRoundingLeavesOfTheSamePlaceIsNone) {
+  // 0.1 + 0.2 is not 0.3: F is still of the angle.
+  const RunProgram run = run_program("G21 G90 G94\nG0 X[.1+.2] Y0 Z0 A0 B0 C0\nG1 X.3 A90 F360\nM2\n");
+  EXPECT_NE(run.moves[1].start[0], run.moves[1].end[0]);
+  EXPECT_DOUBLE_EQ(run.moves[1].feed, 360 * kDegree);
+  EXPECT_NE(run.text.find("\nG1 A90.000000 F360\n"), std::string::npos) << run.text;
+  NcProgramOptions options = options_at_zero();
+  options.decimals_mm = 9;
+  EXPECT_NE(run_program("G21 G90 G94\nG0 X1\nG1 X1.00000009 A90 F360\nM2\n", options).text.find("G1 A90.000000 F360"),
+            std::string::npos);
+}
+
 TEST(NcProgram, AFeedThatRoundingWouldTurnIntoAnotherBecomesATime) {
   NcProgramOptions options = options_at_zero();
   options.words = {true, true, false, true, false, false, false, false, false};
@@ -283,6 +300,55 @@ TEST(NcProgram, ParametersAndToolsComeFromFilesOfLinuxCnc) {
             "p.var:2:1: 5220 2: this parameter has a value already");
   EXPECT_EQ(message_of([] { parse_nc_parameters("9999 1\n", "p.var"); }),
             "p.var:1:1: 9999: is not a whole number; expected the number of a parameter, 1 to 5601");
+}
+
+TEST(NcProgram, AUnitThatChangesBesideAMoveAtWorkIsSaidBeforeItsFeed) {
+  // The control takes F of a block before its G20.
+  EXPECT_EQ(run_program("G21 G90 G94 F300\nG0 X1\nN5 M8 G20 G1 X1 (in)\nX2 F5\nG21 X5 F90\nM2\n").text,
+            "G21 G90 G94 F300\nG0 X1.000000 Y0.000000 Z0.000000 A0.000000 B0.000000 C0.000000\nN5 M8 G20 (in)\n"
+            "G1 X1.0000000 F11.811024\nG1 X2.0000000 F5\nG21\nG1 X5.000000 F2286\nM2\n");
+}
+
+TEST(NcProgram, CommentsSayWhatParametersAreBehindTheirBlock) {
+  EXPECT_EQ(run_program("#1=1\n#1=5 (debug, #1)\n#31=7 M2\n").text, "(debug, 5)\n#31=7\nM2\n");
+}
+
+TEST(NcProgram, ASubprogramHasItsCallersNumbersAndNamesOfItsOwn) {
+  const RunProgram run = run_program(
+      "#<a>=5\n#1=1\nM98 P100 L2\nG0 X#<a> Y#1\nM2\nO100\nG0 Z[EXISTS[#<a>]]\n#<a>=3\n#1=[#1+1]\nG0 A#<a>\nM99\n");
+  ASSERT_EQ(run.moves.size(), 5U);
+  EXPECT_EQ(run.moves[2].end[2], 0);
+  EXPECT_EQ(run.moves[4].end[0], 5);
+  EXPECT_EQ(run.moves[4].end[1], 3);
+}
+
+TEST(NcProgram, ACycleGoesToTheNextHoleAtTheHeightWhereItStandsAboveR) {
+  const RunProgram run = run_program("G0 Z10 F9\nG98 G81 X1 Z-1 R2\nX2 G99 R4\nX3 G98 R3\nG80\nM2\n");
+  const std::array<double, 3> lifts = {10, 10, 4};
+  std::vector<double> found;
+  double x = 0;
+  for (const ProgramMove& move : run.moves) {
+    if (move.end[0] != x) found.push_back(move.end[2]);
+    x = move.end[0];
+  }
+  EXPECT_TRUE(std::equal(lifts.begin(), lifts.end(), found.begin(), found.end()));
+  // At the end to where the series began.
+  EXPECT_EQ(run.moves.back().end[2], 10);
+}
+
+TEST(NcProgram, ATapDwellsAsLongAsTheCycleBeforeIt) {
+  const std::string text = run_program("F9 M3\nG0 Z5\nG82 X1 Z-1 R2 P.5\nG84 X2 Z-1 R2\nG80\nM2\n").text;
+  EXPECT_NE(text.find("M4\nG4 P0.5\n"), std::string::npos) << text;
+}
+
+TEST(NcProgram, ACycleBetweenStopsInCornersIsInExactPathMode) {
+  const std::string text = run_program("F9 G61.1\nG0 Z5\nG81 X1 Z-1 R2\nG80\nM2\n").text;
+  EXPECT_NE(text.find("\nG61\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nG61.1\nG80\n"), std::string::npos) << text;
+}
+
+TEST(NcProgram, AnOrientedSpindleHasItsAngle) {
+  EXPECT_EQ(run_program("M19 R90 P1 Q2\nM2\n").text, "M19 R90 P1 Q2\nM2\n");
 }
 
 TEST(NcProgram, ResultsDoNotDependOnTheBatch) {

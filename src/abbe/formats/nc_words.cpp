@@ -95,7 +95,7 @@ void NcInterpreter::pass_assignments() {
   }
 }
 
-void NcInterpreter::pass_block(bool has_motion) {
+void NcInterpreter::pass_block(bool has_motion, bool unit_changes) {
   const auto bit = [](std::uint8_t i) { return std::uint64_t{1} << i; };
   std::uint64_t consumed = 0;
   const auto drop = [&](NcGroup group) {
@@ -127,6 +127,9 @@ void NcInterpreter::pass_block(bool has_motion) {
       const bool is_shared = other == 40 || codes_[NcGroup::path] == 640 || codes_.has(NcMGroup::signals) ||
                              codes_.has(NcMGroup::overrides) || codes_.has(NcMGroup::user) ||
                              codes_.has(NcMGroup::spindle);
+      if (block_.has('r') && codes_.is_m(block_, NcMGroup::spindle, 19)) {
+        block_.fail('r', "two codes of this block use it", "a block of its own for one of them");
+      }
       for (const char letter : {'i', 'j', 'k', 'r'}) drop_letter(letter);
       for (const char letter : {'p', 'q', 'l'}) {
         if (!block_.has(letter)) continue;
@@ -143,6 +146,8 @@ void NcInterpreter::pass_block(bool has_motion) {
     writer_.set_number(block_.number);
     if (block_.word_count != static_cast<std::size_t>(std::popcount(consumed))) append_words(consumed);
     if (!block_.comments.empty()) pass_comments(false);
+    // F comes before G20 and G21 of the same block: what is written would be in the unit before.
+    if (unit_changes && motion != 0) writer_.words_as_line();
   } else if (!block_.is_computed && !block_.is_deleted && consumed == 0 &&
              (block_.comments.empty() || block_.line().find('#') == std::string_view::npos)) {
     writer_.line(without_blanks_behind(block_.line()));

@@ -34,15 +34,6 @@ char* write_text(std::string_view text, char* at) {
 
 constexpr std::uint32_t kRotaryWords = 0b111000;
 
-bool moves_only_rotary_axes(const ProgramMove& move) {
-  if (move.kind != MoveKind::straight) return false;
-  bool linear = false, rotary = false;
-  for (std::size_t k = 0; k < kAxisWords; ++k) {
-    if (move.start[k] != move.end[k]) (is_rotary(k) ? rotary : linear) = true;
-  }
-  return rotary && !linear;
-}
-
 /// Half away from zero; a number that no word has if it is too large.
 std::int64_t rounded(double units) {
   if (!(std::abs(units) < kLargestUnits)) return std::numeric_limits<std::int64_t>::min();
@@ -292,7 +283,7 @@ void NcWriter::write_piece(const ProgramMove& move, const Item& item, const Corr
     if ((is_said_ & bit) == 0) {
       changed |= bit;
       if (words[k] != rounded(word_units(k, stands_[k]))) moved |= bit;
-    } else if (words[k] != said_[k]) {
+    } else if (words[k] != said_[k] && !is_no_motion(k, words[k])) {
       changed |= bit;
       moved |= bit;
     }
@@ -349,6 +340,11 @@ void NcWriter::write_piece(const ProgramMove& move, const Item& item, const Corr
   at[-1] = '\n';
   at_ = at;
   if (static_cast<std::size_t>(at_ - out_.data()) >= kChunk) reserve(out_.size());
+}
+
+bool NcWriter::is_no_motion(std::size_t axis, std::int64_t word) const {
+  // Only with more decimals than six can a word change by so little.
+  return decimals_[axis] > 6 && std::abs(static_cast<double>(word - said_[axis])) <= kNoMotion_mm * scale_[axis];
 }
 
 double NcWriter::word_units(std::size_t axis, double value) const {

@@ -93,6 +93,8 @@ class NcWriter {
   void use_frame(std::size_t index);
   double program_scale(std::size_t axis) const;
   /// A value in units of the last decimal of its word.
+  /// Whether a control takes the word for where the axis stands already: a linear axis would have F for its own.
+  bool is_no_motion(std::size_t axis, std::int64_t word) const;
   double word_units(std::size_t axis, double value) const;
   int decimals(std::size_t axis) const;
   void append(std::string_view text);
