@@ -99,7 +99,7 @@ void NcInterpreter::cycle(NcCode motion) {
     drill(motion, above, bottom, clear, depth);
   }
   if (!path.empty()) writer_.line(path);
-  writer_.set_path(path);
+  writer_.set_path(modes_.stops_in_corners ? "" : path);
 }
 
 void NcInterpreter::drill(NcCode motion, const Words& above, double bottom, double clear, std::size_t depth) {

@@ -92,11 +92,12 @@ struct NcModes {
   bool inches = false;
   bool retract_to_r = true;  ///< G99
   FeedMode feed_mode = FeedMode::per_minute;
-  double feed = 0;           ///< F as it was written
-  bool feed_inches = false;  ///< the unit in which it was
-  bool tool_centre = false;  ///< G43.4
-  std::size_t system = 0;    ///< G54 is 0
-  bool exact_path = false;   ///< G61; G61.1 stops in every corner
+  double feed = 0;                ///< F as it was written
+  bool feed_inches = false;       ///< the unit in which it was
+  bool tool_centre = false;       ///< G43.4
+  std::size_t system = 0;         ///< G54 is 0
+  bool stops_in_corners = false;  ///< G61.1
+  bool exact_path = false;        ///< G61
 };
 
 }  // namespace abbe

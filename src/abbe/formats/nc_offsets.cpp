@@ -47,12 +47,13 @@ void NcInterpreter::set_modes() {
   }
   if (codes_.has(NcGroup::path)) {
     modes_.exact_path = codes_[NcGroup::path] == 610;
+    modes_.stops_in_corners = codes_[NcGroup::path] == 611;
     path_words_.clear();
     append_word(path_words_, codes_.word(block_, NcGroup::path));
     for (const char letter : {'p', 'q'}) {
       if (codes_[NcGroup::path] == 640 && block_.has(letter)) append_word(path_words_, block_.word(letter));
     }
-    writer_.set_path(modes_.exact_path ? "" : path_words_);
+    writer_.set_path(codes_[NcGroup::path] == 640 ? path_words_ : "");
   }
   if (codes_.has(NcGroup::distance)) modes_.absolute = codes_[NcGroup::distance] == 900;
   if (codes_.has(NcGroup::arc_centre)) modes_.arc_absolute = codes_[NcGroup::arc_centre] == 901;
