@@ -222,6 +222,12 @@ class HairsBreadth final : public MoveCorrector {
   }
 };
 
+TEST(NcProgram, AFeedOfAnglesInInchesIsNotTheFeedOfLengthsBehindThem) {
+  EXPECT_EQ(run_program("G21 G90 G94 F300\nG0 X1\nG20\nG1 A90\nG21\nG1 X5\nM2\n").text,
+            "G21 G90 G94 F300\nG0 X1.000000 Y0.000000 Z0.000000 A0.000000 B0.000000 C0.000000\nG20\n"
+            "G1 A90.000000 F300\nG21\nG1 X5.000000 F300\nM2\n");
+}
+
 TEST(NcProgram, AWayThatRoundingLeavesOfTheSamePlaceIsNone) {
   // 0.1 + 0.2 is not 0.3: F is still of the angle.
   const RunProgram run = run_program("G21 G90 G94\nG0 X[.1+.2] Y0 Z0 A0 B0 C0\nG1 X.3 A90 F360\nM2\n");

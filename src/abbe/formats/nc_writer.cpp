@@ -393,12 +393,14 @@ char* NcWriter::write_pitch(const ProgramMove& move, double pitch, char* at) con
 
 char* NcWriter::write_feed(const ProgramMove& move, FeedMode mode, double feed, char* at) {
   if (!(feed > 0) || !(feed < 1e9)) fail(move, "the corrected feed is not above zero and below 1e9");
-  if (feed == feed_ && mode != FeedMode::inverse_time) return at;
+  // The same number said in the other unit is another feed to lengths.
+  if (feed == feed_ && feed_in_inches_ == frame_.inches && mode != FeedMode::inverse_time) return at;
   const int digits = feed < 1 ? 9 : 6;
   const auto number = static_cast<std::int64_t>(std::llround(feed * (feed < 1 ? 1e9 : 1e6)));
   at = write_text(" F", at);
   at = write_scaled(std::max<std::int64_t>(number, 1), digits, true, at);
   feed_ = feed;
+  feed_in_inches_ = frame_.inches;
   return at;
 }
 

@@ -129,6 +129,7 @@ class NcWriter {
   bool exact_ = false;  ///< G61 stands before a piece, and has to be taken back
   FeedMode mode_ = FeedMode::per_minute;
   double feed_ = -1;
+  bool feed_in_inches_ = false;  ///< unit in force when it was said
   std::size_t move_count_ = 0, piece_count_ = 0, uncorrected_ = 0, first_uncorrected_line_ = 0;
 };
 
