@@ -81,7 +81,7 @@ def moves(calls):
             else:
                 end = [v * (INCH if k < 3 else 1) for k, v in enumerate(values[:6])]
             end = [e + t for e, t in zip(end, total)]
-            if arc or max(abs(e - n) for e, n in zip(end, now)) > 1e-9:
+            if arc or max(abs(e - n) for e, n in zip(end, now)) > 2e-7:
                 found.append((name, now, end, arc, feed))
             now = end
     return found
