@@ -16,6 +16,8 @@ FEED = 480  # mm/min
 CORNERS = [(0, 0, 0), (12, 0, 0), (12, 9, -3), (2, 4, -6), (2, 4, -2)]
 PROGRAM = f"G21 G90 G94 G61 F{FEED}\n" + "".join(f"G1 X{x} Y{y} Z{z}\n" for x, y, z in CORNERS[1:]) + "M2\n"
 TURNS = "G21 G90 G94 G61 F1800\nG1 A-20 C45\nG1 A-10 C400\nM30\n"
+# 2 degrees within 2 s each, beside 1 um: not in inverse time, whose least feed is 0.1 mm/min.
+SLOW_TURNS = "G21 G90 G94 G64\nG1 X0.001 C2 F0.03\nG1 X0 C4\nG93 G1 X0.001 C6 F30\nM2\n"
 BACK_AND_FORTH = f"G21 G90 G94 G61 F{FEED}\nG1 X14 Y3\nG1 Y1\nM2\n"
 REFUSED = "G21 G90 G61\nG1 X12 F600\nG1 Y3 Q\nM2\n"
 OUTSIDE = "G21 G90 G61\nG1 X12 F600\nG1 X400\nM2\n"
@@ -61,9 +63,9 @@ class Runner:
 
 
 def test_paths(run):
-    """Two programs in one session."""
+    """Three programs in one session."""
     run(run.program("corners.ngc", PROGRAM), "-o", str(run.folder / "corners.csv"), run.program("turns.ngc", TURNS),
-        "-o", str(run.folder / "turns.csv"))
+        "-o", str(run.folder / "turns.csv"), run.program("slow.ngc", SLOW_TURNS), "-o", str(run.folder / "slow.csv"))
     rows = run.trace("corners.csv")
     check(math.dist(rows[0], [0] * 5) < 1e-9, f"the trace begins at {rows[0]}")
     check(math.dist(rows[-1], [*CORNERS[-1], 0, 0]) < 1e-6, f"the trace ends at {rows[-1]}")
@@ -82,6 +84,9 @@ def test_paths(run):
           f"{at_feed} of {len(steps)} steps are those of the feed, the largest {max(steps)} mm")
     turns = run.trace("turns.csv")
     check(math.dist(turns[-1], [0, 0, 0, -10, 400]) < 1e-6, f"the second trace ends at {turns[-1]}")
+    slow = run.trace("slow.csv")
+    at = [next(k for k, row in enumerate(slow) if row[4] > angle - 1e-6) * 1e-3 for angle in (2, 4, 6)]
+    check(abs(at[0] - 2) < 0.1 and abs(at[1] - at[0] - 2) < 0.1 and at[2] - at[1] < 1, f"slow turns end at {at} s")
     print(f"{len(rows)} cycles, at most {1e3 * off:.4f} um from the path")
 
 

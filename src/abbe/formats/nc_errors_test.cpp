@@ -39,6 +39,8 @@ TEST(NcErrors, OfCodesThatAreNotHandled) {
             "p.ngc:1:1: G84: a canned cycle without a feed; expected F before or in this block");
   EXPECT_EQ(refusal("F1 M4 G84 X1 Z-1 R2\n"),
             "p.ngc:1:7: G84: the spindle does not turn as this cycle needs it; expected M3");
+  EXPECT_EQ(refusal("F1 M3\nT1 M6\nG84 X1 Z-1 R2\n"),
+            "p.ngc:3:1: G84: the spindle does not turn as this cycle needs it; expected M3");
   EXPECT_EQ(refusal("G38.2 X1 F1\n"),
             "p.ngc:1:1: G38.2: only the control knows where probing ends; expected a code of docs/nc-programs.md");
   EXPECT_EQ(refusal("G5 X1 I1 J1\n"),

@@ -215,6 +215,7 @@ void NcInterpreter::execute() {
     const NcWord& word = codes_.word(block_, NcMGroup::tool);
     if (word.value == 6) {
       tool_ = selected_tool_;
+      spindle_ = 0;  // LinuxCNC 2.9 stops it for the change
     } else if (block_.has('q')) {
       tool_ = static_cast<int>(std::lround(block_.value('q')));
     }

@@ -154,6 +154,8 @@ const std::array kPrograms = {
     NamedProgram{"drilling_in_other_planes",
                  "G21 F100\nG18 G0 Y10\nG81 X1 Z1 Y-3 R2 L2\nG80\nG19 G0 X9\nG82 Y1 Z2 X-3 R1 P1\nZ5\nG80\nM2\n"},
     NamedProgram{"boring_with_the_spindle_stopped", "G21 F100 M3 S100\nG0 Z10\nG86 X1 Y1 Z-1 R2 P.5\nG80\nM2\n"},
+    NamedProgram{"pecking_beside_overrides",
+                 "G21 F100 M3 S100\nG0 Z10\nG83 X1 Y1 Z-1 R2 Q1 M52\nX2 M50 P0\nG73 X3 Z-2 R2 Q1 M51 P1\nG80\nM2\n"},
     NamedProgram{"tapping",
                  "G21 F100 M3 S100\nG0 Z10\nG84 X1 Y1 Z-1 R2 P.5\nX2\nG98 X3\nG80\nM4\nG74 X5 Z-3 R1\nG80\nG0 "
                  "X0\nM2\n"},

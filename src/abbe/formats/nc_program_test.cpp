@@ -142,6 +142,54 @@ TEST(NcProgram, PiecesOfAMoveFollowEachOtherAndModesAreSaidWhereTheyChange) {
       "G21 G90 G94 F3\nG0 X0.250 Y0.000\nN9 M8 G93 G1 X1.250 F6 (cut)\nG1 X2.250 F6\nG1 Y1.000 F6\nG1 Y2.000 F6\nM2\n");
 }
 
+/// Turns with a correction of X by 1 um more from move to move, in the time of the move.
+class CorrectedTurns final : public MoveCorrector {
+ public:
+  void correct(std::span<const ProgramMove> moves, CorrectedPieces& corrected) override {
+    corrected.pieces.clear();
+    corrected.first.assign(1, 0);
+    for (const ProgramMove& move : moves) {
+      CorrectedPiece piece{move.end, move.feed, move.feed_mode};
+      piece.end[0] += x_ += 0.001;
+      if (move.feed_mode == FeedMode::per_minute) {
+        piece.feed = move.feed / (move.end[3] - move.start[3]);
+        piece.feed_mode = FeedMode::inverse_time;
+      }
+      corrected.pieces.push_back(piece);
+      corrected.first.push_back(corrected.pieces.size());
+    }
+  }
+
+ private:
+  double x_ = 0;
+};
+
+std::string corrected_turns(std::string_view text, int decimals_mm) {
+  NcProgramOptions options = options_at_zero();
+  options.words = {true, false, false, true, false, false, false, false, false};
+  options.decimals_mm = decimals_mm;
+  options.decimals_deg = 0;
+  CorrectedTurns corrector;
+  std::string out;
+  correct_nc_program(text, "p.ngc", options, corrector, [&](std::string_view part) { out += part; });
+  return out;
+}
+
+TEST(NcProgram, TurnsKeepTheirTimeWhereLinuxCncsLeastFeedInInverseTimeIsFasterThanTheirCorrection) {
+  // Inverse times of 3, 3000 and 3 per minute. LinuxCNC 2.9 makes 0.1 mm/min (inch/min) of less.
+  EXPECT_EQ(corrected_turns("G21 G94\nG1 A10 F30\nA20 F30000\nA30 F30\nM2\n", 3),
+            "G21 G94\nG90 G1 X0.001 A10 F0.003\nG93 G1 X0.002 A20 F3000\nG94 G1 X0.003 A30 F0.003\nM2\n");
+  EXPECT_EQ(corrected_turns("G20 G94\nG1 A10 F30\nM2\n", 6), "G20 G94\nG90 G1 X0.0000394 A10 F0.0001182\nM2\n");
+  // A turn in inverse time has its time as well; a linear motion is LinuxCNC's as it is.
+  EXPECT_EQ(corrected_turns("G21 G93\nG1 A10 F3\nM2\n", 3), "G21 G93\nG90 G94 G1 X0.001 A10 F0.003\nM2\n");
+  EXPECT_EQ(corrected_turns("G21 G93\nG1 X.02 A10 F3\nM2\n", 3), "G21 G93\nG90 G1 X0.021 A10 F3\nM2\n");
+}
+
+TEST(NcProgram, TurnsKeepTheirFeedPerRevolutionWhereTheirCorrectionMovesLinearAxes) {
+  // 20 revolutions of the spindle.
+  EXPECT_EQ(corrected_turns("G21 G95 S100\nG1 A10 F.5\nM2\n", 3), "G21 G95 S100\nG90 G1 X0.001 A10 F0.00005\nM2\n");
+}
+
 /// Every rapid move goes a little ahead first, exactly.
 class AheadFirst final : public MoveCorrector {
  public:
@@ -249,8 +297,7 @@ TEST(NcProgram, AFeedThatRoundingWouldTurnIntoAnotherBecomesATime) {
   correct_nc_program("G21 G90 G94 F360\nG1 A90\nX2\nA180 X2.0001220703125\nM2\n", "p.ngc", options, corrector,
                      [&](std::string_view part) { out += part; });
   // 90 degrees in a quarter of a minute; 2^-13 mm at 360 mm/min.
-  EXPECT_EQ(out,
-            "G21 G90 G94 F360\nG93 G1 X0.000 Y0.001 A90.000 F4\nG94 G1 X2.000 F360\nG93 G1 A180.000 F2949120\nM2\n");
+  EXPECT_EQ(out, "G21 G90 G94 F360\nG1 X0.000 Y0.001 A90.000 F0.004\nG1 X2.000 F360\nG93 G1 A180.000 F2949120\nM2\n");
 }
 
 TEST(NcProgram, AStopHoldsBehindTheLastPieceOfItsMove) {

@@ -124,9 +124,9 @@ void NcInterpreter::pass_block(bool has_motion, bool unit_changes) {
     if (codes_.has(NcMGroup::stop)) consumed |= bit(codes_.m_place[static_cast<std::size_t>(NcMGroup::stop)]);
     const NcCode motion = codes_.has(NcGroup::motion) ? codes_[NcGroup::motion] : modes_.motion;
     if (motion >= 20 && motion != 800 && other != 280 && other != 300 && other != 531) {
-      const bool is_shared = other == 40 || codes_[NcGroup::path] == 640 || codes_.has(NcMGroup::signals) ||
-                             codes_.has(NcMGroup::overrides) || codes_.has(NcMGroup::user) ||
-                             codes_.has(NcMGroup::spindle);
+      const bool is_shared_q = codes_[NcGroup::path] == 640 || codes_.has(NcMGroup::signals) ||
+                               codes_.has(NcMGroup::user) || codes_.has(NcMGroup::spindle);
+      const bool is_shared_p = is_shared_q || other == 40 || codes_.has(NcMGroup::overrides);
       if (block_.has('r') && codes_.is_m(block_, NcMGroup::spindle, 19)) {
         block_.fail('r', "two codes of this block use it", "a block of its own for one of them");
       }
@@ -137,7 +137,7 @@ void NcInterpreter::pass_block(bool has_motion, bool unit_changes) {
                                                 motion == 860 || motion == 890
                             : letter == 'q' ? motion == 730 || motion == 830
                                             : motion > 30;
-        if (wanted && is_shared && letter != 'l') {
+        if (wanted && (letter == 'p' ? is_shared_p : letter == 'q' && is_shared_q)) {
           block_.fail(letter, "two codes of this block use it", "a block of its own for one of them");
         }
         if (wanted) drop_letter(letter);

@@ -307,7 +307,12 @@ void NcWriter::write_piece(const ProgramMove& move, const Item& item, const Corr
   if (changed != 0) {
     const bool rapid = move.kind == MoveKind::rapid;
     FeedMode mode = piece.feed_mode;
-    const double feed = feed_word(move, piece, moved, mode);
+    double feed = feed_word(move, piece, moved, mode);
+    if (mode == FeedMode::inverse_time) {
+      mode = slow_feed(move, words, changed, feed);
+    } else if (mode == FeedMode::per_revolution && moves_only_rotary_axes(move)) {
+      feed = feed_of_angle(words, changed, feed);
+    }
     at = write_modes(move, mode, at);
     const bool has_pitch = move.spindle == SpindleMove::thread || move.spindle == SpindleMove::rigid_tapping;
     if (has_pitch && ((changed & ~std::uint32_t{7}) != 0 || (is_said_ & changed) != changed)) {
@@ -367,6 +372,39 @@ double NcWriter::feed_word(const ProgramMove& move, const CorrectedPiece& piece,
   }
   mode = FeedMode::inverse_time;
   return squared > 0 ? std::min(piece.feed / std::sqrt(squared), kFastest_per_min) : kFastest_per_min;
+}
+
+FeedMode NcWriter::slow_feed(const ProgramMove& move, const std::array<std::int64_t, kAxisWords>& words,
+                             std::uint32_t changed, double& feed) const {
+  // In inverse time LinuxCNC 2.9 makes of F a feed per minute, and of one below this value this value.
+  constexpr double kSlowestOfInverseTime = 0.1;
+  if (move.feed_mode == FeedMode::inverse_time && !moves_only_rotary_axes(move)) return FeedMode::inverse_time;
+  const double per_minute = feed_length(words, changed) * feed;
+  if (!(per_minute > 0 && per_minute < kSlowestOfInverseTime)) return FeedMode::inverse_time;
+  feed = per_minute;
+  return FeedMode::per_minute;
+}
+
+double NcWriter::feed_of_angle(const std::array<std::int64_t, kAxisWords>& words, std::uint32_t changed,
+                               double feed) const {
+  const double angle = feed_length(words, changed & kRotaryWords);
+  const double length = feed_length(words, changed);
+  return angle > 0 && length > 0 ? feed * length / angle : feed;
+}
+
+double NcWriter::feed_length(const std::array<std::int64_t, kAxisWords>& words, std::uint32_t changed) const {
+  for (const std::uint32_t group : {0b111U, 0b111000000U, kRotaryWords}) {
+    if ((changed & group) == 0) continue;
+    double squared = 0;
+    for (std::size_t k = 0; k < kAxisWords; ++k) {
+      if (((changed & group) >> k & 1) == 0) continue;
+      const std::int64_t from = (is_said_ >> k & 1) != 0 ? said_[k] : rounded(word_units(k, stands_[k]));
+      const double way = static_cast<double>(words[k] - from) / scale_[k];
+      squared += way * way;
+    }
+    return std::sqrt(squared) / (group != kRotaryWords && frame_.inches ? kInch : 1);
+  }
+  return 0;
 }
 
 char* NcWriter::write_modes(const ProgramMove& move, FeedMode mode, char* at) {

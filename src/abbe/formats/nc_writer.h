@@ -81,9 +81,16 @@ class NcWriter {
 
   void write_item(std::size_t i, const CorrectedPiece* pieces, std::size_t count);
   void write_piece(const ProgramMove& move, const Item& item, const CorrectedPiece& piece, bool first);
-  /// Says modes that are not in force, and the move's kind.
   /// Feed of a piece as the control takes it; `mode` may become inverse time.
   double feed_word(const ProgramMove& move, const CorrectedPiece& piece, std::uint32_t moved, FeedMode& mode) const;
+  /// The mode in which the control takes the time that F in inverse time says, and its F.
+  FeedMode slow_feed(const ProgramMove& move, const std::array<std::int64_t, kAxisWords>& words, std::uint32_t changed,
+                     double& feed) const;
+  /// F of a rotary move in which the piece moves linear axes too, so that the angle still has it.
+  double feed_of_angle(const std::array<std::int64_t, kAxisWords>& words, std::uint32_t changed, double feed) const;
+  /// Program units or degrees: the way that F is of, from where the words before stand.
+  double feed_length(const std::array<std::int64_t, kAxisWords>& words, std::uint32_t changed) const;
+  /// Says modes that are not in force.
   char* write_modes(const ProgramMove& move, FeedMode mode, char* at);
   char* write_pitch(const ProgramMove& move, double pitch, char* at) const;
   char* write_feed(const ProgramMove& move, FeedMode mode, double feed, char* at);
