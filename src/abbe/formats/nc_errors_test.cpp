@@ -131,6 +131,11 @@ TEST(NcErrors, OfWordsThatAreWrongOrHaveNoUse) {
       "it that names these axes, or where they stand when the program begins (--start X_mm=0)");
   EXPECT_EQ(refusal("G43.4 H1\nG0 X1 Y1 Z1\nG53 G0 X1\n"),
             "p.ngc:3:1: G53: G53 while tool centre control is on; expected G49 before it");
+  for (const char* code : {"G28", "G28.1", "G30.1"}) {
+    EXPECT_EQ(refusal("G43.4 H1\nG0 X1 Y1 Z1\n" + std::string(code) + "\n"),
+              "p.ngc:3:1: " + std::string(code) +
+                  ": a reference position while tool centre control is on; expected G49 before it");
+  }
   EXPECT_EQ(refusal("G4\n"), "p.ngc:1:1: G4: the time of the dwell is missing; expected P in s");
   EXPECT_EQ(refusal("G4 P-1\n"), "p.ngc:1:4: P-1: the time of the dwell is negative");
   EXPECT_EQ(refusal("G91 G53 G0 X1\n"), "p.ngc:1:5: G53: G53 in incremental distances; expected G90");

@@ -251,6 +251,11 @@ void NcInterpreter::execute() {
     set_origin(moves);
   } else {
     if (other == 281 || other == 301) {
+      // What is stored is a place of the axes, and only the kinematics of the machine could say where they stand.
+      if (modes_.tool_centre) {
+        block_.fail(codes_.word(block_, NcGroup::non_modal), "a reference position while tool centre control is on",
+                    "G49 before it");
+      }
       if ((machine_words_ & ~known_) != 0) fail_unknown(machine_words_ & ~known_, "G28.1 and G30.1 store it");
       home_[other == 281 ? 0 : 1] = {position_, machine_words_};
     }
