@@ -19,6 +19,7 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/runtime/abbe_runtime.h"
 #include "compensate/compensate.h"
+#include "compensate/position_words.h"
 #include "compensate/reversal_words.h"
 #include "compensate/safety.h"
 
@@ -36,17 +37,6 @@ struct FreezeArguments {
   double leave_out_factor = 0;
   bool json = false, dry_run = false;
 };
-
-std::string command_words(const Machine& machine, const std::vector<double>& commands) {
-  std::string text;
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    const Axis& axis = machine.axes[i];
-    const bool rotary = axis.kind == AxisKind::rotary;
-    text += fmt::format("{}{} {:.4g} {}", i > 0 ? ", " : "", axis.name,
-                        rotary ? commands[i] * 180 / std::numbers::pi : commands[i], rotary ? "deg" : "mm");
-  }
-  return text;
-}
 
 FreezeOptions options_of(const FreezeArguments& arguments, const Machine& machine, const ErrorsFile& errors) {
   FreezeOptions options;
@@ -77,13 +67,15 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
   fmt::print("  tried at {} poses, tools of {:g} to {:g} mm\n", frozen.poses, arguments.lengths[0],
              arguments.lengths[1]);
   fmt::print("  largest correction of the tool: {:.1f} um at {}, tool {:g} mm\n", 1e3 * frozen.largest_correction,
-             command_words(machine, frozen.where), frozen.tool_length_there);
+             position_words(machine, frozen.where, "{:.4g}"), frozen.tool_length_there);
   fmt::print("  largest correction of its direction: {:.1f} urad\n", 1e6 * frozen.largest_correction_turn);
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const bool rotary = machine.axes[i].kind == AxisKind::rotary;
     fmt::print("  largest correction of {}: {:.4g} {}", machine.axes[i].name,
                frozen.largest_joint[i] * (rotary ? 1e6 : 1e3), rotary ? "urad" : "um");
-    fmt::print("{}\n", frozen.largest_joint[i] > 0 ? " at " + command_words(machine, frozen.largest_joint_at[i]) : "");
+    fmt::print("{}\n", frozen.largest_joint[i] > 0
+                           ? " at " + position_words(machine, frozen.largest_joint_at[i], "{:.4g}")
+                           : "");
   }
   fmt::print("  after it, by the full model{}: {:.1e} mm and {:.1e} rad at most\n",
              left_out.names.empty() ? "" : " with what is left out", frozen.accuracy, frozen.accuracy_turn);
@@ -121,14 +113,13 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
   json["poses"] = frozen.poses;
   json["largest_correction_um"] = 1e3 * frozen.largest_correction;
   json["largest_correction_urad"] = 1e6 * frozen.largest_correction_turn;
-  nlohmann::ordered_json where, joints;
+  nlohmann::ordered_json joints;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const bool rotary = machine.axes[i].kind == AxisKind::rotary;
     const double degrees = 180 / std::numbers::pi;
-    where[machine.axes[i].name + (rotary ? "_deg" : "_mm")] = frozen.where[i] * (rotary ? degrees : 1);
     joints[machine.axes[i].name + (rotary ? "_deg" : "_um")] = frozen.largest_joint[i] * (rotary ? degrees : 1e3);
   }
-  json["largest_correction_at"] = where;
+  json["largest_correction_at"] = position_json(machine, frozen.where);
   json["largest_joint_corrections"] = joints;
   json["accuracy_mm"] = frozen.accuracy;
   json["accuracy_rad"] = frozen.accuracy_turn;
@@ -173,7 +164,7 @@ int run_freeze(const FreezeArguments& arguments) {
   std::string refused;
   if (!(1e3 * frozen.largest_correction <= limit_um)) {
     refused = fmt::format("the correction is {:.1f} um, above --limit-um {:g}, at {}, tool {:g} mm",
-                          1e3 * frozen.largest_correction, limit_um, command_words(machine, frozen.where),
+                          1e3 * frozen.largest_correction, limit_um, position_words(machine, frozen.where, "{:.4g}"),
                           frozen.tool_length_there);
   } else if (!(frozen.difference <= kLargestDifference)) {
     refused = fmt::format("the frozen compensation differs by {:.2e} mm from the full model", frozen.difference);

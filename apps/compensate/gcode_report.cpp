@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "compensate/position_words.h"
 #include "compensate/reversal_words.h"
 #include "compensate/safety.h"
 
@@ -34,25 +35,6 @@ nlohmann::ordered_json count_json(const StatusCount& count) {
   json["first_lines"] = nlohmann::ordered_json::array();
   for (const std::size_t line : count.line) {
     if (line != 0) json["first_lines"].push_back(line);
-  }
-  return json;
-}
-
-std::string position_text(const Machine& machine, const ProgramPlace& place) {
-  std::string text;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    text += fmt::format("{}{} {:.3f} {}", text.empty() ? "" : ", ", machine.axes[i].name,
-                        place.position[i] / (rotary ? kDegree : 1), rotary ? "deg" : "mm");
-  }
-  return text;
-}
-
-nlohmann::ordered_json position_json(const Machine& machine, const ProgramPlace& place) {
-  nlohmann::ordered_json json;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    json[machine.axes[i].name + (rotary ? "_deg" : "_mm")] = place.position[i] / (rotary ? kDegree : 1);
   }
   return json;
 }
@@ -141,7 +123,8 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
     std::string reason =
         fmt::format("{}: {} pose{}, {}", text, count.count, count.count == 1 ? "" : "s", lines_text(count));
     if (first.line != 0)
-      reason += fmt::format(", first at {}", position_text(machine, first) + travel_text(machine, first));
+      reason +=
+          fmt::format(", first at {}", position_words(machine, first.position, "{:.3f}") + travel_text(machine, first));
     if (allow != nullptr) reason += fmt::format(" (--allow {} to write it all the same)", allow);
     reasons.push_back(reason);
   };
@@ -151,8 +134,9 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
   add(report.above_limit, false, fmt::format("correction above the limit of {:g} um", options.limit_um.value_or(0)),
       nullptr);
   if (report.above_limit.count > 0) {
-    reasons.back() += fmt::format(", the largest {:.3f} um in line {} at {}", 1e3 * report.largest_shift.value,
-                                  report.largest_shift.line, position_text(machine, report.largest_shift));
+    reasons.back() +=
+        fmt::format(", the largest {:.3f} um in line {} at {}", 1e3 * report.largest_shift.value,
+                    report.largest_shift.line, position_words(machine, report.largest_shift.position, "{:.3f}"));
   }
   add(status_count(report, CorrectionStatus::not_covered), allowed.not_covered,
       "outside the range over which the errors are known", "not-covered", first_place(CorrectionStatus::not_covered));
@@ -192,7 +176,7 @@ void print_gcode_report(const GcodeOptions& options, const Machine& machine, con
   if (shift.line != 0) {
     fmt::print("largest correction of the functional point {:.3f} um", 1e3 * shift.value);
     if (result.largest.stated) fmt::print(", standard uncertainty {:.3f} um", 1e3 * result.largest.point);
-    fmt::print(", line {}, {}\n", shift.line, position_text(machine, shift));
+    fmt::print(", line {}, {}\n", shift.line, position_words(machine, shift.position, "{:.3f}"));
   }
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const ProgramPlace& place = report.by_axis[i];
@@ -275,7 +259,7 @@ nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& ma
     largest["value_um"] = 1e3 * report.largest_shift.value;
     if (result.largest.stated) largest["standard_uncertainty_um"] = 1e3 * result.largest.point;
     largest["line"] = report.largest_shift.line;
-    largest["position"] = position_json(machine, report.largest_shift);
+    largest["position"] = position_json(machine, report.largest_shift.position);
   }
   json["axes"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {

@@ -21,6 +21,7 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/geometry/angle.h"
 #include "compensate/compensate.h"
+#include "compensate/position_words.h"
 #include "compensate/safety.h"
 
 namespace abbe {
@@ -159,13 +160,7 @@ std::string poses_csv(const Machine& machine, const CorrectedPoses& result) {
 }
 
 std::string pose_words(const Machine& machine, const PoseList& poses, std::size_t row) {
-  std::string words = fmt::format("row {}", row);
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    words += fmt::format(", {} {:.6g} {}", machine.axes[i].name, poses.axis[i][row - 1] / (rotary ? kDegree : 1),
-                         rotary ? "deg" : "mm");
-  }
-  return words;
+  return fmt::format("row {}, {}", row, position_words(machine, poses.pose(row - 1)));
 }
 
 void print_poses(const PosesCommand& command, const Machine& machine, const PoseList& poses,

@@ -8,6 +8,7 @@
 
 #include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/formats/input_error.h"
+#include "compensate/position_words.h"
 
 namespace abbe {
 namespace {
@@ -52,27 +53,16 @@ std::string left_out_text(const Machine& machine, double factor, const LeftOutEr
                         listed(left_out.kept));
   }
   if (left_out.where.empty()) return text;
-  std::string where;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    where += fmt::format("{}{} {:.6g} {}", i == 0 ? "" : ", ", machine.axes[i].name,
-                         rotary ? left_out.where[i] / kDegree : left_out.where[i], rotary ? "deg" : "mm");
-  }
   return text +
          fmt::format("{}what is left out shifts the functional point by at most {:.3f} um over the travel, at {}\n",
-                     indent, 1e3 * left_out.largest_shift, where);
+                     indent, 1e3 * left_out.largest_shift, position_words(machine, left_out.where));
 }
 
 void state_left_out(const Machine& machine, const LeftOutErrors& left_out, nlohmann::ordered_json& json) {
   json["left_out"] = left_out.names;
   json["left_out_kept"] = left_out.kept;
   json["left_out_largest_um"] = 1e3 * left_out.largest_shift;
-  if (left_out.where.empty()) return;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    json["left_out_largest_at"][machine.axes[i].name + (rotary ? "_deg" : "_mm")] =
-        left_out.where[i] / (rotary ? kDegree : 1);
-  }
+  if (!left_out.where.empty()) json["left_out_largest_at"] = position_json(machine, left_out.where);
 }
 
 }  // namespace abbe

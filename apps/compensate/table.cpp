@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 
 #include "abbe/compensate/correction_uncertainty.h"
@@ -18,6 +17,7 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/verify/error_map.h"
 #include "compensate/compensate.h"
+#include "compensate/position_words.h"
 #include "compensate/reversal_words.h"
 #include "compensate/safety.h"
 #include "compensate/table_formats.h"
@@ -28,7 +28,6 @@
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kAside = 0.19;
 /// Tables that make the error larger by more than this are refused.
 constexpr double kWorse = 1.02;
@@ -111,16 +110,6 @@ void state_reversals(const ErrorSet& errors, const TableRequest& request, TableR
   }
 }
 
-std::string pose_words(const Machine& machine, const PoseList& poses, std::size_t k) {
-  std::string words;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    words += fmt::format("{}{} {:.6g} {}", i == 0 ? "" : ", ", machine.axes[i].name,
-                         rotary ? poses.axis[i][k] / kDegree : poses.axis[i][k], rotary ? "deg" : "mm");
-  }
-  return words;
-}
-
 /// The largest corrections over tables and grid, and what of them is above a limit.
 void look_at_limits(const TableCommand& command, const ControllerTables& tables, TableReport& report) {
   const Machine& machine = *report.machine;
@@ -133,7 +122,7 @@ void look_at_limits(const TableCommand& command, const ControllerTables& tables,
       if (!(std::abs(added.axis[i][k]) > largest)) continue;
       largest = std::abs(added.axis[i][k]);
       (rotary ? report.largest_rad_at : report.largest_mm_at) =
-          fmt::format("{} for axis {}", pose_words(machine, report.poses, k), machine.axes[i].name);
+          fmt::format("{} for axis {}", position_words(machine, report.poses.pose(k)), machine.axes[i].name);
     }
   }
   const auto refuse = [&](double value, bool is_angle, const std::string& where) {

@@ -126,14 +126,18 @@ class ShiftedMoves final : public MoveCorrector {
   }
 };
 
+std::string written_with(MoveCorrector& corrector, std::string_view text, const NcProgramOptions& options) {
+  std::string out;
+  correct_nc_program(text, "p.ngc", options, corrector, [&](std::string_view part) { out += part; });
+  return out;
+}
+
 std::string shifted(std::string_view text, NcProgramOptions options = options_at_zero()) {
   options.words = {true, true, false, false, false, false, false, false, false};
   options.start = {0, 0};
   options.decimals_mm = 3;
   ShiftedMoves corrector;
-  std::string out;
-  correct_nc_program(text, "p.ngc", options, corrector, [&](std::string_view part) { out += part; });
-  return out;
+  return written_with(corrector, text, options);
 }
 
 TEST(NcProgram, PiecesOfAMoveFollowEachOtherAndModesAreSaidWhereTheyChange) {
@@ -170,9 +174,7 @@ std::string corrected_turns(std::string_view text, int decimals_mm) {
   options.decimals_mm = decimals_mm;
   options.decimals_deg = 0;
   CorrectedTurns corrector;
-  std::string out;
-  correct_nc_program(text, "p.ngc", options, corrector, [&](std::string_view part) { out += part; });
-  return out;
+  return written_with(corrector, text, options);
 }
 
 TEST(NcProgram, TurnsKeepTheirTimeWhereLinuxCncsLeastFeedInInverseTimeIsFasterThanTheirCorrection) {
@@ -218,9 +220,7 @@ std::string ahead_first(std::string_view text, double way = 0.25) {
   options.words = {true, true, true, false, false, false, false, false, false};
   options.decimals_mm = 2;
   AheadFirst corrector(way);
-  std::string out;
-  correct_nc_program(text, "p.ngc", options, corrector, [&](std::string_view part) { out += part; });
-  return out;
+  return written_with(corrector, text, options);
 }
 
 TEST(NcProgram, ExactPiecesStandInExactPathModeAndTheProgramsOwnModeIsSaidAgain) {
@@ -293,11 +293,9 @@ TEST(NcProgram, AFeedThatRoundingWouldTurnIntoAnotherBecomesATime) {
   options.words = {true, true, false, true, false, false, false, false, false};
   options.decimals_mm = options.decimals_deg = 3;
   HairsBreadth corrector;
-  std::string out;
-  correct_nc_program("G21 G90 G94 F360\nG1 A90\nX2\nA180 X2.0001220703125\nM2\n", "p.ngc", options, corrector,
-                     [&](std::string_view part) { out += part; });
   // 90 degrees in a quarter of a minute; 2^-13 mm at 360 mm/min.
-  EXPECT_EQ(out, "G21 G90 G94 F360\nG1 X0.000 Y0.001 A90.000 F0.004\nG1 X2.000 F360\nG93 G1 A180.000 F2949120\nM2\n");
+  EXPECT_EQ(written_with(corrector, "G21 G90 G94 F360\nG1 A90\nX2\nA180 X2.0001220703125\nM2\n", options),
+            "G21 G90 G94 F360\nG1 X0.000 Y0.001 A90.000 F0.004\nG1 X2.000 F360\nG93 G1 A180.000 F2949120\nM2\n");
 }
 
 TEST(NcProgram, AStopHoldsBehindTheLastPieceOfItsMove) {

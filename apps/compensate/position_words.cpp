@@ -1,0 +1,35 @@
+#include "compensate/position_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+
+namespace abbe {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+}  // namespace
+
+std::string position_words(const Machine& machine, std::span<const double> commands, const char* number) {
+  std::string words;
+  for (std::size_t i = 0; i < std::min(machine.axes.size(), commands.size()); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    words +=
+        fmt::format("{}{} {} {}", i == 0 ? "" : ", ", machine.axes[i].name,
+                    fmt::format(fmt::runtime(number), commands[i] / (rotary ? kDegree : 1)), rotary ? "deg" : "mm");
+  }
+  return words;
+}
+
+nlohmann::ordered_json position_json(const Machine& machine, std::span<const double> commands) {
+  nlohmann::ordered_json json;
+  for (std::size_t i = 0; i < std::min(machine.axes.size(), commands.size()); ++i) {
+    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    json[machine.axes[i].name + (rotary ? "_deg" : "_mm")] = commands[i] / (rotary ? kDegree : 1);
+  }
+  return json;
+}
+
+}  // namespace abbe
