@@ -1,10 +1,12 @@
-# The few commands a visitor needs. The work itself is done by CMake presets (CMakePresets.json).
+# The few commands a visitor needs. The work itself is done by CMake presets (CMakePresets.json), which .ci/build configures
+# when needed and builds, with ccache where it is installed. What is missing is installed, or named, by .ci/set-up.
 #
-#   make build     release build: build/release/bin/abbe
+#   make build     set-up, release build: build/release/bin/abbe
 #   make demo      set-up, build, run the main study of examples/, say where the report is
 #   make closed-loop  measure, identify, compensate, run in LinuxCNC, verify: examples/closed_loop
 #   make test      set-up and every check that continuous integration runs
-#   make quick     build and run only the quick tests
+#   make unit      build and run the tests of single folders
+#   make quick     the same with the tests of the command and of the pages
 #   make lint      formatting, structure and static analysis
 #   make format    rewrite the sources in the project's format
 #   make bench     speed and accuracy benchmarks
@@ -16,66 +18,74 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo closed-loop test quick lint format bench fuzz coverage install install-linuxcnc clean
+.PHONY: build demo closed-loop test unit quick lint format bench fuzz coverage install install-linuxcnc clean
 
 PREFIX ?= /usr/local
-JOBS ?= $(shell nproc)
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 FUZZ_SECONDS ?= 60
+TEST_FUZZ_SECONDS ?= 10
 DEMO_STUDY ?= examples/aguado/aguado.study.toml
 DEMO_RESULTS ?= build/demo
 LOOP_RESULTS ?= build/closed-loop
-
-# Objects are shared between build folders and clones where ccache is installed.
-export CCACHE_BASEDIR ?= $(CURDIR)
-export CCACHE_NOHASHDIR ?= 1
+export JOBS
 export CTEST_OUTPUT_ON_FAILURE := 1
-LAUNCHER = $(if $(shell command -v ccache),-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+
+# What is said at the start: minutes that the whole takes on two cores when nothing is built and nothing is in ccache.
+BUILD_MINUTES := 6
+LOOP_MINUTES := 3
+TEST_MINUTES := 25
+QUICK_MINUTES := 10
 
 say = @printf '\n== %s (%s)\n' "$(1)" "$$(date -u +%H:%M:%S)"
-# $(call build_preset,PRESET[,extra CMake arguments])
-define build_preset
-@cmake --preset $(1) $(LAUNCHER) $(2) --log-level=WARNING >/dev/null
-@cmake --build build/$(1) -j $(JOBS)
-endef
 
 build:
 	@.ci/set-up build
-	$(call build_preset,release)
+	@.ci/build --expect $(BUILD_MINUTES) "make $@ builds build/release/bin/abbe" release
 
-demo: build
+demo:
+	@.ci/set-up build
+	@.ci/build --expect $(BUILD_MINUTES) "make $@ builds the command and runs the main study" release
 	build/release/bin/abbe run $(DEMO_STUDY) --output $(DEMO_RESULTS)
 	@echo "The report is in $(CURDIR)/$(DEMO_RESULTS)/report.html"
 
 closed-loop:
 	@.ci/set-up build linuxcnc
-	$(call build_preset,release)
+	@.ci/build --expect $(BUILD_MINUTES) "make $@ builds the command before the loop" release
+	@echo "The loop takes about $(LOOP_MINUTES) minutes: plan, measure, identify, compensate, run in LinuxCNC, verify"
 	examples/closed_loop/run $(LOOP_RESULTS)
 
 test:
 	@.ci/set-up test
-	$(call say,Formatting)
+	@echo "make $@ checks the format, makes two builds, runs all tests and the fuzzing: from nothing it takes about" \
+	  "$(TEST_MINUTES) minutes on 2 cores"
+	$(call say,1 of 6: formatting)
 	@.ci/format --check
-	$(call say,Build with warnings as errors)
-	$(call build_preset,dev,-DABBE_WERROR=ON)
-	$(call say,Unit tests under the address and undefined-behaviour sanitizers)
-	$(call build_preset,asan,-DABBE_WERROR=ON)
+	$(call say,2 of 6: development build with warnings as errors)
+	@.ci/build dev -DABBE_WERROR=ON
+	$(call say,3 of 6: build with the address and undefined-behaviour sanitizers)
+	@.ci/build asan -DABBE_WERROR=ON
+	$(call say,4 of 6: quick tests under the sanitizers)
 	@ctest --preset asan -j $(JOBS)
-	$(call say,Fuzzing for $(FUZZ_SECONDS) s per reader)
-	$(call build_preset,fuzz,-DABBE_WERROR=ON -DABBE_FUZZ_SECONDS=$(FUZZ_SECONDS))
-	@ctest --preset fuzz -j $(JOBS)
-	$(call say,All tests)
+	$(call say,5 of 6: fuzzing for $(TEST_FUZZ_SECONDS) s per reader)
+	@ABBE_FUZZ_SECONDS=$(TEST_FUZZ_SECONDS) ctest --preset fuzz -j $(JOBS)
+	$(call say,6 of 6: all tests)
 	@ctest --preset dev -j $(JOBS)
+
+unit:
+	@.ci/set-up test
+	@.ci/build --expect $(QUICK_MINUTES) "make $@ makes the development build and runs the unit tests" dev -DABBE_WERROR=ON
+	@ctest --preset dev -j $(JOBS) -L unit
 
 quick:
 	@.ci/set-up test
-	$(call build_preset,dev,-DABBE_WERROR=ON)
+	@.ci/build --expect $(QUICK_MINUTES) "make $@ makes the development build and runs the quick tests" dev -DABBE_WERROR=ON
 	@ctest --preset dev -j $(JOBS) -L quick
 
 lint:
 	@.ci/set-up lint
 	@.ci/format --check
 	@python3 tests/structure/check_structure.py .
-	@cmake --preset tidy $(LAUNCHER) --log-level=WARNING >/dev/null
+	@.ci/build --configure tidy
 	@.ci/lint --jobs $(JOBS)
 
 format:
@@ -84,19 +94,19 @@ format:
 
 bench:
 	@.ci/set-up bench
-	$(call build_preset,bench)
+	@.ci/build bench
 	@for program in closest_point compensated_inverse fits forward_pose five_instruments identification identification_memory nc_program planning \
 	  polygon_trace program_correction read_csv read_mesh registration runtime_call scan_points; do \
 	  echo "== $$program"; build/bench/bin/$$program; done
 
 fuzz:
 	@.ci/set-up fuzz
-	$(call build_preset,fuzz,-DABBE_FUZZ_SECONDS=$(FUZZ_SECONDS))
-	@ctest --preset fuzz -j $(JOBS)
+	@.ci/build asan
+	@ABBE_FUZZ_SECONDS=$(FUZZ_SECONDS) ctest --preset fuzz -j $(JOBS)
 
 coverage:
 	@.ci/set-up coverage
-	$(call build_preset,coverage)
+	@.ci/build coverage
 	@ctest --preset coverage -j $(JOBS)
 	@mkdir -p build/coverage/report
 	@gcovr --root . --filter src/abbe --exclude '.*_test\.cpp' --html-details build/coverage/report/index.html \
@@ -108,8 +118,7 @@ install: build
 
 install-linuxcnc:
 	@.ci/set-up build
-	@cmake --preset release $(LAUNCHER) --log-level=WARNING >/dev/null
-	@cmake --build build/release -j $(JOBS) --target abbekins || \
+	@.ci/build --target abbekins release || \
 	  { echo "LinuxCNC's headers are missing: apt-get install linuxcnc-uspace-dev" >&2; exit 1; }
 	@cmake --install build/release --component linuxcnc
 

@@ -1,23 +1,23 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "abbe/errors/error_set.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/machine_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/drawing.h"
 #include "abbe/machine/machine_check.h"
 #include "check_frozen.h"
 #include "check_geometry.h"
 #include "command.h"
+#include "exit_code.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::vector<std::string> motion_names(const Machine& machine, std::size_t axis) {
   std::vector<std::string> names;

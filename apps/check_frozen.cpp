@@ -6,18 +6,16 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/runtime/abbe_runtime.h"
-#include "command.h"
+#include "exit_code.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 using Runtime = std::unique_ptr<abbe_runtime, decltype(&abbe_runtime_free)>;
 

@@ -15,7 +15,8 @@
 #include "abbe/formats/text_file.h"
 #include "abbe/geometry/mesh_check.h"
 #include "abbe/geometry/vertex_welder.h"
-#include "command.h"
+#include "exit_code.h"
+#include "vector_json.h"
 
 namespace abbe {
 namespace {
@@ -28,8 +29,6 @@ std::optional<FileLength> unit_of(const GeometryCheckOptions& options) {
   if (!unit) throw InputError({"", 0, 0, "--unit"}, fmt::format("'{}' is no unit", options.unit), "mm, m or inch");
   return unit;
 }
-
-Json triple(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 std::string words(const Eigen::Vector3d& v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x(), v.y(), v.z()); }
 
@@ -139,8 +138,8 @@ Json mesh_json(const CheckedMesh& mesh) {
   json["closed"] = check.is_closed();
   json["oriented"] = check.is_oriented();
   json["sound"] = mesh.is_sound();
-  json["lower_mm"] = triple(check.lower);
-  json["upper_mm"] = triple(check.upper);
+  json["lower_mm"] = vector_json(check.lower);
+  json["upper_mm"] = vector_json(check.upper);
   json["area_mm2"] = check.area;
   // No number where there is none.
   json["volume_mm3"] = check.encloses_volume() ? Json(check.volume) : Json();
@@ -169,9 +168,9 @@ int check_cloud(const PointCloudFile& file, bool json_wanted) {
     json["repeated_points"] = repeated;
     json["normals"] = cloud.has_normals();
     json["deviations"] = !file.deviation_mm.empty();
-    json["lower_mm"] = triple(lower);
-    json["upper_mm"] = triple(upper);
-    json["centroid_mm"] = triple(centroid);
+    json["lower_mm"] = vector_json(lower);
+    json["upper_mm"] = vector_json(upper);
+    json["centroid_mm"] = vector_json(centroid);
     fmt::print("{}", json_text(json));
     return kDone;
   }

@@ -1,5 +1,9 @@
 #include "compensate/compensate.h"
 
+#include <CLI/CLI.hpp>
+
+#include "command.h"
+
 namespace abbe {
 
 void add_compensate_command(CommandLine& line) {

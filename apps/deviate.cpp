@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/ply_file.h"
@@ -11,8 +13,10 @@
 #include "abbe/geometry/surface_faces.h"
 #include "abbe/report/svg_plot.h"
 #include "abbe/verify/surface_deviation.h"
+#include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
+#include "exit_code.h"
 #include "scan/deviation_colours.h"
 #include "scan/scan_files.h"
 #include "scan/surface_picture.h"
@@ -28,8 +32,8 @@ struct DeviateCommand {
   bool faces_of_file = false;
 };
 
-EvaluationFigure figure(const std::string& symbol, const std::string& name, const DeviationStatistics& all,
-                        double value) {
+EvaluationFigure statistic_figure(const std::string& symbol, const std::string& name, const DeviationStatistics& all,
+                                  double value) {
   EvaluationFigure result;
   result.symbol = symbol;
   result.name = name;
@@ -43,17 +47,17 @@ EvaluationFigure figure(const std::string& symbol, const std::string& name, cons
 
 std::vector<EvaluationFigure> figures_of(const DeviationStatistics& all) {
   std::vector<EvaluationFigure> figures{
-      figure("mean", "mean", all, all.sample.mean),
-      figure("std", "standard deviation about the mean (n - 1)", all, all.sample.deviation),
-      figure("rms", "root mean square about zero", all, all.sample.rms),
-      figure("rms_about_mean", "root mean square about the mean (n)", all, all.rms_about_mean),
-      figure("minimum", "least", all, all.sample.minimum),
-      figure("p5", "5th percentile", all, all.p5),
-      figure("p25", "25th percentile", all, all.p25),
-      figure("median", "median", all, all.sample.median),
-      figure("p75", "75th percentile", all, all.p75),
-      figure("p95", "95th percentile", all, all.sample.p95),
-      figure("maximum", "largest", all, all.sample.maximum)};
+      statistic_figure("mean", "mean", all, all.sample.mean),
+      statistic_figure("std", "standard deviation about the mean (n - 1)", all, all.sample.deviation),
+      statistic_figure("rms", "root mean square about zero", all, all.sample.rms),
+      statistic_figure("rms_about_mean", "root mean square about the mean (n)", all, all.rms_about_mean),
+      statistic_figure("minimum", "least", all, all.sample.minimum),
+      statistic_figure("p5", "5th percentile", all, all.p5),
+      statistic_figure("p25", "25th percentile", all, all.p25),
+      statistic_figure("median", "median", all, all.sample.median),
+      statistic_figure("p75", "75th percentile", all, all.p75),
+      statistic_figure("p95", "95th percentile", all, all.sample.p95),
+      statistic_figure("maximum", "largest", all, all.sample.maximum)};
   if (all.sample.count < 2) {
     figures[1].value.reset();
     figures[1].missing = "needs two points";

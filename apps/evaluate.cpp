@@ -1,5 +1,9 @@
 #include "evaluate/evaluate.h"
 
+#include <CLI/CLI.hpp>
+
+#include "command.h"
+
 namespace abbe {
 
 void add_evaluate_command(CommandLine& line) {

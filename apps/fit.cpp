@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "abbe/formats/input_error.h"
@@ -10,8 +12,10 @@
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/point_cloud_file.h"
 #include "abbe/formats/results_folder.h"
+#include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
+#include "exit_code.h"
 #include "fit/fit_report.h"
 #include "fit/fit_surface.h"
 

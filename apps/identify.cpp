@@ -1,11 +1,16 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/study_file.h"
 #include "abbe/identify/prediction.h"
 #include "command.h"
+#include "exit_code.h"
+#include "progress.h"
 #include "study/advice.h"
 #include "study/job.h"
 #include "study/print.h"

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -14,6 +15,7 @@
 #include "abbe/formats/kept_inputs.h"
 #include "command.h"
 #include "compensate/compensate.h"
+#include "exit_code.h"
 #include "scan/scan.h"
 
 namespace abbe {

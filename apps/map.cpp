@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
@@ -12,6 +14,8 @@
 #include "abbe/verify/error_map.h"
 #include "axis_option.h"
 #include "command.h"
+#include "exit_code.h"
+#include "progress.h"
 #include "study/job.h"
 #include "study/results.h"
 #include "study/summary.h"

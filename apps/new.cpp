@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/results_folder.h"
 #include "command.h"
+#include "exit_code.h"
 
 namespace abbe {
 

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 
 #include "abbe/errors/calibrated_machine.h"
@@ -18,17 +18,17 @@
 #include "abbe/formats/placement_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/geometry/angle.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/tool_path.h"
 #include "axis_option.h"
 #include "command.h"
+#include "exit_code.h"
 #include "path/path_page.h"
 #include "scan/surface_picture.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct PathCommand {
   std::string machine, curve, errors, placement, part, report;

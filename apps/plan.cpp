@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "abbe/formats/json_text.h"
@@ -8,6 +10,8 @@
 #include "abbe/formats/study_file.h"
 #include "abbe/report/svg_plot.h"
 #include "command.h"
+#include "exit_code.h"
+#include "progress.h"
 #include "study/planning.h"
 
 namespace abbe {
@@ -163,7 +167,7 @@ void print_grids(const StudyPlan& result) {
   }
 }
 
-void print_plan(const Study& study, const StudyPlan& result) {
+void print_study_plan(const Study& study, const StudyPlan& result) {
   fmt::print("{}: {}   ({})\n", study.name, study.machine.name, study.machine.chain());
   fmt::print("{} candidates; {} sights without a line of sight and {} poses in forbidden boxes left out\n",
              result.candidates, result.hidden, result.forbidden);
@@ -241,7 +245,7 @@ void add_plan_command(CommandLine& line) {
       if (options->json) {
         fmt::print("{}", json_text(plan_json(study, result)));
       } else {
-        print_plan(study, result);
+        print_study_plan(study, result);
         if (done && !options->output.empty()) fmt::print("\n{} written\n", options->output);
       }
       return done ? kDone : kNegative;

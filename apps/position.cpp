@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
@@ -11,14 +11,16 @@
 #include "abbe/formats/point_cloud_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/scanner_positioning_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/registration.h"
 #include "command.h"
+#include "exit_code.h"
 #include "position/position_json.h"
+#include "progress.h"
+#include "vector_json.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct PositionCommand {
   std::string file, output, maps;  ///< maps: "table-to-workpiece" if empty
@@ -74,19 +76,17 @@ nlohmann::ordered_json covariance_json(const Eigen::Matrix<double, 6, 6>& covari
   return rows;
 }
 
-nlohmann::ordered_json triple_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
 nlohmann::ordered_json scanner_json(const ScannerPosition& scanner) {
   nlohmann::ordered_json json;
   json["table_from_scanner"] = matrix_json(scanner.table_from_scanner);
   json["covariance_of"] =
       "small motion in the table's frame at the table's origin: translation mm, rotation vector rad";
   json["covariance"] = covariance_json(scanner.covariance);
-  json["x_direction"] = triple_json(scanner.x_direction);
-  json["y_direction"] = triple_json(scanner.y_direction);
-  json["axis_direction"] = triple_json(scanner.axis_direction);
-  json["sphere_centre_mm"] = triple_json(scanner.sphere_centre);
-  json["foot_on_axis_mm"] = triple_json(scanner.on_axis);
+  json["x_direction"] = vector_json(scanner.x_direction);
+  json["y_direction"] = vector_json(scanner.y_direction);
+  json["axis_direction"] = vector_json(scanner.axis_direction);
+  json["sphere_centre_mm"] = vector_json(scanner.sphere_centre);
+  json["foot_on_axis_mm"] = vector_json(scanner.on_axis);
   json["squareness_urad"] = 1e6 * scanner.squareness;
   json["axis_tilt_urad"] = {1e6 * scanner.axis_tilt.x(), 1e6 * scanner.axis_tilt.y()};
   return json;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -14,7 +15,10 @@
 #include "abbe/geometry/registration.h"
 #include "abbe/report/evaluation_data.h"
 #include "abbe/report/report.h"
+#include "command.h"
 #include "evaluate/number_option.h"
+#include "exit_code.h"
+#include "progress.h"
 #include "scan/registration_page.h"
 #include "scan/registration_words.h"
 #include "scan/scan_files.h"

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "abbe/formats/input_error.h"
 #include "command.h"
 

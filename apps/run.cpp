@@ -1,9 +1,14 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/study_file.h"
 #include "command.h"
+#include "exit_code.h"
+#include "progress.h"
 #include "study/advice.h"
 #include "study/job.h"
 #include "study/print.h"

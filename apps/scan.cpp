@@ -1,5 +1,9 @@
 #include "scan/scan.h"
 
+#include <CLI/CLI.hpp>
+
+#include "command.h"
+
 namespace abbe {
 
 void add_scan_command(CommandLine& line) {

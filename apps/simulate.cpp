@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/study_file.h"
 #include "command.h"
+#include "exit_code.h"
+#include "progress.h"
 #include "study/campaign.h"
 #include "study/results.h"
 

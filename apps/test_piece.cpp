@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 
@@ -9,6 +10,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/results_folder.h"
 #include "command.h"
+#include "exit_code.h"
 #include "test_piece/sizes.h"
 
 namespace abbe {

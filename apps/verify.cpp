@@ -1,15 +1,18 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
 #include "command.h"
+#include "exit_code.h"
 #include "verify/verify_job.h"
 #include "verify/verify_page.h"
 #include "verify/verify_text.h"

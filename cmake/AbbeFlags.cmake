@@ -4,9 +4,15 @@ target_compile_options(abbe_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -Woverloaded-virtual
   # clang counts changes of sign as conversions, GCC does not; Eigen's signed indices make them noise.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>
+  # In a batch of sources (AbbeUnits.cmake) none of them is the main file, to which this warning leaves unnamed namespaces.
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ABBE_UNITY}>>:-Wno-subobject-linkage>
+  # False alarms of GCC 12 on strings that are put together (its bugs 105329 and 105651).
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds;-Wno-restrict>
   # The same bits on every machine and at every optimisation level.
   -ffp-contract=off
   $<$<BOOL:${ABBE_WERROR}>:-Werror>)
+# The same for all, so that all can share precompiled headers.
+target_compile_definitions(abbe_flags INTERFACE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
 if(ABBE_SANITIZE)
   target_compile_options(abbe_flags INTERFACE -fsanitize=${ABBE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(abbe_flags INTERFACE -fsanitize=${ABBE_SANITIZE})

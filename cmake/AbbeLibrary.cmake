@@ -1,13 +1,17 @@
-# abbe_library(NAME SOURCES a.cpp ... DEPENDS geometry ... [LINK lib ...] [PRIVATE_LINK lib ...] [TESTS a_test.cpp ...])
+# abbe_library(NAME SOURCES a.cpp ... DEPENDS geometry ... [LINK lib ...] [PRIVATE_LINK lib ...] [TESTS a_test.cpp ...]
+#   [ALONE b.cpp ...])
 #
 # One static library per folder of src/abbe. DEPENDS names other folders; TESTS are the unit tests that stand beside the
-# sources, built into one program per folder.
+# sources, built into one program per folder. ALONE are sources or tests that cannot share a unit (cmake/AbbeUnits.cmake).
+include(AbbeUnits)
 include(AbbeFlags)
+include(AbbeDiscover)
 
 function(abbe_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LINK;PRIVATE_LINK;TESTS;TEST_LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LINK;PRIVATE_LINK;TESTS;TEST_LINK;ALONE" ${ARGN})
   if(ARG_SOURCES)
-    add_library(abbe_${name} STATIC ${ARG_SOURCES})
+    add_library(abbe_${name} STATIC)
+    abbe_units(abbe_${name} ${PROJECT_SOURCE_DIR}/src SOURCES ${ARG_SOURCES} ALONE ${ARG_ALONE} PRECOMPILED abbe_precompiled)
     set(scope PUBLIC)
     target_link_libraries(abbe_${name} PRIVATE $<BUILD_INTERFACE:abbe_flags> ${ARG_PRIVATE_LINK})
     set_target_properties(abbe_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON EXPORT_NAME ${name})
@@ -27,8 +31,9 @@ function(abbe_library name)
   set_property(GLOBAL APPEND PROPERTY ABBE_LIBRARIES abbe_${name})
 
   if(ABBE_TESTS AND ARG_TESTS)
-    add_executable(${name}_test ${ARG_TESTS})
+    add_executable(${name}_test)
+    abbe_units(${name}_test ${PROJECT_SOURCE_DIR}/src SOURCES ${ARG_TESTS} ALONE ${ARG_ALONE} PRECOMPILED abbe_test_precompiled)
     target_link_libraries(${name}_test PRIVATE abbe::${name} abbe_flags ${ARG_TEST_LINK} GTest::gtest_main GTest::gmock)
-    gtest_discover_tests(${name}_test TEST_PREFIX "${name}." DISCOVERY_MODE PRE_TEST PROPERTIES LABELS quick)
+    abbe_discover_tests(${name}_test "${name}." "unit;quick" 300)
   endif()
 endfunction()

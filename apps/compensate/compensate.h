@@ -1,8 +1,12 @@
 #pragma once
 
-#include "command.h"
+namespace CLI {
+class App;
+}
 
 namespace abbe {
+
+struct CommandLine;
 
 void add_compensate_command(CommandLine& line);
 /// abbe compensate freeze: machine and errors to a file for real time.

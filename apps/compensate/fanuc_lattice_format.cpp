@@ -16,14 +16,14 @@
 namespace abbe {
 namespace {
 
-constexpr std::size_t kAxes = 3;
+constexpr std::size_t kLatticeAxes = 3;
 
 LatticeOptions three_linear_axes(const Machine& machine, const ErrorSet& errors, const TableRequest& request,
                                  const TableFormat& format) {
-  LatticeOptions options = lattice_options(machine, errors, request, format, kAxes, true);
+  LatticeOptions options = lattice_options(machine, errors, request, format, kLatticeAxes, true);
   const bool linear = std::all_of(options.inputs.begin(), options.inputs.end(),
                                   [&](std::size_t axis) { return machine.axes[axis].kind == AxisKind::linear; });
-  if (options.inputs.size() != kAxes || !linear) {
+  if (options.inputs.size() != kLatticeAxes || !linear) {
     throw InputError({.field = "--axis"}, fmt::format("{} axes for the grid", options.inputs.size()),
                      "three linear axes that move");
   }
@@ -44,8 +44,8 @@ struct Rounded {
 Rounded rounded_lattice(const Machine& machine, const ErrorSet& errors, const AnchoredLatticeOptions& options,
                         double unit) {
   Rounded rounded{build_anchored_lattice(machine, errors, options), {}, 1};
-  std::array<std::size_t, kAxes> anchor{};
-  for (std::size_t a = 0; a < kAxes; ++a) anchor[a] = rounded.made.nodes[a].anchor;
+  std::array<std::size_t, kLatticeAxes> anchor{};
+  for (std::size_t a = 0; a < kLatticeAxes; ++a) anchor[a] = rounded.made.nodes[a].anchor;
   rounded.fanuc = fanuc_lattice(rounded.made.lattice, unit, anchor);
   rounded.magnification = *std::max_element(rounded.fanuc.magnification.begin(), rounded.fanuc.magnification.end());
   return rounded;
@@ -67,10 +67,10 @@ ControllerTables make_fanuc_lattice(const TableFormat& format, const Machine& ma
     return made;
   }
   const double unit = request.unit_mm;
-  std::array<double, kAxes> reference{};
+  std::array<double, kLatticeAxes> reference{};
   AnchoredLatticeOptions anchored;
   anchored.lattice = options;
-  for (std::size_t a = 0; a < kAxes; ++a) {
+  for (std::size_t a = 0; a < kLatticeAxes; ++a) {
     reference[a] = request.reference_position[options.inputs[a]];
     anchored.anchor.push_back(reference[a]);
   }
@@ -129,7 +129,7 @@ ControllerTables make_fanuc_lattice(const TableFormat& format, const Machine& ma
     return made;
   }
   std::string grid, ties;
-  for (std::size_t a = 0; a < kAxes; ++a) {
+  for (std::size_t a = 0; a < kLatticeAxes; ++a) {
     const FanucLattice& fanuc = rounded.fanuc;
     const std::string& name = machine.axes[fanuc.axes[a]].name;
     grid += fmt::format("{}{} {} every {:g} mm", a == 0 ? "" : " x ", fanuc.points[a], name, fanuc.interval[a]);

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -18,10 +20,12 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/runtime/abbe_runtime.h"
+#include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/position_words.h"
 #include "compensate/reversal_words.h"
 #include "compensate/safety.h"
+#include "exit_code.h"
 
 namespace abbe {
 namespace {

@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "abbe/compensate/left_out_errors.h"
@@ -19,10 +21,13 @@
 #include "abbe/formats/nc_program.h"
 #include "abbe/formats/streamed_file.h"
 #include "abbe/formats/text_file.h"
+#include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/gcode_options.h"
 #include "compensate/gcode_report.h"
 #include "compensate/safety.h"
+#include "exit_code.h"
+#include "progress.h"
 
 namespace abbe {
 namespace {

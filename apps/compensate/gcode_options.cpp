@@ -2,17 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/path_program.h"
+#include "abbe/geometry/angle_units.h"
 #include "axis_option.h"
 #include "compensate/safety.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 bool is_rotary(std::size_t word) { return word >= 3 && word < 6; }
 

@@ -2,16 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
+#include <nlohmann/json.hpp>
 
+#include "abbe/geometry/angle_units.h"
 #include "compensate/position_words.h"
 #include "compensate/reversal_words.h"
 #include "compensate/safety.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 const StatusCount& status_count(const ProgramReport& report, CorrectionStatus status) {
   return report.status[static_cast<std::size_t>(status)];

@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "abbe/compensate/compensated_inverse.h"
@@ -20,14 +21,15 @@
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/geometry/angle.h"
+#include "abbe/geometry/angle_units.h"
+#include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/position_words.h"
 #include "compensate/safety.h"
+#include "exit_code.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct PosesCommand {
   std::string machine, errors, poses, output;

@@ -3,15 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
+#include <nlohmann/json.hpp>
+
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
-namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-
-}  // namespace
-
 std::string position_words(const Machine& machine, std::span<const double> commands, const char* number) {
   std::string words;
   for (std::size_t i = 0; i < std::min(machine.axes.size(), commands.size()); ++i) {

@@ -4,19 +4,14 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
+#include <nlohmann/json.hpp>
 
 #include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/geometry/angle_units.h"
 #include "compensate/position_words.h"
 
 namespace abbe {
-namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-
-}  // namespace
-
 double refusal_limit(const char* option, const std::optional<double>& given, const char* unit) {
   if (!given) return std::numeric_limits<double>::infinity();
   if (!(*given > 0) || !std::isfinite(*given)) {

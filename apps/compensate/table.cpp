@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +17,7 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/verify/error_map.h"
+#include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/position_words.h"
 #include "compensate/reversal_words.h"
@@ -24,6 +26,7 @@
 #include "compensate/table_left_out.h"
 #include "compensate/table_options.h"
 #include "compensate/table_report.h"
+#include "exit_code.h"
 
 namespace abbe {
 namespace {

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/map_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "study/summary.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 double in_micro(double value) { return 1e6 * value; }
 double in_um(double mm) { return 1e3 * mm; }
@@ -22,7 +20,7 @@ std::string size_words(double value, bool is_angle) {
   return is_angle ? fmt::format("{:.2f} urad", in_micro(value)) : fmt::format("{:.2f} um", in_um(value));
 }
 
-std::string position_words(double value, bool is_angle) {
+std::string position_text(double value, bool is_angle) {
   return is_angle ? fmt::format("{:.6g} deg", value / kDegree) : fmt::format("{:.6g} mm", value);
 }
 
@@ -85,9 +83,9 @@ void print_table_report(const TableReport& report) {
   for (std::size_t t = 0; t < tables.size(); ++t) {
     const TableSummary& table = tables[t];
     fmt::print("  {:<10} {:>5} {}", table.name, table.nodes, table.nodes == 1 ? "value" : "nodes");
-    if (table.step > 0) fmt::print(", step {}", position_words(table.step, table.step_is_angle));
+    if (table.step > 0) fmt::print(", step {}", position_text(table.step, table.step_is_angle));
     fmt::print("; largest correction {}{}", size_words(table.largest, table.is_angle),
-               table.step > 0 ? " at " + position_words(table.largest_at, table.step_is_angle) : "");
+               table.step > 0 ? " at " + position_text(table.largest_at, table.step_is_angle) : "");
     if (table.nodes > 1) {
       fmt::print("; between nodes within {}", table.is_angle
                                                   ? fmt::format("{:.3f} urad", in_micro(table.interpolation_error))

@@ -1,10 +1,13 @@
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "abbe/formats/evaluation_circular_file.h"
 #include "abbe/formats/input_error.h"
+#include "command.h"
 #include "evaluate/circular_report.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
+#include "exit_code.h"
 
 namespace abbe {
 namespace {

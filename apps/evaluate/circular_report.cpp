@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "abbe/report/svg_polar_plot.h"
@@ -33,7 +34,7 @@ std::string reason(CircleStatus status) {
   return "";
 }
 
-EvaluationFigure figure(std::string symbol, std::string name) {
+EvaluationFigure named_figure(std::string symbol, std::string name) {
   EvaluationFigure result;
   result.symbol = std::move(symbol);
   result.name = std::move(name);
@@ -57,17 +58,17 @@ void add_deviations(const CircularRequest& request, const CircularResult& result
     const CircularDeviation& path = result.paths[k];
     if (path.status == CircleStatus::not_run) continue;
     const std::string symbol = kPathSymbols[k], name = kPathNames[k];
-    add_value(figure("G_" + symbol, "circular deviation, " + name), path, path.circular, path.circular_uncertainty,
-              stated, report);
-    add_value(figure("Fmax_" + symbol, "largest radial deviation, " + name), path, path.radial_largest,
+    add_value(named_figure("G_" + symbol, "circular deviation, " + name), path, path.circular,
+              path.circular_uncertainty, stated, report);
+    add_value(named_figure("Fmax_" + symbol, "largest radial deviation, " + name), path, path.radial_largest,
               path.radial_largest_uncertainty, stated, report);
-    add_value(figure("Fmin_" + symbol, "smallest radial deviation, " + name), path, path.radial_smallest,
+    add_value(named_figure("Fmin_" + symbol, "smallest radial deviation, " + name), path, path.radial_smallest,
               path.radial_smallest_uncertainty, stated, report);
   }
   if (result.both.status == CircleStatus::not_run) return;
-  add_value(figure("G_b", "bidirectional circular deviation G(b)"), result.both, result.both.circular,
+  add_value(named_figure("G_b", "bidirectional circular deviation G(b)"), result.both, result.both.circular,
             result.both.circular_uncertainty, stated, report);
-  EvaluationFigure mean = figure("D", "mean bidirectional radial deviation");
+  EvaluationFigure mean = named_figure("D", "mean bidirectional radial deviation");
   if (result.has_mean) {
     mean.value = result.mean;
     if (stated) mean.uncertainty = 2 * result.mean_uncertainty;
@@ -122,7 +123,7 @@ void add_causes(const CircularRequest& request, const CircularDiagnosis& diagnos
     const auto cause = static_cast<CircularCause>(k);
     const CircularCauseValue& value = diagnosis.causes[k];
     const CauseName name = name_of(cause, request.plane);
-    EvaluationFigure entry = figure(name.symbol, name.name);
+    EvaluationFigure entry = named_figure(name.symbol, name.name);
     entry.quantity = name.quantity;
     entry.unit = name.unit;
     const bool is_scale = cause == CircularCause::scale_first || cause == CircularCause::scale_second;
@@ -142,7 +143,7 @@ void add_causes(const CircularRequest& request, const CircularDiagnosis& diagnos
     }
     report.figures.push_back(std::move(entry));
     if (cause == CircularCause::servo_mismatch && value.separable && request.feed_mm_s > 0) {
-      EvaluationFigure time = figure("lag_mismatch", "the same as a time constant");
+      EvaluationFigure time = named_figure("lag_mismatch", "the same as a time constant");
       time.quantity = Quantity::time;
       time.unit = "ms";
       time.value = value.value / request.feed_mm_s;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
@@ -12,9 +13,11 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/point_cloud_file.h"
 #include "abbe/machine/tool_path.h"
+#include "command.h"
 #include "evaluate/contour_report.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
+#include "exit_code.h"
 
 namespace abbe {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <nlohmann/json.hpp>
 
 #include "abbe/verify/statistics.h"
 #include "evaluate/thinned.h"
@@ -11,14 +12,14 @@ namespace abbe {
 namespace {
 
 constexpr std::size_t kSectionsDrawn = 60, kRefusedDrawn = 20;
-constexpr std::size_t kPointsDrawn = 500;  // of a section
+constexpr std::size_t kContourPointsDrawn = 500;  // of a section
 
 /// Hundredths of a micrometre are more than a drawing shows.
 double hundredths(double um) { return std::round(100 * um) / 100; }
 
 nlohmann::json column(const std::vector<PlotPoint>& points, double PlotPoint::*member) {
   nlohmann::json numbers = nlohmann::json::array();
-  const std::size_t step = (points.size() + kPointsDrawn - 1) / kPointsDrawn;
+  const std::size_t step = (points.size() + kContourPointsDrawn - 1) / kContourPointsDrawn;
   for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(step, 1)) {
     numbers.push_back(hundredths(points[i].*member));
   }

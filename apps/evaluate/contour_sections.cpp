@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/report/svg_plot.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 nlohmann::ordered_json edge_json(const EdgeFit& fit) {
   nlohmann::ordered_json json = {{"P1_mm", {fit.onset.x(), fit.onset.y()}},

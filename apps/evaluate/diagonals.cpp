@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "abbe/formats/evaluation_positioning.h"
 #include "abbe/report/positioning_plot.h"
+#include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/positioning_report.h"
 

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
@@ -10,6 +12,7 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/report/evaluation_data.h"
 #include "abbe/report/report.h"
+#include "exit_code.h"
 
 namespace abbe {
 namespace {

@@ -1,15 +1,19 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "abbe/report/evaluation_report.h"
-#include "command.h"
+
+namespace CLI {
+class App;
+}
 
 namespace abbe {
+
+struct CommandLine;
 
 /// What every kind of evaluation is asked.
 struct EvaluationOptions {

@@ -1,9 +1,13 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "abbe/formats/unit.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace abbe {
 

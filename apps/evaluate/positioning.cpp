@@ -1,5 +1,9 @@
+#include <CLI/CLI.hpp>
+
 #include "abbe/formats/evaluation_positioning.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/geometry/angle_units.h"
+#include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/positioning_report.h"
 
@@ -36,7 +40,6 @@ void add_contributions(CLI::App& command, Contributions& c) {
 }
 
 PositioningUncertaintyInput uncertainty_input(const Contributions& c, bool rotary) {
-  constexpr double kArcsec = 3.14159265358979323846 / 180 / 3600;
   const bool lengths = c.instrument_um > 0 || c.instrument_um_per_m > 0 || c.setup_um > 0 || c.misalignment_mm > 0 ||
                        c.environment_um > 0 || c.machine_range_K > 0 || c.device_range_K > 0 ||
                        c.machine_range_um_per_m_K > 0 || c.device_range_um_per_m_K > 0;

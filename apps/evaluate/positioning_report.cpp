@@ -5,21 +5,22 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
+#include <nlohmann/json.hpp>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/report/positioning_plot.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// um or arcsec, without the digits that the conversion makes up.
 double shown_deviation(double value, bool rotary) {
   return std::round(value * (rotary ? 3600 / kDegree : 1e3) * 1e9) / 1e9;
 }
 
-double shown_position(double value, bool rotary) { return std::round(value * (rotary ? 1 / kDegree : 1) * 1e9) / 1e9; }
+double rounded_position(double value, bool rotary) {
+  return std::round(value * (rotary ? 1 / kDegree : 1) * 1e9) / 1e9;
+}
 
 std::vector<EvaluationFigure> figures(const PositioningEvaluation& e, bool rotary, const PositioningUncertainty* u) {
   std::vector<EvaluationFigure> all;
@@ -56,7 +57,7 @@ EvaluationTable targets_table(const PositioningEvaluation& evaluation, bool rota
     const auto figure = [&](const EvaluatedFigure& f) { return f.is_evaluated() ? text(f.value) : std::string("-"); };
     const auto mean = [&](std::size_t k) { return target.runs[k] > 0 ? text(target.mean[k]) : std::string("-"); };
     const auto s = [&](std::size_t k) { return target.runs[k] > 1 ? text(target.deviation[k]) : std::string("-"); };
-    table.rows.push_back({fmt::format("{:.6g}", shown_position(target.position, rotary)),
+    table.rows.push_back({fmt::format("{:.6g}", rounded_position(target.position, rotary)),
                           std::to_string(target.runs[0]), std::to_string(target.runs[1]), mean(0), mean(1), s(0), s(1),
                           figure(target.repeatability[0]), figure(target.repeatability[1]), figure(target.reversal),
                           figure(target.bidirectional_repeatability), figure(target.mean_bidirectional)});
@@ -93,7 +94,7 @@ EvaluationFigure report_figure(const std::string& symbol, const std::string& nam
 
 std::vector<std::string> positioning_notes(const PositioningEvaluation& evaluation, bool rotary) {
   std::vector<std::string> notes;
-  const double span = shown_position(evaluation.span(), rotary);
+  const double span = rounded_position(evaluation.span(), rotary);
   if ((rotary || span <= 2000) && evaluation.fewest_runs < 5) {
     notes.push_back(fmt::format("ISO 230-2 asks for at least five runs from each side; the fewest here is {}",
                                 evaluation.fewest_runs));
@@ -127,7 +128,7 @@ nlohmann::ordered_json targets_json(const PositioningEvaluation& evaluation, boo
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const PositioningTarget& target : evaluation.targets) {
     nlohmann::ordered_json entry;
-    entry[rotary ? "position_deg" : "position_mm"] = shown_position(target.position, rotary);
+    entry[rotary ? "position_deg" : "position_mm"] = rounded_position(target.position, rotary);
     for (const std::size_t k : {0U, 1U}) {
       const std::string side = k == 0 ? "positive" : "negative";
       entry["runs_" + side] = target.runs[k];
@@ -152,13 +153,14 @@ EvaluationReport positioning_report(const PositioningEvaluation& evaluation, boo
   report.title = "Positioning: " + std::filesystem::path(file).filename().string();
   report.standard = "ISO 230-2:2014";
   const auto& targets = evaluation.targets;
-  report.facts = {{"axis", rotary ? "rotary" : "linear"},
-                  {"targets", fmt::format("{} from {:.6g} to {:.6g} {}", targets.size(),
-                                          shown_position(targets.front().position, rotary),
-                                          shown_position(targets.back().position, rotary), rotary ? "\xC2\xB0" : "mm")},
-                  {"runs from one side", evaluation.fewest_runs == evaluation.most_runs
-                                             ? std::to_string(evaluation.most_runs)
-                                             : fmt::format("{} to {}", evaluation.fewest_runs, evaluation.most_runs)}};
+  report.facts = {
+      {"axis", rotary ? "rotary" : "linear"},
+      {"targets",
+       fmt::format("{} from {:.6g} to {:.6g} {}", targets.size(), rounded_position(targets.front().position, rotary),
+                   rounded_position(targets.back().position, rotary), rotary ? "\xC2\xB0" : "mm")},
+      {"runs from one side", evaluation.fewest_runs == evaluation.most_runs
+                                 ? std::to_string(evaluation.most_runs)
+                                 : fmt::format("{} to {}", evaluation.fewest_runs, evaluation.most_runs)}};
   report.figures = figures(evaluation, rotary, uncertainty);
   report.notes = positioning_notes(evaluation, rotary);
   report.tables.push_back(targets_table(evaluation, rotary));

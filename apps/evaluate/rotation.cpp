@@ -1,13 +1,17 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "abbe/formats/evaluation_rotation_file.h"
 #include "abbe/report/svg_polar_plot.h"
+#include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
 #include "evaluate/thinned.h"
+#include "exit_code.h"
 
 namespace abbe {
 namespace {

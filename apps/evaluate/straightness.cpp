@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <numeric>
@@ -7,6 +8,7 @@
 #include "abbe/formats/evaluation_line_file.h"
 #include "abbe/report/svg_plot.h"
 #include "abbe/verify/squareness.h"
+#include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
 

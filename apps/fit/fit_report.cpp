@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "vector_json.h"
 
 namespace abbe {
 namespace {
@@ -90,8 +93,6 @@ void add_deviations(EvaluationReport& report, const FitRequest& request, const S
       "rms", request.method == FitMethod::robust ? "root mean square, weighted" : "root mean square", fit.rms));
 }
 
-nlohmann::ordered_json triple(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
 void add_contacts(EvaluationReport& report, const FitRequest& request, const ShapeFit& fit, const FitPoints& points,
                   const std::vector<double>& deviations) {
   const bool touch = !fit.contacts.empty();
@@ -110,7 +111,7 @@ void add_contacts(EvaluationReport& report, const FitRequest& request, const Sha
     numbers += fmt::format("{}{} ({:+.3f} \xC2\xB5m)", numbers.empty() ? "" : ", ", which[k] + 1, 1e3 * d);
     table.rows.push_back({fmt::format("{}", which[k] + 1), fmt::format("{:.6f}", p.x()), fmt::format("{:.6f}", p.y()),
                           fmt::format("{:.6f}", p.z()), fmt::format("{:.3f}", 1e3 * d)});
-    nlohmann::ordered_json entry = {{"number", which[k] + 1}, {"point_mm", triple(p)}, {"deviation_um", 1e3 * d}};
+    nlohmann::ordered_json entry = {{"number", which[k] + 1}, {"point_mm", vector_json(p)}, {"deviation_um", 1e3 * d}};
     if (touch) {
       table.rows.back().push_back(fmt::format("{:.3f}", fit.multipliers[k]));
       entry["share"] = fit.multipliers[k];
@@ -128,12 +129,12 @@ void add_details(EvaluationReport& report, const FitRequest& request, const Shap
   d["free_parameters"] = fit.parameters;
   d["degrees_of_freedom"] = fit.degrees_of_freedom;
   d["iterations"] = fit.iterations;
-  d["point_mm"] = triple(fit.shape.point);
-  d["direction"] = triple(fit.shape.direction);
+  d["point_mm"] = vector_json(fit.shape.point);
+  d["direction"] = vector_json(fit.shape.direction);
   if (request.kind >= ShapeKind::circle2) d["radius_mm"] = fit.shape.radius;
   if (request.kind == ShapeKind::cone) {
     d["half_angle_rad"] = fit.shape.half_angle;
-    d["apex_mm"] = triple(fit.shape.apex());
+    d["apex_mm"] = vector_json(fit.shape.apex());
   }
   if (request.method == FitMethod::robust) d["rejected"] = fit.rejected;
   if (!fit.has_covariance) return;
@@ -341,14 +342,14 @@ EvaluationReport coaxial_report(const FitRequest& request, const CoaxialCircles&
         length_figure("radius_" + number, "radius of " + names[c], fit.radii[c], variance(6 + m + c)));
     report.figures.push_back(deviation_figure("form_" + number, "tube about " + names[c] + ", diameter", fit.form[c]));
     nlohmann::ordered_json circle = {{"name", names[c]},
-                                     {"centre_mm", triple(fit.centre(c))},
+                                     {"centre_mm", vector_json(fit.centre(c))},
                                      {"height_mm", fit.heights[c]},
                                      {"radius_mm", fit.radii[c]}};
     report.details["circles"].push_back(std::move(circle));
   }
   report.figures.push_back(deviation_figure("rms", "root mean square", fit.rms));
-  report.details["point_mm"] = triple(fit.point);
-  report.details["direction"] = triple(fit.direction);
+  report.details["point_mm"] = vector_json(fit.point);
+  report.details["direction"] = vector_json(fit.direction);
   report.details["degrees_of_freedom"] = fit.degrees_of_freedom;
   if (fit.has_covariance) {
     report.details["sigma_um"] = 1e3 * fit.sigma;

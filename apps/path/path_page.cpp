@@ -1,5 +1,7 @@
 #include "path/path_page.h"
 
+#include <nlohmann/json.hpp>
+
 #include "abbe/report/evaluation_data.h"
 #include "abbe/report/report.h"
 #include "study/report_data.h"

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <nlohmann/json.hpp>
 #include <string>
+
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 
 nlohmann::ordered_json position_json(const PositioningParameters& parameters) {
-  constexpr double kDegree = std::numbers::pi / 180;
   nlohmann::ordered_json json;
   const char* const names[] = {"x_mm", "y_mm", "z_mm", "alpha_deg", "beta_deg", "gamma_deg"};
   for (Eigen::Index i = 0; i < 6; ++i) {

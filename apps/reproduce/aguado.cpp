@@ -6,7 +6,8 @@
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/instruments/measurement_plan.h"
-#include "command.h"
+#include "exit_code.h"
+#include "progress.h"
 #include "reproduce/aguado_study.h"
 #include "reproduce/reproduce.h"
 

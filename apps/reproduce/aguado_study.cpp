@@ -3,25 +3,24 @@
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/measurement_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/instruments/measurement_plan.h"
 #include "abbe/instruments/tracker_start.h"
 #include "abbe/verify/unseen_poses.h"
-#include "command.h"
+#include "shared_file.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr std::size_t kC = 0, kX = 1, kZ = 2;  // chain order
+constexpr std::size_t kAxisC = 0, kAxisX = 1, kAxisZ = 2;  // chain order
 
 Basis basis_of(std::size_t axis, int order) {
-  if (axis == kC) return {.kind = BasisKind::fourier, .order = order, .from = 0, .to = kTurn, .period = kTurn};
-  return {.kind = BasisKind::legendre, .order = order, .from = 0, .to = axis == kX ? 1400.0 : 600.0};
+  if (axis == kAxisC) return {.kind = BasisKind::fourier, .order = order, .from = 0, .to = kTurn, .period = kTurn};
+  return {.kind = BasisKind::legendre, .order = order, .from = 0, .to = axis == kAxisX ? 1400.0 : 600.0};
 }
 
 /// Error motions of one axis from rows of six columns.
@@ -29,7 +28,7 @@ void add_motions(std::size_t axis, const nlohmann::json& rows, ErrorSet& errors)
   const int functions = static_cast<int>(rows.size());
   for (int k = 0; k < kComponentCount; ++k) {
     ErrorMotion motion{
-        axis, static_cast<Component>(k), basis_of(axis, axis == kC ? (functions - 1) / 2 : functions - 1), {}, {}};
+        axis, static_cast<Component>(k), basis_of(axis, axis == kAxisC ? (functions - 1) / 2 : functions - 1), {}, {}};
     for (const nlohmann::json& row : rows)
       motion.coefficients.push_back(row.at(static_cast<std::size_t>(k)).get<double>());
     errors.motions.push_back(motion);
@@ -82,12 +81,12 @@ AguadoTruth read_aguado_truth() {
     throw InputError({.file = path.string()}, error.what(), "the truth of the reference readings");
   }
   AguadoTruth truth;
-  add_motions(kC, json.at("C_fourier_rows_1_c1_s1_c2_s2"), truth.errors);
-  add_motions(kX, json.at("X_legendre_rows_P0_Pn_cols_dx_dy_dz_EA_EB_EC"), truth.errors);
-  add_motions(kZ, json.at("Z_legendre"), truth.errors);
+  add_motions(kAxisC, json.at("C_fourier_rows_1_c1_s1_c2_s2"), truth.errors);
+  add_motions(kAxisX, json.at("X_legendre_rows_P0_Pn_cols_dx_dy_dz_EA_EB_EC"), truth.errors);
+  add_motions(kAxisZ, json.at("Z_legendre"), truth.errors);
   // The true axis of C stands elsewhere than the nominal one. With the workpiece frame on it, that displacement is
   // exactly a constant of EXC, EYC and EZC.
-  const Eigen::Vector3d nominal = aguado_machine().axes[kC].point;
+  const Eigen::Vector3d nominal = aguado_machine().axes[kAxisC].point;
   for (std::size_t k = 0; k < 3; ++k) {
     truth.errors.motions[k].coefficients[0] += json.at("C0").at(k).get<double>() - nominal[static_cast<int>(k)];
   }
@@ -138,9 +137,9 @@ TrackerReadings read_aguado_readings(const std::string& name) {
 
 ErrorSet aguado_model(const AguadoOrders& orders) {
   ErrorSet errors;
-  for (std::size_t axis : {kC, kX, kZ}) {
-    if (axis == kC ? !orders.rotary : !orders.linear) continue;
-    const int order = axis == kC ? orders.c : (axis == kX ? orders.x : orders.z);
+  for (std::size_t axis : {kAxisC, kAxisX, kAxisZ}) {
+    if (axis == kAxisC ? !orders.rotary : !orders.linear) continue;
+    const int order = axis == kAxisC ? orders.c : (axis == kAxisX ? orders.x : orders.z);
     for (int k = 0; k < kComponentCount; ++k) {
       ErrorMotion motion{axis, static_cast<Component>(k), basis_of(axis, order), {}, {}};
       motion.coefficients.assign(motion.basis.size(), 0.0);

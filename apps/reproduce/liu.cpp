@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
-#include "command.h"
+#include "exit_code.h"
+#include "progress.h"
 #include "reproduce/liu_folder.h"
 #include "reproduce/liu_machine.h"
 #include "reproduce/liu_results.h"
@@ -15,7 +17,7 @@
 namespace abbe {
 namespace {
 
-double largest_difference(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+double largest_distance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   return (a - b).colwise().norm().maxCoeff();
 }
 
@@ -78,22 +80,22 @@ LiuVariant variant(const Machine& machine, const std::string& words, const LiuSc
   return result;
 }
 
-LiuResults compute() {
+LiuResults liu_results() {
   LiuResults r;
   r.machine = liu_machine();
   const Machine& machine = r.machine;
   const LiuReference reference = read_liu_reference(machine);
   const ErrorSet millimetre = liu_errors(machine, LiuUnit::millimetre),
                  micrometre = liu_errors(machine, LiuUnit::micrometre);
-  r.reference = {largest_difference(closed_form(machine, {}, reference), reference.nominal),
-                 largest_difference(closed_form(machine, millimetre, reference), reference.millimetre),
-                 largest_difference(closed_form(machine, micrometre, reference), reference.micrometre)};
+  r.reference = {largest_distance(closed_form(machine, {}, reference), reference.nominal),
+                 largest_distance(closed_form(machine, millimetre, reference), reference.millimetre),
+                 largest_distance(closed_form(machine, micrometre, reference), reference.micrometre)};
   for (const double difference : r.reference) r.agrees = r.agrees && difference < kLiuAgreement;
   const Eigen::Matrix3Xd exact = closed_form(machine, millimetre, reference);
   for (std::size_t form = 0; form < 2; ++form) {
-    r.recursion[form] = largest_difference(liu_recursion(machine, millimetre, reference.positions, reference.indication,
-                                                         form == 0 ? LiuRecursion::as_worded : LiuRecursion::corrected),
-                                           exact);
+    r.recursion[form] = largest_distance(liu_recursion(machine, millimetre, reference.positions, reference.indication,
+                                                       form == 0 ? LiuRecursion::as_worded : LiuRecursion::corrected),
+                                         exact);
   }
   r.agrees = r.agrees && r.recursion[1] < kLiuAgreement;
   r.sensitivity = liu_sensitivity(machine);
@@ -128,7 +130,7 @@ LiuResults compute() {
 
 int reproduce_liu(const ReproduceOptions& options) {
   if (!options.output.empty()) check_results_folder(options.output);
-  const LiuResults results = compute();
+  const LiuResults results = liu_results();
   if (!options.output.empty()) write_liu_folder(results, options.output);
   if (options.json) {
     fmt::print("{}", json_text(liu_json(results)));

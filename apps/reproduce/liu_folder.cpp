@@ -1,6 +1,7 @@
 #include "reproduce/liu_folder.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "abbe/formats/json_text.h"

@@ -1,12 +1,11 @@
-#include <numbers>
+#include <nlohmann/json.hpp>
 
 #include "abbe/formats/scan_plan_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "reproduce/liu_results.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kArcsec = std::numbers::pi / 648000;
 
 nlohmann::ordered_json deviation_json(const LiuDeviation& d) {
   nlohmann::ordered_json json = {

@@ -10,13 +10,12 @@
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
-#include "command.h"
+#include "shared_file.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 double unit_of(LiuUnit unit) { return unit == LiuUnit::millimetre ? 1.0 : 1e-3; }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "abbe/errors/actual_pose.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/fine_registration.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/shape_fit.h"
@@ -16,8 +17,6 @@
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 ProbeBeam liu_beam(const Machine& machine) {
   ProbeBeam beam;

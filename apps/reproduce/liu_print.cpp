@@ -4,12 +4,11 @@
 #include <numbers>
 #include <string>
 
+#include "abbe/geometry/angle_units.h"
 #include "reproduce/liu_results.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kArcsec = std::numbers::pi / 648000;
 
 void print_closed_form(const LiuResults& r) {
   fmt::print("Points from axis positions and indications (30 of the reference, largest difference)\n");

@@ -1,18 +1,16 @@
 #include "reproduce/liu_sensitivity.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
 #include "abbe/errors/actual_pose.h"
+#include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/decompositions.h"
 #include "reproduce/liu_parts.h"
 #include "reproduce/liu_plan.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 enum Group : std::size_t { linear_static, linear_dynamic, rotary_static, rotary_dynamic, tilt, centrifugal };
 
@@ -99,7 +97,7 @@ LiuSensitivity liu_sensitivity(const Machine& machine) {
     change(k, second + 2) = rigid(k, 0);
     change(k, second + 3) = rigid(k, 2);
   }
-  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver((rigid.transpose() * rigid).eval());
+  const Ldlt<6> solver(rigid.transpose() * rigid);
   for (std::size_t i = 0; i < result.terms.size(); ++i) {
     LiuTerm& term = result.terms[i];
     const Eigen::VectorXd column = change.col(static_cast<Eigen::Index>(i));

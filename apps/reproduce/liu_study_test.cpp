@@ -37,7 +37,7 @@ TEST(LiuParts, AreClosedMeshes) {
 
 TEST(LiuParts, HaveTheVolumesOfTheirShapes) {
   const auto volume = [](const LiuPart& part) { return check_mesh(part.mesh).volume; };
-  const double pi = std::numbers::pi;
+  using std::numbers::pi;
   EXPECT_NEAR(volume(liu_cylinder(10, 0)) / (pi * 100 * 30), 1, 1e-5);
   EXPECT_NEAR(volume(liu_sphere(0.5)) / (4 * pi / 3 * std::pow(12.703, 3)), 1, 1e-4);
   // A corner of a cube, half of which is above the hexagon through its middle, on the prism of that hexagon.

@@ -3,22 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
-#include "command.h"
+#include "abbe/geometry/angle_units.h"
+#include "exit_code.h"
 #include "reproduce/ma_study.h"
 #include "reproduce/reproduce.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kArcsec = std::numbers::pi / (180 * 3600);
-constexpr double kMicrometre = 1e-3;
 constexpr std::size_t kRuns = 10;
-constexpr std::uint64_t kSeed = 2021;
-constexpr double kAgreement = 1e-9;  // arcsec and mm
+constexpr std::uint64_t kCampaignSeed = 2021;
+constexpr double kMaAgreement = 1e-9;  // arcsec and mm
 
 constexpr SixMotions kPaper33 = {0.0003, 0.0003, 0.0509, 0.084, 0.036, 0.028};  // printed as eps_z, eps_y, eps_x
 constexpr SixMotions kPaperBefore = {26.15, 33.36, 27.28, 37.65, 53.09, 2.66};
@@ -39,7 +37,7 @@ struct Variant {
 };
 constexpr Variant kVariants[] = {{"paper order", PolygonFaceOrder::paper}, {"face order", PolygonFaceOrder::face}};
 
-struct Results {
+struct MaResults {
   ReadingDifference traced[2], one_by_one[2];
   MaInversions inversions[2];
   MaTable table;
@@ -48,8 +46,8 @@ struct Results {
   bool agrees = true;
 };
 
-Results compute() {
-  Results r;
+MaResults ma_results() {
+  MaResults r;
   for (std::size_t v = 0; v < 2; ++v) {
     const MaExample example = ma_example(kVariants[v].order);
     const std::vector<PolygonReadings> reference = read_ma_reference(kVariants[v].order);
@@ -61,19 +59,19 @@ Results compute() {
     r.traced[v] = largest_difference(ma_traced(example), reference);
     r.inversions[v] = ma_inversions(example);
     for (const ReadingDifference& d : {r.one_by_one[v], r.traced[v]}) {
-      r.agrees = r.agrees && d.angle < kAgreement * kArcsec && d.length < kAgreement;
+      r.agrees = r.agrees && d.angle < kMaAgreement * kArcsec && d.length < kMaAgreement;
     }
     for (const SixMotions& exact : {in_units(r.inversions[v].stepwise), in_units(r.inversions[v].simultaneous)}) {
       for (std::size_t i = 0; i < 6; ++i) r.agrees = r.agrees && exact[i] < (i < 3 ? 1e-11 : 1e-10);
     }
     r.agrees = r.agrees && r.inversions[v].all_converged;
   }
-  r.table = ma_table(kRuns, kSeed);
+  r.table = ma_table(kRuns, kCampaignSeed);
   r.ranks = ma_rank_table();
   r.agrees = r.agrees && r.ranks[0].rank == 72 && r.ranks[1].rank == 107;
   const PolygonNoise noise;
-  r.separation = ma_separation(noise, true, kSeed);
-  r.noise_free = ma_separation(noise, false, kSeed);
+  r.separation = ma_separation(noise, true, kCampaignSeed);
+  r.noise_free = ma_separation(noise, false, kCampaignSeed);
   r.agrees = r.agrees && r.separation.result.status == PolygonSeparationStatus::converged &&
              r.noise_free.result.status == PolygonSeparationStatus::converged;
   return r;
@@ -84,7 +82,7 @@ nlohmann::ordered_json motions_json(const SixMotions& in_unit) {
           {"delta_x_um", in_unit[3]},   {"delta_y_um", in_unit[4]},   {"delta_z_um", in_unit[5]}};
 }
 
-nlohmann::ordered_json json_of(const Results& r) {
+nlohmann::ordered_json json_of(const MaResults& r) {
   nlohmann::ordered_json json;
   const char* keys[] = {"paperorder", "faceorder"};
   for (std::size_t v = 0; v < 2; ++v) {
@@ -144,7 +142,7 @@ void print_row(const char* words, const SixMotions& in_unit, const char* format)
   fmt::print("\n");
 }
 
-void print_section_33(const Results& r) {
+void print_section_33(const MaResults& r) {
   fmt::print("Section 3.3: 13 positions, errors of 100 arcsec, 100 um and 10 um; largest |found - set|\n");
   print_header();
   print_row("paper", kPaper33, "{:.4f}");
@@ -192,7 +190,7 @@ void print_table_3(const MaTable& t) {
       "  repeatability; what the fit changes there is motion of the table.\n\n");
 }
 
-void print_separation(const Results& r) {
+void print_separation(const MaResults& r) {
   fmt::print("What the readings can see (six readings per position, 12 positions; rank of first order)\n");
   fmt::print("  {:<70}{:>10}{:>10}{:>8}\n", "", "unknowns", "readings", "rank");
   for (const MaRank& line : r.ranks) {
@@ -224,7 +222,7 @@ int reproduce_ma(const ReproduceOptions& options) {
   if (!options.output.empty()) {
     throw InputError({.field = "--output"}, "reproduce ma writes no folder", "no --output; --json prints the figures");
   }
-  const Results r = compute();
+  const MaResults r = ma_results();
   if (options.json) {
     fmt::print("{}", json_text(json_of(r)));
     return r.agrees ? kDone : kNegative;
@@ -235,7 +233,7 @@ int reproduce_ma(const ReproduceOptions& options) {
   for (std::size_t v = 0; v < 2; ++v) {
     fmt::print("  {:<14} one by one {:.0e} arcsec, {:.0e} mm; vectorised {:.0e} arcsec, {:.0e} mm (limit {:.0e})\n",
                kVariants[v].name, r.one_by_one[v].angle / kArcsec, r.one_by_one[v].length, r.traced[v].angle / kArcsec,
-               r.traced[v].length, kAgreement);
+               r.traced[v].length, kMaAgreement);
   }
   fmt::print("\n");
   print_section_33(r);

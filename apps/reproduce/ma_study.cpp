@@ -4,22 +4,17 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/polygon_trace.h"
-#include "command.h"
+#include "shared_file.h"
+#include "vector_json.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
-
-Eigen::Vector3d vector_of(const nlohmann::json& json, std::size_t first = 0) {
-  return {json.at(first).get<double>(), json.at(first + 1).get<double>(), json.at(first + 2).get<double>()};
-}
 
 void place(const nlohmann::json& json, const char* position, const char* name, PolygonSensor& sensor) {
   sensor.position = vector_of(json.at(position));

@@ -40,6 +40,8 @@ ReadingDifference largest_difference(const std::vector<PolygonReadings>& a, cons
 std::vector<PolygonReadings> ma_readings(const MaExample& example);
 std::vector<PolygonReadings> ma_traced(const MaExample& example);
 
+inline constexpr double kMicrometre = 1e-3;  ///< mm
+
 /// Largest absolute values of six motions: eps_x, eps_y, eps_z (rad), delta_x, delta_y, delta_z (mm).
 using SixMotions = std::array<double, 6>;
 

@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numbers>
+
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kArcsec = std::numbers::pi / (180 * 3600);
-constexpr double kMicrometre = 1e-3;
 
 TEST(MaStudy, ReadingsEqualTheReferenceInBothOrders) {
   for (const PolygonFaceOrder order : {PolygonFaceOrder::paper, PolygonFaceOrder::face}) {

@@ -3,13 +3,12 @@
 #include <numbers>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/angle_units.h"
 #include "reproduce/ma_study.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kArcsec = std::numbers::pi / (180 * 3600);
-constexpr double kMicrometre = 1e-3;
 constexpr std::size_t kSteps = 12;
 
 /// One motion over the turn, [steps].
@@ -19,7 +18,7 @@ using Courses = std::array<Course, 6>;
 double step_angle(std::size_t k) { return 2 * std::numbers::pi * static_cast<double>(k) / kSteps; }
 
 /// Largest motion of the table after compensation (Table 3) and its repeatability (section 4), eps_x ... delta_z.
-constexpr double kLargest[6] = {15.93, 16.69, 27.38, 12.74, 11.12, 2.57};
+constexpr double kLargestMotion[6] = {15.93, 16.69, 27.38, 12.74, 11.12, 2.57};
 constexpr double kRepeatability[6] = {0.87, 1.28, 15.13, 0.74, 0.87, 0.34};
 
 double unit(std::size_t i) { return i < 3 ? kArcsec : kMicrometre; }
@@ -41,7 +40,7 @@ Courses table_motions(RandomStream& random) {
       }
       largest = std::max(largest, std::abs(courses[i][k]));
     }
-    for (double& value : courses[i]) value *= kLargest[i] * unit(i) / largest;
+    for (double& value : courses[i]) value *= kLargestMotion[i] * unit(i) / largest;
   }
   return courses;
 }

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/formats/errors_file.h"
@@ -10,9 +9,11 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/map_file.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/report/report.h"
 #include "abbe/verify/error_map.h"
-#include "command.h"
+#include "exit_code.h"
+#include "progress.h"
 #include "reproduce/reproduce.h"
 #include "reproduce/wang_grids.h"
 #include "reproduce/wang_print.h"
@@ -24,8 +25,6 @@
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct Order {
   const char* name;
@@ -41,7 +40,7 @@ constexpr Order kOrders[] = {
 /// The paper's zero pose: first column of every table, B at 0 degrees (its seventh).
 std::vector<double> zero_pose() { return wang_positions({0, 0, 0, 0, 6, 0}); }
 
-std::string triple(const Eigen::Vector3d& v, const char* unit, double scale, int digits) {
+std::string scaled_triple(const Eigen::Vector3d& v, const char* unit, double scale, int digits) {
   return fmt::format("({:.{}f}, {:.{}f}, {:.{}f}) {}", v.x() * scale, digits, v.y() * scale, digits, v.z() * scale,
                      digits, unit);
 }
@@ -276,18 +275,19 @@ int reproduce_wang(const ReproduceOptions& options) {
   fmt::print("Wang, Ran, Zhang, Li (2020), Applied Sciences 10, 2164\n");
   fmt::print("grinder {}, tool at (200, 0, 0), workpiece point (0, 0, 400) mm\n\n", machine.chain());
   fmt::print("Zero pose (X = Y = Z = 0, A = B = C = 0): E = (W_actual - T_actual) - (W_nominal - T_nominal)\n");
-  fmt::print("  {:<44} {}\n", "paper, equation (44)", triple({0.52234, -3.60976, -4.5264}, "mm", 1, 5));
+  fmt::print("  {:<44} {}\n", "paper, equation (44)", scaled_triple({0.52234, -3.60976, -4.5264}, "mm", 1, 5));
   for (const Order& order : kOrders) {
     fmt::print("  {:<44} {}\n", order.name,
-               triple(error(WangAngleUnit::degrees, order.composition).machine, "mm", 1, 6));
+               scaled_triple(error(WangAngleUnit::degrees, order.composition).machine, "mm", 1, 6));
   }
-  fmt::print("  {:<44} {}\n", "angles read as millidegrees", triple(small.machine, "um", 1e3, 3));
-  fmt::print("  {:<44} {}\n", "paper, equation (45), displacements only", triple({0.001, 0.0027, -0.0002}, "mm", 1, 4));
-  fmt::print("  {:<44} {}\n", "displacements only", triple(displacement.machine, "mm", 1, 4));
+  fmt::print("  {:<44} {}\n", "angles read as millidegrees", scaled_triple(small.machine, "um", 1e3, 3));
+  fmt::print("  {:<44} {}\n", "paper, equation (45), displacements only",
+             scaled_triple({0.001, 0.0027, -0.0002}, "mm", 1, 4));
+  fmt::print("  {:<44} {}\n", "displacements only", scaled_triple(displacement.machine, "mm", 1, 4));
   fmt::print("  T_actual: paper (42) (193.93746, 1.72736, -4.4856), here {}\n",
-             triple(complete.tool_actual, "mm", 1, 5));
+             scaled_triple(complete.tool_actual, "mm", 1, 5));
   fmt::print("  W_actual: paper (43) (-5.5402, -1.8824, 399.9592), here {}\n\n",
-             triple(complete.workpiece_actual, "mm", 1, 5));
+             scaled_triple(complete.workpiece_actual, "mm", 1, 5));
 
   fmt::print("Why the paper's figures differ\n");
   fmt::print(
@@ -334,10 +334,11 @@ int reproduce_wang(const ReproduceOptions& options) {
   const std::vector<double> printed_pose = {gamma, printed.x(), printed.z(), alpha, printed.y(), beta};
   const Eigen::Vector3d printed_reached =
       nominal_bed_from_tool(machine, printed_pose).translation - nominal_bed_from_workpiece(machine, printed_pose) * w;
-  fmt::print("Inverse kinematics for machining point {} with A = 20, B = 25, C = 40 deg\n", triple(wanted, "mm", 1, 1));
-  fmt::print("  corrected (34): X, Y, Z = {}, misses by {:.1e} mm\n", triple(linear, "mm", 1, 6),
+  fmt::print("Inverse kinematics for machining point {} with A = 20, B = 25, C = 40 deg\n",
+             scaled_triple(wanted, "mm", 1, 1));
+  fmt::print("  corrected (34): X, Y, Z = {}, misses by {:.1e} mm\n", scaled_triple(linear, "mm", 1, 6),
              (reached - wanted).norm());
-  fmt::print("  printed (35):   X, Y, Z = {}, misses by {:.3f} mm\n", triple(printed, "mm", 1, 6),
+  fmt::print("  printed (35):   X, Y, Z = {}, misses by {:.3f} mm\n", scaled_triple(printed, "mm", 1, 6),
              (printed_reached - wanted).norm());
   fmt::print(
       "  (32) does not follow from the chain X Z A Y B; the term -200 cos(gamma) in (33) and (35) is spurious.\n");

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/instruments/ball_bar.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/machine/machine.h"
@@ -25,7 +25,7 @@ namespace {
 constexpr double kRadius = 100;
 constexpr std::size_t kReadings = 360;
 constexpr int kSamples = 400;
-constexpr std::uint64_t kSeed = 15;
+constexpr std::uint64_t kSamplingSeed = 15;
 
 /// Derivatives of the indicated lengths by all parameters of the errors, [readings, p].
 Eigen::MatrixXd length_slopes(const Machine& machine, const ErrorSet& errors, const Eigen::Vector3d& socket,
@@ -72,9 +72,9 @@ void add_uncertainty(const Eigen::MatrixXd& slopes, const Eigen::MatrixXd& covar
   const Eigen::MatrixXd trace = slopes * covariance * slopes.transpose();
   for (Eigen::Index k = 0; k < trace.rows(); ++k) circle.uncertainty.push_back(std::sqrt(std::max(0.0, trace(k, k))));
   // G is the largest less the smallest of many: which angles decide it changes with the noise, so it is sampled.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(trace);
+  const SymmetricEigen<> solver(trace);
   const Eigen::MatrixXd factor = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).cwiseSqrt().asDiagonal();
-  RandomStream random(kSeed);
+  RandomStream random(kSamplingSeed);
   double squares = 0;
   for (int sample = 0; sample < kSamples; ++sample) {
     Eigen::VectorXd normal(trace.rows());

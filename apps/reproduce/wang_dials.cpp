@@ -1,12 +1,12 @@
 #include "reproduce/wang_dials.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "abbe/errors/poses.h"
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/verify/error_map.h"
 #include "reproduce/wang_study.h"
 #include "reproduce/wang_tables.h"
@@ -14,11 +14,9 @@
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kMillidegree = 1e-3 * kDegree;
 constexpr double kAngleStandardUncertainty = 0.5 / 3600 * kDegree;
 constexpr std::size_t kMeasuredRows = 11;
-constexpr const char* kNames[6] = {"X", "Y", "Z", "A", "B", "C"};
 
 /// [rows, 6] mm, rad of one table.
 Eigen::MatrixXd table_errors(std::size_t table, std::size_t rows, double angle_unit) {
@@ -93,7 +91,7 @@ void add_setting(AxisIndications& readings) {
 
 /// Takes the least-squares combination of functions out of a vector.
 Eigen::VectorXd without(const Eigen::MatrixXd& functions, const Eigen::VectorXd& values) {
-  return values - functions * functions.colPivHouseholderQr().solve(values);
+  return values - functions * PivotedQr(functions).solve(values);
 }
 
 /// The truth with the datum of the decoupling, by a way of its own.
@@ -192,7 +190,7 @@ WangDialStudy wang_dial_study(std::uint64_t seed) {
         study.inside += std::abs(axis.with_noise.errors(row, column) - axis.without_noise.errors(row, column)) <= 2 * u;
       }
     }
-    const std::size_t index = machine.find_axis(kNames[table]);
+    const std::size_t index = machine.find_axis(kWangAxisNames[table]);
     without_noise.push_back({index, axis.without_noise});
     with_noise.push_back({index, axis.with_noise});
     if (table >= 3) {
@@ -211,8 +209,8 @@ WangDialMap wang_dial_map(const WangDialStudy& study, int threads) {
   WangDialMap result;
   PoseGrid grid;
   for (const Axis& axis : machine.axes) {
-    const std::size_t table =
-        static_cast<std::size_t>(std::find(std::begin(kNames), std::end(kNames), axis.name) - std::begin(kNames));
+    const std::size_t table = static_cast<std::size_t>(
+        std::find(std::begin(kWangAxisNames), std::end(kWangAxisNames), axis.name) - std::begin(kWangAxisNames));
     const std::vector<double> positions = table_positions(table, kMeasuredRows);
     grid.values.push_back({positions[1], positions[5], positions[9]});
   }
@@ -282,7 +280,7 @@ std::vector<WangGridComparison> wang_grid_comparison() {
     const DialGridAsPrinted printed = decouple_grids_as_printed(second, first);
     const Decoupling correct = decouple_indications(indications_of_grids(table, second, first, kWangDialUncertainty));
     WangGridComparison comparison;
-    comparison.axis = kNames[table];
+    comparison.axis = kWangAxisNames[table];
     comparison.dial_range_mm = 1000 * roll.cwiseAbs().maxCoeff() * 120;
     comparison.printed_second = root_mean_square(printed.straightness_z - straight_second);
     comparison.printed_first = root_mean_square(printed.straightness_y - straight_first);

@@ -15,7 +15,7 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/identify/decoupled_errors.h"
 #include "abbe/identify/distributions.h"
-#include "command.h"
+#include "exit_code.h"
 #include "reproduce/wang_dials.h"
 #include "reproduce/wang_study.h"
 
@@ -59,7 +59,7 @@ std::vector<GridFile> read_all(const std::filesystem::path& folder, const Machin
   return files;
 }
 
-double unit_of(std::size_t component) { return component < 3 ? 1e3 : 1e6; }
+double micro_per_unit(std::size_t component) { return component < 3 ? 1e3 : 1e6; }
 const char* unit_name(std::size_t component) { return component < 3 ? "um" : "urad"; }
 
 /// Position, error motions and their uncertainties.
@@ -77,9 +77,10 @@ std::string decoupling_csv(const Machine& machine, const GridFile& file) {
     text += fmt::format("{:.9g}", file.found.positions[i] * (linear ? 1 : 180 / std::numbers::pi));
     for (std::size_t c = 0; c < 6; ++c) {
       if (!file.found.seen[c]) continue;
-      text += fmt::format(",{:.6f},{:.6f}",
-                          file.found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * unit_of(c),
-                          file.found.standard_uncertainty(static_cast<Component>(c), i) * unit_of(c));
+      text +=
+          fmt::format(",{:.6f},{:.6f}",
+                      file.found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * micro_per_unit(c),
+                      file.found.standard_uncertainty(static_cast<Component>(c), i) * micro_per_unit(c));
     }
     text += '\n';
   }
@@ -108,8 +109,8 @@ void print(const Machine& machine, const GridFile& file) {
     for (std::size_t c = 0; c < 6; ++c) {
       if (!found.seen[c]) continue;
       fmt::print(" {:>12.3f} {:>8.3f}",
-                 found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * unit_of(c),
-                 found.standard_uncertainty(static_cast<Component>(c), i) * unit_of(c));
+                 found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * micro_per_unit(c),
+                 found.standard_uncertainty(static_cast<Component>(c), i) * micro_per_unit(c));
     }
     fmt::print("\n");
   }
@@ -142,8 +143,9 @@ nlohmann::ordered_json json_of(const Machine& machine, const GridFile& file) {
     if (!file.found.seen[c]) continue;
     std::vector<double> values, uncertainties;
     for (std::size_t i = 0; i < file.found.positions.size(); ++i) {
-      values.push_back(file.found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * unit_of(c));
-      uncertainties.push_back(file.found.standard_uncertainty(static_cast<Component>(c), i) * unit_of(c));
+      values.push_back(file.found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) *
+                       micro_per_unit(c));
+      uncertainties.push_back(file.found.standard_uncertainty(static_cast<Component>(c), i) * micro_per_unit(c));
     }
     const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
     json[name + "_" + unit_name(c)] = values;

@@ -4,17 +4,18 @@
 
 #include <algorithm>
 #include <array>
+#include <nlohmann/json.hpp>
 
 #include "abbe/formats/indication_file.h"
 #include "abbe/verify/statistics.h"
 #include "reproduce/wang_ball_bar.h"
 #include "reproduce/wang_study.h"
+#include "reproduce/wang_tables.h"
 
 namespace abbe {
 namespace {
 
-constexpr std::uint64_t kSeed = 2020;
-constexpr const char* kNames[6] = {"X", "Y", "Z", "A", "B", "C"};
+constexpr std::uint64_t kDialSeed = 2020;
 
 struct BallBarModel {
   const char* name;
@@ -46,14 +47,14 @@ double largest_uncertainty(const Decoupling& found, std::size_t component) {
 }
 
 std::string component_name(const WangDialAxis& axis, std::size_t component) {
-  return fmt::format("E{}{}", component_letter(static_cast<Component>(component)), kNames[axis.table]);
+  return fmt::format("E{}{}", component_letter(static_cast<Component>(component)), kWangAxisNames[axis.table]);
 }
 
 }  // namespace
 
 WangDialFigures wang_dial_figures(int threads) {
   WangDialFigures figures;
-  figures.study = wang_dial_study(kSeed);
+  figures.study = wang_dial_study(kDialSeed);
   figures.map = wang_dial_map(figures.study, threads);
   figures.grids = wang_grid_comparison();
   return figures;
@@ -100,7 +101,7 @@ void print_wang_dials(const WangDialFigures& figures) {
       uncertainty += fmt::format(" {:>9.3f}", largest_uncertainty(axis.with_noise, c));
       bias += fmt::format(" {:>9.4f}", off * (c < 3 ? 1e3 : 1e6));
     }
-    fmt::print("  {:<6} {:<28}{}\n", kNames[axis.table], "largest standard uncertainty", uncertainty);
+    fmt::print("  {:<6} {:<28}{}\n", kWangAxisNames[axis.table], "largest standard uncertainty", uncertainty);
     fmt::print("  {:<6} {:<28}{}\n", "", "bias without noise", bias);
   }
   fmt::print(
@@ -176,9 +177,9 @@ nlohmann::ordered_json wang_dials_json(const WangDialFigures& figures) {
       if (!axis.with_noise.seen[c]) continue;
       uncertainty[component_name(axis, c) + (c < 3 ? "_um" : "_urad")] = largest_uncertainty(axis.with_noise, c);
     }
-    json["axes"][kNames[axis.table]] = {{"bias_um", 1e3 * axis.bias_mm},
-                                        {"bias_urad", 1e6 * axis.bias_rad},
-                                        {"largest_standard_uncertainty", uncertainty}};
+    json["axes"][kWangAxisNames[axis.table]] = {{"bias_um", 1e3 * axis.bias_mm},
+                                                {"bias_urad", 1e6 * axis.bias_rad},
+                                                {"largest_standard_uncertainty", uncertainty}};
   }
   json["seen_by_the_papers_instruments"] = figures.study.seen_by_dials;
   json["values"] = figures.study.values;
@@ -233,8 +234,8 @@ std::vector<std::pair<std::string, std::string>> wang_indication_files(const Wan
   const Machine machine = wang_machine();
   std::vector<std::pair<std::string, std::string>> files;
   for (const WangDialAxis& axis : study.axes) {
-    const IndicationTable table{machine.find_axis(kNames[axis.table]), axis.readings};
-    files.emplace_back(std::string(kNames[axis.table]) + ".csv", indications_text(machine, table));
+    const IndicationTable table{machine.find_axis(kWangAxisNames[axis.table]), axis.readings};
+    files.emplace_back(std::string(kWangAxisNames[axis.table]) + ".csv", indications_text(machine, table));
   }
   return files;
 }

@@ -3,25 +3,24 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/chain_plan.h"
 #include "abbe/errors/poses.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "reproduce/wang_tables.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::size_t kAxes = 6;
-constexpr std::size_t kX = 0, kY = 1, kZ = 2, kA = 3, kB = 4, kC = 5;  // order of the tables
-constexpr std::array<std::size_t, kAxes> kChainToTable = {kC, kX, kZ, kA, kY, kB};
-constexpr const char* kNames[kAxes] = {"X", "Y", "Z", "A", "B", "C"};
+constexpr std::size_t kWangAxes = 6;
+constexpr std::size_t kTableX = 0, kTableY = 1, kTableZ = 2, kTableA = 3, kTableB = 4,
+                      kTableC = 5;  // order of the tables
+constexpr std::array<std::size_t, kWangAxes> kChainToTable = {kTableC, kTableX, kTableZ, kTableA, kTableY, kTableB};
 
 double position_of(std::size_t table, std::size_t row) {
-  return wang_row(table, row).position * (table >= kA ? kDegree : 1.0);
+  return wang_row(table, row).position * (table >= kTableA ? kDegree : 1.0);
 }
 
 }  // namespace
@@ -32,10 +31,10 @@ Machine wang_machine() {
   machine.description = "six axes; Tables A1 to A6 are measured on it";
   for (std::size_t table : kChainToTable) {
     Axis axis;
-    axis.name = kNames[table];
+    axis.name = kWangAxisNames[table];
     axis_kind_from_letter(axis.name[0], axis.kind);
     axis.direction = direction_from_letter(axis.name[0]);
-    axis.side = table == kC ? ChainSide::workpiece : ChainSide::tool;
+    axis.side = table == kTableC ? ChainSide::workpiece : ChainSide::tool;
     axis.travel_min = position_of(table, 0);
     axis.travel_max = position_of(table, 11);
     machine.axes.push_back(axis);
@@ -50,7 +49,7 @@ ErrorSet wang_errors(const WangReading& reading) {
   if (reading.angles == WangAngleUnit::millidegrees) angle_unit = 1e-3 * kDegree;
   ErrorSet errors;
   errors.composition = reading.composition;
-  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+  for (std::size_t axis = 0; axis < kWangAxes; ++axis) {
     const std::size_t table = kChainToTable[axis];
     Basis basis{.kind = BasisKind::table_linear};
     for (std::size_t i = 0; i < reading.rows; ++i) basis.nodes.push_back(position_of(table, i));
@@ -126,11 +125,11 @@ WangPopulation wang_all_poses(const WangReading& reading, int threads) {
   for_each_block(blocks, threads, [&](std::size_t block) {
     const std::size_t first = block * kBlock;
     const std::size_t count = std::min(kBlock, poses.count - first);
-    std::array<std::vector<double>, kAxes> axis;
+    std::array<std::vector<double>, kWangAxes> axis;
     axis.fill(std::vector<double>(kBlock));
-    std::array<double*, kAxes> writable;
-    std::array<const double*, kAxes> readable;
-    for (std::size_t i = 0; i < kAxes; ++i) readable[i] = writable[i] = axis[i].data();
+    std::array<double*, kWangAxes> writable;
+    std::array<const double*, kWangAxes> readable;
+    for (std::size_t i = 0; i < kWangAxes; ++i) readable[i] = writable[i] = axis[i].data();
     poses.fill(first, count, writable.data());
     const PositionArrays positions{readable, count};
 
@@ -160,9 +159,9 @@ WangPopulation wang_all_poses(const WangReading& reading, int threads) {
     population.largest_components = population.largest_components.cwiseMax(largest[block]);
   }
   population.histogram = histogram(norm, 0, population.norm.maximum, 60);
-  population.worst_pose.resize(kAxes);
-  std::array<double*, kAxes> worst;
-  for (std::size_t i = 0; i < kAxes; ++i) worst[i] = &population.worst_pose[i];
+  population.worst_pose.resize(kWangAxes);
+  std::array<double*, kWangAxes> worst;
+  for (std::size_t i = 0; i < kWangAxes; ++i) worst[i] = &population.worst_pose[i];
   poses.fill(population.norm.maximum_at, 1, worst.data());
   population.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time).count();
   return population;

@@ -1,12 +1,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/report/evaluation_data.h"
 #include "abbe/report/report.h"
-#include "command.h"
+#include "exit_code.h"
 #include "reproduce/reproduce.h"
 #include "reproduce/yin_constants.h"
 #include "reproduce/yin_results.h"

@@ -8,7 +8,7 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/study_file.h"
 #include "abbe/identify/prediction.h"
-#include "command.h"
+#include "shared_file.h"
 #include "study/job.h"
 
 namespace abbe {

@@ -1,15 +1,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 
+#include "abbe/geometry/angle_units.h"
 #include "reproduce/yin_results.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// A fit that did not converge has no uncertainty.
 std::string joint_uncertainty_text(const YinJointFit& joint, std::size_t parameter) {

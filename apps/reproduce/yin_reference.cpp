@@ -8,7 +8,8 @@
 #include "abbe/formats/curve_file.h"
 #include "abbe/formats/text_file.h"
 #include "abbe/verify/contour_error.h"
-#include "command.h"
+#include "shared_file.h"
+#include "vector_json.h"
 
 namespace abbe {
 namespace {
@@ -37,10 +38,6 @@ Eigen::Matrix3Xd matrix_of(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Matrix3Xd matrix(3, static_cast<Eigen::Index>(points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) matrix.col(static_cast<Eigen::Index>(i)) = points[i];
   return matrix;
-}
-
-Eigen::Vector3d vector_of(const nlohmann::json& v) {
-  return {v[0].get<double>(), v[1].get<double>(), v[2].get<double>()};
 }
 
 RigidTransform transform_of(const nlohmann::json& rows) {

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/report/svg_plot.h"
 #include "evaluate/contour_page.h"
 #include "reproduce/yin_constants.h"
@@ -12,9 +13,7 @@
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
-EvaluationFigure figure(const std::string& symbol, const std::string& name, double value_um) {
+EvaluationFigure micrometre_figure(const std::string& symbol, const std::string& name, double value_um) {
   EvaluationFigure result;
   result.symbol = symbol;
   result.name = name;
@@ -23,9 +22,9 @@ EvaluationFigure figure(const std::string& symbol, const std::string& name, doub
 }
 
 void add_figures(EvaluationReport& report, const std::string& symbol, const std::string& name, const YinFigures& f) {
-  report.figures.push_back(figure(symbol + "_mean", name + ", mean", f.mean));
-  report.figures.push_back(figure(symbol + "_max", name + ", largest", f.largest));
-  report.figures.push_back(figure(symbol + "_s", name + ", standard deviation", f.deviation));
+  report.figures.push_back(micrometre_figure(symbol + "_mean", name + ", mean", f.mean));
+  report.figures.push_back(micrometre_figure(symbol + "_max", name + ", largest", f.largest));
+  report.figures.push_back(micrometre_figure(symbol + "_s", name + ", standard deviation", f.deviation));
 }
 
 EvaluationTable linkage_table(const YinResults& r) {

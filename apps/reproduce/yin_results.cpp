@@ -5,7 +5,7 @@
 namespace abbe {
 namespace {
 
-constexpr double kAgreement = 1e-9;  // mm
+constexpr double kYinAgreement = 1e-9;  // mm
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void judge(YinResults& r) {
   r.agrees = r.failures.empty();
   for (const double difference :
        {r.table_moves.largest_difference, r.head_moves.largest_difference, r.positioning.largest_difference}) {
-    r.agrees = r.agrees && difference < kAgreement;  // what is no number does not agree
+    r.agrees = r.agrees && difference < kYinAgreement;  // what is no number does not agree
   }
 }
 

@@ -1,12 +1,13 @@
 #include "reproduce/yin_scans.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/instruments/triangulation.h"
 #include "reproduce/yin_constants.h"
@@ -17,7 +18,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-constexpr double kDegree = std::numbers::pi / 180;
 const Vector3d kMoved(150, -60, 0);
 const Vector3d kSphere(40, 150, yin::kSphereHeight);
 const Vector3d kTarget(-120, 40, 14);  // of X and Y
@@ -222,7 +222,7 @@ YinScansFound yin_locate(const YinScans& scans) {
   const PositioningParameters truth = positioning_parameters(scans.placement, true);
   Eigen::Matrix<double, 6, 1> off;
   off << p.table_to_workpiece.translation - truth.translation, p.table_to_workpiece.angles - truth.angles;
-  found.chi_square = off.dot(p.table_to_workpiece.covariance.ldlt().solve(off));
+  found.chi_square = off.dot(Ldlt<6>(p.table_to_workpiece.covariance).solve(off));
   p.largest_difference = off.head<3>().norm();
   return found;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "abbe/geometry/rotation.h"

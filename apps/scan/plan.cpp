@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <numbers>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -15,18 +16,20 @@
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/scan_plan_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/mesh_check.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/vertex_welder.h"
 #include "abbe/plan/wanted_area.h"
+#include "command.h"
+#include "exit_code.h"
+#include "progress.h"
 #include "scan/plan_page.h"
 #include "scan/plan_words.h"
 #include "scan/scan.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct PlanOptions {
   std::string part, machine, stage, output, program, coverage, report;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "abbe/formats/scan_plan_file.h"
@@ -68,29 +69,29 @@ SurfacePicture coloured_part(const TriangleMesh& part, const ScanPlan& plan, con
   return picture;
 }
 
-nlohmann::json figure(const char* symbol, const std::string& name, const char* key, double value, int decimals) {
+nlohmann::json figure_json(const char* symbol, const std::string& name, const char* key, double value, int decimals) {
   return {{"symbol", symbol}, {"name", name}, {key, value}, {"decimals", decimals}};
 }
 
-nlohmann::json figures_of(const ScanPlan& plan, const CoverageShares& shares) {
+nlohmann::json figures_json(const ScanPlan& plan, const CoverageShares& shares) {
   nlohmann::json figures = nlohmann::json::array();
-  figures.push_back(figure("covered", "share of the surface", "value_percent", shares.percent[0], 1));
+  figures.push_back(figure_json("covered", "share of the surface", "value_percent", shares.percent[0], 1));
   for (std::size_t i = 1; i < shares.obstacles.size(); ++i) {
-    figures.push_back(figure(scan_obstacle_name(shares.obstacles[i]),
-                             std::string("not covered: ") + obstacle_words(shares.obstacles[i]), "value_percent",
-                             shares.percent[i], 2));
+    figures.push_back(figure_json(scan_obstacle_name(shares.obstacles[i]),
+                                  std::string("not covered: ") + obstacle_words(shares.obstacles[i]), "value_percent",
+                                  shares.percent[i], 2));
   }
   const auto count = [](std::size_t number) { return static_cast<double>(number); };
-  figures.push_back(figure("points", "measured", "value", count(plan.points()), 0));
+  figures.push_back(figure_json("points", "measured", "value", count(plan.points()), 0));
   figures.push_back(
-      figure("missed", "places on the lines that are not reached", "value", count(plan.missed_places()), 0));
-  figures.push_back(figure("time", "of the whole path, without acceleration", "value_s", plan.time, 0));
-  figures.push_back(figure("sag", "surface from the middle of the range, half way between points, at most", "value_um",
-                           1e3 * plan.largest_sag, 1));
-  figures.push_back(figure("around", "moves that go around because the surface would leave the range", "value",
-                           count(plan.beyond_range), 0));
-  figures.push_back(figure("blocked", "ways between lines on which the probe may touch part or stage", "value",
-                           count(plan.blocked_links), 0));
+      figure_json("missed", "places on the lines that are not reached", "value", count(plan.missed_places()), 0));
+  figures.push_back(figure_json("time", "of the whole path, without acceleration", "value_s", plan.time, 0));
+  figures.push_back(figure_json("sag", "surface from the middle of the range, half way between points, at most",
+                                "value_um", 1e3 * plan.largest_sag, 1));
+  figures.push_back(figure_json("around", "moves that go around because the surface would leave the range", "value",
+                                count(plan.beyond_range), 0));
+  figures.push_back(figure_json("blocked", "ways between lines on which the probe may touch part or stage", "value",
+                                count(plan.blocked_links), 0));
   return figures;
 }
 
@@ -169,7 +170,7 @@ nlohmann::json scan_plan_page_data(const Machine& machine, const TriangleMesh& p
   report.page["machine"] = report_machine(machine);
   report.page["surface"] = surface_data(coloured_part(part, plan, options, shares, threads), nullptr);
   nlohmann::json data = evaluation_data(report);
-  data["evaluation"]["figures"] = figures_of(plan, shares);
+  data["evaluation"]["figures"] = figures_json(plan, shares);
   return data;
 }
 

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,9 @@
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/scan_file.h"
+#include "command.h"
+#include "exit_code.h"
+#include "progress.h"
 #include "scan/scan.h"
 
 namespace abbe {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "abbe/verify/surface_deviation.h"
 #include "scan/deviation_colours.h"
@@ -14,7 +15,8 @@
 namespace abbe {
 namespace {
 
-EvaluationFigure figure(std::string symbol, std::string name, const std::string& unit, int decimals, double value) {
+EvaluationFigure figure_in_unit(std::string symbol, std::string name, const std::string& unit, int decimals,
+                                double value) {
   EvaluationFigure result;
   result.symbol = std::move(symbol);
   result.name = std::move(name);
@@ -27,20 +29,21 @@ EvaluationFigure figure(std::string symbol, std::string name, const std::string&
 void add_pose(const FineRegistration& fine, EvaluationReport& report) {
   static constexpr const char* kAxes[] = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
-    EvaluationFigure place =
-        figure(kAxes[k], fmt::format("middle of the scan on the part, {}", kAxes[k]), "mm", 6, fine.reference[k]);
+    EvaluationFigure place = figure_in_unit(kAxes[k], fmt::format("middle of the scan on the part, {}", kAxes[k]), "mm",
+                                            6, fine.reference[k]);
     place.uncertainty = 2 * std::sqrt(std::max(0.0, fine.covariance(3 + k, 3 + k)));
     report.figures.push_back(place);
   }
   for (int k = 0; k < 3; ++k) {
-    EvaluationFigure turn = figure(fmt::format("U_{}", "ABC"[k]),
-                                   fmt::format("expanded uncertainty (k = 2) of the turn about {}", kAxes[k]), "urad",
-                                   3, 2 * std::sqrt(std::max(0.0, fine.covariance(k, k))));
+    EvaluationFigure turn = figure_in_unit(fmt::format("U_{}", "ABC"[k]),
+                                           fmt::format("expanded uncertainty (k = 2) of the turn about {}", kAxes[k]),
+                                           "urad", 3, 2 * std::sqrt(std::max(0.0, fine.covariance(k, k))));
     turn.quantity = Quantity::angle;
     report.figures.push_back(turn);
   }
-  report.figures.push_back(figure("scale", "robust standard deviation of the distances", "um", 3, fine.scale_mm));
-  report.figures.push_back(figure("rms", "root mean square of the distances, weighted", "um", 3, fine.rms_mm));
+  report.figures.push_back(
+      figure_in_unit("scale", "robust standard deviation of the distances", "um", 3, fine.scale_mm));
+  report.figures.push_back(figure_in_unit("rms", "root mean square of the distances, weighted", "um", 3, fine.rms_mm));
   EvaluationTable pose{"Pose: part = rotation * scan + translation", {"", "rotation", "", "", "translation in mm"}, {}};
   for (int row = 0; row < 3; ++row) {
     std::vector<std::string> cells{kAxes[row]};

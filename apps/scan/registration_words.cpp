@@ -3,15 +3,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "scan/scan_files.h"
+#include "vector_json.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::string words_of(const UndeterminedMotion& motion) {
   if (!motion.rotation) return fmt::format("shift along {}", triple_text(motion.direction));
@@ -21,13 +22,11 @@ std::string words_of(const UndeterminedMotion& motion) {
   return fmt::format("screw {}, {:.6g} mm per turn", line, 2 * std::numbers::pi * motion.pitch_mm);
 }
 
-nlohmann::ordered_json json_of(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
-
 nlohmann::ordered_json json_of(const RigidTransform& transform) {
   nlohmann::ordered_json json;
   json["rotation"] = nlohmann::ordered_json::array();
-  for (int row = 0; row < 3; ++row) json["rotation"].push_back(json_of(transform.rotation.row(row).transpose()));
-  json["translation_mm"] = json_of(transform.translation);
+  for (int row = 0; row < 3; ++row) json["rotation"].push_back(vector_json(transform.rotation.row(row).transpose()));
+  json["translation_mm"] = vector_json(transform.translation);
   return json;
 }
 
@@ -113,10 +112,10 @@ nlohmann::ordered_json registration_json(const Registration& result) {
   json["robust_standard_deviation_mm"] = fine.scale_mm;
   json["weighted_rms_mm"] = fine.rms_mm;
   nlohmann::ordered_json uncertainty;
-  uncertainty["reference_mm"] = json_of(fine.reference);
-  uncertainty["turn_rad"] = json_of(
+  uncertainty["reference_mm"] = vector_json(fine.reference);
+  uncertainty["turn_rad"] = vector_json(
       Eigen::Vector3d(standard_uncertainty(fine, 0), standard_uncertainty(fine, 1), standard_uncertainty(fine, 2)));
-  uncertainty["shift_mm"] = json_of(
+  uncertainty["shift_mm"] = vector_json(
       Eigen::Vector3d(standard_uncertainty(fine, 3), standard_uncertainty(fine, 4), standard_uncertainty(fine, 5)));
   for (int i = 0; i < 6; ++i) {
     nlohmann::ordered_json row = nlohmann::ordered_json::array();
@@ -129,9 +128,9 @@ nlohmann::ordered_json registration_json(const Registration& result) {
     nlohmann::ordered_json entry;
     entry["words"] = words_of(motion);
     entry["kind"] = motion.rotation ? "turn" : "shift";
-    entry["direction"] = json_of(motion.direction);
+    entry["direction"] = vector_json(motion.direction);
     if (motion.rotation) {
-      entry["point_mm"] = json_of(motion.point);
+      entry["point_mm"] = vector_json(motion.point);
       entry["pitch_mm_per_rad"] = motion.pitch_mm;
     }
     json["undetermined"].push_back(entry);

@@ -1,8 +1,12 @@
 #pragma once
 
-#include "command.h"
+namespace CLI {
+class App;
+}
 
 namespace abbe {
+
+struct CommandLine;
 
 void add_scan_command(CommandLine& line);
 /// abbe scan plan: paths over the faces of a part.

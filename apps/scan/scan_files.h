@@ -7,7 +7,10 @@
 
 #include "abbe/formats/mesh_file.h"
 #include "abbe/formats/point_cloud_file.h"
-#include "command.h"
+
+namespace CLI {
+class App;
+}
 
 namespace abbe {
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "abbe/identify/parameter_words.h"
 #include "abbe/identify/shown_by.h"

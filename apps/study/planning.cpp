@@ -102,8 +102,8 @@ double total_time(const PlanningStudy& plan, const std::vector<SightReading>& re
 }
 
 /// Who looks at what from where.
-using Place = std::tuple<std::vector<double>, std::size_t, std::size_t, std::size_t>;
-Place place_of(const SightReading& reading) {
+using ReadingPlace = std::tuple<std::vector<double>, std::size_t, std::size_t, std::size_t>;
+ReadingPlace place_of(const SightReading& reading) {
   return {reading.pose, reading.setup, reading.station, reading.reflector};
 }
 
@@ -228,7 +228,7 @@ StudyPlan plan_study(const Study& study, const std::function<void(double)>& prog
         model.readings_at(poses_around(plan, result.readings, study.seed * 31 + static_cast<std::uint64_t>(round)));
     auto space_around = std::make_unique<const PlanningSpace>(around.rows, model.known());
     if (space_around->dimension() != space->dimension()) break;
-    std::map<Place, std::size_t> places;
+    std::map<ReadingPlace, std::size_t> places;
     for (std::size_t i = 0; i < around.readings.size(); ++i) places[place_of(around.readings[i])] = i;
     PlanningOptions refined = options;
     refined.count = result.plan.chosen.size();

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/singular_values.h"
 #include "study/planning.h"
 
@@ -298,8 +298,8 @@ double uncertainty_with_prior(const PlanningModel& model, const PlanningCandidat
   // Scaled, for lengths and angles differ by orders of magnitude.
   const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();  // the lower half counts
-  const Eigen::LLT<Eigen::MatrixXd> factor(scaled);
-  const Eigen::MatrixXd half = factor.matrixL().solve(scale.asDiagonal() * predictions.transpose());
+  const Cholesky factor(scaled);
+  const Eigen::MatrixXd half = factor.half_solve(scale.asDiagonal() * predictions.transpose());
   return std::sqrt(half.squaredNorm() / (static_cast<double>(predictions.rows()) / 3));
 }
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 
@@ -8,6 +7,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/study_file.h"
 #include "abbe/formats/study_parts.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/identify/normal_equations.h"
 #include "abbe/identify/planning_candidates.h"
 #include "abbe/instruments/tracker_observations.h"
@@ -33,7 +33,7 @@ ErrorSet planned_errors(const Study& study) {
   return errors;
 }
 
-void append(TrackerReadings& all, const TrackerReadings& more) {
+void append_planned(TrackerReadings& all, const TrackerReadings& more) {
   if (all.poses.axis.empty()) {
     all = more;
     return;
@@ -150,7 +150,7 @@ PlanningModel::Candidates PlanningModel::readings_at(const PoseList& poses,
         {static_cast<std::uint16_t>(sights_[i].station), static_cast<std::uint16_t>(sights_[i].reflector)}};
     const SimulatedTracker seen = simulate_tracker(study_.machine, ErrorSet{}, setups_[sights_[i].setup], own, options);
     result.hidden += seen.hidden;
-    append(readings[sights_[i].setup], seen.readings);
+    append_planned(readings[sights_[i].setup], seen.readings);
   }
   std::vector<std::unique_ptr<Observations>> observations;
   result.rows = candidate_rows(problem(observations, readings));
@@ -224,8 +224,7 @@ Eigen::MatrixXd PlanningModel::prediction_rows(const PoseList& poses) const {
     const double x = seen[0][k], y = seen[1][k], z = seen[2][k];
     rigid.block<3, 3>(at, 3) << 0, z, -y, -z, 0, x, y, -x, 0;
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(rigid);
-  const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(static_cast<Index>(3 * n), 6);
+  const Eigen::MatrixXd basis = Qr(rigid).orthonormal(6);
   result -= basis * (basis.transpose() * result);
   return result;
 }

@@ -4,21 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <nlohmann/json.hpp>
 
+#include "abbe/geometry/angle_units.h"
 #include "study/advice.h"
 #include "study/report_identification.h"
 #include "study/report_parameters.h"
 #include "study/report_residuals.h"
 #include "study/summary.h"
 #include "study/truth_in_gauge.h"
+#include "vector_json.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-
-nlohmann::ordered_json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Columns of axis positions for chosen entries: {"X_mm": [...], "C_deg": [...]}.
 nlohmann::ordered_json position_columns(const Machine& machine, const PoseList& poses,
@@ -45,7 +43,7 @@ nlohmann::ordered_json columns(const std::array<std::vector<double>, 3>& source,
 }
 
 /// Evenly thinned indices of the poses inside the measured range.
-std::vector<std::size_t> thinned(const std::vector<std::uint8_t>& covered, std::size_t limit) {
+std::vector<std::size_t> thinned_poses(const std::vector<std::uint8_t>& covered, std::size_t limit) {
   std::vector<std::size_t> all;
   for (std::size_t k = 0; k < covered.size(); ++k) {
     if (covered[k] != 0) all.push_back(k);
@@ -95,7 +93,7 @@ nlohmann::ordered_json report_machine(const Machine& machine) {
 nlohmann::ordered_json report_map(const Machine& machine, const PoseList& poses, const ErrorMap& before,
                                   const ErrorMap* after, const ErrorMap* uncertainty, const std::string& description,
                                   std::size_t limit) {
-  const std::vector<std::size_t> shown = thinned(before.covered, limit);
+  const std::vector<std::size_t> shown = thinned_poses(before.covered, limit);
   nlohmann::ordered_json json;
   json["frame"] = "workpiece";
   json["poses"] = before.statistics.count;

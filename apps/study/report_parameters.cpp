@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
+#include <nlohmann/json.hpp>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/identify/covariance.h"
 #include "abbe/identify/monte_carlo_comparison.h"
 #include "abbe/identify/prediction.h"
@@ -12,8 +13,6 @@
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::string basis_words(const Basis& basis) {
   switch (basis.kind) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "abbe/formats/csv_reader.h"

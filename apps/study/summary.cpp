@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "abbe/geometry/rotation.h"
 #include "abbe/identify/monte_carlo_comparison.h"

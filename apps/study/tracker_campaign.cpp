@@ -48,7 +48,7 @@ TrackerSetup tracker_setup(const Setup& setup, bool truth) {
 
 namespace {
 
-void append(TrackerReadings& all, const TrackerReadings& more) {
+void append_readings(TrackerReadings& all, const TrackerReadings& more) {
   if (all.count() == 0) {
     all = more;
     return;
@@ -165,13 +165,13 @@ void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet&
     SimulatedTracker simulated = simulate_tracker(study.machine, truth, result.truth, poses, options);
     state_uncertainty(result.truth, setup.stated, simulated.readings);
     const std::uint32_t offset = static_cast<std::uint32_t>(result.readings.count());
-    append(result.readings, simulated.readings);
+    append_readings(result.readings, simulated.readings);
     options.noise_factor = 0;
     options.outlier_fraction = 0;
     options.progress = nullptr;
     TrackerReadings exact = simulate_tracker(study.machine, truth, result.truth, poses, options).readings;
     state_uncertainty(result.truth, setup.stated, exact);
-    append(result.exact, exact);
+    append_readings(result.exact, exact);
     for (std::uint32_t outlier : simulated.outliers) result.outliers.push_back(offset + outlier);
     result.hidden += simulated.hidden;
   }
@@ -189,7 +189,7 @@ void read_setup(const Study& study, const Setup& setup, TrackerCampaign& result)
       throw InputError({.file = data.file.string()}, "the files of one set-up differ in their columns",
                        "the same kind of reading and of uncertainty in all files of a set-up");
     }
-    append(result.readings, readings);
+    append_readings(result.readings, readings);
   }
 }
 

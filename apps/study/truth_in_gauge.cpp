@@ -1,10 +1,10 @@
 #include "study/truth_in_gauge.h"
 
 #include <Eigen/Core>
-#include <Eigen/QR>
 #include <vector>
 
 #include "abbe/errors/poses.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/identify/levenberg_marquardt.h"
 #include "study/campaign.h"
 
@@ -29,7 +29,7 @@ Eigen::VectorXd nearest_coefficients(const ErrorSet& truth, const ErrorMotion& m
       values[static_cast<Index>(i)] += one.basis.evaluate(positions[i], one.coefficients);
     }
   }
-  return functions.colPivHouseholderQr().solve(values);
+  return PivotedQr(functions).solve(values);
 }
 
 }  // namespace

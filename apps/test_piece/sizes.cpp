@@ -1,22 +1,22 @@
 #include "test_piece/sizes.h"
 
-#include <numbers>
+#include <CLI/CLI.hpp>
 #include <stdexcept>
 
 #include "abbe/formats/input_error.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 /// Of a piece and of a tool, mm: wider than any that a machine takes.
-constexpr double kSmallest = 0.01, kLargest = 10000;
+constexpr double kSmallestSize = 0.01, kLargestSize = 10000;
 
 void add_common(CLI::App& piece, TestPieceSizes& sizes, const char* centre, const char* height) {
-  piece.add_option("--centre-mm", sizes.centre_mm, centre)->expected(3)->check(CLI::Range(-kLargest, kLargest));
-  piece.add_option("--height-mm", sizes.height_mm, height)->check(CLI::Range(kSmallest, kLargest));
+  piece.add_option("--centre-mm", sizes.centre_mm, centre)->expected(3)->check(CLI::Range(-kLargestSize, kLargestSize));
+  piece.add_option("--height-mm", sizes.height_mm, height)->check(CLI::Range(kSmallestSize, kLargestSize));
   piece.add_option("--tool-diameter-mm", sizes.tool_diameter_mm, "Diameter of the cylindrical cutter")
-      ->check(CLI::Range(kSmallest, kLargest))
+      ->check(CLI::Range(kSmallestSize, kLargestSize))
       ->capture_default_str();
   piece.add_option("--azimuth-deg", sizes.azimuth_deg, "Turn of the piece about Z")
       ->check(CLI::Range(-360.0, 360.0))
@@ -52,7 +52,7 @@ TestPiece made(const Piece& sizes, TestPiece (*make)(const Piece&), const char* 
 void add_cone_frustum_sizes(CLI::App& piece, TestPieceSizes& sizes) {
   add_common(piece, sizes, "Centre of the base, workpiece frame (default 0 60 40)", "Along the axis (default 20)");
   piece.add_option("--base-diameter-mm", sizes.base_diameter_mm, "Diameter of the base")
-      ->check(CLI::Range(kSmallest, kLargest))
+      ->check(CLI::Range(kSmallestSize, kLargestSize))
       ->capture_default_str();
   piece.add_option("--half-apex-deg", sizes.half_apex_deg, "Half of the angle at the apex")
       ->check(CLI::Range(0.0, 90.0))
@@ -65,10 +65,10 @@ void add_cone_frustum_sizes(CLI::App& piece, TestPieceSizes& sizes) {
 void add_s_shape_sizes(CLI::App& piece, TestPieceSizes& sizes) {
   add_common(piece, sizes, "Middle of the foot, workpiece frame (default 0 0 30)", "Along Z (default 40)");
   piece.add_option("--length-mm", sizes.length_mm, "From end to end along X")
-      ->check(CLI::Range(kSmallest, kLargest))
+      ->check(CLI::Range(kSmallestSize, kLargestSize))
       ->capture_default_str();
   piece.add_option("--amplitude-mm", sizes.amplitude_mm, "Of the sine that is the foot")
-      ->check(CLI::Range(-kLargest, kLargest))
+      ->check(CLI::Range(-kLargestSize, kLargestSize))
       ->capture_default_str();
   piece.add_option("--lean-deg", sizes.lean_deg, "Lean of the wall at its ends")
       ->check(CLI::Range(-45.0, 45.0))

@@ -1,9 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <vector>
 
 #include "abbe/machine/test_piece.h"
+
+namespace CLI {
+class App;
+}
 
 namespace abbe {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/parts_for_test.h"
 #include "abbe/geometry/rotation.h"
 
@@ -30,7 +31,7 @@ ScanCase::ScanCase(std::size_t around, std::size_t along, Eigen::Index points, d
     surface.col(i) = sample.points.col(order[static_cast<std::size_t>(i)].point);
     normals.col(i) = sample.normals.col(order[static_cast<std::size_t>(i)].point);
   }
-  parts::Numbers numbers(2);
+  test::Numbers numbers(2);
   scan = surface;
   for (Eigen::Index i = 0; i < points; ++i) scan.col(i) += noise_mm * numbers.normal() * normals.col(i);
   Eigen::Matrix3Xd placed = scan;

@@ -5,7 +5,7 @@
 namespace abbe {
 namespace {
 
-const char* const kMachine =
+const char* const kEndlessTable =
     "name = \"m\"\nchain = \"w C' X' b Z t\"\n[axis.C]\nendless = true\n[axis.X]\ntravel_mm = [0, 1400]\n"
     "[axis.Z]\ntravel_mm = [0, 600]\n";
 
@@ -21,7 +21,7 @@ class BadInput : public CommandTest {
 
   /// Checks the machine with one passage replaced.
   void expect_machine_refused(const std::string& from, const std::string& to, const std::string& message) const {
-    std::string text = kMachine;
+    std::string text = kEndlessTable;
     ASSERT_NE(text.find(from), std::string::npos);
     folder.write("m.toml", text.replace(text.find(from), from.size(), to));
     expect_refused({"check", "m.toml"}, message);
@@ -50,7 +50,7 @@ TEST_F(BadInput, EmptyAndMissingFiles) {
 }
 
 TEST_F(BadInput, ErrorsOfAnotherMachine) {
-  folder.write("m.toml", kMachine);
+  folder.write("m.toml", kEndlessTable);
   folder.write("e.toml", "chain = \"w b X Y Z t\"\n");
   expect_refused({"check", "m.toml", "--errors", "e.toml"},
                  "e.toml:1:1: chain: the errors belong to \"w b X Y Z t\"; expected \"w C' X' b Z t\"");
@@ -58,7 +58,7 @@ TEST_F(BadInput, ErrorsOfAnotherMachine) {
 
 TEST_F(BadInput, ByteOrderMarkAndCarriageReturnsAreGoodInput) {
   std::string text = "\xEF\xBB\xBF";
-  for (const char* at = kMachine; *at != 0; ++at) text += *at == '\n' ? std::string("\r\n") : std::string(1, *at);
+  for (const char* at = kEndlessTable; *at != 0; ++at) text += *at == '\n' ? std::string("\r\n") : std::string(1, *at);
   folder.write("m.toml", text);
   const CommandResult result = abbe({"check", "m.toml"});
   EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;

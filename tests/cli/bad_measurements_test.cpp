@@ -4,16 +4,14 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command_test.h"
+#include "cli/machine_for_test.h"
 
 namespace abbe {
 namespace {
 
 using testing::HasSubstr;
 
-const char* const kMachine =
-    "name = \"m\"\nchain = \"w X' b Z t\"\n[axis.X]\ntravel_mm = [0, 1400]\n[axis.Z]\ntravel_mm = [0, 600]\n";
-
-const char* const kStudy = R"(machine = "m.toml"
+const char* const kMeasuredStudy = R"(machine = "m.toml"
 output = "out"
 [[setup]]
 name = "tracker"
@@ -41,8 +39,8 @@ order = 1
 class BadMeasurements : public CommandTest {
  protected:
   BadMeasurements() {
-    folder.write("m.toml", kMachine);
-    folder.write("s.study.toml", kStudy);
+    folder.write("m.toml", kTableXColumnZ);
+    folder.write("s.study.toml", kMeasuredStudy);
     folder.write("r.csv", good());
   }
 
@@ -139,7 +137,7 @@ TEST_F(BadMeasurements, ByteOrderMarkAndCarriageReturnsChangeNothing) {
 }
 
 TEST_F(BadMeasurements, AnAxisThatStandsTwiceInTheChainIsRefused) {
-  std::string text = kMachine;
+  std::string text = kTableXColumnZ;
   folder.write("m.toml", text.replace(text.find("b Z t"), 5, "b X t"));
   expect_refused("m.toml:2:");
 }

@@ -19,18 +19,18 @@ namespace {
 
 using testing::HasSubstr;
 
-struct Row {
+struct PoseRow {
   std::vector<double> commands;  // mm, rad
   std::vector<std::string> rest;
 };
 
-std::vector<Row> rows_of(const std::string& text, const Machine& machine) {
-  std::vector<Row> rows;
+std::vector<PoseRow> pose_rows(const std::string& text, const Machine& machine) {
+  std::vector<PoseRow> rows;
   std::istringstream stream(text);
   std::string line;
   std::getline(stream, line);
   while (std::getline(stream, line)) {
-    Row row;
+    PoseRow row;
     std::istringstream fields(line);
     for (std::string field; std::getline(fields, field, ',');) {
       const std::size_t i = row.commands.size();
@@ -75,7 +75,7 @@ TEST_F(CompensatePoses, BringTheActualToolToItsPlaceAndSaySoRowByRow) {
   const std::string text = folder.read("out.csv");
   EXPECT_THAT(text, HasSubstr("C_deg,A_deg,Y_mm,X_mm,Z_mm,status,correction_um,u_correction_um,position_left_um,"
                               "orientation_left_urad\n"));
-  const std::vector<Row> rows = rows_of(text, machine), in = rows_of(folder.read("poses.csv"), machine);
+  const std::vector<PoseRow> rows = pose_rows(text, machine), in = pose_rows(folder.read("poses.csv"), machine);
   ASSERT_EQ(rows.size(), 3U);
   double largest = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -114,7 +114,7 @@ TEST_F(CompensatePoses, WhatIsNotReachedIsInItsRowAndInTheExitCode) {
   EXPECT_THAT(result.err, HasSubstr("not brought to 2 of 3 poses"));
   EXPECT_THAT(result.out, HasSubstr("not covered: 1, first in row 2"));
   EXPECT_THAT(result.out, HasSubstr("outside travel: 1, first in row 3"));
-  const std::vector<Row> rows = rows_of(folder.read("out.csv"), machine);
+  const std::vector<PoseRow> rows = pose_rows(folder.read("out.csv"), machine);
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(rows[0].rest[0], "reached");
   EXPECT_EQ(rows[1].rest[0], "not covered");
@@ -150,9 +150,9 @@ TEST_F(CompensatePoses, LimitsAndInputsAreKept) {
   EXPECT_THAT(poses("poses.csv", {"--dry-run", "--hold", "Q"}).err, HasSubstr("no such axis"));
   // Without the rotary axes the point alone is corrected.
   ASSERT_EQ(poses("poses.csv", {"-o", "held.csv", "--hold", "A", "--hold", "C"}).exit_code, ExitCode::done);
-  const std::vector<Row> rows = rows_of(folder.read("held.csv"), machine);
+  const std::vector<PoseRow> rows = pose_rows(folder.read("held.csv"), machine);
   EXPECT_NEAR(rows[0].commands[0], 30 * std::numbers::pi / 180, 1e-15);
-  EXPECT_LE(missed(rows_of(folder.read("poses.csv"), machine)[0].commands, rows[0].commands).norm(), 1.1e-9);
+  EXPECT_LE(missed(pose_rows(folder.read("poses.csv"), machine)[0].commands, rows[0].commands).norm(), 1.1e-9);
 }
 
 /// X and Y, which carries the workpiece, both shift the tool by 10 um along X: each known to 20 um, their sum to 28 um
@@ -180,8 +180,8 @@ TEST_F(CompensatePoses, WhatIsLeftOutIsSmallTogetherAndInWhatIsLeft) {
   EXPECT_EQ(apart["largest_correction_um"], 0);
   // The machine has all of it, and what the command says of it is that.
   const ErrorSet both = read_errors(folder.path() / "two.errors.toml", machine).errors;
-  const std::vector<Row> rows = rows_of(folder.read("out.csv"), machine),
-                         in = rows_of(folder.read("poses.csv"), machine);
+  const std::vector<PoseRow> rows = pose_rows(folder.read("out.csv"), machine),
+                             in = pose_rows(folder.read("poses.csv"), machine);
   double most = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double left = (actual_workpiece_from_tool(machine, both, rows[k].commands).translation -

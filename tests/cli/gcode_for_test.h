@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -15,11 +14,11 @@
 #include "abbe/formats/linuxcnc_for_test.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/nc_program.h"
+#include "abbe/geometry/angle_units.h"
 #include "cli/command_test.h"
 
 namespace abbe {
 
-inline constexpr double kDegree = std::numbers::pi / 180;
 inline const std::filesystem::path kExamples = std::filesystem::path(ABBE_SOURCE_DIR) / "examples";
 
 /// Notes moves and leaves them as they are.

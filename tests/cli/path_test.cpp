@@ -13,12 +13,12 @@ namespace abbe {
 namespace {
 
 using testing::HasSubstr;
-using Row = std::map<std::string, std::string>;
+using CsvRow = std::map<std::string, std::string>;
 
-std::vector<Row> rows_of(const std::filesystem::path& path) {
+std::vector<CsvRow> csv_rows(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::vector<std::string> columns;
-  std::vector<Row> rows;
+  std::vector<CsvRow> rows;
   for (std::string line; std::getline(file, line);) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (line.empty() || line[0] == '#') continue;
@@ -29,14 +29,14 @@ std::vector<Row> rows_of(const std::filesystem::path& path) {
       columns = values;
       continue;
     }
-    Row row;
+    CsvRow row;
     for (std::size_t i = 0; i < columns.size(); ++i) row[columns[i]] = values.at(i);
     rows.push_back(row);
   }
   return rows;
 }
 
-double number(const Row& row, const std::string& column) { return std::stod(row.at(column)); }
+double number(const CsvRow& row, const std::string& column) { return std::stod(row.at(column)); }
 
 class Path : public CommandTest {
  protected:
@@ -53,10 +53,10 @@ class Path : public CommandTest {
 };
 
 TEST_F(Path, TableA4EqualsTheReferenceInBothConventionsReadingsBranchesAndTableAngles) {
-  const std::vector<Row> reference = rows_of(source / "tests/golden/yin/p0_A4_chain.csv");
+  const std::vector<CsvRow> reference = csv_rows(source / "tests/golden/yin/p0_A4_chain.csv");
   // In P the printed Z+ of the beam points inwards.
   std::string inward = "x_mm,y_mm,z_mm,i,j,k,feed_mm_per_min\n";
-  for (const Row& row : rows_of(a4)) {
+  for (const CsvRow& row : csv_rows(a4)) {
     inward += row.at("x_mm") + "," + row.at("y_mm") + "," + row.at("z_mm");
     for (const char* c : {"i", "j", "k"}) {
       std::ostringstream value;
@@ -78,7 +78,7 @@ TEST_F(Path, TableA4EqualsTheReferenceInBothConventionsReadingsBranchesAndTableA
     for (const char* reading : {"DBW", "DWB"}) {
       for (const std::string c2 : {"0", "30"}) {
         for (const char* branch : {"pos_", "neg_"}) {
-          const auto first = std::find_if(reference.begin(), reference.end(), [&](const Row& row) {
+          const auto first = std::find_if(reference.begin(), reference.end(), [&](const CsvRow& row) {
             return row.at("conv") == convention && row.at("eq8_means") == reading &&
                    number(row, "C2_deg") == std::stod(c2);
           });
@@ -98,14 +98,14 @@ TEST_F(Path, TableA4EqualsTheReferenceInBothConventionsReadingsBranchesAndTableA
           }
           const CommandResult result = abbe(arguments);
           ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
-          const std::vector<Row> ours = rows_of(folder.path() / "commands.csv");
+          const std::vector<CsvRow> ours = csv_rows(folder.path() / "commands.csv");
           ASSERT_EQ(ours.size(), 30U);
-          for (const Row& row : reference) {
+          for (const CsvRow& row : reference) {
             if (row.at("conv") != convention || row.at("eq8_means") != reading ||
                 number(row, "C2_deg") != std::stod(c2)) {
               continue;
             }
-            const Row& found = ours.at(static_cast<std::size_t>(number(row, "point")) - 1);
+            const CsvRow& found = ours.at(static_cast<std::size_t>(number(row, "point")) - 1);
             for (const char* axis : {"X", "Y", "Z"}) {
               EXPECT_NEAR(number(found, std::string(axis) + "_mm"), number(row, branch + std::string(axis)), 1e-9);
             }
@@ -131,7 +131,7 @@ TEST_F(Path, ProgramBringsTheToolAlongTheCurveWithItsFeedAndPierce) {
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_LE(json["largest_deviation_um"].get<double>(), 1);
   EXPECT_LT(json["largest_miss_mm"].get<double>(), 1e-9);
-  const std::vector<Row> steps = rows_of(folder.path() / "part.csv");
+  const std::vector<CsvRow> steps = csv_rows(folder.path() / "part.csv");
   EXPECT_EQ(steps.size(), 30 + json["inserted"].get<std::size_t>());
   // The program says the same as the table of commands: every block in turn, words that stay left out.
   std::istringstream program(text_of("part.ngc"));
@@ -166,8 +166,8 @@ TEST_F(Path, RegionsAndIdentifiedErrorsChangeTheCommands) {
       abbe({"path", u_machine, curve, "--errors", errors, "--retract-mm", "20", "-o", "true.csv", "-o", "true.mpf"});
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   EXPECT_THAT(result.out, HasSubstr("2 regions"));
-  const std::vector<Row> nominal = rows_of(folder.path() / "nominal.csv"),
-                         corrected = rows_of(folder.path() / "true.csv");
+  const std::vector<CsvRow> nominal = csv_rows(folder.path() / "nominal.csv"),
+                            corrected = csv_rows(folder.path() / "true.csv");
   ASSERT_EQ(nominal.size(), 34U);
   ASSERT_EQ(corrected.size(), 34U);
   EXPECT_EQ(number(corrected[20], "C2_deg"), 12);

@@ -4,14 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command_test.h"
+#include "cli/machine_for_test.h"
 
 namespace abbe {
 namespace {
 
 using testing::HasSubstr;
-
-const char* const kMachine =
-    "name = \"m\"\nchain = \"w X' b Z t\"\n[axis.X]\ntravel_mm = [0, 1400]\n[axis.Z]\ntravel_mm = [0, 600]\n";
 
 /// Three intervals of X and two of Z, so rough that fewer do not do.
 const char* const kTruth = R"(chain = "w X' b Z t"
@@ -32,7 +30,7 @@ at_mm = [0, 300, 600]
 coefficients_um = [0, 80, -40]
 )";
 
-const char* const kStudy = R"(machine = "m.toml"
+const char* const kSplineStudy = R"(machine = "m.toml"
 output = "out"
 [simulate]
 errors = "truth.errors.toml"
@@ -70,11 +68,11 @@ orders = [1, 4]
 class StudyIdentification : public CommandTest {
  protected:
   StudyIdentification() {
-    folder.write("m.toml", kMachine);
+    folder.write("m.toml", kTableXColumnZ);
     folder.write("truth.errors.toml", kTruth);
   }
   void write_study(const std::vector<std::pair<std::string, std::string>>& changes = {}) const {
-    std::string text = kStudy;
+    std::string text = kSplineStudy;
     for (const auto& [from, to] : changes) {
       ASSERT_NE(text.find(from), std::string::npos) << from;
       text.replace(text.find(from), from.size(), to);

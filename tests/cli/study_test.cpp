@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const char* const kMachine = R"(name = "table and column"
+const char* const kTableAndColumn = R"(name = "table and column"
 chain = "w C' X' b Z t"
 [axis.C]
 point_mm = [700, 0, -100]
@@ -31,7 +31,7 @@ origin_mm = [700, 0, -100]
 reference_mm = [0, 0, 300]
 )";
 
-const char* const kStudy = R"(name = "small"
+const char* const kSmallStudy = R"(name = "small"
 machine = "m.machine.toml"
 seed = 3
 output = "out"
@@ -80,11 +80,11 @@ axis.Z = { count = 3 }
 
 class Studies : public CommandTest {
  protected:
-  Studies() { folder.write("m.machine.toml", kMachine); }
+  Studies() { folder.write("m.machine.toml", kTableAndColumn); }
 
   /// The study with passages replaced, pairwise: from, to.
   void write_study(const std::vector<std::pair<std::string, std::string>>& changes = {}) const {
-    std::string text = kStudy;
+    std::string text = kSmallStudy;
     for (const auto& [from, to] : changes) {
       const std::size_t at = text.find(from);
       ASSERT_NE(at, std::string::npos) << from;
@@ -96,7 +96,7 @@ class Studies : public CommandTest {
   /// The study with measured instead of simulated readings.
   void write_measured_study(const std::string& csv, const std::string& options = "") const {
     folder.write("readings.csv", csv);
-    std::string text = kStudy;
+    std::string text = kSmallStudy;
     const std::size_t plan = text.find("[[setup.plan]]"), identify = text.find("[identify]");
     text.replace(plan, identify - plan, "[[setup.data]]\nfile = \"readings.csv\"\n" + options);
     const std::size_t simulate = text.find("[simulate.generator]"), setup = text.find("[[setup]]");

@@ -2,21 +2,17 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "abbe/errors/actual_pose.h"
-#include "abbe/formats/machine_file.h"
 #include "abbe/formats/scan_file.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/geometry/angle_units.h"
+#include "liu_scanner_for_test.h"
 
 /// Points of Liu's scanner from axis positions and indications, computed elsewhere (tests/golden/liu/points.csv).
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-
-Machine scanner() { return read_machine(std::string(ABBE_SOURCE_DIR) + "/examples/machines/liu-scanner.machine.toml"); }
 
 std::string readings() { return read_text_file(std::string(ABBE_SOURCE_DIR) + "/tests/golden/liu/points.csv"); }
 
@@ -77,11 +73,11 @@ void expect_equal(const CsvTable& found, const CsvTable& expected) {
 }
 
 TEST(ScannedPoints, AreThePublishedOnesOfThePerfectMachine) {
-  expect_equal(scanned(scanner(), {}), published("nominal_"));
+  expect_equal(scanned(liu_scanner(), {}), published("nominal_"));
 }
 
 TEST(ScannedPoints, AreThePublishedOnesWithTheShiftsOfTable3InMillimetresAndInMicrometres) {
-  const Machine machine = scanner();
+  const Machine machine = liu_scanner();
   expect_equal(scanned(machine, table_3(machine, 1)), published("t3mm_"));
   expect_equal(scanned(machine, table_3(machine, 1e-3)), published("t3um_"));
 }

@@ -10,19 +10,16 @@
 #include <vector>
 
 #include "abbe/errors/actual_pose.h"
-#include "abbe/formats/machine_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/identify/identify.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/surface_probe.h"
+#include "liu_scanner_for_test.h"
 
 /// The rotary axes of Liu's scanner from a standard cylinder, exact readings computed elsewhere (tests/golden/liu).
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-
-Machine scanner() { return read_machine(std::string(ABBE_SOURCE_DIR) + "/examples/machines/liu-scanner.machine.toml"); }
 
 nlohmann::json published() {
   std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/tests/golden/liu/calibration.json");
@@ -99,7 +96,7 @@ double distance_from_line(const Eigen::Vector3d& point, const Eigen::Vector3d& o
 }
 
 TEST(StageCalibration, FindsTheAxesOfBothStages) {
-  const Machine machine = scanner();
+  const Machine machine = liu_scanner();
   const nlohmann::json truth = published();
   using enum Component;
   const Calibrated a = calibrate(machine, "A", {Y, Z, B, C}, "calibrate_A_exact.csv", {1, 0, 0});

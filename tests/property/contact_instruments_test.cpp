@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/identify/distributions.h"
 #include "abbe/identify/identify.h"
 #include "abbe/identify/prediction.h"
@@ -26,8 +26,6 @@
 /// no part in the fit lie where the fit says, as often as it says.
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct Campaign {
   std::string name;
@@ -71,14 +69,14 @@ ErrorSet true_errors(const Campaign& campaign) {
   return errors;
 }
 
-struct Fit {
+struct CampaignFit {
   Identification result;
   std::vector<double> truth, found;  ///< of the estimated machine parameters
   std::vector<bool> angle;
   std::vector<HeldOutReading> unseen;
 };
 
-Fit fit(const Campaign& campaign, double noise_factor, std::uint64_t seed) {
+CampaignFit fit(const Campaign& campaign, double noise_factor, std::uint64_t seed) {
   const ErrorSet truth = true_errors(campaign);
   ErrorSet start = truth;
   start.set_parameters(std::vector<double>(truth.parameter_count(), 0.0));
@@ -92,7 +90,7 @@ Fit fit(const Campaign& campaign, double noise_factor, std::uint64_t seed) {
   Problem problem;
   problem.machine = campaign.machine;
   problem.errors = start;
-  Fit fit;
+  CampaignFit fit;
   const std::vector<std::string> names = parameter_names(campaign.machine, truth);
   const std::vector<bool> angles = parameters_are_angles(campaign.machine, truth);
   const std::vector<double> true_values = truth.parameters();
@@ -312,7 +310,7 @@ class ContactInstrument : public testing::TestWithParam<Campaign> {};
 
 TEST_P(ContactInstrument, WithoutNoiseGivesTheErrorsBack) {
   const Campaign& campaign = GetParam();
-  const Fit found = fit(campaign, 0, 1);
+  const CampaignFit found = fit(campaign, 0, 1);
   ASSERT_EQ(found.result.status, IdentifyStatus::converged) << found.result.message;
   EXPECT_TRUE(found.result.gauge.constraints.empty()) << "nothing of this is unseen";
   for (std::size_t i = 0; i < found.truth.size(); ++i) {
@@ -325,7 +323,7 @@ TEST_P(ContactInstrument, UnseenReadingsLieWithinTheirUncertainty) {
   const double limit = chi_square_quantile(0.05, static_cast<double>(campaign.instrument->components().size()));
   int inside = 0, count = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const Fit found = fit(campaign, 1, seed);
+    const CampaignFit found = fit(campaign, 1, seed);
     ASSERT_EQ(found.result.status, IdentifyStatus::converged) << found.result.message;
     for (const HeldOutReading& reading : found.unseen) {
       ++count;

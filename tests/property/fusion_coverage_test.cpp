@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numbers>
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/machine_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/identify/identify.h"
 #include "abbe/identify/prediction.h"
 #include "abbe/instruments/ball_bar.h"
@@ -26,7 +26,6 @@ namespace {
 constexpr std::size_t kCampaigns = 200;
 constexpr double kTranslation = 8e-3;  // mm, prior standard uncertainty of a coefficient
 constexpr double kRotation = 15e-6;    // rad
-constexpr double kTurn = 2 * std::numbers::pi;
 
 enum Choice { tracker_alone, bar_alone, laser_alone, together, kChoices };
 

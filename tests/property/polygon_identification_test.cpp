@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/identify/identify.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/instrument_simulation.h"
@@ -14,8 +14,6 @@
 namespace abbe {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kArcsec = std::numbers::pi / (180 * 3600);
 constexpr std::size_t kCoefficients = 9;  // constant and four harmonics
 
 ErrorSet table_errors(std::uint64_t seed) {

@@ -9,12 +9,11 @@
 
 #include "abbe/compensate/errors_for_test.h"
 #include "abbe/errors/actual_pose.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Poses in and out, with memory of their own.
 struct Corrections {

@@ -40,13 +40,13 @@ void NodeCorrection::correct(ProgramCoordinates coordinates, std::size_t tool, s
 
 void NodeCorrection::correct_block(ProgramCoordinates coordinates, const Tool& tool,
                                    std::span<CorrectedNode> nodes) const {
-  using Lanes = std::array<double, ChainPlan::kBlockSize>;
+  using NodeLanes = std::array<double, ChainPlan::kBlockSize>;
   const std::size_t n = machine_.axes.size(), count = nodes.size();
-  std::array<Lanes, kMaxAxes> in, out;
+  std::array<NodeLanes, kMaxAxes> in, out;
   std::array<const double*, kMaxAxes> commands, moved;
   std::array<double*, kMaxAxes> corrected;
   std::array<CorrectionStatus, ChainPlan::kBlockSize> status;
-  Lanes point_left, orientation;
+  NodeLanes point_left, orientation;
   for (std::size_t i = 0; i < n; ++i) {
     commands[i] = in[i].data();
     moved[i] = corrected[i] = out[i].data();
@@ -59,7 +59,7 @@ void NodeCorrection::correct_block(ProgramCoordinates coordinates, const Tool& t
   tool.inverse->correct({{commands.data(), n}, count},
                         {{corrected.data(), n}, status.data(), point_left.data(), orientation.data()});
 
-  std::array<Lanes, 3> start, before, after;
+  std::array<NodeLanes, 3> start, before, after;
   for (std::size_t i = 0; i < 3; ++i) {
     std::fill_n(start[i].begin(), count, tool.point[static_cast<Eigen::Index>(i)]);
   }

@@ -12,16 +12,16 @@
 namespace abbe {
 namespace {
 
-constexpr std::size_t kChecked = 4000;  // places where the finished lattice is looked at
-constexpr double kUnseen = 1.05;        // what is between them may be a little more
+constexpr std::size_t kChecked = 4000;         // places where the finished lattice is looked at
+constexpr double kMarginBetweenChecks = 1.05;  // what is between them may be a little more
 
 /// Interval of a position and its share of the way through it.
-struct Place {
+struct PlaceInInterval {
   std::size_t index = 0;
   double share = 0;
 };
 
-Place place_of(const std::vector<double>& nodes, bool modulo, double position) {
+PlaceInInterval place_of(const std::vector<double>& nodes, bool modulo, double position) {
   const double first = nodes.front(), last = nodes.back();
   if (modulo && last > first) position -= (last - first) * std::floor((position - first) / (last - first));
   if (nodes.size() == 1 || !(position > first)) return {};
@@ -120,7 +120,7 @@ std::vector<double> found_errors(const Machine& machine, const CorrectionLattice
     for (std::size_t k = 0; k < kChecked; ++k) {
       largest = std::max(largest, std::abs(said.axis[output][k] - wanted.axis[output][k]));
     }
-    errors.push_back(kUnseen * largest);
+    errors.push_back(kMarginBetweenChecks * largest);
   }
   return errors;
 }
@@ -130,7 +130,7 @@ std::vector<double> found_errors(const Machine& machine, const CorrectionLattice
 void LatticeCorrection::evaluate(const PoseList& commands, PoseList& correction) const {
   const std::size_t count = commands.count(), inputs = lattice_.inputs.size();
   correction.axis.assign(commands.axis.size(), std::vector<double>(count, 0.0));
-  std::array<Place, kMaxAxes> places;
+  std::array<PlaceInInterval, kMaxAxes> places;
   for (std::size_t k = 0; k < count; ++k) {
     for (std::size_t a = 0; a < inputs; ++a) {
       places[a] = place_of(lattice_.positions[a], lattice_.modulo[a], commands.axis[lattice_.inputs[a]][k]);

@@ -116,14 +116,14 @@ std::vector<Group> uncertain_groups(const Machine& machine, const ErrorSet& erro
 }
 
 /// Derivatives of the point (three rows, mm) and of the tool's direction (three, rad) by all parameters at a pose.
-struct Place {
+struct DerivativesAtPose {
   std::vector<double> position;
   Eigen::MatrixXd by_parameters;         ///< [6, parameters]
   Eigen::Matrix<double, 6, 6> spread{};  ///< covariance of point and direction by all errors
 };
 
-std::vector<Place> places_of(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
-                             const std::vector<Eigen::Vector3d>& tools) {
+std::vector<DerivativesAtPose> places_of(const Machine& machine, const ErrorSet& errors,
+                                         const Eigen::MatrixXd& covariance, const std::vector<Eigen::Vector3d>& tools) {
   const std::size_t axes = machine.axes.size();
   std::vector<std::vector<double>> positions;
   RandomStream random(17);
@@ -138,14 +138,14 @@ std::vector<Place> places_of(const Machine& machine, const ErrorSet& errors, con
     }
     positions.push_back(std::move(position));
   }
-  std::vector<Place> places;
+  std::vector<DerivativesAtPose> places;
   Machine with_tool = machine;
   const std::size_t first = first_reversal(errors);
   bool turned = false;
   for (const Eigen::Vector3d& tool : tools) {
     with_tool.tool_offset = tool;
     for (const std::vector<double>& position : positions) {
-      Place place;
+      DerivativesAtPose place;
       place.position = position;
       Deviation deviation;
       Eigen::MatrixXd by_positions;
@@ -187,7 +187,7 @@ class Together {
     for (const Group& group : groups) all.insert(all.end(), group.parameter.begin(), group.parameter.end());
     double worst = factor;
     std::size_t found = groups.size();
-    for (const Place& place : places_) {
+    for (const DerivativesAtPose& place : places_) {
       for (int part = 0; part < parts_; ++part) {
         const auto rows = place.by_parameters.middleRows<3>(3 * part);
         const Eigen::Vector3d moved = moved_by(rows, all);
@@ -212,7 +212,7 @@ class Together {
   void state_largest(const std::vector<Group>& groups, LeftOutErrors& result) const {
     std::vector<Eigen::Index> all;
     for (const Group& group : groups) all.insert(all.end(), group.parameter.begin(), group.parameter.end());
-    for (const Place& place : places_) {
+    for (const DerivativesAtPose& place : places_) {
       const double shift = moved_by(place.by_parameters.topRows<3>(), all).norm();
       if (!result.where.empty() && !(shift > result.largest_shift)) continue;
       result.largest_shift = shift;
@@ -228,7 +228,7 @@ class Together {
     return moved;
   }
 
-  std::vector<Place> places_;
+  std::vector<DerivativesAtPose> places_;
   Eigen::VectorXd values_;
   int parts_ = 1;  ///< point; direction too
 };

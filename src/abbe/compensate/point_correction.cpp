@@ -1,18 +1,16 @@
 #include "abbe/compensate/point_correction.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "abbe/errors/chain_plan.h"
+#include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 constexpr double kProbe = 100;  // mm
 /// Each takes three to four digits off.
@@ -155,9 +153,7 @@ void PointCorrection::evaluate(const PoseList& commands, PoseList& correction) c
               (directions[static_cast<std::size_t>(a)][c][k] - wanted[c][k]) / kProbe;
         }
       }
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-      solver.setThreshold(1e-6);
-      inverse[k] = solver.compute(along).pseudoInverse();
+      inverse[k] = CompleteOrthogonal(along, 1e-6).pseudo_inverse();
     }
     for (int step = 0; step < kSteps; ++step) {
       const Points seen = it.points(it.actual, reached, tool);

@@ -21,7 +21,7 @@ using test::MachineWithPlay;
 constexpr double kTolerance = 1e-3;             // mm
 constexpr double kOrientationTolerance = 1e-5;  // rad
 
-struct Missed {
+struct MissedWithPlay {
   double point = 0;  ///< mm, of the actual tool from the commanded path of its move
   double both = 0;   ///< the same with the direction, both in their tolerances: sqrt(2) where each is kept
 };
@@ -46,10 +46,10 @@ double distance_from(const Place& place, const std::vector<Place>& path, Eigen::
 }
 
 /// Drives moves and measures the actual tool against the commanded path from a move on.
-Missed drive(MachineWithPlay& machine, const std::vector<ProgramMove>& moves, const CorrectedPieces& pieces,
-             std::size_t measured_from, int samples) {
+MissedWithPlay drive(MachineWithPlay& machine, const std::vector<ProgramMove>& moves, const CorrectedPieces& pieces,
+                     std::size_t measured_from, int samples) {
   constexpr int kPlaces = 800;
-  Missed missed;
+  MissedWithPlay missed;
   WordValues at = moves.front().start;
   std::vector<Place> path(kPlaces + 1);
   const auto place = [&](const RigidTransform& pose) {
@@ -147,7 +147,7 @@ ProgramMove next_move(const ProgramMove& before, MoveKind kind, const WordValues
 }
 
 struct Outcome {
-  Missed corrected, programmed;
+  MissedWithPlay corrected, programmed;
   ProgramReport report;
 };
 

@@ -1,8 +1,6 @@
 #include "abbe/compensate/program_uncertainty.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +8,7 @@
 #include "abbe/compensate/working_axes.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/reversal.h"
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 
@@ -46,7 +45,7 @@ PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, 
   const Eigen::Vector3d shift = deviation.head<3>();
   const Eigen::Matrix3d of_point = spread.topLeftCorner<3, 3>();
   const double variance = shift.norm() > 0 ? shift.normalized().dot(of_point * shift.normalized())
-                                           : Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(of_point).eigenvalues()[2];
+                                           : SymmetricEigen<3>(of_point).eigenvalues()[2];
   result.point = std::sqrt(std::max(0.0, variance));
 
   std::vector<HeldAxis> held;
@@ -74,15 +73,15 @@ PlaceUncertainty uncertainty_at(const Machine& machine, const ErrorSet& errors, 
     Eigen::Matrix<double, 2, 6> seen = Eigen::Matrix<double, 2, 6>::Zero();
     seen.row(0).tail<3>() = across.transpose();
     seen.row(1).tail<3>() = tool.cross(across).transpose();
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(seen * turns);
+    const CompleteOrthogonal solver(seen * turns);
     if (solver.rank() < turns.cols()) return result;
-    turned = solver.pseudoInverse() * seen;
+    turned = solver.pseudo_inverse() * seen;
   }
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(reaches.topRows<3>());
+  const CompleteOrthogonal solver(reaches.topRows<3>());
   if (solver.rank() < reaches.cols()) return result;
   Eigen::MatrixXd missing = -turns.topRows<3>() * turned;
   missing.leftCols<3>() += Eigen::Matrix3d::Identity();
-  const Eigen::MatrixXd reached = solver.pseudoInverse() * missing;
+  const Eigen::MatrixXd reached = solver.pseudo_inverse() * missing;
   result.axes_known = true;
   // Every axis takes its own reversal value, whether it works or not.
   Eigen::MatrixXd apart = by_parameters;

@@ -11,7 +11,7 @@ namespace {
 
 /// A kink between two of the places looked at shows by up to a 32nd part less than it is: what is found is taken
 /// larger.
-constexpr double kUnseen = 1.05;
+constexpr double kKinkMargin = 1.05;
 
 /// True where `step` is a whole number of multiples, to what a double keeps of it.
 bool is_multiple(double step, double multiple) {
@@ -89,7 +89,7 @@ TableNodes nodes_at(const SampledFunctions& functions, const NodeSpacing& spacin
     }
     first = last;
   }
-  for (double& error : nodes.error) error *= kUnseen;
+  for (double& error : nodes.error) error *= kKinkMargin;
   nodes.within = within(nodes, spacing.tolerance);
   if (spacing.anchor) continue_to(grid, nodes);
   return nodes;

@@ -5,26 +5,25 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
+#include "abbe/errors/chain_plan_cases.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
 namespace {
 
-Eigen::Vector3d random_vector(RandomStream& random, double size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
+using chain_cases::random_vector;
 
 /// A machine of 1 to 6 axes in any order, sense and (every other time) any direction, with errors in mixed bases.
-struct Case {
+struct MachineInPose {
   Machine machine;
   ErrorSet errors;
   std::vector<double> positions;
 };
 
-Case random_case(std::uint64_t seed, double size) {
+MachineInPose random_machine_in_pose(std::uint64_t seed, double size) {
   RandomStream random(seed);
-  Case c;
+  MachineInPose c;
   const std::size_t axes = 1 + random.bits() % 6;
   const std::size_t workpiece_side = random.bits() % (axes + 1);
   for (std::size_t i = 0; i < axes; ++i) {
@@ -62,7 +61,7 @@ Case random_case(std::uint64_t seed, double size) {
 
 TEST(ActualPose, ZeroErrorsGiveTheNominalPose) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
-    const Case c = random_case(seed, 0);
+    const MachineInPose c = random_machine_in_pose(seed, 0);
     Deviation deviation;
     ASSERT_EQ(tool_deviation(c.machine, c.errors, c.positions, deviation), PoseStatus::ok);
     EXPECT_LE(deviation.head<3>().norm(), 1e-11);
@@ -72,12 +71,14 @@ TEST(ActualPose, ZeroErrorsGiveTheNominalPose) {
 
 TEST(ActualPose, JacobiansMatchCentralDifferences) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
-    Case c = random_case(seed, 0.5);
+    MachineInPose c = random_machine_in_pose(seed, 0.5);
     Deviation deviation;
     Eigen::MatrixXd by_parameters, by_positions;
     ASSERT_EQ(tool_deviation(c.machine, c.errors, c.positions, deviation, &by_parameters, &by_positions),
               PoseStatus::ok);
-    const auto pose = [&](const Case& at) { return actual_workpiece_from_tool(at.machine, at.errors, at.positions); };
+    const auto pose = [&](const MachineInPose& at) {
+      return actual_workpiece_from_tool(at.machine, at.errors, at.positions);
+    };
     const auto difference = [](const RigidTransform& more, const RigidTransform& less, double step) {
       Deviation d;
       d.head<3>() = (more.translation - less.translation) / (2 * step);
@@ -89,7 +90,7 @@ TEST(ActualPose, JacobiansMatchCentralDifferences) {
     const std::vector<std::string> names = parameter_names(c.machine, c.errors);
     for (std::size_t k = 0; k < start.size(); ++k) {
       const double step = angle[k] ? 1e-6 : 1e-3;
-      Case more = c, less = c;
+      MachineInPose more = c, less = c;
       std::vector<double> values = start;
       values[k] = start[k] + step;
       more.errors.set_parameters(values);
@@ -101,7 +102,7 @@ TEST(ActualPose, JacobiansMatchCentralDifferences) {
     }
     for (std::size_t k = 0; k < c.positions.size(); ++k) {
       const double step = c.machine.axes[k].kind == AxisKind::rotary ? 1e-6 : 1e-4;
-      Case more = c, less = c;
+      MachineInPose more = c, less = c;
       more.positions[k] += step;
       less.positions[k] -= step;
       const Deviation expected = difference(pose(more), pose(less), step);
@@ -113,7 +114,7 @@ TEST(ActualPose, JacobiansMatchCentralDifferences) {
 
 TEST(ActualPose, LocationErrorsMoveNothingWhileTheAxisIsAtZero) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
-    Case c = random_case(seed, 0.5);
+    MachineInPose c = random_machine_in_pose(seed, 0.5);
     c.errors.motions.clear();
     c.errors.tool_offset_error.setZero();
     for (LocationError& location : c.errors.locations) {
@@ -129,8 +130,8 @@ TEST(ActualPose, LocationErrorsMoveNothingWhileTheAxisIsAtZero) {
 TEST(ActualPose, DoesNotDependOnTheBaseFrame) {
   // The same machine described in a machine frame that is moved (not turned: error motions are parallel to it).
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
-    const Case c = random_case(seed, 0.5);
-    Case moved = c;
+    const MachineInPose c = random_machine_in_pose(seed, 0.5);
+    MachineInPose moved = c;
     const Eigen::Vector3d shift(1234, -567, 89);
     for (Axis& axis : moved.machine.axes) axis.point += shift;
     moved.machine.tool_reference += shift;
@@ -166,7 +167,7 @@ TEST(ActualPose, AbbeOffsetTurnsAnAngleIntoAnError) {
 }
 
 TEST(ActualPose, OutsideTheMeasuredRangeIsSaid) {
-  Case c = random_case(5, 0.1);
+  MachineInPose c = random_machine_in_pose(5, 0.1);
   c.errors.motions[0].basis.to = c.positions[0] - 1;
   Deviation deviation;
   if (c.errors.motions[0].basis.kind == BasisKind::fourier) c.errors.motions[0].basis.from = c.positions[0] - 2;

@@ -9,7 +9,11 @@
 namespace abbe {
 namespace {
 
-using namespace chain_cases;
+using chain_cases::Batch;
+using chain_cases::Case;
+using chain_cases::kBodies;
+using chain_cases::kOrders;
+using chain_cases::random_case;
 
 /// Quantities force . t + moment . w with random forces and moments.
 struct Rows {

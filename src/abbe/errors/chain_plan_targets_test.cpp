@@ -10,7 +10,9 @@
 namespace abbe {
 namespace {
 
-using namespace chain_cases;
+using chain_cases::Batch;
+using chain_cases::Case;
+using chain_cases::random_case;
 
 /// Lets HWY_DYNAMIC_DISPATCH choose among the given targets only, until destroyed.
 struct OnlyTargets {

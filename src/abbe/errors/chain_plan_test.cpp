@@ -12,7 +12,12 @@
 namespace abbe {
 namespace {
 
-using namespace chain_cases;
+using chain_cases::Batch;
+using chain_cases::bed_from_body;
+using chain_cases::Case;
+using chain_cases::kBodies;
+using chain_cases::kOrders;
+using chain_cases::random_case;
 
 void expect_as_actual_pose(const Case& c, std::uint64_t seed, double tolerance_mm, double tolerance_rad) {
   RandomStream random(seed, 8);

@@ -7,14 +7,13 @@
 #include <vector>
 
 #include "abbe/errors/chain_plan.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/reference_rows_for_test.h"
 
 /// Compiled chains against numbers computed by others from published errors; see tests/golden/*/README.md.
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 using Row = test::ReferenceRow;
 

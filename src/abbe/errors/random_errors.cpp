@@ -4,18 +4,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <stdexcept>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/best_fit_transform.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// One stream per error name, so that drawing fewer errors does not change the others.
 std::uint64_t stream_of(std::size_t axis, Component component, bool location) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/number_text.h"
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 namespace {
@@ -48,7 +48,7 @@ bool is_semi_definite(const Eigen::MatrixXd& covariance) {
     if (!(covariance(i, i) > 0) && (covariance.row(i).array() != 0).any()) return false;
   }
   correlation.diagonal().array() += 5e-9 * static_cast<double>(covariance.rows());
-  return correlation.llt().info() == Eigen::Success;
+  return Cholesky(correlation).info() == Eigen::Success;
 }
 
 /// Takes the mean of the two entries of a pair, which programs give with different last digits.

@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint32_t kLargestNameCount = 1000;
 
 /// A run of whole lines and where its rows belong.
-struct Block : TextBlock {
+struct RowBlock : TextBlock {
   std::size_t rows = 0;
   std::size_t first_row = 0;
   std::vector<std::vector<std::string>> names;  // per wanted text column, in order of appearance here
@@ -85,9 +85,9 @@ bool in_range(double value, CsvColumn::Range range) {
   return range == CsvColumn::Range::any || value > 0 || (value == 0 && range == CsvColumn::Range::not_negative);
 }
 
-class BlockReader {
+class RowReader {
  public:
-  BlockReader(std::string_view text, const std::vector<Target>& targets, std::size_t wanted, Block& block)
+  RowReader(std::string_view text, const std::vector<Target>& targets, std::size_t wanted, RowBlock& block)
       : text_(text), targets_(targets), block_(block) {
     block_.names.resize(wanted);
   }
@@ -176,15 +176,15 @@ class BlockReader {
 
   std::string_view text_;
   const std::vector<Target>& targets_;
-  Block& block_;
+  RowBlock& block_;
   std::string unquoted_;
 };
 
 /// Names of all blocks in order of appearance; renumbers the words of the blocks.
-void join_names(const std::vector<Block>& blocks, std::size_t wanted, CsvValues& values) {
+void join_names(const std::vector<RowBlock>& blocks, std::size_t wanted, CsvValues& values) {
   std::map<std::string, std::uint32_t, std::less<>> index;
   std::vector<std::uint32_t> renumbered;
-  for (const Block& block : blocks) {
+  for (const RowBlock& block : blocks) {
     renumbered.clear();
     for (const std::string& name : block.names[wanted]) {
       const auto [entry, is_new] = index.emplace(name, static_cast<std::uint32_t>(values.names.size()));
@@ -247,7 +247,7 @@ CsvRows::CsvRows(std::string_view text, std::string file, std::vector<CsvColumn>
 }
 
 std::optional<TextRefusal> CsvRows::read(std::size_t begin, std::size_t end, CsvTable& table) const {
-  Block block;
+  RowBlock block;
   block.begin = begin;
   block.end = end;
   block.rows = count_rows(text_, begin, end);
@@ -257,7 +257,7 @@ std::optional<TextRefusal> CsvRows::read(std::size_t begin, std::size_t end, Csv
     if (column.wanted != kUnreadColumn) make_room(wanted_[column.wanted], block.rows, table.columns[column.wanted]);
   }
   const std::vector<Target> targets = targets_of(columns_, wanted_, table);
-  BlockReader(text_, targets, wanted_.size(), block).read();
+  RowReader(text_, targets, wanted_.size(), block).read();
   if (block.refusal) return std::move(block.refusal);
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
     table.columns[i].names = wanted_[i].is_text ? std::move(block.names[i]) : std::vector<std::string>();
@@ -278,11 +278,11 @@ CsvTable read_csv(std::string_view text, const std::string& file, const std::vec
   const CsvRows rows(text, file, wanted, mapping);
   text = rows.text();
   const std::vector<CsvFileColumn>& columns = rows.columns();
-  std::vector<Block> blocks = split_into_blocks<Block>(text, rows.first());
+  std::vector<RowBlock> blocks = split_into_blocks<RowBlock>(text, rows.first());
   for_each_block(blocks.size(), threads,
                  [&](std::size_t i) { blocks[i].rows = count_rows(text, blocks[i].begin, blocks[i].end); });
   CsvTable table;
-  for (Block& block : blocks) {
+  for (RowBlock& block : blocks) {
     block.first_row = table.rows;
     table.rows += block.rows;
   }
@@ -296,9 +296,9 @@ CsvTable read_csv(std::string_view text, const std::string& file, const std::vec
   });
   const std::vector<Target> targets = targets_of(columns, wanted, table);
   for_each_block(blocks.size(), threads,
-                 [&](std::size_t i) { BlockReader(text, targets, wanted.size(), blocks[i]).read(); });
+                 [&](std::size_t i) { RowReader(text, targets, wanted.size(), blocks[i]).read(); });
 
-  for (const Block& block : blocks) {
+  for (const RowBlock& block : blocks) {
     if (block.refusal) throw_refusal(text, file, *block.refusal);
   }
   for (std::size_t i = 0; i < wanted.size(); ++i) {

@@ -16,7 +16,7 @@ const std::vector<CsvColumn> kWanted = {{"X", Quantity::length},
                                         {"station", Quantity::dimensionless, true, false},
                                         {"u", Quantity::length, false, false, CsvColumn::Range::positive}};
 
-std::string wrong(const std::string& text, const ColumnMapping& mapping = {}) {
+std::string message_of_csv(const std::string& text, const ColumnMapping& mapping = {}) {
   return message_of([&] { read_csv(text, "m.csv", kWanted, mapping); });
 }
 
@@ -37,10 +37,10 @@ TEST(CsvReader, ReadsForeignColumnsByMappingAndLeavesIgnoredOnesUnread) {
   const ColumnMapping mapping{{{"X_mm", "x"}, {"C_deg", "angle"}}, {"remark"}, ""};
   const CsvTable table = read_csv("remark,x,angle\n\"no, number\",1,2\n", "m.csv", kWanted, mapping);
   EXPECT_EQ(table.columns[0].numbers, (std::vector<double>{1}));
-  EXPECT_EQ(wrong("x_mm,angle\n1,2\n", {{{"X_mm", "y"}}, {}, "`ignore`"}),
+  EXPECT_EQ(message_of_csv("x_mm,angle\n1,2\n", {{{"X_mm", "y"}}, {}, "`ignore`"}),
             "m.csv:1:1: x_mm: unknown column, did you mean X_mm?; expected one of X, C, station, u; or its name under "
             "`ignore`");
-  EXPECT_EQ(wrong("X_mm,C_deg\n1,2\n", {{{"station", "s"}}, {}, ""}),
+  EXPECT_EQ(message_of_csv("X_mm,C_deg\n1,2\n", {{{"station", "s"}}, {}, ""}),
             "m.csv:1: s: there is no such column to be read as station");
 }
 
@@ -73,47 +73,51 @@ TEST(CsvReader, KeepsTheOrderOfManyRowsWhateverTheNumberOfThreads) {
 TEST(CsvReader, ReportsTheFirstWrongRowOfAManyBlockFile) {
   std::string text = "X_mm,C_deg\n";
   for (int i = 0; i < 400000; ++i) text += i == 300000 || i == 390000 ? "1,x\n" : "1.25,2\n";
-  EXPECT_EQ(wrong(text), "m.csv:300002:3: C_deg: 'x' is not a number; expected an angle in deg");
+  EXPECT_EQ(message_of_csv(text), "m.csv:300002:3: C_deg: 'x' is not a number; expected an angle in deg");
 }
 
 TEST(CsvReader, RefusesWrongUnitsAndColumns) {
-  EXPECT_EQ(wrong("X_deg,C_deg\n1,2\n"),
+  EXPECT_EQ(message_of_csv("X_deg,C_deg\n1,2\n"),
             "m.csv:1:1: X_deg: 'deg' is not a unit of a length; expected X_mm, X_um or X_m");
-  EXPECT_EQ(wrong("X_mm,C\n1,2\n"),
+  EXPECT_EQ(message_of_csv("X_mm,C\n1,2\n"),
             "m.csv:1:6: C: the unit is missing from the name of this column; expected C_rad, C_mrad, C_urad, C_deg or "
             "C_arcsec");
-  EXPECT_EQ(wrong("# c\nX_mm\n1\n"), "m.csv:2: C: missing column; expected C_rad, C_mrad, C_urad, C_deg or C_arcsec");
-  EXPECT_EQ(wrong("X_mm,C_deg,X_mm\n1,2,3\n"), "m.csv:1:12: X_mm: this column stands twice");
-  EXPECT_EQ(wrong("X_mm,C_deg,X_um\n1,2,3\n"), "m.csv:1:12: X_um: says the same as column X_mm");
-  EXPECT_EQ(wrong("X_mm,C_deg,stadion\n1,2,3\n"),
+  EXPECT_EQ(message_of_csv("# c\nX_mm\n1\n"),
+            "m.csv:2: C: missing column; expected C_rad, C_mrad, C_urad, C_deg or C_arcsec");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg,X_mm\n1,2,3\n"), "m.csv:1:12: X_mm: this column stands twice");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg,X_um\n1,2,3\n"), "m.csv:1:12: X_um: says the same as column X_mm");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg,stadion\n1,2,3\n"),
             "m.csv:1:12: stadion: unknown column, did you mean station?; expected one of X, C, station, u");
-  EXPECT_EQ(wrong("X_mm;C_deg\n1,5;2\n"),
+  EXPECT_EQ(message_of_csv("X_mm;C_deg\n1,5;2\n"),
             "m.csv:1:1: X_mm;C_deg: the columns are not separated by commas; expected commas between columns and a "
             "decimal point");
-  EXPECT_EQ(wrong("X_mm,,C_deg\n1,2,3\n"), "m.csv:1:6: column 2 has no name");
+  EXPECT_EQ(message_of_csv("X_mm,,C_deg\n1,2,3\n"), "m.csv:1:6: column 2 has no name");
 }
 
 TEST(CsvReader, RefusesFieldsThatAreNoNumbersOfTheUnit) {
-  EXPECT_EQ(wrong("X_mm,C_deg\n1,nan\n"), "m.csv:2:3: C_deg: 'nan' is not a finite number; expected an angle in deg");
-  EXPECT_EQ(wrong("X_mm,C_deg\n1e308,2\n"), "m.csv:2:1: X_mm: '1e308' is too large; expected a length in mm");
-  EXPECT_EQ(wrong("X_mm,C_deg\n99999999999,2\n"),
+  EXPECT_EQ(message_of_csv("X_mm,C_deg\n1,nan\n"),
+            "m.csv:2:3: C_deg: 'nan' is not a finite number; expected an angle in deg");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg\n1e308,2\n"), "m.csv:2:1: X_mm: '1e308' is too large; expected a length in mm");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg\n99999999999,2\n"),
             "m.csv:2:1: X_mm: '99999999999' is too large; expected a length in mm");
-  EXPECT_EQ(wrong("X_mm,C_deg\n,2\n"), "m.csv:2:1: X_mm: is empty; expected a length in mm");
-  EXPECT_EQ(wrong("X_um,C_deg\n1.5mm,2\n"), "m.csv:2:1: X_um: '1.5mm' is not a number; expected a length in um");
-  EXPECT_EQ(wrong("X_mm,C_deg,u_um\n1,2,0\n"), "m.csv:2:5: u_um: is 0; expected a length in um above zero");
-  EXPECT_EQ(wrong("X_mm,C_deg,u_um\n1,2,-1\n"), "m.csv:2:5: u_um: is -1; expected a length in um above zero");
-  EXPECT_EQ(wrong("X_mm,C_deg,station\n1,2,\n"), "m.csv:2:5: station: is empty; expected a name");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg\n,2\n"), "m.csv:2:1: X_mm: is empty; expected a length in mm");
+  EXPECT_EQ(message_of_csv("X_um,C_deg\n1.5mm,2\n"),
+            "m.csv:2:1: X_um: '1.5mm' is not a number; expected a length in um");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg,u_um\n1,2,0\n"), "m.csv:2:5: u_um: is 0; expected a length in um above zero");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg,u_um\n1,2,-1\n"), "m.csv:2:5: u_um: is -1; expected a length in um above zero");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg,station\n1,2,\n"), "m.csv:2:5: station: is empty; expected a name");
 }
 
 TEST(CsvReader, RefusesRowsOfTheWrongLengthAndOpenQuotes) {
-  EXPECT_EQ(wrong("X_mm,C_deg\n1\n"), "m.csv:2:1: the row has 1 fields; expected 2 as in the header");
-  EXPECT_EQ(wrong("X_mm,C_deg\n1,5,2,5\n"), "m.csv:2:1: the row has 4 fields; expected 2 as in the header");
-  EXPECT_EQ(wrong("X_mm,C_deg\n1,2,\n"), "m.csv:2:1: the row has 3 fields; expected 2 as in the header");
-  EXPECT_EQ(wrong("X_mm,C_deg,station\n1,2,\"a\n\"\n"),
+  EXPECT_EQ(message_of_csv("X_mm,C_deg\n1\n"), "m.csv:2:1: the row has 1 fields; expected 2 as in the header");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg\n1,5,2,5\n"), "m.csv:2:1: the row has 4 fields; expected 2 as in the header");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg\n1,2,\n"), "m.csv:2:1: the row has 3 fields; expected 2 as in the header");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg,station\n1,2,\"a\n\"\n"),
             "m.csv:2:5: station: the quote is not closed before the comma or the end of the line");
-  EXPECT_EQ(wrong(""), "m.csv: the file is empty; expected a header line with column names");
-  EXPECT_EQ(wrong("# only\n"), "m.csv: the file is empty; expected a header line with column names");
-  EXPECT_EQ(wrong("X_mm,C_deg\n# no data\n"), "m.csv: there are no rows below the header; expected at least one row");
+  EXPECT_EQ(message_of_csv(""), "m.csv: the file is empty; expected a header line with column names");
+  EXPECT_EQ(message_of_csv("# only\n"), "m.csv: the file is empty; expected a header line with column names");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg\n# no data\n"),
+            "m.csv: there are no rows below the header; expected at least one row");
 }
 
 TEST(CsvReader, FindsTheLineOfARow) {

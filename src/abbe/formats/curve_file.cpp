@@ -13,7 +13,7 @@
 namespace abbe {
 namespace {
 
-enum Column { kX, kY, kZ, kI, kJ, kK, kFeed, kPierce, kBeam, kFirstAxis };
+enum CurveColumn { kX, kY, kZ, kI, kJ, kK, kFeed, kPierce, kBeam, kFirstAxis };
 
 std::vector<CsvColumn> curve_columns(const Machine& machine) {
   using Range = CsvColumn::Range;

@@ -8,14 +8,13 @@
 #include "abbe/formats/message_of.h"
 #include "abbe/formats/path_program.h"
 #include "abbe/formats/placement_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/chain.h"
 
 namespace abbe {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 Machine engraver() { return parse_chain("w C2' X Y b Z C1 A t").machine; }
 

@@ -3,23 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 
+#include "abbe/formats/ascii_letters.h"
 #include "abbe/formats/csv_header.h"
 #include "abbe/formats/curve_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/text_cursor.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
 
 /// "X12.5" or "C2=30".
 struct Word {
@@ -77,7 +72,7 @@ class ProgramReader {
   Word word_at(std::string_view line, std::size_t& i) const {
     Word word;
     const std::size_t begin = i;
-    word.letter = upper(line[i++]);
+    word.letter = upper_case(line[i++]);
     std::size_t digits = i;
     while (digits < line.size() && is_digit(line[digits])) ++digits;
     if (digits < line.size() && line[digits] == '=') {

@@ -8,29 +8,16 @@
 #include <numbers>
 #include <random>
 
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/empty_folder_for_test.h"
 #include "abbe/formats/message_of.h"
+#include "abbe/formats/turntable_machine_for_test.h"
 
 namespace abbe {
 namespace {
 
-Machine machine() {
-  return parse_machine(
-      "name = \"m\"\nchain = \"w C' X' b Z t\"\n[axis.C]\nendless = true\n[axis.X]\ntravel_mm = [0, 1400]\n"
-      "[axis.Z]\ntravel_mm = [0, 600]\n",
-      "m.toml");
-}
-
-ErrorsFile parse(const std::string& text) { return parse_errors(text, "e.toml", machine()); }
-std::string wrong(const std::string& text) {
-  return message_of([&] { parse(text); });
-}
-
-std::filesystem::path test_folder(const char* name) {
-  auto folder = std::filesystem::path(testing::TempDir()) / name;
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
+ErrorsFile parsed_errors(const std::string& text) { return parse_errors(text, "e.toml", test::endless_turntable()); }
+std::string message_of_errors(const std::string& text) {
+  return message_of([&] { parsed_errors(text); });
 }
 
 void write(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
@@ -87,7 +74,7 @@ TEST(ErrorsFile, ReadsBackTheSameBits) {
     ErrorsFile contents;
     contents.errors = random_set(generator);
     contents.provenance = {{"method", "joint \"fit\""}, {"date", "2026-01-01"}};
-    const ErrorsFile back = parse(errors_text(machine(), contents));
+    const ErrorsFile back = parsed_errors(errors_text(test::endless_turntable(), contents));
     expect_same(back.errors, contents.errors);
     EXPECT_EQ(back.errors.parameters(), contents.errors.parameters());
     ASSERT_EQ(back.provenance.size(), 2U);
@@ -104,22 +91,22 @@ TEST(ErrorsFile, CovarianceReadsBackTheSameBits) {
   for (double& value : root.reshaped()) value = 1e-4 * normal(generator);
   const Eigen::MatrixXd product = root * root.transpose();
   contents.covariance = product.selfadjointView<Eigen::Lower>();
-  const auto folder = test_folder("abbe_covariance");
-  write_errors(folder / "a.errors.toml", machine(), contents);
+  const auto folder = test::empty_folder("abbe_covariance");
+  write_errors(folder / "a.errors.toml", test::endless_turntable(), contents);
   EXPECT_TRUE(std::filesystem::exists(folder / "a.covariance.csv"));
-  const ErrorsFile back = read_errors(folder / "a.errors.toml", machine());
+  const ErrorsFile back = read_errors(folder / "a.errors.toml", test::endless_turntable());
   expect_same(back.errors, contents.errors);
   EXPECT_EQ(back.covariance, contents.covariance);
 }
 
 TEST(ErrorsFile, ReadsUnitsTablesAndDefaults) {
-  const auto folder = test_folder("abbe_tables");
+  const auto folder = test::empty_folder("abbe_tables");
   write(folder / "x.csv", "# straightness\nu_EYX_um,X_m,EYX_um\n0.5,0,1\n0.5,0.7,-2\n0.5,1.4,3\n");
   write(folder / "e.toml",
         "[[motion]]\nname=\"EYX\"\nbasis=\"table-monotone\"\ntable=\"x.csv\"\n"
         "[[motion]]\nname=\"EAC\"\nbasis=\"fourier\"\norder=1\ncoefficients_arcsec=[0, 1, 2]\n"
         "[[location]]\nname=\"EC0X\"\nvalue_urad=12.3\nstandard_uncertainty_urad=0.5\n");
-  const ErrorsFile contents = read_errors(folder / "e.toml", machine());
+  const ErrorsFile contents = read_errors(folder / "e.toml", test::endless_turntable());
   const ErrorMotion& table = contents.errors.motions[0];
   EXPECT_EQ(table.basis.nodes, (std::vector<double>{0, 700, 1400}));
   EXPECT_EQ(table.coefficients, (std::vector<double>{0.001, -0.002, 0.003}));
@@ -132,18 +119,19 @@ TEST(ErrorsFile, ReadsUnitsTablesAndDefaults) {
 }
 
 TEST(ErrorsFile, ReadsAndRefusesReversals) {
-  const ErrorsFile contents = parse(
+  const ErrorsFile contents = parsed_errors(
       "[[reversal]]\naxis = \"X\"\nvalue_um = -6.5\nstandard_uncertainty_um = 0.5\n"
       "[[reversal]]\naxis = \"C\"\nvalue_arcsec = -2\n");
   ASSERT_EQ(contents.errors.reversals.size(), 2U);
   EXPECT_EQ(contents.errors.reversals[0].value, -0.0065);
   EXPECT_EQ(contents.errors.reversals[0].standard_uncertainty, 0.0005);
   EXPECT_DOUBLE_EQ(contents.errors.reversals[1].value, -2 * std::numbers::pi / 648000);
-  EXPECT_EQ(parse(errors_text(machine(), contents)).errors.reversals, contents.errors.reversals);
-  EXPECT_THAT(wrong("[[reversal]]\naxis = \"Q\"\nvalue_um = 1\n"),
+  EXPECT_EQ(parsed_errors(errors_text(test::endless_turntable(), contents)).errors.reversals,
+            contents.errors.reversals);
+  EXPECT_THAT(message_of_errors("[[reversal]]\naxis = \"Q\"\nvalue_um = 1\n"),
               testing::HasSubstr("\"Q\" is no axis of this machine"));
-  EXPECT_THAT(wrong("[[reversal]]\naxis = \"C\"\nvalue_um = 1\n"), testing::HasSubstr("value_urad"));
-  EXPECT_THAT(wrong("[[reversal]]\naxis = \"X\"\nvalue_um = 1\n[[reversal]]\naxis = \"X\"\nvalue_um = 1\n"),
+  EXPECT_THAT(message_of_errors("[[reversal]]\naxis = \"C\"\nvalue_um = 1\n"), testing::HasSubstr("value_urad"));
+  EXPECT_THAT(message_of_errors("[[reversal]]\naxis = \"X\"\nvalue_um = 1\n[[reversal]]\naxis = \"X\"\nvalue_um = 1\n"),
               testing::HasSubstr("stands twice"));
 }
 
@@ -151,51 +139,52 @@ TEST(ErrorsFile, RefusesWhatIsNoErrorOfTheMachine) {
   const std::string rest = "basis=\"legendre\"\norder=1\ncoefficients_um=[0, 1]\n";
   const std::string hint =
       "expected E, one of X Y Z A B C, and an axis of the machine (C, X, Z): EXC; location errors with 0: EA0C";
-  EXPECT_EQ(wrong("[[motion]]\nname=\"EXY\"\n" + rest),
+  EXPECT_EQ(message_of_errors("[[motion]]\nname=\"EXY\"\n" + rest),
             "e.toml:2:1: motion[1].name: \"EXY\" is no error of this machine; " + hint);
-  EXPECT_EQ(wrong("[[motion]]\nname=\"EX0C\"\n" + rest),
+  EXPECT_EQ(message_of_errors("[[motion]]\nname=\"EX0C\"\n" + rest),
             "e.toml:2:1: motion[1].name: \"EX0C\" is a location error; expected it under [[location]]");
-  EXPECT_EQ(wrong("[[location]]\nname=\"EZ0C\"\nvalue_um=1\n"),
+  EXPECT_EQ(message_of_errors("[[location]]\nname=\"EZ0C\"\nvalue_um=1\n"),
             "e.toml:2:1: location[1].name: this component has no effect on the axis; expected a location error that "
             "displaces the axis line");
-  EXPECT_EQ(wrong("[[location]]\nname=\"EX0C\"\nvalue_um=1\n[[location]]\nname=\"EX0C\"\nvalue_um=1\n"),
+  EXPECT_EQ(message_of_errors("[[location]]\nname=\"EX0C\"\nvalue_um=1\n[[location]]\nname=\"EX0C\"\nvalue_um=1\n"),
             "e.toml:5:1: location[2].name: stands twice");
-  EXPECT_EQ(wrong("chain = \"w b X t\"\n"),
+  EXPECT_EQ(message_of_errors("chain = \"w b X t\"\n"),
             "e.toml:1:1: chain: the errors belong to \"w b X t\"; expected \"w C' X' b Z t\"");
 }
 
 TEST(ErrorsFile, RefusesWrongUnitsNumbersAndBases) {
   const std::string start = "[[motion]]\nname=\"EAX\"\nbasis=\"legendre\"\norder=1\n";
-  EXPECT_EQ(wrong(start + "coefficients_um=[0, 1]\n"),
+  EXPECT_EQ(message_of_errors(start + "coefficients_um=[0, 1]\n"),
             "e.toml:5:1: motion[1].coefficients_um: 'um' is not a unit of an angle; expected coefficients_rad, "
             "coefficients_mrad, coefficients_urad, coefficients_deg or coefficients_arcsec");
-  EXPECT_EQ(wrong(start + "coefficients_urad=[0, 1, 2]\n"),
+  EXPECT_EQ(message_of_errors(start + "coefficients_urad=[0, 1, 2]\n"),
             "e.toml:5:19: motion[1].coefficients_urad: has 3 elements; expected an array of 2 numbers in urad");
-  EXPECT_EQ(wrong(start + "coefficients_urad=[0, nan]\n"),
+  EXPECT_EQ(message_of_errors(start + "coefficients_urad=[0, nan]\n"),
             "e.toml:5:23: motion[1].coefficients_urad[2]: nan is not a finite number; expected an angle in urad");
   EXPECT_EQ(
-      wrong(start + "coefficients_urad=[0, 1]\nfrom_mm=5\nto_mm=5\n"),
+      message_of_errors(start + "coefficients_urad=[0, 1]\nfrom_mm=5\nto_mm=5\n"),
       "e.toml:7:1: motion[1].to_mm: `to` is not above `from`; expected the range of positions in which the errors "
       "are valid");
-  EXPECT_EQ(wrong(start + "coefficients_urad=[0, 1]\nstandard_uncertainty_urad=[1, -1]\n"),
+  EXPECT_EQ(message_of_errors(start + "coefficients_urad=[0, 1]\nstandard_uncertainty_urad=[1, -1]\n"),
             "e.toml:6:1: motion[1].standard_uncertainty_urad: is negative; expected values not below zero");
-  EXPECT_EQ(wrong("[[motion]]\nname=\"EAX\"\nbasis=\"spline\"\n"),
+  EXPECT_EQ(message_of_errors("[[motion]]\nname=\"EAX\"\nbasis=\"spline\"\n"),
             "e.toml:3:1: motion[1].basis: unknown word \"spline\"; expected \"monomial\", \"legendre\", \"chebyshev\", "
             "\"fourier\", \"bspline\", \"table-linear\" or \"table-monotone\"");
-  EXPECT_EQ(wrong("[[motion]]\nname=\"EAX\"\nbasis=\"fourier\"\norder=1\ncoefficients_urad=[0,0,0]\n"),
+  EXPECT_EQ(message_of_errors("[[motion]]\nname=\"EAX\"\nbasis=\"fourier\"\norder=1\ncoefficients_urad=[0,0,0]\n"),
             "e.toml:1:1: motion[1].period_mm: missing; expected a length (period_mm, period_um or period_m)");
-  EXPECT_EQ(wrong("[[motions]]\nname=\"EAX\"\n"), "e.toml:1:3: motions: unknown key, did you mean motion?");
-  EXPECT_EQ(wrong("[[motion]]\nname=\"EXX\"\nbasis=\"table-linear\"\nat_mm=[0,2,1]\ncoefficients_um=[0,1,2]\n"),
-            "e.toml:4:1: motion[1].at_mm: is not increasing");
+  EXPECT_EQ(message_of_errors("[[motions]]\nname=\"EAX\"\n"), "e.toml:1:3: motions: unknown key, did you mean motion?");
+  EXPECT_EQ(
+      message_of_errors("[[motion]]\nname=\"EXX\"\nbasis=\"table-linear\"\nat_mm=[0,2,1]\ncoefficients_um=[0,1,2]\n"),
+      "e.toml:4:1: motion[1].at_mm: is not increasing");
 }
 
 TEST(ErrorsFile, RefusesCovariancesThatDoNotFit) {
-  const auto folder = test_folder("abbe_bad_covariance");
+  const auto folder = test::empty_folder("abbe_bad_covariance");
   write(folder / "e.toml", "covariance=\"c.csv\"\n[[location]]\nname=\"EC0X\"\nvalue_urad=1\n");
   const std::string file = (folder / "c.csv").string();
   const auto with = [&](const std::string& text) {
     write(folder / "c.csv", text);
-    return message_of([&] { read_errors(folder / "e.toml", machine()); });
+    return message_of([&] { read_errors(folder / "e.toml", test::endless_turntable()); });
   };
   const std::string header = "parameter,unit,EC0X,tool_X,tool_Y,tool_Z\n";
   EXPECT_EQ(with("parameter,unit,EB0X,tool_X,tool_Y,tool_Z\n"),
@@ -224,10 +213,10 @@ TEST(ErrorsFile, RefusesCovariancesThatDoNotFit) {
   };
   EXPECT_EQ(with(tool("2")), indefinite);
   write(folder / "c.csv", tool("1"));
-  EXPECT_EQ(read_errors(folder / "e.toml", machine()).covariance(1, 2), 1e-6);
+  EXPECT_EQ(read_errors(folder / "e.toml", test::endless_turntable()).covariance(1, 2), 1e-6);
   // Other programs write the two entries of a pair with different last digits.
   write(folder / "c.csv", pair("1", "1.0000000000000002"));
-  const Eigen::MatrixXd found = read_errors(folder / "e.toml", machine()).covariance;
+  const Eigen::MatrixXd found = read_errors(folder / "e.toml", test::endless_turntable()).covariance;
   EXPECT_EQ(found(0, 1), found(1, 0));
   EXPECT_NEAR(found(0, 1), 1e-9, 1e-24);
 }

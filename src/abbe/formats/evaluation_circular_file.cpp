@@ -15,11 +15,11 @@
 namespace abbe {
 namespace {
 
-enum Column : std::size_t { kDirection, kAngle, kDeviation, kRadius, kX, kY, kZ };
+enum CircularColumn : std::size_t { kDirection, kPathAngle, kDeviation, kRadius, kActualX, kActualY, kActualZ };
 // A point this near to the centre has no direction, mm.
 constexpr double kSmallestRadius = 1e-6;
 
-const std::vector<CsvColumn>& columns() {
+const std::vector<CsvColumn>& circular_columns() {
   static const std::vector<CsvColumn> all = {
       {"direction", Quantity::dimensionless, true, true},
       {"angle", Quantity::angle, false, false},
@@ -53,16 +53,19 @@ void put_in_order(CircularReadings& path) {
   }
 }
 
-class Reader {
+class CircularReader {
  public:
-  Reader(std::string_view text, const std::string& file, double nominal_radius)
-      : text_(text), file_(file), nominal_radius_(nominal_radius), csv_(read_csv(text, file, columns())) {}
+  CircularReader(std::string_view text, const std::string& file, double nominal_radius)
+      : text_(text), file_(file), nominal_radius_(nominal_radius), csv_(read_csv(text, file, circular_columns())) {}
 
   CircularFile read() {
-    const std::size_t coordinates = (has(kX) ? 1U : 0U) + (has(kY) ? 1U : 0U) + (has(kZ) ? 1U : 0U);
-    const bool lengths = has(kAngle) || has(kDeviation) || has(kRadius);
+    const std::size_t coordinates = (has(kActualX) ? 1U : 0U) + (has(kActualY) ? 1U : 0U) + (has(kActualZ) ? 1U : 0U);
+    const bool lengths = has(kPathAngle) || has(kDeviation) || has(kRadius);
     if (lengths && coordinates > 0) {
-      refuse_columns(has(kX) ? kX : has(kY) ? kY : kZ, "stands beside columns of a ball bar");
+      refuse_columns(has(kActualX)   ? kActualX
+                     : has(kActualY) ? kActualY
+                                     : kActualZ,
+                     "stands beside columns of a ball bar");
     }
     if (coordinates > 0) {
       read_points(coordinates);
@@ -96,7 +99,7 @@ class Reader {
   }
 
   void read_lengths() {
-    if (!has(kAngle))
+    if (!has(kPathAngle))
       throw InputError({file_, 0, 0, "angle"}, "missing column", accepted_names("angle", Quantity::angle));
     if (has(kDeviation) && has(kRadius)) refuse_columns(kRadius, "stands beside the deviation");
     if (!has(kDeviation) && !has(kRadius)) {
@@ -111,18 +114,21 @@ class Reader {
                    fmt::format("a radius near the nominal {:.9g} mm", nominal_radius_));
       }
       CircularReadings& path = path_of(row);
-      path.angle.push_back(csv_.columns[kAngle].numbers[row]);
+      path.angle.push_back(csv_.columns[kPathAngle].numbers[row]);
       path.radius.push_back(radius);
     }
   }
 
   void read_points(std::size_t coordinates) {
     if (coordinates != 2) {
-      refuse_columns(has(kX) ? kX : has(kY) ? kY : kZ, coordinates == 1 ? "is the only coordinate" : "is one of three");
+      refuse_columns(has(kActualX)   ? kActualX
+                     : has(kActualY) ? kActualY
+                                     : kActualZ,
+                     coordinates == 1 ? "is the only coordinate" : "is one of three");
     }
-    const std::size_t first = !has(kX) ? kY : !has(kY) ? kZ : kX;
-    const std::size_t second = !has(kX) ? kZ : !has(kY) ? kX : kY;
-    result_.plane = columns()[first].base + columns()[second].base;
+    const std::size_t first = !has(kActualX) ? kActualY : !has(kActualY) ? kActualZ : kActualX;
+    const std::size_t second = !has(kActualX) ? kActualZ : !has(kActualY) ? kActualX : kActualY;
+    result_.plane = circular_columns()[first].base + circular_columns()[second].base;
     for (CircularReadings& path : result_.paths) path.kind = CircularAngle::measured;
     for (std::size_t row = 0; row < csv_.rows; ++row) {
       const double a = csv_.columns[first].numbers[row], b = csv_.columns[second].numbers[row];
@@ -152,7 +158,7 @@ CircularFile read_circular(const std::filesystem::path& path, double nominal_rad
 }
 
 CircularFile parse_circular(std::string_view text, const std::string& file, double nominal_radius) {
-  return Reader(text, file, nominal_radius).read();
+  return CircularReader(text, file, nominal_radius).read();
 }
 
 }  // namespace abbe

@@ -14,8 +14,6 @@
 namespace abbe {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 std::string circular(const std::string& text) {
   return message_of([&] { parse_circular(text, "c.csv", 100); });
 }
@@ -37,7 +35,7 @@ TEST(EvaluationCircularFile, ReadsBallBarDeviationsAndRadiiByDirection) {
   EXPECT_EQ(cw.kind, CircularAngle::commanded);
   EXPECT_EQ(cw.radius, (std::vector<double>{100}));
   ASSERT_EQ(ccw.count(), 2U);
-  EXPECT_DOUBLE_EQ(ccw.angle[1], kPi / 2);
+  EXPECT_DOUBLE_EQ(ccw.angle[1], std::numbers::pi / 2);
   EXPECT_DOUBLE_EQ(ccw.radius[0], 100.0015);
   EXPECT_EQ(parse_circular("angle_rad,direction,radius_mm\n1,cw,150.25\n", "c.csv", 100).paths[0].radius[0], 150.25);
 }
@@ -46,7 +44,7 @@ TEST(EvaluationCircularFile, ReadsPointsOfTheThreePlanesWithAnglesFromFirstToSec
   const CircularFile zx = parse_circular("X_mm,Z_mm,direction\n100,0,cw\n0,100,cw\n", "c.csv", 100);
   EXPECT_EQ(zx.plane, "ZX");
   EXPECT_EQ(zx.paths[0].kind, CircularAngle::measured);
-  EXPECT_DOUBLE_EQ(zx.paths[0].angle[0], kPi / 2);
+  EXPECT_DOUBLE_EQ(zx.paths[0].angle[0], std::numbers::pi / 2);
   EXPECT_DOUBLE_EQ(zx.paths[0].angle[1], 0);
   EXPECT_EQ(parse_circular("Z_mm,Y_um,direction\n3,4000,ccw\n", "c.csv", 100).plane, "YZ");
   EXPECT_DOUBLE_EQ(parse_circular("X_mm,Y_um,direction\n3,4000,ccw\n", "c.csv", 100).paths[1].radius[0], 5);
@@ -89,15 +87,15 @@ TEST(EvaluationRotationFile, AnglesThatBeginAnewRunOn) {
   const RotationReadings up =
       parse_rotation("angle_deg,x1_um,axial_mm\n0,1,2\n120,3,4\n240,5,6\n0,7,8\n120,9,10\n", "r");
   ASSERT_EQ(up.angle.size(), 5U);
-  EXPECT_DOUBLE_EQ(up.angle[3], 2 * kPi);
-  EXPECT_DOUBLE_EQ(up.angle[4], 2 * kPi + 2 * kPi / 3);
+  EXPECT_DOUBLE_EQ(up.angle[3], 2 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(up.angle[4], 2 * std::numbers::pi + 2 * std::numbers::pi / 3);
   EXPECT_DOUBLE_EQ(up.x1[1], 0.003);
   EXPECT_EQ(up.axial[4], 10);
   EXPECT_TRUE(up.y1.empty() && up.face.empty());
   const RotationReadings down = parse_rotation("angle_deg,face_um\n100,1\n10,2\n280,3\n190,3\n100,4\n10,4\n", "r");
-  EXPECT_DOUBLE_EQ(down.angle[5], down.angle[1] - 2 * kPi);
+  EXPECT_DOUBLE_EQ(down.angle[5], down.angle[1] - 2 * std::numbers::pi);
   const RotationReadings on = parse_rotation("angle_deg,x2_um,y2_um\n350,1,0\n370,1,0\n390,1,0\n", "r");
-  EXPECT_DOUBLE_EQ(on.angle[2], 390 * kPi / 180);
+  EXPECT_DOUBLE_EQ(on.angle[2], 390 * std::numbers::pi / 180);
 }
 
 TEST(EvaluationRotationFile, SaysWhatIsWrongAndWhere) {

@@ -12,7 +12,7 @@
 namespace abbe {
 namespace {
 
-const std::vector<CsvColumn>& columns(bool with_line) {
+const std::vector<CsvColumn>& line_columns(bool with_line) {
   static const std::vector<CsvColumn> plain = {{"position", Quantity::length}, {"deviation", Quantity::length}};
   static const std::vector<CsvColumn> named = {plain[0], plain[1], {"line", Quantity::dimensionless, true, true}};
   return with_line ? named : plain;
@@ -60,7 +60,7 @@ LineReadings read_straightness(const std::filesystem::path& path) {
 }
 
 LineReadings parse_straightness(std::string_view text, const std::string& file) {
-  const CsvTable csv = read_csv(text, file, columns(false));
+  const CsvTable csv = read_csv(text, file, line_columns(false));
   std::vector<std::size_t> rows(csv.rows);
   std::iota(rows.begin(), rows.end(), std::size_t{0});
   return line_of(text, file, csv, rows, "");
@@ -72,7 +72,7 @@ std::array<LineReadings, 2> read_squareness(const std::filesystem::path& path) {
 }
 
 std::array<LineReadings, 2> parse_squareness(std::string_view text, const std::string& file) {
-  const CsvTable csv = read_csv(text, file, columns(true));
+  const CsvTable csv = read_csv(text, file, line_columns(true));
   const CsvValues& names = csv.columns[2];
   if (names.names.size() != 2) {
     throw InputError({file, 0, 0, names.header},

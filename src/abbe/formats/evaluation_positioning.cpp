@@ -15,9 +15,9 @@ namespace abbe {
 namespace {
 
 /// Places of the columns among those wanted.
-enum Column : std::size_t {
+enum PositioningColumn : std::size_t {
   kRun,
-  kDirection,
+  kApproach,
   kDiagonal,
   kTargetLength,
   kTargetAngle,
@@ -40,9 +40,9 @@ std::vector<CsvColumn> wanted_columns(bool diagonals) {
   return columns;
 }
 
-class Reader {
+class PositioningReader {
  public:
-  Reader(std::string_view text, const std::string& file, bool diagonals)
+  PositioningReader(std::string_view text, const std::string& file, bool diagonals)
       : text_(text), file_(file), csv_(read_csv(text, file, wanted_columns(diagonals))) {
     rotary_ =
         !one_of(kTargetLength, kTargetAngle, "target", "target_mm for a linear axis, target_deg for a rotary one");
@@ -110,7 +110,7 @@ class Reader {
   }
 
   void read_directions() {
-    const CsvValues& values = csv_.columns[kDirection];
+    const CsvValues& values = csv_.columns[kApproach];
     std::vector<ApproachDirection> of_word;
     for (std::size_t i = 0; i < values.names.size(); ++i) {
       const std::string& word = values.names[i];
@@ -155,7 +155,7 @@ class Reader {
 }  // namespace
 
 PositioningFile parse_positioning(std::string_view text, const std::string& file) {
-  const Reader reader(text, file, false);
+  const PositioningReader reader(text, file, false);
   PositioningFile result;
   result.rotary = reader.rotary();
   result.readings.reserve(reader.rows());
@@ -164,7 +164,7 @@ PositioningFile parse_positioning(std::string_view text, const std::string& file
 }
 
 std::vector<DiagonalReadings> parse_diagonals(std::string_view text, const std::string& file) {
-  const Reader reader(text, file, true);
+  const PositioningReader reader(text, file, true);
   std::vector<DiagonalReadings> result;
   for (const std::string& name : reader.diagonal().names) result.push_back({name, {}});
   for (std::size_t row = 0; row < reader.rows(); ++row) {

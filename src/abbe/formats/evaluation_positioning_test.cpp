@@ -5,11 +5,10 @@
 #include <numbers>
 
 #include "abbe/formats/message_of.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kArcsec = std::numbers::pi / 180 / 3600;
 
 std::string refused(const std::string& text) {
   return message_of([&] { parse_positioning(text, "p.csv"); });

@@ -4,11 +4,11 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
@@ -17,7 +17,6 @@ constexpr std::array<const char*, 6> kProbes = {"x1", "y1", "x2", "y2", "axial",
 
 /// Angle without jumps at the turns; in one sense only.
 std::vector<double> continued(std::string_view text, const std::string& file, const CsvValues& values) {
-  constexpr double kTurn = 2 * std::numbers::pi;
   std::vector<double> angle(values.numbers);
   double turns = 0, sense = 0;
   for (std::size_t i = 1; i < angle.size(); ++i) {

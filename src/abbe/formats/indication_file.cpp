@@ -53,9 +53,10 @@ std::optional<Eigen::Vector3d> parse_direction(std::string_view text) {
   return std::nullopt;
 }
 
-class Reader {
+class IndicationReader {
  public:
-  Reader(std::string_view text, const std::string& file, const Machine& machine, const IndicationOptions& options)
+  IndicationReader(std::string_view text, const std::string& file, const Machine& machine,
+                   const IndicationOptions& options)
       : text_(text), file_(file), machine_(machine), options_(options) {}
 
   IndicationTable read() {
@@ -224,7 +225,7 @@ class Reader {
 
 IndicationTable parse_indications(std::string_view text, const std::string& file, const Machine& machine,
                                   const IndicationOptions& options) {
-  return Reader(text, file, machine, options).read();
+  return IndicationReader(text, file, machine, options).read();
 }
 
 IndicationTable read_indications(const std::filesystem::path& path, const Machine& machine,

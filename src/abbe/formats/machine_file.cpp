@@ -9,6 +9,7 @@
 #include "abbe/formats/error_fields.h"
 #include "abbe/formats/text_file.h"
 #include "abbe/formats/toml_table.h"
+#include "abbe/formats/toml_vector.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/chain.h"
 #include "abbe/machine/machine_check.h"
@@ -16,13 +17,11 @@
 namespace abbe {
 namespace {
 
-Eigen::Vector3d vector(const std::vector<double>& values) { return {values[0], values[1], values[2]}; }
-
 /// Unit vector; what is a unit vector to rounding stays as it is, so that a written machine reads back the same.
 Eigen::Vector3d direction(TomlTable& table, const Eigen::Vector3d& otherwise) {
   const auto values = table.optional_numbers("direction", Quantity::dimensionless, 3);
   if (!values) return otherwise;
-  Eigen::Vector3d found = vector(*values);
+  Eigen::Vector3d found = vector_of(*values);
   const double length = found.norm();
   if (length < 1e-6) table.fail("direction", "has no length", "a vector (x, y, z) along the positive direction");
   if (std::abs(length - 1) <= 4 * std::numeric_limits<double>::epsilon()) return found;
@@ -52,7 +51,7 @@ void read_axis(TomlTable table, Axis& axis) {
   const std::size_t implied = axis.kind == AxisKind::linear ? 0 : 1;
   axis.kind = table.word_or("kind", implied, {"linear", "rotary"}) == 0 ? AxisKind::linear : AxisKind::rotary;
   axis.direction = direction(table, axis.direction);
-  if (const auto point = table.optional_numbers("point", Quantity::length, 3)) axis.point = vector(*point);
+  if (const auto point = table.optional_numbers("point", Quantity::length, 3)) axis.point = vector_of(*point);
   read_travel(table, axis);
   axis.setting = table.boolean_or("setting", false);
   table.finish();
@@ -60,17 +59,18 @@ void read_axis(TomlTable table, Axis& axis) {
 
 void read_workpiece(TomlTable table, Machine& machine) {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero(), angles = Eigen::Vector3d::Zero();
-  if (const auto values = table.optional_numbers("origin", Quantity::length, 3)) origin = vector(*values);
-  if (const auto values = table.optional_numbers("angles", Quantity::angle, 3)) angles = vector(*values);
+  if (const auto values = table.optional_numbers("origin", Quantity::length, 3)) origin = vector_of(*values);
+  if (const auto values = table.optional_numbers("angles", Quantity::angle, 3)) angles = vector_of(*values);
   machine.bed_from_workpiece = {rotation_from_error_angles(angles), origin};
   table.finish();
 }
 
 void read_tool(TomlTable table, Machine& machine) {
   if (const auto values = table.optional_numbers("reference", Quantity::length, 3)) {
-    machine.tool_reference = vector(*values);
+    machine.tool_reference = vector_of(*values);
   }
-  if (const auto values = table.optional_numbers("offset", Quantity::length, 3)) machine.tool_offset = vector(*values);
+  if (const auto values = table.optional_numbers("offset", Quantity::length, 3))
+    machine.tool_offset = vector_of(*values);
   machine.tool_direction = direction(table, machine.tool_direction);
   table.finish();
 }

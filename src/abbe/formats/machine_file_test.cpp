@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "abbe/formats/message_of.h"
+#include "abbe/formats/replaced_text_for_test.h"
 #include "abbe/machine/chain.h"
 
 namespace abbe {
@@ -33,14 +34,8 @@ reference_mm = [0, 0, 300]
 offset_um = [0, 80000, -250000]
 )";
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
-
-std::string wrong(const std::string& from, const std::string& to) {
-  return message_of([&] { parse_machine(replaced(kMachine, from, to), "m.toml"); });
+std::string message_of_machine_with(const std::string& from, const std::string& to) {
+  return message_of([&] { parse_machine(test::replaced(kMachine, from, to), "m.toml"); });
 }
 
 TEST(MachineFile, ReadsEveryField) {
@@ -99,51 +94,53 @@ TEST(MachineFile, CommentedFileOfAnyChainIsAValidMachine) {
 
 TEST(MachineFile, RefusesWrongUnitSuffix) {
   EXPECT_EQ(
-      wrong("travel_mm = [0, 1400]", "travel_deg = [0, 1400]"),
+      message_of_machine_with("travel_mm = [0, 1400]", "travel_deg = [0, 1400]"),
       "m.toml:9:1: axis.X.travel_deg: 'deg' is not a unit of a length; expected travel_mm, travel_um or travel_m");
-  EXPECT_EQ(wrong("travel_mm = [0, 1400]", "travel = [0, 1400]"),
+  EXPECT_EQ(message_of_machine_with("travel_mm = [0, 1400]", "travel = [0, 1400]"),
             "m.toml:9:1: axis.X.travel: the unit is missing from the name; expected travel_mm, travel_um or travel_m");
-  EXPECT_EQ(wrong("point_mm", "point_inch"),
+  EXPECT_EQ(message_of_machine_with("point_mm", "point_inch"),
             "m.toml:5:1: axis.C.point_inch: 'inch' is not a unit of a length; expected point_mm, point_um or point_m");
-  EXPECT_EQ(wrong("angles_deg", "angles_mm"),
+  EXPECT_EQ(message_of_machine_with("angles_deg", "angles_mm"),
             "m.toml:17:1: workpiece.angles_mm: 'mm' is not a unit of an angle; expected angles_rad, angles_mrad, "
             "angles_urad, angles_deg or angles_arcsec");
 }
 
 TEST(MachineFile, RefusesUnknownAndDuplicateAxes) {
-  EXPECT_EQ(wrong("[axis.X]", "[axis.Y]"), "m.toml:8:7: axis.Y: the chain has no axis Y; expected one of C, X, Z");
-  const std::string twice = wrong("[axis.Z]", "[axis.X]");
+  EXPECT_EQ(message_of_machine_with("[axis.X]", "[axis.Y]"),
+            "m.toml:8:7: axis.Y: the chain has no axis Y; expected one of C, X, Z");
+  const std::string twice = message_of_machine_with("[axis.Z]", "[axis.X]");
   EXPECT_TRUE(twice.starts_with("m.toml:11:")) << twice;
   EXPECT_NE(twice.find("axis.X"), std::string::npos) << twice;
-  const std::string chain = wrong("w C' X' b Z t", "w C' X' b X t");
+  const std::string chain = message_of_machine_with("w C' X' b Z t", "w C' X' b X t");
   EXPECT_TRUE(chain.starts_with("m.toml:2:1: chain: \"w C' X' b X t\": found ")) << chain;
 }
 
 TEST(MachineFile, RefusesMissingFieldsAndLimitsInTheWrongOrder) {
-  EXPECT_EQ(wrong("travel_mm = [0, 1400]", ""),
+  EXPECT_EQ(message_of_machine_with("travel_mm = [0, 1400]", ""),
             "m.toml:8:1: axis.X.travel_mm: missing; expected an array of 2 numbers (travel_mm, travel_um or travel_m)");
   EXPECT_EQ(
-      wrong("[0, 1400]", "[1400, 0]"),
+      message_of_machine_with("[0, 1400]", "[1400, 0]"),
       "m.toml:9:1: axis.X.travel_mm: the first limit is not below the second; expected [smallest, largest] command");
-  EXPECT_EQ(wrong("[0, 0, 2]", "[0, 0, 0]"),
+  EXPECT_EQ(message_of_machine_with("[0, 0, 2]", "[0, 0, 0]"),
             "m.toml:13:1: axis.Z.direction: has no length; expected a vector (x, y, z) along the positive direction");
-  EXPECT_EQ(wrong("endless = true", "endless = true\ntravel_deg = [0, 10]"),
+  EXPECT_EQ(message_of_machine_with("endless = true", "endless = true\ntravel_deg = [0, 10]"),
             "m.toml:7:1: axis.C.travel_deg: stands beside endless = true");
-  EXPECT_EQ(wrong("name =", "nane ="), "m.toml:1:1: nane: unknown key; expected name");
+  EXPECT_EQ(message_of_machine_with("name =", "nane ="), "m.toml:1:1: nane: unknown key; expected name");
   EXPECT_EQ(message_of([] { parse_machine("", "m.toml"); }), "m.toml: the file is empty");
 }
 
 TEST(MachineFile, RefusesNumbersThatAreNoNumbers) {
-  EXPECT_EQ(wrong("[0, 1400]", "[0, nan]"),
+  EXPECT_EQ(message_of_machine_with("[0, 1400]", "[0, nan]"),
             "m.toml:9:17: axis.X.travel_mm[2]: nan is not a finite number; expected a length in mm");
-  EXPECT_EQ(wrong("[0, 1400]", "[0, 1e308]"),
+  EXPECT_EQ(message_of_machine_with("[0, 1400]", "[0, 1e308]"),
             "m.toml:9:17: axis.X.travel_mm[2]: 1e308 is too large; expected a length in mm, at most 1e9 mm");
 }
 
 TEST(MachineFile, RefusesTravelThatNoMachineHas) {
-  EXPECT_EQ(wrong("[0, 1400]", "[0, 2e7]"), "m.toml:8:7: axis.X: reaches 2e+07 mm; a machine has less than 1e+07 mm");
+  EXPECT_EQ(message_of_machine_with("[0, 1400]", "[0, 2e7]"),
+            "m.toml:8:7: axis.X: reaches 2e+07 mm; a machine has less than 1e+07 mm");
   EXPECT_EQ(
-      wrong("endless = true", "travel_deg = [0, 2e9]"),
+      message_of_machine_with("endless = true", "travel_deg = [0, 2e9]"),
       "m.toml:4:7: axis.C: reaches 3.49066e+07 rad, more than 20000; mark a rotary axis without limits as endless");
 }
 

@@ -30,9 +30,10 @@ struct Layout {
   }
 };
 
-class Reader {
+class MeasurementReader {
  public:
-  Reader(std::string_view text, const std::string& file, const Machine& machine, const MeasurementOptions& options)
+  MeasurementReader(std::string_view text, const std::string& file, const Machine& machine,
+                    const MeasurementOptions& options)
       : text_(text), file_(file), machine_(machine), options_(options) {}
 
   MeasurementTable measurements() {
@@ -241,7 +242,7 @@ class Reader {
 
 MeasurementTable parse_measurements(std::string_view text, const std::string& file, const Machine& machine,
                                     const MeasurementOptions& options) {
-  return Reader(text, file, machine, options).measurements();
+  return MeasurementReader(text, file, machine, options).measurements();
 }
 
 MeasurementTable read_measurements(const std::filesystem::path& path, const Machine& machine,
@@ -252,7 +253,7 @@ MeasurementTable read_measurements(const std::filesystem::path& path, const Mach
 
 PoseList parse_poses(std::string_view text, const std::string& file, const Machine& machine,
                      const MeasurementOptions& options) {
-  return Reader(text, file, machine, options).poses_only();
+  return MeasurementReader(text, file, machine, options).poses_only();
 }
 
 PoseList read_poses(const std::filesystem::path& path, const Machine& machine, const MeasurementOptions& options) {

@@ -9,7 +9,7 @@ namespace abbe {
 namespace {
 
 /// One column to be written: numbers in a unit, or names.
-struct Column {
+struct MeasurementColumn {
   std::string header;
   const double* numbers = nullptr;
   const Unit* unit = nullptr;
@@ -22,14 +22,14 @@ struct Column {
 class Columns {
  public:
   void add(const std::string& base, Quantity quantity, const char* suffix, const std::vector<double>& numbers) {
-    Column column;
+    MeasurementColumn column;
     column.header = csv_field(*suffix == 0 ? base : base + "_" + suffix);
     column.numbers = numbers.data();
     column.unit = &unit_named(quantity, suffix);
     columns_.push_back(column);
   }
   void add_names(const char* header, const std::vector<std::uint16_t>& words, const std::vector<std::string>& names) {
-    Column column;
+    MeasurementColumn column;
     column.header = header;
     column.words = words.data();
     column.names = &names;
@@ -37,7 +37,7 @@ class Columns {
   }
   void add_offsets(const std::vector<std::uint16_t>& words, const std::vector<Eigen::Vector3d>& offsets) {
     for (Eigen::Index k = 0; k < 3; ++k) {
-      Column column;
+      MeasurementColumn column;
       column.header = std::string("offset_") + "xyz"[k] + "_mm";
       column.words = words.data();
       column.offsets = &offsets;
@@ -48,11 +48,11 @@ class Columns {
 
   std::string text(std::size_t rows) const {
     std::string text;
-    for (const Column& column : columns_) text += (text.empty() ? "" : ",") + column.header;
+    for (const MeasurementColumn& column : columns_) text += (text.empty() ? "" : ",") + column.header;
     text += '\n';
     for (std::size_t row = 0; row < rows; ++row) {
       for (std::size_t i = 0; i < columns_.size(); ++i) {
-        const Column& column = columns_[i];
+        const MeasurementColumn& column = columns_[i];
         if (i > 0) text += ',';
         if (column.numbers != nullptr) {
           text += quantity_text(column.numbers[row], *column.unit);
@@ -68,7 +68,7 @@ class Columns {
   }
 
  private:
-  std::vector<Column> columns_;
+  std::vector<MeasurementColumn> columns_;
 };
 
 }  // namespace

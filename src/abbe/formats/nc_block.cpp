@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "abbe/formats/ascii_letters.h"
 #include "abbe/formats/number_text.h"
 
 namespace abbe {
@@ -28,9 +29,6 @@ constexpr std::array<std::pair<std::string_view, NcFlowWord>, 16> kFlowWords = {
     {"continue", NcFlowWord::continue_loop},
     {"", NcFlowWord::label},
 }};
-
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-bool is_letter(char c) { return lower(c) >= 'a' && lower(c) <= 'z'; }
 
 /// The comment that begins at the cursor, with its parentheses or its semicolon.
 std::string_view read_comment(NcCursor& cursor) {
@@ -131,7 +129,7 @@ void NcBlockReader::refuse_statement(NcCursor& cursor) {
   const char* const begin = cursor.at;
   std::string name;
   const char* at = begin;
-  for (; at != cursor.end && is_letter(*at) && name.size() < 20; ++at) name += lower(*at);
+  for (; at != cursor.end && is_letter(*at) && name.size() < 20; ++at) name += lower_case(*at);
   if (name.size() < 2 || NcExpression::is_function(std::string_view(name).substr(1))) return;
   if (name.size() == 2 && name != "if" && name != "do") return;
   // In front of [ ] it may be meant for a function.

@@ -6,21 +6,19 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 
+#include "abbe/formats/ascii_letters.h"
 #include "abbe/formats/decimal_text.h"
 #include "abbe/formats/number_text.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr int kDeepest = 50;
 constexpr double kLargestValue = 1e15;
 /// Numbers that differ by less are equal to EQ and NE.
 constexpr double kEqual = 1e-4;
-
-bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
 
 enum class Operation {
   none,
@@ -83,8 +81,6 @@ constexpr std::array<NamedOperation, 15> kOperations = {{{"**", Operation::power
                                                          {"or", Operation::logical_or},
                                                          {"xor", Operation::logical_xor}}};
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
 /// The operation at the cursor and its length; the cursor stays.
 Operation next_operation(NcCursor& cursor, std::ptrdiff_t& length) {
   cursor.skip_blanks();
@@ -93,7 +89,7 @@ Operation next_operation(NcCursor& cursor, std::ptrdiff_t& length) {
     if (cursor.end - cursor.at < length) continue;
     bool same = true;
     for (std::ptrdiff_t i = 0; i < length; ++i) {
-      same = same && lower(cursor.at[i]) == candidate.name[static_cast<std::size_t>(i)];
+      same = same && lower_case(cursor.at[i]) == candidate.name[static_cast<std::size_t>(i)];
     }
     if (same) return candidate.operation;
   }
@@ -270,7 +266,7 @@ std::string NcExpression::read_name(NcCursor& cursor) {
   while (cursor.at != cursor.end && *cursor.at != '>') {
     const char c = *cursor.at++;
     if (c == '<' || c == '(') cursor.fail(begin, "the name does not end with >");
-    if (c != ' ' && c != '\t') name += lower(c);
+    if (c != ' ' && c != '\t') name += lower_case(c);
   }
   if (cursor.at == cursor.end) cursor.fail(begin, "the name does not end with >");
   ++cursor.at;
@@ -322,7 +318,8 @@ bool NcExpression::is_function(std::string_view name) {
 double NcExpression::read_function(NcCursor& cursor) {
   const char* const begin = cursor.at;
   std::string name;
-  while (cursor.at != cursor.end && lower(*cursor.at) >= 'a' && lower(*cursor.at) <= 'z') name += lower(*cursor.at++);
+  while (cursor.at != cursor.end && lower_case(*cursor.at) >= 'a' && lower_case(*cursor.at) <= 'z')
+    name += lower_case(*cursor.at++);
   if (cursor.peek() != '[') {
     cursor.fail(begin, "is not a value", "a number, a parameter (#5, #<name>), an expression in [ ] or a function");
   }

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "abbe/formats/nc_units.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kInch = 25.4;
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::size_t kForgetEvery = std::size_t{1} << 22;
 constexpr std::size_t kTellEvery = std::size_t{1} << 18;  // lines, of loops
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -19,8 +19,6 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
 }
-
-bool is_rotary(std::size_t axis) { return axis >= 3 && axis <= 5; }
 
 }  // namespace
 
@@ -37,7 +35,7 @@ NcInterpreter::NcInterpreter(std::string_view text, const std::string& file, con
   for (std::size_t k = 0; k < kAxisWords; ++k) {
     if (options.words[k]) machine_words_ |= std::uint32_t{1} << k;
     if (options.words[k] && options.start[k]) {
-      position_[k] = is_rotary(k) ? *options.start[k] / kDegree : *options.start[k];
+      position_[k] = is_rotary_word(k) ? *options.start[k] / kDegree : *options.start[k];
       known_ |= std::uint32_t{1} << k;
     }
   }
@@ -69,7 +67,7 @@ void NcInterpreter::take_parameters() {
     }
     if (NcParameters::is_of_control(number)) continue;
     std::size_t axis = 0;
-    const auto scaled = [&] { return is_rotary(axis) ? value : value * length; };
+    const auto scaled = [&] { return is_rotary_word(axis) ? value : value * length; };
     bool taken = false;
     for (std::size_t i = 0; i < 2; ++i) {
       if (!place(i == 0 ? 5161 : 5181, number, axis)) continue;
@@ -295,7 +293,9 @@ bool NcInterpreter::numbered(int number, double& value) const {
   const double length = options_.parameters_in_inches ? kInch : 1;
   const auto axis_of = [&](int first) { return static_cast<std::size_t>(number - first); };
   const auto in = [&](int first) { return number >= first && number < first + static_cast<int>(kAxisWords); };
-  const auto stored = [&](double position, std::size_t axis) { return is_rotary(axis) ? position : position / length; };
+  const auto stored = [&](double position, std::size_t axis) {
+    return is_rotary_word(axis) ? position : position / length;
+  };
   for (std::size_t i = 0; i < 2; ++i) {
     const int first = i == 0 ? 5161 : 5181;
     if (!in(first)) continue;

@@ -6,16 +6,10 @@
 #include <numbers>
 
 #include "abbe/formats/nc_interpreter.h"
+#include "abbe/formats/nc_units.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
-namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kInch = 25.4;
-
-bool is_rotary(std::size_t axis) { return axis >= 3 && axis <= 5; }
-
-}  // namespace
 
 void NcInterpreter::fail_unknown(std::uint32_t words, const std::string& why) const {
   std::string names;
@@ -87,7 +81,7 @@ void NcInterpreter::emit(ProgramMove& move, const Words& end, std::uint32_t know
   const Words& start = tilt_.counts ? machine_position_ : position_;
   const Words target = tilt_.counts ? axes_of_plane(end) : end;
   for (std::size_t k = 0; k < kAxisWords; ++k) {
-    const double to = is_rotary(k) ? kDegree : 1;
+    const double to = is_rotary_word(k) ? kDegree : 1;
     move.start[k] = start[k] * to;
     move.end[k] = target[k] * to;
   }

@@ -4,17 +4,11 @@
 #include <cmath>
 
 #include "abbe/formats/nc_interpreter.h"
+#include "abbe/formats/nc_units.h"
 
 namespace abbe {
-namespace {
 
-constexpr double kInch = 25.4;
-
-bool is_rotary(std::size_t axis) { return axis >= 3 && axis <= 5; }
-
-}  // namespace
-
-double NcInterpreter::unit(std::size_t axis) const { return modes_.inches && !is_rotary(axis) ? kInch : 1; }
+double NcInterpreter::unit(std::size_t axis) const { return modes_.inches && !is_rotary_word(axis) ? kInch : 1; }
 
 void NcInterpreter::set_feed() {
   if (codes_.has(NcGroup::feed_mode)) {

@@ -4,14 +4,13 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 
 #include "abbe/formats/nc_interpreter.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::uint32_t kLinear = 0b111, kRotary = 0b111000;
 /// Over which the map of a plane to the axes is taken: rounding falls with it.
 constexpr double kSpan_mm = 1000;

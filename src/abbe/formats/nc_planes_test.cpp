@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <numbers>
 
 #include "abbe/compensate/machine_planes.h"
 #include "abbe/compensate/move_path.h"
 #include "abbe/compensate/program_moves_for_test.h"
 #include "abbe/formats/message_of.h"
 #include "abbe/formats/nc_correctors_for_test.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
@@ -18,8 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 using testing::HasSubstr;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// The example's plane: I 30, J -40, K 15 about a point of the workpiece.
 const char* const kPlane = "G21 G90\nG54 G0 X0 Y0 Z0 A0 B0 C0\nG68.2 X10 Y-20 Z30 I30 J40 K15\n";

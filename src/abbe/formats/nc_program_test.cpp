@@ -9,11 +9,10 @@
 
 #include "abbe/formats/message_of.h"
 #include "abbe/formats/nc_correctors_for_test.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 TEST(NcProgram, AMoveStatesWhatIsInForce) {
   const RunProgram run = run_program("G21 G90 G55\nG10 L2 P2 X1 C5\nG43 H1\nG0 X2 Z3\nG1 Z1 C10 F120\nM2\n");

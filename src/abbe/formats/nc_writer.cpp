@@ -6,17 +6,16 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <numbers>
 
 #include "abbe/formats/decimal_text.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/nc_number.h"
+#include "abbe/formats/nc_units.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kInch = 25.4;
 constexpr std::array<char, kAxisWords> kLetters = {'X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 'W'};
 constexpr std::size_t kChunk = std::size_t{1} << 18;
 /// Longest line of words that are written here: nine axes, a feed and modes.
@@ -24,8 +23,6 @@ constexpr std::size_t kLongestLine = 512;
 /// LinuxCNC refuses lines of 256 characters and more.
 constexpr std::size_t kLongestBlock = 250;
 constexpr double kLargestUnits = 9e15;
-
-bool is_rotary(std::size_t axis) { return axis >= 3 && axis <= 5; }
 
 char* write_text(std::string_view text, char* at) {
   std::memcpy(at, text.data(), text.size());
@@ -71,13 +68,13 @@ NcWriter::NcWriter(const std::string& file, const NcProgramOptions& options, Mov
 }
 
 int NcWriter::decimals(std::size_t axis) const {
-  if (is_rotary(axis)) return std::clamp(options_.decimals_deg, 0, 9);
+  if (is_rotary_word(axis)) return std::clamp(options_.decimals_deg, 0, 9);
   return std::clamp(options_.decimals_mm, 0, 9) + (frame_.inches ? 1 : 0);
 }
 
 double NcWriter::program_scale(std::size_t axis) const {
   const double power = kExactPowersOfTen[static_cast<std::size_t>(decimals(axis))];
-  return frame_.inches && !is_rotary(axis) ? power / kInch : power;
+  return frame_.inches && !is_rotary_word(axis) ? power / kInch : power;
 }
 
 void NcWriter::fail(const ProgramMove& move, const std::string& problem) const {
@@ -353,7 +350,7 @@ bool NcWriter::is_no_motion(std::size_t axis, std::int64_t word) const {
 }
 
 double NcWriter::word_units(std::size_t axis, double value) const {
-  return ((is_rotary(axis) ? value / kDegree : value) - frame_.offset[axis]) * scale_[axis];
+  return ((is_rotary_word(axis) ? value / kDegree : value) - frame_.offset[axis]) * scale_[axis];
 }
 
 double NcWriter::feed_word(const ProgramMove& move, const CorrectedPiece& piece, std::uint32_t moved,
@@ -368,7 +365,7 @@ double NcWriter::feed_word(const ProgramMove& move, const CorrectedPiece& piece,
   constexpr double kFastest_per_min = 1e8;
   double squared = 0;
   for (std::size_t k = 0; k < kAxisWords; ++k) {
-    if (is_rotary(k) != is_angle) squared += (piece.end[k] - stands_[k]) * (piece.end[k] - stands_[k]);
+    if (is_rotary_word(k) != is_angle) squared += (piece.end[k] - stands_[k]) * (piece.end[k] - stands_[k]);
   }
   mode = FeedMode::inverse_time;
   return squared > 0 ? std::min(piece.feed / std::sqrt(squared), kFastest_per_min) : kFastest_per_min;

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <stdexcept>
 
+#include "abbe/formats/ascii_letters.h"
+
 namespace abbe {
 namespace {
 
@@ -15,8 +17,6 @@ constexpr std::array<double, 23> kPowersOfTen = {1e0,  1e1,  1e2,  1e3,  1e4,  1
                                                  1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
 constexpr std::uint64_t kLargestExactInteger = std::uint64_t{1} << 53;
 constexpr int kFullWord = 19;  // decimal digits that always fit in 64 bits
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Parts of a decimal number: sign, digits as integer (if few enough) and the power of ten that goes with it.
 struct Decimal {

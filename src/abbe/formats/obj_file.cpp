@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 15> kPassedOver = {"vt",     "s",        
                                                           "call",   "c_interp", "d_interp", "shadow_obj", "trace_obj"};
 constexpr std::array<std::string_view, 3> kScopes = {"o", "g", "usemtl"};
 
-struct Block : TextBlock {
+struct StatementBlock : TextBlock {
   std::size_t vertices = 0;
   std::size_t normals = 0;
   std::size_t textures = 0;
@@ -52,7 +52,7 @@ std::string_view keyword(std::string_view line, const char*& behind) {
   return {at, static_cast<std::size_t>(behind - at)};
 }
 
-void count(std::string_view text, Block& block) {
+void count(std::string_view text, StatementBlock& block) {
   for (std::size_t at = block.begin; at < block.end;) {
     const char* behind = nullptr;
     const std::string_view word = keyword(csv_next_line(text, at), behind);
@@ -62,9 +62,10 @@ void count(std::string_view text, Block& block) {
   }
 }
 
-class BlockReader {
+class StatementReader {
  public:
-  BlockReader(std::string_view text, const Counts& counts, double largest, ObjContents& result, Block& block)
+  StatementReader(std::string_view text, const Counts& counts, double largest, ObjContents& result,
+                  StatementBlock& block)
       : text_(text),
         counts_(counts),
         largest_(largest),
@@ -189,7 +190,7 @@ class BlockReader {
   const Counts& counts_;
   double largest_;
   ObjContents& result_;
-  Block& block_;
+  StatementBlock& block_;
   std::size_t vertex_, normal_, texture_;
   const char* end_ = nullptr;
   std::vector<std::uint32_t> face_;
@@ -199,10 +200,10 @@ class BlockReader {
 
 ObjContents parse_obj(std::string_view contents, const std::string& file, const std::optional<FileLength>& unit,
                       int threads) {
-  std::vector<Block> blocks = split_into_blocks<Block>(contents, 0);
+  std::vector<StatementBlock> blocks = split_into_blocks<StatementBlock>(contents, 0);
   for_each_block(blocks.size(), threads, [&](std::size_t i) { count(contents, blocks[i]); });
   Counts counts;
-  for (Block& block : blocks) {
+  for (StatementBlock& block : blocks) {
     block.first_vertex = counts.vertices;
     block.first_normal = counts.normals;
     block.first_texture = counts.textures;
@@ -220,16 +221,16 @@ ObjContents parse_obj(std::string_view contents, const std::string& file, const 
   result.normals.resize(3, static_cast<Eigen::Index>(counts.normals));
   const double largest = kLargestInput / millimetres(result.unit.length);
   for_each_block(blocks.size(), threads,
-                 [&](std::size_t i) { BlockReader(contents, counts, largest, result, blocks[i]).read(); });
+                 [&](std::size_t i) { StatementReader(contents, counts, largest, result, blocks[i]).read(); });
   FaceTriangles faces;
   std::size_t triangles = 0;
-  for (const Block& block : blocks) {
+  for (const StatementBlock& block : blocks) {
     if (block.refusal) throw_refusal(contents, file, *block.refusal);
     triangles += block.faces.size();
   }
   faces.reserve(triangles);
   ObjRegions regions;
-  for (const Block& block : blocks) {
+  for (const StatementBlock& block : blocks) {
     faces.append(block.faces);
     regions.add(block.statements, block.faces.size());
   }

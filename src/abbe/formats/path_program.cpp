@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "abbe/formats/ascii_letters.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/program_text.h"
@@ -15,11 +16,10 @@ namespace {
 
 /// Letters and digits only where "=" keeps them from the number behind: C112.5 would be an axis C or an axis C1.
 bool is_axis_word(const std::string& word) {
-  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
   if (word.empty() || !is_letter(word[0])) return false;
   if (word.size() == 1) return std::string_view("FGMNOPSTfgmnopst").find(word[0]) == std::string_view::npos;
-  return word.back() == '=' && std::all_of(word.begin(), word.end() - 1,
-                                           [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+  return word.back() == '=' &&
+         std::all_of(word.begin(), word.end() - 1, [](char c) { return is_letter(c) || is_digit(c) || c == '_'; });
 }
 
 class ProgramWriter {

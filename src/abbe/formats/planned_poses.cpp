@@ -12,9 +12,9 @@
 namespace abbe {
 namespace {
 
-class Reader {
+class PlannedPosesReader {
  public:
-  Reader(std::string_view text, const std::string& file, const Machine& machine, const Setup& setup)
+  PlannedPosesReader(std::string_view text, const std::string& file, const Machine& machine, const Setup& setup)
       : text_(text), file_(file), machine_(machine), setup_(setup) {}
 
   PlannedPoses read() {
@@ -79,7 +79,7 @@ class Reader {
 
 PlannedPoses parse_planned_poses(std::string_view text, const std::string& file, const Machine& machine,
                                  const Setup& setup) {
-  return Reader(text, file, machine, setup).read();
+  return PlannedPosesReader(text, file, machine, setup).read();
 }
 
 PlannedPoses read_planned_poses(const std::filesystem::path& path, const Machine& machine, const Setup& setup) {

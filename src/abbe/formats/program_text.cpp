@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 
 double in_degrees_or_mm(const Axis& axis, double command) {
-  constexpr double kDegree = std::numbers::pi / 180;
   return axis.kind == AxisKind::rotary ? command / kDegree : command;
 }
 

@@ -15,6 +15,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/partial_names.h"
+#include "abbe/formats/write_error.h"
 
 namespace abbe {
 namespace {
@@ -24,11 +25,6 @@ namespace fs = std::filesystem;
 constexpr std::string_view kPartial = ".partial-";
 constexpr std::string_view kOld = ".old-";
 constexpr const char* kMarker = ".abbe-results";
-
-[[noreturn]] void fail(const fs::path& path, int error) {
-  throw InputError({path.string(), 0, 0, ""}, "cannot be written: " + std::generic_category().message(error),
-                   "a writable folder with enough space");
-}
 
 /// File descriptor that is closed on every path.
 class Descriptor {
@@ -53,7 +49,7 @@ class Descriptor {
 void flush_folder(const fs::path& path) {
   Descriptor folder(::open(path.empty() ? "." : path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   // Some file systems cannot flush a folder and say EINVAL.
-  if (folder.number() < 0 || (::fsync(folder.number()) != 0 && errno != EINVAL)) fail(path, errno);
+  if (folder.number() < 0 || (::fsync(folder.number()) != 0 && errno != EINVAL)) fail_to_write(path, errno);
 }
 
 int made(const fs::path& path) {
@@ -64,14 +60,14 @@ int made(const fs::path& path) {
 /// @param called  what messages call it: its name when all is done
 void write_and_flush(const fs::path& path, std::string_view contents, const fs::path& called) {
   Descriptor file(made(path));
-  if (file.number() < 0) fail(called, errno);
+  if (file.number() < 0) fail_to_write(called, errno);
   while (!contents.empty()) {
     const ssize_t written = ::write(file.number(), contents.data(), contents.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(called, errno);
+    if (written < 0) fail_to_write(called, errno);
     contents.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::fsync(file.number()) != 0 || file.close() != 0) fail(called, errno);
+  if (::fsync(file.number()) != 0 || file.close() != 0) fail_to_write(called, errno);
 }
 
 fs::path with_suffix(const fs::path& path, std::string_view suffix) {
@@ -99,13 +95,13 @@ fs::path file_to_write(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) return path;
-  if (fs::is_directory(status)) fail(path, EISDIR);
+  if (fs::is_directory(status)) fail_to_write(path, EISDIR);
   if (!fs::is_regular_file(status)) {
     throw InputError({path.string(), 0, 0, ""}, "is a device, a pipe or a socket", "the name of a file to write");
   }
   if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
   fs::path target = fs::canonical(path, error);
-  if (error) fail(path, error.value());
+  if (error) fail_to_write(path, error.value());
   return target;
 }
 
@@ -151,13 +147,13 @@ ResultsFolder::ResultsFolder(fs::path name) : name_(std::move(name)) {
   check_results_folder(name_);
   std::error_code error;
   if (!name_.parent_path().empty()) fs::create_directories(name_.parent_path(), error);
-  if (error) fail(name_, error.value());
+  if (error) fail_to_write(name_, error.value());
   remove_partials_of_killed_writers(name_);
   unfinished_.emplace(partial_);
   const UninterruptedSteps steps;
   fs::remove_all(partial_, error);
   fs::create_directory(partial_, error);
-  if (error) fail(name_, error.value());
+  if (error) fail_to_write(name_, error.value());
 }
 
 ResultsFolder::~ResultsFolder() {
@@ -173,7 +169,7 @@ void ResultsFolder::write(const fs::path& relative, std::string_view contents) {
     fs::create_directories(path.parent_path(), error);
   }
   const fs::path called = name_ / relative;
-  if (error) fail(called.parent_path(), error.value());
+  if (error) fail_to_write(called.parent_path(), error.value());
   write_and_flush(path, contents, called);
 }
 
@@ -183,22 +179,22 @@ void ResultsFolder::commit() {
   for (fs::recursive_directory_iterator entry(partial_, error), end; !error && entry != end; entry.increment(error)) {
     if (entry->is_directory()) flush_folder(entry->path());
   }
-  if (error) fail(name_, error.value());
+  if (error) fail_to_write(name_, error.value());
   flush_folder(partial_);
 
   const UninterruptedSteps steps;
   fs::path aside;
   if (!fs::exists(name_, error)) {
-    if (::rename(partial_.c_str(), name_.c_str()) != 0) fail(name_, errno);
+    if (::rename(partial_.c_str(), name_.c_str()) != 0) fail_to_write(name_, errno);
   } else if (exchange(partial_, name_) == 0) {
     aside = partial_;
   } else {
     aside = with_suffix(name_, kOld);
-    if (::rename(name_.c_str(), aside.c_str()) != 0) fail(name_, errno);
+    if (::rename(name_.c_str(), aside.c_str()) != 0) fail_to_write(name_, errno);
     if (::rename(partial_.c_str(), name_.c_str()) != 0) {
       const int problem = errno;
       fs::rename(aside, name_, error);
-      fail(name_, problem);
+      fail_to_write(name_, problem);
     }
   }
   committed_ = true;
@@ -215,7 +211,7 @@ void write_file_atomically(const fs::path& name, std::string_view contents) {
   try {
     write_and_flush(partial, contents, name);
     const UninterruptedSteps steps;
-    if (::rename(partial.c_str(), path.c_str()) != 0) fail(name, errno);
+    if (::rename(partial.c_str(), path.c_str()) != 0) fail_to_write(name, errno);
   } catch (...) {
     ::unlink(partial.c_str());
     throw;

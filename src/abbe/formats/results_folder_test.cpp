@@ -11,6 +11,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "abbe/formats/empty_folder_for_test.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/message_of.h"
 #include "abbe/formats/streamed_file.h"
@@ -19,13 +20,6 @@ namespace abbe {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path test_folder(const char* name) {
-  fs::path folder = fs::path(testing::TempDir()) / name;
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  return folder;
-}
 
 std::string contents(const fs::path& path) {
   std::ifstream stream(path);
@@ -59,7 +53,7 @@ int status_of_child(Action&& action) {
 }
 
 TEST(ResultsFolder, AppearsWholeAndReplacesTheOldOne) {
-  const fs::path folder = test_folder("abbe_results");
+  const fs::path folder = test::empty_folder("abbe_results");
   write_result(folder / "r", "one");
   EXPECT_EQ(contents(folder / "r/summary.json"), "one");
   write_result(folder / "r/", "two");
@@ -69,7 +63,7 @@ TEST(ResultsFolder, AppearsWholeAndReplacesTheOldOne) {
 }
 
 TEST(ResultsFolder, LeavesNothingWithoutCommit) {
-  const fs::path folder = test_folder("abbe_uncommitted");
+  const fs::path folder = test::empty_folder("abbe_uncommitted");
   write_result(folder / "r", "one");
   {
     ResultsFolder results(folder / "r");
@@ -81,7 +75,7 @@ TEST(ResultsFolder, LeavesNothingWithoutCommit) {
 }
 
 TEST(ResultsFolder, KilledWriterLeavesTheOldResultAndTheNextOneCleansUp) {
-  const fs::path folder = test_folder("abbe_killed");
+  const fs::path folder = test::empty_folder("abbe_killed");
   write_result(folder / "r", "one");
   const int status = status_of_child([&] {
     ResultsFolder results(folder / "r");
@@ -97,7 +91,7 @@ TEST(ResultsFolder, KilledWriterLeavesTheOldResultAndTheNextOneCleansUp) {
 }
 
 TEST(ResultsFolder, WriterKilledAtAnyMomentLeavesAWholeResult) {
-  const fs::path folder = test_folder("abbe_killed_anywhere");
+  const fs::path folder = test::empty_folder("abbe_killed_anywhere");
   write_result(folder / "r", "0");
   int killed = 0;
   for (int i = 0; i < 40; ++i) {
@@ -118,7 +112,7 @@ TEST(ResultsFolder, WriterKilledAtAnyMomentLeavesAWholeResult) {
 }
 
 TEST(ResultsFolder, FullDiskLeavesTheOldResult) {
-  const fs::path folder = test_folder("abbe_full");
+  const fs::path folder = test::empty_folder("abbe_full");
   write_result(folder / "r", "one");
   write_result(folder / "s", "one");
   // A limit on the size of files stands for the full disk: with the signal ignored write() fails, else the process
@@ -151,7 +145,7 @@ TEST(ResultsFolder, FullDiskLeavesTheOldResult) {
 }
 
 TEST(ResultsFolder, SaysWhyItCannotBeMade) {
-  const fs::path folder = test_folder("abbe_no_folder");
+  const fs::path folder = test::empty_folder("abbe_no_folder");
   std::ofstream(folder / "file") << "x";
   EXPECT_EQ(message_of([&] { ResultsFolder results(folder / "file"); }),
             (folder / "file").string() + ": is a file; expected a folder for results");
@@ -160,7 +154,7 @@ TEST(ResultsFolder, SaysWhyItCannotBeMade) {
 }
 
 TEST(ResultsFolder, AFolderWithOtherFilesIsNotReplaced) {
-  const fs::path folder = test_folder("abbe_foreign");
+  const fs::path folder = test::empty_folder("abbe_foreign");
   fs::create_directories(folder / "r/measured");
   const std::string refused = (folder / "r").string() +
                               ": holds files that are no results of abbe; expected a new or empty folder, or one with "
@@ -178,7 +172,7 @@ TEST(ResultsFolder, AFolderWithOtherFilesIsNotReplaced) {
 }
 
 TEST(AtomicFile, ReplacesOrLeavesTheOldOne) {
-  const fs::path folder = test_folder("abbe_atomic");
+  const fs::path folder = test::empty_folder("abbe_atomic");
   write_file_atomically(folder / "a.txt", "one");
   write_file_atomically(folder / "a.txt", "two");
   EXPECT_EQ(contents(folder / "a.txt"), "two");
@@ -198,7 +192,7 @@ TEST(AtomicFile, ReplacesOrLeavesTheOldOne) {
 }
 
 TEST(AtomicFile, DevicesPipesAndFoldersAreNotReplaced) {
-  const fs::path folder = test_folder("abbe_no_files");
+  const fs::path folder = test::empty_folder("abbe_no_files");
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
   fs::create_symlink("/dev/null", folder / "device");
   fs::create_directory(folder / "folder");
@@ -216,7 +210,7 @@ TEST(AtomicFile, DevicesPipesAndFoldersAreNotReplaced) {
 }
 
 TEST(AtomicFile, ThroughALinkTheFileIsWritten) {
-  const fs::path folder = test_folder("abbe_linked");
+  const fs::path folder = test::empty_folder("abbe_linked");
   fs::create_directory(folder / "elsewhere");
   fs::create_symlink("elsewhere/a.txt", folder / "link");
   std::ofstream(folder / "elsewhere/a.txt") << "old";
@@ -231,7 +225,7 @@ TEST(AtomicFile, ThroughALinkTheFileIsWritten) {
 }
 
 TEST(AtomicFile, MessagesNameTheFileThatWasAskedFor) {
-  const fs::path name = test_folder("abbe_named") / "none" / "a.csv";
+  const fs::path name = test::empty_folder("abbe_named") / "none" / "a.csv";
   EXPECT_EQ(
       message_of([&] { write_file_atomically(name, "x"); }),
       name.string() + ": cannot be written: No such file or directory; expected a writable folder with enough space");

@@ -8,15 +8,14 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <numbers>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "abbe/formats/program_text.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// By ScanObstacle.
 constexpr std::array<std::array<std::uint8_t, 3>, kScanObstacleCount> kColours = {

@@ -14,9 +14,9 @@
 namespace abbe {
 namespace {
 
-enum Column { kSection, kAcross, kHeight, kAlong, kBeamTilt };
+enum SectionColumn { kSection, kAcross, kHeight, kAlong, kBeamTilt };
 
-const std::vector<CsvColumn>& columns() {
+const std::vector<CsvColumn>& section_columns() {
   static const std::vector<CsvColumn> wanted = {{"section", Quantity::dimensionless, true},
                                                 {"across", Quantity::length},
                                                 {"height", Quantity::length},
@@ -46,7 +46,7 @@ std::vector<SectionReadings> read_sections(const std::filesystem::path& path) {
 }
 
 std::vector<SectionReadings> parse_sections(std::string_view text, const std::string& file) {
-  const CsvTable csv = read_csv(text, file, columns());
+  const CsvTable csv = read_csv(text, file, section_columns());
   const CsvValues& names = csv.columns[kSection];
   std::vector<SectionReadings> sections(names.names.size());
   std::vector<Eigen::Index> count(sections.size(), 0);

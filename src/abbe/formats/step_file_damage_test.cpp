@@ -10,16 +10,18 @@
 #include <string>
 
 #include "abbe/formats/message_of.h"
+#include "abbe/formats/replaced_text_for_test.h"
 #include "abbe/formats/step_file.h"
+#include "abbe/formats/step_files_for_test.h"
 #include "abbe/formats/text_file.h"
 
 namespace abbe {
 namespace {
 
+using test::golden_step_file;
+using test::replaced;
 using testing::EndsWith;
 using testing::HasSubstr;
-
-std::filesystem::path golden(const char* name) { return std::filesystem::path(ABBE_GOLDEN) / "step" / name; }
 
 /// A file that is gone after the test; tests of one program may run side by side.
 class TemporaryFile {
@@ -38,17 +40,11 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
-std::string message(const std::string& contents) {
+std::string message_of_step(const std::string& contents) {
   const TemporaryFile file(contents, ".step");
   std::string text = message_of([&] { read_mesh(file.path()); });
   EXPECT_THAT(text, testing::StartsWith(file.path().string()));
   return text;
-}
-
-std::string with(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos);
-  return text.replace(at, from.size(), to);
 }
 
 class DamagedStepFile : public testing::Test {
@@ -56,31 +52,35 @@ class DamagedStepFile : public testing::Test {
   void SetUp() override {
     if (step_program().empty()) GTEST_SKIP() << "built without OpenCASCADE";
   }
-  std::string sphere_ = read_text_file(golden("sphere.step"));
+  std::string sphere_ = read_text_file(golden_step_file("sphere.step"));
 };
 
 TEST_F(DamagedStepFile, SaysWhatIsWrongWithIt) {
-  EXPECT_THAT(message(""), EndsWith("the file is empty"));
-  EXPECT_THAT(message("solid of something else"),
+  EXPECT_THAT(message_of_step(""), EndsWith("the file is empty"));
+  EXPECT_THAT(message_of_step("solid of something else"),
               EndsWith("this is no STEP file; expected a first line 'ISO-10303-21;'"));
-  EXPECT_THAT(message(sphere_.substr(0, sphere_.size() / 2)),
+  EXPECT_THAT(message_of_step(sphere_.substr(0, sphere_.size() / 2)),
               EndsWith("the file ends early; expected a last line 'END-ISO-10303-21;'"));
-  EXPECT_THAT(message("ISO-10303-21;\n\xff\x01 garbage\nEND-ISO-10303-21;\n"), HasSubstr("line 3: Incorrect syntax"));
-  EXPECT_THAT(message("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n"),
+  EXPECT_THAT(message_of_step("ISO-10303-21;\n\xff\x01 garbage\nEND-ISO-10303-21;\n"),
+              HasSubstr("line 3: Incorrect syntax"));
+  EXPECT_THAT(message_of_step("ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n"),
               HasSubstr("Incorrect syntax"));
 }
 
 TEST_F(DamagedStepFile, NumbersThatAreNoneAreNotTakenAsZero) {
-  EXPECT_THAT(message(with(sphere_, "12.703", "12..703,,")), HasSubstr("#22 (SphericalSurface): Count of Parameters"));
-  EXPECT_THAT(message(with(sphere_, "12.703", "nan")), HasSubstr("#22 (SphericalSurface): Parameter"));
-  EXPECT_THAT(message(with(sphere_, "12.703", "1.E+300")), HasSubstr("the shape reaches beyond 1e+09 mm"));
-  EXPECT_THAT(message(with(sphere_, "12.703", "-5.")), HasSubstr("of the file's faces could not be converted"));
-  EXPECT_THAT(message(with(sphere_, "12.703", "1.E+8")),
+  EXPECT_THAT(message_of_step(replaced(sphere_, "12.703", "12..703,,")),
+              HasSubstr("#22 (SphericalSurface): Count of Parameters"));
+  EXPECT_THAT(message_of_step(replaced(sphere_, "12.703", "nan")), HasSubstr("#22 (SphericalSurface): Parameter"));
+  EXPECT_THAT(message_of_step(replaced(sphere_, "12.703", "1.E+300")), HasSubstr("the shape reaches beyond 1e+09 mm"));
+  EXPECT_THAT(message_of_step(replaced(sphere_, "12.703", "-5.")),
+              HasSubstr("of the file's faces could not be converted"));
+  EXPECT_THAT(message_of_step(replaced(sphere_, "12.703", "1.E+8")),
               HasSubstr("too much for a chord tolerance of 0.01 mm; expected a chord tolerance of at least"));
 }
 
 TEST_F(DamagedStepFile, AFaceIsNotLostInSilence) {
-  EXPECT_THAT(message(with(read_text_file(golden("block.step")), "PLANE(", "PLONE(")), HasSubstr("#17 (AdvancedFace)"));
+  EXPECT_THAT(message_of_step(replaced(read_text_file(golden_step_file("block.step")), "PLANE(", "PLONE(")),
+              HasSubstr("#17 (AdvancedFace)"));
 }
 
 TEST_F(DamagedStepFile, IsRefusedOrReadButNeverStopsUs) {
@@ -102,11 +102,11 @@ TEST_F(DamagedStepFile, IsRefusedOrReadButNeverStopsUs) {
 TEST_F(DamagedStepFile, UnitsAndTolerancesThatMakeNoSenseAreRefused) {
   MeshFileOptions options;
   options.unit = FileLength::inch;
-  EXPECT_THAT(message_of([&] { read_mesh(golden("block.step"), options); }),
+  EXPECT_THAT(message_of([&] { read_mesh(golden_step_file("block.step"), options); }),
               EndsWith("unit: a STEP file states its unit itself; expected no unit"));
   options.unit.reset();
   options.step.chord_mm = 0;
-  EXPECT_EQ(message_of([&] { read_mesh(golden("block.step"), options); }),
+  EXPECT_EQ(message_of([&] { read_mesh(golden_step_file("block.step"), options); }),
             "chord_mm: is 0; expected a length above zero in mm");
 }
 
@@ -121,14 +121,14 @@ class StepProgram : public testing::Test {
     ::setenv("ABBE_STEP_PROGRAM", program.path().c_str(), 1);
     MeshFileOptions options;
     options.step.most_seconds = most_seconds;
-    return message_of([&] { read_mesh(golden("block.step"), options); });
+    return message_of([&] { read_mesh(golden_step_file("block.step"), options); });
   }
 };
 
 TEST_F(StepProgram, ThatIsMissingIsSaid) {
   ::setenv("ABBE_STEP_PROGRAM", "/nowhere/abbe-step", 1);
   EXPECT_THAT(
-      message_of([] { read_mesh(golden("block.step")); }),
+      message_of([] { read_mesh(golden_step_file("block.step")); }),
       EndsWith("ABBE_STEP_PROGRAM names /nowhere/abbe-step, which is no program; expected the program abbe-step, or "
                "no such variable"));
 }
@@ -153,7 +153,8 @@ TEST_F(StepProgram, ThatSaysNothingOrTooMuchIsRefused) {
 }
 
 TEST_F(StepProgram, GetsNamesAsTheyAre) {
-  EXPECT_THAT(message_with("echo \"$1\" >&2; exit 2\n"), HasSubstr(golden("block.step").string() + "; expected"));
+  EXPECT_THAT(message_with("echo \"$1\" >&2; exit 2\n"),
+              HasSubstr(golden_step_file("block.step").string() + "; expected"));
 }
 
 }  // namespace

@@ -17,20 +17,21 @@
 #include <utility>
 
 #include "abbe/formats/message_of.h"
+#include "abbe/formats/step_files_for_test.h"
 #include "abbe/formats/text_file.h"
 #include "abbe/geometry/mesh_check.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using test::golden_step_file;
 
-std::filesystem::path golden(const char* name) { return std::filesystem::path(ABBE_GOLDEN) / "step" / name; }
+constexpr double kPi = std::numbers::pi;
 
 MeshFile read_within(const char* name, double chord_mm) {
   MeshFileOptions options;
   options.step.chord_mm = chord_mm;
-  return read_mesh(golden(name), options);
+  return read_mesh(golden_step_file(name), options);
 }
 
 class StepFile : public testing::Test {
@@ -41,7 +42,7 @@ class StepFile : public testing::Test {
 };
 
 TEST_F(StepFile, ABlockHasItsExactSizeAndVolumeAndTurnsOutwards) {
-  const MeshFile file = read_mesh(golden("block.step"));
+  const MeshFile file = read_mesh(golden_step_file("block.step"));
   EXPECT_EQ(file.format, "STEP");
   EXPECT_EQ(unit_words(file.unit), "mm (stated by the file)");
   const MeshCheck check = check_mesh(file.mesh);
@@ -63,7 +64,7 @@ TEST_F(StepFile, ABlockHasItsExactSizeAndVolumeAndTurnsOutwards) {
 }
 
 TEST_F(StepFile, InchesBecomeMillimetres) {
-  const MeshFile file = read_mesh(golden("block_inch.step"));
+  const MeshFile file = read_mesh(golden_step_file("block_inch.step"));
   EXPECT_EQ(unit_words(file.unit), "inch (stated by the file)");
   EXPECT_NEAR((check_mesh(file.mesh).upper - Eigen::Vector3d(25.4, 50.8, 76.2)).norm(), 0, 1e-9);
 }
@@ -146,10 +147,10 @@ TEST_F(StepFile, AFreeFormBladeKeepsTheTolerance) {
 }
 
 TEST_F(StepFile, BoresAreClosedAndFacesOfAnAssemblyStandInTheirPlaces) {
-  const MeshCheck bored = check_mesh(read_mesh(golden("bored_block.step")).mesh);
+  const MeshCheck bored = check_mesh(read_mesh(golden_step_file("bored_block.step")).mesh);
   EXPECT_TRUE(bored.encloses_volume());
   EXPECT_NEAR(bored.volume, 30 * (1600 - kPi * 100), 0.01 * 2 * kPi * 10 * 30);
-  const MeshFile assembly = read_mesh(golden("assembly.step"));
+  const MeshFile assembly = read_mesh(golden_step_file("assembly.step"));
   const MeshCheck check = check_mesh(assembly.mesh);
   EXPECT_EQ(assembly.faces, 6U + 3 * 3);
   EXPECT_EQ(check.parts, 4U);

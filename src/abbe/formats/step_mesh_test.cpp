@@ -12,7 +12,7 @@
 namespace abbe {
 namespace {
 
-StepMesh block() {
+StepMesh step_block() {
   StepMesh mesh;
   mesh.mesh = block_for_test({0, 0, 0}, {1, 2, 3});
   mesh.faces = 6;
@@ -28,7 +28,7 @@ StepMesh block() {
 }
 
 TEST(StepMesh, ComesThroughWithTheSameBits) {
-  const StepMesh given = block();
+  const StepMesh given = step_block();
   const StepMesh read = parse_step_mesh(step_mesh_bytes(given), "part.step");
   EXPECT_EQ(read.mesh.vertices, given.mesh.vertices);
   EXPECT_EQ(read.mesh.triangles, given.mesh.triangles);
@@ -42,7 +42,7 @@ TEST(StepMesh, ComesThroughWithTheSameBits) {
 }
 
 TEST(StepMesh, AnyCutIsRefused) {
-  const std::string bytes = step_mesh_bytes(block());
+  const std::string bytes = step_mesh_bytes(step_block());
   for (std::size_t length = 0; length < bytes.size(); length += 7) {
     EXPECT_THAT(message_of([&] { parse_step_mesh(bytes.substr(0, length), "part.step"); }),
                 testing::HasSubstr("part.step: abbe-step gave no mesh"));
@@ -55,25 +55,25 @@ TEST(StepMesh, WhatCannotBeAMeshIsRefused) {
   const auto message = [](const StepMesh& mesh) {
     return message_of([&] { parse_step_mesh(step_mesh_bytes(mesh), "part.step"); });
   };
-  StepMesh mesh = block();
+  StepMesh mesh = step_block();
   mesh.mesh.triangles(2, 11) = 8;
   EXPECT_THAT(message(mesh), testing::HasSubstr("a vertex that does not exist"));
-  mesh = block();
+  mesh = step_block();
   mesh.face_of_triangle[3] = 6;
   EXPECT_THAT(message(mesh), testing::HasSubstr("a face that does not exist"));
   for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), 1.1e9}) {
-    mesh = block();
+    mesh = step_block();
     mesh.mesh.vertices(1, 7) = wrong;
     EXPECT_THAT(message(mesh), testing::HasSubstr("not finite or too large"));
   }
-  mesh = block();
+  mesh = step_block();
   mesh.mesh.triangles.resize(3, 0);
   mesh.face_of_triangle.clear();
   EXPECT_THAT(message(mesh), testing::HasSubstr("no triangles"));
-  mesh = block();
+  mesh = step_block();
   mesh.mesh.vertices.resize(3, 0);
   EXPECT_THAT(message(mesh), testing::HasSubstr("no vertices"));
-  std::string other = step_mesh_bytes(block());
+  std::string other = step_mesh_bytes(step_block());
   other.replace(other.find("mesh 1"), 6, "mesh 2");
   EXPECT_THAT(message_of([&] { parse_step_mesh(other, "part.step"); }), testing::HasSubstr("another version"));
 }
@@ -88,7 +88,7 @@ TEST(StepMesh, CountsBeyondAllMemoryAreRefused) {
 
 TEST(StepMesh, CountsAreWholeNumbers) {
   for (const char* wrong : {"1e300", "-1", "2.0", "\"8\"", "null"}) {
-    std::string bytes = step_mesh_bytes(block());
+    std::string bytes = step_mesh_bytes(step_block());
     bytes.replace(bytes.find("\"vertices\":8") + 11, 1, wrong);
     EXPECT_THAT(message_of([&] { parse_step_mesh(bytes, "part.step"); }),
                 testing::HasSubstr("the first line is not understood"))

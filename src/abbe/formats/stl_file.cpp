@@ -26,9 +26,9 @@ static_assert(std::endian::native == std::endian::little, "STL files are little-
 constexpr std::size_t kHeader = 84;  // 80 bytes of text, then the number of triangles
 constexpr std::size_t kFacet = 50;
 constexpr std::size_t kTogether = 8192;  // facets
-constexpr std::array<const char*, 12> kFields = {"normal x",   "normal y",   "normal z",   "corner 1 x",
-                                                 "corner 1 y", "corner 1 z", "corner 2 x", "corner 2 y",
-                                                 "corner 2 z", "corner 3 x", "corner 3 y", "corner 3 z"};
+constexpr std::array<const char*, 12> kFacetFields = {"normal x",   "normal y",   "normal z",   "corner 1 x",
+                                                      "corner 1 y", "corner 1 z", "corner 2 x", "corner 2 y",
+                                                      "corner 2 z", "corner 3 x", "corner 3 y", "corner 3 z"};
 
 /// Facets of a stretch of the file.
 struct FacetBlock {
@@ -162,7 +162,7 @@ MeshFile parse_binary(std::string_view contents, const std::string& file, const 
   const auto bad = static_cast<std::size_t>(
       std::find_if(facet.begin() + 3, facet.end(), [&](double v) { return !(std::abs(v) <= largest); }) -
       facet.begin());
-  throw InputError({file, 0, 0, kFields[bad]},
+  throw InputError({file, 0, 0, kFacetFields[bad]},
                    fmt::format("at byte {}: triangle {}: {}", kHeader + kFacet * i + 4 * bad, i,
                                std::isfinite(facet[bad]) ? fmt::format("{:g} is too large", facet[bad])
                                                          : std::string("not a finite number")),
@@ -221,15 +221,15 @@ void read_facets(TextCursor& cursor, const FileUnit& unit, bool& inside, FacetBl
       }
     }
     require_word(cursor, "normal");
-    for (std::size_t k = 0; k < 3; ++k) facet[k] = normal_component(cursor, kFields[k]);
+    for (std::size_t k = 0; k < 3; ++k) facet[k] = normal_component(cursor, kFacetFields[k]);
     require_word(cursor, "outer");
     require_word(cursor, "loop");
     for (std::size_t corner = 1; corner <= 3; ++corner) {
       require_word(cursor, "vertex");
       for (std::size_t k = 3 * corner; k < 3 * corner + 3; ++k) {
-        facet[k] = cursor.number(kFields[k]);
+        facet[k] = cursor.number(kFacetFields[k]);
         if (std::abs(facet[k]) > largest) {
-          cursor.fail(kFields[k], fmt::format("{:g} is too large", facet[k]),
+          cursor.fail(kFacetFields[k], fmt::format("{:g} is too large", facet[k]),
                       fmt::format("at most {:g} {}", largest, file_length_name(unit.length)));
         }
       }

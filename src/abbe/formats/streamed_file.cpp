@@ -6,21 +6,15 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <system_error>
 
-#include "abbe/formats/input_error.h"
 #include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/partial_names.h"
+#include "abbe/formats/write_error.h"
 
 namespace abbe {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void fail(const fs::path& path, int error) {
-  throw InputError({path.string(), 0, 0, ""}, "cannot be written: " + std::generic_category().message(error),
-                   "a writable folder with enough space");
-}
 
 }  // namespace
 
@@ -37,7 +31,7 @@ StreamedFile::StreamedFile(const fs::path& path) : path_(file_to_write(path)), p
     file_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     is_named_ = file_ >= 0;
   }
-  if (file_ < 0) fail(path_, errno);
+  if (file_ < 0) fail_to_write(path_, errno);
 }
 
 StreamedFile::~StreamedFile() {
@@ -49,7 +43,7 @@ void StreamedFile::append(std::string_view contents) {
   while (!contents.empty()) {
     const ssize_t written = ::write(file_, contents.data(), contents.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(path_, errno);
+    if (written < 0) fail_to_write(path_, errno);
     contents.remove_prefix(static_cast<std::size_t>(written));
   }
 }
@@ -58,25 +52,26 @@ void StreamedFile::overwrite(std::size_t offset, std::string_view contents) {
   while (!contents.empty()) {
     const ssize_t written = ::pwrite(file_, contents.data(), contents.size(), static_cast<off_t>(offset));
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(path_, errno);
+    if (written < 0) fail_to_write(path_, errno);
     contents.remove_prefix(static_cast<std::size_t>(written));
     offset += static_cast<std::size_t>(written);
   }
 }
 
 void StreamedFile::commit() {
-  if (::fsync(file_) != 0) fail(path_, errno);
+  if (::fsync(file_) != 0) fail_to_write(path_, errno);
   const UninterruptedSteps steps;
   if (!is_named_) {
     // A file without a name cannot take the place of another one: it gets a name first.
     ::unlink(partial_.c_str());
     const std::string open_file = fmt::format("/proc/self/fd/{}", file_);
-    if (::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, partial_.c_str(), AT_SYMLINK_FOLLOW) != 0) fail(path_, errno);
+    if (::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, partial_.c_str(), AT_SYMLINK_FOLLOW) != 0)
+      fail_to_write(path_, errno);
     is_named_ = true;
   }
   const int closed = ::close(file_);
   file_ = -1;
-  if (closed != 0 || ::rename(partial_.c_str(), path_.c_str()) != 0) fail(path_, errno);
+  if (closed != 0 || ::rename(partial_.c_str(), path_.c_str()) != 0) fail_to_write(path_, errno);
   is_named_ = false;
 }
 

@@ -3,16 +3,13 @@
 #include <numbers>
 
 #include "abbe/formats/instrument_file.h"
-#include "abbe/formats/machine_file.h"
 #include "abbe/formats/message_of.h"
+#include "abbe/formats/replaced_text_for_test.h"
 #include "abbe/formats/study_file.h"
+#include "abbe/formats/turntable_machine_for_test.h"
 
 namespace abbe {
 namespace {
-
-const char* const kMachine =
-    "name = \"m\"\nchain = \"w C' X' b Z t\"\n[axis.C]\nendless = true\n[axis.X]\ntravel_mm = [0, 1400]\n"
-    "[axis.Z]\ntravel_mm = [0, 600]\n";
 
 std::string study_of(const std::string& setup) {
   return "machine = \"m.machine.toml\"\n[simulate]\n[simulate.generator]\nmean_volumetric_um = 100\n[[setup]]\n"
@@ -21,13 +18,12 @@ std::string study_of(const std::string& setup) {
 }
 
 std::shared_ptr<const Instrument> read(const std::string& setup) {
-  return parse_study(study_of(setup), "s.study.toml", parse_machine(kMachine, "m")).setups.at(0).device;
+  return parse_study(study_of(setup), "s.study.toml", test::endless_turntable()).setups.at(0).device;
 }
 
 /// Message for the set-up with one part replaced.
-std::string wrong(std::string setup, const std::string& from, const std::string& to) {
-  setup.replace(setup.find(from), from.size(), to);
-  return message_of([&] { read(setup); });
+std::string message_of_setup_with(const std::string& setup, const std::string& from, const std::string& to) {
+  return message_of([&] { read(test::replaced(setup, from, to)); });
 }
 
 const SetupQuantity& quantity_of(const Instrument& instrument, const std::string& name) {
@@ -66,12 +62,13 @@ TEST(StudyContactInstruments, ReadAnRTest) {
   EXPECT_EQ(quantity_of(*device, "s.nest.x").knowledge, Knowledge::open);
   EXPECT_EQ(quantity_of(*device, "s.p1.tilt_first").knowledge, Knowledge::within);
   EXPECT_DOUBLE_EQ(quantity_of(*device, "s.p1.tilt_first").standard_uncertainty, 2e-3);
-  EXPECT_SAYS(wrong(kRTest, "[1, 0, -0.7]", "[0, 0, 0]"), "probe[1].direction: has no length");
-  EXPECT_SAYS(wrong(kRTest, "\"ball\"", "\"round\""), "unknown word \"round\"");
-  EXPECT_SAYS(wrong(kRTest, "indication_um = 0.3", "indication_um = -1"), "is not above zero");
-  EXPECT_SAYS(wrong(kRTest, "nest_mm", "nest_deg"), "nest_mm");
-  EXPECT_SAYS(wrong(kRTest, "[[setup.sphere]]\nname = \"ball\"\ncentre_mm = [0, 0, -150]\n", ""), "there is no sphere");
-  EXPECT_SAYS(wrong(kRTest, "noise", "nest_on = \"tool\"\nnoise"), "same body");
+  EXPECT_SAYS(message_of_setup_with(kRTest, "[1, 0, -0.7]", "[0, 0, 0]"), "probe[1].direction: has no length");
+  EXPECT_SAYS(message_of_setup_with(kRTest, "\"ball\"", "\"round\""), "unknown word \"round\"");
+  EXPECT_SAYS(message_of_setup_with(kRTest, "indication_um = 0.3", "indication_um = -1"), "is not above zero");
+  EXPECT_SAYS(message_of_setup_with(kRTest, "nest_mm", "nest_deg"), "nest_mm");
+  EXPECT_SAYS(message_of_setup_with(kRTest, "[[setup.sphere]]\nname = \"ball\"\ncentre_mm = [0, 0, -150]\n", ""),
+              "there is no sphere");
+  EXPECT_SAYS(message_of_setup_with(kRTest, "noise", "nest_on = \"tool\"\nnoise"), "same body");
 }
 
 const std::string kSurface = R"(instrument = "surface-probe"
@@ -102,12 +99,12 @@ TEST(StudyContactInstruments, ReadAProbeOnAStandard) {
   EXPECT_EQ(quantity_of(*device, "upright.offset_along").knowledge, Knowledge::exact) << "a cylinder has no end";
   EXPECT_DOUBLE_EQ(quantity_of(*device, "turned.tilt_first").value, 2e-3);
   EXPECT_DOUBLE_EQ(device->standard_uncertainty({}, 0, 0), 0.5e-3);
-  EXPECT_SAYS(wrong(kSurface, "\"cylinder\"", "\"cone\""), "unknown word \"cone\"");
-  EXPECT_SAYS(wrong(kSurface, "radius_mm = 10", "radius_mm = -1"), "radius_mm: is not above zero");
-  EXPECT_SAYS(wrong(kSurface, "taper_um_per_m = 5", "taper_um = 5"), "taper_um");
-  EXPECT_SAYS(wrong(kSurface, "\"cylinder\"", "\"sphere\""), "direction: unknown key");
-  EXPECT_SAYS(wrong(kSurface, "noise", "standard_on = \"tool\"\nnoise"), "same body");
-  EXPECT_SAYS(wrong(kSurface, "\"turned\"", "\"upright\""), "upright");
+  EXPECT_SAYS(message_of_setup_with(kSurface, "\"cylinder\"", "\"cone\""), "unknown word \"cone\"");
+  EXPECT_SAYS(message_of_setup_with(kSurface, "radius_mm = 10", "radius_mm = -1"), "radius_mm: is not above zero");
+  EXPECT_SAYS(message_of_setup_with(kSurface, "taper_um_per_m = 5", "taper_um = 5"), "taper_um");
+  EXPECT_SAYS(message_of_setup_with(kSurface, "\"cylinder\"", "\"sphere\""), "direction: unknown key");
+  EXPECT_SAYS(message_of_setup_with(kSurface, "noise", "standard_on = \"tool\"\nnoise"), "same body");
+  EXPECT_SAYS(message_of_setup_with(kSurface, "\"turned\"", "\"upright\""), "upright");
 }
 
 const std::string kProbe = R"(instrument = "touch-probe"
@@ -133,9 +130,9 @@ TEST(StudyContactInstruments, ReadATouchProbe) {
   EXPECT_EQ(quantity_of(*device, "a.x").knowledge, Knowledge::exact) << "in an artefact";
   EXPECT_DOUBLE_EQ(quantity_of(*device, "s.scale").value, 3e-6);
   EXPECT_NEAR(quantity_of(*device, "flat.c").value, std::numbers::pi / 6, 1e-15);
-  EXPECT_SAYS(wrong(kProbe, "radius_mm = 10", "radius_mm = 0"), "radius_mm: is not above zero");
-  EXPECT_SAYS(wrong(kProbe, "travel_um", "centre_um"), "travel");
-  EXPECT_SAYS(wrong(kProbe, "c_deg", "c_mm"), "c_mm");
+  EXPECT_SAYS(message_of_setup_with(kProbe, "radius_mm = 10", "radius_mm = 0"), "radius_mm: is not above zero");
+  EXPECT_SAYS(message_of_setup_with(kProbe, "travel_um", "centre_um"), "travel");
+  EXPECT_SAYS(message_of_setup_with(kProbe, "c_deg", "c_mm"), "c_mm");
   std::string loose = kProbe;
   const std::size_t from = loose.find("[[setup.placement]]");
   loose.erase(from, loose.find("[[setup.sphere]]") - from);
@@ -160,9 +157,10 @@ TEST(StudyContactInstruments, ReadDials) {
   EXPECT_EQ(device->components().at(0).name, "z1");
   EXPECT_EQ(quantity_of(*device, "top.tilt_first").knowledge, Knowledge::open);
   EXPECT_NEAR(device->standard_uncertainty({}, 0, 0), 0.5e-3, 1e-15);
-  EXPECT_SAYS(wrong(kDials, "face = \"top\"", "face = \"side\""), "there is no face \"side\"; expected one of top");
-  EXPECT_SAYS(wrong(kDials, "[0, 0, 1]", "[0, 0, 0]"), "has no length");
-  EXPECT_SAYS(wrong(kDials, "flatness_um = 0.3", "flatness_um = -0.3"), "flatness_um");
+  EXPECT_SAYS(message_of_setup_with(kDials, "face = \"top\"", "face = \"side\""),
+              "there is no face \"side\"; expected one of top");
+  EXPECT_SAYS(message_of_setup_with(kDials, "[0, 0, 1]", "[0, 0, 0]"), "has no length");
+  EXPECT_SAYS(message_of_setup_with(kDials, "flatness_um = 0.3", "flatness_um = -0.3"), "flatness_um");
   std::string two = kDials;
   two.replace(two.find("[[setup.dial]]"), 14, "[[setup.arrangement]]\nname = \"up\"\n[[setup.arrangement.dial]]");
   EXPECT_EQ(read(two)->items().at(0).name, "up");
@@ -182,9 +180,9 @@ TEST(StudyContactInstruments, ReadALevel) {
   EXPECT_TRUE(device->components().at(0).is_angle);
   EXPECT_EQ(quantity_of(*device, "s.along_x.zero").knowledge, Knowledge::open);
   EXPECT_EQ(quantity_of(*device, "s.up_tilt_first").knowledge, Knowledge::exact);
-  EXPECT_SAYS(wrong(kLevel, "[1, 0, 0]", "[0, 0, 1]"), "is vertical");
-  EXPECT_SAYS(wrong(kLevel, "relative = true", "reference_on = \"tool\""), "relative = true");
-  EXPECT_SAYS(wrong(kLevel, "inclination_urad", "inclination_um"), "inclination");
+  EXPECT_SAYS(message_of_setup_with(kLevel, "[1, 0, 0]", "[0, 0, 1]"), "is vertical");
+  EXPECT_SAYS(message_of_setup_with(kLevel, "relative = true", "reference_on = \"tool\""), "relative = true");
+  EXPECT_SAYS(message_of_setup_with(kLevel, "inclination_urad", "inclination_um"), "inclination");
 }
 
 const std::string kCollimator = R"(instrument = "autocollimator"
@@ -199,8 +197,8 @@ TEST(StudyContactInstruments, ReadAnAutocollimator) {
   EXPECT_EQ(device->components().size(), 2U);
   EXPECT_EQ(quantity_of(*device, "s.mirror_tilt_first").knowledge, Knowledge::open);
   EXPECT_EQ(quantity_of(*device, "s.zero_first").knowledge, Knowledge::exact);
-  EXPECT_SAYS(wrong(kCollimator, "[0, 1, 0]", "[2, 0, 0]"), "lies along the beam");
-  EXPECT_SAYS(wrong(kCollimator, "half-tangent", "tangent"), "unknown word \"tangent\"");
+  EXPECT_SAYS(message_of_setup_with(kCollimator, "[0, 1, 0]", "[2, 0, 0]"), "lies along the beam");
+  EXPECT_SAYS(message_of_setup_with(kCollimator, "half-tangent", "tangent"), "unknown word \"tangent\"");
 }
 
 const std::string kMarks = R"(instrument = "board-marks"
@@ -224,14 +222,14 @@ TEST(StudyContactInstruments, ReadBoardMarks) {
   EXPECT_EQ(quantity_of(*device, "lying.a").knowledge, Knowledge::within);
   EXPECT_EQ(quantity_of(*device, "lying.b").knowledge, Knowledge::open);
   EXPECT_DOUBLE_EQ(device->standard_uncertainty({}, 0, 1), 1e-3);
-  EXPECT_SAYS(wrong(kMarks, "waist_um = 30", "waist_um = 0"), "waist_um: is not above zero");
-  EXPECT_SAYS(wrong(kMarks, "lines-and-widths", "width"), "unknown word");
-  EXPECT_SAYS(wrong(kMarks, "width_um = 1", "widht_um = 1"), "width_um");
+  EXPECT_SAYS(message_of_setup_with(kMarks, "waist_um = 30", "waist_um = 0"), "waist_um: is not above zero");
+  EXPECT_SAYS(message_of_setup_with(kMarks, "lines-and-widths", "width"), "unknown word");
+  EXPECT_SAYS(message_of_setup_with(kMarks, "width_um = 1", "widht_um = 1"), "width_um");
   EXPECT_EQ(read(kMarks)->planned_inputs(0).size(), 2U);
 }
 
 TEST(StudyContactInstruments, ReadingsOfAllComeBackFromTheirFile) {
-  const Machine machine = parse_machine(kMachine, "m");
+  const Machine machine = test::endless_turntable();
   for (const std::string& setup : {kRTest, kProbe, kDials, kLevel, kCollimator, kMarks}) {
     const auto device = read(setup);
     InstrumentReadings plan;

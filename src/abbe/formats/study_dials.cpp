@@ -40,8 +40,8 @@ DialIndicatorsSetup::Dial read_dial(TomlTable& table, const std::vector<DialIndi
   return dial;
 }
 
-DialIndicatorsSetup::Arrangement read_dials(TomlTable& table, std::string name,
-                                            const std::vector<DialIndicatorsSetup::Face>& faces, bool simulated) {
+DialIndicatorsSetup::Arrangement read_arrangement(TomlTable& table, std::string name,
+                                                  const std::vector<DialIndicatorsSetup::Face>& faces, bool simulated) {
   DialIndicatorsSetup::Arrangement arrangement;
   arrangement.name = std::move(name);
   for (TomlTable& entry : table.tables("dial")) arrangement.dials.push_back(read_dial(entry, faces, simulated));
@@ -69,11 +69,11 @@ std::shared_ptr<Instrument> read_dials(TomlTable& table, const InstrumentContext
   }
   if (table.has("dial")) {
     if (table.has("arrangement")) table.fail("dial", "stands beside arrangements", "the dials in one of them");
-    setup.arrangements.push_back(read_dials(table, context.name, setup.faces, context.simulated));
+    setup.arrangements.push_back(read_arrangement(table, context.name, setup.faces, context.simulated));
   }
   for (TomlTable& entry : table.tables("arrangement")) {
     const std::string name = entry.text("name");
-    setup.arrangements.push_back(read_dials(entry, name, setup.faces, context.simulated));
+    setup.arrangements.push_back(read_arrangement(entry, name, setup.faces, context.simulated));
     entry.finish();
     if (setup.arrangements.back().dials.size() != setup.arrangements.front().dials.size()) {
       entry.fail("", "has another number of dials than the first arrangement", "as many dials in every arrangement");

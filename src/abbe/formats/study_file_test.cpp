@@ -6,16 +6,13 @@
 #include <fstream>
 #include <numbers>
 
-#include "abbe/formats/machine_file.h"
 #include "abbe/formats/message_of.h"
+#include "abbe/formats/replaced_text_for_test.h"
 #include "abbe/formats/study_parts.h"
+#include "abbe/formats/turntable_machine_for_test.h"
 
 namespace abbe {
 namespace {
-
-const char* const kMachine =
-    "name = \"m\"\nchain = \"w C' X' b Z t\"\n[axis.C]\nendless = true\n[axis.X]\ntravel_mm = [0, 1400]\n"
-    "[axis.Z]\ntravel_mm = [0, 600]\n";
 
 const char* const kSimulated = R"(name = "tracker on the table"
 machine = "xcfz.machine.toml"
@@ -79,20 +76,16 @@ axis.X = { count = 11 }
 title = "Tracker"
 )";
 
-Study parse(const std::string& text) {
-  return parse_study(text, "folder/xcfz.study.toml", parse_machine(kMachine, "m.toml"));
+Study parsed_in_folder(const std::string& text) {
+  return parse_study(text, "folder/xcfz.study.toml", test::endless_turntable());
 }
 
-std::string wrong(const std::string& from, const std::string& to) {
-  std::string text = kSimulated;
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  text.replace(at, from.size(), to);
-  return message_of([&] { parse(text); });
+std::string message_of_simulation_with(const std::string& from, const std::string& to) {
+  return message_of([&] { parsed_in_folder(test::replaced(kSimulated, from, to)); });
 }
 
 TEST(StudyFile, ReadsASimulation) {
-  const Study study = parse(kSimulated);
+  const Study study = parsed_in_folder(kSimulated);
   EXPECT_EQ(study.machine_file, "folder/xcfz.machine.toml");
   EXPECT_EQ(study.output, "folder/results/xcfz");
   EXPECT_EQ(study.seed, 7U);
@@ -145,7 +138,7 @@ TEST(StudyFile, ReadsASimulation) {
 TEST(StudyFile, ReadsMeasuredDataAndTheMachineBesideIt) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "abbe_study";
   std::filesystem::create_directories(folder);
-  std::ofstream(folder / "xcfz.machine.toml") << kMachine;
+  std::ofstream(folder / "xcfz.machine.toml") << test::kEndlessTurntable;
   std::ofstream(folder / "a.study.toml") << R"(machine = "xcfz.machine.toml"
 output = "out"
 [[setup]]
@@ -186,49 +179,50 @@ locations = "EC0X"
 
 TEST(StudyFile, RefusesAxesAndRangesTheMachineDoesNotHave) {
   const std::string file = "folder/xcfz.study.toml";
-  EXPECT_EQ(wrong("axis.X = { range_mm = [0, 1400], count = 8 }", "axis.Y = { count = 8 }"),
+  EXPECT_EQ(message_of_simulation_with("axis.X = { range_mm = [0, 1400], count = 8 }", "axis.Y = { count = 8 }"),
             file + ":30:6: setup[1].plan[1].axis.Y: the machine has no axis Y; expected one of C, X, Z");
   EXPECT_EQ(
-      wrong("[0, 1400], count = 8", "[0, 1500], count = 8"),
+      message_of_simulation_with("[0, 1400], count = 8", "[0, 1500], count = 8"),
       file +
           ":30:12: setup[1].plan[1].axis.X.range_mm: 1500 mm is outside the travel of axis X; expected 0 to 1400 mm");
-  EXPECT_EQ(wrong("range_mm = [0, 1400], count = 8", "range_deg = [0, 1400], count = 8"),
+  EXPECT_EQ(message_of_simulation_with("range_mm = [0, 1400], count = 8", "range_deg = [0, 1400], count = 8"),
             file +
                 ":30:12: setup[1].plan[1].axis.X.range_deg: 'deg' is not a unit of a length; expected range_mm, "
                 "range_um or range_m");
-  EXPECT_EQ(wrong("axis.C = { at_deg = 90 }", "axis.C = { at_deg = nan }"),
+  EXPECT_EQ(message_of_simulation_with("axis.C = { at_deg = 90 }", "axis.C = { at_deg = nan }"),
             file + ":32:21: setup[1].plan[1].axis.C.at_deg: nan is not a finite number; expected an angle in deg");
 }
 
 TEST(StudyFile, RefusesContradictionsInASetUp) {
   const std::string file = "folder/xcfz.study.toml";
-  EXPECT_EQ(wrong("noise = { xyz_um = 10, xyz_um_per_m = 5 }", "noise = { xyz = 10 }"),
+  EXPECT_EQ(message_of_simulation_with("noise = { xyz_um = 10, xyz_um_per_m = 5 }", "noise = { xyz = 10 }"),
             file + ":16:11: setup[1].noise.xyz: the unit is missing from the name; expected xyz_mm, xyz_um or xyz_m");
-  EXPECT_EQ(wrong("noise = { xyz_um = 10, xyz_um_per_m = 5 }", "noise = { range_um = 10 }"),
+  EXPECT_EQ(message_of_simulation_with("noise = { xyz_um = 10, xyz_um_per_m = 5 }", "noise = { range_um = 10 }"),
             file +
                 ":16:9: setup[1].noise: the noise is missing or zero; expected xyz_um with xyz_um_per_m, or range_um "
                 "with range_um_per_m and angle_arcsec");
-  EXPECT_EQ(wrong("instrument = \"tracker\"", "instrument = \"ballbar\"")
+  EXPECT_EQ(message_of_simulation_with("instrument = \"tracker\"", "instrument = \"ballbar\"")
                 .find(file + ":15:1: setup[1].instrument: unknown word \"ballbar\"; expected \"tracker\""),
             0U);
-  EXPECT_EQ(wrong("reflectors = [\"T2\"]", "reflectors = [\"T3\"]"),
+  EXPECT_EQ(message_of_simulation_with("reflectors = [\"T2\"]", "reflectors = [\"T3\"]"),
             file + ":33:1: setup[1].plan[1].reflectors: there is no reflector \"T3\"; expected one of T1, T2");
-  EXPECT_EQ(wrong("name = \"T2\"", "name = \"T1\""),
+  EXPECT_EQ(message_of_simulation_with("name = \"T2\"", "name = \"T1\""),
             file + ":26:1: setup[1].reflector[2].name: another one is called \"T1\"; expected different names");
-  EXPECT_EQ(wrong("name = \"T2\"", "name = \"T2\"\nmounted_on = \"workpiece\""),
+  EXPECT_EQ(message_of_simulation_with("name = \"T2\"", "name = \"T2\"\nmounted_on = \"workpiece\""),
             file +
                 ":25:1: setup[1].reflector[2]: the reflector and the instrument are on the same body, so that no axis "
                 "moves between them; expected another mounted_on for one of them");
-  EXPECT_EQ(wrong("true_pose = { position_mm = [300, -200, 150], angles_deg = [1, 2, 30] }", ""),
+  EXPECT_EQ(message_of_simulation_with("true_pose = { position_mm = [300, -200, 150], angles_deg = [1, 2, 30] }", ""),
             file +
                 ":17:1: setup[1].station[1]: a simulation needs the true pose; expected true_pose = { position_mm = "
                 "[x, y, z], angles_deg = [a, b, c] }");
-  EXPECT_EQ(wrong("points = 500", ""), file +
-                                           ":34:1: setup[1].plan[2].points: missing; expected a whole number from 1 "
-                                           "to 10000000");
-  EXPECT_EQ(wrong("fraction = 0.3", "fraction = 0.7"),
+  EXPECT_EQ(message_of_simulation_with("points = 500", ""),
+            file +
+                ":34:1: setup[1].plan[2].points: missing; expected a whole number from 1 "
+                "to 10000000");
+  EXPECT_EQ(message_of_simulation_with("fraction = 0.3", "fraction = 0.7"),
             file + ":10:1: simulate.outliers.fraction: is above one half; expected a fraction from 0 to 0.5");
-  EXPECT_EQ(wrong("mean_volumetric_um = 100", ""),
+  EXPECT_EQ(message_of_simulation_with("mean_volumetric_um = 100", ""),
             file +
                 ":6:1: simulate.generator: the size of the errors is missing or stands twice; expected either "
                 "mean_volumetric_um or maximum_volumetric_um");
@@ -236,25 +230,26 @@ TEST(StudyFile, RefusesContradictionsInASetUp) {
 
 TEST(StudyFile, RefusesWhatCannotBeIdentified) {
   const std::string file = "folder/xcfz.study.toml";
-  EXPECT_EQ(wrong("\"E?X\", \"EXZ\"", "\"E?Y\""),
+  EXPECT_EQ(message_of_simulation_with("\"E?X\", \"EXZ\"", "\"E?Y\""),
             file +
                 ":45:1: identify.motion[1].errors: \"E?Y\" is no error motion of this machine; expected names like EXX "
                 "or patterns like \"E?C\" (* any text, ? one character); axes C, X, Z");
-  EXPECT_EQ(wrong("\"E?X\", \"EXZ\"", "\"E?X\", \"EXC\""),
+  EXPECT_EQ(message_of_simulation_with("\"E?X\", \"EXZ\"", "\"E?X\", \"EXC\""),
             file +
                 ":45:1: identify.motion[1].errors: linear and rotary axes in one table: their positions have "
                 "different units; expected one [[identify.motion]] for each kind of axis");
-  EXPECT_EQ(wrong("\"E?X\", \"EXZ\"", "\"E?X\", \"EXX\""),
+  EXPECT_EQ(message_of_simulation_with("\"E?X\", \"EXZ\"", "\"E?X\", \"EXX\""),
             file +
                 ":45:1: identify.motion[1].errors: EXX stands twice in the same basis; expected each error motion once "
                 "per basis");
-  EXPECT_EQ(wrong("[\"E?0C\", \"EX0X\"]", "[\"EZ0C\"]"),
+  EXPECT_EQ(message_of_simulation_with("[\"E?0C\", \"EX0X\"]", "[\"EZ0C\"]"),
             file +
                 ":41:1: identify.locations: \"EZ0C\" has no effect on the axis; expected a location error that "
                 "displaces the axis line");
-  EXPECT_EQ(wrong("[1, 6]", "[6, 1]"),
+  EXPECT_EQ(message_of_simulation_with("[1, 6]", "[6, 1]"),
             file + ":47:1: identify.motion[1].orders: is no range; expected [smallest, largest]");
-  EXPECT_EQ(wrong("strategy =", "stratgey ="), file + ":42:1: identify.stratgey: unknown key, did you mean strategy?");
+  EXPECT_EQ(message_of_simulation_with("strategy =", "stratgey ="),
+            file + ":42:1: identify.stratgey: unknown key, did you mean strategy?");
 }
 
 TEST(StudyFile, MatchesPatterns) {

@@ -1,18 +1,15 @@
 #include "abbe/formats/study_instrument.h"
 
-#include "abbe/formats/machine_file.h"
 #include "abbe/formats/message_of.h"
 #include "abbe/formats/planned_poses.h"
+#include "abbe/formats/replaced_text_for_test.h"
 #include "abbe/formats/study_file.h"
+#include "abbe/formats/turntable_machine_for_test.h"
 
 namespace abbe {
 namespace {
 
-const char* const kMachine =
-    "name = \"m\"\nchain = \"w C' X' b Z t\"\n[axis.C]\nendless = true\n[axis.X]\ntravel_mm = [0, 1400]\n"
-    "[axis.Z]\ntravel_mm = [0, 600]\n";
-
-const char* const kStudy = R"(machine = "m.machine.toml"
+const char* const kBallBarStudy = R"(machine = "m.machine.toml"
 [simulate]
 [simulate.generator]
 mean_volumetric_um = 100
@@ -47,16 +44,14 @@ displacement_mm = [0, 0, 100]
 axis.C = { count = 7 }
 )";
 
-Study parsed(const std::string& text) { return parse_study(text, "s.study.toml", parse_machine(kMachine, "m")); }
+Study parsed_study(const std::string& text) { return parse_study(text, "s.study.toml", test::endless_turntable()); }
 
-std::string wrong(const std::string& from, const std::string& to) {
-  std::string text = kStudy;
-  text.replace(text.find(from), from.size(), to);
-  return message_of([&] { parsed(text); });
+std::string message_of_ball_bar_with(const std::string& from, const std::string& to) {
+  return message_of([&] { parsed_study(test::replaced(kBallBarStudy, from, to)); });
 }
 
 TEST(StudyInstrument, ReadsABallBarWithWhatIsKnownOfIt) {
-  const Study study = parsed(kStudy);
+  const Study study = parsed_study(kBallBarStudy);
   const struct Setup& setup = study.setups.at(0);
   ASSERT_NE(setup.device, nullptr);
   EXPECT_EQ(setup.instrument, "ball-bar");
@@ -76,7 +71,7 @@ TEST(StudyInstrument, ReadsABallBarWithWhatIsKnownOfIt) {
 }
 
 TEST(StudyInstrument, ReadsPlansThatBringPointsTogether) {
-  const struct Setup setup = parsed(kStudy).setups.at(0);
+  const struct Setup setup = parsed_study(kBallBarStudy).setups.at(0);
   ASSERT_EQ(setup.plans.size(), 2U);
   const MeasurementPlan& circle = setup.plans[0];
   EXPECT_EQ(circle.kind, PlanKind::circle);
@@ -91,31 +86,36 @@ TEST(StudyInstrument, ReadsPlansThatBringPointsTogether) {
 }
 
 TEST(StudyInstrument, SaysWhatIsWrong) {
-  EXPECT_EQ(
-      wrong("\"ball-bar\"", "\"ballbar\"").find("s.study.toml:7:1: setup[1].instrument: unknown word \"ballbar\""), 0U);
-  EXPECT_NE(wrong("length_um = 0.2", "length_um = 0").find("noise.length_um: is not above zero"), std::string::npos);
-  EXPECT_NE(wrong("[5, 5, 2]", "[5, 5, 0]").find("is not above zero"), std::string::npos);
-  EXPECT_NE(wrong("spindle_ball_mm", "spindle_ball_deg").find("spindle_ball_mm"), std::string::npos);
-  EXPECT_NE(wrong("items = [\"B2\"]", "items = [\"B3\"]").find("there is no item \"B3\"; expected one of B1, B2"),
+  EXPECT_EQ(message_of_ball_bar_with("\"ball-bar\"", "\"ballbar\"")
+                .find("s.study.toml:7:1: setup[1].instrument: unknown word \"ballbar\""),
+            0U);
+  EXPECT_NE(message_of_ball_bar_with("length_um = 0.2", "length_um = 0").find("noise.length_um: is not above zero"),
             std::string::npos);
-  EXPECT_NE(wrong("[\"X\", \"Z\"]", "[\"X\", \"X\"]").find("is no plane"), std::string::npos);
-  EXPECT_NE(wrong("name = \"B2\"", "name = \"B1\"").find("two items are called \"B1\""), std::string::npos);
-  EXPECT_NE(wrong("radius_mm = 150", "radius_mm = 0").find("is not above zero"), std::string::npos);
-  EXPECT_NE(wrong("axis.C = { count = 7 }", "axis.X = { count = 7 }").find("X is linear and follows by itself"),
+  EXPECT_NE(message_of_ball_bar_with("[5, 5, 2]", "[5, 5, 0]").find("is not above zero"), std::string::npos);
+  EXPECT_NE(message_of_ball_bar_with("spindle_ball_mm", "spindle_ball_deg").find("spindle_ball_mm"), std::string::npos);
+  EXPECT_NE(message_of_ball_bar_with("items = [\"B2\"]", "items = [\"B3\"]")
+                .find("there is no item \"B3\"; expected one of B1, B2"),
             std::string::npos);
-  EXPECT_NE(wrong("estimate_centre = false",
-                  "estimate_centre = true\ncentre_standard_uncertainty_um = [1,1,1]\n"
-                  "true_centre_um = [1, 2]")
+  EXPECT_NE(message_of_ball_bar_with("[\"X\", \"Z\"]", "[\"X\", \"X\"]").find("is no plane"), std::string::npos);
+  EXPECT_NE(message_of_ball_bar_with("name = \"B2\"", "name = \"B1\"").find("two items are called \"B1\""),
+            std::string::npos);
+  EXPECT_NE(message_of_ball_bar_with("radius_mm = 150", "radius_mm = 0").find("is not above zero"), std::string::npos);
+  EXPECT_NE(message_of_ball_bar_with("axis.C = { count = 7 }", "axis.X = { count = 7 }")
+                .find("X is linear and follows by itself"),
+            std::string::npos);
+  EXPECT_NE(message_of_ball_bar_with("estimate_centre = false",
+                                     "estimate_centre = true\ncentre_standard_uncertainty_um = [1,1,1]\n"
+                                     "true_centre_um = [1, 2]")
                 .find("true_centre_um"),
             std::string::npos);
 }
 
 /// The study with a third plan.
-std::string with_plan(const std::string& plan) { return kStudy + ("[[setup.plan]]\n" + plan); }
+std::string with_plan(const std::string& plan) { return kBallBarStudy + ("[[setup.plan]]\n" + plan); }
 
 TEST(StudyInstrument, ReadsAStepDiagonalWhichMayFall) {
-  const MeasurementPlan plan = parsed(with_plan("kind = \"step-diagonal\"\nsteps = 4\norder = [\"Z\", \"X\"]\n"
-                                                "axis.X = { range_mm = [900, 100] }\naxis.Z = {}\n"))
+  const MeasurementPlan plan = parsed_study(with_plan("kind = \"step-diagonal\"\nsteps = 4\norder = [\"Z\", \"X\"]\n"
+                                                      "axis.X = { range_mm = [900, 100] }\naxis.Z = {}\n"))
                                    .setups.at(0)
                                    .plans.at(2);
   EXPECT_EQ(plan.kind, PlanKind::step_diagonal);
@@ -124,13 +124,15 @@ TEST(StudyInstrument, ReadsAStepDiagonalWhichMayFall) {
   EXPECT_EQ(plan.axes[1].from, 900);
   EXPECT_EQ(plan.axes[1].to, 100);
   const MeasurementPlan by_chain =
-      parsed(with_plan("kind = \"step-diagonal\"\nsteps = 4\naxis.Z = {}\naxis.X = {}\n")).setups.at(0).plans.at(2);
+      parsed_study(with_plan("kind = \"step-diagonal\"\nsteps = 4\naxis.Z = {}\naxis.X = {}\n"))
+          .setups.at(0)
+          .plans.at(2);
   EXPECT_EQ(by_chain.order, (std::vector<std::size_t>{1, 2}));
 }
 
 TEST(StudyInstrument, SaysWhatIsWrongWithAStepDiagonal) {
   const auto wrong_plan = [](const std::string& plan) {
-    return message_of([&] { parsed(with_plan("kind = \"step-diagonal\"\n" + plan)); });
+    return message_of([&] { parsed_study(with_plan("kind = \"step-diagonal\"\n" + plan)); });
   };
   const std::string axes = "axis.X = {}\naxis.Z = {}\n";
   EXPECT_NE(wrong_plan(axes).find("setup[1].plan[3].steps"), std::string::npos);
@@ -145,12 +147,12 @@ TEST(StudyInstrument, SaysWhatIsWrongWithAStepDiagonal) {
 }
 
 TEST(StudyInstrument, PosesOfAFileNameTheirItems) {
-  const Study study = parsed(with_plan("kind = \"poses\"\nfile = \"poses.csv\"\nrepeats = 2\n"));
+  const Study study = parsed_study(with_plan("kind = \"poses\"\nfile = \"poses.csv\"\nrepeats = 2\n"));
   const abbe::Setup& bar = study.setups.at(0);
   EXPECT_EQ(bar.plans.at(2).kind, PlanKind::poses);
   EXPECT_EQ(bar.plans.at(2).file.filename(), "poses.csv");
   EXPECT_EQ(bar.plans.at(2).repeats, 2U);
-  EXPECT_NE(message_of([] { parsed(with_plan("kind = \"poses\"\n")); }).find("setup[1].plan[3].file"),
+  EXPECT_NE(message_of([] { parsed_study(with_plan("kind = \"poses\"\n")); }).find("setup[1].plan[3].file"),
             std::string::npos);
 
   const auto read = [&](const char* text) { return parse_planned_poses(text, "poses.csv", study.machine, bar); };
@@ -171,7 +173,7 @@ TEST(StudyInstrument, PosesOfAFileNameTheirItems) {
 }
 
 TEST(StudyInstrument, PosesOfATrackersFileNameTheirStations) {
-  const Study study = parsed(with_plan("kind = \"random\"\npoints = 4\naxis.X = {}\n"));
+  const Study study = parsed_study(with_plan("kind = \"random\"\npoints = 4\naxis.X = {}\n"));
   abbe::Setup tracker;
   tracker.name = "tracker";
   tracker.stations.resize(2);
@@ -198,10 +200,10 @@ TEST(StudyInstrument, PosesOfATrackersFileNameTheirStations) {
 }
 
 TEST(StudyInstrument, RefusesAFallingRangeWhereTheOrderSaysNothing) {
-  const std::string message =
-      message_of([] { parsed(with_plan("kind = \"random\"\npoints = 4\naxis.X = { range_mm = [900, 100] }\n")); });
+  const std::string message = message_of(
+      [] { parsed_study(with_plan("kind = \"random\"\npoints = 4\naxis.X = { range_mm = [900, 100] }\n")); });
   EXPECT_NE(message.find("setup[1].plan[3].axis.X.range_mm: is falling"), std::string::npos) << message;
-  EXPECT_EQ(parsed(with_plan("kind = \"line\"\npoints = 4\naxis.X = { range_mm = [900, 100] }\n"))
+  EXPECT_EQ(parsed_study(with_plan("kind = \"line\"\npoints = 4\naxis.X = { range_mm = [900, 100] }\n"))
                 .setups.at(0)
                 .plans.at(2)
                 .axes[1]

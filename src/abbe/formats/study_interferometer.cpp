@@ -5,12 +5,13 @@
 
 #include "abbe/formats/study_instrument.h"
 #include "abbe/formats/study_quantity.h"
+#include "abbe/formats/toml_vector.h"
 #include "abbe/instruments/interferometer.h"
 
 namespace abbe {
 namespace {
 
-const std::vector<std::string> kComponents = {"length", "straightness_y", "straightness_z", "roll", "pitch", "yaw"};
+const std::vector<std::string> kComponentWords = {"length", "straightness_y", "straightness_z", "roll", "pitch", "yaw"};
 
 void read_components(TomlTable& table, InterferometerSetup& setup) {
   if (!table.has("components")) {
@@ -19,12 +20,12 @@ void read_components(TomlTable& table, InterferometerSetup& setup) {
   }
   setup.components.clear();
   for (const std::string& word : table.texts("components")) {
-    const auto found = std::find(kComponents.begin(), kComponents.end(), word);
-    if (found == kComponents.end()) {
+    const auto found = std::find(kComponentWords.begin(), kComponentWords.end(), word);
+    if (found == kComponentWords.end()) {
       table.fail("components", fmt::format("unknown component \"{}\"", word),
                  "some of length, straightness_y, straightness_z, roll, pitch, yaw");
     }
-    setup.components.push_back(static_cast<InterferometerComponent>(found - kComponents.begin()));
+    setup.components.push_back(static_cast<InterferometerComponent>(found - kComponentWords.begin()));
   }
 }
 
@@ -56,10 +57,8 @@ void read_scales_and_noise(TomlTable& table, bool simulated, InterferometerSetup
   noise.finish();
 }
 
-Eigen::Vector3d vector_of(const std::vector<double>& values) { return {values[0], values[1], values[2]}; }
-
 /// Positions of the rotary axes while the optics were aligned.
-std::vector<double> read_aligned_at(TomlTable& table, const Machine& machine) {
+std::vector<double> read_rotary_positions_when_aligned(TomlTable& table, const Machine& machine) {
   std::vector<double> positions(machine.axes.size(), 0.0);
   std::optional<TomlTable> aligned = table.optional_table("aligned_at");
   if (!aligned) return positions;
@@ -100,8 +99,8 @@ InterferometerRun read_run(TomlTable& table, const InstrumentContext& context) {
   } else {
     run.square_angle = read_setup_number(table, "square_angle", Quantity::angle, Knowledge::exact, simulated, 0.0);
   }
-  run.aligned_orientation = nominal_orientation(context.machine, read_aligned_at(table, context.machine),
-                                                run.moving_body, run.reference_body);
+  run.aligned_orientation = nominal_orientation(
+      context.machine, read_rotary_positions_when_aligned(table, context.machine), run.moving_body, run.reference_body);
   run.target = static_cast<LengthTarget>(table.word_or("target", 0, {"retroreflector", "plane-mirror"}));
   run.straightness_reflector_moves = table.boolean_or("straightness_reflector_moves", false);
   run.bidirectional = table.boolean_or("bidirectional", false);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kLargestPointCount = 10'000'000;
 constexpr int kLargestRepeatCount = 10'000;
-constexpr int kMostSteps = 100'000;
+constexpr int kLargestStepCount = 100'000;
 
 std::string all_names(const std::vector<std::string>& items) {
   std::string names;
@@ -23,7 +23,7 @@ std::size_t find_name(const std::vector<std::string>& items, const std::string& 
 }
 
 /// Unit direction of "X", "Y" or "Z" of the machine frame.
-Eigen::Vector3d read_direction(TomlTable& table, const std::string& word) {
+Eigen::Vector3d machine_direction(TomlTable& table, const std::string& word) {
   static const std::vector<std::string> kWords = {"X", "Y", "Z"};
   const std::size_t axis = find_name(kWords, word);
   if (axis == kWords.size())
@@ -36,8 +36,8 @@ void read_circle(TomlTable& table, MeasurementPlan& plan) {
   if (plane.size() != 2 || plane[0] == plane[1]) {
     table.fail("plane", "is no plane", "two directions of the machine frame: plane = [\"X\", \"Y\"]");
   }
-  plan.circle.u = read_direction(table, plane[0]);
-  plan.circle.v = read_direction(table, plane[1]);
+  plan.circle.u = machine_direction(table, plane[0]);
+  plan.circle.v = machine_direction(table, plane[1]);
   plan.circle.radius = table.number("radius", Quantity::length);
   if (!(plan.circle.radius > 0)) {
     table.fail_quantity("radius", Quantity::length, "is not above zero", "the radius of the circle");
@@ -49,7 +49,7 @@ void read_circle(TomlTable& table, MeasurementPlan& plan) {
 
 /// Axes that move, as the file orders them, or in the order of the chain.
 void read_step_diagonal(TomlTable& table, const Machine& machine, MeasurementPlan& plan) {
-  plan.steps = static_cast<std::size_t>(table.integer("steps", 1, kMostSteps));
+  plan.steps = static_cast<std::size_t>(table.integer("steps", 1, kLargestStepCount));
   for (const std::string& name : table.texts_or_none("order")) {
     const std::size_t axis = machine.find_axis(name);
     if (axis == Machine::npos || plan.axes[axis].is_fixed()) {

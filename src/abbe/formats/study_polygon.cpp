@@ -6,6 +6,7 @@
 #include "abbe/formats/study_direction.h"
 #include "abbe/formats/study_instrument.h"
 #include "abbe/formats/study_quantity.h"
+#include "abbe/formats/toml_vector.h"
 #include "abbe/instruments/polygon_placement.h"
 
 namespace abbe {
@@ -13,8 +14,6 @@ namespace {
 
 constexpr std::int64_t kMostFaces = 360;
 constexpr std::size_t kMostMounts = 20, kMostSteps = 9;  // with 360 faces fewer items than 16 bits count
-
-Eigen::Vector3d vector(const std::vector<double>& values) { return {values[0], values[1], values[2]}; }
 
 /// A number of one face: what the face does not state is that of all faces.
 SetupNumber read_face_number(TomlTable& table, const char* base, Quantity quantity, const SetupNumber& all,
@@ -27,7 +26,7 @@ SetupNumber read_face_number(TomlTable& table, const char* base, Quantity quanti
 }
 
 /// The errors of a face; `distance` is still its error.
-PolygonGaugeSetup::Face read_face(TomlTable& table, const PolygonGaugeSetup::Face& all, bool simulated) {
+PolygonGaugeSetup::Face read_polygon_face(TomlTable& table, const PolygonGaugeSetup::Face& all, bool simulated) {
   return {read_face_number(table, "azimuth_error", Quantity::angle, all.azimuth_error, simulated),
           read_face_number(table, "tilt", Quantity::angle, all.tilt, simulated),
           read_face_number(table, "distance_error", Quantity::length, all.distance, simulated)};
@@ -49,14 +48,14 @@ void read_prism(TomlTable table, bool simulated, PolygonGaugeSetup& setup) {
     setup.top[i] = read_setup_number(table, tops[i], Quantity::angle, Knowledge::exact, simulated, 0.0);
   }
   const PolygonGaugeSetup::Face open{SetupNumber::open(0), SetupNumber::open(0), SetupNumber::open(0)};
-  setup.faces.assign(faces, read_face(table, open, simulated));
+  setup.faces.assign(faces, read_polygon_face(table, open, simulated));
   const PolygonGaugeSetup::Face all = setup.faces.front();
   std::vector<bool> stated(faces, false);
   for (TomlTable& entry : table.tables("face")) {
     const std::size_t j = static_cast<std::size_t>(entry.integer("number", 1, static_cast<std::int64_t>(faces))) - 1;
     if (stated[j]) entry.fail("number", fmt::format("face {} is stated twice", j + 1), "each face once");
     stated[j] = true;
-    setup.faces[j] = read_face(entry, all, simulated);
+    setup.faces[j] = read_polygon_face(entry, all, simulated);
     entry.finish();
   }
   for (PolygonGaugeSetup::Face& face : setup.faces) {
@@ -86,9 +85,9 @@ void read_sensors(TomlTable& table, PolygonGaugeSetup& setup) {
     std::optional<TomlTable> entry = sensors->optional_table(key);
     if (!entry) continue;
     if (const auto position = entry->optional_numbers("position", Quantity::length, 3)) {
-      sensor.position = vector(*position);
+      sensor.position = vector_of(*position);
     }
-    if (const auto angles = entry->optional_numbers("angles", Quantity::angle, 3)) sensor.angles = vector(*angles);
+    if (const auto angles = entry->optional_numbers("angles", Quantity::angle, 3)) sensor.angles = vector_of(*angles);
     entry->finish();
   }
   sensors->finish();
@@ -193,7 +192,7 @@ void read_mounts(TomlTable& table, bool simulated, PolygonGaugeSetup& setup) {
 }
 
 /// Commands at which face 1 looks along x: as plans hold axes that they do not name, unless stated.
-std::vector<double> read_aligned_at(TomlTable& table, const Machine& machine) {
+std::vector<double> read_commands_when_aligned(TomlTable& table, const Machine& machine) {
   std::optional<TomlTable> aligned = table.optional_table("aligned_at");
   std::vector<double> positions;
   for (const Axis& axis : machine.axes) {
@@ -221,12 +220,12 @@ void read_placement(TomlTable& table, const Machine& machine, PolygonGaugeSetup&
   placement.table_body = read_body(table, "prism_on", Body::workpiece);
   placement.sensor_body = read_body(table, "sensors_on", Body::bed);
   refuse_same_body(table, placement.table_body, placement.sensor_body);
-  if (const auto centre = table.optional_numbers("centre", Quantity::length, 3)) placement.centre = vector(*centre);
+  if (const auto centre = table.optional_numbers("centre", Quantity::length, 3)) placement.centre = vector_of(*centre);
   placement.top = read_direction(table, "top", machine.axes[placement.axis].direction);
   const bool across_x = std::abs(placement.top.normalized().x()) < 0.5;
   placement.toward_x =
       read_direction(table, "toward_x", across_x ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY());
-  placement.aligned_at = read_aligned_at(table, machine);
+  placement.aligned_at = read_commands_when_aligned(table, machine);
   try {
     place_polygon(machine, placement, setup);
   } catch (const std::invalid_argument& error) {

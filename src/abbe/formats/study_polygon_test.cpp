@@ -4,22 +4,18 @@
 #include <filesystem>
 
 #include "abbe/formats/instrument_file.h"
-#include "abbe/formats/machine_file.h"
 #include "abbe/formats/message_of.h"
+#include "abbe/formats/replaced_text_for_test.h"
 #include "abbe/formats/study_file.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/formats/turntable_machine_for_test.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/polygon_gauge.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kArcsec = 3.14159265358979323846 / (180 * 3600);
-
-const char* const kMachine =
-    "name = \"m\"\nchain = \"w C' X' b Z t\"\n[axis.C]\ntravel_deg = [0, 360]\n[axis.X]\ntravel_mm = [0, 1400]\n"
-    "[axis.Z]\ntravel_mm = [0, 600]\n";
-
-const char* const kStudy = R"(machine = "m.machine.toml"
+const char* const kPolygonStudy = R"(machine = "m.machine.toml"
 [simulate]
 [simulate.generator]
 mean_volumetric_um = 100
@@ -62,19 +58,17 @@ axis.X = { at_mm = 100 }
 items = ["second"]
 )";
 
-Machine machine() { return parse_machine(kMachine, "m"); }
-Study parsed(const std::string& text) { return parse_study(text, "s.study.toml", machine()); }
-
-std::string with(const std::string& from, const std::string& to) {
-  std::string text = kStudy;
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
+Study parsed_polygon_study(const std::string& text) {
+  return parse_study(text, "s.study.toml", test::one_turn_turntable());
 }
 
-std::string wrong(const std::string& from, const std::string& to) {
-  const std::string text = with(from, to);
-  return message_of([&] { parsed(text); });
+std::string polygon_study_with(const std::string& from, const std::string& to) {
+  return test::replaced(kPolygonStudy, from, to);
+}
+
+std::string message_of_polygon_with(const std::string& from, const std::string& to) {
+  const std::string text = polygon_study_with(from, to);
+  return message_of([&] { parsed_polygon_study(text); });
 }
 
 const char* const kSteps = R"(
@@ -94,7 +88,7 @@ displacement = "z"
 [setup.prism])";
 
 std::string stepwise() {
-  std::string text = with("[setup.prism]", kSteps);
+  std::string text = polygon_study_with("[setup.prism]", kSteps);
   const std::size_t zero = text.find("zero = {");
   return text.erase(zero, text.find('\n', zero) + 1 - zero);
 }
@@ -107,7 +101,7 @@ const SetupQuantity& named(const Instrument& device, const std::string& name) {
 }
 
 TEST(StudyPolygon, ReadsAPrismWithWhatIsKnownOfIt) {
-  const Study study = parsed(kStudy);
+  const Study study = parsed_polygon_study(kPolygonStudy);
   const Instrument& device = *study.setups.at(0).device;
   EXPECT_EQ(device.quantities().size(), 12U + 36U + 2U + 6U);
   EXPECT_EQ(device.target_names(), (std::vector<std::string>{"first", "second"}));
@@ -137,7 +131,7 @@ TEST(StudyPolygon, ReadsAPrismWithWhatIsKnownOfIt) {
 }
 
 TEST(StudyPolygon, AZeroIsTheIndicationOfThePrismAtItsNominalPlace) {
-  const Study study = parsed(with("distance_error_um = 2", "distance_error_um = 0"));
+  const Study study = parsed_polygon_study(polygon_study_with("distance_error_um = 2", "distance_error_um = 0"));
   const Instrument& device = *study.setups[0].device;
   const auto& gauge = dynamic_cast<const PolygonGauge&>(device);
   std::vector<double> values;
@@ -166,7 +160,7 @@ TEST(StudyPolygon, AZeroIsTheIndicationOfThePrismAtItsNominalPlace) {
 TEST(StudyPolygon, StepsShareThePrismAndHaveZerosOfTheirOwn) {
   std::string renamed = stepwise();
   renamed.replace(renamed.find("items = [\"second\"]"), 18, "items = [\"second.y\"]");
-  const Study steps = parsed(renamed);
+  const Study steps = parsed_polygon_study(renamed);
   const Instrument& device = *steps.setups[0].device;
   EXPECT_EQ(device.target_names().size(), 6U);
   ASSERT_EQ(device.components().size(), 3U);
@@ -178,7 +172,7 @@ TEST(StudyPolygon, StepsShareThePrismAndHaveZerosOfTheirOwn) {
 }
 
 TEST(StudyPolygon, AFileNamesTheMountAndThePoseSaysWhichFaceIsSeen) {
-  const Study study = parsed(kStudy);
+  const Study study = parsed_polygon_study(kPolygonStudy);
   const Instrument& device = *study.setups[0].device;
   const std::string header =
       "C_deg,X_mm,Z_mm,item,autocollimator_x_about_z_arcsec,autocollimator_x_about_y_arcsec,"
@@ -225,30 +219,34 @@ TEST(StudyPolygon, SaysWhatIsWrong) {
   const auto says = [](const std::string& message, const std::string& part) {
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
-  says(wrong("rotary_axis = \"C\"", "rotary_axis = \"X\""),
+  says(message_of_polygon_with("rotary_axis = \"C\"", "rotary_axis = \"X\""),
        "setup[1].rotary_axis: the machine has no rotary axis X; expected one of C");
-  says(wrong("faces = 12", "faces = 10"), "setup[1].prism.faces: is not divisible by four");
-  says(wrong("distance_mm = 48.3", "distance_mm = 0"), "is not above zero");
-  says(wrong("distance_mm = 48.3", "distance_deg = 48.3"), "distance_mm");
-  says(wrong("number = 3", "number = 13"), "setup[1].prism.face[1].number");
-  says(
-      wrong("[[setup.mount]]\nname = \"first\"", "[[setup.prism.face]]\nnumber = 3\n[[setup.mount]]\nname = \"first\""),
-      "face 3 is stated twice");
-  says(wrong("name = \"second\"", "name = \"first\""), "two items are called");
-  says(wrong("turned_by_faces = 1", "turned_by_faces = 12"), "turned_by_faces");
-  says(wrong("centre_mm = [0, 0, 20]", "centre_mm = [15, 0, 20]"), "15 mm beside the line of C");
-  says(wrong("centre_mm = [0, 0, 20]", "top = [0, 1, 1]"), "the top looks 45 deg aside of the line of C");
-  says(wrong("centre_mm = [0, 0, 20]", "sensors_on = \"workpiece\""), "on the same body");
-  says(wrong("displacement_um = 0.03", "displacement_um = 0"), "noise.displacement_um: is not above zero");
-  says(wrong("position_mm = [20, 0, 90]", "position_mm = [60, 0, 90]"), "displacement sensor along z");
-  says(wrong("zero = {", "measured = [\"displacement_w\"]\nzero = {"), "unknown reading \"displacement_w\"");
-  says(wrong("zero = { displacement_x_um = 3, autocollimator_y_about_x_arcsec = 2 }",
-             "measured = [\"displacement_x\", \"autocollimator_x_about_z\", \"displacement_x\"]"),
+  says(message_of_polygon_with("faces = 12", "faces = 10"), "setup[1].prism.faces: is not divisible by four");
+  says(message_of_polygon_with("distance_mm = 48.3", "distance_mm = 0"), "is not above zero");
+  says(message_of_polygon_with("distance_mm = 48.3", "distance_deg = 48.3"), "distance_mm");
+  says(message_of_polygon_with("number = 3", "number = 13"), "setup[1].prism.face[1].number");
+  says(message_of_polygon_with("[[setup.mount]]\nname = \"first\"",
+                               "[[setup.prism.face]]\nnumber = 3\n[[setup.mount]]\nname = \"first\""),
+       "face 3 is stated twice");
+  says(message_of_polygon_with("name = \"second\"", "name = \"first\""), "two items are called");
+  says(message_of_polygon_with("turned_by_faces = 1", "turned_by_faces = 12"), "turned_by_faces");
+  says(message_of_polygon_with("centre_mm = [0, 0, 20]", "centre_mm = [15, 0, 20]"), "15 mm beside the line of C");
+  says(message_of_polygon_with("centre_mm = [0, 0, 20]", "top = [0, 1, 1]"),
+       "the top looks 45 deg aside of the line of C");
+  says(message_of_polygon_with("centre_mm = [0, 0, 20]", "sensors_on = \"workpiece\""), "on the same body");
+  says(message_of_polygon_with("displacement_um = 0.03", "displacement_um = 0"),
+       "noise.displacement_um: is not above zero");
+  says(message_of_polygon_with("position_mm = [20, 0, 90]", "position_mm = [60, 0, 90]"),
+       "displacement sensor along z");
+  says(message_of_polygon_with("zero = {", "measured = [\"displacement_w\"]\nzero = {"),
+       "unknown reading \"displacement_w\"");
+  says(message_of_polygon_with("zero = { displacement_x_um = 3, autocollimator_y_about_x_arcsec = 2 }",
+                               "measured = [\"displacement_x\", \"autocollimator_x_about_z\", \"displacement_x\"]"),
        "measured twice");
-  says(wrong("displacement_x_um = 3", "displacement_q_um = 3"), "displacement_q_um");
+  says(message_of_polygon_with("displacement_x_um = 3", "displacement_q_um = 3"), "displacement_q_um");
   std::string text = stepwise();
   text.replace(text.find("displacement = \"z\""), 18, "# only that");
-  says(message_of([&] { parsed(text); }), "setup[1].step[3]: measures other kinds of readings");
+  says(message_of([&] { parsed_polygon_study(text); }), "setup[1].step[3]: measures other kinds of readings");
 }
 
 }  // namespace

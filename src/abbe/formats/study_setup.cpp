@@ -7,6 +7,7 @@
 
 #include "abbe/formats/study_instrument.h"
 #include "abbe/formats/study_parts.h"
+#include "abbe/formats/toml_vector.h"
 
 namespace abbe {
 namespace {
@@ -14,12 +15,10 @@ namespace {
 constexpr double kMicrometresPerMillimetre = 1e3;
 constexpr double kMicrometresPerMetre = 1e6;  // of mm per mm
 
-Eigen::Vector3d vector(const std::vector<double>& values) { return {values[0], values[1], values[2]}; }
-
 StudyPose read_pose(TomlTable table) {
   StudyPose pose;
-  pose.position = vector(table.numbers("position", Quantity::length, 3));
-  if (const auto angles = table.optional_numbers("angles", Quantity::angle, 3)) pose.angles = vector(*angles);
+  pose.position = vector_of(table.numbers("position", Quantity::length, 3));
+  if (const auto angles = table.optional_numbers("angles", Quantity::angle, 3)) pose.angles = vector_of(*angles);
   table.finish();
   return pose;
 }
@@ -69,21 +68,21 @@ SetupReflector read_reflector(TomlTable& table, bool simulated) {
     if (simulated) table.fail("offset", "a simulation has no data", "offset_mm = [x, y, z]");
     reflector.offset_from_data = true;
   } else {
-    reflector.offset = vector(table.numbers("offset", Quantity::length, 3));
+    reflector.offset = vector_of(table.numbers("offset", Quantity::length, 3));
   }
   reflector.estimate_offset = table.boolean_or("estimate_offset", false);
   if (const auto u = table.optional_numbers("offset_standard_uncertainty", Quantity::length, 3)) {
-    reflector.offset_standard_uncertainty = vector(*u);
+    reflector.offset_standard_uncertainty = vector_of(*u);
     if (reflector.offset_standard_uncertainty.minCoeff() < 0) {
       table.fail_quantity("offset_standard_uncertainty", Quantity::length, "is negative", "lengths not below zero");
     }
   }
   if (const auto offset = table.optional_numbers("true_offset", Quantity::length, 3)) {
     if (!simulated) table.fail_quantity("true_offset", Quantity::length, "belongs to a simulation only", "[simulate]");
-    reflector.true_offset = vector(*offset);
+    reflector.true_offset = vector_of(*offset);
   }
   if (const auto direction = table.optional_numbers("view_direction", Quantity::dimensionless, 3)) {
-    reflector.view_direction = vector(*direction);
+    reflector.view_direction = vector_of(*direction);
     if (reflector.view_direction.norm() == 0) table.fail("view_direction", "has no length", "a direction [x, y, z]");
     reflector.view_direction.normalize();
     reflector.view_half_angle = table.number("view_half_angle", Quantity::angle);

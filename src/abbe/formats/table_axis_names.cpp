@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <cassert>
 
+#include "abbe/formats/ascii_letters.h"
+
 namespace abbe {
-namespace {
-
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
-
-}  // namespace
 
 const TableAxisName* find_table_axis(const std::vector<TableAxisName>& axes, std::string_view name) {
   for (const TableAxisName& axis : axes) {
     if (std::equal(axis.name.begin(), axis.name.end(), name.begin(), name.end(),
-                   [](char a, char b) { return upper(a) == upper(b); })) {
+                   [](char a, char b) { return upper_case(a) == upper_case(b); })) {
       return &axis;
     }
   }

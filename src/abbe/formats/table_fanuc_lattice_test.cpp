@@ -13,7 +13,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::vector<TableAxisName> kNumbers = {{2, "1", false}, {1, "2", false}, {0, "3", false}, {3, "4", true}};
+const std::vector<TableAxisName> kReversedNumbers = {{2, "1", false}, {1, "2", false}, {0, "3", false}, {3, "4", true}};
 constexpr std::array<double, 3> kReference = {0, -7.5, 250};
 
 CorrectionLattice some_lattice(double size) {
@@ -35,8 +35,8 @@ FanucLattice some_fanuc(double size = 0.05, double unit = 1e-3) {
 }
 
 FanucLattice read_back(const FanucLattice& lattice) {
-  return parse_fanuc_lattice(fanuc_lattice_parameter_text(lattice, kNumbers), "p",
-                             fanuc_lattice_point_text(lattice, kNumbers), "d", kNumbers);
+  return parse_fanuc_lattice(fanuc_lattice_parameter_text(lattice, kReversedNumbers), "p",
+                             fanuc_lattice_point_text(lattice, kReversedNumbers), "d", kReversedNumbers);
 }
 
 TEST(FanucLatticeTable, WhatIsWrittenIsReadBackAndIsTheLatticeToHalfAStep) {
@@ -79,29 +79,31 @@ TEST(FanucLatticeTable, ParametersAndPointsAreBlocksOfAParameterFile) {
   lattice.corrections[0][1] = 0.003;
   lattice.corrections[1][2] = -0.0021;
   const FanucLattice rounded = fanuc_lattice(lattice, 1e-3, {1, 0, 2});
-  EXPECT_EQ(fanuc_lattice_parameter_text(rounded, kNumbers),
+  EXPECT_EQ(fanuc_lattice_parameter_text(rounded, kReversedNumbers),
             "%\nN10800P1\nN10801P2\nN10802P3\nN10803P3\nN10804P2\nN10805P4\nN10806P2\nN10807P1\nN10808P3\n"
             "N10809P1\nN10810P1\nN10811P1\nN10812P40.0\nN10813P12.5\nN10814P25.0\n%\n");
-  EXPECT_THAT(fanuc_lattice_point_text(rounded, kNumbers),
+  EXPECT_THAT(fanuc_lattice_point_text(rounded, kReversedNumbers),
               testing::StartsWith("%\nN00001A1P0A2P0A3P0\nN00002A1P0A2P3A3P0\nN00003A1P0A2P0A3P-2\nN00004A1P0"));
 }
 
 TEST(FanucLatticeTable, PointsMayComeInAnyOrderAndLinesMayEndAsThoseOfControls) {
   const FanucLattice lattice = some_fanuc();
-  std::string points = fanuc_lattice_point_text(lattice, kNumbers);
+  std::string points = fanuc_lattice_point_text(lattice, kReversedNumbers);
   const std::size_t second = points.find("N00002"), third = points.find("N00003");
   points = "%\r\n" + points.substr(second, third - second - 1) + ";\r\n" + points.substr(2, second - 2) +
            points.substr(third);
-  EXPECT_EQ(parse_fanuc_lattice(fanuc_lattice_parameter_text(lattice, kNumbers), "p", points, "d", kNumbers), lattice);
+  EXPECT_EQ(
+      parse_fanuc_lattice(fanuc_lattice_parameter_text(lattice, kReversedNumbers), "p", points, "d", kReversedNumbers),
+      lattice);
 }
 
 TEST(FanucLatticeTable, WrongParametersAreRefusedWithTheirLine) {
   const FanucLattice lattice = some_fanuc();
-  const std::string points = fanuc_lattice_point_text(lattice, kNumbers);
+  const std::string points = fanuc_lattice_point_text(lattice, kReversedNumbers);
   const auto changed = [&](const std::string& from, const std::string& to) {
-    std::string text = fanuc_lattice_parameter_text(lattice, kNumbers);
+    std::string text = fanuc_lattice_parameter_text(lattice, kReversedNumbers);
     text.replace(text.find(from), from.size(), to);
-    return test::refusal([&] { parse_fanuc_lattice(text, "p", points, "d", kNumbers); });
+    return test::refusal([&] { parse_fanuc_lattice(text, "p", points, "d", kReversedNumbers); });
   };
   EXPECT_THAT(changed("N10800P1", "N10799P1"), testing::AllOf(HasSubstr("p:2"), HasSubstr("unknown parameter")));
   EXPECT_THAT(changed("N10800P1\n", ""), HasSubstr("N10800"));
@@ -121,10 +123,11 @@ TEST(FanucLatticeTable, WrongParametersAreRefusedWithTheirLine) {
 TEST(FanucLatticeTable, WrongPointsAreRefusedWithTheirLine) {
   const FanucLattice lattice = some_fanuc(0);
   const auto changed = [&](const std::string& from, const std::string& to) {
-    std::string text = fanuc_lattice_point_text(lattice, kNumbers);
+    std::string text = fanuc_lattice_point_text(lattice, kReversedNumbers);
     text.replace(text.find(from), from.size(), to);
-    return test::refusal(
-        [&] { parse_fanuc_lattice(fanuc_lattice_parameter_text(lattice, kNumbers), "p", text, "d", kNumbers); });
+    return test::refusal([&] {
+      parse_fanuc_lattice(fanuc_lattice_parameter_text(lattice, kReversedNumbers), "p", text, "d", kReversedNumbers);
+    });
   };
   const std::string second = "N00002A1P0A2P0A3P0";
   EXPECT_THAT(changed(second + "\n", ""), testing::AllOf(HasSubstr("N00002"), HasSubstr("is missing")));

@@ -11,7 +11,6 @@ namespace {
 using testing::HasSubstr;
 
 const std::vector<TableAxisName> kNumbers = {{0, "1", false}, {1, "2", false}, {2, "4", true}};
-const std::vector<TableAxisName> kLetters = {{0, "X", false}, {1, "Y", false}, {2, "C", true}};
 
 AxisTable pitch_table() {
   AxisTable table;
@@ -71,9 +70,9 @@ TEST(FanucTable, WhatIsWrongIsRefused) {
 
 TEST(HeidenhainTable, ColumnsOfOneAxisAreWrittenAndReadBack) {
   AxisTable own = test::some_table(0, 0, 50, 1), cross = test::some_table(0, 1, 50, 2);
-  const std::string text = heidenhain_com_text({own, cross}, kLetters, -1);
+  const std::string text = heidenhain_com_text({own, cross}, test::kXYC, -1);
   EXPECT_THAT(text, testing::StartsWith("BEGIN X.COM MM\nNR AXISPOS X Y\n0 -100.000000 "));
-  const std::vector<AxisTable> read = parse_heidenhain_com(text, "X.COM", 0, kLetters, -1);
+  const std::vector<AxisTable> read = parse_heidenhain_com(text, "X.COM", 0, test::kXYC, -1);
   ASSERT_EQ(read.size(), 2U);
   test::expect_near(read[0], own, 0.51e-6, 0.51e-6);
   test::expect_near(read[1], cross, 0.51e-6, 0.51e-6);
@@ -81,7 +80,7 @@ TEST(HeidenhainTable, ColumnsOfOneAxisAreWrittenAndReadBack) {
 
 TEST(HeidenhainTable, WhatIsWrongIsRefused) {
   const auto refused = [](const std::string& text) {
-    return test::refusal([&] { parse_heidenhain_com(text, "X.COM", 0, kLetters, 1); });
+    return test::refusal([&] { parse_heidenhain_com(text, "X.COM", 0, test::kXYC, 1); });
   };
   const std::string head = "BEGIN X.COM MM\nNR AXISPOS X\n";
   EXPECT_THAT(refused("G0\n"), HasSubstr("no table of a control"));

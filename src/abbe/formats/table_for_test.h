@@ -9,8 +9,11 @@
 
 #include "abbe/compensate/axis_table.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/table_axis_names.h"
 
 namespace abbe::test {
+
+inline const std::vector<TableAxisName> kXYC = {{0, "X", false}, {1, "Y", false}, {2, "C", true}};
 
 /// A table with numbers of many digits.
 inline AxisTable some_table(std::size_t input, std::size_t output, std::size_t nodes, std::uint64_t seed) {

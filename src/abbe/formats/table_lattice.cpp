@@ -5,21 +5,19 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/program_text.h"
 #include "abbe/formats/table_numbers.h"
 #include "abbe/formats/text_cursor.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
-constexpr int kPositionDecimals = 9;
 constexpr int kCorrectionDecimals = 4;
 constexpr std::size_t kMostNodes = 20'000'000;
-constexpr double kDegree = std::numbers::pi / 180;
 
 double scale_of(bool rotary) { return rotary ? 1e6 : 1e3; }
 
@@ -30,10 +28,6 @@ std::string output_title(const TableAxisName& axis) {
 
 std::string correction_text(double value, bool rotary) {
   return fixed_number(scale_of(rotary) * value, kCorrectionDecimals);
-}
-
-std::string position_text(double value, bool rotary) {
-  return trimmed_decimals(shown_position(value, rotary), kPositionDecimals);
 }
 
 /// Different values in increasing order.
@@ -55,7 +49,7 @@ std::string lattice_csv_text(const CorrectionLattice& lattice, const std::vector
     std::size_t rest = k;
     for (std::size_t a = 0; a < lattice.inputs.size(); ++a) {
       const std::vector<double>& nodes = lattice.positions[a];
-      text += position_text(nodes[rest % nodes.size()], table_axis(axes, lattice.inputs[a]).rotary) + ",";
+      text += shown_position_text(nodes[rest % nodes.size()], table_axis(axes, lattice.inputs[a]).rotary) + ",";
       rest /= nodes.size();
     }
     for (std::size_t o = 0; o < lattice.outputs.size(); ++o) {
@@ -140,7 +134,7 @@ std::string lattice_vtk_text(const CorrectionLattice& lattice, const std::vector
     }
     const bool rotary = table_axis(axes, lattice.inputs[a]).rotary;
     for (std::size_t k = 0; k < count; ++k) {
-      text += (k == 0 ? "" : " ") + position_text(lattice.positions[a][k], rotary);
+      text += (k == 0 ? "" : " ") + shown_position_text(lattice.positions[a][k], rotary);
     }
   }
   text += fmt::format("\nPOINT_DATA {}\n", lattice.count());

@@ -23,6 +23,10 @@ std::string trimmed_decimals(double value, int decimals) {
 double shown_position(double value, bool rotary) { return rotary ? value * (180 / std::numbers::pi) : value; }
 double inside_position(double value, bool rotary) { return rotary ? value * (std::numbers::pi / 180) : value; }
 
+std::string shown_position_text(double value, bool rotary) {
+  return trimmed_decimals(shown_position(value, rotary), 9);
+}
+
 bool TableLines::next() {
   if (at_ >= text_.size()) return false;
   const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());

@@ -14,6 +14,8 @@ std::string trimmed_decimals(double value, int decimals);
 /// mm as they are, rad as degrees.
 double shown_position(double value, bool rotary);
 double inside_position(double value, bool rotary);
+/// shown_position() with nine decimals: a step that is no round number adds up over hundreds of points.
+std::string shown_position_text(double value, bool rotary);
 
 /// Line by line, with numbers from 1; line ends LF, CRLF or CR.
 class TableLines {

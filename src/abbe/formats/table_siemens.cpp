@@ -8,6 +8,7 @@
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/siemens_assignments.h"
+#include "abbe/formats/table_numbers.h"
 #include "abbe/formats/text_cursor.h"
 
 namespace abbe {
@@ -16,12 +17,9 @@ namespace {
 constexpr std::size_t kMostPoints = 100000;  // of one table; controls have far fewer
 constexpr std::size_t kMostTables = 1000;
 
-std::string value_text(double value, bool rotary) {
+std::string compensation_text(double value, bool rotary) {
   return trimmed_decimals(shown_position(value, rotary), rotary ? 7 : 6);
 }
-
-/// Positions keep nine decimals: a step that is no round number adds up over hundreds of points.
-std::string position_text(double value, bool rotary) { return trimmed_decimals(shown_position(value, rotary), 9); }
 
 /// A table as a file of either kind says it, in the file's units.
 struct Read {
@@ -104,15 +102,16 @@ std::string siemens_cec_text(const std::vector<AxisTable>& tables, const std::ve
     const TableAxisName& input = table_axis(axes, table.input);
     const TableAxisName& output = table_axis(axes, table.output);
     for (std::size_t k = 0; k < values.size(); ++k) {
-      text += fmt::format("$AN_CEC[{},{}]={}\n", number, k, value_text(values[k], output.rotary));
+      text += fmt::format("$AN_CEC[{},{}]={}\n", number, k, compensation_text(values[k], output.rotary));
     }
     const double last = static_cast<double>(table.positions.size() - 1);
     const double step = (table.positions.back() - table.positions.front()) / last;
     text += fmt::format("$AN_CEC_INPUT_AXIS[{}]=({})\n$AN_CEC_OUTPUT_AXIS[{}]=({})\n", number, input.name, number,
                         output.name);
     text += fmt::format("$AN_CEC_STEP[{}]={}\n$AN_CEC_MIN[{}]={}\n$AN_CEC_MAX[{}]={}\n", number,
-                        position_text(step, input.rotary), number, position_text(table.positions.front(), input.rotary),
-                        number, position_text(table.positions.back(), input.rotary));
+                        shown_position_text(step, input.rotary), number,
+                        shown_position_text(table.positions.front(), input.rotary), number,
+                        shown_position_text(table.positions.back(), input.rotary));
     text += fmt::format("$AN_CEC_DIRECTION[{}]={}\n$AN_CEC_MULT_BY_TABLE[{}]=0\n$AN_CEC_IS_MODULO[{}]={}\n", number,
                         direction, number, number, table.modulo ? 1 : 0);
     ++number;
@@ -183,13 +182,14 @@ std::string siemens_eec_text(const std::vector<AxisTable>& tables, const std::ve
     for (std::size_t k = 0; k < table.forward.size(); ++k) {
       // One table serves both directions; BACKLASH is another parameter of the control.
       const double error = -0.5 * (table.forward[k] + table.reverse[k]);
-      text += fmt::format("$AA_ENC_COMP[{},{},{}]={}\n", encoder, k, axis.name, value_text(error, axis.rotary));
+      text += fmt::format("$AA_ENC_COMP[{},{},{}]={}\n", encoder, k, axis.name, compensation_text(error, axis.rotary));
     }
     const double last = static_cast<double>(table.positions.size() - 1);
     const double step = (table.positions.back() - table.positions.front()) / last;
     text += fmt::format("$AA_ENC_COMP_STEP[{}]={}\n$AA_ENC_COMP_MIN[{}]={}\n$AA_ENC_COMP_MAX[{}]={}\n", place,
-                        position_text(step, axis.rotary), place, position_text(table.positions.front(), axis.rotary),
-                        place, position_text(table.positions.back(), axis.rotary));
+                        shown_position_text(step, axis.rotary), place,
+                        shown_position_text(table.positions.front(), axis.rotary), place,
+                        shown_position_text(table.positions.back(), axis.rotary));
     text += fmt::format("$AA_ENC_COMP_IS_MODULO[{}]={}\n", place, table.modulo ? 1 : 0);
   }
   return text + "M17\n";

@@ -13,8 +13,7 @@
 namespace abbe {
 namespace {
 
-std::string value_text(double value, bool is_angle) { return fixed_number(value, is_angle ? 12 : 9); }
-std::string position_text(double value, bool rotary) { return trimmed_decimals(shown_position(value, rotary), 9); }
+std::string error_text(double value, bool is_angle) { return fixed_number(value, is_angle ? 12 : 9); }
 
 /// An error by its name in these files: "EXY" of a motion, "C0B" of a location.
 struct NamedError {
@@ -64,7 +63,7 @@ class GivenOnce {
 };
 
 /// A block of ISG_CSV as it is being read.
-struct Block {
+struct ErrorBlock {
   const TableAxisName* axis = nullptr;  ///< null: position errors
   std::vector<NamedError> errors;
   std::vector<std::string> names;
@@ -73,9 +72,9 @@ struct Block {
   std::size_t line = 0;
 };
 
-Block block_of(const TableLines& lines, const std::vector<std::string_view>& header,
-               const std::vector<TableAxisName>& axes, GivenOnce& given) {
-  Block block;
+ErrorBlock block_of(const TableLines& lines, const std::vector<std::string_view>& header,
+                    const std::vector<TableAxisName>& axes, GivenOnce& given) {
+  ErrorBlock block;
   block.line = lines.number();
   for (const std::string_view name : header) {
     if (const TableAxisName* const axis = find_table_axis(axes, name)) {
@@ -105,7 +104,7 @@ Block block_of(const TableLines& lines, const std::vector<std::string_view>& hea
   return block;
 }
 
-void add_row(const TableLines& lines, const std::vector<std::string_view>& words, Block& block) {
+void add_row(const TableLines& lines, const std::vector<std::string_view>& words, ErrorBlock& block) {
   const std::size_t columns = block.errors.size() + (block.axis != nullptr ? 1 : 0);
   if (words.size() != columns) {
     lines.fail("row", fmt::format("{} fields", words.size()), fmt::format("{} fields as in the header", columns));
@@ -126,7 +125,7 @@ void add_row(const TableLines& lines, const std::vector<std::string_view>& words
   }
 }
 
-void finish(const Block& block, const std::string& file, ErrorTables& tables) {
+void finish(const ErrorBlock& block, const std::string& file, ErrorTables& tables) {
   if (block.errors.empty()) return;
   if (block.values.front().empty()) {
     throw InputError({.file = file, .line = block.line}, "a header without rows", "a row per position");
@@ -157,9 +156,9 @@ std::string isg_csv_text(const ErrorTables& tables, const std::vector<TableAxisN
     for (const Component component : table.components) text += " " + motion_name(component, axis);
     text += "\n";
     for (std::size_t k = 0; k < table.positions.size(); ++k) {
-      text += position_text(table.positions[k], axis.rotary);
+      text += shown_position_text(table.positions[k], axis.rotary);
       for (std::size_t c = 0; c < table.components.size(); ++c) {
-        text += " " + value_text(table.values[c][k], is_rotation(table.components[c]));
+        text += " " + error_text(table.values[c][k], is_rotation(table.components[c]));
       }
       text += "\n";
     }
@@ -169,7 +168,7 @@ std::string isg_csv_text(const ErrorTables& tables, const std::vector<TableAxisN
   std::string names, values;
   for (const LocationError& location : tables.locations) {
     names += (names.empty() ? "" : " ") + location_name(location, axes);
-    values += (values.empty() ? "" : " ") + value_text(location.value, is_rotation(location.component));
+    values += (values.empty() ? "" : " ") + error_text(location.value, is_rotation(location.component));
   }
   return text + names + "\n" + values + "\n";
 }
@@ -178,13 +177,13 @@ ErrorTables parse_isg_csv(std::string_view text, const std::string& file, const 
   ErrorTables tables;
   TableLines lines(text, file);
   GivenOnce given;
-  Block block;
+  ErrorBlock block;
   while (lines.next()) {
     const std::string_view line = without_comment(lines.line());
     if (line.empty()) continue;
     if (line[0] == '#') {
       finish(block, file, tables);
-      block = Block();
+      block = ErrorBlock();
       continue;
     }
     const std::vector<std::string_view> words = words_of(line);
@@ -205,7 +204,7 @@ std::string etalon_text(const ErrorTables& tables, const std::vector<TableAxisNa
   std::string text = "// Errors, actual minus nominal; positions in mm and degrees, values in mm and rad\n";
   for (const LocationError& location : tables.locations) {
     text += fmt::format("[{}]\nVALUE = {}\n", location_name(location, axes),
-                        value_text(location.value, is_rotation(location.component)));
+                        error_text(location.value, is_rotation(location.component)));
   }
   for (const ErrorTable& table : tables.tables) {
     const TableAxisName& axis = table_axis(axes, table.axis);
@@ -213,8 +212,8 @@ std::string etalon_text(const ErrorTables& tables, const std::vector<TableAxisNa
       const std::string name = motion_name(table.components[c], axis);
       text += fmt::format("[{}]\nGridpoints = {{\n", name);
       for (std::size_t k = 0; k < table.positions.size(); ++k) {
-        text += fmt::format("{} {}\n", position_text(table.positions[k], axis.rotary),
-                            value_text(table.values[c][k], is_rotation(table.components[c])));
+        text += fmt::format("{} {}\n", shown_position_text(table.positions[k], axis.rotary),
+                            error_text(table.values[c][k], is_rotation(table.components[c])));
       }
       text += fmt::format("}}  // end of {}\n", name);
     }

@@ -11,8 +11,6 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::vector<TableAxisName> kAxes = {{0, "X", false}, {1, "Y", false}, {2, "C", true}};
-
 ErrorTables some_tables() {
   ErrorTables tables;
   tables.tables.push_back({0,
@@ -25,7 +23,7 @@ ErrorTables some_tables() {
 }
 
 TEST(VolumetricTable, IsgCsvHasOneBlockPerAxisAndOneOfPositionErrors) {
-  EXPECT_EQ(isg_csv_text(some_tables(), kAxes),
+  EXPECT_EQ(isg_csv_text(some_tables(), test::kXYC),
             "// Errors, actual minus nominal; positions in mm and degrees, values in mm and rad\n"
             "X EXX EYX ECX\n"
             "-280 0.020000000 0.010000000 0.000004200000\n"
@@ -40,14 +38,14 @@ TEST(VolumetricTable, EtalonHasOneSectionPerError) {
   tables.tables.push_back({1, {-280, -270}, {Component::X}, {{-0.001358635, -0.000240680}}});
   tables.locations = {{2, Component::Y, 0.003, 0}};
   EXPECT_EQ(
-      etalon_text(tables, kAxes),
+      etalon_text(tables, test::kXYC),
       "// Errors, actual minus nominal; positions in mm and degrees, values in mm and rad\n"
       "[Y0C]\nVALUE = 0.003000000\n[EXY]\nGridpoints = {\n-280 -0.001358635\n-270 -0.000240680\n}  // end of EXY\n");
 }
 
 TEST(VolumetricTable, WhatIsWrittenIsReadBackToItsDigits) {
   const ErrorTables tables = some_tables();
-  const ErrorTables read = parse_isg_csv(isg_csv_text(tables, kAxes), "v.csv", kAxes);
+  const ErrorTables read = parse_isg_csv(isg_csv_text(tables, test::kXYC), "v.csv", test::kXYC);
   ASSERT_EQ(read.tables.size(), 2U);
   EXPECT_EQ(read.tables[0].components, tables.tables[0].components);
   for (std::size_t t = 0; t < 2; ++t) {
@@ -59,7 +57,7 @@ TEST(VolumetricTable, WhatIsWrittenIsReadBackToItsDigits) {
     }
   }
   EXPECT_EQ(read.locations, tables.locations);
-  const ErrorTables sections = parse_etalon(etalon_text(tables, kAxes), "e.txt", kAxes);
+  const ErrorTables sections = parse_etalon(etalon_text(tables, test::kXYC), "e.txt", test::kXYC);
   ASSERT_EQ(sections.tables.size(), 4U);
   EXPECT_EQ(sections.locations, tables.locations);
   const ErrorSet a = errors_of(read), b = errors_of(sections);
@@ -73,18 +71,20 @@ TEST(VolumetricTable, TheManualsExamplesAreRead) {
       "// The header contains the argument\nX      EXX    EYX    EZX    EAX    EBX    ECX\n"
       "0.0    0.02   0.01   0.07   0.00   0.0042 0.003\n10.0   0.00   -0.1   0.01   0.00   0.0011 0.002\n"
       "// Further records depending on X\n",
-      "v.csv", kAxes);
+      "v.csv", test::kXYC);
   EXPECT_EQ(csv.tables[0].values[4][1], 0.0011);
   const ErrorTables sections = parse_etalon(
       "[C0Y]\nVALUE = 0.000022355737\n[EXY]\nGridpoints = {\n          -280.0 -0.001358635132\n"
       "          -270.0 -0.000240680764\n}  // end of EXY\n",
-      "e.txt", kAxes);
+      "e.txt", test::kXYC);
   EXPECT_EQ(sections.tables[0].positions[0], -280);
   EXPECT_EQ(sections.locations[0].value, 0.000022355737);
 }
 
 TEST(VolumetricTable, WhatIsWrongIsRefusedWithItsPlace) {
-  const auto csv = [](const std::string& text) { return test::refusal([&] { parse_isg_csv(text, "v.csv", kAxes); }); };
+  const auto csv = [](const std::string& text) {
+    return test::refusal([&] { parse_isg_csv(text, "v.csv", test::kXYC); });
+  };
   EXPECT_THAT(csv("X EXX EYY\n0 1 1\n"), HasSubstr("v.csv:1: EYY: does not belong"));
   EXPECT_THAT(csv("X EXX\n0 1\n0 1\n"), HasSubstr("v.csv:3: X: is not above"));
   EXPECT_THAT(csv("Y X EXX\n0 0 1\n"), HasSubstr("a second argument"));
@@ -96,7 +96,7 @@ TEST(VolumetricTable, WhatIsWrongIsRefusedWithItsPlace) {
   EXPECT_THAT(csv("X EXX\n0 inf\n"), HasSubstr("EXX"));
   EXPECT_THAT(csv("// nothing\n"), HasSubstr("no errors"));
   const auto sections = [](const std::string& text) {
-    return test::refusal([&] { parse_etalon(text, "e.txt", kAxes); });
+    return test::refusal([&] { parse_etalon(text, "e.txt", test::kXYC); });
   };
   EXPECT_THAT(sections("[EXY]\nGridpoints = {\n0 1\n"), HasSubstr("ends within EXY"));
   EXPECT_THAT(sections("[EXY]\n[EYY]\n"), HasSubstr("has no value"));

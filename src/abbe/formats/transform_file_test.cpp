@@ -11,7 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string message(const std::string& text) {
+std::string message_of_transform(const std::string& text) {
   return message_of([&] { parse_transform(text, "t.csv"); });
 }
 
@@ -32,12 +32,13 @@ TEST(TransformFile, TakesTheNearestRotationOfRoundedDigitsAndOtherUnits) {
 
 TEST(TransformFile, WhatIsNoRotationIsRefused) {
   const std::string header = "rotation_x,rotation_y,rotation_z,translation_mm\n";
-  EXPECT_THAT(message(header + "1,0,0,1\n0,1,0,2\n"), HasSubstr("2 rows below the header; expected three"));
-  EXPECT_THAT(message(header + "1,0,0,1\n0,1,0,2\n0,0.1,1,3\n"), HasSubstr("no rotation matrix"));
-  EXPECT_THAT(message(header + "0,0,0,1\n0,0,0,2\n0,0,0,3\n"), HasSubstr("no rotation matrix"));
-  EXPECT_THAT(message(header + "1,0,0,1\n0,1,0,2\n0,0,-1,3\n"), HasSubstr("a mirrored matrix"));
-  EXPECT_THAT(message(header + "1,0,0,1\n0,1,0,2\n0,0,one,3\n"), HasSubstr("t.csv:4"));
-  EXPECT_THAT(message("rotation_x,rotation_y,rotation_z,translation\n"), HasSubstr("translation"));
+  EXPECT_THAT(message_of_transform(header + "1,0,0,1\n0,1,0,2\n"),
+              HasSubstr("2 rows below the header; expected three"));
+  EXPECT_THAT(message_of_transform(header + "1,0,0,1\n0,1,0,2\n0,0.1,1,3\n"), HasSubstr("no rotation matrix"));
+  EXPECT_THAT(message_of_transform(header + "0,0,0,1\n0,0,0,2\n0,0,0,3\n"), HasSubstr("no rotation matrix"));
+  EXPECT_THAT(message_of_transform(header + "1,0,0,1\n0,1,0,2\n0,0,-1,3\n"), HasSubstr("a mirrored matrix"));
+  EXPECT_THAT(message_of_transform(header + "1,0,0,1\n0,1,0,2\n0,0,one,3\n"), HasSubstr("t.csv:4"));
+  EXPECT_THAT(message_of_transform("rotation_x,rotation_y,rotation_z,translation\n"), HasSubstr("translation"));
 }
 
 }  // namespace

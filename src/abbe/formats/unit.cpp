@@ -4,13 +4,13 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <vector>
+
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<Unit, 1> kDimensionless = {{{"", 0, 1}}};
 constexpr std::array<Unit, 3> kLength = {{{"mm", 0, 1}, {"um", -3, 1}, {"m", 3, 1}}};
 constexpr std::array<Unit, 5> kAngle = {

@@ -19,12 +19,12 @@
 namespace abbe {
 namespace {
 
-struct Block : TextBlock {
+struct PointBlock : TextBlock {
   std::size_t rows = 0;
   std::size_t first_row = 0;
 };
 
-constexpr std::array<const char*, 6> kFields = {"x", "y", "z", "nx", "ny", "nz"};
+constexpr std::array<const char*, 6> kPointFields = {"x", "y", "z", "nx", "ny", "nz"};
 // Of the length of a normal: files with two decimals, but no colours.
 constexpr double kNormalTolerance = 0.02;
 
@@ -59,9 +59,9 @@ std::size_t count_rows(std::string_view text, const TextBlock& block) {
   return rows;
 }
 
-class BlockReader {
+class PointReader {
  public:
-  BlockReader(std::string_view text, std::size_t columns, double largest, PointCloud& cloud, Block& block)
+  PointReader(std::string_view text, std::size_t columns, double largest, PointCloud& cloud, PointBlock& block)
       : text_(text), columns_(columns), largest_(largest), cloud_(cloud), block_(block) {}
 
   void read() {
@@ -111,7 +111,7 @@ class BlockReader {
     if (at == end) return refuse_length(line);
     const std::string_view word(at, static_cast<std::size_t>(word_end(at, end) - at));
     const bool commas = word.find_first_of(",;") != std::string_view::npos;
-    return refuse(at, kFields[column], fmt::format("'{}' {}", shown_word(word), number_problem_words(problem)),
+    return refuse(at, kPointFields[column], fmt::format("'{}' {}", shown_word(word), number_problem_words(problem)),
                   commas
                       ? "numbers with a point between spaces; comma-separated values are read from .csv files with a "
                         "header x_mm,y_mm,z_mm"
@@ -127,7 +127,7 @@ class BlockReader {
   std::size_t columns_;
   double largest_;
   PointCloud& cloud_;
-  Block& block_;
+  PointBlock& block_;
 };
 
 }  // namespace
@@ -156,10 +156,10 @@ PointCloud parse_xyz(std::string_view contents, const std::string& file, double 
   }
   if (columns == 0) throw InputError({file, 0, 0, ""}, "there are no points in the file", "lines of three numbers");
 
-  std::vector<Block> blocks = split_into_blocks<Block>(contents, 0);
+  std::vector<PointBlock> blocks = split_into_blocks<PointBlock>(contents, 0);
   for_each_block(blocks.size(), threads, [&](std::size_t i) { blocks[i].rows = count_rows(contents, blocks[i]); });
   std::size_t rows = 0;
-  for (Block& block : blocks) {
+  for (PointBlock& block : blocks) {
     block.first_row = rows;
     rows += block.rows;
   }
@@ -167,8 +167,8 @@ PointCloud parse_xyz(std::string_view contents, const std::string& file, double 
   cloud.points.resize(3, static_cast<Eigen::Index>(rows));
   if (columns == 6) cloud.normals.resize(3, static_cast<Eigen::Index>(rows));
   for_each_block(blocks.size(), threads,
-                 [&](std::size_t i) { BlockReader(contents, columns, largest, cloud, blocks[i]).read(); });
-  for (const Block& block : blocks) {
+                 [&](std::size_t i) { PointReader(contents, columns, largest, cloud, blocks[i]).read(); });
+  for (const PointBlock& block : blocks) {
     if (block.refusal) throw_refusal(contents, file, *block.refusal);
   }
   return cloud;

@@ -1,10 +1,10 @@
 #include "abbe/geometry/best_fit_transform.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 namespace {
@@ -42,10 +42,10 @@ const char* best_fit_status_name(BestFitStatus status) {
 }
 
 Matrix3d rotation_from_correlation(const Matrix3d& correlation) {
-  const Eigen::JacobiSVD<Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const SingularValues<3> svd(correlation);
   Vector3d signs = Vector3d::Ones();
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  if (svd.u().determinant() * svd.v().determinant() < 0) signs.z() = -1;
+  return svd.u() * signs.asDiagonal() * svd.v().transpose();
 }
 
 BestFitTransform best_fit_transform(std::span<const Vector3d> source, std::span<const Vector3d> target,
@@ -86,7 +86,7 @@ BestFitTransform best_fit_transform(std::span<const Vector3d> source, std::span<
   }
   fit.rms = std::sqrt(squares / total);
 
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> principal(scatter(source, weights, source_centre) / total);
+  const SymmetricEigen<3> principal(scatter(source, weights, source_centre) / total);
   // Along the principal directions once more: square roots of eigenvalues would stop at 1e-8 of the first extent.
   for (std::size_t i = 0; i < source.size(); ++i) {
     const double weight = weights.empty() ? 1.0 : weights[i];

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/parts_for_test.h"
 #include "abbe/geometry/rotation.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-using parts::Numbers;
+using test::Numbers;
 
 #if defined(__SIZEOF_FLOAT128__)
 __extension__ using Quad = __float128;

@@ -1,11 +1,10 @@
 #include "abbe/geometry/coaxial_circles.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/shape_start.h"
 
 namespace abbe {
@@ -44,16 +43,16 @@ Axis moved(const Axis& axis, const VectorXd& step) {
   return {frame.origin, frame.axes, axis.heights + step.segment(kAxisSteps, m), axis.radii + step.tail(m)};
 }
 
-struct Sums {
+struct ResidualSums {
   MatrixXd matrix;
   VectorXd gradient;
   double squares = 0;
 };
 
 /// J'J, J'd and d'd of the residuals (across - radius, along - height).
-Sums sums_at(const Axis& axis, const std::vector<Matrix3Xd>& circles) {
+ResidualSums sums_at(const Axis& axis, const std::vector<Matrix3Xd>& circles) {
   const Index m = axis.heights.size(), p = kAxisSteps + 2 * m;
-  Sums sums{MatrixXd::Zero(p, p), VectorXd::Zero(p), 0};
+  ResidualSums sums{MatrixXd::Zero(p, p), VectorXd::Zero(p), 0};
   for (Index c = 0; c < m; ++c) {
     const Matrix3Xd& points = circles[static_cast<std::size_t>(c)];
     // Slopes by the axis, the height and the radius of this circle.
@@ -92,7 +91,7 @@ struct Normal {
   VectorXd scale;
 };
 
-Normal scaled(const Sums& sums, const std::vector<Index>& free) {
+Normal scaled(const ResidualSums& sums, const std::vector<Index>& free) {
   Normal normal;
   normal.matrix = sums.matrix(free, free);
   normal.scale = normal.matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -100,11 +99,11 @@ Normal scaled(const Sums& sums, const std::vector<Index>& free) {
   return normal;
 }
 
-VectorXd damped_step(const Sums& sums, const std::vector<Index>& free, double damping) {
+VectorXd damped_step(const ResidualSums& sums, const std::vector<Index>& free, double damping) {
   Normal normal = scaled(sums, free);
   normal.matrix.diagonal().array() += damping;
   const VectorXd right = -sums.gradient(free).cwiseProduct(normal.scale);
-  const VectorXd solved = normal.matrix.ldlt().solve(right).cwiseProduct(normal.scale);
+  const VectorXd solved = Ldlt<>(normal.matrix).solve(right).cwiseProduct(normal.scale);
   VectorXd step = VectorXd::Zero(sums.gradient.size());
   step(free) = solved;
   return step;
@@ -112,7 +111,7 @@ VectorXd damped_step(const Sums& sums, const std::vector<Index>& free, double da
 
 struct Reached {
   Axis axis;
-  Sums sums;
+  ResidualSums sums;
   int iterations = 0;
   bool converged = false;
 };
@@ -129,7 +128,7 @@ Reached refine(const Axis& axis, const std::vector<Matrix3Xd>& circles, const st
     if (!std::isfinite(length)) return reached;
     if (length > 0.5) step *= 0.5 / length;
     const Axis trial = moved(reached.axis, step);
-    const Sums sums = sums_at(trial, circles);
+    const ResidualSums sums = sums_at(trial, circles);
     if (!(sums.squares <= reached.sums.squares * (1 + 1e-12) + 1e-28 * size * size)) {
       damping = damping == 0 ? 1e-4 : damping * 10;
       if (damping > 1e12) return reached;
@@ -187,11 +186,11 @@ std::vector<Vector3d> directions(const std::vector<Matrix3Xd>& circles, const Co
     centres.push_back(alone.ok() ? alone.shape.point : middle);
     mean += centres.back() / static_cast<double>(circles.size());
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> planes(within);
+  const SymmetricEigen<3> planes(within);
   found.emplace_back(planes.eigenvectors().col(0));
   for (const Vector3d& centre : centres) between += (centre - mean) * (centre - mean).transpose();
   if (between.trace() > 0) {
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> line(between);
+    const SymmetricEigen<3> line(between);
     found.emplace_back(line.eigenvectors().col(2));
   }
   return found;
@@ -227,10 +226,10 @@ void report(CoaxialCircles& fit, Axis& axis, const Vector3d& centre) {
 }
 
 /// Covariance of (point, direction, heights, radii) from that of the free steps.
-void enter_covariance(CoaxialCircles& fit, const Axis& axis, const Sums& sums, const std::vector<Index>& free) {
+void enter_covariance(CoaxialCircles& fit, const Axis& axis, const ResidualSums& sums, const std::vector<Index>& free) {
   const Index m = axis.heights.size();
   const Normal normal = scaled(sums, free);
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(normal.matrix);
+  const SymmetricEigen<> eigen(normal.matrix);
   if (!(eigen.eigenvalues()[0] > 1e-14)) {
     fit.status = FitStatus::ambiguous;
     fit.reason = "the points do not determine all parameters";
@@ -246,7 +245,7 @@ void enter_covariance(CoaxialCircles& fit, const Axis& axis, const Sums& sums, c
   const MatrixXd used = slopes(Eigen::all, free);
   fit.covariance = fit.sigma * fit.sigma * (used * root) * (used * root).transpose();
   fit.has_covariance = true;
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> tilt(Matrix3d(fit.covariance.block<3, 3>(3, 3)));
+  const SymmetricEigen<3> tilt(Matrix3d(fit.covariance.block<3, 3>(3, 3)));
   if (tilt.eigenvalues()[2] > 0.2 * 0.2) {
     fit.status = FitStatus::ambiguous;
     fit.reason = "the direction is not determined: its standard uncertainty is more than 0.2 rad";

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/shape_points_for_test.h"
 
 namespace abbe {

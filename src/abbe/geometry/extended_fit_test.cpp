@@ -3,6 +3,7 @@
 
 #include "abbe/geometry/extended_fit_for_test.h"
 #include "abbe/geometry/extreme_fit.h"
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/shape_points_for_test.h"
 
 namespace abbe {
@@ -10,11 +11,10 @@ namespace {
 
 using Eigen::Index;
 using Eigen::Matrix3Xd;
+using test::kFitAngle;
+using test::kFitLength;
 using test::Numbers;
 using test::PatchOptions;
-
-constexpr double kLength = 1e-7;  // mm, what docs/fits.md states
-constexpr double kAngle = 1e-9;   // rad
 
 struct Case {
   ShapeKind kind;
@@ -70,8 +70,8 @@ TEST(ExtendedFit, LeastSquaresAgreesWithASecondSolverOnShortArcsFarFromTheOrigin
     const Shape other =
         data.to(one.kind, test::extended_least_squares(one.kind, data, disturbed(data.from(patch.shape), numbers)));
     const test::ShapeDifference off = test::difference(fit.shape, other);
-    EXPECT_LT(off.length, kLength) << shape_name(one.kind) << " " << one.arc_deg << " " << one.far;
-    EXPECT_LT(off.angle, kAngle) << shape_name(one.kind) << " " << one.arc_deg << " " << one.far;
+    EXPECT_LT(off.length, kFitLength) << shape_name(one.kind) << " " << one.arc_deg << " " << one.far;
+    EXPECT_LT(off.angle, kFitAngle) << shape_name(one.kind) << " " << one.arc_deg << " " << one.far;
   }
 }
 
@@ -96,8 +96,8 @@ TEST(ExtendedFit, MinimumZoneIsTheShapeOfItsContactsInExtendedPrecision) {
         }
         const test::ExtendedShape found = test::extended_contact_shape(kind, data, contacts, signs, start);
         const test::ShapeDifference off = test::difference(fit.shape, data.to(kind, found));
-        EXPECT_LT(off.length, kLength) << shape_name(kind) << " " << arc_deg << " " << far;
-        EXPECT_LT(off.angle, kAngle) << shape_name(kind) << " " << arc_deg << " " << far;
+        EXPECT_LT(off.length, kFitLength) << shape_name(kind) << " " << arc_deg << " " << far;
+        EXPECT_LT(off.angle, kFitAngle) << shape_name(kind) << " " << arc_deg << " " << far;
         // That the multipliers are positive was the library's word: here they are those of the second solver.
         const auto distances = [&](const test::ExtendedShape& s) {
           test::ExtendedVector all(static_cast<Index>(contacts.size()));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/shape_points_for_test.h"
 
 namespace abbe {

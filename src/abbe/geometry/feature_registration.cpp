@@ -1,19 +1,16 @@
 #include "abbe/geometry/feature_registration.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
 namespace {
-
-/// Constant of Welsch's loss: 95 % of the efficiency of least squares for normal noise.
-constexpr double kWelsch = 2.985;
 
 /// Outward unit normal of a feature at a point beside it: gradient of distance().
 Eigen::Vector3d normal_at(const Shape& shape, const Eigen::Vector3d& p) {
@@ -75,7 +72,7 @@ FineRegistration register_to_features(const Eigen::Matrix3Xd& points, const std:
     result.used = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
       if (options.loss != RegistrationLoss::least_squares && result.scale_mm > 0) {
-        const double z = distances[i] / (kWelsch * result.scale_mm);
+        const double z = distances[i] / (kWelschTuning * result.scale_mm);
         weights[i] = std::exp(-z * z);
       }
       result.weight_sum += weights[i];
@@ -105,7 +102,7 @@ FineRegistration register_to_features(const Eigen::Matrix3Xd& points, const std:
     // Rotations in units of the extent, so that the eigenvalues compare like with like.
     Matrix6d scale = Matrix6d::Identity();
     scale.topLeftCorner<3, 3>() /= std::max(extent, 1e-12);
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> spectrum(scale * normal_matrix * scale);
+    const SymmetricEigen<6> spectrum(scale * normal_matrix * scale);
     if (!(spectrum.eigenvalues()[0] > 1e-9 * spectrum.eigenvalues()[5])) {
       result.status = FineRegistrationStatus::undetermined;
       return result;
@@ -125,7 +122,7 @@ FineRegistration register_to_features(const Eigen::Matrix3Xd& points, const std:
     const double weight = weights[static_cast<std::size_t>(i)], r = distances[static_cast<std::size_t>(i)];
     const double z = options.loss == RegistrationLoss::least_squares || !(result.scale_mm > 0)
                          ? 0.0
-                         : r / (kWelsch * result.scale_mm);
+                         : r / (kWelschTuning * result.scale_mm);
     const Vector6d row = row_of(i);
     squares += weight * r * r;
     information += weight * (1 - 2 * z * z) * row * row.transpose();  // derivative of the score
@@ -133,8 +130,8 @@ FineRegistration register_to_features(const Eigen::Matrix3Xd& points, const std:
         weight * weight * (options.noise_mm > 0 ? options.noise_mm * options.noise_mm : r * r) * row * row.transpose();
   }
   result.rms_mm = std::sqrt(squares / std::max(result.weight_sum, 1e-300));
-  const Eigen::LDLT<Matrix6d> solver(information);
-  result.covariance = solver.solve(solver.solve(scores).transpose());
+  const Ldlt<6> solver(information);
+  result.covariance = solver.solve_columns(solver.solve_columns(scores).transpose());
   return result;
 }
 

@@ -1,11 +1,10 @@
 #include "abbe/geometry/fine_registration.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/hilbert_order.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/rotation.h"
@@ -19,9 +18,6 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
 constexpr double kMadToDeviation = 1.482602218505602;
-/// Tuning constants for 95 % efficiency on normally distributed distances. Source: Holland and Welsch, Comm. Stat. A6
-/// (1977) 813.
-constexpr double kWelsch = 2.985, kTukey = 4.685;
 /// Share of the information of the best seen motion below which a motion counts as not seen.
 constexpr double kUnseen = 1e-5;
 /// Points from which the seen motions are told.
@@ -34,7 +30,8 @@ struct Weight {
 };
 Weight weight_at(RegistrationLoss loss, double distance, double scale) {
   if (loss == RegistrationLoss::least_squares) return {};
-  const double u = distance / (scale * (loss == RegistrationLoss::welsch ? kWelsch : kTukey)), square = u * u;
+  const double u = distance / (scale * (loss == RegistrationLoss::welsch ? kWelschTuning : kTukeyTuning)),
+               square = u * u;
   if (loss == RegistrationLoss::welsch) {
     const double weight = std::exp(-square);
     return {weight, weight * (1 - 2 * square)};
@@ -44,13 +41,13 @@ Weight weight_at(RegistrationLoss loss, double distance, double scale) {
 }
 
 /// Sums over some points; rotations are scaled by the extent, so that all six parameters are lengths.
-struct Sums {
+struct WeightedSums {
   Matrix6d hessian = Matrix6d::Zero(), slope = Matrix6d::Zero(), square = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
   double weighted_square = 0, weight = 0;
   Eigen::Index used = 0, beyond_border = 0;
 
-  void operator+=(const Sums& other) {
+  void operator+=(const WeightedSums& other) {
     hessian += other.hessian;
     slope += other.slope;
     square += other.square;
@@ -80,10 +77,10 @@ class Fit {
   Vector3d reference(const RigidTransform& pose) const { return pose * middle_; }
 
   /// One pass over all points: distances, and the sums at this scale.
-  Sums pass(const RigidTransform& pose, double scale) {
+  WeightedSums pass(const RigidTransform& pose, double scale) {
     constexpr Eigen::Index kBlock = ClosestPointFinder::kBlock;
     const std::size_t blocks = static_cast<std::size_t>((points_.cols() + kBlock - 1) / kBlock);
-    std::vector<Sums> sums(blocks);
+    std::vector<WeightedSums> sums(blocks);
     for_each_block(blocks, options_.threads, [&](std::size_t block) {
       const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
       const Eigen::Index count = std::min(kBlock, points_.cols() - first);
@@ -101,8 +98,8 @@ class Fit {
       }
     });
     // In the order of the blocks, so that the sum does not depend on the threads.
-    Sums all;
-    for (const Sums& some : sums) all += some;
+    WeightedSums all;
+    for (const WeightedSums& some : sums) all += some;
     return all;
   }
 
@@ -136,7 +133,7 @@ class Fit {
       const Vector6d row = gradient_of(smooth_.normal(at.triangle, at.point), at.point - reference(pose));
       information += weight_at(options_.loss, at.distance, scale).weight * row * row.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(information);
+    const SymmetricEigen<6> solver(information);
     Eigen::Index unseen = 0;
     while (unseen < 6 && !(solver.eigenvalues()[unseen] > kUnseen * solver.eigenvalues()[5])) ++unseen;
     return {solver.eigenvectors().rightCols(6 - unseen), solver.eigenvectors().leftCols(unseen)};
@@ -156,7 +153,7 @@ class Fit {
     return row;
   }
 
-  void add(const SurfacePoint& at, const Vector3d& point, const Vector3d& arm, double scale, Sums* sums) const {
+  void add(const SurfacePoint& at, const Vector3d& point, const Vector3d& arm, double scale, WeightedSums* sums) const {
     const Weight w = weight_at(options_.loss, at.distance, scale);
     sums->weight += w.weight;
     sums->weighted_square += w.weight * at.distance * at.distance;
@@ -182,7 +179,7 @@ class Fit {
   /// The part of the second derivative of half the squared distance that lies in the tangent plane: d / (d - rho) along
   /// each principal direction, kept positive.
   void add_curvature(const SurfacePoint& at, const Vector3d& arm, double weight, bool edge, const Vector3d& direction,
-                     Sums* sums) const {
+                     WeightedSums* sums) const {
     if (edge) {
       // Across an edge the radius is zero. Along it nothing is lost by counting it in too: steps are shorter only.
       for (int k = 0; k < 3; ++k) {
@@ -293,12 +290,12 @@ FineRegistration register_finely(const Matrix3Xd& points, const ClosestPointFind
   if (options.largest_scale_mm > 0) scale = std::min(scale, options.largest_scale_mm);
   Fit::Seen seen = fit.seen_motions(pose, scale);
   bool converged = false;
-  Sums sums;
+  WeightedSums sums;
   for (; result.iterations < options.iterations && !converged; ++result.iterations) {
     sums = fit.pass(pose, scale);
     if (sums.used < 6 || seen.seen.cols() == 0) break;
     const MatrixXd hessian = seen.seen.transpose() * sums.hessian * seen.seen;
-    const Eigen::LDLT<MatrixXd> solver(hessian);
+    const Ldlt<> solver(hessian);
     Vector6d step = -(seen.seen * solver.solve(seen.seen.transpose() * sums.gradient));
     if (!step.allFinite()) break;
     // Beyond half a radian the tangent planes say nothing.
@@ -324,11 +321,11 @@ FineRegistration register_finely(const Matrix3Xd& points, const ClosestPointFind
   result.reference = fit.reference(pose);
   result.undetermined = named(seen.unseen, extent, result.reference);
   const MatrixXd slope = seen.seen.transpose() * sums.slope * seen.seen;
-  const Eigen::LDLT<MatrixXd> solver(slope);
-  if (seen.seen.cols() > 0 && sums.used > 6 && solver.isPositive()) {
+  const Ldlt<> solver(slope);
+  if (seen.seen.cols() > 0 && sums.used > 6 && solver.is_positive()) {
     Matrix6d scaling = Matrix6d::Identity();
     scaling.topLeftCorner<3, 3>() /= extent;
-    const MatrixXd bread = seen.seen * solver.solve(seen.seen.transpose());
+    const MatrixXd bread = seen.seen * solver.solve_columns(seen.seen.transpose());
     const double freedom =
         options.noise_mm > 0 ? 1 : static_cast<double>(sums.used) / static_cast<double>(sums.used - seen.seen.cols());
     result.covariance = freedom * scaling * bread * sums.square * bread.transpose() * scaling;

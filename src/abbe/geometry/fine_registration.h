@@ -15,6 +15,9 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 /// How much a point far from the surface counts.
 enum class RegistrationLoss { least_squares, welsch, tukey };
+/// Tuning constants, in standard deviations: 95 % of the efficiency of least squares for normally distributed
+/// distances. Source: Holland and Welsch, Comm. Stat. A6 (1977) 813.
+inline constexpr double kWelschTuning = 2.985, kTukeyTuning = 4.685;
 
 struct FineRegistrationOptions {
   RegistrationLoss loss = RegistrationLoss::welsch;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/parts_for_test.h"
 #include "abbe/geometry/rotation.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-using parts::Numbers;
+using test::Numbers;
 
 struct Part {
   TriangleMesh mesh;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "abbe/geometry/extreme_fit.h"
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/robust_fit.h"
 #include "abbe/geometry/shape_points_for_test.h"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/parts_for_test.h"
 
 namespace abbe {
@@ -35,7 +36,7 @@ TEST(HilbertOrder, PassesAllCellsOfACubeByStepsToNeighbours) {
 }
 
 TEST(HilbertOrder, IsTheSameForAnyNumberOfThreadsAndKeepsTheOrderOfEqualPoints) {
-  parts::Numbers numbers(3);
+  test::Numbers numbers(3);
   Matrix3Xd points(3, 50000);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     // Many in few cells, so that both ways of sorting are used.
@@ -56,7 +57,7 @@ TEST(HilbertOrder, IsTheSameForAnyNumberOfThreadsAndKeepsTheOrderOfEqualPoints) 
 }
 
 TEST(HilbertOrder, PointsOutsideTheBoxCountWhereTheyAreNearestToIt) {
-  parts::Numbers numbers(4);
+  test::Numbers numbers(4);
   Matrix3Xd points(3, 2000);
   for (Eigen::Index i = 0; i < points.cols(); ++i) points.col(i) = numbers.normal3();
   // Not quite to the upper side, whose cells end there.

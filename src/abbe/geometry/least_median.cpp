@@ -1,11 +1,12 @@
 #include "abbe/geometry/least_median.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe::fits {
 namespace {
@@ -85,7 +86,7 @@ class LeastMedian {
     Survey few = survey_;
     few.sample = draw(count);
     few.centroid = centroid(few.sample, Vector3d::Zero(), 1);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(few.centroid.scatter);
+    const SymmetricEigen<3> principal(few.centroid.scatter);
     few.directions = principal.eigenvectors().rowwise().reverse();
     for (const ShapeFrame& frame : start_frames(kind_, few, constraints_)) score(frame);
   }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/shape_fit.h"
 #include "abbe/geometry/shape_points_for_test.h"
 #include "abbe/geometry/shape_sums.h"
@@ -15,13 +16,12 @@ namespace {
 using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
+using test::kFitAngle;
+using test::kFitLength;
 using test::Numbers;
 using test::PatchOptions;
 
-constexpr double kLength = 1e-7;  // mm, what docs/fits.md states
-constexpr double kAngle = 1e-9;   // rad
-
-void expect_same(const ShapeFit& fit, const Shape& truth, double length = kLength, double angle = kAngle) {
+void expect_same(const ShapeFit& fit, const Shape& truth, double length = kFitLength, double angle = kFitAngle) {
   ASSERT_EQ(fit.status, FitStatus::ok) << shape_name(truth.kind) << ": " << fit.reason;
   const test::ShapeDifference off = test::difference(fit.shape, truth);
   EXPECT_LT(off.length, length) << shape_name(truth.kind);
@@ -90,7 +90,7 @@ TEST(LeastSquaresFit, HoldsWhatIsKnown) {
     FitOptions fit_options;
     fit_options.constraints.direction = -3 * patch.shape.direction;
     const ShapeFit fit = least_squares_fit(kind, test::with_orthogonal_residuals(patch, 0.01, numbers), fit_options);
-    expect_same(fit, patch.shape, kLength, 1e-14);
+    expect_same(fit, patch.shape, kFitLength, 1e-14);
     EXPECT_EQ(fit.direction_uncertainty(), 0);
   }
   PatchOptions options;

@@ -1,12 +1,12 @@
 #include "abbe/geometry/mesh_thinning.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/vertex_welder.h"
 
 namespace abbe {
@@ -51,7 +51,7 @@ struct Quadric {
   /// Where the planes meet best, as near to the mean as they allow; from the corner of the cube.
   Vector3d best(double cell) const {
     const Vector3d mean = sum / area;
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(a);
+    const SymmetricEigen<3> solver(a);
     const double largest = solver.eigenvalues()[2];
     Vector3d point = mean;
     for (int k = 0; k < 3; ++k) {

@@ -1,14 +1,12 @@
 #include "abbe/geometry/minimax.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe::fits {
 namespace {
@@ -103,7 +101,7 @@ VectorXd linear_program(const MatrixXd& rows, const VectorXd& bound, const Vecto
     const VectorXd ratio = lambda.cwiseQuotient(s);
     MatrixXd normal = rows.transpose() * ratio.asDiagonal() * rows;
     normal.diagonal().array() += 1e-14 * normal.diagonal().maxCoeff();
-    const Eigen::LDLT<MatrixXd> factor(normal);
+    const Ldlt<> factor(normal);
     const auto direction = [&](const VectorXd& complement, VectorXd& dx, VectorXd& ds, VectorXd& dl) {
       const VectorXd inner = (lambda.cwiseProduct(primal) - complement).cwiseQuotient(s);
       dx = factor.solve(-dual - rows.transpose() * inner);
@@ -140,8 +138,8 @@ void reduce(const Linearised& l, const VectorXd& scale, std::vector<Index>& acti
     for (std::size_t k = 0; k < active.size(); ++k) {
       columns.col(static_cast<Index>(k)) << l.gradient.row(active[k]).transpose().cwiseProduct(scale), 1;
     }
-    Eigen::FullPivLU<MatrixXd> lu(columns);
-    lu.setThreshold(1e-9);
+    FullLu<> lu(columns);
+    lu.set_threshold(1e-9);
     if (lu.rank() == columns.cols()) return;
     const VectorXd z = lu.kernel().col(0);
     double a = std::numeric_limits<double>::infinity();
@@ -166,8 +164,8 @@ void extend(const Linearised& l, const VectorXd& scale, const VectorXd& slack, s
     MatrixXd more(p + 1, columns.cols() + 1);
     more.leftCols(columns.cols()) = columns;
     more.col(columns.cols()) << l.gradient.row(k).transpose().cwiseProduct(scale), 1;
-    Eigen::FullPivLU<MatrixXd> lu(more);
-    lu.setThreshold(1e-6);
+    FullLu<> lu(more);
+    lu.set_threshold(1e-6);
     if (lu.rank() < more.cols()) return false;
     columns = more;
     return true;
@@ -218,12 +216,11 @@ MatrixXd curvature(const ShapeFrame& frame, const std::vector<SignedPoint>& acti
 
 /// True if the combination of the active values bends upwards wherever they all stay equal to first order.
 bool is_minimum(const MatrixXd& curvature, const MatrixXd& gradient, double size) {
-  Eigen::FullPivLU<MatrixXd> lu(gradient);
-  lu.setThreshold(1e-7);
-  if (lu.dimensionOfKernel() == 0) return true;
-  const Eigen::HouseholderQR<MatrixXd> qr(lu.kernel());
-  const MatrixXd z = qr.householderQ() * MatrixXd::Identity(gradient.cols(), lu.dimensionOfKernel());
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(z.transpose() * curvature * z, Eigen::EigenvaluesOnly);
+  FullLu<> lu(gradient);
+  lu.set_threshold(1e-7);
+  if (lu.kernel_dimension() == 0) return true;
+  const MatrixXd z = Qr(lu.kernel()).orthonormal(lu.kernel_dimension());
+  const SymmetricEigen<> eigen(z.transpose() * curvature * z, Eigen::EigenvaluesOnly);
   return eigen.eigenvalues()[0] > 1e-7 / size;
 }
 
@@ -249,7 +246,7 @@ bool newton(Minimax& answer, const std::vector<SignedPoint>& active, const std::
     // Rows and columns of like size: angles move the surface by the extent.
     VectorXd unit = VectorXd::Ones(p + 1 + a);
     for (Index j = 0; j < p; ++j) unit[j] = 1 / std::max(l.gradient.col(j).cwiseAbs().maxCoeff(), 1e-300);
-    const Eigen::FullPivLU<MatrixXd> lu(unit.asDiagonal() * k * unit.asDiagonal());
+    const FullLu<> lu(unit.asDiagonal() * k * unit.asDiagonal());
     const VectorXd solved = unit.asDiagonal() * lu.solve(unit.asDiagonal() * right);
     if (!solved.allFinite()) return false;
     const VectorXd y = solved.head(p);

@@ -62,9 +62,10 @@ Matrix3d axes_of(const Vector3d& line, const Vector3d& normal) {
   return axes;
 }
 
-class Search {
+class PairSearch {
  public:
-  Search(const PointCloud& part, const ThinnedScan& scan, const DistanceGrid& grid, const PairSearchOptions& options)
+  PairSearch(const PointCloud& part, const ThinnedScan& scan, const DistanceGrid& grid,
+             const PairSearchOptions& options)
       : part_(part), scan_(scan), grid_(grid), options_(options), generator_(options.seed) {
     const Vector3d low = part.points.rowwise().minCoeff(), high = part.points.rowwise().maxCoeff();
     diameter_ = (high - low).norm();
@@ -206,7 +207,7 @@ class Search {
 std::vector<PoseCandidate> search_poses(const PointCloud& part, const ThinnedScan& scan, const DistanceGrid& grid,
                                         const PairSearchOptions& options) {
   if (part.size() < 3 || scan.points.cols() < 3) return {};
-  return Search(part, scan, grid, options).run();
+  return PairSearch(part, scan, grid, options).run();
 }
 
 }  // namespace abbe

@@ -9,13 +9,18 @@
 
 namespace abbe {
 
+namespace {
+
+std::atomic<int> set_thread_count{0};
+
+}  // namespace
+
 int default_thread_count() {
-#ifdef ABBE_ONE_THREAD  // fuzzing: what threads do first differs from run to run
-  return 1;
-#else
-  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
-#endif
+  const int set = set_thread_count;
+  return std::clamp(set > 0 ? set : static_cast<int>(std::thread::hardware_concurrency()), 1, 64);
 }
+
+void set_default_thread_count(int threads) { set_thread_count = threads; }
 
 void for_each_block(std::size_t blocks, int threads, const std::function<void(std::size_t)>& work) {
   if (threads <= 0) threads = default_thread_count();

@@ -8,6 +8,9 @@ namespace abbe {
 /// Number of threads used where the caller gives 0: the machine's, at most 64.
 int default_thread_count();
 
+/// Sets that number for the whole process. @param threads  0: the machine's again
+void set_default_thread_count(int threads);
+
 /// Runs work(block) for block = 0 .. blocks - 1 on several threads; returns when all are done.
 ///
 /// Which thread runs a block is not fixed: write results per block and reduce them in block order, so that they do not

@@ -6,34 +6,13 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <random>
 #include <vector>
 
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/triangle_mesh.h"
 
 /// Parts made in code, closed and oriented outwards unless said otherwise.
 namespace abbe::parts {
-
-/// The same numbers with every standard library.
-class Numbers {
- public:
-  explicit Numbers(std::uint64_t seed) : generator_(seed) {}
-  double uniform(double from = 0, double to = 1) {
-    return from + (to - from) * static_cast<double>(generator_() >> 11) * 0x1p-53;
-  }
-  double normal() {
-    const double radius = std::sqrt(-2 * std::log(1 - uniform()));
-    return radius * std::cos(2 * std::numbers::pi * uniform());
-  }
-  Eigen::Vector3d normal3() {
-    const double x = normal(), y = normal();
-    return {x, y, normal()};
-  }
-  std::size_t below(std::size_t bound) { return generator_() % bound; }
-
- private:
-  std::mt19937_64 generator_;
-};
 
 inline TriangleMesh mesh_of(const std::vector<Eigen::Vector3d>& vertices,
                             const std::vector<std::array<std::size_t, 3>>& triangles) {
@@ -196,7 +175,7 @@ inline Sample sample(
     const TriangleMesh& mesh, Eigen::Index count, std::uint64_t seed,
     const std::function<bool(const Eigen::Vector3d& point, const Eigen::Vector3d& normal)>& keep =
         [](const Eigen::Vector3d&, const Eigen::Vector3d&) { return true; }) {
-  Numbers numbers(seed);
+  test::Numbers numbers(seed);
   std::vector<double> area{0};
   for (Eigen::Index t = 0; t < mesh.size(); ++t) {
     const Eigen::Vector3d a = mesh.corner(t, 0);

@@ -1,10 +1,10 @@
 #include "abbe/geometry/pose_difference.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
@@ -61,7 +61,7 @@ double pose_difference(const RigidTransform& mesh_from_scan, const RigidTransfor
   double length = screw.norm();
   if (undetermined.empty()) return length;
   // Normal equations do: the columns are few and far from parallel.
-  const Eigen::FullPivLU<Eigen::MatrixXd> gram(unseen.transpose() * unseen);
+  const FullLu<> gram(unseen.transpose() * unseen);
   for (int step = 0; step < 20; ++step) {
     const Motion along = unseen * gram.solve(unseen.transpose() * screw);
     // Motions that do not commute leave a rest, which the next step takes.

@@ -16,7 +16,6 @@ using Eigen::Vector3d;
 constexpr Eigen::Index kPartSamples = 600;
 constexpr Eigen::Index kRoughPoints = 400, kComparedPoints = 2500, kFirstFinePoints = 50000;
 constexpr std::size_t kCompared = 12;
-constexpr double kWelsch = 2.985;
 constexpr double kSamePose = 0.02;  ///< of the diameter: nearer poses count as one
 constexpr double kWorse = 4;        ///< times the best deviation: such poses are no alternatives
 constexpr double kSettled = 0.02;   ///< of the uncertainty of a mean over all points
@@ -102,7 +101,7 @@ struct RegistrationTarget::Inside {
     Compared result;
     const Matrix3Xd moved = (fine.mesh_from_scan.rotation * points).colwise() + fine.mesh_from_scan.translation;
     for (const SurfacePoint& at : surface.closest(moved, options.threads)) {
-      const double u = at.distance / (kWelsch * scale);
+      const double u = at.distance / (kWelschTuning * scale);
       result.loss.push_back(at.on_border ? 1 : 1 - std::exp(-u * u));
       result.mean += result.loss.back() / static_cast<double>(points.cols());
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/parts_for_test.h"
 #include "abbe/geometry/rotation.h"
 
@@ -13,18 +14,18 @@ namespace {
 
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-using parts::Numbers;
+using test::Numbers;
 
-struct Scan {
+struct PosedScan {
   PointCloud cloud;
   RigidTransform mesh_from_scan;
 };
 
 /// A part seen from one side, noisy, with stray points, in a pose of its own.
-Scan scan_of(const TriangleMesh& mesh, Eigen::Index count, std::uint64_t seed, double noise, double outliers,
-             const Vector3d& seen_from) {
+PosedScan posed_scan_of(const TriangleMesh& mesh, Eigen::Index count, std::uint64_t seed, double noise, double outliers,
+                        const Vector3d& seen_from) {
   Numbers numbers(seed);
-  Scan scan;
+  PosedScan scan;
   scan.mesh_from_scan = {rotation_about(numbers.normal3().normalized(), numbers.uniform(0, std::numbers::pi)),
                          300 * numbers.normal3()};
   Matrix3Xd points = parts::sample(mesh, count, seed + 1, [&](const Vector3d&, const Vector3d& normal) {
@@ -58,7 +59,7 @@ TEST(Registration, FindsAnyPoseOfPartialScansWithThirtyPercentOutliers) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
     const bool curved = seed == 3;
     const Vector3d side = curved ? Vector3d::Zero() : Vector3d(Numbers(seed).normal3().normalized());
-    const Scan scan = scan_of(curved ? blade : step, 6000, 10 * seed, 0.01, 0.3, side);
+    const PosedScan scan = posed_scan_of(curved ? blade : step, 6000, 10 * seed, 0.01, 0.3, side);
     const Registration found = (curved ? on_blade : on_step).register_scan(scan.cloud);
     EXPECT_EQ(found.status, RegistrationStatus::ok) << seed << registration_status_name(found.status);
     EXPECT_LT(error_mm(found.fine.mesh_from_scan, scan.mesh_from_scan, curved ? blade : step), 0.02) << seed;
@@ -69,7 +70,7 @@ TEST(Registration, FindsAnyPoseOfPartialScansWithThirtyPercentOutliers) {
 TEST(Registration, PosesOfASymmetricPartAreAllReported) {
   // A square bar: four turns about z, each also upside down.
   const TriangleMesh bar = parts::subdivided(parts::prism({{-5, -5}, {5, -5}, {5, 5}, {-5, 5}}, 40));
-  const Scan scan = scan_of(bar, 5000, 4, 0.01, 0.1, Vector3d::Zero());
+  const PosedScan scan = posed_scan_of(bar, 5000, 4, 0.01, 0.1, Vector3d::Zero());
   const Registration found = RegistrationTarget(bar).register_scan(scan.cloud);
   EXPECT_EQ(found.status, RegistrationStatus::ambiguous);
   EXPECT_EQ(found.alternatives.size(), 7u);
@@ -78,7 +79,7 @@ TEST(Registration, PosesOfASymmetricPartAreAllReported) {
 
 TEST(Registration, ACylinderIsUndeterminedAboutItsAxisAndAmbiguousInItsDirection) {
   const TriangleMesh cylinder = parts::cylinder_with_flats(8, 40, 90, 10, {});
-  const Scan scan = scan_of(cylinder, 4000, 4, 0.01, 0.1, Vector3d::Zero());
+  const PosedScan scan = posed_scan_of(cylinder, 4000, 4, 0.01, 0.1, Vector3d::Zero());
   const Registration found = RegistrationTarget(cylinder).register_scan(scan.cloud);
   EXPECT_EQ(found.status, RegistrationStatus::ambiguous);
   EXPECT_EQ(found.alternatives.size(), 1u);
@@ -89,7 +90,7 @@ TEST(Registration, ACylinderIsUndeterminedAboutItsAxisAndAmbiguousInItsDirection
 
 TEST(Registration, IsTheSameWithAnyNumberOfThreads) {
   const TriangleMesh step = parts::stepped_box();
-  const Scan scan = scan_of(step, 3000, 6, 0.01, 0.1, Vector3d::Zero());
+  const PosedScan scan = posed_scan_of(step, 3000, 6, 0.01, 0.1, Vector3d::Zero());
   const Registration one = RegistrationTarget(step, {.threads = 1}).register_scan(scan.cloud);
   const Registration three = RegistrationTarget(step, {.threads = 3}).register_scan(scan.cloud);
   EXPECT_EQ(one.fine.mesh_from_scan.rotation, three.fine.mesh_from_scan.rotation);

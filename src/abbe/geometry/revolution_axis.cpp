@@ -1,13 +1,12 @@
 #include "abbe/geometry/revolution_axis.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
@@ -58,13 +57,13 @@ std::vector<RevolutionAxis> revolution_axes(const TriangleMesh& mesh, std::span<
     line << place.cross(normal), normal;
     sum += weight / area * line * line.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(sum);  // ascending
+  const SymmetricEigen<6> solver(sum);  // ascending
   const Matrix6& motions = solver.eigenvectors();
   std::vector<RevolutionAxis> axes;
   for (Eigen::Index count = 1; count <= 2; ++count) {
     // Of all mixtures of these motions the one that turns most.
     const Eigen::MatrixXd turns = motions.topLeftCorner(3, count);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> most((turns.transpose() * turns).eval());
+    const SymmetricEigen<> most((turns.transpose() * turns).eval());
     const Vector6 motion = motions.leftCols(count) * most.eigenvectors().col(count - 1);
     const Eigen::Vector3d turn = motion.head<3>(), shift = motion.tail<3>();
     if (turn.norm() < 0.05) continue;
@@ -82,8 +81,8 @@ std::vector<RevolutionAxis> revolution_axes(const TriangleMesh& mesh, std::span<
     normal_equations += cross.transpose() * cross;
     right -= cross.transpose() * shift;
   }
-  const Eigen::FullPivLU<Eigen::Matrix3d> centre(normal_equations);
-  if (!(centre.rcond() > 1e-6)) return axes;
+  const FullLu<3> centre(normal_equations);
+  if (!(centre.reciprocal_condition() > 1e-6)) return axes;
   const Eigen::Vector3d point = middle + size * centre.solve(right);
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0, deepest = nearest;
   for (const std::uint32_t triangle : triangles) {

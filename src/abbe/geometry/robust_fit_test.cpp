@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/shape_points_for_test.h"
 
 namespace abbe {

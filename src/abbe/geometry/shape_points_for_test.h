@@ -3,31 +3,17 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <vector>
 
+#include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/shapes.h"
 
 namespace abbe::test {
 
-/// Reproducible numbers for tests.
-class Numbers {
- public:
-  explicit Numbers(std::uint64_t seed) : generator_(seed) {}
-  double uniform(double from, double to) {
-    return from + (to - from) * static_cast<double>(generator_() >> 11U) * 0x1p-53;
-  }
-  double normal() {
-    const double r = std::sqrt(-2 * std::log(1 - uniform(0, 1)));
-    return r * std::cos(2 * std::numbers::pi * uniform(0, 1));
-  }
-  Eigen::Vector3d direction() { return Eigen::Vector3d(normal(), normal(), normal()).normalized(); }
-  std::uint64_t bits() { return generator_(); }
-
- private:
-  std::mt19937_64 generator_;
-};
+/// How near docs/fits.md says that a fit comes to the optimum.
+inline constexpr double kFitLength = 1e-7;  ///< mm
+inline constexpr double kFitAngle = 1e-9;   ///< rad
 
 /// A shape with points on a part of it: their feet, the normals there, and what residuals must be orthogonal to.
 struct Patch {

@@ -1,11 +1,11 @@
 #include "abbe/geometry/shape_refine.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe::fits {
 namespace {
@@ -34,7 +34,7 @@ Step damped_step(const NormalSums& sums, const std::vector<int>& free, double da
   }
   a = scale.asDiagonal() * a * scale.asDiagonal();
   a.diagonal().array() += damping;
-  const VectorXd solved = a.ldlt().solve(-g);
+  const VectorXd solved = Ldlt<>(a).solve(-g);
   Step step = Step::Zero();
   for (Index i = 0; i < a.rows(); ++i) step[free[static_cast<std::size_t>(i)]] = solved[i] * scale[i];
   return step;
@@ -155,7 +155,7 @@ Survey survey(ShapeKind kind, const FitPoints& points, const FitConstraints& con
     result.reason = "a coordinate is not finite";
     return result;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(result.centroid.scatter);
+  const SymmetricEigen<3> principal(result.centroid.scatter);
   result.extent = principal.eigenvalues().cwiseMax(0).cwiseSqrt().reverse();
   result.directions = principal.eigenvectors().rowwise().reverse();
   result.size = 3 * result.extent[0];
@@ -224,7 +224,7 @@ void report_fit(ShapeFit& fit, const ShapeFrame& frame, const Survey& survey, co
   MatrixXd a = chosen(normal, free);
   const VectorXd scale = a.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   a = scale.asDiagonal() * a * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(a);
+  const SymmetricEigen<> eigen(a);
   if (!(eigen.eigenvalues()[0] > 1e-14)) {
     ambiguous("the points do not determine all parameters");
     return;
@@ -250,7 +250,7 @@ namespace abbe {
 namespace {
 
 double largest_deviation(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
+  const SymmetricEigen<3> eigen(covariance, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(eigen.eigenvalues()[2], 0.0));
 }
 

@@ -1,11 +1,10 @@
 #include "abbe/geometry/shape_start.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe::fits {
 namespace {
@@ -28,7 +27,7 @@ void hold_radius(VectorXd& centre, double& radius, const VectorXd& mean, double 
 std::vector<VectorXd> both_sides(const MatrixXd& points, double radius) {
   const VectorXd mean = points.rowwise().mean();
   const MatrixXd q = points.colwise() - mean;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> principal(q * q.transpose());
+  const SymmetricEigen<> principal(q * q.transpose());
   const VectorXd across = principal.eigenvectors().col(0);
   return {mean + radius * across, mean - radius * across};
 }
@@ -68,10 +67,10 @@ bool patch_directions(const Survey& survey, Vector3d& generator, Vector3d& norma
     a.row(i) << 1, u, v, u * u / 2, u * v, v * v / 2;
     b[i] = q(2, i) / unit;
   }
-  const VectorXd c = a.colPivHouseholderQr().solve(b);
+  const VectorXd c = PivotedQr(a).solve(b);
   Eigen::Matrix2d curvature;
   curvature << c[3], c[4], c[4], c[5];
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(curvature);
+  const SymmetricEigen<2> principal(curvature);
   const int least = std::abs(principal.eigenvalues()[0]) < std::abs(principal.eigenvalues()[1]) ? 0 : 1;
   const Vector2d d = principal.eigenvectors().col(least);
   generator = (axes * Vector3d(d.x(), d.y(), c[1] * d.x() + c[2] * d.y())).normalized();
@@ -148,7 +147,7 @@ bool algebraic_sphere(const MatrixXd& points, VectorXd& centre, double& radius) 
   MatrixXd rows(d + 1, points.cols());
   rows.row(0) = (squares.array() - average) / (2 * std::sqrt(average));
   rows.bottomRows(d) = q;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(rows * rows.transpose());
+  const SymmetricEigen<> solver(rows * rows.transpose());
   const VectorXd a = solver.eigenvectors().col(0);
   const double square = a[0] / (2 * std::sqrt(average));
   const VectorXd relative = -a.tail(d) / (2 * square);
@@ -199,7 +198,7 @@ bool frame_along(ShapeKind kind, const Matrix3d& axes, const Matrix3Xd& points, 
     normal += row * row.transpose();
     right += row * v.head<2>().squaredNorm();
   }
-  const Eigen::Matrix<double, 5, 1> c = normal.ldlt().solve(right);
+  const Eigen::Matrix<double, 5, 1> c = Ldlt<5>(normal).solve(right);
   const double square = c[4] + c[0] * c[0] + c[1] * c[1];
   if (!c.allFinite() || c.head<2>().norm() > 1e6) return false;
   const double radius = std::sqrt(std::max(square, 1e-6));
@@ -218,8 +217,7 @@ std::vector<ShapeFrame> start_frames(ShapeKind kind, const Survey& survey, const
   std::vector<ShapeFrame> starts;
   switch (kind) {
     case ShapeKind::line2: {
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(
-          Eigen::Matrix2d(survey.centroid.scatter.topLeftCorner<2, 2>()));
+      const SymmetricEigen<2> principal(Eigen::Matrix2d(survey.centroid.scatter.topLeftCorner<2, 2>()));
       const Vector2d along = principal.eigenvectors().col(1);
       frame.axes = axes_of_line2(constraints.direction.value_or(Vector3d(along.x(), along.y(), 0)));
       frame.origin.z() = 0;

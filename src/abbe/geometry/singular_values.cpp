@@ -1,12 +1,12 @@
 #include "abbe/geometry/singular_values.h"
 
-#include <Eigen/SVD>
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 
 RightSingular right_singular(const Eigen::MatrixXd& matrix) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullV);
-  return {svd.singularValues(), svd.matrixV()};
+  const SingularValues<> svd(matrix, Eigen::ComputeFullV);
+  return {svd.values(), svd.v()};
 }
 
 }  // namespace abbe

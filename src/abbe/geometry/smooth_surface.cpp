@@ -1,10 +1,10 @@
 #include "abbe/geometry/smooth_surface.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/geometry/surface_normals.h"
 
@@ -100,7 +100,7 @@ SmoothSurface::Curvature SmoothSurface::curvature(std::uint32_t triangle) const 
                  turn_ac = (face.normal[2] - face.normal[0]).cast<double>();
   turns << turn_ab.dot(x), turn_ac.dot(x), turn_ab.dot(y), turn_ac.dot(y);
   const Matrix2d shape = turns * edges.inverse();
-  const Eigen::SelfAdjointEigenSolver<Matrix2d> solver(0.5 * (shape + shape.transpose()));
+  const SymmetricEigen<2> solver(0.5 * (shape + shape.transpose()));
   for (int k = 0; k < 2; ++k) {
     const Vector2d direction = solver.eigenvectors().col(k);
     result.direction[k] = direction.x() * x + direction.y() * y;

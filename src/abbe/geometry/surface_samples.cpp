@@ -1,12 +1,13 @@
 #include "abbe/geometry/surface_samples.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 namespace {
@@ -76,7 +77,7 @@ Vector3d plane_normal(const Eigen::Matrix3Xd& points, const Cells& cells, Eigen:
     count += 1;
   });
   if (count < 6) return Vector3d::Zero();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares - sum * sum.transpose() / count);
+  const SymmetricEigen<3> solver(squares - sum * sum.transpose() / count);
   if (!(solver.eigenvalues()[0] < 0.1 * solver.eigenvalues()[1])) return Vector3d::Zero();
   return solver.eigenvectors().col(0);
 }

@@ -1,14 +1,13 @@
 #include "abbe/geometry/trilateration.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <random>
 #include <stdexcept>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 namespace {
@@ -34,9 +33,9 @@ struct Frame {
     middle = matrix.rowwise().mean();
     matrix.colwise() -= middle;
     const Eigen::Matrix3d moments = matrix * matrix.transpose() / static_cast<double>(points.size());
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments, Eigen::ComputeFullU);
-    axes = svd.matrixU();
-    extent = svd.singularValues().cwiseSqrt();
+    const SingularValues<3> svd(moments, Eigen::ComputeFullU);
+    axes = svd.u();
+    extent = svd.values().cwiseSqrt();
   }
   Vector3d into(const Vector3d& point) const { return axes.transpose() * (point - middle); }
   Vector3d out_of(const Vector3d& own) const { return axes * own + middle; }
@@ -63,9 +62,9 @@ std::vector<double> medians(const TrilaterationData& data, const std::vector<Vec
   return result;
 }
 
-class Search {
+class PositionSearch {
  public:
-  Search(const TrilaterationData& data, const Frame& frame) : data_(data), frame_(frame) {
+  PositionSearch(const TrilaterationData& data, const Frame& frame) : data_(data), frame_(frame) {
     for (const Vector3d& point : data.points) points_.push_back(frame.into(point));
     // Rousseeuw and Leroy, Robust Regression (1987), ch. 3: with the plain median of few lengths, as many as there are
     // unknowns would always be explained.
@@ -112,7 +111,7 @@ class Search {
         matrix(k, unknowns - 1) = 1;
         right[k] = points_[i].squaredNorm() - length * length;
       }
-      const Eigen::VectorXd solution = matrix.colPivHouseholderQr().solve(right);
+      const Eigen::VectorXd solution = PivotedQr(matrix).solve(right);
       if (!solution.allFinite()) continue;
       Vector3d position = Vector3d::Zero();
       position.head(dimensions) = solution.head(dimensions);
@@ -155,7 +154,7 @@ class Search {
       }
       normal.diagonal() *= 1 + 1e-12;
       normal.diagonal().array() += 1e-14 * normal.diagonal().maxCoeff() + 1e-300;
-      const Eigen::VectorXd step = normal.ldlt().solve(right);
+      const Eigen::VectorXd step = Ldlt<>(normal).solve(right);
       if (!step.allFinite()) return now;
       bool better = false;
       for (double share = 1; share > 1e-3 && !better; share *= 0.5) {
@@ -186,7 +185,7 @@ class Search {
 };
 
 /// Start positions: subsets of the longest run, drawn with a fixed seed, and all of its readings.
-std::vector<Vector3d> drawn_positions(const TrilaterationData& data, const Search& search, std::size_t draws) {
+std::vector<Vector3d> drawn_positions(const TrilaterationData& data, const PositionSearch& search, std::size_t draws) {
   std::vector<std::vector<std::size_t>> runs(data.dead_path.size());
   for (std::size_t i = 0; i < data.run.size(); ++i) runs[data.run[i]].push_back(i);
   const std::vector<std::size_t>& longest =
@@ -241,7 +240,7 @@ Trilateration trilaterate(const TrilaterationData& data, const TrilaterationOpti
     result.direction = frame.axes.col(0);
     return result;
   }
-  const Search search(data, frame);
+  const PositionSearch search(data, frame);
   std::vector<Candidate> candidates;
   for (const Vector3d& position : drawn_positions(data, search, options.draws)) {
     candidates.push_back(search.judged(position));

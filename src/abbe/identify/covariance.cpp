@@ -1,11 +1,10 @@
 #include "abbe/identify/covariance.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 namespace {
@@ -40,9 +39,9 @@ bool covariance_of_estimates(const Eigen::MatrixXd& normal, const ConstrainedSpa
   Eigen::VectorXd inverse_scale;
   covariance.resize(0, 0);
   if (!scaled_reduced(normal, space, scaled, inverse_scale)) return false;
-  const Eigen::LLT<Eigen::MatrixXd> factor(scaled);
+  const Cholesky factor(scaled);
   if (factor.info() != Eigen::Success) return false;
-  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
+  const Eigen::MatrixXd inverse = factor.solve_columns(Eigen::MatrixXd::Identity(scaled.rows(), scaled.cols()));
   covariance = inverse_scale.asDiagonal() * inverse * inverse_scale.asDiagonal();
   if (is_constrained(space)) covariance = (space->directions * covariance * space->directions.transpose()).eval();
   covariance = ((covariance + covariance.transpose()) / 2).eval();
@@ -57,12 +56,11 @@ bool covariance_from_factor(const Eigen::MatrixXd& factor, const ConstrainedSpac
   const Eigen::VectorXd inverse_scale = norms.cwiseInverse();
   free = (free * inverse_scale.asDiagonal()).eval();
   const Index n = free.cols();
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(free);
-  const Eigen::MatrixXd triangle = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  const PivotedQr qr(free);
+  const Eigen::MatrixXd triangle = qr.upper(n);
   if (!(std::abs(triangle(n - 1, n - 1)) > 5e-14 * std::abs(triangle(0, 0)))) return false;
   const Eigen::MatrixXd root =
-      qr.colsPermutation() *
-      Eigen::MatrixXd(triangle.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n)));
+      qr.columns() * Eigen::MatrixXd(triangle.triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n)));
   const Eigen::MatrixXd estimates = to_estimates(root, inverse_scale, space);
   covariance = estimates * estimates.transpose();
   return true;
@@ -74,7 +72,7 @@ Observability observability_of(const Eigen::MatrixXd& normal, const ConstrainedS
   Eigen::MatrixXd scaled;
   Eigen::VectorXd inverse_scale;
   if (!scaled_reduced(normal, space, scaled, inverse_scale) || scaled.rows() == 0 || reading_count == 0) return result;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled, Eigen::EigenvaluesOnly);
+  const SymmetricEigen<> eigen(scaled, Eigen::EigenvaluesOnly);
   const Eigen::VectorXd singular = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
   const Index n = singular.size();
   if (!(singular[0] > 0)) return result;

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/singular_values.h"
 
@@ -84,7 +83,7 @@ std::vector<std::size_t> find_components(const AxisIndications& readings, const 
     if (is_zero(c) || displacements.empty()) continue;
     // A rotation with the same lever at every probe of a direction cannot be told from a displacement.
     const Eigen::VectorXd column = d.col(static_cast<Eigen::Index>(c));
-    const Eigen::VectorXd levers = shifts.colPivHouseholderQr().solve(column);
+    const Eigen::VectorXd levers = PivotedQr(shifts).solve(column);
     if ((column - shifts * levers).norm() > kRankTolerance * column.norm()) {
       components.push_back(c);
       continue;
@@ -266,7 +265,7 @@ Decoupling decouple_indications(const AxisIndications& readings, AngleDatum datu
   const Eigen::VectorXd scale = (weight.cwiseSqrt().asDiagonal() * seen).colwise().norm().cwiseInverse();
   const Eigen::MatrixXd scaled = seen * scale.asDiagonal();
   const Eigen::MatrixXd inverse =
-      (scaled.transpose() * weight.asDiagonal() * scaled).ldlt().solve(Eigen::MatrixXd::Identity(q, q));
+      Ldlt<>(scaled.transpose() * weight.asDiagonal() * scaled).solve_columns(Eigen::MatrixXd::Identity(q, q));
   const Eigen::MatrixXd one_position = scale.asDiagonal() * inverse * scale.asDiagonal();  // covariance, [q, q]
   const Eigen::MatrixXd solve = one_position * seen.transpose() * weight.asDiagonal();     // [q, k]
 

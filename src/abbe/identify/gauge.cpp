@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/identify/gauge_convention.h"
 #include "abbe/identify/parameter_words.h"
 
@@ -17,8 +16,8 @@ using Index = Eigen::Index;
 // A candidate is taken if at least this part of it (as a cosine) lies in what is still open.
 constexpr double kOpenPart = 1e-3;
 // Entries of a direction that are named, relative to its largest scaled entry.
-constexpr double kNamedEntry = 0.02;
-constexpr std::size_t kMostNamed = 8;
+constexpr double kInseparableEntry = 0.02;
+constexpr std::size_t kMostInseparableNamed = 8;
 // Parameters that lie in a space equally but for rounding: the first is taken.
 constexpr double kAlike = 1e-6;
 
@@ -29,16 +28,16 @@ Eigen::VectorXd usable_scale(const Eigen::VectorXd& column_norms) {
 /// @param quantity  what the functional is; empty: a combination that has no name
 void describe(const std::vector<EstimatedParameter>& parameters, const Eigen::VectorXd& scale,
               const std::string& quantity, GaugeConstraint& constraint) {
-  constraint.inseparable = largest_entries(constraint.direction.cwiseProduct(scale), kNamedEntry);
+  constraint.inseparable = largest_entries(constraint.direction.cwiseProduct(scale), kInseparableEntry);
   const double own = constraint.functional.cwiseAbs().maxCoeff();
   std::string others;
   std::size_t named = 0;
   for (const std::size_t i : constraint.inseparable) {
     // What the quantity itself consists of is no other; a combination without a name is all of its parts.
     if (!quantity.empty() && std::abs(constraint.functional[static_cast<Index>(i)]) > 1e-9 * own) continue;
-    if (named++ < kMostNamed) others += (others.empty() ? "" : ", ") + parameters[i].name;
+    if (named++ < kMostInseparableNamed) others += (others.empty() ? "" : ", ") + parameters[i].name;
   }
-  if (named > kMostNamed) others += fmt::format(" and {} more", named - kMostNamed);
+  if (named > kMostInseparableNamed) others += fmt::format(" and {} more", named - kMostInseparableNamed);
   if (quantity.empty()) {
     constraint.inseparable_words = fmt::format("a combination of {} is not seen by the readings", others);
     return;
@@ -58,8 +57,8 @@ Eigen::MatrixXd nearest_to_parameters(Eigen::MatrixXd space) {
     Index nearest = 0;
     while (part[nearest] < (1 - kAlike) * most) ++nearest;
     result.col(k) = space * space.row(nearest).transpose().normalized();
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(space.row(nearest).transpose());
-    space = (space * qr.householderQ()).rightCols(space.cols() - 1).eval();
+    const Qr qr(space.row(nearest).transpose());
+    space = qr.rotated_from_right(space).rightCols(space.cols() - 1).eval();
   }
   return result;
 }
@@ -97,8 +96,7 @@ std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& 
     const Index rest = q - taken.cols();
     Eigen::MatrixXd left = Eigen::MatrixXd::Identity(q, q);
     if (taken.cols() > 0) {
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(taken);
-      left = qr.householderQ() * left;
+      left = Qr(taken).rotated(left);
     }
     const Eigen::MatrixXd scaled = nearest_to_parameters(open * left.rightCols(rest));
     for (Index i = 0; i < rest; ++i) {
@@ -114,7 +112,7 @@ std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& 
 
   Eigen::MatrixXd functionals(q, p);
   for (Index i = 0; i < q; ++i) functionals.row(i) = constraints[static_cast<std::size_t>(i)].functional;
-  const Eigen::MatrixXd directions = null_space.basis * (functionals * null_space.basis).fullPivLu().inverse();
+  const Eigen::MatrixXd directions = null_space.basis * FullLu<>(functionals * null_space.basis).inverse();
   const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
   for (Index i = 0; i < q; ++i) {
     GaugeConstraint& constraint = constraints[static_cast<std::size_t>(i)];
@@ -141,13 +139,13 @@ ConstrainedSpace constrained_space(const std::vector<GaugeConstraint>& constrain
     space.particular += constraint.direction * (constraint.value - constraint.functional.dot(start));
   }
   // Elimination instead of an orthogonal basis: a parameter that one equation sets alone comes out exactly.
-  const Eigen::FullPivLU<Eigen::MatrixXd> lu(functionals);
-  const Eigen::VectorXi columns = lu.permutationQ().indices();
+  const FullLu<> lu(functionals);
+  const Eigen::VectorXi columns = lu.columns();
   Eigen::MatrixXd pivot(q, q), free(q, p - q);
   for (Index i = 0; i < q; ++i) pivot.col(i) = functionals.col(columns[i]);
   for (Index i = q; i < p; ++i) free.col(i - q) = functionals.col(columns[i]);
-  const Eigen::PartialPivLU<Eigen::MatrixXd> solver(pivot);
-  const Eigen::MatrixXd eliminated = p > q ? Eigen::MatrixXd(-solver.solve(free)) : Eigen::MatrixXd(q, 0);
+  const PartialLu solver(pivot);
+  const Eigen::MatrixXd eliminated = p > q ? Eigen::MatrixXd(-solver.solve_columns(free)) : Eigen::MatrixXd(q, 0);
   space.directions = Eigen::MatrixXd::Zero(p, p - q);
   for (Index j = 0; j < p - q; ++j) {
     space.directions(columns[q + j], j) = 1 / scale[columns[q + j]];

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/identify/distributions.h"
 #include "abbe/identify/normal_equations.h"
@@ -23,7 +23,7 @@ constexpr double kIllConditionedLarge = 1e-6;
 constexpr double kLarge = 5e8;  // residuals times square of the parameters
 // A gauge that costs this part of the cost along one clearly seen direction is none.
 constexpr int kMostGaugeRounds = 2;
-constexpr double kClearlySeen = 1e-9;
+constexpr double kSeenByCost = 1e-9;
 constexpr double kRestriction = 0.1;
 
 std::vector<double> scaled_norms(const Problem& problem, const std::vector<std::vector<double>>& norms) {
@@ -133,7 +133,7 @@ class Run {
     for (const GaugeConstraint& constraint : result_.gauge.constraints) {
       const Eigen::VectorXd& n = constraint.direction;
       const double seen = n.dot(solved.normal * n);
-      if (!(seen > kClearlySeen * n.cwiseAbs2().dot(solved.normal.diagonal()))) continue;
+      if (!(seen > kSeenByCost * n.cwiseAbs2().dot(solved.normal.diagonal()))) continue;
       const double slope = sums.gradient.dot(n);
       if (slope * slope / (2 * seen) > kRestriction * std::max(solved.cost, 1e-300)) return true;
     }
@@ -233,8 +233,7 @@ class Run {
     // From the normal matrix alone: a count for the report, the gauge itself stands since the start.
     const Eigen::VectorXd inverse =
         sums.normal.diagonal().unaryExpr([](double square) { return square > 0 ? 1 / std::sqrt(square) : 0.0; });
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-        inverse.asDiagonal() * sums.normal * inverse.asDiagonal(), Eigen::EigenvaluesOnly);
+    const SymmetricEigen<> eigen(inverse.asDiagonal() * sums.normal * inverse.asDiagonal(), Eigen::EigenvaluesOnly);
     const Eigen::VectorXd& values = eigen.eigenvalues();
     return static_cast<std::size_t>((values.array() > 1e-14 * values[values.size() - 1]).count());
   }

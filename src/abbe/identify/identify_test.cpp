@@ -16,7 +16,7 @@ namespace {
 using Complex = FunctionObservations::Complex;
 const std::vector<double> kTruth = {2, 0.8, 0.3, -1};
 
-Complex model(std::size_t k, std::size_t row, const std::vector<Complex>& b) {
+Complex decay_and_line(std::size_t k, std::size_t row, const std::vector<Complex>& b) {
   const double t = static_cast<double>(k % 50) / 25;
   return row == 0 ? b[0] * std::exp(-b[1] * t) + b[2] : b[3] * t + b[2] * b[2];
 }
@@ -26,7 +26,7 @@ std::vector<double> simulate(std::uint64_t seed, std::size_t readings = 50, doub
   const std::vector<Complex> truth(kTruth.begin(), kTruth.end());
   std::vector<double> data;
   for (std::size_t k = 0; k < readings; ++k)
-    for (std::size_t r = 0; r < 2; ++r) data.push_back(model(k, r, truth).real() + noise * random.normal());
+    for (std::size_t r = 0; r < 2; ++r) data.push_back(decay_and_line(k, r, truth).real() + noise * random.normal());
   return data;
 }
 
@@ -34,7 +34,7 @@ struct Fit {
   FunctionObservations observations;
   Problem problem;
   explicit Fit(std::vector<double> data, double uncertainty = 0.02)
-      : observations(4, 2, std::move(data), uncertainty, model) {
+      : observations(4, 2, std::move(data), uncertainty, decay_and_line) {
     observations.start({1, 1, 0.5, 0});
     problem = function_problem({&observations});
   }
@@ -153,7 +153,9 @@ TEST(Identify, failures_have_their_status_and_leave_the_start) {
 }
 
 TEST(Identify, all_readings_at_one_place_are_rank_deficient) {
-  const auto same_place = [](std::size_t, std::size_t row, const std::vector<Complex>& b) { return model(20, row, b); };
+  const auto same_place = [](std::size_t, std::size_t row, const std::vector<Complex>& b) {
+    return decay_and_line(20, row, b);
+  };
   for (const GaugeChoice gauge : {GaugeChoice::iso, GaugeChoice::none}) {
     FunctionObservations observations(4, 2, std::vector<double>(200, 1.0), 0.02, same_place);
     observations.start({1, 1, 0.5, 0.2});

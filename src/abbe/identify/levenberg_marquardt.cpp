@@ -1,9 +1,9 @@
 #include "abbe/identify/levenberg_marquardt.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/identify/normal_equations.h"
 
 namespace abbe {
@@ -32,8 +32,7 @@ class Minimiser {
     x_ = start;
     if (space_)
       x_ = space_->particular +
-           space_->directions * (space_->directions.transpose() * space_->directions)
-                                    .ldlt()
+           space_->directions * Ldlt<>(space_->directions.transpose() * space_->directions)
                                     .solve(space_->directions.transpose() * (start - space_->particular));
     sums_ = at_start ? *at_start : stream_.sums(x_, loss_, Wanted::normal);
     if (!sums_.finite) {
@@ -95,8 +94,8 @@ class Minimiser {
     const Eigen::VectorXd norms = reduced_.diagonal().cwiseMax(0.0).cwiseSqrt();
     if (!(norms.minCoeff() > 0)) return false;
     const Eigen::VectorXd inverse = norms.cwiseInverse();
-    const Eigen::LDLT<Eigen::MatrixXd> factor(inverse.asDiagonal() * reduced_ * inverse.asDiagonal());
-    return factor.info() == Eigen::Success && factor.vectorD().minCoeff() > 1e-15;
+    const Ldlt<> factor(inverse.asDiagonal() * reduced_ * inverse.asDiagonal());
+    return factor.info() == Eigen::Success && factor.diagonal().minCoeff() > 1e-15;
   }
 
   void iterate(SolverResult& result) {
@@ -221,7 +220,7 @@ class Minimiser {
   Eigen::MatrixXd normal_;   // [p, p] at the point of the factor
   Eigen::MatrixXd reduced_;  // free variables, column-scaled
   Eigen::VectorXd scale_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Cholesky factor_;
   double factor_damping_ = 0;
   bool factored_ = false;
   bool normal_is_current_ = false;

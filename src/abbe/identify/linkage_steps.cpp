@@ -1,9 +1,11 @@
 #include "abbe/identify/linkage_steps.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 namespace {
@@ -37,7 +39,7 @@ bool fit_parabola(const std::vector<double>& z, const std::vector<double>& width
       rows.row(i) << weight, weight * t, weight * t * t;
       right[i] = weight * w * w;
     }
-    c = rows.colPivHouseholderQr().solve(right);
+    c = PivotedQr(rows).solve(right);
     if (!(c[2] > 0) || !c.allFinite()) return false;
     for (Eigen::Index i = 0; i < n; ++i) {
       const double t = (z[static_cast<std::size_t>(i)] - middle) / extent;
@@ -60,8 +62,8 @@ bool fit_arm(const std::vector<double>& angle, const std::vector<Eigen::Vector2d
     rows.row(2 * i + 1) << 0, 1, s, c;
     right.segment<2>(2 * i) = marks[static_cast<std::size_t>(i)];
   }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(rows);
-  solver.setThreshold(1e-6);
+  PivotedQr solver(rows);
+  solver.set_threshold(1e-6);
   if (solver.rank() < 4) return false;
   arm = solver.solve(right).tail<2>();
   return true;
@@ -206,7 +208,6 @@ LinkageReadings run_steps(const SwingHeadLinkage& truth, const LinkageReadings& 
 }  // namespace
 
 LinkageAccuracy LinkageAccuracy::published() {
-  constexpr double kArcsec = std::numbers::pi / (180 * 3600);
   LinkageAccuracy a;
   a.x = 2.77e-3, a.y = 1.55e-3, a.z = 3.55e-3;
   a.a = a.zero_a = 1.7 * kArcsec;

@@ -5,15 +5,14 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr LinkageConvention kConventions[] = {LinkageConvention::table_moves, LinkageConvention::head_moves};
 
 SwingHeadLinkage published() { return {240.745, 209.476, -0.265, -0.145, {-197.236, 25.306, -528.996}}; }

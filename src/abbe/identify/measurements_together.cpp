@@ -1,7 +1,8 @@
 #include "abbe/identify/measurements_together.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 namespace {
@@ -21,11 +22,13 @@ std::string clause_of(const PossibleMeasurement& measurement) {
   return words;
 }
 
+double still_unseen(double norm) { return std::max(kStillZero * norm, kSeenAbove); }
+
 Eigen::MatrixXd left_open(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& open) {
   if (open.cols() == 0 || rows.rows() == 0) return open;
   const Eigen::MatrixXd seen = rows * open;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(seen.transpose() * seen);
-  const double limit = std::max(kStillZero * rows.norm(), kSeenAbove);
+  const SymmetricEigen<> eigen(seen.transpose() * seen);
+  const double limit = still_unseen(rows.norm());
   Index left = 0;
   while (left < open.cols() && !(eigen.eigenvalues()[left] > limit * limit)) ++left;
   return open * eigen.eigenvectors().leftCols(left);

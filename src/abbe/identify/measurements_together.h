@@ -11,6 +11,11 @@ namespace abbe {
 /// Share of a direction that may stay unseen for it to count as shown.
 inline constexpr double kLeftUnseen = 0.1;
 
+/// Singular value of rows, in standard uncertainties per typical size, up to which they do not show a direction: all
+/// readings together change by no more than one standard uncertainty, or it is rounding.
+/// @param norm  of the rows
+double still_unseen(double norm);
+
 /// The part of the space of `open` that the rows leave unseen, orthonormal columns. A direction counts as seen if
 /// errors of typical size along it change the readings by more than their noise, and by more than rounding.
 /// @param rows  [readings, parameters] in standard uncertainties per typical size

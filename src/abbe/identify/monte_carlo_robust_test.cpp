@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/identify/decay_wave_and_line_for_test.h"
 #include "abbe/identify/function_observations_test.h"
 #include "abbe/identify/monte_carlo_comparison.h"
 
@@ -11,24 +12,19 @@ namespace {
 
 using Complex = FunctionObservations::Complex;
 constexpr double kNoise = 0.01;
-const std::vector<double> kTruth = {3, 0.4, 1, 2, 1.3, -1, 0.5};
 
-/// Three rows per reading: a decay, an oscillation and a line.
-Complex model(std::size_t k, std::size_t row, const std::vector<Complex>& b) {
-  const double t = static_cast<double>(k) / 40;
-  if (row == 0) return b[0] * std::exp(-b[1] * t) + b[2];
-  if (row == 1) return b[3] * std::sin(b[4] * t);
-  return b[5] + b[6] * t;
+Complex at_40ths(std::size_t k, std::size_t row, const std::vector<Complex>& b) {
+  return test::decay_wave_and_line(static_cast<double>(k) / 40, row, b);
 }
 
 std::vector<double> readings(std::uint64_t seed, double outlier_share = 0) {
   RandomStream random(seed);
-  const std::vector<Complex> truth(kTruth.begin(), kTruth.end());
+  const std::vector<Complex> truth(test::kDecayWaveAndLine.begin(), test::kDecayWaveAndLine.end());
   std::vector<double> data;
   for (std::size_t k = 0; k < 200; ++k) {
     const double shift = random.uniform() < outlier_share ? 60 * kNoise : 0;
     for (std::size_t r = 0; r < 3; ++r)
-      data.push_back(model(k, r, truth).real() + kNoise * random.normal() + shift * random.uniform(-1, 1));
+      data.push_back(at_40ths(k, r, truth).real() + kNoise * random.normal() + shift * random.uniform(-1, 1));
   }
   return data;
 }
@@ -39,11 +35,11 @@ struct Fitted {
   Identification identification;
 
   Fitted(std::vector<double> data, LossKind loss, double prior_uncertainty = 0)
-      : observations(7, 3, std::move(data), kNoise, model) {
+      : observations(7, 3, std::move(data), kNoise, at_40ths) {
     observations.start({2.5, 0.3, 0.8, 1.5, 1.2, -0.5, 0.3});
     problem = function_problem({&observations});
     if (prior_uncertainty > 0) {
-      problem.priors.push_back({estimated_parameters(problem)[0].id, kTruth[0], prior_uncertainty});
+      problem.priors.push_back({estimated_parameters(problem)[0].id, test::kDecayWaveAndLine[0], prior_uncertainty});
     }
     IdentifyOptions options;
     options.loss = loss;

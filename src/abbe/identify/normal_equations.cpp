@@ -1,11 +1,11 @@
 #include "abbe/identify/normal_equations.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <mutex>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/identify/cross_products.h"
 
@@ -13,7 +13,6 @@ namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
-constexpr std::size_t kBlock = Observations::kBlockSize;
 // More pieces than this cost more memory and reduction than they gain in balance.
 constexpr std::size_t kMostPieces = 48;
 
@@ -70,8 +69,9 @@ ReadingStream::ReadingStream(const Problem& problem, int threads)
   self.parameters = estimated_count(problem);
   std::size_t blocks = 0;
   for (const SelectedObservations& selected : problem.observations)
-    blocks += (selected.observations->reading_count() + kBlock - 1) / kBlock;
-  const std::size_t readings_per_piece = kBlock * std::max<std::size_t>(1, (blocks + kMostPieces - 1) / kMostPieces);
+    blocks += (selected.observations->reading_count() + Observations::kBlockSize - 1) / Observations::kBlockSize;
+  const std::size_t readings_per_piece =
+      Observations::kBlockSize * std::max<std::size_t>(1, (blocks + kMostPieces - 1) / kMostPieces);
   std::size_t next = problem.machine_parameters.size();
   for (std::size_t o = 0; o < problem.observations.size(); ++o) {
     const SelectedObservations& selected = problem.observations[o];
@@ -82,7 +82,7 @@ ReadingStream::ReadingStream(const Problem& problem, int threads)
     for (std::size_t i = 0; i < problem.machine_parameters.size(); ++i) columns.push_back(i);
     for (std::size_t i = 0; i < selected.unknowns.size(); ++i) columns.push_back(next++);
     const std::size_t length =
-        padded(kBlock * static_cast<std::size_t>(selected.observations->rows()), kLengthMultiple);
+        padded(Observations::kBlockSize * static_cast<std::size_t>(selected.observations->rows()), kLengthMultiple);
     self.buffer_size = std::max(self.buffer_size, length * (padded(columns.size(), kColumnMultiple) + kColumnMultiple));
     self.columns.push_back(std::move(columns));
   }
@@ -104,9 +104,9 @@ void ReadingStream::for_each(bool jacobian, const Loss& loss,
     const std::size_t residual_column = padded(columns.size(), kColumnMultiple);
     std::unique_ptr<Buffer> buffer = self.take();
     double* values = buffer->aligned;
-    std::vector<double> weight_root(kBlock);
-    for (std::size_t first = piece.first; first < piece.last; first += kBlock) {
-      const std::size_t count = std::min(kBlock, piece.last - first);
+    std::vector<double> weight_root(Observations::kBlockSize);
+    for (std::size_t first = piece.first; first < piece.last; first += Observations::kBlockSize) {
+      const std::size_t count = std::min(Observations::kBlockSize, piece.last - first);
       const std::uint8_t* use = selected.use.empty() ? nullptr : selected.use.data() + first;
       if (use && std::all_of(use, use + count, [](std::uint8_t used) { return used == 0; })) continue;
       const std::size_t length = rows * count;
@@ -240,8 +240,7 @@ Eigen::MatrixXd ReadingStream::orthogonal_factor(const Eigen::VectorXd& estimate
       factor = std::move(stacked);
       return;
     }
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
-    factor = qr.matrixQR().topRows(p).triangularView<Eigen::Upper>();
+    factor = Qr(stacked).upper(p);
   };
   for_each(true, loss, [&](std::size_t piece, const ResidualBlock& block, double) {
     if (factors[piece].cols() == 0) factors[piece].resize(0, p);

@@ -14,7 +14,7 @@ namespace {
 
 using Complex = FunctionObservations::Complex;
 
-Complex model(std::size_t k, std::size_t row, const std::vector<Complex>& b) {
+Complex wave_and_decay(std::size_t k, std::size_t row, const std::vector<Complex>& b) {
   const double t = static_cast<double>(k) / 300;
   if (row == 0) return b[0] + b[1] * t + std::sin(b[2] * t);
   return b[3] * std::exp(-b[4] * t);
@@ -25,7 +25,7 @@ std::vector<double> data(std::size_t readings, std::uint64_t seed) {
   std::vector<double> values;
   const std::vector<Complex> truth = {1, 2, 3, 4, 0.7};
   for (std::size_t k = 0; k < readings; ++k)
-    for (std::size_t r = 0; r < 2; ++r) values.push_back(model(k, r, truth).real() + 0.05 * random.normal());
+    for (std::size_t r = 0; r < 2; ++r) values.push_back(wave_and_decay(k, r, truth).real() + 0.05 * random.normal());
   return values;
 }
 
@@ -56,7 +56,8 @@ TEST(CrossProducts, agree_with_plain_sums_for_every_padded_size) {
 }
 
 TEST(NormalEquations, sums_agree_with_the_stored_jacobian_and_leave_out_what_is_masked) {
-  FunctionObservations first(5, 2, data(300, 1), 0.05, model), second(5, 2, data(131, 2), 0.05, model);
+  FunctionObservations first(5, 2, data(300, 1), 0.05, wave_and_decay),
+      second(5, 2, data(131, 2), 0.05, wave_and_decay);
   first.start({0.9, 2.1, 2.9, 4.2, 0.8});
   second.start({1.1, 1.9, 3.1, 3.9, 0.6});
   Problem problem = function_problem({&first, &second});
@@ -104,7 +105,7 @@ TEST(NormalEquations, sums_agree_with_the_stored_jacobian_and_leave_out_what_is_
 }
 
 TEST(NormalEquations, gradient_is_the_slope_of_the_robust_cost) {
-  FunctionObservations observations(5, 2, data(200, 3), 0.05, model);
+  FunctionObservations observations(5, 2, data(200, 3), 0.05, wave_and_decay);
   observations.start({0.9, 2.1, 2.9, 4.2, 0.8});
   const Problem problem = function_problem({&observations});
   const ReadingStream stream(problem, 1);
@@ -127,7 +128,7 @@ TEST(NormalEquations, every_number_of_threads_gives_the_same_bits) {
   std::vector<Eigen::VectorXd> estimates;
   std::vector<Eigen::MatrixXd> covariances;
   for (const int threads : {1, 2, 3, 8}) {
-    FunctionObservations observations(5, 2, data(20000, 4), 0.05, model);
+    FunctionObservations observations(5, 2, data(20000, 4), 0.05, wave_and_decay);
     observations.start({0.9, 2.1, 2.9, 4.2, 0.8});
     Problem problem = function_problem({&observations});
     IdentifyOptions options;

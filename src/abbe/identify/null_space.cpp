@@ -1,8 +1,9 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/singular_values.h"
+#include "abbe/identify/column_norms.h"
 #include "abbe/identify/gauge.h"
 
 namespace abbe {
@@ -16,8 +17,6 @@ constexpr double kWeak = 3e-8;
 constexpr double kClearlySeen = 1e-9;
 constexpr double kSeen = 1e-12;  // a hundred times above rounding
 constexpr double kRounding = 1e-14;
-// Column norms relative to the largest: below is rounding of a column that is zero.
-constexpr double kNoColumn = 1e-14;
 constexpr double kQuickFactor = 5e8;  // products
 
 }  // namespace
@@ -33,12 +32,10 @@ NullSpace find_null_space(const ReadingStream& stream, const Eigen::VectorXd& es
   result.column_norms = sums.normal.diagonal().cwiseMax(0.0).cwiseSqrt();
   result.singular_values = Eigen::VectorXd::Zero(p);
   if (p == 0) return result;
-  const double no_column = kNoColumn * result.column_norms.maxCoeff();
-  for (Index i = 0; i < p; ++i)
-    if (result.column_norms[i] <= no_column) result.column_norms[i] = 0;
+  drop_rounding_columns(result.column_norms);
   const Eigen::VectorXd inverse = result.column_norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0.0; });
   const Eigen::MatrixXd scaled = inverse.asDiagonal() * sums.normal * inverse.asDiagonal();
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled, Eigen::EigenvaluesOnly);
+  SymmetricEigen<> eigen(scaled, Eigen::EigenvaluesOnly);
   const auto singular_values = [&] {
     const double largest = std::max(eigen.eigenvalues()[p - 1], 1e-300);
     for (Index i = 0; i < p; ++i)
@@ -67,7 +64,7 @@ NullSpace find_null_space(const ReadingStream& stream, const Eigen::VectorXd& es
     result.singular_values = svd.values / std::max(svd.values[0], 1e-300);
     vectors = svd.vectors;
   } else {
-    eigen.compute(scaled);
+    eigen = SymmetricEigen<>(scaled);
     singular_values();
     vectors = eigen.eigenvectors().rowwise().reverse();
     for (Index i = 0; i < p; ++i)

@@ -160,9 +160,9 @@ double paired_exceedance(const std::vector<double>& higher, const std::vector<do
 }
 
 /// The best model so far and the ways to a better one.
-class Search {
+class OrderSearch {
  public:
-  Search(const ProblemAtOrders& at, const std::vector<OrderGroup>& groups, const OrderSelectionOptions& options)
+  OrderSearch(const ProblemAtOrders& at, const std::vector<OrderGroup>& groups, const OrderSelectionOptions& options)
       : groups_(groups), options_(options), selection_(at, options) {}
 
   bool start() {
@@ -306,7 +306,7 @@ Problem at_nested_orders(Problem problem, const std::vector<OrderGroup>& groups,
 
 OrderSelection select_orders(const ProblemAtOrders& at, const std::vector<OrderGroup>& groups,
                              const OrderSelectionOptions& options) {
-  Search search(at, groups, options);
+  OrderSearch search(at, groups, options);
   if (!search.start()) return search.result;
   // A group is done until another one has changed.
   std::vector<std::uint8_t> open(groups.size(), 1);

@@ -12,7 +12,7 @@ namespace abbe {
 namespace {
 
 using Complex = FunctionObservations::Complex;
-constexpr double kNoise = 0.01;
+constexpr double kValueNoise = 0.01;
 constexpr std::size_t kReadings = 150;
 
 double position(std::size_t reading) { return static_cast<double>(reading) / kReadings; }
@@ -33,7 +33,7 @@ std::vector<double> readings(const Basis& basis, std::uint64_t seed) {
   for (std::size_t k = 0; k < coefficients.size(); ++k) coefficients[k] = (k % 2 ? 1 : -1) * random.uniform(0.5, 1.5);
   std::vector<double> data;
   for (std::size_t i = 0; i < kReadings; ++i)
-    data.push_back(basis.evaluate(position(i), coefficients) + kNoise * random.normal());
+    data.push_back(basis.evaluate(position(i), coefficients) + kValueNoise * random.normal());
   return data;
 }
 
@@ -45,7 +45,7 @@ class Splines {
   Problem at(const std::vector<int>& orders) {
     const Basis basis = with_intervals(kind_, orders[0]);
     observations_ = std::make_unique<FunctionObservations>(
-        basis.size(), 1, data_, kNoise, [basis](std::size_t k, std::size_t, const std::vector<Complex>& b) {
+        basis.size(), 1, data_, kValueNoise, [basis](std::size_t k, std::size_t, const std::vector<Complex>& b) {
           std::vector<double> values(basis.size());
           basis.values(position(k), {}, values);
           Complex sum = 0;
@@ -91,13 +91,13 @@ TEST(OrderSelection, finds_the_number_of_intervals_of_splines_and_tables) {
 }
 
 TEST(OrderSelection, gross_errors_and_a_start_far_too_low_do_not_hide_the_order) {
-  constexpr int kDegree = 4;
+  constexpr int kPolynomialDegree = 4;
   const auto legendre = [](int degree) {
     return Basis{.kind = BasisKind::legendre, .order = degree, .from = 0, .to = 1};
   };
   for (const LossKind loss : {LossKind::huber, LossKind::cauchy, LossKind::tukey}) {
-    std::vector<double> data = readings(legendre(kDegree), 5);
-    for (std::size_t i = 3; i < data.size(); i += 30) data[i] += 100 * kNoise;
+    std::vector<double> data = readings(legendre(kPolynomialDegree), 5);
+    for (std::size_t i = 3; i < data.size(); i += 30) data[i] += 100 * kValueNoise;
     Splines polynomials(BasisKind::legendre, data);
     OrderGroup group{.name = "X", .motions = {0}, .start_order = 1, .largest_order = 7};
     OrderSelectionOptions options;
@@ -105,15 +105,15 @@ TEST(OrderSelection, gross_errors_and_a_start_far_too_low_do_not_hide_the_order)
     const OrderSelection selection =
         select_orders([&](const std::vector<int>& orders) { return polynomials.at(orders); }, {group}, options);
     ASSERT_TRUE(selection.done);
-    EXPECT_EQ(selection.orders[0], kDegree);
+    EXPECT_EQ(selection.orders[0], kPolynomialDegree);
     EXPECT_GT(selection.trials.front().held_out_rms, 3 * selection.trials.back().held_out_rms);
   }
 }
 
 TEST(OrderSelection, orders_that_cannot_be_identified_are_passed_over) {
-  constexpr int kDegree = 3;
+  constexpr int kPolynomialDegree = 3;
   const std::vector<double> data =
-      readings(Basis{.kind = BasisKind::legendre, .order = kDegree, .from = 0, .to = 1}, 11);
+      readings(Basis{.kind = BasisKind::legendre, .order = kPolynomialDegree, .from = 0, .to = 1}, 11);
   Splines polynomials(BasisKind::legendre, data);
   OrderGroup group{.name = "X", .motions = {0}, .start_order = 1, .largest_order = 5};
   // The first model has no readings left to be identified from.
@@ -124,7 +124,7 @@ TEST(OrderSelection, orders_that_cannot_be_identified_are_passed_over) {
   };
   const OrderSelection selection = select_orders(at, {group});
   ASSERT_TRUE(selection.done);
-  EXPECT_EQ(selection.orders[0], kDegree);
+  EXPECT_EQ(selection.orders[0], kPolynomialDegree);
   EXPECT_EQ(selection.trials[0].status != IdentifyStatus::converged, true);
   EXPECT_EQ(selection.trials[1].raised, "all");
 }

@@ -83,16 +83,16 @@ std::string parameter_words(const Problem& problem, const std::vector<EstimatedP
 }
 
 std::vector<std::size_t> largest_entries(const Eigen::VectorXd& direction, double share) {
-  constexpr double kAlike = 1e-6;
+  constexpr double kSameAmount = 1e-6;
   const double largest = direction.size() > 0 ? direction.cwiseAbs().maxCoeff() : 0;
   const auto amount = [&](std::size_t i) {
     const double entry = std::abs(direction[static_cast<Eigen::Index>(i)]);
-    return largest > 0 ? std::round(entry / (kAlike * largest)) : 0.0;
+    return largest > 0 ? std::round(entry / (kSameAmount * largest)) : 0.0;
   };
   std::vector<std::size_t> order(static_cast<std::size_t>(direction.size()));
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return amount(a) > amount(b); });
-  while (!order.empty() && amount(order.back()) < share / kAlike) order.pop_back();
+  while (!order.empty() && amount(order.back()) < share / kSameAmount) order.pop_back();
   return order;
 }
 

@@ -14,9 +14,9 @@ constexpr std::size_t kUpdatesBetweenFactorisations = 128;
 // Of the information that an average choice of this size has; keeps the greedy start going before everything is seen.
 constexpr double kRidge = 1e-3;
 
-class Search {
+class PlanSearch {
  public:
-  Search(const PlanningSpace& space, const PlanningOptions& options)
+  PlanSearch(const PlanningSpace& space, const PlanningOptions& options)
       : space_(space),
         options_(options),
         by_variance_(options.criterion == PlanningCriterion::variance),
@@ -239,7 +239,7 @@ const char* status_text(PlanningStatus status) {
 
 ReadingPlan plan_readings(const PlanningSpace& space, const PlanningOptions& options) {
   check(space, options);
-  return Search(space, options).run();
+  return PlanSearch(space, options).run();
 }
 
 std::vector<ReadingPlan> plan_curve(const PlanningSpace& space, const PlanningOptions& options,
@@ -255,7 +255,7 @@ std::vector<ReadingPlan> plan_curve(const PlanningSpace& space, const PlanningOp
     if (curve.back().status == PlanningStatus::done) break;
   }
   if (next >= counts.size()) return curve;
-  Search search(space, grown);
+  PlanSearch search(space, grown);
   search.start_from(curve.back().chosen);
   for (++next; next < counts.size(); ++next) {
     if (!search.grow(counts[next])) break;

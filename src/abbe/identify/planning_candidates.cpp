@@ -4,9 +4,13 @@
 #include <numeric>
 
 namespace abbe {
+namespace {
+
+using Index = Eigen::Index;
+
+}  // namespace
 
 PlanningCandidates candidate_rows(const Problem& problem) {
-  using Index = Eigen::Index;
   PlanningCandidates candidates;
   candidates.rows = PlanningCandidates::Rows::Zero(static_cast<Index>(used_residual_count(problem)),
                                                    static_cast<Index>(estimated_count(problem)));

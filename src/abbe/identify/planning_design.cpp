@@ -1,10 +1,10 @@
 #include "abbe/identify/planning_design.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/identify/cross_products.h"
 #include "abbe/identify/planning_small.h"
@@ -73,13 +73,13 @@ bool PlanDesign::rebuild(const std::vector<std::size_t>& chosen, double ridge) {
                        static_cast<Index>(v_), Eigen::OuterStride<>(static_cast<Index>(space_.stride())));
     information.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(information);
+  const Cholesky factor(information);
   updates_ = 0;
   ahead_.clear();
   if (factor.info() != Eigen::Success) return false;
-  const Eigen::VectorXd diagonal = factor.matrixLLT().diagonal();
+  const Eigen::VectorXd diagonal = factor.diagonal();
   if (v_ > 0 && !(diagonal.minCoeff() > std::max(1e-7, space_.determined()) * diagonal.maxCoeff())) return false;
-  inverse_ = factor.solve(Eigen::MatrixXd::Identity(static_cast<Index>(v_), static_cast<Index>(v_)));
+  inverse_ = factor.solve_columns(Eigen::MatrixXd::Identity(static_cast<Index>(v_), static_cast<Index>(v_)));
   inverse_ = (0.5 * (inverse_ + inverse_.transpose())).eval();
   objective_ = by_variance_ ? weight_.cwiseProduct(inverse_).sum() : -2 * diagonal.array().log().sum();
   refresh_all();

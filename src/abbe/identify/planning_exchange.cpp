@@ -1,7 +1,7 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/identify/cross_products.h"
 #include "abbe/identify/planning_design.h"
@@ -72,7 +72,7 @@ PlanDesign::Best PlanDesign::best_instead(std::size_t place, const Allowed& rule
     end *= 2;
   }
   const Eigen::Map<const Eigen::MatrixXd> w(&w_[square_[before]], n, n);
-  const double largest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(w, Eigen::EigenvaluesOnly).eigenvalues()[n - 1];
+  const double largest = SymmetricEigen<>(w, Eigen::EigenvaluesOnly).eigenvalues()[n - 1];
   leaving_.loss = loss(place);
   leaving_.bounded = leaving_.loss < kImpossible && largest < kSafelyBelowOne && !rules.per_cost;
   leaving_.root_loss = std::sqrt(std::max(leaving_.loss, 0.0));

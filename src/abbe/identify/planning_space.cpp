@@ -1,30 +1,31 @@
 #include "abbe/identify/planning_space.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/singular_values.h"
+#include "abbe/identify/column_norms.h"
 
 namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
-// Column norms relative to the largest: below is rounding of a column that is zero.
-constexpr double kNoColumn = 1e-14;
 constexpr double kDetermined = 1e-10;
-constexpr double kRounding = 1e-14;
-constexpr Index kBlockRows = 512;
+constexpr double kWeakestRounding = 1e-14;
+constexpr Index kRowsBetweenReductions = 512;
 
 /// Factor R of rows that come in pieces; the rows themselves are not kept.
 class StreamingFactor {
  public:
-  explicit StreamingFactor(Index columns) : columns_(columns), work_(columns + kBlockRows, columns) { work_.setZero(); }
+  explicit StreamingFactor(Index columns) : columns_(columns), work_(columns + kRowsBetweenReductions, columns) {
+    work_.setZero();
+  }
   /// The row to be written next; valid until add().
   auto next() { return work_.row(columns_ + filled_); }
   void add() {
-    if (++filled_ == kBlockRows) reduce();
+    if (++filled_ == kRowsBetweenReductions) reduce();
   }
   Eigen::MatrixXd factor() {
     reduce();
@@ -34,7 +35,7 @@ class StreamingFactor {
  private:
   void reduce() {
     if (filled_ == 0) return;
-    Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(work_);
+    Qr::in_place(work_);
     for (Index j = 0; j < columns_; ++j) work_.col(j).tail(work_.rows() - j - 1).setZero();
     filled_ = 0;
   }
@@ -109,9 +110,7 @@ PlanningSpace::PlanningSpace(const PlanningCandidates& candidates, const Eigen::
   column_norms_ = candidates.rows.colwise().squaredNorm().transpose();
   if (known.rows() > 0) column_norms_ += known.colwise().squaredNorm().transpose();
   column_norms_ = column_norms_.cwiseSqrt().eval();
-  const double no_column = kNoColumn * (p > 0 ? column_norms_.maxCoeff() : 0);
-  for (Index i = 0; i < p; ++i)
-    if (column_norms_[i] <= no_column) column_norms_[i] = 0;
+  drop_rounding_columns(column_norms_);
   const Eigen::VectorXd inverse = column_norms_.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0.0; });
 
   StreamingFactor stream(p);
@@ -126,7 +125,7 @@ PlanningSpace::PlanningSpace(const PlanningCandidates& candidates, const Eigen::
   singular_values_ = svd.values / largest;
   Index v = p;
   while (v > 0 && !(singular_values_[v - 1] > threshold)) --v;
-  determined_ = std::max(kDetermined, v > 0 ? kRounding / singular_values_[v - 1] : 0.0);
+  determined_ = std::max(kDetermined, v > 0 ? kWeakestRounding / singular_values_[v - 1] : 0.0);
   estimates_from_seen_ =
       inverse.asDiagonal() * svd.vectors.leftCols(v) * (singular_values_.head(v) * largest).cwiseInverse().asDiagonal();
   // Parameters without any influence have no scale; their direction is the parameter itself.

@@ -16,8 +16,6 @@ namespace abbe {
 namespace {
 
 using Eigen::Vector3d;
-constexpr std::size_t kTrialReadings = 60;
-constexpr std::size_t kLeastReadings = 6;
 constexpr std::size_t kMostPoints = 4;
 constexpr double kOtherPlace_mm = 100;
 constexpr double kLongerBar = 2;

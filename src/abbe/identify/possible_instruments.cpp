@@ -24,8 +24,6 @@ namespace {
 
 using Eigen::Vector3d;
 using Components = std::vector<InterferometerComponent>;
-constexpr std::size_t kTrialReadings = 60;
-constexpr std::size_t kLeastReadings = 6;
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 constexpr double kBar_mm = 100;
 constexpr double kNestOffset_mm = 60;

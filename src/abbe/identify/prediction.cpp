@@ -1,14 +1,17 @@
 #include "abbe/identify/prediction.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/identify/normal_equations.h"
 
 namespace abbe {
+namespace {
 
 using Index = Eigen::Index;
+
+}  // namespace
 
 Eigen::VectorXd predicted_uncertainty(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& covariance) {
   return (rows * covariance).cwiseProduct(rows).rowwise().sum().cwiseMax(0.0).cwiseSqrt();
@@ -58,7 +61,7 @@ std::vector<HeldOutReading> held_out_readings(const Problem& problem, const Iden
       Eigen::MatrixXd spread = jacobian * identification.covariance * jacobian.transpose();
       reading.prediction_ratio = std::sqrt(std::max(0.0, spread.diagonal().maxCoeff()));
       spread.diagonal().array() += 1;
-      reading.normalised_square = residual.dot(spread.llt().solve(residual));
+      reading.normalised_square = residual.dot(Cholesky(spread).solve(residual));
       pieces[piece].push_back(reading);
     }
   });

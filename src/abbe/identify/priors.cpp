@@ -1,7 +1,7 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/identify/normal_equations.h"
 
 namespace abbe {
@@ -79,7 +79,7 @@ Eigen::MatrixXd prior_rows(const Problem& problem) {
     const Eigen::VectorXd scale =
         prior.information.diagonal().unaryExpr([](double value) { return value > 0 ? 1 / std::sqrt(value) : 1.0; });
     const Eigen::MatrixXd scaled = scale.asDiagonal() * prior.information * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+    const SymmetricEigen<> eigen(scaled);
     for (Index i = 0; i < scaled.rows(); ++i) {
       const double value = eigen.eigenvalues()[i];
       if (value <= 1e-15 * static_cast<double>(scaled.rows())) continue;

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/identify/decay_wave_and_line_for_test.h"
 #include "abbe/identify/distributions.h"
 #include "abbe/identify/function_observations_test.h"
 #include "abbe/identify/identify.h"
@@ -51,37 +52,33 @@ TEST(RobustLoss, median_norm_halves_the_chi_square_distribution) {
     EXPECT_NEAR(chi_square_exceedance(std::pow(median_norm(rows), 2), rows), 0.5, 1e-6);
 }
 
-struct Campaign {
+struct CampaignWithOutliers {
   std::vector<double> data;
   std::vector<std::uint8_t> is_outlier;
 };
 
-// Three rows per reading: a damped oscillation, its derivative and a line.
-FunctionObservations::Complex model(std::size_t k, std::size_t row,
-                                    const std::vector<FunctionObservations::Complex>& b) {
-  const double t = static_cast<double>(k) / 60;
-  if (row == 0) return b[0] * std::exp(-b[1] * t) + b[2];
-  if (row == 1) return b[3] * std::sin(b[4] * t);
-  return b[5] + b[6] * t;
+FunctionObservations::Complex at_60ths(std::size_t k, std::size_t row,
+                                       const std::vector<FunctionObservations::Complex>& b) {
+  return test::decay_wave_and_line(static_cast<double>(k) / 60, row, b);
 }
-const std::vector<double> kTruth = {3, 0.4, 1, 2, 1.3, -1, 0.5};
 
-Campaign simulate(double outlier_share, std::uint64_t seed) {
+CampaignWithOutliers campaign_with_outliers(double outlier_share, std::uint64_t seed) {
   RandomStream random(seed);
-  Campaign campaign;
-  const std::vector<FunctionObservations::Complex> truth(kTruth.begin(), kTruth.end());
+  CampaignWithOutliers campaign;
+  const std::vector<FunctionObservations::Complex> truth(test::kDecayWaveAndLine.begin(),
+                                                         test::kDecayWaveAndLine.end());
   for (std::size_t k = 0; k < 400; ++k) {
     const bool outlier = random.uniform() < outlier_share;
     campaign.is_outlier.push_back(outlier);
     for (std::size_t r = 0; r < 3; ++r)
-      campaign.data.push_back(model(k, r, truth).real() + 0.01 * random.normal() +
+      campaign.data.push_back(at_60ths(k, r, truth).real() + 0.01 * random.normal() +
                               (outlier ? random.uniform(0.5, 10) : 0));  // all to one side
   }
   return campaign;
 }
 
-Identification run(const Campaign& campaign, LossKind loss) {
-  FunctionObservations observations(7, 3, campaign.data, 0.01, model);
+Identification run(const CampaignWithOutliers& campaign, LossKind loss) {
+  FunctionObservations observations(7, 3, campaign.data, 0.01, at_60ths);
   observations.start({2, 0.2, 0.5, 1, 1.1, 0, 0});
   Problem problem = function_problem({&observations});
   IdentifyOptions options;
@@ -91,16 +88,16 @@ Identification run(const Campaign& campaign, LossKind loss) {
 
 double largest_error(const Identification& result) {
   double largest = 0;
-  for (std::size_t i = 0; i < kTruth.size(); ++i)
-    largest = std::max(largest, std::abs(result.estimates[static_cast<Eigen::Index>(i)] - kTruth[i]));
+  for (std::size_t i = 0; i < test::kDecayWaveAndLine.size(); ++i)
+    largest = std::max(largest, std::abs(result.estimates[static_cast<Eigen::Index>(i)] - test::kDecayWaveAndLine[i]));
   return largest;
 }
 
 TEST(RobustLoss, thirty_percent_gross_outliers_do_not_move_the_estimate) {
   double clean = 0, dirty = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const Identification good = run(simulate(0, seed), LossKind::none);
-    const Campaign campaign = simulate(0.3, seed);
+    const Identification good = run(campaign_with_outliers(0, seed), LossKind::none);
+    const CampaignWithOutliers campaign = campaign_with_outliers(0.3, seed);
     const Identification robust = run(campaign, LossKind::tukey);
     ASSERT_EQ(robust.status, IdentifyStatus::converged);
     clean += largest_error(good);
@@ -116,7 +113,7 @@ TEST(RobustLoss, thirty_percent_gross_outliers_do_not_move_the_estimate) {
 }
 
 TEST(RobustLoss, uncertainty_of_a_robust_estimate_on_clean_data_is_that_of_95_percent_efficiency) {
-  const Campaign campaign = simulate(0, 3);
+  const CampaignWithOutliers campaign = campaign_with_outliers(0, 3);
   for (const LossKind kind : {LossKind::huber, LossKind::cauchy, LossKind::tukey}) {
     const Identification robust = run(campaign, kind);
     ASSERT_EQ(robust.status, IdentifyStatus::converged);

@@ -10,7 +10,6 @@ namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
-constexpr std::size_t kBlock = Observations::kBlockSize;
 constexpr int kMostRobustSteps = 60;
 constexpr double kSettled = 1e-6;  // square of a step, in standard uncertainties
 // Directions of outliers come from streams of their own: a changed list of outliers changes no other draw.
@@ -47,8 +46,8 @@ std::size_t SampledFit::bytes() const { return sizeof(double) * length_ * (colum
 
 std::size_t SampledFit::row_of(std::size_t observations, std::size_t reading, std::size_t& stride) const {
   const Observations& own = *problem_.observations[observations].observations;
-  const std::size_t block = reading / kBlock * kBlock;
-  stride = std::min(kBlock, own.reading_count() - block);
+  const std::size_t block = reading / Observations::kBlockSize * Observations::kBlockSize;
+  stride = std::min(Observations::kBlockSize, own.reading_count() - block);
   return first_[observations] + block * static_cast<std::size_t>(own.rows()) + (reading - block);
 }
 
@@ -58,8 +57,8 @@ void SampledFit::for_each_reading(const Work& work) const {
   for (std::size_t o = 0; o < problem_.observations.size(); ++o) {
     const Observations& own = *problem_.observations[o].observations;
     const std::size_t rows = static_cast<std::size_t>(own.rows()), count = own.reading_count();
-    for (std::size_t first = 0; first < count; first += kBlock) {
-      const std::size_t size = std::min(kBlock, count - first);
+    for (std::size_t first = 0; first < count; first += Observations::kBlockSize) {
+      const std::size_t size = std::min(Observations::kBlockSize, count - first);
       for (std::size_t k = 0; k < size; ++k) work(o, first + k, first_[o] + first * rows + k, rows, size);
     }
   }
@@ -137,8 +136,8 @@ void SampledFit::draw(std::uint64_t seed, std::size_t sample, double* errors) co
       for (std::size_t i = 0; i < rows * count; ++i) errors[first_[o] + i] = random.normal();
       continue;
     }
-    for (std::size_t first = 0; first < count; first += kBlock) {
-      const std::size_t size = std::min(kBlock, count - first);
+    for (std::size_t first = 0; first < count; first += Observations::kBlockSize) {
+      const std::size_t size = std::min(Observations::kBlockSize, count - first);
       for (std::size_t r = 0; r < rows; ++r)
         for (std::size_t k = 0; k < size; ++k)
           if (selected.use[first + k]) errors[first_[o] + first * rows + r * size + k] = random.normal();
@@ -178,7 +177,7 @@ Eigen::MatrixXd SampledFit::step(const double* residuals, std::size_t count, Eig
   const Eigen::MatrixXd gradient =
       Eigen::Map<const Eigen::MatrixXd>(products.data(), static_cast<Index>(columns_), static_cast<Index>(samples))
           .topLeftCorner(static_cast<Index>(free_), static_cast<Index>(count));
-  Eigen::MatrixXd y = inverse_scale_.asDiagonal() * factor_.solve(inverse_scale_.asDiagonal() * gradient);
+  Eigen::MatrixXd y = inverse_scale_.asDiagonal() * factor_.solve_columns(inverse_scale_.asDiagonal() * gradient);
   decrements = gradient.cwiseProduct(y).colwise().sum();
   return y;
 }
@@ -222,8 +221,8 @@ void SampledFit::model_residuals(const Eigen::VectorXd& estimates, double* out) 
     const SelectedObservations& selected = problem_.observations[o];
     const std::size_t rows = static_cast<std::size_t>(selected.observations->rows());
     const std::size_t count = selected.observations->reading_count();
-    for (std::size_t first = 0; first < count; first += kBlock) {
-      const std::size_t size = std::min(kBlock, count - first);
+    for (std::size_t first = 0; first < count; first += Observations::kBlockSize) {
+      const std::size_t size = std::min(Observations::kBlockSize, count - first);
       double* block = out + first_[o] + first * rows;
       selected.observations->evaluate(first, size, {}, {}, block, nullptr, rows * size);
       if (selected.use.empty()) continue;

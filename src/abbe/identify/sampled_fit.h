@@ -1,11 +1,11 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/identify/identify.h"
 #include "abbe/identify/normal_equations.h"
 
@@ -65,7 +65,7 @@ class SampledFit {
   Eigen::MatrixXd priors_, directions_;
   std::vector<double> jacobian_, residuals_;
   Eigen::VectorXd inverse_scale_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Cholesky factor_;
 };
 
 /// Samples in one batch and in one piece of work; fixed, so that sums do not depend on the number of threads.

@@ -4,16 +4,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numbers>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/engraver_part_for_test.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 using Points = std::vector<Eigen::Vector3d>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 

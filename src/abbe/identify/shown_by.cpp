@@ -11,8 +11,6 @@ namespace abbe {
 namespace {
 
 using Eigen::Index;
-constexpr double kStillZero = 1e-7;
-constexpr double kSeenAbove = 1;  // standard uncertainties of all readings together
 
 /// Directions that the readings of a problem leave open, in parameters of typical size: orthonormal columns.
 Eigen::MatrixXd open_directions(const Problem& problem, const Eigen::VectorXd& typical, int threads) {
@@ -24,7 +22,7 @@ Eigen::MatrixXd open_directions(const Problem& problem, const Eigen::VectorXd& t
   const ReadingStream stream(problem, threads);
   const Eigen::MatrixXd factor = stream.orthogonal_factor(nominal, Loss{}) * typical.asDiagonal();
   const RightSingular svd = right_singular(factor);
-  const double limit = std::max(kStillZero * factor.norm(), kSeenAbove);
+  const double limit = still_unseen(factor.norm());
   Index rank = 0;
   while (rank < svd.values.size() && svd.values[rank] > limit) ++rank;
   return svd.vectors.rightCols(typical.size() - rank);

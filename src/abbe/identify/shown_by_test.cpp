@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/identify/gauge_convention.h"
 #include "abbe/instruments/electronic_level.h"
 #include "abbe/instruments/instrument_observations.h"
@@ -17,7 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 using ::testing::HasSubstr;
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// A relative level on the body that moves, read over the travel of one axis; error motions of that axis.
 class LevelStudy {

@@ -12,7 +12,7 @@
 namespace abbe {
 namespace {
 
-constexpr double kNoise = 0.005;  // mm
+constexpr double kTrackerNoise_mm = 0.005;  // mm
 
 /// Aguado's machine with low orders, and readings simulated at given poses with all three reflectors.
 struct Campaign {
@@ -47,9 +47,9 @@ struct Campaign {
         readings.station.push_back(0);
         readings.reflector.push_back(reflector);
         for (std::size_t k = 0; k < 3; ++k)
-          readings.measured[k].push_back(seen[static_cast<Eigen::Index>(k)] + kNoise * random.normal());
+          readings.measured[k].push_back(seen[static_cast<Eigen::Index>(k)] + kTrackerNoise_mm * random.normal());
       }
-    given.setup.stations[0].noise = TrackerNoise::isotropic(1000 * kNoise, 0);
+    given.setup.stations[0].noise = TrackerNoise::isotropic(1000 * kTrackerNoise_mm, 0);
     ErrorSet start = truth;
     for (ErrorMotion& motion : start.motions) std::fill(motion.coefficients.begin(), motion.coefficients.end(), 0.0);
     observations = std::make_unique<TrackerObservations>(given.machine, start, given.setup, readings);
@@ -103,9 +103,9 @@ TEST(Strategies, joint_and_combined_predict_alike_at_unseen_poses) {
     unseen.push_back(elsewhere.mean_distance());
   }
   // Noise of one reading: 1.6 sigma in the mean of the distance.
-  EXPECT_LT(unseen[0], 2.5 * kNoise);
-  EXPECT_LT(unseen[1], 2.5 * kNoise);
-  EXPECT_NEAR(unseen[0], unseen[1], 0.3 * kNoise);
+  EXPECT_LT(unseen[0], 2.5 * kTrackerNoise_mm);
+  EXPECT_LT(unseen[1], 2.5 * kTrackerNoise_mm);
+  EXPECT_NEAR(unseen[0], unseen[1], 0.3 * kTrackerNoise_mm);
 }
 
 TEST(Strategies, independent_identifies_each_kind_of_axis_from_its_own_test) {
@@ -117,7 +117,7 @@ TEST(Strategies, independent_identifies_each_kind_of_axis_from_its_own_test) {
     EXPECT_NEAR(stage.statistics.variance_factor, 1, 0.2);  // each test is described to the noise
   }
   // Elsewhere the angles of C, seen with offsets of 0.1 m, reach out to 0.7 m: worse than the noise, by little.
-  EXPECT_LT(campaign.mean_distance(), 3 * kNoise);
+  EXPECT_LT(campaign.mean_distance(), 3 * kTrackerNoise_mm);
   ASSERT_GT(result.total.covariance.size(), 0);
   for (const EstimatedParameter& parameter : result.stages[1].parameters)
     if (parameter.id.is_machine()) {

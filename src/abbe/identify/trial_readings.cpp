@@ -1,9 +1,9 @@
 #include "abbe/identify/trial_readings.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <numbers>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/identify/planning_candidates.h"
 
 namespace abbe {
@@ -78,8 +78,8 @@ Eigen::MatrixXd rows_without_own(const PossibleMeasurement& measurement, Index p
   Eigen::MatrixXd rows = measurement.rows.leftCols(parameters);
   if (measurement.own == 0) return rows;
   const Eigen::MatrixXd own = measurement.rows.rightCols(static_cast<Index>(measurement.own));
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(own);
-  const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(own.rows(), qr.rank());
+  const PivotedQr qr(own);
+  const Eigen::MatrixXd basis = qr.orthonormal(qr.rank());
   return rows - basis * (basis.transpose() * rows);
 }
 

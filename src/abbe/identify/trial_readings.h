@@ -11,6 +11,11 @@
 
 namespace abbe {
 
+/// Number of readings that are tried with one instrument.
+inline constexpr std::size_t kTrialReadings = 60;
+/// Fewer of them that can be taken are no measurement.
+inline constexpr std::size_t kLeastReadings = 6;
+
 /// Positions of one axis.
 struct TrialRange {
   double from = 0;

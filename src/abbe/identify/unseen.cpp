@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/identify/measurements_together.h"
 #include "abbe/identify/normal_equations.h"
 #include "abbe/identify/parameter_words.h"
@@ -26,8 +24,7 @@ constexpr std::size_t kMostNamed = 4;
 
 Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
   if (columns.cols() == 0) return Eigen::MatrixXd(columns.rows(), 0);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
+  return Qr(columns).orthonormal(columns.cols());
 }
 
 /// Information of the priors in scaled parameters.
@@ -148,7 +145,7 @@ class Adviser {
     const Eigen::MatrixXd covariance =
         typical_.cwiseInverse().asDiagonal() * identification_.covariance * typical_.cwiseInverse().asDiagonal();
     const Eigen::MatrixXd prior = prior_information(problem_, typical_);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+    const SymmetricEigen<> eigen(covariance);
     for (Index k = typical_.size(); k-- > 0;) {
       const double variance = eigen.eigenvalues()[k];
       if (!(variance > options_.weak * options_.weak)) break;
@@ -182,7 +179,7 @@ class Adviser {
       Eigen::MatrixXd inner = spread * rows_[m].transpose();
       inner.diagonal().array() += 1;
       const Eigen::VectorXd seen = spread * direction;
-      const double after = variance - seen.dot(inner.llt().solve(seen));
+      const double after = variance - seen.dot(Cholesky(inner).solve(seen));
       least = std::min(least, after);
       if (!(after < kQuarter * variance)) continue;
       advice.shown = true;

@@ -1,8 +1,7 @@
 #include "abbe/instruments/ball_bar.h"
 
-#include <numbers>
-
 #include "abbe/errors/actual_pose.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/instrument_for_test.h"
 #include "abbe/instruments/measurement_plan.h"
 #include "abbe/instruments/path_plan.h"
@@ -10,8 +9,6 @@
 
 namespace abbe {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 BallBarSetup two_balls() {
   BallBarSetup setup;

@@ -1,16 +1,14 @@
 #include "abbe/instruments/board_marks.h"
 
 #include <Eigen/Geometry>
-#include <numbers>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/instrument_for_test.h"
 #include "abbe/instruments/meeting_for_test.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Two boards, one lying and one leaning, at the middle of the machine's travel.
 BoardMarksSetup two_boards(const Machine& machine, BoardMarksSetup::Position position, bool width) {

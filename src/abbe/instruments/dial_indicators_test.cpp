@@ -36,13 +36,6 @@ DialIndicatorsSetup four_dials() {
   return setup;
 }
 
-InstrumentReadings anywhere(const Machine& machine, std::size_t count) {
-  InstrumentReadings plan;
-  const PoseList poses = random_plan(machine, full_ranges(machine, 2), count, 4);
-  for (std::size_t k = 0; k < poses.count(); ++k) plan.append(poses.pose(k), 0);
-  return plan;
-}
-
 /// A face as three of its points, made by turning the nominal one: not through the normal's formula.
 struct ThreePoints {
   Eigen::Vector3d a, b, c;
@@ -60,7 +53,7 @@ TEST(DialIndicators, TipsStandOnTheirFaces) {
   const ErrorSet errors = test::some_errors(machine);
   const DialIndicatorsSetup setup = four_dials();
   const auto dials = std::make_shared<DialIndicators>(setup);
-  const InstrumentReadings plan = anywhere(machine, 20);
+  const InstrumentReadings plan = test::anywhere(machine, 20);
   const InstrumentReadings readings = test::exact_readings(machine, errors, dials, plan);
   ASSERT_EQ(readings.measured.size(), 4u);
   for (std::size_t k = 0; k < readings.count(); ++k) {
@@ -80,7 +73,7 @@ TEST(DialIndicators, TipsStandOnTheirFaces) {
 TEST(DialIndicators, ReadMoreWhereTheFaceComesNearer) {
   const Machine machine = test::three_axis_mill();
   DialIndicatorsSetup setup = four_dials();
-  const InstrumentReadings plan = anywhere(machine, 5);
+  const InstrumentReadings plan = test::anywhere(machine, 5);
   const auto before = std::make_shared<DialIndicators>(setup);
   for (DialIndicatorsSetup::Face& face : setup.faces) face.offset.value += 0.01;
   const auto after = std::make_shared<DialIndicators>(setup);
@@ -94,7 +87,7 @@ TEST(DialIndicators, ReadMoreWhereTheFaceComesNearer) {
 TEST(DialIndicators, DerivativesEqualDifferences) {
   for (const Machine& machine : {test::three_axis_mill(), test::moving_table_cmm()}) {
     const auto dials = std::make_shared<DialIndicators>(four_dials());
-    test::expect_jacobian_equals_differences(machine, test::some_errors(machine), dials, anywhere(machine, 15));
+    test::expect_jacobian_equals_differences(machine, test::some_errors(machine), dials, test::anywhere(machine, 15));
   }
   // Turned heads and tables need plungers that still meet their faces.
   for (const Machine& machine : {test::trunnion_mill(), test::gantry_fork_head()}) {
@@ -121,7 +114,7 @@ TEST(DialIndicators, OneDialGoesOverTwoFacesInTwoArrangements) {
   const auto all = std::make_shared<DialIndicators>(four);
   const auto single = std::make_shared<DialIndicators>(one);
   ASSERT_EQ(single->components().size(), 1u);
-  InstrumentReadings plan = anywhere(machine, 6);
+  InstrumentReadings plan = test::anywhere(machine, 6);
   const InstrumentReadings of_all = test::exact_readings(machine, errors, all, plan);
   for (std::size_t k = 0; k < plan.count(); ++k) plan.item[k] = k % 2;
   const InstrumentReadings of_one = test::exact_readings(machine, errors, single, plan);

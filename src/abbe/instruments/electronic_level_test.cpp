@@ -21,17 +21,10 @@ ElectronicLevelSetup two_axes(bool relative) {
   return setup;
 }
 
-InstrumentReadings anywhere(const Machine& machine, std::size_t count) {
-  InstrumentReadings plan;
-  const PoseList poses = random_plan(machine, full_ranges(machine, 2), count, 4);
-  for (std::size_t k = 0; k < poses.count(); ++k) plan.append(poses.pose(k), 0);
-  return plan;
-}
-
 TEST(ElectronicLevel, ReadsByHowMuchOneEndOfABarIsHigher) {
   const Machine machine = test::three_axis_mill();
   const ErrorSet errors = test::some_errors(machine);
-  const InstrumentReadings plan = anywhere(machine, 15);
+  const InstrumentReadings plan = test::anywhere(machine, 15);
   for (const bool relative : {false, true}) {
     const ElectronicLevelSetup setup = two_axes(relative);
     const auto level = std::make_shared<ElectronicLevel>(setup);
@@ -99,14 +92,15 @@ TEST(ElectronicLevel, DerivativesEqualDifferences) {
   for (const bool relative : {false, true}) {
     const auto level = std::make_shared<ElectronicLevel>(two_axes(relative));
     for (const Machine& machine : {test::three_axis_mill(), test::moving_table_cmm()}) {
-      test::expect_jacobian_equals_differences(machine, test::some_errors(machine), level, anywhere(machine, 15));
+      test::expect_jacobian_equals_differences(machine, test::some_errors(machine), level, test::anywhere(machine, 15));
     }
     ElectronicLevelSetup setup = two_axes(relative);
     setup.body = Body::tool;
     setup.reference_body = Body::workpiece;
     const auto on_head = std::make_shared<ElectronicLevel>(setup);
     for (const Machine& machine : {test::three_axis_mill(), test::moving_table_cmm()}) {
-      test::expect_jacobian_equals_differences(machine, test::some_errors(machine), on_head, anywhere(machine, 15));
+      test::expect_jacobian_equals_differences(machine, test::some_errors(machine), on_head,
+                                               test::anywhere(machine, 15));
     }
   }
 }
@@ -118,7 +112,7 @@ TEST(ElectronicLevel, DifferenceOfTwoLevelsOnMovingBodiesNeedsNoInclinationOfThe
   ElectronicLevelSetup setup = two_axes(true);
   setup.body = Body::tool;
   setup.reference_body = Body::workpiece;
-  const InstrumentReadings plan = anywhere(machine, 20);
+  const InstrumentReadings plan = test::anywhere(machine, 20);
   const InstrumentReadings readings =
       test::exact_readings(machine, errors, std::make_shared<ElectronicLevel>(setup), plan);
   const Eigen::Vector3d up = DirectionFrame::of(setup.up).tilted(setup.up_tilt_first.value, setup.up_tilt_second.value);

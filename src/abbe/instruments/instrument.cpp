@@ -38,6 +38,8 @@ void check_columns(const std::vector<std::vector<double>>& columns, std::size_t 
 
 }  // namespace
 
+const char* body_name(Body body) { return body == Body::bed ? "bed" : body == Body::workpiece ? "workpiece" : "tool"; }
+
 void InstrumentReadings::append(const std::vector<double>& positions, std::size_t on_item,
                                 const std::vector<double>& known) {
   poses.append(positions);

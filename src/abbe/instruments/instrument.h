@@ -16,6 +16,9 @@
 
 namespace abbe {
 
+/// "bed", "workpiece" or "tool".
+const char* body_name(Body body);
+
 /// What a reading is taken on: a ball, a line, a run, a face. Several items share one instrument.
 struct InstrumentItem {
   std::string name;

@@ -11,6 +11,7 @@
 #include "abbe/errors/random_errors.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/instrument_simulation.h"
+#include "abbe/instruments/measurement_plan.h"
 
 /// What every instrument has to satisfy, whatever it measures.
 namespace abbe::test {
@@ -23,6 +24,14 @@ inline ErrorSet some_errors(const Machine& machine, std::uint64_t seed = 7) {
   ErrorSet errors = random_errors(machine, options);
   errors.tool_offset_error = {0.011, -0.007, 0.005};
   return errors;
+}
+
+/// A plan over the whole travel, all of the first item.
+inline InstrumentReadings anywhere(const Machine& machine, std::size_t count) {
+  InstrumentReadings plan;
+  const PoseList poses = random_plan(machine, full_ranges(machine, 2), count, 4);
+  for (std::size_t k = 0; k < poses.count(); ++k) plan.append(poses.pose(k), 0);
+  return plan;
 }
 
 /// Readings of a plan without noise.

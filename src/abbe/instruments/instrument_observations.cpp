@@ -9,13 +9,13 @@
 namespace abbe {
 namespace {
 
-constexpr std::size_t kBlock = Observations::kBlockSize;
 constexpr std::size_t kMaxRows = 6;
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 static_assert(Observations::kBlockSize <= ChainPlan::kBlockSize);
 
 /// Working memory of one thread, grown once and kept.
-struct Scratch {
+struct InstrumentScratch {
+  static constexpr std::size_t kBlock = Observations::kBlockSize;
   std::vector<double> positions, inputs, by_quantity, jacobian, by_position;
   std::vector<const double*> axis;
   ItemBlock block;
@@ -25,8 +25,8 @@ struct Scratch {
   std::uint16_t at[kBlock];  ///< place of the readings of one pair in the block, those of one item together
 };
 
-Scratch& scratch() {
-  thread_local Scratch memory;
+InstrumentScratch& instrument_scratch() {
+  thread_local InstrumentScratch memory;
   return memory;
 }
 
@@ -52,9 +52,9 @@ struct InstrumentObservations::Implementation {
   ReversalShift reversal;
 
   std::size_t rows() const { return instrument->components().size(); }
-  std::size_t find_members(std::size_t first, std::size_t count, std::size_t pair, Scratch& s) const;
-  void load(const BodyPair& pair, std::size_t first, std::size_t members, Scratch& s) const;
-  void see(const BodyPair& pair, std::size_t members, Scratch& s) const;
+  std::size_t find_members(std::size_t first, std::size_t count, std::size_t pair, InstrumentScratch& s) const;
+  void load(const BodyPair& pair, std::size_t first, std::size_t members, InstrumentScratch& s) const;
+  void see(const BodyPair& pair, std::size_t members, InstrumentScratch& s) const;
   void evaluate_pair(const BodyPair& pair, std::size_t members, std::size_t first, std::size_t count,
                      std::span<const std::size_t> machine_parameters, std::span<const std::size_t> setup_parameters,
                      double* residuals, double* jacobian, std::size_t stride) const;
@@ -64,7 +64,7 @@ struct InstrumentObservations::Implementation {
 };
 
 std::size_t InstrumentObservations::Implementation::find_members(std::size_t first, std::size_t count, std::size_t pair,
-                                                                 Scratch& s) const {
+                                                                 InstrumentScratch& s) const {
   std::size_t members = 0;
   bool in_order = true;
   for (std::size_t k = 0; k < count; ++k) {
@@ -83,13 +83,13 @@ std::size_t InstrumentObservations::Implementation::find_members(std::size_t fir
 }
 
 void InstrumentObservations::Implementation::load(const BodyPair& pair, std::size_t first, std::size_t members,
-                                                  Scratch& s) const {
+                                                  InstrumentScratch& s) const {
   const auto gather = [&](const std::vector<std::vector<double>>& columns, std::vector<double>& memory,
                           std::vector<const double*>& pointers) {
-    memory.resize(columns.size() * kBlock);
+    memory.resize(columns.size() * kBlockSize);
     pointers.resize(columns.size());
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      double* gathered = &memory[i * kBlock];
+      double* gathered = &memory[i * kBlockSize];
       for (std::size_t k = 0; k < members; ++k) gathered[k] = columns[i][first + s.at[k]];
       pointers[i] = gathered;
     }
@@ -97,7 +97,7 @@ void InstrumentObservations::Implementation::load(const BodyPair& pair, std::siz
   gather(readings.poses.axis, s.positions, s.axis);
   if (reversal.acts_on(readings.poses)) {
     for (std::size_t i = 0; i < s.axis.size(); ++i) {
-      double* commands = &s.positions[i * kBlock];
+      double* commands = &s.positions[i * kBlockSize];
       for (std::size_t k = 0; k < members; ++k) commands[k] += reversal.shift(readings.poses, i, first + s.at[k]);
     }
   }
@@ -106,7 +106,8 @@ void InstrumentObservations::Implementation::load(const BodyPair& pair, std::siz
   for (int c = 0; c < 3; ++c) std::fill_n(s.start[c], members, on_tool ? tool_offset_error[c] : 0.0);
 }
 
-void InstrumentObservations::Implementation::see(const BodyPair& pair, std::size_t members, Scratch& s) const {
+void InstrumentObservations::Implementation::see(const BodyPair& pair, std::size_t members,
+                                                 InstrumentScratch& s) const {
   RotationArrays rotation;
   for (int i = 0; i < 9; ++i) rotation.r[i] = s.rotation[i];
   pair.plan.transform({s.axis, members}, {s.start[0], s.start[1], s.start[2]}, {s.seen[0], s.seen[1], s.seen[2]},
@@ -124,7 +125,7 @@ void InstrumentObservations::Implementation::model_item(std::size_t begin, std::
                                                         std::span<const std::size_t> setup_parameters,
                                                         std::size_t setup_column, double* residuals, double* jacobian,
                                                         std::size_t stride) const {
-  Scratch& s = scratch();
+  InstrumentScratch& s = instrument_scratch();
   const std::size_t n = end - begin;
   ItemBlock& block = s.block;
   block.item = readings.item[first + s.at[begin]];
@@ -173,7 +174,7 @@ void InstrumentObservations::Implementation::evaluate_pair(const BodyPair& pair,
                                                            std::span<const std::size_t> setup_parameters,
                                                            double* residuals, double* jacobian,
                                                            std::size_t stride) const {
-  Scratch& s = scratch();
+  InstrumentScratch& s = instrument_scratch();
   load(pair, first, members, s);
   see(pair, members, s);
   for (std::size_t begin = 0; begin < members;) {
@@ -303,9 +304,9 @@ void InstrumentObservations::evaluate(std::size_t first, std::size_t count,
                                       std::span<const std::size_t> setup_parameters, double* residuals,
                                       double* jacobian, std::size_t stride) const {
   const Implementation& own = *implementation_;
-  assert(count <= kBlock && first + count <= own.readings.count());
+  assert(count <= kBlockSize && first + count <= own.readings.count());
   for (std::size_t pair = 0; pair < own.pairs.size(); ++pair) {
-    const std::size_t members = own.find_members(first, count, pair, scratch());
+    const std::size_t members = own.find_members(first, count, pair, instrument_scratch());
     if (members == 0) continue;
     own.evaluate_pair(own.pairs[pair], members, first, count, machine_parameters, setup_parameters, residuals, jacobian,
                       stride);
@@ -322,9 +323,9 @@ std::vector<double> InstrumentObservations::deviation(std::size_t reading) const
 std::vector<std::vector<double>> InstrumentObservations::modelled() const {
   const Implementation& own = *implementation_;
   std::vector<std::vector<double>> result = own.readings.measured;
-  std::vector<double> residuals(own.rows() * kBlock);
-  for (std::size_t first = 0; first < own.readings.count(); first += kBlock) {
-    const std::size_t n = std::min(kBlock, own.readings.count() - first);
+  std::vector<double> residuals(own.rows() * kBlockSize);
+  for (std::size_t first = 0; first < own.readings.count(); first += kBlockSize) {
+    const std::size_t n = std::min(kBlockSize, own.readings.count() - first);
     evaluate(first, n, {}, {}, residuals.data(), nullptr, 0);
     for (std::size_t row = 0; row < own.rows(); ++row) {
       for (std::size_t k = 0; k < n; ++k) {

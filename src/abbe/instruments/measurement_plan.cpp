@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 /// @param either_way  ranges may also run downwards
 void check_ranges(const Machine& machine, const std::vector<AxisRange>& ranges, bool either_way = false) {

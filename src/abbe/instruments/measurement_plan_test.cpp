@@ -6,6 +6,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/aguado_for_test.h"
 #include "abbe/machine/machines_for_test.h"
 
@@ -16,7 +17,6 @@ const Machine& machine() {
   static const Machine aguado = test::aguado_case().machine;
   return aguado;
 }
-constexpr double kDegree = std::numbers::pi / 180;
 
 TEST(MeasurementPlan, GridHasEveryCombinationOnceAndMovesOneAxisByOneStep) {
   std::vector<AxisRange> ranges = full_ranges(machine(), 5);

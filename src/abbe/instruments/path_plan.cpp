@@ -2,11 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 namespace {
@@ -57,7 +58,7 @@ std::optional<std::vector<double>> meet(const Machine& machine, const std::vecto
     moved[linear[i]] += kStep;
     slopes.col(static_cast<Eigen::Index>(i)) = (gap(moved) - start) / kStep;
   }
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(slopes);
+  const CompleteOrthogonal solver(slopes);
   for (int repeat = 0; repeat < 2; ++repeat) {
     const Eigen::VectorXd step = solver.solve(-gap(result));
     for (std::size_t i = 0; i < linear.size(); ++i) result[linear[i]] += step[static_cast<Eigen::Index>(i)];

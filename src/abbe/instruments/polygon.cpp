@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
@@ -15,8 +16,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 Matrix3d about(int axis, double angle) { return rotation_about(Vector3d::Unit(axis), angle); }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/instruments/polygon_placement.h"
 
@@ -17,7 +18,6 @@ using Face = PolygonGaugeSetup::Face;
 using Mount = PolygonGaugeSetup::Mount;
 using Step = PolygonGaugeSetup::Step;
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr const char* kSix[] = {"tilt_x", "tilt_y", "turn", "x", "y", "z"};
 

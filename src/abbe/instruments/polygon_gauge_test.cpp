@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/instrument_for_test.h"
 #include "abbe/instruments/polygon_for_test.h"
 #include "abbe/instruments/polygon_placement.h"
@@ -11,8 +10,6 @@
 
 namespace abbe {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 PolygonGaugeSetup some_prism(std::uint64_t seed, double angle = 5e-4, double length = 0.05) {
   PolygonGaugeSetup setup;

@@ -1,9 +1,9 @@
 #include "abbe/instruments/polygon_inversion.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
@@ -15,7 +15,7 @@ using enum PolygonReading;
 
 constexpr PolygonReading kAngles[] = {autocollimator_y_about_x, autocollimator_x_about_y, autocollimator_x_about_z};
 constexpr PolygonReading kLengths[] = {displacement_x, displacement_y, displacement_z};
-constexpr int kMaximumIterations = 25;
+constexpr int kMaximumInversionIterations = 25;
 /// Steps below which nobody asks for more, and steps of which rounding, not the model, decides if they do not get
 /// smaller any more.
 constexpr double kAngleStep = 1e-18, kLengthStep = 1e-14;
@@ -77,15 +77,15 @@ bool displacements(const Known& known, TableMotion& motion) {
     normals.row(i) = plane.normal.transpose();
     missing[i] = plane.normal.dot(sensor.position + rotation * hit_in_sensor) - plane.offset;
   }
-  const Eigen::FullPivLU<Matrix3d> solver(normals);
-  if (!(solver.rcond() > 1e-12)) return false;
+  const FullLu<3> solver(normals);
+  if (!(solver.reciprocal_condition() > 1e-12)) return false;
   motion.displacement = solver.solve(missing);
   return true;
 }
 
 PolygonInversionStatus find_stepwise(const Known& known, PolygonInversion& result) {
   Convergence convergence;
-  for (result.iterations = 1; result.iterations <= kMaximumIterations; ++result.iterations) {
+  for (result.iterations = 1; result.iterations <= kMaximumInversionIterations; ++result.iterations) {
     Matrix3d slopes;
     Vector3d residual;
     for (int i = 0; i < 3; ++i) {
@@ -93,9 +93,9 @@ PolygonInversionStatus find_stepwise(const Known& known, PolygonInversion& resul
       residual[i] = known.residual(kAngles[i], result.motion, gradient);
       slopes.row(i) = gradient.segment<3>(polygon_column::motion).transpose();
     }
-    const Eigen::FullPivLU<Matrix3d> solver(slopes);
+    const FullLu<3> solver(slopes);
     if (!residual.allFinite()) return PolygonInversionStatus::not_converged;
-    if (!(solver.rcond() > 1e-9)) return PolygonInversionStatus::singular;
+    if (!(solver.reciprocal_condition() > 1e-9)) return PolygonInversionStatus::singular;
     const Vector3d step = solver.solve(residual);
     result.motion.angles += step;
     if (convergence.reached(step.norm(), 0)) {
@@ -107,7 +107,7 @@ PolygonInversionStatus find_stepwise(const Known& known, PolygonInversion& resul
 
 PolygonInversionStatus find_simultaneously(const Known& known, PolygonInversion& result) {
   Convergence convergence;
-  for (result.iterations = 1; result.iterations <= kMaximumIterations; ++result.iterations) {
+  for (result.iterations = 1; result.iterations <= kMaximumInversionIterations; ++result.iterations) {
     Eigen::Matrix<double, 6, 6> slopes;
     Eigen::Matrix<double, 6, 1> residual;
     for (int i = 0; i < 6; ++i) {
@@ -116,8 +116,8 @@ PolygonInversionStatus find_simultaneously(const Known& known, PolygonInversion&
       slopes.row(i) = gradient.segment<6>(polygon_column::motion).transpose();
     }
     if (!residual.allFinite()) return PolygonInversionStatus::not_converged;
-    const Eigen::FullPivLU<Eigen::Matrix<double, 6, 6>> solver(slopes);
-    if (!(solver.rcond() > 1e-9)) return PolygonInversionStatus::singular;
+    const FullLu<6> solver(slopes);
+    if (!(solver.reciprocal_condition() > 1e-9)) return PolygonInversionStatus::singular;
     const Eigen::Matrix<double, 6, 1> step = solver.solve(residual);
     result.motion.angles += step.head<3>();
     result.motion.displacement += step.tail<3>();

@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/polygon_for_test.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kArcsec = std::numbers::pi / (180 * 3600);
 constexpr double kMicrometre = 1e-3;
 
 TEST(PolygonInversion, RayTracedReadingsGiveTheirMotionsBack) {

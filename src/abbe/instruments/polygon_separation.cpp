@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/singular_values.h"
 
 namespace abbe {
@@ -22,7 +21,7 @@ using Eigen::VectorXd;
 constexpr double kZero = 1e-10;
 /// A gauge equation is taken if at least this part of it lies in what is still open.
 constexpr double kOpenPart = 1e-3;
-constexpr int kMaximumIterations = 30;
+constexpr int kMaximumSeparationIterations = 30;
 
 VectorXd column_scale(const MatrixXd& jacobian) {
   return jacobian.colwise().norm().transpose().unaryExpr([](double norm) { return norm > 0 ? norm : 1.0; });
@@ -166,14 +165,13 @@ PolygonSeparation separate_polygon(const PolygonCampaign& nominal, const VectorX
   VectorXd scale;
   MatrixXd directions;  // of the solutions of the gauge equations
   double last_step = std::numeric_limits<double>::infinity();
-  for (result.iterations = 1; result.iterations <= kMaximumIterations; ++result.iterations) {
+  for (result.iterations = 1; result.iterations <= kMaximumSeparationIterations; ++result.iterations) {
     VectorXd modelled;
     const MatrixXd jacobian = weighted_jacobian(with_values(nominal, result.values), noise, &modelled);
     if (result.iterations == 1) {
       scale = column_scale(jacobian);
       const MatrixXd rows = functionals(gauge, unknowns) * scale.cwiseInverse().asDiagonal();
-      const Eigen::HouseholderQR<MatrixXd> qr(rows.transpose());
-      const MatrixXd basis = qr.householderQ() * MatrixXd::Identity(unknowns, unknowns);
+      const MatrixXd basis = Qr(rows.transpose()).orthonormal(unknowns);
       directions = scale.cwiseInverse().asDiagonal() * basis.rightCols(free);
     }
     const VectorXd residual = weights.cwiseProduct(readings - modelled);
@@ -182,20 +180,20 @@ PolygonSeparation separate_polygon(const PolygonCampaign& nominal, const VectorX
       result.status = PolygonSeparationStatus::not_converged;
       return result;
     }
-    Eigen::ColPivHouseholderQR<MatrixXd> solver(jacobian * directions);
-    solver.setThreshold(kZero);
+    PivotedQr solver(jacobian * directions);
+    solver.set_threshold(kZero);
     if (solver.rank() < free) {
       result.status = PolygonSeparationStatus::rank_deficient;
       return result;
     }
     const VectorXd step = solver.solve(residual);
     result.values += directions * step;
-    const MatrixXd factor = solver.matrixR().topLeftCorner(free, free).triangularView<Eigen::Upper>();
+    const MatrixXd factor = solver.upper(free);
     // In standard uncertainties: rounding is far below a thousandth of one.
-    const double size = (factor * (solver.colsPermutation().transpose() * step)).norm();
+    const double size = (factor * (solver.columns().transpose() * step)).norm();
     if (size < 1e-6 || (size < 1e-3 && size > 0.5 * last_step)) {
       const MatrixXd inverse = factor.triangularView<Eigen::Upper>().solve(MatrixXd::Identity(free, free)).eval();
-      const MatrixXd spread = directions * (solver.colsPermutation() * inverse);
+      const MatrixXd spread = directions * (solver.columns() * inverse);
       result.standard_uncertainties = spread.rowwise().norm();
       result.degrees_of_freedom = static_cast<std::size_t>(readings.size() - free);
       result.chi_square =

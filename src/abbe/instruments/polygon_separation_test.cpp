@@ -5,12 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/polygon_for_test.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kArcsec = std::numbers::pi / (180 * 3600);
 
 PolygonCampaign random_campaign(const std::vector<std::size_t>& shifts, double angle, double length,
                                 std::uint64_t seed) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <vector>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/polygon_for_test.h"
 #include "abbe/instruments/polygon_trace.h"
 
@@ -16,8 +17,6 @@ namespace {
 using test::random_motion;
 using test::random_polygon;
 using test::traced_ray;
-
-constexpr double kArcsec = std::numbers::pi / (180 * 3600);
 
 TEST(Polygon, PerfectPrismReadsNothingButItsDistance) {
   const Polygon polygon = regular_polygon(12, 48.3, 17);

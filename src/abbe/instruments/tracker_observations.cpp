@@ -13,7 +13,6 @@
 namespace abbe {
 namespace {
 
-constexpr std::size_t kBlock = Observations::kBlockSize;
 static_assert(Observations::kBlockSize <= ChainPlan::kBlockSize);
 
 enum class UnknownKind { station_position, station_rotation, reflector_offset };
@@ -27,11 +26,12 @@ struct UnknownRole {
 struct Members {
   std::size_t count = 0;
   bool whole_block = false;
-  std::uint16_t at[kBlock];  ///< index in the block
+  std::uint16_t at[Observations::kBlockSize];  ///< index in the block
 };
 
 /// Working memory of one thread, grown once and kept.
-struct Scratch {
+struct TrackerScratch {
+  static constexpr std::size_t kBlock = Observations::kBlockSize;
   std::vector<double> positions;  ///< [axes][kBlock]
   std::vector<const double*> axis;
   std::vector<double> jacobian;     ///< compact columns of one pair of bodies
@@ -41,8 +41,8 @@ struct Scratch {
   std::uint16_t station[kBlock], reflector[kBlock];
 };
 
-Scratch& scratch() {
-  thread_local Scratch memory;
+TrackerScratch& tracker_scratch() {
+  thread_local TrackerScratch memory;
   return memory;
 }
 
@@ -132,11 +132,11 @@ struct TrackerObservations::Implementation {
   void evaluate_pair(const BodyPair& pair, const Members& members, std::size_t first, std::size_t count,
                      std::span<const std::size_t> machine_parameters, std::span<const std::size_t> setup_parameters,
                      double* residuals, double* jacobian, std::size_t stride) const;
-  void load(const Members& members, std::size_t first, Scratch& s) const;
-  void residuals_of_runs(const Members& members, bool with_forces, Scratch& s) const;
+  void load(const Members& members, std::size_t first, TrackerScratch& s) const;
+  void residuals_of_runs(const Members& members, bool with_forces, TrackerScratch& s) const;
   void reversal_columns(const Members& members, std::size_t first, std::span<const std::size_t> machine_parameters,
-                        const Scratch& s, double* target, std::size_t stride) const;
-  void setup_column(const UnknownRole& role, std::size_t count, const Scratch& s, double* column) const;
+                        const TrackerScratch& s, double* target, std::size_t stride) const;
+  void setup_column(const UnknownRole& role, std::size_t count, const TrackerScratch& s, double* column) const;
 };
 
 void TrackerObservations::Implementation::find_members(std::size_t first, std::size_t count, std::size_t pair,
@@ -149,15 +149,15 @@ void TrackerObservations::Implementation::find_members(std::size_t first, std::s
   members.whole_block = members.count == count;
 }
 
-void TrackerObservations::Implementation::load(const Members& members, std::size_t first, Scratch& s) const {
+void TrackerObservations::Implementation::load(const Members& members, std::size_t first, TrackerScratch& s) const {
   const std::size_t axes = readings.poses.axis.size();
   s.axis.resize(axes);
-  s.positions.resize(axes * kBlock);
+  s.positions.resize(axes * kBlockSize);
   const bool reverses = reversal.acts_on(readings.poses);
   for (std::size_t i = 0; i < axes; ++i) {
     const double* commands = readings.poses.axis[i].data() + first;
     if (!members.whole_block || reverses) {
-      double* gathered = &s.positions[i * kBlock];
+      double* gathered = &s.positions[i * kBlockSize];
       for (std::size_t k = 0; k < members.count; ++k) {
         gathered[k] = commands[members.at[k]];
         if (reverses) gathered[k] += reversal.shift(readings.poses, i, first + members.at[k]);
@@ -183,7 +183,7 @@ void TrackerObservations::Implementation::load(const Members& members, std::size
 }
 
 void TrackerObservations::Implementation::residuals_of_runs(const Members& members, bool with_forces,
-                                                            Scratch& s) const {
+                                                            TrackerScratch& s) const {
   for (std::size_t begin = 0; begin < members.count;) {
     std::size_t end = begin + 1;
     while (end < members.count && s.station[end] == s.station[begin]) ++end;
@@ -206,8 +206,8 @@ void TrackerObservations::Implementation::residuals_of_runs(const Members& membe
   }
 }
 
-void TrackerObservations::Implementation::setup_column(const UnknownRole& role, std::size_t count, const Scratch& s,
-                                                       double* column) const {
+void TrackerObservations::Implementation::setup_column(const UnknownRole& role, std::size_t count,
+                                                       const TrackerScratch& s, double* column) const {
   for (int row = 0; row < 3; ++row) {
     double* values_out = column + static_cast<std::size_t>(row) * count;
     if (role.kind == UnknownKind::reflector_offset) {
@@ -236,7 +236,8 @@ void TrackerObservations::Implementation::setup_column(const UnknownRole& role, 
 
 void TrackerObservations::Implementation::reversal_columns(const Members& members, std::size_t first,
                                                            std::span<const std::size_t> machine_parameters,
-                                                           const Scratch& s, double* target, std::size_t stride) const {
+                                                           const TrackerScratch& s, double* target,
+                                                           std::size_t stride) const {
   const std::size_t n = members.count;
   for (std::size_t column = 0; column < machine_parameters.size(); ++column) {
     const std::size_t axis = reversal.axis_of(machine_parameters[column]);
@@ -255,7 +256,7 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
                                                         std::span<const std::size_t> machine_parameters,
                                                         std::span<const std::size_t> setup_parameters,
                                                         double* residuals, double* jacobian, std::size_t stride) const {
-  Scratch& s = scratch();
+  TrackerScratch& s = tracker_scratch();
   load(members, first, s);
   const std::size_t n = members.count;
   const PositionArrays positions{s.axis, n};
@@ -272,7 +273,7 @@ void TrackerObservations::Implementation::evaluate_pair(const BodyPair& pair, co
   double* target = jacobian;
   std::size_t target_stride = stride;
   if (!members.whole_block) {
-    target_stride = 3 * kBlock;
+    target_stride = 3 * kBlockSize;
     if (s.jacobian.size() < columns * target_stride) s.jacobian.resize(columns * target_stride);
     target = s.jacobian.data();
   }
@@ -407,7 +408,7 @@ void TrackerObservations::evaluate(std::size_t first, std::size_t count,
                                    std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                                    std::size_t stride) const {
   const Implementation& own = *implementation_;
-  assert(count <= kBlock && first + count <= own.readings.count());
+  assert(count <= kBlockSize && first + count <= own.readings.count());
   Members members;
   for (std::size_t pair = 0; pair < own.pairs.size(); ++pair) {
     own.find_members(first, count, pair, members);
@@ -430,7 +431,7 @@ TrackerSetup TrackerObservations::setup() const {
 
 Eigen::Vector3d TrackerObservations::distance(std::size_t reading) const {
   const Implementation& own = *implementation_;
-  Scratch& s = scratch();
+  TrackerScratch& s = tracker_scratch();
   const std::size_t axes = own.readings.poses.axis.size();
   s.axis.resize(axes);
   s.positions.resize(std::max(s.positions.size(), axes));

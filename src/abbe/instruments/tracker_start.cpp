@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/errors/chain_plan.h"
+#include "abbe/instruments/instrument.h"
 
 namespace abbe {
 namespace {
@@ -37,8 +38,6 @@ std::string direction_text(const Vector3d& direction) {
   const Vector3d d = (direction * 1e3).array().round().matrix() * 1e-3 + Vector3d::Zero();
   return fmt::format("({:.3f}, {:.3f}, {:.3f})", d.x(), d.y(), d.z());
 }
-
-const char* body_name(Body body) { return body == Body::bed ? "bed" : body == Body::workpiece ? "workpiece" : "tool"; }
 
 std::string note_of(const BestFitTransform& fit, const TrackerStation& station) {
   switch (fit.status) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/errors/chain_plan.h"
+#include "abbe/instruments/instrument.h"
 
 namespace abbe {
 namespace {
@@ -32,8 +33,6 @@ std::string text(const Vector3d& v, int digits) {
   }
   return "(" + result + ")";
 }
-
-const char* body_name(Body body) { return body == Body::bed ? "bed" : body == Body::workpiece ? "workpiece" : "tool"; }
 
 std::string message_of(const Trilateration& found, const TrackingInterferometerSetup::Station& station) {
   switch (found.status) {

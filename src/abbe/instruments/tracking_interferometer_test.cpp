@@ -22,7 +22,7 @@ TrackingInterferometerSetup two_stations() {
   return setup;
 }
 
-InstrumentReadings poses_of(const Machine& machine, std::size_t count, std::size_t items) {
+InstrumentReadings poses_for_items(const Machine& machine, std::size_t count, std::size_t items) {
   const PoseList poses = random_plan(machine, full_ranges(machine, 2), count, 11);
   InstrumentReadings plan;
   for (std::size_t k = 0; k < poses.count(); ++k) plan.append(poses.pose(k), k % items);
@@ -34,7 +34,7 @@ TEST(TrackingInterferometer, IndicatesTheDistanceOfStationAndReflectorWithoutThe
   const ErrorSet errors = test::some_errors(machine);
   const TrackingInterferometerSetup setup = two_stations();
   const auto tracking = std::make_shared<TrackingInterferometer>(setup);
-  const InstrumentReadings readings = test::exact_readings(machine, errors, tracking, poses_of(machine, 30, 3));
+  const InstrumentReadings readings = test::exact_readings(machine, errors, tracking, poses_for_items(machine, 30, 3));
   for (std::size_t k = 0; k < readings.count(); ++k) {
     const auto& run = setup.runs[readings.item[k]];
     const auto& station = setup.stations[run.station];
@@ -53,7 +53,8 @@ TEST(TrackingInterferometer, DerivativesEqualDifferences) {
   for (const Machine& machine :
        {test::trunnion_mill(), test::head_table_mill(), test::gantry_fork_head(), test::moving_table_cmm()}) {
     const auto tracking = std::make_shared<TrackingInterferometer>(two_stations());
-    test::expect_jacobian_equals_differences(machine, test::some_errors(machine), tracking, poses_of(machine, 45, 3));
+    test::expect_jacobian_equals_differences(machine, test::some_errors(machine), tracking,
+                                             poses_for_items(machine, 45, 3));
   }
 }
 

@@ -1,11 +1,10 @@
 #include "abbe/machine/chain.h"
 
-#include <numbers>
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::string_view kPrimes[] = {"'", "\xE2\x80\xB2", "\xE2\x80\x99"};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }

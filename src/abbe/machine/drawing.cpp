@@ -5,23 +5,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
+
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
 constexpr std::size_t kWidth = 80;
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Number for reading: to the micrometre, no trailing zeros, no "-0".
-std::string number(double value) {
+std::string readable_number(double value) {
   const double rounded = std::abs(value) < 1e9 ? std::round(value * 1000) / 1000 : value;
   return fmt::format("{:.9g}", rounded == 0 ? 0.0 : rounded);
 }
 
-std::string vector_text(const Eigen::Vector3d& v) {
-  return "(" + number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + ")";
+std::string readable_vector(const Eigen::Vector3d& v) {
+  return "(" + readable_number(v.x()) + ", " + readable_number(v.y()) + ", " + readable_number(v.z()) + ")";
 }
 
 /// "+X" for a principal direction, else the vector.
@@ -29,7 +29,7 @@ std::string direction_text(const Eigen::Vector3d& v) {
   for (int k = 0; k < 3; ++k) {
     if (std::abs(std::abs(v[k]) - 1) < 1e-9) return std::string(v[k] > 0 ? "+" : "-") + "XYZ"[k];
   }
-  return vector_text(v);
+  return readable_vector(v);
 }
 
 /// Arrow of a direction as seen from the front of the machine: X to the right, Y away, Z up.
@@ -64,11 +64,11 @@ Cells axis_cells(const Axis& axis) {
   Cells cells;
   cells[0] = std::string(linear ? "□ " : "○ ") + axis.name + (axis.primed ? "'" : "");
   cells[1] = linear ? arrow(motion) + " along " + direction_text(motion) : "↺ about " + direction_text(motion);
-  if (!linear) cells[2] = "through " + vector_text(axis.point);
+  if (!linear) cells[2] = "through " + readable_vector(axis.point);
   const double unit = linear ? 1 : kDegree;
-  cells[3] = axis.endless
-                 ? "endless"
-                 : number(axis.travel_min / unit) + " … " + number(axis.travel_max / unit) + (linear ? " mm" : " deg");
+  cells[3] = axis.endless ? "endless"
+                          : readable_number(axis.travel_min / unit) + " … " + readable_number(axis.travel_max / unit) +
+                                (linear ? " mm" : " deg");
   if (axis.setting) cells[3] += ", setting";
   return cells;
 }
@@ -112,7 +112,7 @@ std::string draw_machine(const Machine& machine) {
   append_wrapped(drawing, machine.chain(), 0);
   drawing += "\n  w  workpiece";
   drawing += "\n  │    ";
-  std::string place = "origin " + vector_text(machine.bed_from_workpiece.translation) + " mm";
+  std::string place = "origin " + readable_vector(machine.bed_from_workpiece.translation) + " mm";
   if ((machine.bed_from_workpiece.rotation - Eigen::Matrix3d::Identity()).norm() > 1e-12) place += ", turned";
   drawing += place + "\n";
   const std::size_t bed = machine.workpiece_axis_count();
@@ -135,8 +135,8 @@ std::string draw_machine(const Machine& machine) {
     append_line(drawing, line + cells[3]);
     if (!cells[2].empty()) append_line(drawing, "  │" + std::string(columns[0] + 1, ' ') + cells[2]);
   }
-  drawing += "  │    gauge point " + vector_text(machine.tool_reference) + " mm\n";
-  drawing += "  │    functional point " + vector_text(machine.tool_reference + machine.tool_offset) + " mm\n";
+  drawing += "  │    gauge point " + readable_vector(machine.tool_reference) + " mm\n";
+  drawing += "  │    functional point " + readable_vector(machine.tool_reference + machine.tool_offset) + " mm\n";
   drawing += "  t  tool " + arrow(-machine.tool_direction) + " pointing along " +
              direction_text(-machine.tool_direction) + "\n\n";
   append_wrapped(drawing,

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "abbe/geometry/angle.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/machine_check.h"
 #include "abbe/machine/orientation.h"
@@ -18,12 +19,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kTurn = 2 * std::numbers::pi;
 /// A command beyond its travel by less than this is rounding: it is set to the limit.
 constexpr double kLinearSlack = 1e-9;   // mm
 constexpr double kRotarySlack = 1e-11;  // rad
 /// Determinant of three unit directions below which they count as dependent in a pose.
-constexpr double kDependent = 1e-9;
+constexpr double kDependentDeterminant = 1e-9;
 /// Amplitude (mm) below which the turn of a polar axis moves the point nowhere that matters.
 constexpr double kNoEffect = 1e-9;
 /// Rotary moves count as this many mm per rad when solutions are put in order.
@@ -304,7 +304,7 @@ void InverseKinematics::solve_linear(const InversePlan& plan, const PoseTarget& 
   const double determinant = a.col(0).dot(normal);
   if (plan.linear_count == 3) solution.linear_volume = std::abs(determinant);
   if (plan.linear_count == 2) solution.linear_volume = a.col(0).cross(a.col(1)).norm();
-  if (plan.linear_count == 3 && std::abs(determinant) > kDependent) {
+  if (plan.linear_count == 3 && std::abs(determinant) > kDependentDeterminant) {
     commands = Vector3d(normal.dot(system.rest), a.col(2).cross(a.col(0)).dot(system.rest),
                         a.col(0).cross(a.col(1)).dot(system.rest)) /
                determinant;
@@ -316,7 +316,7 @@ void InverseKinematics::solve_linear(const InversePlan& plan, const PoseTarget& 
       near[static_cast<Eigen::Index>(k)] = start[plan.linear[k]];
     }
     Eigen::CompleteOrthogonalDecomposition<Columns> factors;
-    factors.setThreshold(kDependent);
+    factors.setThreshold(kDependentDeterminant);
     factors.compute(a.leftCols(static_cast<Eigen::Index>(plan.linear_count)));
     const bool dependent = factors.rank() < static_cast<Eigen::Index>(plan.linear_count);
     if (!dependent) near.setZero();

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/machine_check.h"
 #include "abbe/machine/machines_for_test.h"
@@ -16,8 +17,7 @@
 namespace abbe {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
+using std::numbers::pi;
 
 PoseTarget target_of(const Machine& machine, const RigidTransform& pose, TargetKind kind) {
   if (kind == TargetKind::full_pose) return PoseTarget::at(pose);
@@ -29,7 +29,7 @@ PoseTarget target_of(const Machine& machine, const RigidTransform& pose, TargetK
 bool same_commands(const Machine& machine, const InverseSolution& solution, const std::vector<double>& commands) {
   for (std::size_t i = 0; i < commands.size(); ++i) {
     double difference = solution.position[i] - commands[i];
-    if (machine.axes[i].endless) difference = std::remainder(difference, 2 * kPi);
+    if (machine.axes[i].endless) difference = std::remainder(difference, 2 * pi);
     if (std::abs(difference) > (machine.axes[i].kind == AxisKind::linear ? 1e-7 : 1e-9)) return false;
   }
   return true;
@@ -112,7 +112,7 @@ TEST(InverseKinematics, InvertsRandomChainsWithThreeLinearAndUpToThreeRotaryAxes
       axis.primed = k < workpiece_side && generator() % 2 == 0;
       axis.direction = Eigen::Vector3d(normal(generator), normal(generator), normal(generator)).normalized();
       axis.point = 100 * Eigen::Vector3d(normal(generator), normal(generator), normal(generator));
-      axis.travel_max = axis.kind == AxisKind::linear ? 300 : kPi;
+      axis.travel_max = axis.kind == AxisKind::linear ? 300 : pi;
       axis.travel_min = -axis.travel_max;
       machine.axes.push_back(axis);
     }
@@ -177,7 +177,7 @@ TEST(InverseKinematics, SaysByHowMuchAnOrientationIsOutOfReach) {
   const InverseResult limit = inverse.solve(PoseTarget::at({0, 0, 300}, {1, 0, 0}));
   ASSERT_FALSE(limit.solutions.empty());
   EXPECT_EQ(limit.solutions[0].singularity, PoseSingularity::limit_of_reach);
-  EXPECT_NEAR(limit.solutions[0].position[4], kPi, 1e-9);
+  EXPECT_NEAR(limit.solutions[0].position[4], pi, 1e-9);
 }
 
 TEST(InverseKinematics, SaysWhichAxisExceedsItsTravelAndByHowMuch) {

@@ -14,15 +14,15 @@ namespace abbe {
 namespace {
 
 constexpr double kUnitTolerance = 1e-9;
-constexpr double kDependent = 1e-3;  // sine of an angle: directions count as the same
+constexpr double kDependentSine = 1e-3;  // sine of an angle: directions count as the same
 // Sine and cosine keep their digits up to here; a travel beyond it, or of more than 10 km, is a wrong unit.
 constexpr double kLargestAngle = 20000;   // rad
 constexpr double kLargestPosition = 1e7;  // mm
 
-std::string number(double value) { return fmt::format("{:.10g}", value); }
+std::string ten_digits(double value) { return fmt::format("{:.10g}", value); }
 
-std::string vector_text(const Eigen::Vector3d& v) {
-  return "(" + number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + ")";
+std::string vector_in_ten_digits(const Eigen::Vector3d& v) {
+  return "(" + ten_digits(v.x()) + ", " + ten_digits(v.y()) + ", " + ten_digits(v.z()) + ")";
 }
 
 class Checker {
@@ -60,7 +60,7 @@ class Checker {
 
   bool check_finite(const std::string& axis, const std::string& field, const Eigen::Vector3d& v) {
     if (v.allFinite()) return true;
-    report(axis, field, vector_text(v) + " is not finite");
+    report(axis, field, vector_in_ten_digits(v) + " is not finite");
     return false;
   }
 
@@ -68,7 +68,7 @@ class Checker {
     if (!check_finite(axis, field, v)) return;
     const double length = v.stableNorm();
     if (std::abs(length - 1) > kUnitTolerance) {
-      report(axis, field, vector_text(v) + " has length " + number(length) + ", must be 1");
+      report(axis, field, vector_in_ten_digits(v) + " has length " + ten_digits(length) + ", must be 1");
     }
   }
 
@@ -83,7 +83,7 @@ class Checker {
              "'" + axis.name + "' is no axis name; expected an ISO 841 letter and optional number: X, C2");
     } else if (kind != axis.kind) {
       report(axis.name, "kind",
-             std::string("the letter stands for a ") + (kind == AxisKind::linear ? "linear" : "rotary") + " axis");
+             fmt::format("the letter stands for a {} axis", kind == AxisKind::linear ? "linear" : "rotary"));
     }
   }
 
@@ -105,7 +105,7 @@ class Checker {
       report(axis.name, "travel", "limits are not finite; mark a rotary axis without limits as endless");
     } else if (axis.travel_min > axis.travel_max) {
       report(axis.name, "travel",
-             "minimum " + number(axis.travel_min) + " exceeds maximum " + number(axis.travel_max) +
+             "minimum " + ten_digits(axis.travel_min) + " exceeds maximum " + ten_digits(axis.travel_max) +
                  (axis.kind == AxisKind::linear ? " (mm)" : " (rad)"));
     } else {
       check_size(axis);
@@ -172,11 +172,11 @@ std::vector<std::string> find_remarks(const Machine& machine) {
   const std::vector<ChainDirections> poses = directions_at_some_poses(machine);
   const auto in_line = [&poses](std::size_t i, std::size_t k) {
     return std::all_of(poses.begin(), poses.end(),
-                       [&](const ChainDirections& d) { return d[i].cross(d[k]).norm() < kDependent; });
+                       [&](const ChainDirections& d) { return d[i].cross(d[k]).norm() < kDependentSine; });
   };
   const auto in_plane = [&poses](std::size_t i, std::size_t k, std::size_t m) {
     return std::all_of(poses.begin(), poses.end(),
-                       [&](const ChainDirections& d) { return std::abs(d[i].cross(d[k]).dot(d[m])) < kDependent; });
+                       [&](const ChainDirections& d) { return std::abs(d[i].cross(d[k]).dot(d[m])) < kDependentSine; });
   };
   const auto name = [&machine](std::size_t i) { return machine.axes[i].name; };
   std::vector<std::string> remarks;

@@ -4,12 +4,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/chain.h"
 
 namespace abbe::test {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 Machine from_chain(const std::string& name, const std::string& chain) {
   const ParsedChain parsed = parse_chain(chain);

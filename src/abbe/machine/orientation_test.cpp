@@ -14,13 +14,12 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 class Random {
  public:
   explicit Random(unsigned seed) : generator_(seed) {}
-  double angle() { return std::uniform_real_distribution<double>(-kPi, kPi)(generator_); }
+  double angle() { return std::uniform_real_distribution<double>(-pi, pi)(generator_); }
   Vector3d direction() {
     std::normal_distribution<double> normal;
     return Vector3d(normal(generator_), normal(generator_), normal(generator_)).normalized();
@@ -31,13 +30,13 @@ class Random {
 };
 
 /// Angle brought into (-pi, pi].
-double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
+double wrapped(double angle) { return std::remainder(angle, 2 * pi); }
 
 TEST(Orientation, AnglesKeepTheirDigitsNearZeroAndHalfATurn) {
   for (double angle : {1e-12, 1e-8, 1e-4, 1.0}) {
     const Vector3d turned = rotation_about(Vector3d::UnitX(), angle) * Vector3d::UnitZ();
     EXPECT_NEAR(angle_between(Vector3d::UnitZ(), turned), angle, 1e-15 * (1 + angle));
-    EXPECT_NEAR(angle_between(-Vector3d::UnitZ(), turned), kPi - angle, 1e-15 * kPi);
+    EXPECT_NEAR(angle_between(-Vector3d::UnitZ(), turned), pi - angle, 1e-15 * pi);
     EXPECT_NEAR(angle_about(Vector3d::UnitX(), Vector3d::UnitZ(), turned), angle, 1e-15 * (1 + angle));
   }
 }
@@ -83,7 +82,7 @@ TEST(Orientation, ATargetAlongTheFirstAxisLeavesItFreeAndHeld) {
     ASSERT_EQ(branches.count, 1);
     EXPECT_EQ(branches.branch[0].singularity, RotarySingularity::first_axis_free);
     EXPECT_EQ(branches.branch[0].angle[0], 0.6);
-    EXPECT_NEAR(std::abs(branches.branch[0].angle[1]), sign > 0 ? 0 : kPi, 1e-15);
+    EXPECT_NEAR(std::abs(branches.branch[0].angle[1]), sign > 0 ? 0 : pi, 1e-15);
     EXPECT_LE(branches.branch[0].miss, 1e-15);
   }
 }
@@ -103,9 +102,9 @@ TEST(Orientation, OutOfReachTheNearestDirectionIsGivenWithItsMiss) {
     EXPECT_EQ(branches.count, 1);
     EXPECT_EQ(best.singularity, RotarySingularity::branches_meet);
     // No pair of angles on a grid comes nearer.
-    double nearest = kPi;
+    double nearest = pi;
     for (int k = 0; k < 360; ++k) {
-      const Vector3d turned = rotation_about(axes[1], k * kPi / 180) * start;
+      const Vector3d turned = rotation_about(axes[1], k * pi / 180) * start;
       // The best first angle for that second one: turn it into the target's half plane.
       const Vector3d seen = rotation_about(axes[0], angle_about(axes[0], turned, target)) * turned;
       nearest = std::min(nearest, angle_between(seen, target));

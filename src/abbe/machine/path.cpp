@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "abbe/geometry/angle.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/orientation.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 /// Cost of a jump (mm): more than any machine moves along a path, so that jumps are counted first.
 constexpr double kJumpCost = 1e9;
 
@@ -228,7 +229,7 @@ class PathSearch {
   std::vector<Pending> pending_;  ///< nodes of singular poses, exchanged when all have been looked at
 };
 
-std::string number(double value) { return fmt::format("{:.4g}", value); }
+std::string four_digits(double value) { return fmt::format("{:.4g}", value); }
 
 }  // namespace
 
@@ -254,9 +255,10 @@ std::string describe(const Machine& machine, const PathResult& result) {
       (result.jumps.empty() ? std::string("no jump") : std::to_string(result.jumps.size()) + " with a jump");
   for (const PathJump& jump : result.jumps) {
     text += "\npose " + std::to_string(jump.pose) + ": " + machine.axes[jump.axis].name + " turns " +
-            number(jump.turn * 180 / std::numbers::pi) + " deg" +
+            four_digits(jump.turn * 180 / std::numbers::pi) + " deg" +
             (jump.leaves_singular_pose ? " in a singular pose" : "") + ", linear axes move up to " +
-            number(jump.largest_linear_move) + " mm, tool " + number(jump.point_deviation) + " mm off half way";
+            four_digits(jump.largest_linear_move) + " mm, tool " + four_digits(jump.point_deviation) +
+            " mm off half way";
   }
   return text;
 }

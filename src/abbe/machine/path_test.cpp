@@ -6,13 +6,13 @@
 #include <numbers>
 #include <vector>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180;
+using std::numbers::pi;
 
 Eigen::Vector3d tilted(double tilt, double azimuth) {
   return {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)};
@@ -29,7 +29,7 @@ std::vector<PoseTarget> through_the_pole(const Eigen::Vector3d& point, double az
 std::vector<PoseTarget> turning(const Eigen::Vector3d& point, double turns) {
   std::vector<PoseTarget> path;
   const int steps = static_cast<int>(std::lround(turns * 120));
-  for (int i = 0; i <= steps; ++i) path.push_back(PoseTarget::at(point, tilted(0.6, i * 2 * kPi / 120)));
+  for (int i = 0; i <= steps; ++i) path.push_back(PoseTarget::at(point, tilted(0.6, i * 2 * pi / 120)));
   return path;
 }
 
@@ -77,12 +77,12 @@ TEST(Path, SaysWhereTheBranchMustSwitchBecauseTravelEnds) {
   // A of the trunnion goes from -120 to +30 only: the tilt to +60 degrees needs the table turned by half a turn.
   const Machine machine = test::trunnion_mill();
   std::vector<PoseTarget> path;
-  for (int i = -60; i <= 60; ++i) path.push_back(PoseTarget::at({10, 20, 0}, tilted(i * kDegree, kPi / 2)));
+  for (int i = -60; i <= 60; ++i) path.push_back(PoseTarget::at({10, 20, 0}, tilted(i * kDegree, pi / 2)));
   const PathResult result = follow_path(machine, path);
   ASSERT_EQ(result.status, PathStatus::followed) << describe(machine, result);
   expect_on_path(machine, path, result);
   ASSERT_EQ(result.jumps.size(), 1u) << describe(machine, result);
-  EXPECT_NEAR(std::abs(result.jumps[0].turn), kPi, 1e-9);
+  EXPECT_NEAR(std::abs(result.jumps[0].turn), pi, 1e-9);
   EXPECT_EQ(machine.axes[result.jumps[0].axis].name, "C");
   // The cheapest place for it is the pole, where only C turns.
   EXPECT_TRUE(result.jumps[0].leaves_singular_pose);
@@ -98,7 +98,7 @@ TEST(Path, LooksAheadSoThatAnAxisStartsOnTheTurnThatLetsItThrough) {
   ASSERT_EQ(result.status, PathStatus::followed);
   expect_on_path(machine, path, result);
   EXPECT_TRUE(result.jumps.empty()) << describe(machine, result);
-  EXPECT_NEAR(result.solutions.back().position[3] - result.solutions.front().position[3], 1.75 * 2 * kPi, 1e-9);
+  EXPECT_NEAR(result.solutions.back().position[3] - result.solutions.front().position[3], 1.75 * 2 * pi, 1e-9);
 }
 
 TEST(Path, UnwindsOnceWhereTheTravelIsUsedUp) {
@@ -115,13 +115,13 @@ TEST(Path, FollowsEndlessAxesOverManyTurns) {
   const Machine machine = test::trunnion_mill();
   const std::vector<PoseTarget> path = turning({10, 20, 0}, 5);
   PathOptions options;
-  options.start = {100 * 2 * kPi, -0.5, 0, 0, 0};
+  options.start = {100 * 2 * pi, -0.5, 0, 0, 0};
   const PathResult result = follow_path(machine, path, options);
   ASSERT_EQ(result.status, PathStatus::followed) << describe(machine, result);
   EXPECT_TRUE(result.jumps.empty());
   EXPECT_LE(largest_rotary_step(machine, result), 3.001 * kDegree);
-  EXPECT_NEAR(std::abs(result.solutions.back().position[0] - result.solutions.front().position[0]), 10 * kPi, 1e-9);
-  EXPECT_NEAR(result.solutions.front().position[0], 100 * 2 * kPi, kPi);
+  EXPECT_NEAR(std::abs(result.solutions.back().position[0] - result.solutions.front().position[0]), 10 * pi, 1e-9);
+  EXPECT_NEAR(result.solutions.front().position[0], 100 * 2 * pi, pi);
 }
 
 TEST(Path, IsTheShortestOfAllSequencesOfBranches) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/inverse_kinematics.h"
 #include "abbe/machine/machines_for_test.h"
@@ -14,8 +15,6 @@
 /// Nominal kinematics of published machines against numbers computed by others; see tests/golden/*/README.md.
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 using Row = test::ReferenceRow;
 

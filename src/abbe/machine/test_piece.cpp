@@ -3,15 +3,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
+
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 bool positive(double value) { return std::isfinite(value) && value > 0; }
 

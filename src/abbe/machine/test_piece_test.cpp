@@ -4,17 +4,15 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 double distance_to_axis(const CurvePoint& tool, const Vector3d& point) {
   return (point - tool.point).cross(tool.direction).norm();

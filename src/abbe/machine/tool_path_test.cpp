@@ -6,14 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/machines_for_test.h"
 #include "abbe/machine/placement.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// An arc in a horizontal plane, the tool tilted by 30 degrees outwards.
 Curve arc(std::size_t count) {

@@ -2,20 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/revolution_axis.h"
 #include "abbe/plan/turning_axis.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kRevolutionTolerance = 0.02;  // mm, of a normal from the axis that it should meet
 
 /// Area-weighted middle of a face, its mean normal, and how it spreads.
@@ -155,7 +154,7 @@ ScanFace scan_face(const Machine& machine, const TriangleMesh& mesh, std::span<c
   }
   if (try_raster(extent, largest_angle, face)) return face;
   // Lines across the longest extent, or across the innermost rotary axis.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(extent.spread);
+  const SymmetricEigen<3> solver(extent.spread);
   face.planes = solver.eigenvectors().col(2);
   if (!machine.axes.empty() && machine.axes[0].kind == AxisKind::rotary) {
     face.planes = axis_direction_in_workpiece(machine, 0, std::vector<double>(machine.axes.size(), 0.0));

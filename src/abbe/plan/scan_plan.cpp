@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "abbe/geometry/angle.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/surface_faces.h"
 #include "abbe/geometry/surface_lines.h"
 #include "abbe/plan/scan_clearance.h"
@@ -224,7 +225,6 @@ ScanPlan plan_scan(const Machine& machine, const TriangleMesh& part, const ScanP
   constexpr double kRounding = 1e-9;  // rad, of limits that a user gives in degrees
   const auto check = [](const char* name, double angle, double low, double high) {
     if (angle >= low - kRounding && angle <= high + kRounding) return;
-    constexpr double kDegree = std::numbers::pi / 180;
     throw std::invalid_argument(fmt::format("{} of the scan: {:.6g} degrees, not from {:.6g} to {:.6g} degrees", name,
                                             angle / kDegree, low / kDegree, high / kDegree));
   };

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/geometry/angle_units.h"
+
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr int kAzimuths = 12;
 
 /// A direction beside the normal.

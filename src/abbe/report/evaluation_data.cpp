@@ -1,5 +1,7 @@
 #include "abbe/report/evaluation_data.h"
 
+#include <nlohmann/json.hpp>
+
 namespace abbe {
 
 nlohmann::json evaluation_data(const EvaluationReport& report) {

@@ -1,13 +1,11 @@
 #include "abbe/report/positioning_plot.h"
 
-#include <numbers>
-
+#include "abbe/geometry/angle_units.h"
 #include "abbe/report/svg_plot.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 const char* const kSides[] = {"positive approach", "negative approach"};
 
 /// From inside units to those drawn.

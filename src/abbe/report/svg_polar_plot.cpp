@@ -7,8 +7,8 @@
 namespace abbe {
 namespace {
 
-constexpr double kWidth = 620, kLeft = 24, kMargin = 52, kRadius = 250;
-const PlotStyle kGrid{PlotColour::soft, 1, false, 0.25};
+constexpr double kPolarWidth = 620, kSideMargin = 24, kMargin = 52, kRadius = 250;
+const PlotStyle kPolarGrid{PlotColour::soft, 1, false, 0.25};
 const PlotStyle kZero{PlotColour::soft, 1.4};
 
 }  // namespace
@@ -69,11 +69,11 @@ std::string PolarPlot::svg() const {
   for (const Series& series : series_) {
     if (!series.legend.empty()) legend.push_back({series.legend, series.style, series.is_line, false, series.marker});
   }
-  const double legend_height = draw_legend(nullptr, {kLeft, 0}, kWidth - 2 * kLeft, legend);
-  const DrawingPoint centre{kWidth / 2, 50 + legend_height + 16 + kRadius};
-  SvgDrawing drawing(kWidth, centre.y + kRadius + kMargin, title_);
-  drawing.text({kLeft, 27}, title_, TextAnchor::start, 16, PlotColour::ink, true);
-  draw_legend(&drawing, {kLeft, 50}, kWidth - 2 * kLeft, legend);
+  const double legend_height = draw_legend(nullptr, {kSideMargin, 0}, kPolarWidth - 2 * kSideMargin, legend);
+  const DrawingPoint centre{kPolarWidth / 2, 50 + legend_height + 16 + kRadius};
+  SvgDrawing drawing(kPolarWidth, centre.y + kRadius + kMargin, title_);
+  drawing.text({kSideMargin, 27}, title_, TextAnchor::start, 16, PlotColour::ink, true);
+  draw_legend(&drawing, {kSideMargin, 50}, kPolarWidth - 2 * kSideMargin, legend);
 
   const AxisTicks ticks = this->ticks();
   const auto radius_of = [&](double value) { return kRadius * (value - ticks.from()) / (ticks.to() - ticks.from()); };
@@ -82,7 +82,7 @@ std::string PolarPlot::svg() const {
   };
   for (int i = 0; i < 12; ++i) {
     const double angle = i * std::numbers::pi / 6;
-    drawing.line(centre, at(angle, kRadius), kGrid);
+    drawing.line(centre, at(angle, kRadius), kPolarGrid);
     if (i % 3 != 0) continue;
     const DrawingPoint name = at(angle, kRadius + 16);
     const TextAnchor anchor = i == 0 ? TextAnchor::start : i == 6 ? TextAnchor::end : TextAnchor::middle;
@@ -95,7 +95,7 @@ std::string PolarPlot::svg() const {
                  names_[i / 3], anchor, 13);
   }
   for (const double value : ticks.values) {
-    drawing.circle(centre, radius_of(value), value == 0 ? kZero : kGrid);
+    drawing.circle(centre, radius_of(value), value == 0 ? kZero : kPolarGrid);
   }
   for (const Series& series : series_) {
     std::vector<DrawingPoint> points;

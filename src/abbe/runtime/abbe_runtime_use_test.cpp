@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "abbe/errors/actual_pose.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/runtime/allocations_for_test.h"
 #include "abbe/runtime/frozen_for_test.h"
 
@@ -14,8 +15,6 @@ namespace {
 
 static_assert(noexcept(abbe_runtime_inverse(nullptr, nullptr, nullptr, nullptr, nullptr, 1, nullptr)));
 static_assert(noexcept(abbe_runtime_load(nullptr, 0, nullptr, 0, nullptr)));
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// Every kind of functions, on one machine.
 ErrorSet every_basis(const Machine& machine) {

@@ -1,12 +1,12 @@
 #include "abbe/runtime/freeze_uncertainty.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
@@ -61,7 +61,7 @@ class PointUncertainty {
       Eigen::Matrix<double, 3, 6> moves;
       moves << Eigen::Matrix3d::Identity(), skew(length * tool);
       const Eigen::Matrix3d point = moves * spread * moves.transpose();
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(point, Eigen::EigenvaluesOnly);
+      const SymmetricEigen<3> solver(point, Eigen::EigenvaluesOnly);
       result.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[2])));
     }
   }

@@ -19,8 +19,6 @@ constexpr double kStanding = 0.5;                // steps that no longer become 
 constexpr double kStandingStep = 1e-11;          // mm, and are shorter than this, are rounding too
 constexpr double kDependent = 1e-9;              // determinant of three unit directions
 
-double length(const Triple& a) { return std::sqrt(dot(a, a)); }
-
 /// Shortest rotation vector that turns one unit vector to another.
 Triple turn_between(const Triple& from, const Triple& to) {
   const Triple axis = cross(from, to);

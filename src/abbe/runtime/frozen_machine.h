@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -19,6 +20,7 @@ inline Triple operator+(const Triple& a, const Triple& b) { return {a.x + b.x, a
 inline Triple operator-(const Triple& a, const Triple& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline Triple operator*(double f, const Triple& a) { return {f * a.x, f * a.y, f * a.z}; }
 inline double dot(const Triple& a, const Triple& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline double length(const Triple& a) { return std::sqrt(dot(a, a)); }
 inline Triple cross(const Triple& a, const Triple& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

@@ -9,8 +9,6 @@ namespace {
 /// Spread of singular values above which the plain solution keeps its digits (as in bounded_least_squares.cpp).
 constexpr double kWellSpread = 1e-3;
 
-double length(const Triple& a) { return std::sqrt(dot(a, a)); }
-
 double at(const Triple& a, std::size_t i) { return i == 0 ? a.x : i == 1 ? a.y : a.z; }
 
 /// Eigenvalues and eigenvectors (columns of v) of a symmetric matrix by Jacobi's rotations.

@@ -5,13 +5,12 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
+
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 Eigen::Vector2d direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
 

@@ -9,10 +9,10 @@
 #include <numbers>
 #include <random>
 
+#include "abbe/geometry/angle_units.h"
+
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 /// A path with deviations around a centre: as points, or as lengths at commanded angles.
 CircularReadings path(CircularAngle kind, const Eigen::Vector2d& centre, double radius,

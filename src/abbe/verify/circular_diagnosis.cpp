@@ -1,18 +1,18 @@
 #include "abbe/verify/circular_diagnosis.h"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 
+#include "abbe/geometry/decompositions.h"
+
 namespace abbe {
 namespace {
 
 /// Unknowns of the fit: the scales enter as radius and mismatch, so that the mismatch is known where the length is not.
-enum Unknown : Eigen::Index {
+enum CircularUnknown : Eigen::Index {
   kCentreFirst,
   kCentreSecond,
   kRadius,
@@ -92,20 +92,19 @@ Fit fit(const Eigen::MatrixXd& rows, const Eigen::VectorXd& right) {
     scale[j] = norm > 0 ? norm : 1;
   }
   const Eigen::MatrixXd scaled = rows * scale.cwiseInverse().asDiagonal();
-  Eigen::HouseholderQR<Eigen::MatrixXd> qr(scaled);
-  const Eigen::MatrixXd triangle = qr.matrixQR().topRows(kUnknowns).triangularView<Eigen::Upper>();
-  const Eigen::VectorXd rotated = (qr.householderQ().adjoint() * right).head(kUnknowns);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::VectorXd& singular = svd.singularValues();
+  const Qr qr(scaled);
+  const Eigen::MatrixXd triangle = qr.upper(kUnknowns);
+  const Eigen::VectorXd rotated = qr.rotated_back(right).head(kUnknowns);
+  const SingularValues<> svd(triangle);
+  const Eigen::VectorXd& singular = svd.values();
   Eigen::VectorXd inverse = Eigen::VectorXd::Zero(kUnknowns), spread = inverse;
   for (Eigen::Index k = 0; k < kUnknowns; ++k) {
     const double floor = 1e-10 * singular[0];
     if (singular[k] > floor) inverse[k] = 1 / singular[k];
     spread[k] = 1 / std::max(singular[k], floor);
   }
-  const Eigen::MatrixXd& v = svd.matrixV();
-  result.values =
-      scale.cwiseInverse().asDiagonal() * (v * inverse.asDiagonal() * (svd.matrixU().transpose() * rotated));
+  const Eigen::MatrixXd& v = svd.v();
+  result.values = scale.cwiseInverse().asDiagonal() * (v * inverse.asDiagonal() * (svd.u().transpose() * rotated));
   const Eigen::MatrixXd factor = scale.cwiseInverse().asDiagonal() * v * inverse.asDiagonal();
   result.covariance = factor * factor.transpose();
   result.distinctness = Eigen::VectorXd::Zero(kUnknowns);

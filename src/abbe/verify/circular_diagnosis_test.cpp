@@ -13,7 +13,7 @@
 namespace abbe {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kRadius = 150;
 
 struct Causes {
@@ -44,7 +44,7 @@ CircularReadings path(const Causes& cause, CircularAngle kind, double turn, doub
   readings.kind = kind;
   for (std::size_t i = 0; i < n; ++i) {
     const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(n);
-    const double angle = (from_deg + arc_deg * (turn > 0 ? share : 1 - share)) * kPi / 180;
+    const double angle = (from_deg + arc_deg * (turn > 0 ? share : 1 - share)) * pi / 180;
     const Eigen::Vector2d point = actual(cause, angle, turn);
     readings.angle.push_back(kind == CircularAngle::measured ? std::atan2(point.y(), point.x()) : angle);
     readings.radius.push_back(point.norm() + cause.length + noise * draw(random));
@@ -210,7 +210,7 @@ TEST(CircularDiagnosis, ReadingsNearReversalsCanBeLeftOut) {
                                            path(kKnown, CircularAngle::commanded, 1, 0, 360, 360, 0, random)};
   for (CircularReadings& readings : paths) {
     for (std::size_t i = 0; i < readings.count(); ++i) {
-      if (std::abs(std::remainder(readings.angle[i], kPi / 2)) < 0.05) readings.radius[i] += 0.01;
+      if (std::abs(std::remainder(readings.angle[i], pi / 2)) < 0.05) readings.radius[i] += 0.01;
     }
   }
   const CircularDiagnosis spiked = circular_diagnosis(paths, {.nominal_radius = kRadius});

@@ -9,14 +9,14 @@
 namespace abbe {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Lengths at commanded angles: the nominal radius, an eccentricity and a deviation of the angle.
 template <typename Deviation>
 CircularReadings bar(std::size_t n, double turn, const Eigen::Vector2d& centre, const Deviation& deviation) {
   CircularReadings readings;
   for (std::size_t i = 0; i < n; ++i) {
-    const double angle = turn * 2 * kPi * static_cast<double>(i) / static_cast<double>(n);
+    const double angle = turn * 2 * pi * static_cast<double>(i) / static_cast<double>(n);
     readings.angle.push_back(angle);
     readings.radius.push_back(
         (centre + (150 + deviation(angle)) * Eigen::Vector2d(std::cos(angle), std::sin(angle))).norm());
@@ -63,7 +63,7 @@ TEST(Circular, TheInstrumentsCentreLeavesTheSetUpInTheResult) {
 TEST(Circular, AShortArcHasRadialButNoCircularDeviationAboutAFittedCentre) {
   std::array<CircularReadings, 2> paths;
   for (int i = 0; i <= 90; ++i) {
-    paths[1].angle.push_back(i * kPi / 180);
+    paths[1].angle.push_back(i * pi / 180);
     paths[1].radius.push_back(150 + 0.001 * i / 90);
   }
   CircularOptions options{.nominal_radius = 150};
@@ -81,7 +81,7 @@ TEST(Circular, UncertaintiesAgreeWithRepeatedSimulation) {
   // counts.
   std::mt19937_64 random(11);
   std::normal_distribution<double> noise(0, 2e-4);
-  const auto bumps = [](double a) { return std::abs(a - kPi / 3) < 0.1 ? 0.01 : std::abs(a - kPi) < 0.1 ? -0.01 : 0; };
+  const auto bumps = [](double a) { return std::abs(a - pi / 3) < 0.1 ? 0.01 : std::abs(a - pi) < 0.1 ? -0.01 : 0; };
   const CircularReadings exact = bar(12, 1, {0, 0}, bumps);
   double g = 0, g_squares = 0, f = 0, f_squares = 0;
   CircularDeviation stated;

@@ -1,7 +1,8 @@
 #include "abbe/verify/covariance_root.h"
 
-#include <Eigen/Eigenvalues>
 #include <stdexcept>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 
@@ -16,7 +17,7 @@ Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
   const Eigen::VectorXd scale = u.unaryExpr([](double value) { return value > 0 ? 1 / value : 0.0; });
   const Eigen::MatrixXd correlation =
       scale.asDiagonal() * (0.5 * (covariance + covariance.transpose())) * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlation);
+  const SymmetricEigen<> eigen(correlation);
   if (eigen.eigenvalues().minCoeff() < -1e-8 * static_cast<double>(n)) {
     throw std::invalid_argument("covariance is not positive semi-definite");
   }

@@ -7,16 +7,14 @@
 namespace abbe {
 namespace {
 
-constexpr ApproachDirection kUp = ApproachDirection::positive, kDown = ApproachDirection::negative;
-
 /// Means 0 and `slope` up, lower by `reversal` down; two runs that differ by `spread`.
 DiagonalReadings diagonal(const std::string& name, double slope, double reversal, double spread = 0) {
   DiagonalReadings result{name, {}};
   for (const double run : {-0.5, 0.5}) {
     for (const double target : {0.0, 500.0}) {
       const double mean = target > 0 ? slope : 0;
-      result.readings.push_back({target, mean + run * spread, kUp});
-      result.readings.push_back({target, mean - reversal + run * spread, kDown});
+      result.readings.push_back({target, mean + run * spread, ApproachDirection::positive});
+      result.readings.push_back({target, mean - reversal + run * spread, ApproachDirection::negative});
     }
   }
   return result;

@@ -1,10 +1,10 @@
 #include "abbe/verify/displacement_fields.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/verify/deviation_block.h"
 #include "abbe/verify/deviation_jacobian.h"
 
@@ -14,9 +14,9 @@ using Eigen::Index;
 
 Eigen::MatrixXd orthonormal_columns(const Eigen::MatrixXd& columns, double threshold) {
   if (columns.cols() == 0) return columns;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
-  qr.setThreshold(threshold);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
+  PivotedQr qr(columns);
+  qr.set_threshold(threshold);
+  return qr.orthonormal(qr.rank());
 }
 
 void remove_span(const Eigen::MatrixXd& span, Eigen::MatrixXd& from) {

@@ -1,7 +1,5 @@
 #include "abbe/verify/edge_section.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/dual.h"
 #include "abbe/geometry/robust_fit.h"
 #include "abbe/verify/statistics.h"
@@ -26,7 +25,7 @@ constexpr double kEfficiency = 0.95;  // of it
 constexpr double kLeastTurn = std::numbers::pi / 4;
 
 enum class Part { surface, rounding, wall };
-enum Unknown { kCornerU, kCornerV, kSlope, kRadius, kTilt };
+enum EdgeUnknown { kCornerU, kCornerV, kSlope, kRoundingRadius, kTilt };
 
 /// Signed distance of a point from surface, rounding and wall, positive out of the material.
 /// @param normal  set to the direction in which the distance is taken
@@ -39,10 +38,10 @@ T edge_distance(const std::array<T, 5>& q, const Eigen::Vector2d& p, Part* part,
   const T cos_slope = cos(q[kSlope]), sin_slope = sin(q[kSlope]);
   const T down_u = -sin(q[kTilt]), down_v = -cos(q[kTilt]);
   const T half_turn = (q[kSlope] + q[kTilt]) / T(2) + T(std::numbers::pi / 4);
-  const T reach = q[kRadius] * tan(half_turn);
+  const T reach = q[kRoundingRadius] * tan(half_turn);
   const T from_corner_u = T(p.x()) - q[kCornerU], from_corner_v = T(p.y()) - q[kCornerV];
-  const T u = from_corner_u + reach * cos_slope - q[kRadius] * sin_slope;  // from the centre of the rounding
-  const T v = from_corner_v + reach * sin_slope + q[kRadius] * cos_slope;
+  const T u = from_corner_u + reach * cos_slope - q[kRoundingRadius] * sin_slope;  // from the centre of the rounding
+  const T v = from_corner_v + reach * sin_slope + q[kRoundingRadius] * cos_slope;
   const T along_surface = u * cos_slope + v * sin_slope, along_wall = u * down_u + v * down_v;
   const T above = from_corner_v * cos_slope - from_corner_u * sin_slope;
   const T beside = from_corner_v * down_u - from_corner_u * down_v;
@@ -65,7 +64,7 @@ T edge_distance(const std::array<T, 5>& q, const Eigen::Vector2d& p, Part* part,
     return above;
   }
   take(Part::rounding, u / length, v / length);
-  return length - q[kRadius];
+  return length - q[kRoundingRadius];
 }
 
 /// All points at one set of unknowns.
@@ -127,7 +126,7 @@ class EdgeProblem {
     Sums result;
     std::array<Dual<5>, 5> q;
     for (int k = 0; k < 5; ++k) {
-      const bool free = k == kTilt ? options_.free_wall : k != kRadius || free_radius;
+      const bool free = k == kTilt ? options_.free_wall : k != kRoundingRadius || free_radius;
       q[static_cast<std::size_t>(k)] = free ? Dual<5>::variable(x[k], k) : Dual<5>(x[k]);
     }
     Part part = Part::surface;
@@ -147,7 +146,7 @@ class EdgeProblem {
     add_bottom(x, scale, weighted, result);
     // What is held does not move.
     for (int k = 0; k < 5; ++k) {
-      const bool free = k == kTilt ? options_.free_wall : k != kRadius || free_radius;
+      const bool free = k == kTilt ? options_.free_wall : k != kRoundingRadius || free_radius;
       if (!free) result.normal(k, k) = 1;
     }
     return result;
@@ -157,7 +156,7 @@ class EdgeProblem {
   /// @returns whether it came to rest
   bool solve(Vector5& x, double& scale_used) const {
     const double unit = noise_is_known() ? std::max(options_.across_noise, options_.height_noise) : 1;
-    scale_used = std::max(scale(x), x[kRadius] / (4 * unit));
+    scale_used = std::max(scale(x), x[kRoundingRadius] / (4 * unit));
     double moved = HUGE_VAL;
     for (int stage = 0; stage < 60; ++stage) {
       const Vector5 before = x;
@@ -216,12 +215,12 @@ class EdgeProblem {
         Matrix5 damped = here.normal;
         damped.diagonal() += damping * here.normal.diagonal();
         damped.diagonal().array() += 1e-12;
-        Vector5 next = x + damped.ldlt().solve(here.right);
+        Vector5 next = x + Ldlt<5>(damped).solve(here.right);
         if (!next.allFinite()) return false;
         next[kSlope] = std::clamp(next[kSlope], -0.5, 0.5);
         next[kTilt] = std::clamp(next[kTilt], -0.7, 0.7);
         // Where no point lies on the rounding nothing says how to go on: the radius shrinks step by step.
-        next[kRadius] = std::max(next[kRadius], x[kRadius] / 2);
+        next[kRoundingRadius] = std::max(next[kRoundingRadius], x[kRoundingRadius] / 2);
         if (sums(next, held, scale, true, true).cost <= here.cost) {
           const double moved = (next - x).cwiseAbs().maxCoeff();
           x = next;
@@ -364,7 +363,7 @@ EdgeFit fit_edge(const Eigen::Ref<const Eigen::Matrix2Xd>& points, const EdgeOpt
   std::vector<std::pair<double, double>> radii;  // cost, radius
   for (double radius = start.smallest; radius <= start.largest && radii.size() < 60; radius *= 1.6) {
     Vector5 x = start.unknowns;
-    x[kRadius] = radius;
+    x[kRoundingRadius] = radius;
     radii.emplace_back(problem.cost(x, start.bound), radius);
   }
   std::sort(radii.begin(), radii.end());
@@ -373,7 +372,7 @@ EdgeFit fit_edge(const Eigen::Ref<const Eigen::Matrix2Xd>& points, const EdgeOpt
   bool found = false;
   for (std::size_t k = 0; k < std::min<std::size_t>(radii.size(), 2); ++k) {
     Vector5 x = start.unknowns;
-    x[kRadius] = radii[k].second;
+    x[kRoundingRadius] = radii[k].second;
     double its_scale = 0;
     if (!problem.solve(x, its_scale)) continue;
     // Compared by one bound: with its own each would praise itself.
@@ -405,7 +404,7 @@ EdgeFit fit_edge(const Eigen::Ref<const Eigen::Matrix2Xd>& points, const EdgeOpt
   }
   const double turn = std::numbers::pi / 2 + best[kSlope] + best[kTilt];
   if (fit.on_wall >= 3) fit.turn_seen = turn;
-  const bool round = fit.on_rounding >= 4 && best[kRadius] > 0;
+  const bool round = fit.on_rounding >= 4 && best[kRoundingRadius] > 0;
   if (!round && fit.on_wall < 3) {
     return refused(EdgeStatus::undetermined, "neither the wall nor four points of the rounding are seen");
   }
@@ -420,28 +419,28 @@ EdgeFit fit_edge(const Eigen::Ref<const Eigen::Matrix2Xd>& points, const EdgeOpt
   const Matrix5 information = problem.sums(best, problem.uncertainties(best), scale, round, false).normal;
   const Eigen::Matrix<double, 5, 1> size = information.diagonal().cwiseSqrt().cwiseMax(1e-300);
   const Matrix5 scaled = size.cwiseInverse().asDiagonal() * information * size.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix5> eigen(scaled);
+  const SymmetricEigen<5> eigen(scaled);
   if (!(eigen.eigenvalues()[0] > 1e-9)) {
     return refused(EdgeStatus::undetermined, "the points do not separate corner, radius and wall");
   }
   const double variance = problem.noise_is_known() ? scale * scale : squares / (used - unknowns);
   fit.covariance = size.cwiseInverse().asDiagonal() * scaled.inverse() * size.cwiseInverse().asDiagonal();
   fit.covariance *= variance / kEfficiency;
-  for (const int k : {static_cast<int>(kRadius), static_cast<int>(kTilt)}) {
-    if (k == kRadius ? round : options.free_wall) continue;
+  for (const int k : {static_cast<int>(kRoundingRadius), static_cast<int>(kTilt)}) {
+    if (k == kRoundingRadius ? round : options.free_wall) continue;
     fit.covariance.row(k).setZero();
     fit.covariance.col(k).setZero();
   }
   const double tangent = std::tan(turn / 2);
   Vector5 slope = Vector5::Zero();  // of r tan(turn / 2)
-  slope[kRadius] = tangent;
-  slope[kSlope] = slope[kTilt] = best[kRadius] * (1 + tangent * tangent) / 2;
+  slope[kRoundingRadius] = tangent;
+  slope[kSlope] = slope[kTilt] = best[kRoundingRadius] * (1 + tangent * tangent) / 2;
   fit.status = EdgeStatus::ok;
-  fit.rounding = best[kRadius] * tangent;
+  fit.rounding = best[kRoundingRadius] * tangent;
   fit.rounding_uncertainty = std::sqrt(std::max(0.0, slope.dot(fit.covariance * slope)));
   fit.noise = std::sqrt(squares / used);
   fit.printed = as_printed(problem, best);
-  fit.radius = best[kRadius];
+  fit.radius = best[kRoundingRadius];
   fit.surface_slope = mirror * (best[kSlope] - options.surface_curvature * best[kCornerU]);
   fit.wall_tilt = mirror * best[kTilt];
   const auto place = [&](const Eigen::Vector2d& p) {

@@ -7,13 +7,12 @@
 #include <numbers>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/engraved_edge.h"
 #include "abbe/instruments/triangulation.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct Corner {
   Eigen::Vector2d corner;

@@ -1,11 +1,10 @@
 #include "abbe/verify/map_uncertainty.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/verify/covariance_root.h"
 #include "abbe/verify/deviation_jacobian.h"
 
@@ -87,7 +86,7 @@ void MapUncertainty::evaluate(const DeviationModel& model, const DeviationBlock&
                 block.norm[pose];
             along = direction.dot(covariance * direction);
           } else {
-            along = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues()[2];
+            along = SymmetricEigen<3>(covariance, Eigen::EigenvaluesOnly).eigenvalues()[2];
           }
           norm_uncertainty[pose] = std::sqrt(std::max(0.0, along));
         }

@@ -3,23 +3,22 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <span>
+
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-
 /// Where the grid angles lie among the readings: reading `below` and the share of the next one.
-struct Place {
+struct PlaceBetweenReadings {
   std::size_t below = 0;
   double share = 0;
 };
 
-struct Grid {
+struct AngleGrid {
   RotationResult result;
-  std::vector<Place> places;  // [turns * positions]
+  std::vector<PlaceBetweenReadings> places;  // [turns * positions]
 };
 
 double spread_of(std::span<const double> values) {
@@ -28,8 +27,8 @@ double spread_of(std::span<const double> values) {
 }
 
 /// Whole turns and positions of the readings, or why there are none.
-Grid grid_of(const std::vector<double>& angle) {
-  Grid grid;
+AngleGrid grid_of(const std::vector<double>& angle) {
+  AngleGrid grid;
   RotationResult& result = grid.result;
   result.status = RotationStatus::too_few_turns;
   const std::size_t n = angle.size();
@@ -70,10 +69,10 @@ Grid grid_of(const std::vector<double>& angle) {
   return grid;
 }
 
-std::vector<double> on_grid(const Grid& grid, const std::vector<double>& readings) {
+std::vector<double> on_grid(const AngleGrid& grid, const std::vector<double>& readings) {
   std::vector<double> values;
   values.reserve(grid.places.size());
-  for (const Place& place : grid.places) {
+  for (const PlaceBetweenReadings& place : grid.places) {
     values.push_back((1 - place.share) * readings[place.below] + place.share * readings[place.below + 1]);
   }
   return values;
@@ -183,7 +182,7 @@ std::vector<AxisErrorMotionKind> evaluated_kinds(const RotationReadings& reading
 }
 
 RotationResult rotation_error_motions(const RotationReadings& readings, const RotationOptions& options) {
-  const Grid grid = grid_of(readings.angle);
+  const AngleGrid grid = grid_of(readings.angle);
   RotationResult result = grid.result;
   if (result.status != RotationStatus::done) return result;
   const auto signal = [&](const std::vector<double>& probe) {

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
+
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 std::vector<double> turning(std::size_t turns, std::size_t positions, double sense = 1, double from = 0) {
   std::vector<double> angle;

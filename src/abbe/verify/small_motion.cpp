@@ -1,8 +1,9 @@
 #include "abbe/verify/small_motion.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 
@@ -26,7 +27,7 @@ SmallMotion fit_small_motion(const Eigen::Matrix3Xd& points, const Eigen::Matrix
     right += seen[k] * row;
   }
   // Squares of singular values: 1e-10 is 1e-5 of the largest of them.
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> values(normal);
+  const SymmetricEigen<6> values(normal);
   const double smallest = 1e-10 * values.eigenvalues()[5];
   Vector6d solution = Vector6d::Zero();
   for (Eigen::Index i = 0; i < 6; ++i) {

@@ -14,9 +14,9 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 /// Readings sorted by the cubes of a grid.
-class Grid {
+class CubeGrid {
  public:
-  Grid(const Eigen::Matrix3Xd& points, double cell) : lower_(points.rowwise().minCoeff()), cell_(cell) {
+  CubeGrid(const Eigen::Matrix3Xd& points, double cell) : lower_(points.rowwise().minCoeff()), cell_(cell) {
     const auto n = static_cast<std::size_t>(points.cols());
     std::vector<std::uint64_t> keys(n);
     for (std::size_t i = 0; i < n; ++i) keys[i] = key(cube_of(points.col(static_cast<Index>(i))));
@@ -87,7 +87,7 @@ double radius_of_readings(const SurfaceReadings& readings, std::size_t wanted) {
   const double largest = extent / 10;
   double cell = extent / std::sqrt(static_cast<double>(readings.foot.cols())) / 4;
   while (cell < largest) {
-    std::vector<std::size_t> counts = Grid(readings.foot, cell).counts();
+    std::vector<std::size_t> counts = CubeGrid(readings.foot, cell).counts();
     const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
     std::nth_element(counts.begin(), middle, counts.end());
     if (*middle >= wanted) break;
@@ -104,7 +104,7 @@ SurfaceAverage surface_average(const SurfaceReadings& readings, const Eigen::Mat
   result.count.assign(m, 0);
   if (readings.foot.cols() == 0 || !(radius_mm > 0)) return result;
   const double extent = (readings.foot.rowwise().maxCoeff() - readings.foot.rowwise().minCoeff()).maxCoeff();
-  const Grid grid(readings.foot, std::max(radius_mm, 1e-6 * extent));
+  const CubeGrid grid(readings.foot, std::max(radius_mm, 1e-6 * extent));
   constexpr std::size_t kBlock = 1024;
   for_each_block((m + kBlock - 1) / kBlock, threads, [&](std::size_t block) {
     for (std::size_t i = block * kBlock; i < std::min(m, (block + 1) * kBlock); ++i) {

@@ -11,7 +11,7 @@
 namespace abbe {
 namespace {
 
-PoseList poses_of(const Machine& machine, std::size_t count) {
+PoseList commanded_poses(const Machine& machine, std::size_t count) {
   std::mt19937_64 generator(3);
   PoseList poses;
   for (std::size_t k = 0; k < count; ++k) poses.append(test::random_commands(machine, generator));
@@ -37,7 +37,7 @@ TEST(TableLoss, OwnTablesCarryPositioningAndNothingAcross) {
   options.seed = 4;
   const ErrorSet errors = random_errors(machine, options);
   const std::vector<CarriedError> carried =
-      carried_errors(machine, errors, poses_of(machine, 60), own_tables(machine, false));
+      carried_errors(machine, errors, commanded_poses(machine, 60), own_tables(machine, false));
   // 18 error motions and the squareness errors that a three-axis machine has.
   EXPECT_GE(carried.size(), 18U + 3U);
   for (const char* name : {"EXX", "EYY", "EZZ"}) EXPECT_GT(named(carried, name).carried(), 0.99) << name;
@@ -51,7 +51,7 @@ TEST(TableLoss, CrossTablesCarryStraightnessAndSquarenessToo) {
   options.seed = 4;
   const ErrorSet errors = random_errors(machine, options);
   const std::vector<CarriedError> carried =
-      carried_errors(machine, errors, poses_of(machine, 60), own_tables(machine, true));
+      carried_errors(machine, errors, commanded_poses(machine, 60), own_tables(machine, true));
   for (const char* name : {"EXX", "EYX", "EZX", "EXY", "EC0Y"}) {
     EXPECT_GT(named(carried, name).carried(), 0.98) << name;
   }
@@ -60,7 +60,7 @@ TEST(TableLoss, CrossTablesCarryStraightnessAndSquarenessToo) {
 TEST(TableLoss, TheIdealCorrectionLeavesNothingWhereAllErrorsAreReached) {
   const Machine machine = test::three_axis_mill();
   const ErrorSet errors = random_errors(machine, {});
-  PoseList poses = poses_of(machine, 40);
+  PoseList poses = commanded_poses(machine, 40);
   for (std::size_t i = 0; i < poses.axis.size(); ++i) poses.axis[i].push_back(machine.axes[i].travel_max);
   std::size_t not_reached = 1;
   const PoseDeviations ideal = ideal_deviations(machine, errors, poses, not_reached);
@@ -94,7 +94,7 @@ TEST(TableLoss, TablesOfBothDirectionsCarryReversalValuesAndTheMeanDoesNot) {
   const Machine machine = test::trunnion_mill();
   ErrorSet errors;
   errors.reversals = {{machine.find_axis("X"), -0.02, 0}, {machine.find_axis("C"), 40e-6, 0}};
-  const PoseList poses = poses_of(machine, 20);
+  const PoseList poses = commanded_poses(machine, 20);
   // An independent route: every combination of directions, one by one.
   double largest = 0;
   for (const int x : {-1, 1}) {

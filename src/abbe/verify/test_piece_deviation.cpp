@@ -32,7 +32,7 @@ struct ToolCurve {
   double end() const { return along.back(); }
 };
 
-struct Place {
+struct CurvePlace {
   std::size_t segment = 0;
   double fraction = 0;
   double along = 0;
@@ -40,8 +40,8 @@ struct Place {
 };
 
 /// The nearest place not before another one, and no farther than `window` behind it.
-Place nearest(const ToolCurve& curve, const Place& from, const Vector3d& point, double window) {
-  Place best;
+CurvePlace nearest(const ToolCurve& curve, const CurvePlace& from, const Vector3d& point, double window) {
+  CurvePlace best;
   for (std::size_t s = from.segment; s + 1 < curve.points.size(); ++s) {
     if (s > from.segment && curve.along[s] > from.along + window) break;
     const Vector3d way = curve.points[s + 1] - curve.points[s];
@@ -56,12 +56,12 @@ Place nearest(const ToolCurve& curve, const Place& from, const Vector3d& point, 
 }
 
 /// Collects the samples that cut.
-class Cut {
+class CutSamples {
  public:
-  Cut(const TestPiece& piece, const ToolCurve& curve, const ToolPlaces& actual, PieceDeviation& result)
+  CutSamples(const TestPiece& piece, const ToolCurve& curve, const ToolPlaces& actual, PieceDeviation& result)
       : piece_(piece), curve_(curve), actual_(actual), result_(result) {}
 
-  void add(std::size_t row, const Place& place) {
+  void add(std::size_t row, const CurvePlace& place) {
     const Ruling &a = piece_.rulings[place.segment], &b = piece_.rulings[place.segment + 1];
     const CurvePoint &from = piece_.curve.points[place.segment], &to = piece_.curve.points[place.segment + 1];
     const double f = place.fraction;
@@ -176,8 +176,8 @@ PieceDeviation test_piece_deviation(const TestPiece& piece, const ToolPlaces& ac
   PieceDeviation result;
   const ToolCurve curve(piece);
   result.length = curve.end();
-  Cut cut(piece, curve, actual, result);
-  Place at;
+  CutSamples cut(piece, curve, actual, result);
+  CurvePlace at;
   bool cutting = false;
   double nearest_start = std::numeric_limits<double>::infinity();
   const auto count = static_cast<std::size_t>(actual.point.cols());
@@ -195,7 +195,7 @@ PieceDeviation test_piece_deviation(const TestPiece& piece, const ToolPlaces& ac
     const double way = (point - actual.point.col(static_cast<Index>(row - 1))).norm();
     if (!cutting) {
       // The cut begins at a sample at the first point from which the tool goes on along the curve.
-      const Place before = nearest(curve, Place{}, actual.point.col(static_cast<Index>(row - 1)), reach);
+      const CurvePlace before = nearest(curve, CurvePlace{}, actual.point.col(static_cast<Index>(row - 1)), reach);
       at = nearest(curve, before, point, way + reach);
       if (before.distance > reach || at.distance > reach || !(way > 0)) continue;
       if (at.along - before.along < kAlong * way) continue;
@@ -204,7 +204,7 @@ PieceDeviation test_piece_deviation(const TestPiece& piece, const ToolPlaces& ac
       cut.add(row, at);
       continue;
     }
-    const Place next = nearest(curve, at, point, way + reach);
+    const CurvePlace next = nearest(curve, at, point, way + reach);
     if (next.distance > reach) {
       if (at.along >= curve.end() - reach) break;
       result.status = PieceTraceStatus::leaves_piece;

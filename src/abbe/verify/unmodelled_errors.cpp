@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/verify/displacement_fields.h"
 
 namespace abbe {
@@ -17,7 +17,6 @@ constexpr double kBeside = 1e-3;
 // Of unit columns; a direction of the model that is weaker is rounding.
 constexpr double kModelRank = 1e-7;
 constexpr double kNothing = 1e-10;
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kNearlyATurn = 0.9 * kTurn;
 
 bool holds_motion(const ErrorSet& errors, std::size_t axis, Component component) {

@@ -1,0 +1,19 @@
+# abbe_discover_tests(PROGRAM PREFIX LABELS TIMEOUT): the tests of a GoogleTest program in ctest.
+#
+# Each test is one of ctest's and runs in a process of its own. Under the sanitizers, where a process takes a tenth of a second
+# to start, the program is run as a whole, in ABBE_SHARDS parts, of which ctest runs several at a time.
+set(ABBE_SHARDS 0 CACHE STRING "0: each test is one of ctest's; else the parts in which a test program is run")
+
+function(abbe_discover_tests program prefix labels timeout)
+  if(NOT ABBE_SHARDS)
+    gtest_discover_tests(${program} TEST_PREFIX "${prefix}" DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${labels}" TIMEOUT ${timeout})
+    return()
+  endif()
+  math(EXPR last "${ABBE_SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    set(name ${prefix}part_${shard})
+    add_test(NAME ${name} COMMAND ${program} --gtest_brief=1)
+    set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT 1200
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${ABBE_SHARDS};GTEST_SHARD_INDEX=${shard}")
+  endforeach()
+endfunction()

@@ -1,0 +1,69 @@
+# How sources become translation units: several in one, and with the headers that nearly all of them need parsed once.
+#
+# Most of the time of a unit is spent on Eigen and the standard library: on parsing them and on instantiating the same
+# templates again. With ABBE_UNITY (default) the sources of a target are compiled in batches, in the order in which they
+# are listed; with ABBE_PRECOMPILE (default) what cmake/precompiled*.h include is compiled beforehand. Without both, as
+# clang-tidy and editors want it, every source is a unit of its own.
+option(ABBE_UNITY "Compile several sources in one unit" ON)
+option(ABBE_PRECOMPILE "Precompile the headers that most sources need" ON)
+set(ABBE_BATCH 8 CACHE STRING "Sources in one unit")
+
+# abbe_units(TARGET ROOT SOURCES a.cpp ... [ALONE b.cpp ...] [PRECOMPILED header target]): the sources of an existing target.
+#
+# ROOT is the include folder from which batches include the sources: paths of a clone do not get into the units, so that
+# ccache finds them in another clone. ALONE are sources that cannot share a unit: those that include themselves for every
+# instruction set (Highway) and those compiled with options of their own.
+function(abbe_units target root)
+  cmake_parse_arguments(ARG "" "PRECOMPILED" "SOURCES;ALONE" ${ARGN})
+  set(batch "")
+  set(number 0)
+  set(count 0)
+  foreach(source IN LISTS ARG_SOURCES)
+    get_filename_component(path ${source} ABSOLUTE)
+    file(RELATIVE_PATH name ${root} ${path})
+    if(NOT ABBE_UNITY OR source IN_LIST ARG_ALONE OR name MATCHES "^\\.\\." OR NOT EXISTS ${path})
+      target_sources(${target} PRIVATE ${source})
+      continue()
+    endif()
+    string(APPEND batch "#include \"${name}\"\n")
+    set_source_files_properties(${source} PROPERTIES HEADER_FILE_ONLY ON)
+    math(EXPR count "${count} + 1")
+    if(count EQUAL ABBE_BATCH)
+      abbe_write_batch(${target} ${number} "${batch}")
+      set(batch "")
+      set(count 0)
+      math(EXPR number "${number} + 1")
+    endif()
+  endforeach()
+  if(batch)
+    abbe_write_batch(${target} ${number} "${batch}")
+  endif()
+  if(ABBE_PRECOMPILE AND ARG_PRECOMPILED)
+    target_precompile_headers(${target} REUSE_FROM ${ARG_PRECOMPILED})
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+  endif()
+endfunction()
+
+function(abbe_write_batch target number content)
+  set(file ${CMAKE_CURRENT_BINARY_DIR}/${target}_${number}.cpp)
+  file(CONFIGURE OUTPUT ${file} CONTENT "${content}" @ONLY)
+  target_sources(${target} PRIVATE ${file})
+endfunction()
+
+# abbe_precompiled(NAME HEADER LINK ... [INDEPENDENT]): a target from which others reuse precompiled headers. INDEPENDENT: for
+# libraries, whose code does not depend on its position; the compiler wants it equal.
+function(abbe_precompiled name header)
+  cmake_parse_arguments(ARG "INDEPENDENT" "" "LINK" ${ARGN})
+  if(NOT ABBE_PRECOMPILE)
+    return()
+  endif()
+  set(empty ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  file(CONFIGURE OUTPUT ${empty} CONTENT "" @ONLY)
+  add_library(${name} OBJECT ${empty})
+  target_compile_features(${name} PRIVATE cxx_std_20)
+  target_link_libraries(${name} PRIVATE abbe_flags ${ARG_LINK})
+  if(ARG_INDEPENDENT)
+    set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
+  target_precompile_headers(${name} PRIVATE ${PROJECT_SOURCE_DIR}/cmake/${header})
+endfunction()

@@ -1,0 +1,10 @@
+// As precompiled.h, for the tests.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "precompiled.h"

@@ -1,0 +1,31 @@
+#include "abbe/geometry/decompositions.h"
+
+namespace abbe {
+
+template <int N>
+FullLu<N>::FullLu(const Matrix& matrix) : factors_(matrix) {}
+template <int N>
+double FullLu<N>::reciprocal_condition() const {
+  return factors_.rcond();
+}
+template <int N>
+typename FullLu<N>::Vector FullLu<N>::solve(const Vector& right) const {
+  return factors_.solve(right);
+}
+template <int N>
+typename FullLu<N>::Matrix FullLu<N>::inverse() const {
+  return factors_.inverse();
+}
+template <int N>
+Eigen::MatrixXd FullLu<N>::kernel() const {
+  return factors_.kernel();
+}
+template class FullLu<3>;
+template class FullLu<6>;
+template class FullLu<Eigen::Dynamic>;
+
+PartialLu::PartialLu(const Eigen::MatrixXd& matrix) : factors_(matrix) {}
+Eigen::VectorXd PartialLu::solve(const Eigen::VectorXd& right) const { return factors_.solve(right); }
+Eigen::MatrixXd PartialLu::solve_columns(const Eigen::MatrixXd& right) const { return factors_.solve(right); }
+
+}  // namespace abbe
