@@ -13,7 +13,7 @@ namespace abbe {
 namespace {
 
 Study example(const std::string& name) {
-  return read_study(std::string(ABBE_SOURCE_DIR) + "/examples/three_axis/" + name + ".study.toml");
+  return read_study(std::string(ABBE_SOURCE_DIR "/examples/three_axis/") + name + ".study.toml");
 }
 
 TEST(TruthInGauge, OfLasersIsTheTrueMachineButForTheWorkpieceDatum) {

@@ -90,7 +90,7 @@ TEST_F(CheckGeometry, PointsOfACloudAreCountedAndMeasured) {
 TEST_F(CheckGeometry, AStepFileSaysHowNearItsTrianglesAre) {
   const std::filesystem::path program = std::filesystem::path(ABBE_COMMAND).parent_path() / "abbe-step";
   if (!std::filesystem::exists(program)) GTEST_SKIP() << "built without OpenCASCADE";
-  const std::string part = std::string(ABBE_SOURCE_DIR) + "/tests/golden/step/cylinder.step";
+  const std::string part = std::string(ABBE_SOURCE_DIR "/tests/golden/step/cylinder.step");
   const CommandResult result = abbe({"check", part, "--json", "--chord-mm", "0.1"});
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out);

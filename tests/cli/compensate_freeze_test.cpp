@@ -11,8 +11,8 @@ namespace {
 
 class CompensateFreezeTest : public CommandTest {
  protected:
-  const std::string machine = std::string(ABBE_SOURCE_DIR) + "/examples/machines/trunnion-mill.machine.toml";
-  const std::string errors = std::string(ABBE_SOURCE_DIR) + "/examples/trunnion/table.errors.toml";
+  const std::string machine = std::string(ABBE_SOURCE_DIR "/examples/machines/trunnion-mill.machine.toml");
+  const std::string errors = std::string(ABBE_SOURCE_DIR "/examples/trunnion/table.errors.toml");
   const std::string output = (folder.path() / "mill.abbec").string();
 };
 
@@ -32,7 +32,7 @@ TEST_F(CompensateFreezeTest, WritesAFileAndSaysWhatItDoes) {
 }
 
 TEST_F(CompensateFreezeTest, TheFileCarriesTheUncertaintyOfTheErrors) {
-  const std::string uncertain = std::string(ABBE_SOURCE_DIR) + "/examples/compensate/trunnion.errors.toml";
+  const std::string uncertain = std::string(ABBE_SOURCE_DIR "/examples/compensate/trunnion.errors.toml");
   const CommandResult result =
       abbe({"compensate", "freeze", machine, uncertain, "-o", output, "--leave-out-below-uncertainty", "2", "--json"});
   ASSERT_EQ(result.exit_code, done) << result.err;

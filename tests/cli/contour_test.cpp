@@ -13,7 +13,7 @@ namespace {
 
 class ContourTest : public EvaluateTest {
  protected:
-  const std::string engraver = std::string(ABBE_SOURCE_DIR) + "/examples/laser_engraver/";
+  const std::string engraver = std::string(ABBE_SOURCE_DIR "/examples/laser_engraver/");
 
   /// Points of an edge whose corner is there, in um: surface, rounding of radius 20 um, wall.
   static void add_section(std::string& csv, const std::string& name, double along, double corner) {
@@ -188,7 +188,7 @@ TEST_F(ContourTest, TheExampleIsThatOfASimulatedPart) {
 TEST_F(ContourTest, AProgramIsReadWithItsMachineAndComparedWhereTheToolWorks) {
   // Two regions, C2 turned between them: the way to the first point of the second is no part of the curve.
   const std::string program = engraver + "regions.ngc";
-  const std::string machine = std::string(ABBE_SOURCE_DIR) + "/examples/machines/yin-engraver-u.machine.toml";
+  const std::string machine = std::string(ABBE_SOURCE_DIR "/examples/machines/yin-engraver-u.machine.toml");
   const nlohmann::json found = json({"contour", engraver + "engraved.csv", "--curve", program, "--machine", machine});
   EXPECT_NE(found["facts"]["commanded curve"].get<std::string>().find("in 2 pieces"), std::string::npos);
   EXPECT_LT(found["figures"]["contour_max"]["value_um"].get<double>(), 60);

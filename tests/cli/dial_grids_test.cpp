@@ -16,16 +16,14 @@ using testing::HasSubstr;
 /// `abbe reproduce wang --grids FOLDER`.
 class DialGrids : public CommandTest {
  protected:
-  static std::string example(const std::string& name) {
-    return std::string(ABBE_SOURCE_DIR) + "/examples/wang/" + name;
-  }
+  static std::string example(const std::string& name) { return std::string(ABBE_SOURCE_DIR "/examples/wang/") + name; }
 };
 
 TEST_F(DialGrids, OneDialExampleGivesTheReferencesErrors) {
   const CommandResult result = abbe({"reproduce", "wang", "--grids", example("one-dial"), "--json"});
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   const nlohmann::json axis = nlohmann::json::parse(result.out).at(0);
-  std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/tests/golden/wang/dial_grid_truth.csv");
+  std::ifstream file(std::string(ABBE_SOURCE_DIR "/tests/golden/wang/dial_grid_truth.csv"));
   std::string line, field;
   std::getline(file, line);
   std::size_t rows = 0;

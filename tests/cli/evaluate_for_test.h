@@ -27,7 +27,7 @@ class EvaluateTest : public CommandTest {
     EXPECT_EQ(result.out, "");
     EXPECT_EQ(result.err, "abbe: " + message + "\n");
   }
-  const std::string examples = std::string(ABBE_SOURCE_DIR) + "/examples/evaluate/";
+  const std::string examples = std::string(ABBE_SOURCE_DIR "/examples/evaluate/");
 };
 
 }  // namespace abbe

@@ -33,7 +33,7 @@ class Fit : public CommandTest {
     const double value = figure.at("value" + unit), uncertainty = figure.at("expanded_uncertainty" + unit);
     EXPECT_NEAR(value, truth, 1.5 * uncertainty) << figure;
   }
-  const std::string examples = std::string(ABBE_SOURCE_DIR) + "/examples/fit/";
+  const std::string examples = std::string(ABBE_SOURCE_DIR "/examples/fit/");
 };
 
 TEST_F(Fit, CylinderOfTheBoreByAllMethods) {

@@ -58,7 +58,7 @@ TEST_F(InstrumentStudies, ASixComponentLaserWithDiagonals) {
 
 TEST_F(InstrumentStudies, WhatLasersLeaveOpenIsSaidWithItsSize) {
   // Without the step diagonal no reading shows how the roll of X grows along X.
-  std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/examples/three_axis/interferometer.study.toml");
+  std::ifstream file(std::string(ABBE_SOURCE_DIR "/examples/three_axis/interferometer.study.toml"));
   std::stringstream content;
   content << file.rdbuf();
   std::string text = content.str();
@@ -66,7 +66,7 @@ TEST_F(InstrumentStudies, WhatLasersLeaveOpenIsSaidWithItsSize) {
   ASSERT_NE(from, std::string::npos);
   text.erase(from, to - from);
   const std::string relative = "machine = \"../";
-  text.replace(text.find(relative), relative.size(), "machine = \"" + std::string(ABBE_SOURCE_DIR) + "/examples/");
+  text.replace(text.find(relative), relative.size(), "machine = \"" + std::string(ABBE_SOURCE_DIR "/examples/"));
   folder.write("open.study.toml", text);
   const CommandResult result = abbe({"run", "open.study.toml", "-o", "out", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -105,7 +105,7 @@ TEST_F(InstrumentStudies, ACircleOutOfReachIsSaid) {
 }
 
 TEST_F(InstrumentStudies, PosesOfAFileAreVisitedInItsOrderWhateverTheirItems) {
-  const std::string machine = std::string(ABBE_SOURCE_DIR) + "/examples/machines/trunnion-mill.machine.toml";
+  const std::string machine = std::string(ABBE_SOURCE_DIR "/examples/machines/trunnion-mill.machine.toml");
   const auto study = [&](const char* more) {
     folder.write("s.study.toml",
                  "name = \"s\"\nmachine = \"" + machine +

@@ -38,7 +38,7 @@ class InstrumentStudies : public CommandTest {
   /// Runs examples/EXAMPLE/NAME.study.toml, then the same from its readings, and compares what was identified.
   /// @return summary of the simulated run
   nlohmann::json expect_same_from_files(const std::string& example, const std::string& name) {
-    const std::string path = std::string(ABBE_SOURCE_DIR) + "/examples/" + example;
+    const std::string path = std::string(ABBE_SOURCE_DIR "/examples/") + example;
     const CommandResult first = abbe({"run", path + "/" + name + ".study.toml", "-o", "simulated", "--json"});
     EXPECT_EQ(first.exit_code, 0) << first.err;
     std::ifstream file(path + "/" + name + ".study.toml");
@@ -48,7 +48,7 @@ class InstrumentStudies : public CommandTest {
     const std::string relative = "machine = \"../";
     const std::size_t at = measured.find(relative);
     EXPECT_NE(at, std::string::npos);
-    measured.replace(at, relative.size(), "machine = \"" + std::string(ABBE_SOURCE_DIR) + "/examples/");
+    measured.replace(at, relative.size(), "machine = \"" + std::string(ABBE_SOURCE_DIR "/examples/"));
     folder.write("measured.study.toml", measured);
     const CommandResult second = abbe({"run", "measured.study.toml", "-o", "read", "--json"});
     EXPECT_EQ(second.exit_code, 0) << second.err;

@@ -24,7 +24,7 @@ class Interruption : public CommandTest {
                             const std::function<bool(pid_t)>& is_time) const {
     return run_and_signal(ABBE_COMMAND, arguments, folder.path(), signal, is_time);
   }
-  std::string example(const std::string& name) const { return std::string(ABBE_SOURCE_DIR) + "/examples/" + name; }
+  std::string example(const std::string& name) const { return std::string(ABBE_SOURCE_DIR "/examples/") + name; }
 
   std::vector<std::string> plan(const std::string& distance_mm) const {
     return {"scan",

@@ -14,7 +14,7 @@ using testing::Not;
 class ErrorsNotIdentified : public InstrumentStudies {
  protected:
   static std::string example(const std::string& name) {
-    return std::string(ABBE_SOURCE_DIR) + "/examples/" + name + ".study.toml";
+    return std::string(ABBE_SOURCE_DIR "/examples/") + name + ".study.toml";
   }
   static std::string text_of(const std::filesystem::path& path) {
     std::ifstream file(path);
@@ -72,7 +72,7 @@ TEST_F(ErrorsNotIdentified, ResidualsThatTheStatedNoiseDoesNotExplainAreWarnedOf
     ASSERT_NE(at, std::string::npos) << from;
     study.replace(at, from.size(), to);
   };
-  replace("machine = \"../", "machine = \"" + std::string(ABBE_SOURCE_DIR) + "/examples/");
+  replace("machine = \"../", "machine = \"" + std::string(ABBE_SOURCE_DIR "/examples/"));
   folder.write("right.study.toml", study);
   EXPECT_THAT(abbe({"run", "right.study.toml", "-o", "right"}).out, Not(HasSubstr("the residuals are")));
   replace("indication_um = 0.3, flatness_um = 0.3", "indication_um = 0.1, flatness_um = 0.1");
@@ -87,7 +87,7 @@ TEST_F(ErrorsNotIdentified, ADialAlongItsFaceIsNamedWithThePose) {
     ASSERT_NE(at, std::string::npos) << from;
     study.replace(at, from.size(), to);
   };
-  const std::string examples = std::string(ABBE_SOURCE_DIR) + "/examples/";
+  const std::string examples = std::string(ABBE_SOURCE_DIR "/examples/");
   replace("machine = \"../", "machine = \"" + examples);
   replace("errors = \"x-axis", "errors = \"" + examples + "three_axis/x-axis");
   replace("direction = [0, 0, 1]", "direction = [1, 0, 0]");

@@ -14,12 +14,12 @@ using testing::HasSubstr;
 using Plans = CommandTest;
 
 std::string trunnion_study() {
-  std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/examples/trunnion/trunnion.study.toml");
+  std::ifstream file(std::string(ABBE_SOURCE_DIR "/examples/trunnion/trunnion.study.toml"));
   std::stringstream text;
   text << file.rdbuf();
   std::string study = text.str();
   const std::string relative = "\"../machines";
-  study.replace(study.find(relative), relative.size(), "\"" + std::string(ABBE_SOURCE_DIR) + "/examples/machines");
+  study.replace(study.find(relative), relative.size(), "\"" + std::string(ABBE_SOURCE_DIR "/examples/machines"));
   // Fewer candidates than in the example: the sanitizers are slow.
   study.replace(study.find("poses = 1500"), 12, "poses = 400");
   study.replace(study.find("readings = 240"), 14, "readings = 100");
@@ -61,7 +61,7 @@ TEST_F(Plans, ListReadingsAndCompareThemWithGrids) {
 }
 
 TEST_F(Plans, AreReadAgainAsPosesOfASimulation) {
-  const std::string loop = std::string(ABBE_SOURCE_DIR) + "/examples/closed_loop/";
+  const std::string loop = std::string(ABBE_SOURCE_DIR "/examples/closed_loop/");
   const CommandResult simulated = abbe({"simulate", loop + "closed_loop.study.toml", "-o", "readings"});
   ASSERT_EQ(simulated.exit_code, done) << simulated.err;
   // Pose and reflector of every reading are those of the plan, in its order.
@@ -121,12 +121,12 @@ TEST_F(Plans, WhatOneReflectorCannotSeeAnotherWouldShow) {
 }
 
 TEST_F(Plans, WhatABallBarDoesNotSeeIsSaidInTheTerminalTheSummaryAndTheReport) {
-  std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/examples/trunnion/ball-bar.study.toml");
+  std::ifstream file(std::string(ABBE_SOURCE_DIR "/examples/trunnion/ball-bar.study.toml"));
   std::stringstream text;
   text << file.rdbuf();
   std::string study = text.str();
   const std::string relative = "\"../machines";
-  study.replace(study.find(relative), relative.size(), "\"" + std::string(ABBE_SOURCE_DIR) + "/examples/machines");
+  study.replace(study.find(relative), relative.size(), "\"" + std::string(ABBE_SOURCE_DIR "/examples/machines"));
   // With priors as wide as nobody would state them, what they alone determine is larger than errors of a usual machine.
   study.erase(study.find("[[identify.prior]]"));
   study +=

@@ -43,7 +43,7 @@ TEST_F(PolygonStudies, APrismWithOneAutocollimatorAndOneSensorStepByStep) {
 TEST_F(PolygonStudies, APrismAndAnRTestOnATrunnionMill) { expect_found("trunnion", "polygon-and-r-test", 0.03); }
 
 TEST_F(PolygonStudies, APositionBetweenTheFacesIsSaid) {
-  std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/examples/rotary_table/polygon.study.toml");
+  std::ifstream file(std::string(ABBE_SOURCE_DIR "/examples/rotary_table/polygon.study.toml"));
   std::stringstream text;
   text << file.rdbuf();
   std::string study = text.str();

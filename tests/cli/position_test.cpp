@@ -10,8 +10,8 @@ namespace {
 
 class PositionTest : public CommandTest {
  protected:
-  const std::string engraver = std::string(ABBE_SOURCE_DIR) + "/examples/laser_engraver/";
-  const std::string golden = std::string(ABBE_SOURCE_DIR) + "/tests/golden/yin/";
+  const std::string engraver = std::string(ABBE_SOURCE_DIR "/examples/laser_engraver/");
+  const std::string golden = std::string(ABBE_SOURCE_DIR "/tests/golden/yin/");
 
   nlohmann::json reference() const {
     std::ifstream file(golden + "positioning.json");
@@ -100,7 +100,7 @@ TEST_F(PositionTest, ThePlacementIsWhatAPathTakes) {
   ASSERT_EQ(found.exit_code, done) << found.err;
   EXPECT_NE(found.out.find("p_workpiece = D p_table (BCS to WCS)"), std::string::npos);
   const CommandResult path =
-      abbe({"path", std::string(ABBE_SOURCE_DIR) + "/examples/machines/yin-engraver-u.machine.toml",
+      abbe({"path", std::string(ABBE_SOURCE_DIR "/examples/machines/yin-engraver-u.machine.toml"),
             engraver + "table-a4.csv", "--placement", placement});
   EXPECT_EQ(path.exit_code, done) << path.err;
 }

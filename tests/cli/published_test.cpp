@@ -45,7 +45,7 @@ TEST_F(Published, ScannerAgreesWithTheReferenceAndTheCylinderBeforeCalibrationWi
 }
 
 TEST_F(Published, APlanForTheTrunnionMillNeedsLessThanHalfTheReadingsOfAGrid) {
-  const std::string study = std::string(ABBE_SOURCE_DIR) + "/examples/trunnion/trunnion.study.toml";
+  const std::string study = std::string(ABBE_SOURCE_DIR "/examples/trunnion/trunnion.study.toml");
   const CommandResult planned = abbe({"plan", study, "--json"});
   ASSERT_EQ(planned.exit_code, ExitCode::done) << planned.err;
   const nlohmann::json json = nlohmann::json::parse(planned.out);

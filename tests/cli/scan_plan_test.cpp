@@ -15,7 +15,7 @@ namespace {
 
 class ScanPlanCommand : public CommandTest {
  protected:
-  const std::string examples = std::string(ABBE_SOURCE_DIR) + "/examples/";
+  const std::string examples = std::string(ABBE_SOURCE_DIR "/examples/");
   const std::string machine = examples + "machines/liu-scanner.machine.toml";
   const std::string pyramid = examples + "cradle_scanner/pyramid.stl";
 };

@@ -11,7 +11,7 @@ namespace {
 
 class ScanPoints : public CommandTest {
  protected:
-  const std::string examples = std::string(ABBE_SOURCE_DIR) + "/examples/";
+  const std::string examples = std::string(ABBE_SOURCE_DIR "/examples/");
   const std::string machine = examples + "machines/liu-scanner.machine.toml";
   const std::string readings = examples + "cradle_scanner/readings.csv";
   const std::string errors = examples + "cradle_scanner/stages.errors.toml";

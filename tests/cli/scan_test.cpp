@@ -23,7 +23,7 @@ class Scan : public CommandTest {
     EXPECT_EQ(result.exit_code, exit_code) << result.err;
     return nlohmann::json::parse(result.out, nullptr, false);
   }
-  std::string file(const std::string& name) const { return std::string(ABBE_SOURCE_DIR) + "/examples/scan/" + name; }
+  std::string file(const std::string& name) const { return std::string(ABBE_SOURCE_DIR "/examples/scan/") + name; }
 };
 
 /// Pose in which examples/scan/make_scan.py lays the bracket.

@@ -7,7 +7,7 @@
 namespace abbe {
 
 inline Machine liu_scanner() {
-  return read_machine(std::string(ABBE_SOURCE_DIR) + "/examples/machines/liu-scanner.machine.toml");
+  return read_machine(std::string(ABBE_SOURCE_DIR "/examples/machines/liu-scanner.machine.toml"));
 }
 
 }  // namespace abbe

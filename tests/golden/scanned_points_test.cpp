@@ -14,7 +14,7 @@
 namespace abbe {
 namespace {
 
-std::string readings() { return read_text_file(std::string(ABBE_SOURCE_DIR) + "/tests/golden/liu/points.csv"); }
+std::string readings() { return read_text_file(std::string(ABBE_SOURCE_DIR "/tests/golden/liu/points.csv")); }
 
 /// Axis average lines of Table 3: A through (dx, dy, dz) along (1, tan d1, tan d2), C along (tan d1, 1, tan d2).
 ErrorSet table_3(const Machine& machine, double shift_unit) {

@@ -22,7 +22,7 @@ namespace abbe {
 namespace {
 
 nlohmann::json published() {
-  std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/tests/golden/liu/calibration.json");
+  std::ifstream file(std::string(ABBE_SOURCE_DIR "/tests/golden/liu/calibration.json"));
   return nlohmann::json::parse(file);
 }
 
@@ -32,7 +32,7 @@ Eigen::Vector3d vector_of(const nlohmann::json& value) {
 
 /// Columns theta_deg, x_mm, y_mm, z_mm, h_mm.
 InstrumentReadings readings_of(const Machine& machine, const std::string& name, const std::string& stage) {
-  std::ifstream file(std::string(ABBE_SOURCE_DIR) + "/tests/golden/liu/" + name);
+  std::ifstream file(std::string(ABBE_SOURCE_DIR "/tests/golden/liu/") + name);
   std::string line;
   std::getline(file, line);
   InstrumentReadings readings;

@@ -224,8 +224,7 @@ class FusedCampaign {
 };
 
 TEST(Fusion, OfTrackerBallBarAndLaserBeatsEachAloneAndKnowsHowGoodItIs) {
-  const Machine machine =
-      read_machine(std::string(ABBE_SOURCE_DIR) + "/examples/machines/three-axis-mill.machine.toml");
+  const Machine machine = read_machine(std::string(ABBE_SOURCE_DIR "/examples/machines/three-axis-mill.machine.toml"));
   const std::array<std::vector<std::size_t>, kChoices> choices = {{{0}, {1}, {2}, {0, 1, 2}}};
   std::array<double, kChoices> error{}, uncertainty{};
   std::array<std::size_t, kChoices> within{}, poses{}, coordinates_within{}, coordinates{};

@@ -18,7 +18,7 @@ namespace {
 using Row = test::ReferenceRow;
 
 std::vector<Row> read_rows(const std::string& name) {
-  return test::reference_rows(std::string(ABBE_GOLDEN) + "/" + name);
+  return test::reference_rows(std::string(ABBE_GOLDEN "/") + name);
 }
 
 double value(const Row& row, const std::string& column) { return std::stod(row.at(column)); }
@@ -111,7 +111,7 @@ TEST(PublishedErrors, GrindingMachineGivesTheReferencePosesInEveryConventionAndU
 }
 
 TEST(PublishedErrors, TrackerPointsOfTheTableMachineAreReproduced) {
-  std::ifstream file(std::string(ABBE_GOLDEN) + "/aguado/truth.json");
+  std::ifstream file(std::string(ABBE_GOLDEN "/aguado/truth.json"));
   const nlohmann::json truth = nlohmann::json::parse(file);
   const auto vector3 = [](const nlohmann::json& v) {
     return Eigen::Vector3d(v[0].get<double>(), v[1].get<double>(), v[2].get<double>());

@@ -25,7 +25,7 @@ struct Dataset {
 };
 
 Dataset read(const std::string& name) {
-  std::ifstream file(std::string(ABBE_GOLDEN) + "/nist_strd/" + name + ".dat");
+  std::ifstream file(std::string(ABBE_GOLDEN "/nist_strd/") + name + ".dat");
   EXPECT_TRUE(file.good()) << name;
   Dataset set;
   std::string line;

@@ -19,7 +19,7 @@ struct WangGrids {
 };
 
 inline std::vector<std::vector<double>> golden_rows(const std::string& name) {
-  std::ifstream file(std::string(ABBE_GOLDEN) + "/wang/" + name);
+  std::ifstream file(std::string(ABBE_GOLDEN "/wang/") + name);
   if (!file) throw std::runtime_error("missing " + name);
   std::vector<std::vector<double>> rows;
   std::string line, field;

@@ -20,7 +20,7 @@ struct AguadoCase {
   nlohmann::json json;
 };
 
-inline std::string golden_aguado(const std::string& file) { return std::string(ABBE_GOLDEN) + "/aguado/" + file; }
+inline std::string golden_aguado(const std::string& file) { return ABBE_GOLDEN "/aguado/" + file; }
 
 inline Eigen::Vector3d vector_of(const nlohmann::json& json, std::size_t first = 0) {
   return {json[first].get<double>(), json[first + 1].get<double>(), json[first + 2].get<double>()};

@@ -19,7 +19,7 @@ namespace {
 using Row = test::ReferenceRow;
 
 std::vector<Row> read_rows(const std::string& name) {
-  return test::reference_rows(std::string(ABBE_GOLDEN) + "/" + name);
+  return test::reference_rows(std::string(ABBE_GOLDEN "/") + name);
 }
 
 double value(const Row& row, const std::string& column) { return std::stod(row.at(column)); }

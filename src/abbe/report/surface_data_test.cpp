@@ -68,23 +68,23 @@ TEST(SurfaceData, HoldsPlacesAndDeviationsToTheStatedSteps) {
   deviation.readings.normal.resize(3, 2);
   deviation.readings.normal << 1, 0, 0, 0.6, 0, -0.8;
   deviation.readings.deviation_mm = {0.0333, -1e9};
-  const nlohmann::json json = surface_data(part, &deviation);
-  const double step = json.at("step_mm");
+  const nlohmann::json data = surface_data(part, &deviation);
+  const double step = data.at("step_mm");
   EXPECT_NEAR(step, 30.0 / 65535, 1e-12);
-  const std::vector<int> vertices = words_of(json.at("vertices"), false);
+  const std::vector<int> vertices = words_of(data.at("vertices"), false);
   ASSERT_EQ(vertices.size(), 24U);
   for (std::size_t i = 0; i < 24; ++i) {
-    const double at = json.at("lower_mm").at(i % 3).get<double>() + step * vertices[i];
+    const double at = data.at("lower_mm").at(i % 3).get<double>() + step * vertices[i];
     EXPECT_NEAR(at, part.mesh.vertices(static_cast<Eigen::Index>(i % 3), static_cast<Eigen::Index>(i / 3)), step / 2);
   }
-  const std::vector<int> corners = words_of(json.at("triangles"), false);
+  const std::vector<int> corners = words_of(data.at("triangles"), false);
   ASSERT_EQ(corners.size(), 36U);
   EXPECT_EQ(corners[4], static_cast<int>(part.mesh.triangles(1, 1)));
-  const double value_step = json.at("value_step_um");
+  const double value_step = data.at("value_step_um");
   EXPECT_DOUBLE_EQ(value_step, 0.05);
-  const std::vector<int> values = words_of(json.at("values"), true);
+  const std::vector<int> values = words_of(data.at("values"), true);
   EXPECT_EQ(values, (std::vector<int>{200, -400, 0, kNoDeviation, kNoDeviation, kNoDeviation, 32767, -2000}));
-  const nlohmann::json& points = json.at("points");
+  const nlohmann::json& points = data.at("points");
   EXPECT_EQ(points.at("drawn"), 2);
   EXPECT_EQ(words_of(points.at("values"), true), (std::vector<int>{666, -32767}));
   EXPECT_EQ(bytes_of(points.at("normal")), (std::vector<std::uint8_t>{127, 0, 0, 0, 76, 256 - 102}));
@@ -94,9 +94,9 @@ TEST(SurfaceData, ManyVerticesGetLongerNumbersAndWrongLengthsAreRefused) {
   SurfacePicture part;
   part.mesh = sphere_for_test({0, 0, 0}, 5, 190);
   ASSERT_GT(part.mesh.vertices.cols(), 65536);
-  const nlohmann::json json = surface_data(part, nullptr);
-  EXPECT_EQ(bytes_of(json.at("triangles")).size(), static_cast<std::size_t>(12 * part.mesh.size()));
-  EXPECT_FALSE(json.contains("points"));
+  const nlohmann::json data = surface_data(part, nullptr);
+  EXPECT_EQ(bytes_of(data.at("triangles")).size(), static_cast<std::size_t>(12 * part.mesh.size()));
+  EXPECT_FALSE(data.contains("points"));
   part.coverage = {1, 2};
   EXPECT_THROW(surface_data(part, nullptr), std::invalid_argument);
   DeviationPicture deviation;
