@@ -6,6 +6,8 @@ target_compile_options(abbe_flags INTERFACE
   $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>
   # In a batch of sources (AbbeUnits.cmake) none of them is the main file, to which this warning leaves unnamed namespaces.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ABBE_UNITY}>>:-Wno-subobject-linkage>
+  # Nor does a local name hide one of another source; GCC and the units of single sources keep the warning.
+  $<$<AND:$<CXX_COMPILER_ID:Clang>,$<BOOL:${ABBE_UNITY}>>:-Wno-shadow>
   # False alarms of GCC 12 on strings that are put together (its bugs 105329 and 105651).
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds;-Wno-restrict>
   # The same bits on every machine and at every optimisation level.
