@@ -4,7 +4,8 @@
 #   make build     set-up, release build: build/release/bin/abbe
 #   make demo      set-up, build, run the main study of examples/, say where the report is
 #   make closed-loop  measure, identify, compensate, run in LinuxCNC, verify: examples/closed_loop
-#   make test      set-up and every check that continuous integration runs
+#   make test      set-up, all tests, the most important ones under the sanitizers too, short fuzzing
+#   make sanitize  all quick tests under the sanitizers; continuous integration runs it after make test
 #   make unit      build and run the tests of single folders
 #   make quick     the same with the tests of the command and of the pages
 #   make lint      formatting, structure and static analysis
@@ -18,12 +19,14 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo closed-loop test unit quick lint format bench fuzz coverage install install-linuxcnc clean
+.PHONY: build demo closed-loop test sanitize unit quick lint format bench fuzz coverage install install-linuxcnc clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 FUZZ_SECONDS ?= 60
 TEST_FUZZ_SECONDS ?= 10
+# asan-rest: without those that make test has just run.
+SANITIZE_TESTS ?= asan
 DEMO_STUDY ?= examples/aguado/aguado.study.toml
 DEMO_RESULTS ?= build/demo
 LOOP_RESULTS ?= build/closed-loop
@@ -33,9 +36,11 @@ export CTEST_OUTPUT_ON_FAILURE := 1
 # What is said at the start: minutes that the whole takes on two cores when nothing is built and nothing is in ccache.
 BUILD_MINUTES := 10
 LOOP_MINUTES := 3
-TEST_MINUTES := 75
+TEST_MINUTES := 30
+SANITIZE_MINUTES := 30
 QUICK_MINUTES := 30
 
+comma := ,
 say = @printf '\n== %s (%s)\n' "$(1)" "$$(date -u +%H:%M:%S)"
 
 build:
@@ -63,13 +68,18 @@ test:
 	$(call say,2 of 6: development build with warnings as errors)
 	@.ci/build dev -DABBE_WERROR=ON
 	$(call say,3 of 6: build with the address and undefined-behaviour sanitizers)
-	@.ci/build asan -DABBE_WERROR=ON
-	$(call say,4 of 6: quick tests under the sanitizers)
-	@ctest --preset asan -j $(JOBS)
+	@.ci/build --target abbe_parts asan -DABBE_WERROR=ON
+	$(call say,4 of 6: tests of readers$(comma) geometry$(comma) compensation and runtime under the sanitizers)
+	@ctest --preset asan-parts -j $(JOBS)
 	$(call say,5 of 6: fuzzing for $(TEST_FUZZ_SECONDS) s per reader)
 	@ABBE_FUZZ_SECONDS=$(TEST_FUZZ_SECONDS) ctest --preset fuzz -j $(JOBS)
 	$(call say,6 of 6: all tests)
 	@ctest --preset dev -j $(JOBS)
+
+sanitize:
+	@.ci/set-up test
+	@.ci/build --expect $(SANITIZE_MINUTES) "make $@ builds all with the sanitizers and runs the quick tests" asan -DABBE_WERROR=ON
+	@ctest --preset $(SANITIZE_TESTS) -j $(JOBS)
 
 unit:
 	@.ci/set-up test

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "abbe/errors/error_set.h"
@@ -15,6 +14,7 @@
 #include "check_geometry.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -101,7 +101,7 @@ void print_machine(const Machine& machine) {
   for (const std::string& remark : find_remarks(machine)) fmt::print("note: {}\n", remark);
 }
 
-void refuse_if_given(const CLI::Option* option, const char* why) {
+void refuse_if_given(const Option* option, const char* why) {
   if (option->count() > 0) throw InputError({.field = option->get_name()}, why, "no such option");
 }
 
@@ -114,7 +114,7 @@ void add_check_command(CommandLine& line) {
     GeometryCheckOptions geometry;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = line.add(
+  Subcommand* command = line.add(
       "check", "Validate a machine file, a frozen compensation, a mesh or a point cloud and show what is in it",
       "  abbe check examples/machines/trunnion-mill.machine.toml\n"
       "  abbe check examples/machines/aguado.machine.toml --errors examples/aguado/results/aguado/errors.toml\n"
@@ -127,16 +127,16 @@ void add_check_command(CommandLine& line) {
                    "Machine file (*.machine.toml), frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or "
                    "point cloud (.xyz .asc .pts .csv .ply)")
       ->required();
-  const CLI::Option* errors_option =
+  const Option* errors_option =
       command->add_option("--errors", options->errors, "Errors file of this machine to validate too (*.errors.toml)");
   command->add_flag("--json", options->json, "Print JSON for programs");
-  const CLI::Option* unit =
+  const Option* unit =
       command->add_option("--unit", options->geometry.unit,
                           "Unit of a mesh or point cloud whose file states none: mm (assumed if not given), m or inch");
-  const CLI::Option* chord = command
-                                 ->add_option("--chord-mm", options->geometry.chord_mm,
-                                              "STEP: largest distance of the triangles from the exact faces")
-                                 ->capture_default_str();
+  const Option* chord = command
+                            ->add_option("--chord-mm", options->geometry.chord_mm,
+                                         "STEP: largest distance of the triangles from the exact faces")
+                            ->capture_default_str();
   command->callback([&line, options, errors_option, unit, chord] {
     line.run = [options, errors_option, unit, chord]() -> int {
       if (is_geometry_file(options->file)) {
@@ -146,7 +146,7 @@ void add_check_command(CommandLine& line) {
         return check_geometry(options->geometry);
       }
       if (is_frozen_file(options->file)) {
-        for (const CLI::Option* const option : {errors_option, unit, chord}) {
+        for (const Option* const option : {errors_option, unit, chord}) {
           refuse_if_given(option, "a frozen compensation has all of it in it");
         }
         return check_frozen(options->file, options->json);

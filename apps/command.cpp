@@ -3,21 +3,21 @@
 namespace abbe {
 
 CommandLine::CommandLine()
-    : app("Geometric accuracy of multi-axis machines: model, identify, verify, report.", "abbe") {
-  app.footer(
+    : program("Geometric accuracy of multi-axis machines: model, identify, verify, report.", "abbe") {
+  program.footer(
       "Examples:\n"
       "  abbe run examples/aguado/aguado.study.toml     the whole job, from readings to the report\n"
       "  abbe check examples/machines/trunnion-mill.machine.toml\n"
       "  abbe reproduce wang                            a published study, recomputed\n\n"
       "Exit codes: 0 done, 1 the computation says no, 2 bad input, 3 internal error;\n"
       "interrupted: 130 by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.");
-  app.set_version_flag("--version", "abbe " ABBE_VERSION);
-  app.require_subcommand(1);
-  app.set_help_all_flag("--help-all", "Help of all subcommands");
+  program.set_version_flag("--version", "abbe " ABBE_VERSION);
+  program.require_subcommand(1);
+  program.set_help_all_flag("--help-all", "Help of all subcommands");
 }
 
-CLI::App* CommandLine::add(const std::string& name, const std::string& description, const std::string& example) {
-  CLI::App* command = app.add_subcommand(name, description);
+Subcommand* CommandLine::add(const std::string& name, const std::string& description, const std::string& example) {
+  Subcommand* command = program.add_subcommand(name, description);
   command->footer("Example:\n" + example);
   return command;
 }

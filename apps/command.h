@@ -1,19 +1,20 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+
+#include "options.h"
 
 namespace abbe {
 
 /// Subcommands register themselves and leave their work in `run`, which main() calls once everything is parsed.
 struct CommandLine {
-  CLI::App app;
+  Program program;
   std::function<int()> run;  ///< returns an ExitCode
 
   CommandLine();
   /// @param example  shown at the end of --help
-  CLI::App* add(const std::string& name, const std::string& description, const std::string& example);
+  Subcommand* add(const std::string& name, const std::string& description, const std::string& example);
 };
 
 void add_new_command(CommandLine& line);

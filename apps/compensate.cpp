@@ -1,13 +1,12 @@
 #include "compensate/compensate.h"
 
-#include <CLI/CLI.hpp>
-
 #include "command.h"
+#include "options.h"
 
 namespace abbe {
 
 void add_compensate_command(CommandLine& line) {
-  CLI::App* command =
+  Subcommand* command =
       line.add("compensate", "Corrections of known errors, for controls",
                "  abbe compensate gcode examples/compensate/cone.ngc --machine "
                "examples/machines/trunnion-mill.machine.toml --errors "

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -17,6 +16,7 @@
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
+#include "options.h"
 #include "scan/deviation_colours.h"
 #include "scan/scan_files.h"
 #include "scan/surface_picture.h"
@@ -235,7 +235,7 @@ int run_deviate(DeviateCommand command) {
 
 void add_deviate_command(CommandLine& line) {
   auto command = std::make_shared<DeviateCommand>();
-  CLI::App* app = line.add(
+  Subcommand* app = line.add(
       "deviate", "Signed deviation of a scan from its part: statistics, coloured points, report",
       "  abbe deviate examples/scan/pin-scan.csv examples/scan/pin.stl --transform examples/scan/pin-transform.csv\n"
       "  abbe deviate examples/scan/bracket-scan.csv examples/scan/bracket.stl --transform "

@@ -1,13 +1,12 @@
 #include "evaluate/evaluate.h"
 
-#include <CLI/CLI.hpp>
-
 #include "command.h"
+#include "options.h"
 
 namespace abbe {
 
 void add_evaluate_command(CommandLine& line) {
-  CLI::App* command =
+  Subcommand* command =
       line.add("evaluate", "Figures of ISO 230 from readings: table, plot, report, tolerances",
                "  abbe evaluate positioning examples/evaluate/linear.csv\n"
                "  abbe evaluate positioning examples/evaluate/linear.csv --tolerance A_um=10 -o results/x\n"

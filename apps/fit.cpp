@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -18,6 +17,7 @@
 #include "exit_code.h"
 #include "fit/fit_report.h"
 #include "fit/fit_surface.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -225,7 +225,7 @@ int run_fit(const FitCommand& command) {
 
 void add_fit_command(CommandLine& line) {
   auto command = std::make_shared<FitCommand>();
-  CLI::App* app = line.add(
+  Subcommand* app = line.add(
       "fit", "Lines, planes, circles, spheres, cylinders and cones fitted to points",
       "  abbe fit examples/fit/bore.csv --shape cylinder --method minimum-zone --u-point-um 0.5\n"
       "  abbe fit examples/fit/bore.csv --shape cylinder --method inscribed --tolerance form_um=20\n"
@@ -240,12 +240,12 @@ void add_fit_command(CommandLine& line) {
   app->add_option("--shape", command->shape,
                   "line2, circle2 (in x, y), line, plane, circle, sphere, cylinder, cone, coaxial-circles")
       ->required()
-      ->check(CLI::IsMember(known));
+      ->check(one_of(known));
   app->add_option("--method", command->method,
                   "least-squares (default), minimum-zone, circumscribed, inscribed, robust (up to 30 % wrong points)")
-      ->check(CLI::IsMember(names(methods())));
+      ->check(one_of(names(methods())));
   app->add_option("--loss", command->loss, "Of the robust method: tukey (default), huber, welsch")
-      ->check(CLI::IsMember({"tukey", "huber", "welsch"}));
+      ->check(one_of({"tukey", "huber", "welsch"}));
   app->add_option("--fixed-radius-mm", command->radii, "Radius to hold; of coaxial circles one per file: 12,30");
   app->add_option("--fixed-direction", command->direction, "Direction to hold, of any length: 0,0,1");
   add_number(app, "--fixed-half-angle-deg", Quantity::angle, "deg", {0.001, 89.9}, command->half_angle,
@@ -253,7 +253,7 @@ void add_fit_command(CommandLine& line) {
   add_number(app, "--u-point-um", Quantity::length, "um", {0, 1e6}, command->sigma,
              "Standard uncertainty of a point across the shape; default: from the residuals");
   app->add_option("--unit", command->unit, "Unit of files that state none: mm (default), m, inch")
-      ->check(CLI::IsMember({"mm", "m", "inch"}));
+      ->check(one_of({"mm", "m", "inch"}));
   app->add_option("--residuals", command->residuals, "CSV file to write: the points with their deviation_mm");
   app->add_option("-o,--output", command->options.output,
                   "Results folder to write: evaluation.json, plot.svg, report.html; default: print only");
@@ -262,7 +262,7 @@ void add_fit_command(CommandLine& line) {
          "Largest permitted value of a figure, such as form_um=10; may be given again. Exit code 1 if exceeded")
       ->allow_extra_args(false);
   app->add_option("--threads", command->threads, "0: all (default); does not change the result")
-      ->check(CLI::Range(0, 256));
+      ->check(in_range(0, 256));
   app->add_flag("--json", command->options.json, "Print JSON for programs");
   app->callback([&line, command] { line.run = [command] { return run_fit(*command); }; });
 }

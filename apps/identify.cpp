@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/errors_file.h"
@@ -10,6 +9,7 @@
 #include "abbe/identify/prediction.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 #include "progress.h"
 #include "study/advice.h"
 #include "study/job.h"
@@ -25,9 +25,9 @@ void add_identify_command(CommandLine& line) {
     bool json = false, parameters = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = line.add("identify", "Identify the errors of a study's machine, without maps and report",
-                               "  abbe identify examples/aguado/aguado.study.toml -o aguado.errors.toml\n"
-                               "  abbe identify examples/aguado/aguado.study.toml --parameters");
+  Subcommand* command = line.add("identify", "Identify the errors of a study's machine, without maps and report",
+                                 "  abbe identify examples/aguado/aguado.study.toml -o aguado.errors.toml\n"
+                                 "  abbe identify examples/aguado/aguado.study.toml --parameters");
   command->add_option("study", options->study, "Study file (*.study.toml) with an [identify] table")->required();
   command->add_option("-o,--output", options->output, "Errors file to write (*.errors.toml), covariance beside it");
   command->add_flag("--parameters", options->parameters, "List every parameter with its standard uncertainty");

@@ -1,14 +1,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
 #include <system_error>
-#include <vector>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/interruption.h"
@@ -16,6 +14,7 @@
 #include "command.h"
 #include "compensate/compensate.h"
 #include "exit_code.h"
+#include "options.h"
 #include "scan/scan.h"
 
 namespace abbe {
@@ -60,19 +59,21 @@ int run_command(int argc, char** argv) {
   add_scan_command(line);
   if (argc > 1 && argv[1][0] != '-') {
     const std::string name = argv[1];
-    const std::vector<CLI::App*> known =
-        line.app.get_subcommands([&](const CLI::App* subcommand) { return subcommand->get_name() == name; });
-    if (known.empty()) {
+    if (!line.program.has_subcommand(name)) {
       fmt::print(stderr, "abbe: there is no subcommand '{}'; abbe --help lists them\n", name);
       return kBadInput;
     }
   }
   try {
-    line.app.parse(argc, argv);
+    switch (line.program.parse(argc, argv)) {
+      case ParseResult::shown:
+        return printed(kDone);
+      case ParseResult::refused:
+        return printed(kBadInput);
+      case ParseResult::command:
+        break;
+    }
     return printed(line.run ? line.run() : static_cast<int>(kInternalError));
-  } catch (const CLI::ParseError& error) {
-    // Help and version come this way too, with code 0.
-    return printed(line.app.exit(error) == 0 ? kDone : kBadInput);
   } catch (const InputError& error) {
     complain(error.what());
     return kBadInput;

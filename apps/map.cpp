@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -15,6 +14,7 @@
 #include "axis_option.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 #include "progress.h"
 #include "study/job.h"
 #include "study/results.h"
@@ -164,15 +164,15 @@ int run_map(const MapOptions& options) {
 
 void add_map_command(CommandLine& line) {
   auto options = std::make_shared<MapOptions>();
-  CLI::App* command = line.add("map", "Volumetric error over a grid or at given poses, with uncertainty",
-                               "  abbe map examples/machines/aguado.machine.toml "
-                               "examples/aguado/results/aguado/errors.toml --grid C_deg=0:315:8 -o "
-                               "map.csv -o map.vts\n"
-                               "  abbe map examples/machines/aguado.machine.toml readings/truth.errors.toml --minus "
-                               "examples/aguado/results/aguado/errors.toml "
-                               "--fit-datum\n\n"
-                               "The files are those that the examples of run and simulate write.\n"
-                               "Without --grid every axis runs over the range in which its errors are known.");
+  Subcommand* command = line.add("map", "Volumetric error over a grid or at given poses, with uncertainty",
+                                 "  abbe map examples/machines/aguado.machine.toml "
+                                 "examples/aguado/results/aguado/errors.toml --grid C_deg=0:315:8 -o "
+                                 "map.csv -o map.vts\n"
+                                 "  abbe map examples/machines/aguado.machine.toml readings/truth.errors.toml --minus "
+                                 "examples/aguado/results/aguado/errors.toml "
+                                 "--fit-datum\n\n"
+                                 "The files are those that the examples of run and simulate write.\n"
+                                 "Without --grid every axis runs over the range in which its errors are known.");
   command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
   command->add_option("--minus", options->reference,

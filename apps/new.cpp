@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/results_folder.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 
 namespace abbe {
 
@@ -16,7 +15,7 @@ void add_new_command(CommandLine& line) {
     bool force = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command =
+  Subcommand* command =
       line.add("new", "Write a commented machine file from a chain",
                "  abbe new \"w C' A' Y' b X Z t\" -o my_mill.machine.toml\n\n"
                "The chain runs from the workpiece (w) over the bed (b) to the tool (t), axes in ISO 841 letters; "

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
@@ -24,6 +23,7 @@
 #include "axis_option.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 #include "path/path_page.h"
 #include "scan/surface_picture.h"
 
@@ -217,7 +217,7 @@ int run_path(const PathCommand& command) {
 
 void add_path_command(CommandLine& line) {
   auto options = std::make_shared<PathCommand>();
-  CLI::App* command = line.add(
+  Subcommand* command = line.add(
       "path", "Axis commands and NC program for a curve on the workpiece, by the calibrated machine",
       "  abbe path examples/machines/yin-engraver-u.machine.toml examples/laser_engraver/table-a4.csv --placement "
       "examples/laser_engraver/part.placement.toml -o program.ngc -o commands.csv --report path.html\n"
@@ -235,17 +235,17 @@ void add_path_command(CommandLine& line) {
   command->add_option("--start", options->start,
                       "Commands before the path, AXIS_unit=position; repeatable: chooses among branches");
   command->add_option("--feed-mm-per-min", options->feed_mm_per_min, "Feed where the curve has none")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command
       ->add_option("--retract-mm", options->retract_mm,
                    "Retract along the tool before and behind each region; needed if axes are set anew")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command
       ->add_option("--tolerance-um", options->tolerance_um,
                    "Insert poses until the tool stays so near to the lines between the points (0: none)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   command->add_option("--word", options->words, "Word of an axis in the program, AXIS=WORD (C1=C); repeatable");
-  command->add_option("--decimals", options->decimals, "Of mm and degrees in the program")->check(CLI::Range(1, 12));
+  command->add_option("--decimals", options->decimals, "Of mm and degrees in the program")->check(in_range(1, 12));
   command->add_flag("--feed-per-minute", options->feed_per_minute,
                     "Write F in mm/min (G94) instead of inverse time (G93)");
   command->add_option("-o,--output", options->outputs, "File to write: .ngc, .nc, .tap, .mpf or .csv; repeatable");

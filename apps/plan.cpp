@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -11,6 +10,7 @@
 #include "abbe/report/svg_plot.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 #include "progress.h"
 #include "study/planning.h"
 
@@ -222,8 +222,8 @@ void add_plan_command(CommandLine& line) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = line.add("plan", "Choose the readings that determine a machine's errors best",
-                               "  abbe plan examples/trunnion/trunnion.study.toml -o poses.csv --svg curve.svg");
+  Subcommand* command = line.add("plan", "Choose the readings that determine a machine's errors best",
+                                 "  abbe plan examples/trunnion/trunnion.study.toml -o poses.csv --svg curve.svg");
   command->add_option("study", options->study, "Study file (*.study.toml) with tables [plan] and [identify]")
       ->required();
   command->add_option("-o,--output", options->output, "Readings to take, in an order of short travel (*.csv)");

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -15,6 +14,7 @@
 #include "abbe/geometry/registration.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 #include "position/position_json.h"
 #include "progress.h"
 #include "vector_json.h"
@@ -186,7 +186,7 @@ int run_position(const PositionCommand& command) {
 
 void add_position_command(CommandLine& line) {
   auto command = std::make_shared<PositionCommand>();
-  CLI::App* app = line.add(
+  Subcommand* app = line.add(
       "position", "Where a scanner and a workpiece stand in a machine, from scans of targets, a sphere and the part",
       "  abbe position examples/laser_engraver/scanner.positioning.toml\n"
       "  abbe position examples/laser_engraver/scanner.positioning.toml -o part.placement.toml\n\n"
@@ -197,7 +197,7 @@ void add_position_command(CommandLine& line) {
   app->add_option("--maps", command->maps,
                   "Which way the matrix of the placement that is written maps: table-to-workpiece (default) or "
                   "workpiece-to-table")
-      ->check(CLI::IsMember({"table-to-workpiece", "workpiece-to-table"}));
+      ->check(one_of({"table-to-workpiece", "workpiece-to-table"}));
   app->add_flag("--json", command->json, "Print JSON for programs");
   app->callback([&line, command] { line.run = [command] { return run_position(*command); }; });
 }

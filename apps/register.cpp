@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include "command.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
+#include "options.h"
 #include "progress.h"
 #include "scan/registration_page.h"
 #include "scan/registration_words.h"
@@ -103,7 +103,7 @@ int run_register(const RegisterCommand& command) {
 
 void add_register_command(CommandLine& line) {
   auto command = std::make_shared<RegisterCommand>();
-  CLI::App* app = line.add(
+  Subcommand* app = line.add(
       "register", "Lay a scan on its part: pose with uncertainty, from any start",
       "  abbe register examples/scan/bracket-scan.csv examples/scan/bracket.stl -o results/bracket\n"
       "  abbe register examples/scan/bracket-scan.csv examples/scan/bracket.stl --loss tukey --noise-um 5 "
@@ -117,7 +117,7 @@ void add_register_command(CommandLine& line) {
   app->add_option("--loss", command->loss,
                   "welsch, tukey: robust weights with steps to tangent planes; adf (default): Welsch weights with "
                   "second-order steps (adaptive distance function)")
-      ->check(CLI::IsMember({"welsch", "tukey", "adf"}));
+      ->check(one_of({"welsch", "tukey", "adf"}));
   add_number(app, "--noise-um", Quantity::length, "um", {0, 1e6}, command->noise_mm,
              "Standard uncertainty of a point along the normal (default: from the residuals)");
   app->add_option("--seed", command->seed, "Seed of the random choices of the search (default 1)");

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "abbe/formats/input_error.h"
 #include "command.h"
+#include "options.h"
 
 namespace abbe {
 
@@ -17,7 +16,7 @@ void add_reproduce_command(CommandLine& line) {
     ReproduceOptions reproduce;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command =
+  Subcommand* command =
       line.add("reproduce", "Print a paper's figures beside ours, and where its equations are wrong",
                "  abbe reproduce wang\n"
                "  abbe reproduce wang --grids examples/wang/grids\n"
@@ -30,11 +29,11 @@ void add_reproduce_command(CommandLine& line) {
                "  yin     laser engraver measures its linkage and the place of its workpiece (2021)");
   command->add_option("paper", options->paper, "aguado, liu, ma, wang or yin")
       ->required()
-      ->check(CLI::IsMember({"aguado", "liu", "ma", "wang", "yin"}));
+      ->check(one_of({"aguado", "liu", "ma", "wang", "yin"}));
   command->add_option("-o,--output", options->output, "Results folder to write (maps, report); default: print only");
   command->add_option("--grids", options->grids,
                       "wang: decouple the indications of this folder (X.csv, A.csv, ...) instead");
-  command->add_option("--threads", options->reproduce.threads, "Threads (0: all)")->check(CLI::Range(0, 64));
+  command->add_option("--threads", options->reproduce.threads, "Threads (0: all)")->check(in_range(0, 64));
   command->add_flag("--json", options->reproduce.json, "Print JSON for programs");
   command->callback([&line, options] {
     line.run = [options]() -> int {

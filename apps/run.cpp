@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/json_text.h"
@@ -8,6 +7,7 @@
 #include "abbe/formats/study_file.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 #include "progress.h"
 #include "study/advice.h"
 #include "study/job.h"
@@ -23,7 +23,7 @@ void add_run_command(CommandLine& line) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command =
+  Subcommand* command =
       line.add("run", "Do a whole study: simulate or read, identify, verify, map, report",
                "  abbe run examples/aguado/aguado.study.toml\n"
                "  abbe run examples/three_axis/level-and-autocollimator.study.toml -o results/level --json");

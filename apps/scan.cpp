@@ -1,13 +1,12 @@
 #include "scan/scan.h"
 
-#include <CLI/CLI.hpp>
-
 #include "command.h"
+#include "options.h"
 
 namespace abbe {
 
 void add_scan_command(CommandLine& line) {
-  CLI::App* command = line.add(
+  Subcommand* command = line.add(
       "scan", "Scans with a displacement probe on any machine",
       "  abbe scan points examples/machines/liu-scanner.machine.toml examples/cradle_scanner/readings.csv -o p.ply\n"
       "  abbe scan plan examples/cradle_scanner/pyramid.stl --machine examples/machines/liu-scanner.machine.toml -o "

@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/study_file.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 #include "progress.h"
 #include "study/campaign.h"
 #include "study/results.h"
@@ -19,9 +18,10 @@ void add_simulate_command(CommandLine& line) {
     std::string study, output;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = line.add("simulate", "Simulate the readings of a study and write them as measurement files",
-                               "  abbe simulate examples/aguado/aguado.study.toml -o readings\n\n"
-                               "Writes SETUP.csv for every set-up and truth.errors.toml with the errors behind them.");
+  Subcommand* command =
+      line.add("simulate", "Simulate the readings of a study and write them as measurement files",
+               "  abbe simulate examples/aguado/aguado.study.toml -o readings\n\n"
+               "Writes SETUP.csv for every set-up and truth.errors.toml with the errors behind them.");
   command->add_option("study", options->study, "Study file (*.study.toml) with a [simulate]")->required();
   command->add_option("-o,--output", options->output, "Folder to write")->required();
   command->callback([&line, options] {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 
@@ -11,6 +10,7 @@
 #include "abbe/formats/results_folder.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 #include "test_piece/sizes.h"
 
 namespace abbe {
@@ -43,16 +43,16 @@ int write_piece(const TestPieceOptions& options, const char* what, const std::st
   return kDone;
 }
 
-void add_common(CLI::App& piece, TestPieceOptions& options) {
+void add_common(Subcommand& piece, TestPieceOptions& options) {
   piece.add_option("-o,--output", options.output,
                    "CSV to write: points and directions of the tool (default: standard output)");
   piece.add_option("--feed-mm-per-min", options.feed_mm_per_min, "Feed of the middle of the tool's end")
-      ->check(CLI::Range(0.001, 1e6))
+      ->check(in_range(0.001, 1e6))
       ->capture_default_str();
   piece
       .add_option("--chord-um", options.chord_um,
                   "Largest distance of the tool's path from the lines between its points")
-      ->check(CLI::Range(0.001, 1000.0))
+      ->check(in_range(0.001, 1000.0))
       ->capture_default_str();
   piece.add_flag("--force", options.force, "Replace an existing file");
 }
@@ -60,7 +60,7 @@ void add_common(CLI::App& piece, TestPieceOptions& options) {
 }  // namespace
 
 void add_test_piece_command(CommandLine& line) {
-  CLI::App* command = line.add(
+  Subcommand* command = line.add(
       "test-piece", "Tool paths of five-axis test pieces, milled with the flank of the tool",
       "  abbe test-piece cone-frustum -o cone.csv\n"
       "  abbe test-piece s-shape --centre-mm 0 0 30 -o s.csv\n\n"
@@ -68,7 +68,8 @@ void add_test_piece_command(CommandLine& line) {
       "docs/test-pieces.md.");
   command->require_subcommand(1);
   auto options = std::make_shared<TestPieceOptions>();
-  CLI::App* cone = command->add_subcommand("cone-frustum", "Inclined cone frustum (in the manner of ISO 10791-7, M3)");
+  Subcommand* cone =
+      command->add_subcommand("cone-frustum", "Inclined cone frustum (in the manner of ISO 10791-7, M3)");
   add_common(*cone, *options);
   add_cone_frustum_sizes(*cone, options->sizes);
   cone->callback([&line, options] {
@@ -80,7 +81,7 @@ void add_test_piece_command(CommandLine& line) {
                          cone_frustum_of(sizes));
     };
   });
-  CLI::App* s = command->add_subcommand("s-shape", "Wall in the shape of an S (in the manner of ISO 10791-7, M4)");
+  Subcommand* s = command->add_subcommand("s-shape", "Wall in the shape of an S (in the manner of ISO 10791-7, M4)");
   add_common(*s, *options);
   add_s_shape_sizes(*s, options->sizes);
   s->callback([&line, options] {

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "abbe/formats/results_folder.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 #include "verify/verify_job.h"
 #include "verify/verify_page.h"
 #include "verify/verify_text.h"
@@ -50,9 +50,9 @@ int run_verify(const VerifyOptions& options) {
   return met ? kDone : kNegative;
 }
 
-CLI::App* add_piece(CLI::App& command, const char* name, const char* description, const char* example,
-                    VerifyPiece& piece) {
-  CLI::App* app = command.add_subcommand(name, description);
+Subcommand* add_piece(Subcommand& command, const char* name, const char* description, const char* example,
+                      VerifyPiece& piece) {
+  Subcommand* app = command.add_subcommand(name, description);
   app->fallthrough();
   app->add_option("--before", piece.before, "Trace of the program as it was (*.csv)")->required();
   app->add_option("--after", piece.after, "Trace with the compensation (*.csv)")->required();
@@ -73,7 +73,7 @@ void add_verify_command(CommandLine& line) {
   };
   auto asked = std::make_shared<Pieces>();
   VerifyOptions& options = asked->options;
-  CLI::App* command = line.add(
+  Subcommand* command = line.add(
       "verify", "What a compensation leaves: at unseen poses and on test pieces, against the simulated truth",
       "  abbe verify examples/aguado/results/aguado\n"
       "  abbe verify --machine examples/machines/trunnion-mill.machine.toml --errors "
@@ -89,33 +89,34 @@ void add_verify_command(CommandLine& line) {
   command->add_option("--errors", options.errors, "Identified errors (default: errors.toml of the results)");
   command->add_option("--truth", options.truth, "True errors (default: truth.errors.toml of the results)");
   command->add_option("--poses", options.poses, "Number of random poses")
-      ->check(CLI::Range(10, 10000))
+      ->check(in_range(10, 10000))
       ->capture_default_str();
   command->add_option("--seed", options.seed, "Of the random poses")->capture_default_str();
   command
       ->add_option("--range", options.ranges,
                    "AXIS_unit=from:to or AXIS_unit=position; repeatable (default: where the errors are known)")
       ->allow_extra_args(false);
-  CLI::Option* const reduction =
+  Option* const reduction =
       command->add_option("--least-reduction", asked->reduction,
                           "Wanted: mean volumetric error so many times smaller; exit code 1 if it is not");
-  CLI::Option* const ratio =
+  Option* const ratio =
       command->add_option("--largest-ratio", asked->ratio,
                           "Wanted: volumetric error (root mean square) at most so many times its predicted standard "
                           "uncertainty; exit code 1 if it is more");
   command->add_option("--reach-mm", options.reach, "A sample farther from the test piece's tool path does not cut it")
-      ->check(CLI::Range(0.01, 10.0))
+      ->check(in_range(0.01, 10.0))
       ->capture_default_str();
   command->add_option("-o,--output", options.output, "Page to write (*.html)");
   command->add_flag("--force", options.force, "Replace an existing page");
   command->add_flag("--json", options.json, "Print JSON for programs");
   command->require_subcommand(0, 2);
-  CLI::App* const cone =
+  Subcommand* const cone =
       add_piece(*command, "cone-frustum", "Inclined cone frustum (in the manner of ISO 10791-7, M3)",
                 "--before examples/verify/cone-before.csv --after examples/verify/cone-after.csv", asked->cone);
   add_cone_frustum_sizes(*cone, asked->cone.sizes);
-  CLI::App* const s = add_piece(*command, "s-shape", "Wall in the shape of an S (in the manner of ISO 10791-7, M4)",
-                                "--before examples/verify/s-before.csv --after examples/verify/s-after.csv", asked->s);
+  Subcommand* const s =
+      add_piece(*command, "s-shape", "Wall in the shape of an S (in the manner of ISO 10791-7, M4)",
+                "--before examples/verify/s-before.csv --after examples/verify/s-after.csv", asked->s);
   add_s_shape_sizes(*s, asked->s.sizes);
   asked->cone.is_cone = true;
   command->callback([&line, asked, reduction, ratio, cone, s] {

@@ -9,6 +9,7 @@ function(abbe_fuzz reader)
   add_executable(fuzz_${reader} fuzz_${reader}.cpp)
   target_link_libraries(fuzz_${reader} PRIVATE ${ARG_LINK} fuzz_one_thread abbe_flags)
   target_link_options(fuzz_${reader} PRIVATE -fsanitize=fuzzer)
+  add_dependencies(abbe_parts fuzz_${reader})
   add_test(NAME fuzz.${reader}
     COMMAND ${PROJECT_SOURCE_DIR}/fuzz/run_reader $<TARGET_FILE:fuzz_${reader}> ${CMAKE_CURRENT_SOURCE_DIR}/corpus/${reader}
             ${CMAKE_CURRENT_BINARY_DIR}/found/${reader})

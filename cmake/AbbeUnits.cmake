@@ -12,7 +12,8 @@ set(ABBE_BATCH 8 CACHE STRING "Sources in one unit")
 #
 # ROOT is the include folder from which batches include the sources: paths of a clone do not get into the units, so that
 # ccache finds them in another clone. ALONE are sources that cannot share a unit: those that include themselves for every
-# instruction set (Highway) and those compiled with options of their own.
+# instruction set (Highway), those compiled with options of their own, and those with a header that no other unit should
+# have to parse.
 function(abbe_units target root)
   cmake_parse_arguments(ARG "" "PRECOMPILED" "SOURCES;ALONE" ${ARGN})
   set(batch "")
@@ -50,9 +51,10 @@ function(abbe_write_batch target number content)
   target_sources(${target} PRIVATE ${file})
 endfunction()
 
-# abbe_precompiled(NAME HEADER LINK ... [INDEPENDENT]): a target from which others reuse precompiled headers. INDEPENDENT: for
-# libraries, whose code does not depend on its position; the compiler wants it equal.
-function(abbe_precompiled name header)
+# abbe_precompiled(NAME HEADER FLAGS LINK ... [INDEPENDENT]): a target from which others reuse precompiled headers. FLAGS:
+# abbe_flags or abbe_test_flags, as theirs. INDEPENDENT: for libraries, whose code does not depend on its position; the compiler
+# wants it equal.
+function(abbe_precompiled name header flags)
   cmake_parse_arguments(ARG "INDEPENDENT" "" "LINK" ${ARGN})
   if(NOT ABBE_PRECOMPILE)
     return()
@@ -61,7 +63,7 @@ function(abbe_precompiled name header)
   file(CONFIGURE OUTPUT ${empty} CONTENT "" @ONLY)
   add_library(${name} OBJECT ${empty})
   target_compile_features(${name} PRIVATE cxx_std_20)
-  target_link_libraries(${name} PRIVATE abbe_flags ${ARG_LINK})
+  target_link_libraries(${name} PRIVATE ${flags} ${ARG_LINK})
   if(ARG_INDEPENDENT)
     set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   endif()

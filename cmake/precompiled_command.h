@@ -1,7 +1,6 @@
 // As precompiled.h, for the command.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "precompiled.h"

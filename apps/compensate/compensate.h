@@ -1,21 +1,18 @@
 #pragma once
 
-namespace CLI {
-class App;
-}
-
 namespace abbe {
 
+class Subcommand;
 struct CommandLine;
 
 void add_compensate_command(CommandLine& line);
 /// abbe compensate freeze: machine and errors to a file for real time.
-void add_compensate_freeze(CLI::App& compensate, CommandLine& line);
+void add_compensate_freeze(Subcommand& compensate, CommandLine& line);
 /// abbe compensate gcode: programs whose actual tool follows the commanded path.
-void add_compensate_gcode(CLI::App& compensate, CommandLine& line);
+void add_compensate_gcode(Subcommand& compensate, CommandLine& line);
 /// abbe compensate poses: corrected axis commands, pose by pose.
-void add_compensate_poses(CLI::App& compensate, CommandLine& line);
+void add_compensate_poses(Subcommand& compensate, CommandLine& line);
 /// abbe compensate table: tables of controls, and what they do not carry.
-void add_compensate_table(CLI::App& compensate, CommandLine& line);
+void add_compensate_table(Subcommand& compensate, CommandLine& line);
 
 }  // namespace abbe

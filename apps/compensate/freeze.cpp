@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -26,6 +25,7 @@
 #include "compensate/reversal_words.h"
 #include "compensate/safety.h"
 #include "exit_code.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -190,9 +190,9 @@ int run_freeze(const FreezeArguments& arguments) {
 
 }  // namespace
 
-void add_compensate_freeze(CLI::App& compensate, CommandLine& line) {
+void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
   auto arguments = std::make_shared<FreezeArguments>();
-  CLI::App* command =
+  Subcommand* command =
       compensate.add_subcommand("freeze", "Machine and errors to one file that a controller uses in real time");
   command->footer(
       "The file is for the C interface abbe/runtime/abbe_runtime.h and for the LinuxCNC module (docs/runtime.md). It "
@@ -223,7 +223,7 @@ void add_compensate_freeze(CLI::App& compensate, CommandLine& line) {
   command
       ->add_option("--world", arguments->world,
                    "Origin of world coordinates: joints (zero where all joints are) or workpiece")
-      ->check(CLI::IsMember({"joints", "workpiece"}))
+      ->check(one_of({"joints", "workpiece"}))
       ->capture_default_str();
   command->add_option("--leave-out-below-uncertainty", arguments->leave_out_factor,
                       "Leave out errors that are smaller than so many of their standard uncertainties everywhere");

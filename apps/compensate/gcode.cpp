@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -27,6 +26,7 @@
 #include "compensate/gcode_report.h"
 #include "compensate/safety.h"
 #include "exit_code.h"
+#include "options.h"
 #include "progress.h"
 
 namespace abbe {
@@ -114,9 +114,9 @@ int run_gcode(const GcodeOptions& options) {
 
 }  // namespace
 
-void add_compensate_gcode(CLI::App& compensate, CommandLine& line) {
+void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
   auto options = std::make_shared<GcodeOptions>();
-  CLI::App* command = compensate.add_subcommand(
+  Subcommand* command = compensate.add_subcommand(
       "gcode", "Corrects an NC program: the actual tool follows the commanded path within a tolerance");
   command->footer(
       "Example:\n"
@@ -167,7 +167,7 @@ void add_compensate_gcode(CLI::App& compensate, CommandLine& line) {
                     "X Y Z are the functional point in the workpiece frame throughout: the control has the kinematics");
   command->add_flag("--inches", options->inches, "G20 is in force when the program begins");
   command->add_flag("--block-delete", options->block_delete, "leave out blocks that begin with a slash");
-  command->add_option("--decimals", options->decimals, "of mm and degrees")->check(CLI::Range(0, 9));
+  command->add_option("--decimals", options->decimals, "of mm and degrees")->check(in_range(0, 9));
   command->add_option("--allow", options->allow,
                       "write the program in spite of: not-covered, outside-travel, held-start, position-left, "
                       "not-converged, not-proven");

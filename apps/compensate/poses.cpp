@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,6 +26,7 @@
 #include "compensate/position_words.h"
 #include "compensate/safety.h"
 #include "exit_code.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -261,9 +261,9 @@ int run_poses(const PosesCommand& command) {
 
 }  // namespace
 
-void add_compensate_poses(CLI::App& compensate, CommandLine& line) {
+void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
   auto options = std::make_shared<PosesCommand>();
-  CLI::App* const command = compensate.add_subcommand(
+  Subcommand* const command = compensate.add_subcommand(
       "poses", "Axis commands that bring the actual tool to where the nominal machine has it, pose by pose");
   command->footer(
       "Example:\n"

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -27,6 +26,7 @@
 #include "compensate/table_options.h"
 #include "compensate/table_report.h"
 #include "exit_code.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -327,7 +327,7 @@ int run_table(const TableCommand& command) {
 
 }  // namespace
 
-void add_compensate_table(CLI::App& compensate, CommandLine& line) {
+void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   auto options = std::make_shared<TableCommand>();
   std::string formats = "Formats:\n";
   for (const TableFormat& format : table_formats()) {
@@ -335,7 +335,7 @@ void add_compensate_table(CLI::App& compensate, CommandLine& line) {
     if (format.unverified.empty()) continue;
     formats += fmt::format("  {:<16} EXPERIMENTAL, not verified: {}\n", "", format.unverified);
   }
-  CLI::App* const command = compensate.add_subcommand("table", "Tables for a control, and what they do not carry");
+  Subcommand* const command = compensate.add_subcommand("table", "Tables for a control, and what they do not carry");
   command->footer(formats +
                   "\nExample:\n"
                   "  abbe compensate table examples/machines/three-axis-mill.machine.toml "

@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "abbe/formats/evaluation_circular_file.h"
@@ -8,6 +7,7 @@
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -46,9 +46,9 @@ int run(const CircularCommand& command) {
 
 }  // namespace
 
-void add_evaluate_circular(CLI::App& evaluate, CommandLine& line) {
+void add_evaluate_circular(Subcommand& evaluate, CommandLine& line) {
   auto command = std::make_shared<CircularCommand>();
-  CLI::App* app =
+  Subcommand* app =
       add_evaluation(evaluate, "circular", "Circular test (ISO 230-4) of a ball bar or grid encoder, with its causes",
                      "  direction   cw or ccw\n"
                      "  angle_deg   with deviation_um (from the nominal radius) or radius_mm: ball bar\n"
@@ -61,9 +61,9 @@ void add_evaluate_circular(CLI::App& evaluate, CommandLine& line) {
       ->required();
   app->add_option("--plane", command->plane,
                   "Axes of a ball bar test, angles run from the first to the second (default XY)")
-      ->check(CLI::IsMember({"XY", "YZ", "ZX"}));
+      ->check(one_of({"XY", "YZ", "ZX"}));
   app->add_option("--centre", command->centre, "About which radii are taken (default least-squares)")
-      ->check(CLI::IsMember({"least-squares", "minimum-zone", "instrument"}));
+      ->check(one_of({"least-squares", "minimum-zone", "instrument"}));
   add_number(app, "--u-reading-um", Quantity::length, "um", {0, 1e6}, command->reading_mm,
              "Standard uncertainty of one reading");
   add_number(app, "--u-length-um", Quantity::length, "um", {0, 1e6}, command->length_mm,

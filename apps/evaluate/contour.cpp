@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <initializer_list>
@@ -18,6 +17,7 @@
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -155,9 +155,9 @@ int run(const ContourCommand& command) {
 
 }  // namespace
 
-void add_evaluate_contour(CLI::App& evaluate, CommandLine& line) {
+void add_evaluate_contour(Subcommand& evaluate, CommandLine& line) {
   auto command = std::make_shared<ContourCommand>();
-  CLI::App* app = add_evaluation(
+  Subcommand* app = add_evaluation(
       evaluate, "contour", "Contour error of an engraved curve: from cross-sections of a line scanner, or from points",
       "  section                  name of the cross-section a row belongs to\n"
       "  across_mm, height_mm     point of the section: across the curve and out of the surface; origin on the\n"
@@ -175,11 +175,11 @@ void add_evaluate_contour(CLI::App& evaluate, CommandLine& line) {
       "Exit code 1: a tolerance is exceeded, or a section could not be evaluated.",
       command->options);
   app->add_option("--feature", command->feature, "edge (default), or groove: the middle between its two edges")
-      ->check(CLI::IsMember({"edge", "groove"}));
+      ->check(one_of({"edge", "groove"}));
   app->add_option("--surface", command->surface,
                   "Side on which the surface has remained beside an edge: left (default: "
                   "at smaller `across`) or right")
-      ->check(CLI::IsMember({"left", "right"}));
+      ->check(one_of({"left", "right"}));
   add_number(app, "--beam-tilt-deg", Quantity::angle, "deg", {-30, 30}, command->beam_tilt,
              "Direction of the laser where the file has none (default 0)");
   app->add_flag("--free-wall", command->free_wall, "The wall need not be parallel to the laser: found from the points");
@@ -196,9 +196,7 @@ void add_evaluate_contour(CLI::App& evaluate, CommandLine& line) {
   app->add_option("--machine", command->machine,
                   "Machine file (*.machine.toml) whose axes the curve sets beforehand; needed where it names them");
   app->callback([&line, app, command] {
-    for (const CLI::Option* const option : app->get_options()) {
-      if (option->count() > 0) command->given.push_back(option->get_name());
-    }
+    command->given = app->given_options();
     line.run = [command] { return run(*command); };
   });
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +10,7 @@
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/positioning_report.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -81,9 +81,9 @@ EvaluationReport diagonals_report(const DiagonalsEvaluation& evaluation, const s
 
 }  // namespace
 
-void add_evaluate_diagonals(CLI::App& evaluate, CommandLine& line) {
+void add_evaluate_diagonals(Subcommand& evaluate, CommandLine& line) {
   auto options = std::make_shared<EvaluationOptions>();
-  CLI::App* command = add_evaluation(
+  Subcommand* command = add_evaluation(
       evaluate, "diagonals", "Displacement along body or face diagonals (ISO 230-6)",
       "  diagonal        name of the diagonal, such as +X+Y+Z\n"
       "  direction       + or -: from which side the target was approached\n"

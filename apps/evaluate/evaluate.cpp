@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +12,7 @@
 #include "abbe/report/evaluation_data.h"
 #include "abbe/report/report.h"
 #include "exit_code.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -84,9 +84,9 @@ void write_report(const EvaluationReport& report, const nlohmann::ordered_json& 
 
 }  // namespace
 
-CLI::App* add_evaluation(CLI::App& evaluate, const std::string& kind, const std::string& description,
-                         const std::string& columns, const std::string& example, EvaluationOptions& options) {
-  CLI::App* command = evaluate.add_subcommand(kind, description);
+Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const std::string& description,
+                           const std::string& columns, const std::string& example, EvaluationOptions& options) {
+  Subcommand* command = evaluate.add_subcommand(kind, description);
   command->footer("Columns of the file:\n" + columns + "\n\nExample:\n" + example);
   command->add_option("file", options.file, "Readings (*.csv)")->required();
   command->add_option("-o,--output", options.output,

@@ -7,12 +7,9 @@
 
 #include "abbe/report/evaluation_report.h"
 
-namespace CLI {
-class App;
-}
-
 namespace abbe {
 
+class Subcommand;
 struct CommandLine;
 
 /// What every kind of evaluation is asked.
@@ -27,8 +24,8 @@ struct EvaluationOptions {
 /// `abbe evaluate KIND`: adds the subcommand with the options of every kind; its own options come behind it.
 /// @param evaluate  the command `evaluate`
 /// @param columns   of the file, shown by --help
-CLI::App* add_evaluation(CLI::App& evaluate, const std::string& kind, const std::string& description,
-                         const std::string& columns, const std::string& example, EvaluationOptions& options);
+Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const std::string& description,
+                           const std::string& columns, const std::string& example, EvaluationOptions& options);
 
 /// Enters the tolerances into the figures. @throws InputError for an unknown figure, a unit that is missing or is not
 /// one of the figure, a value that is no number above zero
@@ -39,12 +36,12 @@ void apply_tolerances(const std::vector<std::string>& tolerances, EvaluationRepo
 int finish_evaluation(EvaluationReport& report, const EvaluationOptions& options);
 
 // One per kind; each leaves its work in line.run.
-void add_evaluate_positioning(CLI::App& evaluate, CommandLine& line);
-void add_evaluate_diagonals(CLI::App& evaluate, CommandLine& line);
-void add_evaluate_circular(CLI::App& evaluate, CommandLine& line);
-void add_evaluate_rotation(CLI::App& evaluate, CommandLine& line);
-void add_evaluate_straightness(CLI::App& evaluate, CommandLine& line);
-void add_evaluate_squareness(CLI::App& evaluate, CommandLine& line);
-void add_evaluate_contour(CLI::App& evaluate, CommandLine& line);
+void add_evaluate_positioning(Subcommand& evaluate, CommandLine& line);
+void add_evaluate_diagonals(Subcommand& evaluate, CommandLine& line);
+void add_evaluate_circular(Subcommand& evaluate, CommandLine& line);
+void add_evaluate_rotation(Subcommand& evaluate, CommandLine& line);
+void add_evaluate_straightness(Subcommand& evaluate, CommandLine& line);
+void add_evaluate_squareness(Subcommand& evaluate, CommandLine& line);
+void add_evaluate_contour(Subcommand& evaluate, CommandLine& line);
 
 }  // namespace abbe

@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/number_text.h"
+#include "options.h"
 
 namespace abbe {
 
-CLI::Option* add_number(CLI::App* command, const std::string& name, Quantity quantity, const std::string& unit,
-                        NumberRange range, double& value, const std::string& description) {
+Option* add_number(Subcommand* command, const std::string& name, Quantity quantity, const std::string& unit,
+                   NumberRange range, double& value, const std::string& description) {
   const auto read = [name, quantity, unit, range, &value](const std::string& text) {
     double number = 0, inside = 0;
     // Compared as written, so that the limits are those that the message names.
@@ -21,7 +20,7 @@ CLI::Option* add_number(CLI::App* command, const std::string& name, Quantity qua
     }
     value = inside;
   };
-  return command->add_option_function<std::string>(name, read, description)->type_name("NUMBER");
+  return command->add_option_function(name, read, description)->type_name("NUMBER");
 }
 
 }  // namespace abbe

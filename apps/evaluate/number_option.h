@@ -4,12 +4,10 @@
 
 #include "abbe/formats/unit.h"
 
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
-
 namespace abbe {
+
+class Option;
+class Subcommand;
 
 /// Range of an option's value, in the unit that its name says.
 struct NumberRange {
@@ -21,7 +19,7 @@ struct NumberRange {
 /// @param unit   suffix of the quantity as in files: "mm", "um", "deg"
 /// @param value  mm, rad, s; stays as it is if the option is not given
 /// The command line is refused (InputError) for what is no finite number within the range.
-CLI::Option* add_number(CLI::App* command, const std::string& name, Quantity quantity, const std::string& unit,
-                        NumberRange range, double& value, const std::string& description);
+Option* add_number(Subcommand* command, const std::string& name, Quantity quantity, const std::string& unit,
+                   NumberRange range, double& value, const std::string& description);
 
 }  // namespace abbe

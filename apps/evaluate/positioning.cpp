@@ -1,4 +1,3 @@
-#include <CLI/CLI.hpp>
 
 #include "abbe/formats/evaluation_positioning.h"
 #include "abbe/formats/input_error.h"
@@ -6,6 +5,7 @@
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/positioning_report.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -18,9 +18,9 @@ struct Contributions {
   double environment_um = 0, environment_arcsec = 0;
 };
 
-void add_contributions(CLI::App& command, Contributions& c) {
+void add_contributions(Subcommand& command, Contributions& c) {
   const auto add = [&](const char* name, double& value, const char* help) {
-    command.add_option(name, value, help)->check(CLI::Range(0.0, 1e6))->group("Measurement uncertainty");
+    command.add_option(name, value, help)->check(in_range(0.0, 1e6))->group("Measurement uncertainty");
   };
   add("--instrument-um", c.instrument_um, "Instrument, expanded (k = 2), part that does not grow with the length");
   add("--instrument-um-per-m", c.instrument_um_per_m, "Instrument, expanded (k = 2), part that grows with the length");
@@ -70,13 +70,13 @@ PositioningUncertaintyInput uncertainty_input(const Contributions& c, bool rotar
 
 }  // namespace
 
-void add_evaluate_positioning(CLI::App& evaluate, CommandLine& line) {
+void add_evaluate_positioning(Subcommand& evaluate, CommandLine& line) {
   struct Options {
     EvaluationOptions common;
     Contributions contributions;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = add_evaluation(
+  Subcommand* command = add_evaluation(
       evaluate, "positioning", "Accuracy and repeatability of positioning of a linear or rotary axis (ISO 230-2)",
       "  direction       + or -: from which side the target was approached\n"
       "  target_mm       target position; target_deg for a rotary axis\n"

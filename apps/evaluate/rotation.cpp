@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -12,6 +11,7 @@
 #include "evaluate/number_option.h"
 #include "evaluate/thinned.h"
 #include "exit_code.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -189,9 +189,9 @@ int run(const RotationCommand& command) {
 
 }  // namespace
 
-void add_evaluate_rotation(CLI::App& evaluate, CommandLine& line) {
+void add_evaluate_rotation(Subcommand& evaluate, CommandLine& line) {
   auto command = std::make_shared<RotationCommand>();
-  CLI::App* app = add_evaluation(
+  Subcommand* app = add_evaluation(
       evaluate, "rotation", "Error motions of a spindle or rotary table (ISO 230-7) from displacement probes",
       "  angle_deg       of the axis, in the order of time; runs on over the turns or begins anew at each\n"
       "  x1_um, y1_um    radial probes along X and Y\n"

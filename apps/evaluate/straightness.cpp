@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <numeric>
@@ -11,6 +10,7 @@
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -147,18 +147,18 @@ int run_squareness(const LineCommand& command) {
   return finish_evaluation(report, command.options);
 }
 
-void add_common_options(CLI::App* app, LineCommand& command) {
+void add_common_options(Subcommand* app, LineCommand& command) {
   app->add_option("--reference", command.reference, "Reference line (default least-squares)")
-      ->check(CLI::IsMember({"least-squares", "minimum-zone"}));
+      ->check(one_of({"least-squares", "minimum-zone"}));
   add_number(app, "--u-reading-um", Quantity::length, "um", {0, 1e6}, command.squareness.reading_uncertainty,
              "Standard uncertainty of one deviation");
 }
 
 }  // namespace
 
-void add_evaluate_straightness(CLI::App& evaluate, CommandLine& line) {
+void add_evaluate_straightness(Subcommand& evaluate, CommandLine& line) {
   auto command = std::make_shared<LineCommand>();
-  CLI::App* app = add_evaluation(
+  Subcommand* app = add_evaluation(
       evaluate, "straightness", "Straightness error (ISO 230-1) by least squares and by the minimum zone",
       "  position_mm    along the line; may repeat\n"
       "  deviation_um   across it",
@@ -169,9 +169,9 @@ void add_evaluate_straightness(CLI::App& evaluate, CommandLine& line) {
   app->callback([&line, command] { line.run = [command] { return run_straightness(*command); }; });
 }
 
-void add_evaluate_squareness(CLI::App& evaluate, CommandLine& line) {
+void add_evaluate_squareness(Subcommand& evaluate, CommandLine& line) {
   auto command = std::make_shared<LineCommand>();
-  CLI::App* app = add_evaluation(
+  Subcommand* app = add_evaluation(
       evaluate, "squareness", "Squareness error (ISO 230-1) between two lines read against a reference square",
       "  line           name of the line, such as X and Y: two of them\n"
       "  position_mm    along the line\n"

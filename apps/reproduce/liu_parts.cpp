@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 
+#include "abbe/geometry/rotation.h"
 #include "abbe/geometry/vertex_welder.h"
 
 namespace abbe {
@@ -87,7 +88,7 @@ TriangleMesh cylinder_mesh(double radius, double taper, double length, const Eig
   add_ring(patches, low, -length / 2, high, length / 2, kAround, 1);
   add_ring(patches, high, length / 2, 0, length / 2, kAround, 1);
   TriangleMesh mesh = patches.mesh();
-  const Eigen::Matrix3d turned = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), axis).toRotationMatrix();
+  const Eigen::Matrix3d turned = rotation_between(Eigen::Vector3d::UnitY(), axis);
   for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
     mesh.vertices.col(i) = snapped(turned * Eigen::Vector3d(mesh.vertices.col(i)));
   }

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
@@ -23,6 +22,7 @@
 #include "abbe/plan/wanted_area.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 #include "progress.h"
 #include "scan/plan_page.h"
 #include "scan/plan_words.h"
@@ -98,7 +98,7 @@ std::string unit_in(const std::string& option) {
 }
 
 /// A number from low to high; the error states the unit.
-CLI::Validator within(double low, double high, const std::string& unit) {
+Check within(double low, double high, const std::string& unit) {
   return {[=](const std::string& text) {
             double value = 0;
             if (parse_number(text, 0, value) == NumberProblem::none && value >= low && value <= high)
@@ -146,9 +146,9 @@ int run_plan(const PlanOptions& options) {
 
 }  // namespace
 
-void add_scan_plan(CLI::App& scan, CommandLine& line) {
+void add_scan_plan(Subcommand& scan, CommandLine& line) {
   auto options = std::make_shared<PlanOptions>();
-  CLI::App* command = scan.add_subcommand("plan", "Paths of a displacement probe over all faces of a part");
+  Subcommand* command = scan.add_subcommand("plan", "Paths of a displacement probe over all faces of a part");
   command->footer(
       "Faces end where triangles meet at an edge. Flat ones are scanned as a raster with one direction of the beam, "
       "those\n"

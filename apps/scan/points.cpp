@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include "abbe/formats/scan_file.h"
 #include "command.h"
 #include "exit_code.h"
+#include "options.h"
 #include "progress.h"
 #include "scan/scan.h"
 
@@ -116,9 +116,10 @@ int run_points(PointsOptions options) {
 
 }  // namespace
 
-void add_scan_points(CLI::App& scan, CommandLine& line) {
+void add_scan_points(Subcommand& scan, CommandLine& line) {
   auto options = std::make_shared<PointsOptions>();
-  CLI::App* command = scan.add_subcommand("points", "Axis positions and indications of a probe to points of the part");
+  Subcommand* command =
+      scan.add_subcommand("points", "Axis positions and indications of a probe to points of the part");
   command->footer(
       "Readings: CSV with one column per axis (X_mm, C_deg) and the indication (indication_mm, _um), positive away "
       "from\n"
@@ -151,9 +152,9 @@ void add_scan_points(CLI::App& scan, CommandLine& line) {
       ->take_all();
   command->add_option("--ignore", options->ignore, "Column that is not read")->expected(1)->take_all();
   command->add_option("--decimals", options->scan.decimals, "Decimals of a coordinate in CSV (default 9)")
-      ->check(CLI::Range(0, 12));
+      ->check(in_range(0, 12));
   command->add_flag("--any-travel", options->any_travel, "Accept positions outside the travel of an axis");
-  command->add_option("--threads", options->scan.threads, "Threads (0: all)")->check(CLI::Range(0, 64));
+  command->add_option("--threads", options->scan.threads, "Threads (0: all)")->check(in_range(0, 64));
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options] { return run_points(*options); }; });
 }

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "abbe/formats/input_error.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -33,15 +32,15 @@ MeshFile ScanFiles::read_part() const {
   return read;
 }
 
-void add_scan_files(CLI::App* command, ScanFiles& files) {
+void add_scan_files(Subcommand* command, ScanFiles& files) {
   command->add_option("scan", files.scan, "Points of the scan (.csv .xyz .ply .obj; docs/geometry-files.md)")
       ->required();
   command->add_option("part", files.part, "Surface of the part (.stl .ply .obj .step)")->required();
-  const CLI::IsMember units({"mm", "m", "inch"});
+  const Check units = one_of({"mm", "m", "inch"});
   command->add_option("--scan-unit", files.scan_unit, "Unit of a scan file that states none (mm)")->check(units);
   command->add_option("--part-unit", files.part_unit, "Unit of a part file that states none (mm)")->check(units);
   command->add_option("--threads", files.threads, "Threads; the result does not depend on them (default: all)")
-      ->check(CLI::Range(0, 1024));
+      ->check(in_range(0, 1024));
 }
 
 std::vector<std::pair<std::string, std::string>> facts_of(const PointCloudFile& scan, const MeshFile& part) {

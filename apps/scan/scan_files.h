@@ -8,11 +8,9 @@
 #include "abbe/formats/mesh_file.h"
 #include "abbe/formats/point_cloud_file.h"
 
-namespace CLI {
-class App;
-}
-
 namespace abbe {
+
+class Subcommand;
 
 /// The two files of a command that compares a scan with a part.
 struct ScanFiles {
@@ -25,7 +23,7 @@ struct ScanFiles {
 };
 
 /// Adds the arguments `scan` and `part` and their options.
-void add_scan_files(CLI::App* command, ScanFiles& files);
+void add_scan_files(Subcommand* command, ScanFiles& files);
 
 /// Facts about both files for a report: "scan", "part" with format, unit, counts.
 std::vector<std::pair<std::string, std::string>> facts_of(const PointCloudFile& scan, const MeshFile& part);

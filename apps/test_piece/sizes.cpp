@@ -1,10 +1,10 @@
 #include "test_piece/sizes.h"
 
-#include <CLI/CLI.hpp>
 #include <stdexcept>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/geometry/angle_units.h"
+#include "options.h"
 
 namespace abbe {
 namespace {
@@ -12,14 +12,14 @@ namespace {
 /// Of a piece and of a tool, mm: wider than any that a machine takes.
 constexpr double kSmallestSize = 0.01, kLargestSize = 10000;
 
-void add_common(CLI::App& piece, TestPieceSizes& sizes, const char* centre, const char* height) {
-  piece.add_option("--centre-mm", sizes.centre_mm, centre)->expected(3)->check(CLI::Range(-kLargestSize, kLargestSize));
-  piece.add_option("--height-mm", sizes.height_mm, height)->check(CLI::Range(kSmallestSize, kLargestSize));
+void add_common(Subcommand& piece, TestPieceSizes& sizes, const char* centre, const char* height) {
+  piece.add_option("--centre-mm", sizes.centre_mm, centre)->expected(3)->check(in_range(-kLargestSize, kLargestSize));
+  piece.add_option("--height-mm", sizes.height_mm, height)->check(in_range(kSmallestSize, kLargestSize));
   piece.add_option("--tool-diameter-mm", sizes.tool_diameter_mm, "Diameter of the cylindrical cutter")
-      ->check(CLI::Range(kSmallestSize, kLargestSize))
+      ->check(in_range(kSmallestSize, kLargestSize))
       ->capture_default_str();
   piece.add_option("--azimuth-deg", sizes.azimuth_deg, "Turn of the piece about Z")
-      ->check(CLI::Range(-360.0, 360.0))
+      ->check(in_range(-360.0, 360.0))
       ->capture_default_str();
 }
 
@@ -49,32 +49,32 @@ TestPiece made(const Piece& sizes, TestPiece (*make)(const Piece&), const char* 
 
 }  // namespace
 
-void add_cone_frustum_sizes(CLI::App& piece, TestPieceSizes& sizes) {
+void add_cone_frustum_sizes(Subcommand& piece, TestPieceSizes& sizes) {
   add_common(piece, sizes, "Centre of the base, workpiece frame (default 0 60 40)", "Along the axis (default 20)");
   piece.add_option("--base-diameter-mm", sizes.base_diameter_mm, "Diameter of the base")
-      ->check(CLI::Range(kSmallestSize, kLargestSize))
+      ->check(in_range(kSmallestSize, kLargestSize))
       ->capture_default_str();
   piece.add_option("--half-apex-deg", sizes.half_apex_deg, "Half of the angle at the apex")
-      ->check(CLI::Range(0.0, 90.0))
+      ->check(in_range(0.0, 90.0))
       ->capture_default_str();
   piece.add_option("--inclination-deg", sizes.inclination_deg, "Of the cone's axis from +Z")
-      ->check(CLI::Range(0.0, 90.0))
+      ->check(in_range(0.0, 90.0))
       ->capture_default_str();
 }
 
-void add_s_shape_sizes(CLI::App& piece, TestPieceSizes& sizes) {
+void add_s_shape_sizes(Subcommand& piece, TestPieceSizes& sizes) {
   add_common(piece, sizes, "Middle of the foot, workpiece frame (default 0 0 30)", "Along Z (default 40)");
   piece.add_option("--length-mm", sizes.length_mm, "From end to end along X")
-      ->check(CLI::Range(kSmallestSize, kLargestSize))
+      ->check(in_range(kSmallestSize, kLargestSize))
       ->capture_default_str();
   piece.add_option("--amplitude-mm", sizes.amplitude_mm, "Of the sine that is the foot")
-      ->check(CLI::Range(-kLargestSize, kLargestSize))
+      ->check(in_range(-kLargestSize, kLargestSize))
       ->capture_default_str();
   piece.add_option("--lean-deg", sizes.lean_deg, "Lean of the wall at its ends")
-      ->check(CLI::Range(-45.0, 45.0))
+      ->check(in_range(-45.0, 45.0))
       ->capture_default_str();
   piece.add_option("--twist-deg", sizes.twist_deg, "Lean of the wall at the crests, to either side")
-      ->check(CLI::Range(-45.0, 45.0))
+      ->check(in_range(-45.0, 45.0))
       ->capture_default_str();
 }
 

@@ -4,11 +4,9 @@
 
 #include "abbe/machine/test_piece.h"
 
-namespace CLI {
-class App;
-}
-
 namespace abbe {
+
+class Subcommand;
 
 /// Sizes of a test piece as people give them: the same options wherever one is named.
 struct TestPieceSizes {
@@ -18,8 +16,8 @@ struct TestPieceSizes {
   double length_mm = 160, amplitude_mm = 40, lean_deg = 5, twist_deg = 15;
 };
 
-void add_cone_frustum_sizes(CLI::App& piece, TestPieceSizes& sizes);
-void add_s_shape_sizes(CLI::App& piece, TestPieceSizes& sizes);
+void add_cone_frustum_sizes(Subcommand& piece, TestPieceSizes& sizes);
+void add_s_shape_sizes(Subcommand& piece, TestPieceSizes& sizes);
 
 /// Feed and chord tolerance are the defaults. @throws InputError for a centre that is not three numbers
 ConeFrustum cone_frustum_of(const TestPieceSizes& sizes);

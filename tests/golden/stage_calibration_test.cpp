@@ -11,6 +11,7 @@
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/identify/identify.h"
 #include "abbe/instruments/instrument_observations.h"
@@ -86,7 +87,7 @@ Calibrated calibrate(const Machine& machine, const std::string& stage, const std
   const Eigen::Matrix3d normal =
       (Eigen::Matrix3d::Identity() - turned.rotation).transpose() * (Eigen::Matrix3d::Identity() - turned.rotation) +
       result.direction * result.direction.transpose();
-  result.point = normal.ldlt().solve((Eigen::Matrix3d::Identity() - turned.rotation).transpose() * turned.translation);
+  result.point = Ldlt<>(normal).solve((Eigen::Matrix3d::Identity() - turned.rotation).transpose() * turned.translation);
   return result;
 }
 

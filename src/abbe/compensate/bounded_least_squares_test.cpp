@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "abbe/geometry/decompositions.h"
+
 namespace abbe {
 namespace {
 
@@ -27,7 +29,7 @@ TEST(BoundedLeastSquares, InsideTheBallItIsTheLeastSquaresSolution) {
     bool bounded = true;
     const SmallVector y = bounded_least_squares(a, b, 1e9, bounded);
     EXPECT_FALSE(bounded);
-    const Eigen::VectorXd expected = Eigen::MatrixXd(a).completeOrthogonalDecomposition().solve(Eigen::VectorXd(b));
+    const Eigen::VectorXd expected = CompleteOrthogonal(a).solve(b);
     EXPECT_LE((y - expected).norm(), 1e-10 * (1 + expected.norm()));
   }
 }

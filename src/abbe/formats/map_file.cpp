@@ -111,13 +111,13 @@ std::array<std::size_t, 3> structured_counts(const MapData& map) {
   return counts;
 }
 
-void check(const MapData& map) {
-  for (const std::vector<double>& coordinate : map.points) assert(coordinate.size() == map.count());
-  for (const MapField& field : map.fields) {
-    assert(field.components.size() == 1 || field.components.size() == 3);
-    for (const std::vector<double>& component : field.components) assert(component.size() == map.count());
-    (void)field;
-  }
+void check([[maybe_unused]] const MapData& map) {
+  [[maybe_unused]] const auto complete = [&](const std::vector<double>& values) { return values.size() == map.count(); };
+  assert(std::ranges::all_of(map.points, complete));
+  assert(std::ranges::all_of(map.fields, [&](const MapField& field) {
+    return (field.components.size() == 1 || field.components.size() == 3) &&
+           std::ranges::all_of(field.components, complete);
+  }));
 }
 
 }  // namespace

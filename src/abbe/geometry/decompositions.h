@@ -120,6 +120,7 @@ class CompleteOrthogonal {
   explicit CompleteOrthogonal(const Eigen::MatrixXd& matrix, double threshold = -1);
   Eigen::Index rank() const { return factors_.rank(); }
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+  Eigen::MatrixXd solve_columns(const Eigen::MatrixXd& right) const;
   Eigen::MatrixXd pseudo_inverse() const;
 
  private:
@@ -157,6 +158,7 @@ class PartialLu {
   explicit PartialLu(const Eigen::MatrixXd& matrix);
   Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
   Eigen::MatrixXd solve_columns(const Eigen::MatrixXd& right) const;
+  Eigen::MatrixXd inverse() const;
 
  private:
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;

@@ -30,6 +30,7 @@ CompleteOrthogonal::CompleteOrthogonal(const MatrixXd& matrix, double threshold)
   factors_.compute(matrix);
 }
 VectorXd CompleteOrthogonal::solve(const VectorXd& right) const { return factors_.solve(right); }
+MatrixXd CompleteOrthogonal::solve_columns(const MatrixXd& right) const { return factors_.solve(right); }
 MatrixXd CompleteOrthogonal::pseudo_inverse() const { return factors_.pseudoInverse(); }
 
 template <int N>

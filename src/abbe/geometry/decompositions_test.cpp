@@ -2,10 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <cmath>
-#include <cstring>
 
 #include "abbe/geometry/numbers_for_test.h"
 
@@ -14,11 +11,6 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-bool same_bits(const MatrixXd& a, const MatrixXd& b) {
-  return a.rows() == b.rows() && a.cols() == b.cols() &&
-         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
-}
 
 /// Full, badly scaled, singular, indefinite, diagonal.
 MatrixXd some_matrix(test::Numbers& numbers, Eigen::Index n, int k) {
@@ -35,39 +27,46 @@ MatrixXd some_symmetric_matrix(test::Numbers& numbers, Eigen::Index n, int k) {
 }
 
 template <int N>
-void expect_the_bits_of_eigen() {
+void expect_the_matrix_back_at_fixed_size() {
+  using Matrix = Eigen::Matrix<double, N, N>;
+  using Vector = Eigen::Matrix<double, N, 1>;
   test::Numbers numbers(N);
   for (int k = 0; k < 2000; ++k) {
-    const Eigen::Matrix<double, N, N> a = some_matrix(numbers, N, k), s = some_symmetric_matrix(numbers, N, k);
-    const Eigen::Matrix<double, N, 1> right = some_matrix(numbers, N, 1).col(0);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> eigen(s);
-    const SymmetricEigen<N> ours(s);
-    ASSERT_TRUE(same_bits(ours.eigenvalues(), eigen.eigenvalues())) << k;
-    ASSERT_TRUE(same_bits(ours.eigenvectors(), eigen.eigenvectors())) << k;
+    const Matrix a = some_matrix(numbers, N, k), s = some_symmetric_matrix(numbers, N, k);
+    const Vector right = some_matrix(numbers, N, 1).col(0);
+    const SymmetricEigen<N> eigen(s);
+    for (int i = 1; i < N; ++i) ASSERT_LE(eigen.eigenvalues()[i - 1], eigen.eigenvalues()[i]) << k;
+    ASSERT_LT((s * eigen.eigenvectors() - eigen.eigenvectors() * eigen.eigenvalues().asDiagonal()).norm(), 1e-13) << k;
+    ASSERT_LT((eigen.eigenvectors().transpose() * eigen.eigenvectors() - Matrix::Identity()).norm(), 1e-13) << k;
+    const Matrix safe = a * a.transpose() + Matrix::Identity();
+    const Vector image = safe * right;
     if constexpr (N >= 5) {
-      const Eigen::Matrix<double, N, 1> solved = Eigen::LDLT<Eigen::Matrix<double, N, N>>(s).solve(right);
-      ASSERT_TRUE(same_bits(Ldlt<N>(s).solve(right), solved)) << k;
+      ASSERT_LT((Ldlt<N>(safe).solve(image) - right).norm(), 1e-12) << k;
     }
     if constexpr (N == 3 || N == 6) {
-      const Eigen::FullPivLU<Eigen::Matrix<double, N, N>> lu(a);
-      const Eigen::Matrix<double, N, 1> solved = lu.solve(right);
-      ASSERT_TRUE(same_bits(FullLu<N>(a).solve(right), solved)) << k;
-      ASSERT_EQ(FullLu<N>(a).reciprocal_condition(), lu.rcond()) << k;
+      ASSERT_LT((FullLu<N>(safe).solve(image) - right).norm(), 1e-12) << k;
+      ASSERT_LT((FullLu<N>(safe).inverse() * image - right).norm(), 1e-12) << k;
+      // Of the norm of largest column sums, estimated: never below the truth by much.
+      const double condition =
+          safe.cwiseAbs().colwise().sum().maxCoeff() * FullLu<N>(safe).inverse().cwiseAbs().colwise().sum().maxCoeff();
+      ASSERT_NEAR(FullLu<N>(safe).reciprocal_condition() * condition, 1, 0.7) << k;
     }
     if constexpr (N == 3) {
-      const Eigen::JacobiSVD<Eigen::Matrix3d> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-      const SingularValues<3> values(a);
-      ASSERT_TRUE(same_bits(values.values(), svd.singularValues())) << k;
-      ASSERT_TRUE(same_bits(values.u(), svd.matrixU()) && same_bits(values.v(), svd.matrixV())) << k;
+      const SingularValues<3> svd(a);
+      ASSERT_GE(svd.values()[2], 0) << k;
+      ASSERT_GE(svd.values()[0], svd.values()[1]) << k;
+      ASSERT_GE(svd.values()[1], svd.values()[2]) << k;
+      ASSERT_LT((svd.u() * svd.values().asDiagonal() * svd.v().transpose() - a).norm(), 1e-13) << k;
+      ASSERT_LT((svd.u().transpose() * svd.u() - Matrix::Identity()).norm(), 1e-13) << k;
     }
   }
 }
 
-TEST(Decompositions, OfFixedSizeHaveTheBitsOfEigensOwn) {
-  expect_the_bits_of_eigen<2>();
-  expect_the_bits_of_eigen<3>();
-  expect_the_bits_of_eigen<5>();
-  expect_the_bits_of_eigen<6>();
+TEST(Decompositions, OfFixedSizeGiveTheMatrixBack) {
+  expect_the_matrix_back_at_fixed_size<2>();
+  expect_the_matrix_back_at_fixed_size<3>();
+  expect_the_matrix_back_at_fixed_size<5>();
+  expect_the_matrix_back_at_fixed_size<6>();
 }
 
 TEST(Decompositions, GiveTheMatrixBack) {
@@ -97,6 +96,8 @@ TEST(Decompositions, GiveTheMatrixBack) {
     EXPECT_LT((CompleteOrthogonal(safe).pseudo_inverse() * b - x).norm(), 1e-12);
     EXPECT_LT((FullLu<>(safe).inverse() * b - x).norm(), 1e-12);
     EXPECT_LT((PartialLu(safe).solve(b) - x).norm(), 1e-12);
+    EXPECT_LT((PartialLu(safe).inverse() * b - x).norm(), 1e-12);
+    EXPECT_LT((CompleteOrthogonal(safe).solve_columns(b) - x).norm(), 1e-12);
   }
 }
 

@@ -27,5 +27,6 @@ template class FullLu<Eigen::Dynamic>;
 PartialLu::PartialLu(const Eigen::MatrixXd& matrix) : factors_(matrix) {}
 Eigen::VectorXd PartialLu::solve(const Eigen::VectorXd& right) const { return factors_.solve(right); }
 Eigen::MatrixXd PartialLu::solve_columns(const Eigen::MatrixXd& right) const { return factors_.solve(right); }
+Eigen::MatrixXd PartialLu::inverse() const { return factors_.inverse(); }
 
 }  // namespace abbe

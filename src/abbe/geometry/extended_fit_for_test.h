@@ -133,9 +133,10 @@ inline ExtendedShape extended_contact_shape(ShapeKind kind, const ExtendedPoints
     const ExtendedVector values = distances(at);
     ExtendedMatrix system(values.size(), 9);
     system << extended_slopes(distances, at), -ExtendedVector::Ones(values.size());
-    Eigen::JacobiSVD<ExtendedMatrix> svd(system, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    svd.setThreshold(1e-12L);
-    at -= svd.solve(values).template head<8>();
+    Eigen::CompleteOrthogonalDecomposition<ExtendedMatrix> shortest;
+    shortest.setThreshold(1e-12L);
+    shortest.compute(system);
+    at -= ExtendedVector(shortest.solve(values)).head<8>();
   }
   return at;
 }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/engraver_part_for_test.h"
 #include "abbe/geometry/rotation.h"
 
@@ -51,7 +52,7 @@ TEST(FeatureRegistration, OutliersDoNotMoveItAndItsUncertaintyHolds) {
       return v;
     };
     const Vector6d error = motion(fit);
-    squares += error.dot(fit.covariance.ldlt().solve(error)) / 6 / kRuns;
+    squares += error.dot(Ldlt<>(fit.covariance).solve(error)) / 6 / kRuns;
     FeatureRegistrationOptions options;
     options.loss = RegistrationLoss::least_squares;
     const Vector6d without = motion(register_to_features(scan.points, part(), scan.labels, beside(), options));

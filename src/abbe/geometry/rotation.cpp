@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 
 namespace abbe {
 
@@ -48,6 +49,19 @@ Eigen::Matrix3d rotation_from_vector(const Eigen::Vector3d& vector) {
   const double angle = vector.norm();
   if (angle < 1e-160) return Eigen::Matrix3d::Identity();
   return rotation_about(vector / angle, angle);
+}
+
+Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  // Eigen's FromTwoVectors without its singular value decomposition, which takes seconds to compile.
+  const Eigen::Vector3d a = from.normalized(), b = to.normalized();
+  const double cosine = b.dot(a);
+  if (cosine < -1 + 1e-12)
+    return Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, a.unitOrthogonal())).toRotationMatrix();
+  const double twice = std::sqrt((1 + cosine) * 2);
+  Eigen::Quaterniond turn;
+  turn.vec() = a.cross(b) * (1 / twice);
+  turn.w() = twice * 0.5;
+  return turn.toRotationMatrix();
 }
 
 }  // namespace abbe

@@ -27,4 +27,8 @@ Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation);
 /// Rotation matrix of a rotation vector (rad).
 Eigen::Matrix3d rotation_from_vector(const Eigen::Vector3d& vector);
 
+/// The smallest rotation that turns the direction `from` into the direction `to`; lengths do not matter. Opposite
+/// directions are turned about any axis across them.
+Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 }  // namespace abbe

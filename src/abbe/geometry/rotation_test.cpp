@@ -67,5 +67,18 @@ TEST(RigidTransform, InverseUndoesAndProductComposes) {
   }
 }
 
+TEST(Rotation, BetweenDirectionsIsTheSmallestOne) {
+  std::mt19937_64 generator(3);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d from = random_vector(generator, 5), to = random_vector(generator, 5);
+    const Eigen::Matrix3d turn = rotation_between(from, to);
+    EXPECT_LE((turn * from.normalized() - to.normalized()).norm(), 1e-15 * 8);
+    EXPECT_NEAR(rotation_vector(turn).norm(), std::acos(from.dot(to) / from.norm() / to.norm()), 1e-8);
+    for (const Eigen::Vector3d& opposite : {Eigen::Vector3d(-from), Eigen::Vector3d(-from + 1e-9 * to)}) {
+      EXPECT_LE((rotation_between(from, opposite) * from.normalized() - opposite.normalized()).norm(), 1e-6);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace abbe

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/shapes.h"
@@ -124,8 +125,7 @@ inline Patch patch(ShapeKind kind, const PatchOptions& o, Numbers& numbers) {
 inline Eigen::VectorXd orthogonal_residuals(const Patch& p, double size, Numbers& numbers) {
   Eigen::VectorXd d(p.basis.rows());
   for (Eigen::Index i = 0; i < d.size(); ++i) d[i] = size * numbers.normal();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(p.basis);
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(p.basis.rows(), p.basis.cols());
+  const Eigen::MatrixXd q = Qr(p.basis).orthonormal(p.basis.cols());
   for (int pass = 0; pass < 2; ++pass) d -= q * (q.transpose() * d);
   return d;
 }

@@ -8,6 +8,8 @@
 #include <functional>
 #include <random>
 
+#include "abbe/geometry/decompositions.h"
+
 namespace abbe {
 namespace {
 
@@ -25,8 +27,8 @@ TEST(RightSingular, KeepsSeenAndUnseenDirectionsApart) {
       Eigen::VectorXd values = Eigen::VectorXd::Zero(size);
       for (Eigen::Index i = 0; i < rank; ++i)
         values[i] = i % 3 == 0 ? 0.5 : std::pow(10.0, -4.0 * static_cast<double>(i) / static_cast<double>(size));
-      const Eigen::MatrixXd u = random_matrix(size, size, generator).householderQr().householderQ();
-      const Eigen::MatrixXd v = random_matrix(size, size, generator).householderQr().householderQ();
+      const Eigen::MatrixXd u = Qr(random_matrix(size, size, generator)).orthonormal(size);
+      const Eigen::MatrixXd v = Qr(random_matrix(size, size, generator)).orthonormal(size);
       const Eigen::MatrixXd matrix = u * values.asDiagonal() * v.transpose();
       const RightSingular found = right_singular(matrix);
       std::sort(values.data(), values.data() + size, std::greater<>());

@@ -2,11 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
+
+#include "abbe/geometry/decompositions.h"
 
 namespace abbe {
 namespace {
@@ -48,7 +49,7 @@ double dilution(const Room& room, bool without_thirds = false) {
     row[3 + static_cast<Eigen::Index>(room.data.run[i])] = -1;
     normal += row * row.transpose();
   }
-  const Eigen::MatrixXd covariance = normal.inverse();
+  const Eigen::MatrixXd covariance = PartialLu(normal).inverse();
   return std::sqrt(covariance.topLeftCorner<3, 3>().trace());
 }
 

@@ -131,7 +131,7 @@ struct DatumTerm {
 
 DatumTerm least_squares_term(std::vector<std::size_t> components, Eigen::MatrixXd functions) {
   DatumTerm term{std::move(components), std::move(functions), {}};
-  term.pick = term.functions.completeOrthogonalDecomposition().pseudoInverse();
+  term.pick = CompleteOrthogonal(term.functions).pseudo_inverse();
   return term;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/identify/function_observations_test.h"
 #include "abbe/identify/monte_carlo.h"
 #include "abbe/identify/prediction.h"
@@ -89,7 +90,7 @@ TEST(Identify, covariance_is_the_inverse_of_the_curvature_of_the_cost) {
         }
       curvature(i, j) = sum / (4 * h * h);
     }
-  const Eigen::MatrixXd inverse = curvature.inverse();
+  const Eigen::MatrixXd inverse = PartialLu(curvature).inverse();
   EXPECT_LT((inverse - result.covariance).norm(), 1e-3 * inverse.norm());
 }
 
@@ -124,7 +125,7 @@ TEST(Identify, a_joint_prior_replaces_the_readings_it_came_from) {
   JointPrior prior;
   for (const EstimatedParameter& parameter : one.parameters) prior.parameters.push_back(parameter.id);
   prior.value = one.estimates;
-  prior.information = one.covariance.inverse();
+  prior.information = PartialLu(one.covariance).inverse();
   prior.residual_count = 4;
   second.problem.joint_priors.push_back(prior);
   const Identification two = identify(second.problem);

@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {
@@ -99,7 +98,7 @@ TEST(LinkageSteps, StatedUncertaintiesAreThoseOfRepeatedMeasurements) {
       sampled += difference * difference.transpose() / kRuns;
     }
     // Whitened by the stated covariance the sampled one is the unit matrix within its own scatter.
-    const Eigen::SelfAdjointEigenSolver<Matrix7> stated(once.covariance);
+    const SymmetricEigen<> stated(once.covariance);
     const Matrix7 whiten =
         stated.eigenvalues().cwiseInverse().cwiseSqrt().asDiagonal() * stated.eigenvectors().transpose();
     EXPECT_LT((whiten * sampled * whiten.transpose() - Matrix7::Identity()).cwiseAbs().maxCoeff(), 0.15);
@@ -145,7 +144,7 @@ double focus_uncertainty(const LinkageReadings& commands, double focus, double u
   }
   const Eigen::VectorXd weight = weighted ? Eigen::VectorXd(u.cwiseAbs2().cwiseInverse()) : Eigen::VectorXd::Ones(n);
   const Eigen::MatrixXd from_squares =
-      (rows.transpose() * weight.asDiagonal() * rows).inverse() * rows.transpose() * weight.asDiagonal();
+      PartialLu(rows.transpose() * weight.asDiagonal() * rows).inverse() * rows.transpose() * weight.asDiagonal();
   // Lowest point of c0 + c2 t^2: its shift is -dc1 / (2 c2), c2 = 0.05^2.
   return (from_squares.row(1).transpose().cwiseProduct(u)).norm() / (2 * 0.05 * 0.05);
 }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/identify/planning_design.h"
 
 namespace abbe {
@@ -65,8 +66,9 @@ double best_of_all(const PlanningCandidates& candidates, std::size_t count, cons
     const Eigen::MatrixXd m = information(candidates, chosen);
     const double determinant = m.determinant();
     if (determinant > 1e-12)
-      best = std::min(best, functionals.rows() > 0 ? (functionals * m.inverse() * functionals.transpose()).trace()
-                                                   : -std::log(determinant));
+      best = std::min(best, functionals.rows() > 0
+                                ? (functionals * PartialLu(m).inverse() * functionals.transpose()).trace()
+                                : -std::log(determinant));
     std::size_t k = count;
     while (k > 0 && chosen[k - 1] == candidates.count() - count + k - 1) --k;
     if (k == 0) return best;
@@ -77,7 +79,7 @@ double best_of_all(const PlanningCandidates& candidates, std::size_t count, cons
 
 double criterion(const PlanningCandidates& candidates, const ReadingPlan& plan, const Eigen::MatrixXd& functionals) {
   const Eigen::MatrixXd m = information(candidates, plan.chosen);
-  return functionals.rows() > 0 ? (functionals * m.inverse() * functionals.transpose()).trace()
+  return functionals.rows() > 0 ? (functionals * PartialLu(m).inverse() * functionals.transpose()).trace()
                                 : -std::log(m.determinant());
 }
 
@@ -274,7 +276,7 @@ TEST(PlanningTest, WhatNoCandidateSeesDoesNotMatter) {
   EXPECT_NEAR(space.unseen_part(functionals)[0], 0, 1e-12);
   EXPECT_NEAR(space.unseen_part(functionals)[1], 1, 1e-12);
   const Eigen::MatrixXd covariance = planned_covariance(space, plan.chosen);
-  const Eigen::MatrixXd seen = information(full, plan.chosen).inverse();
+  const Eigen::MatrixXd seen = PartialLu(information(full, plan.chosen)).inverse();
   EXPECT_NEAR(covariance(3, 3), seen(3, 3), 1e-9 * seen(3, 3));
 }
 

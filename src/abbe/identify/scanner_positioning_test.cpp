@@ -7,6 +7,7 @@
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/engraver_part_for_test.h"
 #include "abbe/geometry/rotation.h"
 
@@ -104,16 +105,16 @@ TEST(ScannerPositioning, StatedCovarianceIsThatOfRepeatedMeasurements) {
         register_to_features(scan.points, engraver::part(), scan.labels, workpiece_from_scanner);
     ASSERT_EQ(registered.status, FineRegistrationStatus::ok);
     const auto error = motion(found.table_from_scanner, kLater, Eigen::Vector3d::Zero());
-    scanner_squares += error.dot(found.covariance.ldlt().solve(error)) / 6 / kRuns;
+    scanner_squares += error.dot(Ldlt<>(found.covariance).solve(error)) / 6 / kRuns;
     const Placement placement = locate_workpiece(found, registered);
     const auto placed =
         motion(placement.table_from_workpiece, truth.table_from_workpiece, truth.table_from_workpiece.translation);
-    placement_squares += placed.dot(placement.covariance->ldlt().solve(placed)) / 6 / kRuns;
+    placement_squares += placed.dot(Ldlt<>(*placement.covariance).solve(placed)) / 6 / kRuns;
     const PositioningParameters parameters = positioning_parameters(placement, true);
     Eigen::Matrix<double, 6, 1> six;
     const PositioningParameters exactly = positioning_parameters(truth, true);
     six << parameters.translation - exactly.translation, parameters.angles - exactly.angles;
-    parameter_squares += six.dot(parameters.covariance.ldlt().solve(six)) / 6 / kRuns;
+    parameter_squares += six.dot(Ldlt<>(parameters.covariance).solve(six)) / 6 / kRuns;
   }
   // Mean of chi-square over its degrees of freedom: 1 within 3 times sqrt(2 / (6 * 250)) = 0.11.
   EXPECT_NEAR(scanner_squares, 1, 0.12);

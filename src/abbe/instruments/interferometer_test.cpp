@@ -34,7 +34,7 @@ struct Ray {
   }
   /// Three mirrors at right angles, open towards `opening`.
   void reflect_in_corner(const Vector3d& vertex, const Vector3d& opening) {
-    Eigen::Matrix3d normals = Eigen::Quaterniond::FromTwoVectors(Vector3d(1, 1, 1), opening).toRotationMatrix();
+    Eigen::Matrix3d normals = rotation_between(Vector3d(1, 1, 1), opening);
     std::vector<int> left = {0, 1, 2};
     while (!left.empty()) {
       const auto nearest = std::min_element(left.begin(), left.end(), [&](int a, int b) {

@@ -152,7 +152,7 @@ VectorXd in_gauge(const VectorXd& values, const PolygonObservability& observabil
   if (gauge.empty()) return values;
   const MatrixXd rows = functionals(gauge, values.size());
   const MatrixXd crossing = rows * observability.unseen;
-  return values - observability.unseen * crossing.fullPivLu().solve(rows * values);
+  return values - observability.unseen * FullLu<>(crossing).solve(rows * values);
 }
 
 PolygonSeparation separate_polygon(const PolygonCampaign& nominal, const VectorXd& readings, const PolygonNoise& noise,

@@ -10,6 +10,7 @@
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/revolution_axis.h"
+#include "abbe/geometry/rotation.h"
 #include "abbe/plan/turning_axis.h"
 
 namespace abbe {
@@ -113,7 +114,7 @@ void try_rotary(const Machine& machine, const TriangleMesh& mesh, std::span<cons
   face.turning_axis = nearest->axis;
   face.axis_tilt = nearest->tilt;
   face.turning_positions = nearest->positions;
-  face.beam_turn = Eigen::Quaterniond::FromTwoVectors(found.direction, nearest->direction).toRotationMatrix();
+  face.beam_turn = rotation_between(found.direction, nearest->direction);
   face.why = "of revolution about " + components(found.direction) + ": " + name + " turns";
   for (std::size_t i = 0; i < nearest->axis; ++i) {
     if (machine.axes[i].kind != AxisKind::rotary) continue;

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "abbe/errors/actual_pose.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/runtime/allocations_for_test.h"
 #include "abbe/runtime/frozen_for_test.h"
 #include "abbe/runtime/frozen_layout.h"
@@ -51,7 +52,7 @@ struct Uncertain {
       by_parameters.col(static_cast<Eigen::Index>(p)) = (above - below) / (2 * kStep);
     }
     const Eigen::Matrix3d spread = by_parameters * options.covariance * by_parameters.transpose();
-    return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues()[2]);
+    return std::sqrt(SymmetricEigen<3>(spread).eigenvalues()[2]);
   }
 
   Machine machine;

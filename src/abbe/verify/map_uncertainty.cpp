@@ -49,7 +49,7 @@ MapUncertainty::Sums MapUncertainty::sums(const DeviationModel& model, const Dev
 
 void MapUncertainty::remove_rigid_motion(const Sums& total) {
   // Poses on one line leave a rotation open; the shortest solution removes nothing there.
-  removed_ = total.normal.completeOrthogonalDecomposition().solve(total.mixed);
+  removed_ = CompleteOrthogonal(total.normal).solve_columns(total.mixed);
 }
 
 void MapUncertainty::evaluate(const DeviationModel& model, const DeviationBlock& block,

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <string>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/decompositions.h"
 #include "abbe/machine/machines_for_test.h"
 #include "abbe/verify/error_map.h"
 
@@ -151,9 +151,7 @@ TEST(UnmodelledErrors, TheEffectIsWhatTheExactModelSaysItIsBesideRigidMotionsAnd
     if (known.col(p).norm() > 0) known.col(p).normalize();
   }
   // Differences of dependent columns leave rounding, which is no direction.
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-6);
-  solver.compute(known);
+  const CompleteOrthogonal solver(known, 1e-6);
   const std::size_t first = static_cast<std::size_t>(known.cols()) - 6;
   for (std::size_t e = 0; e < 2; ++e) {
     double square = 0;

@@ -1,0 +1,191 @@
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace abbe {
+namespace {
+
+Check check_of(const CLI::Validator& validator) {
+  return {[validator](const std::string& text) { return validator(text); }, validator.get_description()};
+}
+
+}  // namespace
+
+Check in_range(int from, int to) { return check_of(CLI::Range(from, to)); }
+Check in_range(double from, double to) { return check_of(CLI::Range(from, to)); }
+Check positive_number() { return check_of(CLI::PositiveNumber); }
+Check non_negative_number() { return check_of(CLI::NonNegativeNumber); }
+Check one_of(const std::vector<std::string>& words) { return check_of(CLI::IsMember(words)); }
+
+Option* Option::required() {
+  option_->required();
+  return this;
+}
+
+Option* Option::check(const Check& check) {
+  option_->check(
+      CLI::Validator([problem = check.problem](std::string& text) { return problem(text); }, check.description));
+  return this;
+}
+
+Option* Option::expected(int values) {
+  option_->expected(values);
+  return this;
+}
+
+Option* Option::take_all() {
+  option_->take_all();
+  return this;
+}
+
+Option* Option::allow_extra_args(bool allowed) {
+  option_->allow_extra_args(allowed);
+  return this;
+}
+
+Option* Option::capture_default_str() {
+  option_->capture_default_str();
+  return this;
+}
+
+Option* Option::type_name(const std::string& name) {
+  option_->type_name(name);
+  return this;
+}
+
+Option* Option::group(const std::string& heading) {
+  option_->group(heading);
+  return this;
+}
+
+Option* Option::excludes(const std::string& name) {
+  option_->excludes(name);
+  return this;
+}
+
+Option* Option::needs(const std::string& name) {
+  option_->needs(name);
+  return this;
+}
+
+std::size_t Option::count() const { return option_->count(); }
+std::string Option::get_name() const { return option_->get_name(); }
+
+Option* Subcommand::own(CLI::Option& option) { return options_.emplace_back(std::make_unique<Option>(option)).get(); }
+
+template <typename Value>
+Option* Subcommand::add(const std::string& name, Value& value, const std::string& description) {
+  return own(*app_->add_option(name, value, description));
+}
+
+Option* Subcommand::add_option(const std::string& name, std::string& value, const std::string& description) {
+  return add(name, value, description);
+}
+
+Option* Subcommand::add_option(const std::string& name, double& value, const std::string& description) {
+  return add(name, value, description);
+}
+
+Option* Subcommand::add_option(const std::string& name, int& value, const std::string& description) {
+  return add(name, value, description);
+}
+
+Option* Subcommand::add_option(const std::string& name, unsigned& value, const std::string& description) {
+  return add(name, value, description);
+}
+
+Option* Subcommand::add_option(const std::string& name, unsigned long& value, const std::string& description) {
+  return add(name, value, description);
+}
+
+Option* Subcommand::add_option(const std::string& name, unsigned long long& value, const std::string& description) {
+  return add(name, value, description);
+}
+
+Option* Subcommand::add_option(const std::string& name, std::optional<double>& value, const std::string& description) {
+  return add(name, value, description);
+}
+
+Option* Subcommand::add_option(const std::string& name, std::optional<std::size_t>& value,
+                               const std::string& description) {
+  return add(name, value, description);
+}
+
+Option* Subcommand::add_option(const std::string& name, std::vector<std::string>& value,
+                               const std::string& description) {
+  return add(name, value, description);
+}
+
+Option* Subcommand::add_option(const std::string& name, std::vector<double>& value, const std::string& description) {
+  return add(name, value, description);
+}
+
+Option* Subcommand::add_option(const std::string& name, std::vector<std::vector<double>>& value,
+                               const std::string& description) {
+  return add(name, value, description);
+}
+
+Option* Subcommand::add_option_function(const std::string& name,
+                                        const std::function<void(const std::string& text)>& take,
+                                        const std::string& description) {
+  return own(*app_->add_option_function<std::string>(name, take, description));
+}
+
+Option* Subcommand::add_flag(const std::string& name, bool& value, const std::string& description) {
+  return own(*app_->add_flag(name, value, description));
+}
+
+Subcommand* Subcommand::add_subcommand(const std::string& name, const std::string& description) {
+  return subcommands_.emplace_back(std::make_unique<Subcommand>(*app_->add_subcommand(name, description))).get();
+}
+
+void Subcommand::require_subcommand(int count) { app_->require_subcommand(count); }
+void Subcommand::require_subcommand(std::size_t least, std::size_t most) { app_->require_subcommand(least, most); }
+void Subcommand::fallthrough() { app_->fallthrough(); }
+void Subcommand::footer(const std::string& text) { app_->footer(text); }
+void Subcommand::callback(const std::function<void()>& call) { app_->callback(call); }
+bool Subcommand::parsed() const { return app_->parsed(); }
+std::size_t Subcommand::count(const std::string& option) const { return app_->count(option); }
+
+std::vector<std::string> Subcommand::given_options() const {
+  std::vector<std::string> names;
+  for (const CLI::Option* const option : app_->get_options()) {
+    if (option->count() > 0) names.push_back(option->get_name());
+  }
+  return names;
+}
+
+Program::Program(const std::string& description, const std::string& name)
+    : app_(std::make_unique<CLI::App>(description, name)) {}
+Program::~Program() = default;
+
+Subcommand* Program::add_subcommand(const std::string& name, const std::string& description) {
+  return subcommands_.emplace_back(std::make_unique<Subcommand>(*app_->add_subcommand(name, description))).get();
+}
+
+bool Program::has_subcommand(const std::string& name) const {
+  return !app_->get_subcommands([&](const CLI::App* subcommand) { return subcommand->get_name() == name; }).empty();
+}
+
+void Program::require_subcommand(int count) { app_->require_subcommand(count); }
+void Program::footer(const std::string& text) { app_->footer(text); }
+
+void Program::set_version_flag(const std::string& name, const std::string& version) {
+  app_->set_version_flag(name, version);
+}
+
+void Program::set_help_all_flag(const std::string& name, const std::string& description) {
+  app_->set_help_all_flag(name, description);
+}
+
+ParseResult Program::parse(int argc, const char* const* argv) {
+  try {
+    app_->parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // Help and version come this way too, with code 0.
+    return app_->exit(error) == 0 ? ParseResult::shown : ParseResult::refused;
+  }
+  return ParseResult::command;
+}
+
+}  // namespace abbe

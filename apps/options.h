@@ -1,0 +1,153 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+// The parser takes seconds to compile; options.cpp alone includes it.
+namespace CLI {  // NOLINT(readability-identifier-naming): the name is the parser's
+class App;
+class Option;
+}  // namespace CLI
+
+namespace abbe {
+
+/// What the text of a value has to fulfil.
+struct Check {
+  std::function<std::string(const std::string& text)> problem;  ///< what is wrong with a text; empty: nothing
+  std::string description;                                      ///< for --help, behind the type: "INT in [0 - 9]"
+};
+
+/// A number from one end to the other, both included, of the type of the ends.
+Check in_range(int from, int to);
+Check in_range(double from, double to);
+Check positive_number();
+Check non_negative_number();
+/// One of these words.
+Check one_of(const std::vector<std::string>& words);
+
+/// An option or a positional argument; it belongs to its subcommand. What changes it returns it, so that calls chain.
+class Option {
+ public:
+  explicit Option(CLI::Option& option) : option_(&option) {}
+
+  Option* required();
+  Option* check(const Check& check);
+  /// So many values each time it is given.
+  Option* expected(int values);
+  /// Given again, it adds to its values.
+  Option* take_all();
+  /// Whether values may follow the first; without, they are positional arguments.
+  Option* allow_extra_args(bool allowed);
+  /// --help shows what the variable holds now.
+  Option* capture_default_str();
+  /// In place of TEXT, FLOAT and the like in --help.
+  Option* type_name(const std::string& name);
+  /// Heading in --help under which it stands.
+  Option* group(const std::string& heading);
+  /// It cannot be given together with an option that exists already.
+  Option* excludes(const std::string& name);
+  /// It can only be given together with an option that exists already.
+  Option* needs(const std::string& name);
+
+  /// How often it was given.
+  std::size_t count() const;
+  /// "--output" of "-o,--output"; an argument's name as it is.
+  std::string get_name() const;
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A command with its options; it belongs to the program, or to the command that it is a part of.
+class Subcommand {
+ public:
+  explicit Subcommand(CLI::App& app) : app_(&app) {}
+  Subcommand(const Subcommand&) = delete;
+  Subcommand& operator=(const Subcommand&) = delete;
+
+  /// An option ("-o,--output") or a positional argument ("file").
+  /// @param value  written when the command line is parsed, stays as it is if the option is not given; has to live on
+  Option* add_option(const std::string& name, std::string& value, const std::string& description);
+  Option* add_option(const std::string& name, double& value, const std::string& description);
+  Option* add_option(const std::string& name, int& value, const std::string& description);
+  // Two of these are std::size_t and std::uint64_t, which of them depends on the system.
+  Option* add_option(const std::string& name, unsigned& value, const std::string& description);
+  Option* add_option(const std::string& name, unsigned long& value, const std::string& description);
+  Option* add_option(const std::string& name, unsigned long long& value, const std::string& description);
+  Option* add_option(const std::string& name, std::optional<double>& value, const std::string& description);
+  Option* add_option(const std::string& name, std::optional<std::size_t>& value, const std::string& description);
+  Option* add_option(const std::string& name, std::vector<std::string>& value, const std::string& description);
+  Option* add_option(const std::string& name, std::vector<double>& value, const std::string& description);
+  Option* add_option(const std::string& name, std::vector<std::vector<double>>& value, const std::string& description);
+  /// @param take  is called with the text while the command line is parsed; what it throws comes out of
+  /// Program::parse()
+  Option* add_option_function(const std::string& name, const std::function<void(const std::string& text)>& take,
+                              const std::string& description);
+  /// An option without a value.
+  Option* add_flag(const std::string& name, bool& value, const std::string& description);
+
+  Subcommand* add_subcommand(const std::string& name, const std::string& description);
+  /// How many subcommands have to be given.
+  void require_subcommand(int count);
+  void require_subcommand(std::size_t least, std::size_t most);
+  /// What it does not know is looked for in the command that it is a part of.
+  void fallthrough();
+  /// Text at the end of --help.
+  void footer(const std::string& text);
+  /// Called when the command line was parsed and names this command.
+  void callback(const std::function<void()>& call);
+
+  /// Whether the command line names this command.
+  bool parsed() const;
+  /// How often an option was given.
+  std::size_t count(const std::string& option) const;
+  /// Names of the options and arguments that were given, in the order in which they were added.
+  std::vector<std::string> given_options() const;
+
+ private:
+  template <typename Value>
+  Option* add(const std::string& name, Value& value, const std::string& description);
+  Option* own(CLI::Option& option);
+
+  CLI::App* app_;
+  std::vector<std::unique_ptr<Option>> options_;
+  std::vector<std::unique_ptr<Subcommand>> subcommands_;
+};
+
+/// How parsing a command line ended.
+enum class ParseResult {
+  command,  ///< everything is there to run the command
+  shown,    ///< help or the version was wanted and is printed
+  refused   ///< what is wrong is printed on standard error
+};
+
+/// The program as a whole: the options that belong to no subcommand, and the subcommands.
+class Program {
+ public:
+  Program(const std::string& description, const std::string& name);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  Subcommand* add_subcommand(const std::string& name, const std::string& description);
+  bool has_subcommand(const std::string& name) const;
+  /// How many subcommands have to be given.
+  void require_subcommand(int count);
+  /// Text at the end of --help.
+  void footer(const std::string& text);
+  void set_version_flag(const std::string& name, const std::string& version);
+  /// A flag for the help of all subcommands.
+  void set_help_all_flag(const std::string& name, const std::string& description);
+
+  ParseResult parse(int argc, const char* const* argv);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+  std::vector<std::unique_ptr<Subcommand>> subcommands_;
+};
+
+}  // namespace abbe
