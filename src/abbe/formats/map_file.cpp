@@ -112,7 +112,9 @@ std::array<std::size_t, 3> structured_counts(const MapData& map) {
 }
 
 void check([[maybe_unused]] const MapData& map) {
-  [[maybe_unused]] const auto complete = [&](const std::vector<double>& values) { return values.size() == map.count(); };
+  [[maybe_unused]] const auto complete = [&](const std::vector<double>& values) {
+    return values.size() == map.count();
+  };
   assert(std::ranges::all_of(map.points, complete));
   assert(std::ranges::all_of(map.fields, [&](const MapField& field) {
     return (field.components.size() == 1 || field.components.size() == 3) &&
