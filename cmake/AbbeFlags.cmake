@@ -5,18 +5,21 @@ add_library(abbe_flags INTERFACE)
 add_library(abbe_test_flags INTERFACE)
 target_link_libraries(abbe_flags INTERFACE abbe_common_flags)
 target_link_libraries(abbe_test_flags INTERFACE abbe_common_flags)
+if(ABBE_WARNINGS OR ABBE_WERROR)
+  target_compile_options(abbe_common_flags INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -Woverloaded-virtual
+    # clang counts changes of sign as conversions, GCC does not; Eigen's signed indices make them noise.
+    $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>
+    # In a batch of sources (AbbeUnits.cmake) none of them is the main file, to which this warning leaves unnamed namespaces.
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ABBE_UNITY}>>:-Wno-subobject-linkage>
+    # Nor does a local name hide one of another source; GCC and the units of single sources keep the warning.
+    $<$<AND:$<CXX_COMPILER_ID:Clang>,$<BOOL:${ABBE_UNITY}>>:-Wno-shadow>
+    # False alarms of GCC 12 on strings that are put together (its bugs 105329 and 105651).
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds;-Wno-restrict>
+    # Nor does it know at -O1, with which the development build is compiled, what inlining would have told it.
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:RelWithDebInfo>>:-Wno-maybe-uninitialized>)
+endif()
 target_compile_options(abbe_common_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -Woverloaded-virtual
-  # clang counts changes of sign as conversions, GCC does not; Eigen's signed indices make them noise.
-  $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>
-  # In a batch of sources (AbbeUnits.cmake) none of them is the main file, to which this warning leaves unnamed namespaces.
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ABBE_UNITY}>>:-Wno-subobject-linkage>
-  # Nor does a local name hide one of another source; GCC and the units of single sources keep the warning.
-  $<$<AND:$<CXX_COMPILER_ID:Clang>,$<BOOL:${ABBE_UNITY}>>:-Wno-shadow>
-  # False alarms of GCC 12 on strings that are put together (its bugs 105329 and 105651).
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds;-Wno-restrict>
-  # Nor does it know at -O1, with which the development build is compiled, what inlining would have told it.
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:RelWithDebInfo>>:-Wno-maybe-uninitialized>
   # The same bits on every machine and at every optimisation level.
   -ffp-contract=off
   $<$<BOOL:${ABBE_WERROR}>:-Werror>
