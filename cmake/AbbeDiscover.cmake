@@ -4,10 +4,10 @@
 # to start, the program is run as a whole, in ABBE_SHARDS parts, of which ctest runs several at a time.
 set(ABBE_SHARDS 0 CACHE STRING "0: each test is one of ctest's; else the parts in which a test program is run")
 
-# What `make test` builds with the sanitizers: the programs for fuzzing, and the tests of the folders that read files,
-# walk through memory by hand or serve a controller. `make sanitize` builds and runs the others as well.
+# What `make test` builds with the sanitizers: the programs for fuzzing, and the tests of the folders that read files or
+# serve a controller. `make sanitize` builds and runs the others as well.
 add_custom_target(abbe_parts)
-set(abbe_parts_prefixes geometry. errors. compensate. formats. runtime.)
+set(abbe_parts_prefixes errors. compensate. formats. runtime.)
 
 function(abbe_discover_tests program prefix labels timeout)
   if(prefix IN_LIST abbe_parts_prefixes)

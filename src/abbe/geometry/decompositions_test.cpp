@@ -46,10 +46,11 @@ void expect_the_matrix_back_at_fixed_size() {
     if constexpr (N == 3 || N == 6) {
       ASSERT_LT((FullLu<N>(safe).solve(image) - right).norm(), 1e-12) << k;
       ASSERT_LT((FullLu<N>(safe).inverse() * image - right).norm(), 1e-12) << k;
-      // Of the norm of largest column sums, estimated: never below the truth by much.
+      // By the largest sums of columns. The estimate errs to one side only.
       const double condition =
           safe.cwiseAbs().colwise().sum().maxCoeff() * FullLu<N>(safe).inverse().cwiseAbs().colwise().sum().maxCoeff();
-      ASSERT_NEAR(FullLu<N>(safe).reciprocal_condition() * condition, 1, 0.7) << k;
+      ASSERT_GT(FullLu<N>(safe).reciprocal_condition() * condition, 1 - 1e-12) << k;
+      ASSERT_LT(FullLu<N>(safe).reciprocal_condition() * condition, 10) << k;
     }
     if constexpr (N == 3) {
       const SingularValues<3> svd(a);
