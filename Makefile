@@ -34,11 +34,11 @@ export JOBS
 export CTEST_OUTPUT_ON_FAILURE := 1
 
 # What is said at the start: minutes that the whole takes on two cores when nothing is built and nothing is in ccache.
-BUILD_MINUTES := 10
+BUILD_MINUTES := 7
 LOOP_MINUTES := 3
-TEST_MINUTES := 30
+TEST_MINUTES := 40
 SANITIZE_MINUTES := 30
-QUICK_MINUTES := 30
+QUICK_MINUTES := 20
 
 comma := ,
 say = @printf '\n== %s (%s)\n' "$(1)" "$$(date -u +%H:%M:%S)"
