@@ -18,6 +18,10 @@ if(ABBE_WARNINGS OR ABBE_WERROR)
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds;-Wno-restrict>
     # Nor does it know at -O1, with which the development build is compiled, what inlining would have told it.
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:RelWithDebInfo>>:-Wno-maybe-uninitialized>)
+else()
+  # The one of these that GCC gives unasked.
+  target_compile_options(abbe_common_flags INTERFACE
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ABBE_UNITY}>>:-Wno-subobject-linkage>)
 endif()
 target_compile_options(abbe_common_flags INTERFACE
   # The same bits on every machine and at every optimisation level.
