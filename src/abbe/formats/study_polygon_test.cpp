@@ -133,7 +133,6 @@ TEST(StudyPolygon, ReadsAPrismWithWhatIsKnownOfIt) {
 TEST(StudyPolygon, AZeroIsTheIndicationOfThePrismAtItsNominalPlace) {
   const Study study = parsed_polygon_study(polygon_study_with("distance_error_um = 2", "distance_error_um = 0"));
   const Instrument& device = *study.setups[0].device;
-  const auto& gauge = dynamic_cast<const PolygonGauge&>(device);
   std::vector<double> values;
   for (const SetupQuantity& quantity : device.quantities()) {
     const bool zero = quantity.name.find(".zero.") != std::string::npos;
@@ -142,14 +141,15 @@ TEST(StudyPolygon, AZeroIsTheIndicationOfThePrismAtItsNominalPlace) {
   // Aligned at C = 30 deg, so that the first mount shows its first face there.
   const std::size_t item = device.item_at(study.machine, 0, {30 * 3600 * kArcsec, 100, 0});
   EXPECT_EQ(device.items()[item].name, "first.face1");
-  std::vector<double> of_item;
-  for (const std::size_t q : device.items()[item].quantities) of_item.push_back(values[q]);
-  SeenBody<double> seen;
   // C' turned by 30 deg carries the workpiece the other way; X' = 100 carries it to -100.
-  seen.rotation = Eigen::AngleAxisd(-30 * 3600 * kArcsec, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  seen.origin = {-100, 0, 0};
+  const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rotation =
+      Eigen::AngleAxisd(-30 * 3600 * kArcsec, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Vector3d origin(-100, 0, 0);
+  ItemBlock block{item, 1, {}, {}, {}, values.data()};
+  for (int i = 0; i < 9; ++i) block.rotation[i] = rotation.data() + i;
+  for (int i = 0; i < 3; ++i) block.origin[i] = origin.data() + i;
   double reading[6];
-  gauge.equation(item, seen, of_item.data(), nullptr, reading);
+  device.model(block, ModelledBlock{reading});
   EXPECT_NEAR(reading[0], 0, 1e-14);
   EXPECT_NEAR(reading[2], 2 * kArcsec, 1e-14);
   EXPECT_NEAR(reading[3], 3e-3, 1e-11);

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "abbe/instruments/equation_instrument_inline.h"
+
 namespace abbe {
 
 Autocollimator::Autocollimator(const AutocollimatorSetup& setup)
@@ -29,5 +31,24 @@ Autocollimator::Autocollimator(const AutocollimatorSetup& setup)
 double Autocollimator::standard_uncertainty(const InstrumentReadings&, std::size_t, std::size_t) const {
   return noise_;
 }
+
+template <typename S>
+void Autocollimator::equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*,
+                              S* reading) const {
+  using std::atan2;
+  const Eigen::Matrix<S, 3, 1> normal = seen.rotation * mirror_.tilted(quantities[0], quantities[1]);
+  const Eigen::Matrix<S, 3, 1> beam = beam_.template cast<S>();
+  const S along = beam.dot(normal);
+  const Eigen::Matrix<S, 3, 1> back = beam - normal * (along * S(2.0));
+  const S forward = -back.dot(beam);
+  for (int i = 0; i < 2; ++i) {
+    const Eigen::Matrix<S, 3, 1> across = across_[i].template cast<S>();
+    const S deflected = back.dot(across);
+    const S raw = half_tangent_ ? S(deflected / forward) : S(atan2(deflected, forward));
+    reading[i] = raw * S(0.5) + quantities[2 + i];
+  }
+}
+
+template class EquationInstrument<Autocollimator, 4, 2>;
 
 }  // namespace abbe

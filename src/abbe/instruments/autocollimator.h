@@ -51,20 +51,7 @@ class Autocollimator : public EquationInstrument<Autocollimator, 4, 2> {
   PoseFreedom pose_freedom() const override { return PoseFreedom::along_line; }
 
   template <typename S>
-  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const {
-    using std::atan2;
-    const Eigen::Matrix<S, 3, 1> normal = seen.rotation * mirror_.tilted(quantities[0], quantities[1]);
-    const Eigen::Matrix<S, 3, 1> beam = beam_.template cast<S>();
-    const S along = beam.dot(normal);
-    const Eigen::Matrix<S, 3, 1> back = beam - normal * (along * S(2.0));
-    const S forward = -back.dot(beam);
-    for (int i = 0; i < 2; ++i) {
-      const Eigen::Matrix<S, 3, 1> across = across_[i].template cast<S>();
-      const S deflected = back.dot(across);
-      const S raw = half_tangent_ ? S(deflected / forward) : S(atan2(deflected, forward));
-      reading[i] = raw * S(0.5) + quantities[2 + i];
-    }
-  }
+  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const;
 
  private:
   DirectionFrame mirror_;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/instruments/equation_instrument_inline.h"
+
 namespace abbe {
 
 BallBar::BallBar(const BallBarSetup& setup)
@@ -31,5 +33,16 @@ std::optional<MeetingPoints> BallBar::meeting_points(std::size_t item) const {
   };
   return MeetingPoints{at(0), at(3)};
 }
+
+template <typename S>
+void BallBar::equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const {
+  using std::sqrt;
+  const Eigen::Matrix<S, 3, 1> spindle(quantities[0], quantities[1], quantities[2]);
+  const Eigen::Matrix<S, 3, 1> table(quantities[3], quantities[4], quantities[5]);
+  const Eigen::Matrix<S, 3, 1> bar = seen.point(spindle) - table;
+  reading[0] = sqrt(bar.dot(bar)) + quantities[6];
+}
+
+template class EquationInstrument<BallBar, 7, 1>;
 
 }  // namespace abbe

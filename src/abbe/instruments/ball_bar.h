@@ -39,13 +39,7 @@ class BallBar : public EquationInstrument<BallBar, 7, 1> {
   PoseFreedom pose_freedom() const override { return PoseFreedom::at_distance; }
 
   template <typename S>
-  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const {
-    using std::sqrt;
-    const Eigen::Matrix<S, 3, 1> spindle(quantities[0], quantities[1], quantities[2]);
-    const Eigen::Matrix<S, 3, 1> table(quantities[3], quantities[4], quantities[5]);
-    const Eigen::Matrix<S, 3, 1> bar = seen.point(spindle) - table;
-    reading[0] = sqrt(bar.dot(bar)) + quantities[6];
-  }
+  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const;
 
  private:
   double noise_, noise_per_length_;

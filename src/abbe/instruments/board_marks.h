@@ -70,29 +70,7 @@ class BoardMarks : public EquationInstrument<BoardMarks, 13, 3> {
   std::vector<std::vector<double>> planned_inputs(std::size_t item) const override;
 
   template <typename S>
-  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double* inputs, S* reading) const {
-    using std::sqrt;
-    const S* q = quantities;
-    const Eigen::Matrix<S, 3, 1> focus = seen.point(Eigen::Matrix<S, 3, 1>(q[0], q[1], q[2]));
-    const Eigen::Matrix<S, 3, 1> beam = seen.rotation * beam_.tilted(q[3], q[4]);
-    const Eigen::Matrix<S, 3, 1> origin(q[5], q[6], q[7]);
-    const Eigen::Matrix<S, 3, 3> board = rotation_zyx(q[8], q[9], q[10]);
-    // Both in the board's own axes: the surface is w = 0.
-    const Eigen::Matrix<S, 3, 1> from = board.transpose() * (focus - origin), along = board.transpose() * beam;
-    const S distance = -from[2] / along[2];
-    const S u = from[0] + distance * along[0], v = from[1] + distance * along[1];
-    int row = 0;
-    if (position_ == BoardMarksSetup::Position::point) {
-      reading[row++] = u;
-      reading[row++] = v;
-    } else if (position_ == BoardMarksSetup::Position::line) {
-      reading[row++] = S(std::cos(inputs[0])) * u + S(std::sin(inputs[0])) * v;
-    }
-    if (width_) {
-      const S spread = q[12] * distance;
-      reading[row] = sqrt(q[11] * q[11] + spread * spread);
-    }
-  }
+  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double* inputs, S* reading) const;
 
  private:
   BoardMarksSetup::Position position_;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/instruments/equation_instrument_inline.h"
+
 namespace abbe {
 
 DialIndicators::DialIndicators(const DialIndicatorsSetup& setup)
@@ -58,5 +60,23 @@ std::optional<MeetingPoints> DialIndicators::meeting_points(std::size_t item) co
   const auto value = [&](std::size_t i) { return quantities_[q[i]].value; };
   return MeetingPoints{{value(0), value(1), value(2)}, touches_[item].front().point};
 }
+
+template <typename S>
+void DialIndicators::equation(std::size_t item, const SeenBody<S>& seen, const S* quantities, const double*,
+                              S* reading) const {
+  for (std::size_t i = 0; i < touches_[item].size(); ++i) {
+    const Touch& touch = touches_[item][i];
+    const S* own = quantities + 4 * i;
+    const S* face = quantities + touch.face;
+    const Eigen::Matrix<S, 3, 1> tip = seen.point(Eigen::Matrix<S, 3, 1>(own[0], own[1], own[2]));
+    const Eigen::Matrix<S, 3, 1> plunger = seen.direction(touch.direction);
+    const Eigen::Matrix<S, 3, 1> normal = touch.normal.tilted(face[1], face[2]);
+    Eigen::Matrix<S, 3, 1> to_face;
+    for (int k = 0; k < 3; ++k) to_face[k] = face[0] * S(touch.normal.direction[k]) + S(touch.point[k]) - tip[k];
+    reading[i] = normal.dot(to_face) / normal.dot(plunger) + own[3];
+  }
+}
+
+template class EquationInstrument<DialIndicators, 42, 6>;
 
 }  // namespace abbe

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/instruments/equation_instrument_inline.h"
+
 namespace abbe {
 
 ElectronicLevel::ElectronicLevel(const ElectronicLevelSetup& setup)
@@ -29,5 +31,21 @@ ElectronicLevel::ElectronicLevel(const ElectronicLevelSetup& setup)
 double ElectronicLevel::standard_uncertainty(const InstrumentReadings&, std::size_t, std::size_t) const {
   return noise_;
 }
+
+template <typename S>
+void ElectronicLevel::equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*,
+                               S* reading) const {
+  using std::asin;
+  const Eigen::Matrix<S, 3, 1> up = up_.tilted(quantities[0], quantities[1]);
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    reading[i] = asin(up.dot(seen.direction(directions_[i]))) + quantities[2 + i];
+    if (relative_) {
+      const Eigen::Matrix<S, 3, 1> at_rest = directions_[i].template cast<S>();
+      reading[i] -= asin(up.dot(at_rest));
+    }
+  }
+}
+
+template class EquationInstrument<ElectronicLevel, 4, 2>;
 
 }  // namespace abbe

@@ -53,17 +53,7 @@ class ElectronicLevel : public EquationInstrument<ElectronicLevel, 4, 2> {
                               std::size_t component) const override;
 
   template <typename S>
-  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const {
-    using std::asin;
-    const Eigen::Matrix<S, 3, 1> up = up_.tilted(quantities[0], quantities[1]);
-    for (std::size_t i = 0; i < directions_.size(); ++i) {
-      reading[i] = asin(up.dot(seen.direction(directions_[i]))) + quantities[2 + i];
-      if (relative_) {
-        const Eigen::Matrix<S, 3, 1> at_rest = directions_[i].template cast<S>();
-        reading[i] -= asin(up.dot(at_rest));
-      }
-    }
-  }
+  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const;
 
  private:
   DirectionFrame up_;

@@ -1,34 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <algorithm>
-#include <array>
-#include <cassert>
 #include <memory>
-#include <type_traits>
+#include <vector>
 
-#include "abbe/geometry/dual.h"
 #include "abbe/instruments/instrument.h"
 
 namespace abbe {
 
-/// Where the body `from` is seen at one pose, in the frame of `to`; S is double or Dual.
+/// Where a body is seen at one pose; S is double or Dual. See equation_instrument_inline.h.
 template <typename S>
-struct SeenBody {
-  Eigen::Matrix<S, 3, 3> rotation;
-  Eigen::Matrix<S, 3, 1> origin;
-
-  /// A point of the body (its own frame, mm) in the frame of `to`.
-  template <typename Vector>
-  Eigen::Matrix<S, 3, 1> point(const Vector& own) const {
-    return rotation * own.template cast<S>() + origin;
-  }
-  /// A direction of the body in the frame of `to`.
-  template <typename Vector>
-  Eigen::Matrix<S, 3, 1> direction(const Vector& own) const {
-    return rotation * own.template cast<S>();
-  }
-};
+struct SeenBody;
 
 /// An instrument whose measurement equation is written once, for any scalar; derivatives follow by themselves.
 ///
@@ -38,116 +19,26 @@ struct SeenBody {
 ///     void equation(std::size_t item, const SeenBody<S>& seen, const S* quantities, const double* inputs,
 ///                   S* reading) const;
 ///
+/// and is compiled once for all scalars: its source includes equation_instrument_inline.h, defines equation() and ends
+/// with
+///
+///     template class EquationInstrument<Derived, kQuantities, kRows>;
+///
 /// @tparam kQuantities  largest number of quantities of an item; `quantities` are the item's, in its order
 /// @tparam kRows        largest number of components; `reading` is filled for those of components(), in their order
 template <typename Derived, int kQuantities, int kRows>
 class EquationInstrument : public Instrument {
  public:
-  void model(const ItemBlock& block, const ModelledBlock& out) const final {
-    if (out.by_motion == nullptr && out.by_quantity == nullptr) {
-      evaluate<double>(block, out);
-      return;
-    }
-    // Every derivative that is carried costs, and most numbers of a set-up are exact.
-    const std::size_t estimated = estimated_quantities(block.item);
-    if constexpr (kQuantities > kFew) {
-      if (estimated <= kFew) return evaluate<Dual<6 + kFew>>(block, out);
-    }
-    if constexpr (kQuantities > kSome) {
-      if (estimated <= kSome) return evaluate<Dual<6 + kSome>>(block, out);
-    }
-    evaluate<Dual<6 + kQuantities>>(block, out);
-  }
-
-  std::shared_ptr<const Instrument> with_values(const std::vector<double>& values) const final {
-    auto copy = std::make_shared<Derived>(*static_cast<const Derived*>(this));
-    copy->set_values(values);
-    return copy;
-  }
+  void model(const ItemBlock& block, const ModelledBlock& out) const final;
+  std::shared_ptr<const Instrument> with_values(const std::vector<double>& values) const final;
 
  protected:
   using Instrument::Instrument;
 
  private:
-  static constexpr int kFew = 4, kSome = 12;
-  static constexpr std::size_t kMaxInputs = 16;
-
-  std::size_t estimated_quantities(std::size_t item) const {
-    std::size_t count = 0;
-    for (const std::size_t q : items_[item].quantities) count += quantities_[q].knowledge != Knowledge::exact ? 1U : 0U;
-    return count;
-  }
-
-  /// Value with the derivatives by the turn of the body.
   template <typename S>
-  static S turned(double value, const Eigen::Vector3d& by_turn) {
-    S result(value);
-    for (std::size_t i = 0; i < 3; ++i) result.slope[3 + i] = by_turn[static_cast<Eigen::Index>(i)];
-    return result;
-  }
-
-  template <typename S>
-  static SeenBody<S> seen_body(const ItemBlock& block, std::size_t k) {
-    SeenBody<S> seen;
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        if constexpr (std::is_same_v<S, double>) {
-          seen.rotation(i, j) = block.rotation[3 * i + j][k];
-        } else {
-          // d(R e_j) = w x R e_j.
-          const Eigen::Vector3d column(block.rotation[j][k], block.rotation[3 + j][k], block.rotation[6 + j][k]);
-          Eigen::Vector3d by_turn = Eigen::Vector3d::Zero();
-          by_turn[(i + 1) % 3] = column[(i + 2) % 3];
-          by_turn[(i + 2) % 3] = -column[(i + 1) % 3];
-          seen.rotation(i, j) = turned<S>(column[i], by_turn);
-        }
-      }
-      if constexpr (std::is_same_v<S, double>) {
-        seen.origin[i] = block.origin[i][k];
-      } else {
-        seen.origin[i] = S::variable(block.origin[i][k], i);
-      }
-    }
-    return seen;
-  }
-
-  template <typename S>
-  void evaluate(const ItemBlock& block, const ModelledBlock& out) const {
-    const std::vector<std::size_t>& used = items_[block.item].quantities;
-    assert(used.size() <= static_cast<std::size_t>(kQuantities) && block.inputs.size() <= kMaxInputs);
-    assert(components_.size() <= static_cast<std::size_t>(kRows));
-    std::array<S, static_cast<std::size_t>(kQuantities > 0 ? kQuantities : 1)> quantities{};
-    std::array<int, static_cast<std::size_t>(kQuantities > 0 ? kQuantities : 1)> variable{};  // -1: exact
-    int next = 6;
-    for (std::size_t q = 0; q < used.size(); ++q) {
-      const double value = block.quantities[used[q]];
-      variable[q] = quantities_[used[q]].knowledge != Knowledge::exact ? next++ : -1;
-      if constexpr (std::is_same_v<S, double>) {
-        quantities[q] = value;
-      } else {
-        quantities[q] = variable[q] >= 0 ? S::variable(value, variable[q]) : S(value);
-      }
-    }
-    std::array<double, kMaxInputs> inputs{};
-    std::array<S, static_cast<std::size_t>(kRows)> reading;
-    for (std::size_t k = 0; k < block.count; ++k) {
-      for (std::size_t i = 0; i < block.inputs.size(); ++i) inputs[i] = block.inputs[i][k];
-      static_cast<const Derived*>(this)->equation(block.item, seen_body<S>(block, k), quantities.data(), inputs.data(),
-                                                  reading.data());
-      for (std::size_t row = 0; row < components_.size(); ++row) {
-        out.value[row * block.count + k] = value_of(reading[row]);
-        if constexpr (!std::is_same_v<S, double>) {
-          for (std::size_t j = 0; j < 6 && out.by_motion != nullptr; ++j) {
-            out.by_motion[(row * 6 + j) * block.count + k] = reading[row].slope[j];
-          }
-          for (std::size_t q = 0; q < used.size() && out.by_quantity != nullptr; ++q) {
-            out.by_quantity[(row * used.size() + q) * block.count + k] =
-                variable[q] >= 0 ? reading[row].slope[static_cast<std::size_t>(variable[q])] : 0.0;
-          }
-        }
-      }
-    }
-  }
+  void evaluate(const ItemBlock& block, const ModelledBlock& out) const;
+  std::size_t estimated_quantities(std::size_t item) const;
 };
 
 }  // namespace abbe

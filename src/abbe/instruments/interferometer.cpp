@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/instruments/equation_instrument_inline.h"
 #include "abbe/instruments/instrument_observations.h"
 
 namespace abbe {
@@ -228,5 +229,85 @@ std::optional<MeetingPoints> Interferometer::meeting_points(std::size_t item) co
   };
   return MeetingPoints{at(kOptic), at(kOrigin)};
 }
+
+template <typename S>
+Eigen::Matrix<S, 3, 3> Interferometer::beam_axes(const Line& line, const S* quantities) const {
+  using std::cos;
+  using std::sin;
+  const S cr = cos(quantities[kAlignment]), sr = sin(quantities[kAlignment]);
+  const S cp = cos(quantities[kAlignment + 1]), sp = sin(quantities[kAlignment + 1]);
+  const S cy = cos(quantities[kAlignment + 2]), sy = sin(quantities[kAlignment + 2]);
+  Eigen::Matrix<S, 3, 3> aligned;  // Rz(yaw) Ry(pitch) Rx(roll)
+  aligned << cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, sy * cp, sy * sp * sr + cy * cr,
+      sy * sp * cr - cy * sr, -sp, cp * sr, cp * cr;
+  Eigen::Matrix<S, 3, 3> first = line.first_axes.cast<S>() * aligned;
+  if (line.square_normal.isZero(0)) return first;
+  // Rodrigues: the square turns the reference of the first run, and everything aligned with it.
+  const S c = cos(quantities[kSquare]), s = sin(quantities[kSquare]);
+  Eigen::Matrix<S, 3, 3> squared;
+  for (int j = 0; j < 3; ++j) {
+    const Eigen::Vector3d column = line.nominal_axes.col(j), turned = line.square_normal.cross(column);
+    const Eigen::Vector3d along = line.square_normal * line.square_normal.dot(column);
+    for (int i = 0; i < 3; ++i) squared(i, j) = c * S(column[i] - along[i]) + s * S(turned[i]) + S(along[i]);
+  }
+  return first * (line.first_axes.transpose().cast<S>() * squared);
+}
+
+template <typename S>
+void Interferometer::equation(std::size_t item, const SeenBody<S>& seen, const S* quantities, const double*,
+                              S* reading) const {
+  using std::asin;
+  using std::atan2;
+  using Vector = Eigen::Matrix<S, 3, 1>;
+  const Line& line = lines_[item];
+  const Eigen::Matrix<S, 3, 3> axes = beam_axes(line, quantities);
+  const Vector optic(quantities[kOptic], quantities[kOptic + 1], quantities[kOptic + 2]);
+  const Vector origin(quantities[kOrigin], quantities[kOrigin + 1], quantities[kOrigin + 2]);
+  const Vector v = seen.point(optic) - origin;
+  const Eigen::Matrix<S, 3, 3> turn = seen.rotation * line.orientation_transpose.cast<S>();
+  const auto carried = [&](int axis) { return Vector(turn * axes.col(axis)); };
+  const auto across = [&](int axis) {
+    return line.reflector_moves ? S(carried(axis).dot(v)) : S(axes.col(axis).dot(v));
+  };
+  const S scale_length = S(1) + quantities[kScale], scale_straightness = S(1) + quantities[kScale + 1],
+          scale_angle = S(1) + quantities[kScale + 2];
+  for (std::size_t row = 0; row < measured_.size(); ++row) {
+    S value(0);
+    switch (measured_[row]) {
+      case InterferometerComponent::length:
+        if (line.target == LengthTarget::retroreflector) {
+          value = scale_length * S(axes.col(0).dot(v));
+        } else {
+          const Vector normal = carried(0);
+          value = scale_length * S(normal.dot(v)) * S(normal.dot(axes.col(0)));
+        }
+        break;
+      case InterferometerComponent::straightness_y:
+        value = scale_straightness * across(1);
+        break;
+      case InterferometerComponent::straightness_z:
+        value = scale_straightness * across(2);
+        break;
+      case InterferometerComponent::roll: {
+        const Vector side = carried(1);
+        value = scale_angle * atan2(S(axes.col(2).dot(side)), S(axes.col(1).dot(side)));
+        break;
+      }
+      case InterferometerComponent::pitch:
+        value = scale_angle * asin(S(axes.col(0).dot(carried(2))));
+        break;
+      case InterferometerComponent::yaw:
+        value = scale_angle * asin(S(-axes.col(0).dot(carried(1))));
+        break;
+    }
+    value += quantities[static_cast<std::size_t>(kZero) + row];
+    if (line.approach != 0) {
+      value += S(0.5 * line.approach) * quantities[static_cast<std::size_t>(kZero) + measured_.size() + row];
+    }
+    reading[row] = value;
+  }
+}
+
+template class EquationInstrument<Interferometer, 25, 6>;
 
 }  // namespace abbe

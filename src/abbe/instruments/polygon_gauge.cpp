@@ -9,6 +9,7 @@
 
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
+#include "abbe/instruments/equation_instrument_inline.h"
 #include "abbe/instruments/polygon_placement.h"
 
 namespace abbe {
@@ -205,5 +206,81 @@ InstrumentReadings polygon_plan(const Machine& machine, const PolygonGauge& gaug
   }
   return plan;
 }
+
+template <typename S>
+void PolygonGauge::equation(std::size_t item, const SeenBody<S>& seen, const S* q, const double*, S* reading) const {
+  using Vector = Eigen::Matrix<S, 3, 1>;
+  using std::cos;
+  using std::sin;
+  const auto turned = [](const Vector& v, int axis, const S& c, const S& s) {
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    Vector result = v;
+    result[a] = c * v[a] - s * v[b];
+    result[b] = s * v[a] + c * v[b];
+    return result;
+  };
+  const Seen& nominal = nominal_[item];
+  const std::vector<PolygonReading>& measured = setup_.steps[nominal.step].measured;
+  const S mount_c[3] = {cos(q[kMount]), cos(q[kMount + 1]), cos(q[kMount + 2] + S(nominal.turn))};
+  const S mount_s[3] = {sin(q[kMount]), sin(q[kMount + 1]), sin(q[kMount + 2] + S(nominal.turn))};
+  const Vector offset(q[kMount + 3], q[kMount + 4], q[kMount + 5]);
+  const auto constant = [](const Eigen::Vector3d& v) { return Vector(S(v[0]), S(v[1]), S(v[2])); };
+  const auto times = [](const Eigen::Matrix3d& m, const Vector& v) {
+    Vector result;
+    for (int i = 0; i < 3; ++i) result[i] = S(m(i, 0)) * v[0] + S(m(i, 1)) * v[1] + S(m(i, 2)) * v[2];
+    return result;
+  };
+  const Eigen::Matrix3d to_bench = setup_.sensors_from_bench.rotation.transpose();
+
+  // The three planes in the bench, those that are read.
+  Vector normals[3];
+  S offsets[3];
+  bool known[3] = {false, false, false};
+  const auto plane = [&](int side) {
+    if (known[side]) return;
+    known[side] = true;
+    Vector normal;
+    S distance = S(setup_.polygon.top.height);
+    if (side == 2) {
+      const S sx = sin(q[kTop]), cx = cos(q[kTop]), sy = sin(q[kTop + 1]), cy = cos(q[kTop + 1]);
+      normal = Vector(-sy, cy * sx, cy * cx);
+    } else {
+      const int face = side == 0 ? kFaceX : kFaceY;
+      const S azimuth = q[face] + S(side == 0 ? nominal.azimuth_x : nominal.azimuth_y);
+      const S flat = cos(q[face + 1]);
+      normal = Vector(cos(azimuth) * flat, sin(azimuth) * flat, sin(q[face + 1]));
+      distance = q[face + 2];
+    }
+    normal =
+        turned(turned(turned(normal, 2, mount_c[2], mount_s[2]), 0, mount_c[0], mount_s[0]), 1, mount_c[1], mount_s[1]);
+    const Vector on_plane = normal * distance + offset;
+    const Vector in_table = times(setup_.table_from_prism.rotation, normal);
+    const Vector point =
+        times(setup_.table_from_prism.rotation, on_plane) + constant(setup_.table_from_prism.translation);
+    const Vector seen_point = seen.point(point) - constant(setup_.sensors_from_bench.translation);
+    normals[side] = times(to_bench, seen.direction(in_table));
+    offsets[side] = normals[side].dot(times(to_bench, seen_point));
+  };
+
+  for (std::size_t row = 0; row < measured.size(); ++row) {
+    const PolygonReading kind = measured[row];
+    const PolygonSensor& sensor = setup_.bench.sensor(kind);
+    const int side = static_cast<int>(sensor.side);
+    plane(side);
+    const Eigen::Matrix3d& axes = axes_[static_cast<std::size_t>(kind)];
+    const S along = normals[side].dot(constant(axes.col(side)));
+    if (is_angle(kind)) {
+      const PolygonAcross across = across_of(kind);
+      const S aside = normals[side].dot(constant(axes.col(across.axis)));
+      reading[row] = S(across.sign) * along * aside / (S(2) * along * along - S(1));
+    } else {
+      const Eigen::Vector3d start = sensor.position + axes * sensor.exit;
+      reading[row] = S(sensor.exit[side]) + (offsets[side] - normals[side].dot(constant(start))) / along;
+    }
+    reading[row] += q[kZero + static_cast<int>(row)];
+  }
+}
+
+template class EquationInstrument<PolygonGauge, 20, 6>;
 
 }  // namespace abbe

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "abbe/instruments/equation_instrument_inline.h"
+
 namespace abbe {
 
 RTest::RTest(const RTestSetup& setup) : EquationInstrument(setup.name), noise_(setup.noise) {
@@ -42,5 +44,36 @@ std::optional<MeetingPoints> RTest::meeting_points(std::size_t item) const {
   const auto value = [&](std::size_t i) { return quantities_[q[i]].value; };
   return MeetingPoints{{value(0), value(1), value(2)}, {value(3), value(4), value(5)}};
 }
+
+template <typename S>
+S RTest::touched(const Eigen::Matrix<S, 3, 1>& direction, const Eigen::Matrix<S, 3, 1>& centre, const S& radii) {
+  using std::sqrt;
+  const S along = direction.dot(centre);
+  return along + sqrt(radii * radii - centre.dot(centre) + along * along);
+}
+
+template <typename S>
+void RTest::equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const {
+  const Eigen::Matrix<S, 3, 1> sphere(quantities[0], quantities[1], quantities[2]);
+  const Eigen::Matrix<S, 3, 1> nest(quantities[3], quantities[4], quantities[5]);
+  const Eigen::Matrix<S, 3, 1> from_nest = seen.point(sphere) - nest;
+  for (std::size_t i = 0; i < probes_.size(); ++i) {
+    const S* own = quantities + 7 + 5 * i;
+    const Eigen::Matrix<S, 3, 1> direction = probes_[i].frame.tilted(own[0], own[1]);
+    reading[i] = own[2];
+    if (probes_[i].tip == RTestSetup::Tip::flat) {
+      reading[i] += direction.dot(from_nest);
+      continue;
+    }
+    const S radii = quantities[6] + S(probes_[i].tip_radius);
+    Eigen::Matrix<S, 3, 1> offset;
+    for (int k = 0; k < 3; ++k) {
+      offset[k] = own[3] * S(probes_[i].frame.first[k]) + own[4] * S(probes_[i].frame.second[k]);
+    }
+    reading[i] += touched<S>(direction, from_nest - offset, radii) - touched<S>(direction, -offset, radii);
+  }
+}
+
+template class EquationInstrument<RTest, 27, 4>;
 
 }  // namespace abbe

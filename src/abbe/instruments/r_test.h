@@ -64,26 +64,7 @@ class RTest : public EquationInstrument<RTest, 27, 4> {
   PoseFreedom pose_freedom() const override { return PoseFreedom::together; }
 
   template <typename S>
-  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const {
-    const Eigen::Matrix<S, 3, 1> sphere(quantities[0], quantities[1], quantities[2]);
-    const Eigen::Matrix<S, 3, 1> nest(quantities[3], quantities[4], quantities[5]);
-    const Eigen::Matrix<S, 3, 1> from_nest = seen.point(sphere) - nest;
-    for (std::size_t i = 0; i < probes_.size(); ++i) {
-      const S* own = quantities + 7 + 5 * i;
-      const Eigen::Matrix<S, 3, 1> direction = probes_[i].frame.tilted(own[0], own[1]);
-      reading[i] = own[2];
-      if (probes_[i].tip == RTestSetup::Tip::flat) {
-        reading[i] += direction.dot(from_nest);
-        continue;
-      }
-      const S radii = quantities[6] + S(probes_[i].tip_radius);
-      Eigen::Matrix<S, 3, 1> offset;
-      for (int k = 0; k < 3; ++k) {
-        offset[k] = own[3] * S(probes_[i].frame.first[k]) + own[4] * S(probes_[i].frame.second[k]);
-      }
-      reading[i] += touched<S>(direction, from_nest - offset, radii) - touched<S>(direction, -offset, radii);
-    }
-  }
+  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const;
 
  private:
   struct Probe {
@@ -94,11 +75,7 @@ class RTest : public EquationInstrument<RTest, 27, 4> {
 
   /// Place along the line at which the two balls touch; `centre` from a point of the line.
   template <typename S>
-  static S touched(const Eigen::Matrix<S, 3, 1>& direction, const Eigen::Matrix<S, 3, 1>& centre, const S& radii) {
-    using std::sqrt;
-    const S along = direction.dot(centre);
-    return along + sqrt(radii * radii - centre.dot(centre) + along * along);
-  }
+  static S touched(const Eigen::Matrix<S, 3, 1>& direction, const Eigen::Matrix<S, 3, 1>& centre, const S& radii);
 
   std::vector<Probe> probes_;
   double noise_;

@@ -72,31 +72,7 @@ class SurfaceProbe : public EquationInstrument<SurfaceProbe, 12, 1> {
   PoseFreedom pose_freedom() const override { return PoseFreedom::together; }
 
   template <typename S>
-  void equation(std::size_t item, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const {
-    using std::sqrt;
-    using Vector = Eigen::Matrix<S, 3, 1>;
-    const Mounted& mounted = mounted_[item];
-    const Vector start = seen.point(Vector(quantities[0], quantities[1], quantities[2]));
-    const Vector beam = seen.rotation * beam_.tilted(quantities[3], quantities[4]);
-    const Vector w = start - clamped_point(mounted, quantities);
-    if (standard_ == SurfaceProbeSetup::Standard::sphere) {
-      const S along = beam.dot(w);
-      reading[0] = -along - sqrt(along * along - w.dot(w) + quantities[10] * quantities[10]);
-      return;
-    }
-    const Vector direction = mounted.frame.tilted(quantities[8], quantities[9]);
-    const S height = direction.dot(w), slope = direction.dot(beam);
-    if (standard_ == SurfaceProbeSetup::Standard::plane) {
-      reading[0] = -height / slope;
-      return;
-    }
-    const S taper = mounted.reversed ? -quantities[11] : quantities[11];
-    const S radius = quantities[10] + taper * height, widening = taper * slope;
-    const S a = S(1.0) - slope * slope - widening * widening;
-    const S b = beam.dot(w) - height * slope - radius * widening;
-    const S c = w.dot(w) - height * height - radius * radius;
-    reading[0] = (-b - sqrt(b * b - a * c)) / a;
-  }
+  void equation(std::size_t item, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const;
 
  private:
   struct Mounted {
@@ -107,18 +83,7 @@ class SurfaceProbe : public EquationInstrument<SurfaceProbe, 12, 1> {
 
   /// Where the standard's point is, mm, frame of its body.
   template <typename S>
-  Eigen::Matrix<S, 3, 1> clamped_point(const Mounted& mounted, const S* quantities) const {
-    Eigen::Matrix<S, 3, 1> result;
-    for (int i = 0; i < 3; ++i) {
-      if (standard_ == SurfaceProbeSetup::Standard::sphere) {
-        result[i] = quantities[5 + i] + S(mounted.point[i]);
-      } else {
-        result[i] = quantities[5] * S(mounted.frame.first[i]) + quantities[6] * S(mounted.frame.second[i]) +
-                    quantities[7] * S(mounted.frame.direction[i]) + S(mounted.point[i]);
-      }
-    }
-    return result;
-  }
+  Eigen::Matrix<S, 3, 1> clamped_point(const Mounted& mounted, const S* quantities) const;
 
   SurfaceProbeSetup::Standard standard_;
   DirectionFrame beam_;

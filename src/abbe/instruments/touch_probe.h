@@ -73,33 +73,12 @@ class TouchProbe : public EquationInstrument<TouchProbe, 15, 3> {
   std::vector<std::vector<double>> planned_inputs(std::size_t item) const override;
 
   template <typename S>
-  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double* inputs, S* reading) const {
-    using std::sqrt;
-    const Eigen::Matrix<S, 3, 1> tip(quantities[0], quantities[1], quantities[2]);
-    const Eigen::Matrix<S, 3, 1> gap = sphere_centre(quantities) - seen.point(tip);
-    const bool own_frame = frame_ == TouchProbeSetup::Frame::probe;
-    if (measure_ == TouchProbeSetup::Measure::centre) {
-      Eigen::Matrix<S, 3, 1> deviation = gap;
-      if (own_frame) deviation = seen.rotation.transpose() * gap;
-      for (int i = 0; i < 3; ++i) reading[i] = deviation[i];
-      return;
-    }
-    const Eigen::Vector3d given = Eigen::Vector3d(inputs[0], inputs[1], inputs[2]).normalized();
-    Eigen::Matrix<S, 3, 1> approach = given.template cast<S>();
-    if (own_frame) approach = seen.direction(given);
-    const S along = approach.dot(gap), radii = quantities[13] + quantities[14];
-    reading[0] = along - sqrt(radii * radii - gap.dot(gap) + along * along);
-  }
+  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double* inputs, S* reading) const;
 
  private:
   /// Centre of the sphere in the frame of the artefact's body, mm.
   template <typename S>
-  static Eigen::Matrix<S, 3, 1> sphere_centre(const S* quantities) {
-    const Eigen::Matrix<S, 3, 1> position(quantities[3], quantities[4], quantities[5]);
-    const S stretch = quantities[12] + S(1.0);
-    const Eigen::Matrix<S, 3, 1> ball(stretch * quantities[9], stretch * quantities[10], stretch * quantities[11]);
-    return position + rotation_zyx(quantities[6], quantities[7], quantities[8]) * ball;
-  }
+  static Eigen::Matrix<S, 3, 1> sphere_centre(const S* quantities);
 
   TouchProbeSetup::Measure measure_;
   TouchProbeSetup::Frame frame_;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/instruments/equation_instrument_inline.h"
 #include "abbe/instruments/tracking_interferometer_start.h"
 
 namespace abbe {
@@ -50,5 +51,17 @@ std::optional<MeetingPoints> TrackingInterferometer::meeting_points(std::size_t 
   };
   return MeetingPoints{at(kReflector), at(kStation)};
 }
+
+template <typename S>
+void TrackingInterferometer::equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*,
+                                      S* reading) const {
+  using std::sqrt;
+  const Eigen::Matrix<S, 3, 1> reflector(quantities[0], quantities[1], quantities[2]);
+  const Eigen::Matrix<S, 3, 1> station(quantities[3], quantities[4], quantities[5]);
+  const Eigen::Matrix<S, 3, 1> sight = seen.point(reflector) - station;
+  reading[0] = (S(1) + quantities[7]) * (sqrt(sight.dot(sight)) - quantities[6]);
+}
+
+template class EquationInstrument<TrackingInterferometer, 8, 1>;
 
 }  // namespace abbe

@@ -60,13 +60,7 @@ class TrackingInterferometer : public EquationInstrument<TrackingInterferometer,
   const TrackingInterferometerSetup& setup() const { return setup_; }
 
   template <typename S>
-  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const {
-    using std::sqrt;
-    const Eigen::Matrix<S, 3, 1> reflector(quantities[0], quantities[1], quantities[2]);
-    const Eigen::Matrix<S, 3, 1> station(quantities[3], quantities[4], quantities[5]);
-    const Eigen::Matrix<S, 3, 1> sight = seen.point(reflector) - station;
-    reading[0] = (S(1) + quantities[7]) * (sqrt(sight.dot(sight)) - quantities[6]);
-  }
+  void equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*, S* reading) const;
 
  private:
   /// Order of the quantities of an item.
