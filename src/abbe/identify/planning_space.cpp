@@ -143,6 +143,8 @@ PlanningSpace::PlanningSpace(const PlanningCandidates& candidates, const Eigen::
   seen.noalias() = candidates.rows * estimates_from_seen_;
 }
 
+Eigen::MatrixXd PlanningSpace::functionals(const Eigen::MatrixXd& rows) const { return rows * estimates_from_seen_; }
+
 Eigen::VectorXd PlanningSpace::unseen_part(const Eigen::MatrixXd& rows) const {
   const Eigen::VectorXd inverse = column_norms_.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 1.0; });
   const Eigen::VectorXd whole = (rows * inverse.asDiagonal()).rowwise().norm();

@@ -50,7 +50,7 @@ class PlanningSpace {
   const Eigen::MatrixXd& unseen() const { return unseen_; }
 
   /// Functionals of the estimates as functionals of the seen part, [rows, v].
-  Eigen::MatrixXd functionals(const Eigen::MatrixXd& rows) const { return rows * estimates_from_seen_; }
+  Eigen::MatrixXd functionals(const Eigen::MatrixXd& rows) const;
   /// Largest part of a functional's length (in scaled parameters) that lies in unseen directions, [rows], 0 to 1.
   Eigen::VectorXd unseen_part(const Eigen::MatrixXd& rows) const;
 
