@@ -30,6 +30,8 @@ SANITIZE_TESTS ?= asan
 DEMO_STUDY ?= examples/aguado/aguado.study.toml
 DEMO_RESULTS ?= build/demo
 LOOP_RESULTS ?= build/closed-loop
+# Tests that start a LinuxCNC or a browser wait most of the time.
+TEST_JOBS ?= $(shell expr 2 \* $(JOBS))
 export JOBS
 export CTEST_OUTPUT_ON_FAILURE := 1
 
@@ -74,7 +76,7 @@ test:
 	$(call say,5 of 6: fuzzing for $(TEST_FUZZ_SECONDS) s per reader)
 	@ABBE_FUZZ_SECONDS=$(TEST_FUZZ_SECONDS) ctest --preset fuzz -j $(JOBS)
 	$(call say,6 of 6: all tests)
-	@ctest --preset dev -j $(JOBS)
+	@ctest --preset dev -j $(TEST_JOBS)
 
 sanitize:
 	@.ci/set-up test
@@ -89,7 +91,7 @@ unit:
 quick:
 	@.ci/set-up test
 	@.ci/build --expect $(QUICK_MINUTES) "make $@ makes the development build and runs the quick tests" dev -DABBE_WERROR=ON
-	@ctest --preset dev -j $(JOBS) -L quick
+	@ctest --preset dev -j $(TEST_JOBS) -L quick
 
 lint:
 	@.ci/set-up lint
