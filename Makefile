@@ -36,11 +36,11 @@ export JOBS
 export CTEST_OUTPUT_ON_FAILURE := 1
 
 # What is said at the start: minutes that the whole takes on two cores when nothing is built and nothing is in ccache.
-BUILD_MINUTES := 7
+BUILD_MINUTES := 6
 LOOP_MINUTES := 3
-TEST_MINUTES := 40
-SANITIZE_MINUTES := 30
-QUICK_MINUTES := 20
+TEST_MINUTES := 25
+SANITIZE_MINUTES := 15
+QUICK_MINUTES := 15
 
 comma := ,
 say = @printf '\n== %s (%s)\n' "$(1)" "$$(date -u +%H:%M:%S)"
