@@ -33,8 +33,9 @@ target_compile_options(abbe_common_flags INTERFACE
 target_compile_options(abbe_test_flags INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O1>)
 # The same for all, so that all can share precompiled headers.
 target_compile_definitions(abbe_common_flags INTERFACE $<TARGET_PROPERTY:fmt::fmt,INTERFACE_COMPILE_DEFINITIONS>)
-if(ABBE_TESTS)
-  # A source of the library is in thirty test programs, and GNU gold links them in two thirds of the time of GNU ld.
+if(ABBE_TESTS AND NOT ABBE_SANITIZE)
+  # A source of the library is in thirty test programs, and GNU gold links them in two thirds of the time of GNU ld. It warns
+  # of every function of the address sanitizer.
   include(CheckLinkerFlag)
   check_linker_flag(CXX -fuse-ld=gold ABBE_HAS_GOLD)
   target_link_options(abbe_common_flags INTERFACE $<$<BOOL:${ABBE_HAS_GOLD}>:-fuse-ld=gold>)
