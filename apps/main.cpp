@@ -11,9 +11,11 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/interruption.h"
 #include "abbe/formats/kept_inputs.h"
+#include "abbe/formats/mapped_inputs.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "scan/scan.h"
 
@@ -23,7 +25,7 @@ namespace {
 /// What was said comes before what went wrong, also where both go to one file.
 void complain(const std::string& message) {
   std::fflush(stdout);
-  fmt::print(stderr, "abbe: {}\n", message);
+  tell("abbe: {}\n", message);
 }
 
 /// Results that were printed and did not arrive are not done. @returns the code of the command if they did
@@ -60,7 +62,7 @@ int run_command(int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-') {
     const std::string name = argv[1];
     if (!line.program.has_subcommand(name)) {
-      fmt::print(stderr, "abbe: there is no subcommand '{}'; abbe --help lists them\n", name);
+      tell("abbe: there is no subcommand '{}'; abbe --help lists them\n", name);
       return kBadInput;
     }
   }
@@ -88,10 +90,11 @@ int run_command(int argc, char** argv) {
 }  // namespace abbe
 
 int main(int argc, char** argv) {
+  abbe::keep_numbers_of_standard_streams();
   abbe::end_cleanly_when_interrupted([](int /*signal*/) {
-    fmt::print(stderr, "{}abbe: interrupted; what was not finished is removed\n",
-               isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "");
+    abbe::tell("{}abbe: interrupted; what was not finished is removed\n", isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "");
   });
+  abbe::end_where_an_input_was_cut_short(abbe::kBadInput);
   // A limit on the size of files is then an error of writing, with a message and nothing half done, not the end.
   std::signal(SIGXFSZ, SIG_IGN);
   const abbe::KeptInputs kept;

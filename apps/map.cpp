@@ -14,6 +14,7 @@
 #include "axis_option.h"
 #include "command.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "progress.h"
 #include "study/job.h"
@@ -153,8 +154,8 @@ int run_map(const MapOptions& options) {
     for (const std::string& output : options.outputs) fmt::print("{} written\n", output);
   }
   if (outside > 0) {
-    fmt::print(stderr, "abbe: {} of {} poses lie outside the range in which the errors are known; they are left out\n",
-               outside, poses.count());
+    tell("abbe: {} of {} poses lie outside the range in which the errors are known; they are left out\n", outside,
+         poses.count());
     return kNegative;
   }
   return kDone;

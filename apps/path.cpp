@@ -23,6 +23,7 @@
 #include "axis_option.h"
 #include "command.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "path/path_page.h"
 #include "scan/surface_picture.h"
@@ -179,7 +180,7 @@ int run_path(const PathCommand& command) {
   }
   if (path.status == ToolPathStatus::invalid_options) throw InputError({.file = command.curve}, path.message);
   if (path.status != ToolPathStatus::followed && path.status != ToolPathStatus::jumps_while_working) {
-    fmt::print(stderr, "abbe: point {} of {}: {}\n", path.failed_point + 1, command.curve, path.message);
+    tell("abbe: point {} of {}: {}\n", path.failed_point + 1, command.curve, path.message);
     return kNegative;
   }
   std::vector<std::vector<double>> commands;
@@ -207,7 +208,7 @@ int run_path(const PathCommand& command) {
     print_path(machine, path, miss, command);
   }
   if (path.status == ToolPathStatus::jumps_while_working) {
-    fmt::print(stderr, "abbe: {}: another start (--start), a held axis, or a cut of the curve there\n", path.message);
+    tell("abbe: {}: another start (--start), a held axis, or a cut of the curve there\n", path.message);
     return kNegative;
   }
   return kDone;

@@ -10,6 +10,7 @@
 #include "abbe/report/svg_plot.h"
 #include "command.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "progress.h"
 #include "study/planning.h"
@@ -233,7 +234,7 @@ void add_plan_command(CommandLine& line) {
     line.run = [options]() -> int {
       Study study = read_study(options->study);
       const std::string others = leave_out_other_instruments(study);
-      if (!others.empty()) fmt::print(stderr, "note: only trackers are planned, not {}\n", others);
+      if (!others.empty()) tell("note: only trackers are planned, not {}\n", others);
       StudyPlan result;
       {
         Progress progress("planning");

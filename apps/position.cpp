@@ -14,6 +14,7 @@
 #include "abbe/geometry/registration.h"
 #include "command.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "position/position_json.h"
 #include "progress.h"
@@ -128,7 +129,7 @@ int run_position(const PositionCommand& command) {
   if (scanner.status != PositioningStatus::ok) {
     json["reason"] = scanner.reason;
     if (command.json) fmt::print("{}", json_text(json));
-    fmt::print(stderr, "abbe: {}: the scanner's position is not found: {}\n", command.file, scanner.reason);
+    tell("abbe: {}: the scanner's position is not found: {}\n", command.file, scanner.reason);
     return kNegative;
   }
   json["scanner"] = scanner_json(scanner);
@@ -140,7 +141,7 @@ int run_position(const PositionCommand& command) {
     if (!laid.ok) {
       json["status"] = "no_position";
       if (command.json) fmt::print("{}", json_text(json));
-      fmt::print(stderr, "abbe: {}: the workpiece's position is not found: {}\n", command.file, laid.status);
+      tell("abbe: {}: the workpiece's position is not found: {}\n", command.file, laid.status);
       return kNegative;
     }
     placement = locate_workpiece(scanner, laid.fine);

@@ -25,6 +25,7 @@
 #include "compensate/reversal_words.h"
 #include "compensate/safety.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 
 namespace abbe {
@@ -184,7 +185,7 @@ int run_freeze(const FreezeArguments& arguments) {
     print_linuxcnc_backlash(machine, frozen_errors);
   }
   if (refused.empty()) return kDone;
-  fmt::print(stderr, "abbe: refused: {}; nothing was written\n", refused);
+  tell("abbe: refused: {}; nothing was written\n", refused);
   return kNegative;
 }
 

@@ -26,6 +26,7 @@
 #include "compensate/gcode_report.h"
 #include "compensate/safety.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "progress.h"
 
@@ -107,8 +108,8 @@ int run_gcode(const GcodeOptions& options) {
     print_gcode_report(options, machine, result);
   }
   std::fflush(stdout);
-  for (const std::string& reason : result.refused) fmt::print(stderr, "abbe: {}\n", reason);
-  if (!result.refused.empty() && !options.dry_run) fmt::print(stderr, "abbe: nothing written\n");
+  for (const std::string& reason : result.refused) tell("abbe: {}\n", reason);
+  if (!result.refused.empty() && !options.dry_run) tell("abbe: nothing written\n");
   return result.refused.empty() ? kDone : kNegative;
 }
 

@@ -26,6 +26,7 @@
 #include "compensate/position_words.h"
 #include "compensate/safety.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 
 namespace abbe {
@@ -246,15 +247,15 @@ int run_poses(const PosesCommand& command) {
   }
   std::fflush(stdout);
   if (refused) {
-    fmt::print(stderr, "abbe: correction of {:.3f} um above --limit-um {:g}: {}; nothing written\n",
-               1e3 * result.largest_shift.value, limit_um, pose_words(machine, poses, result.largest_shift.row));
+    tell("abbe: correction of {:.3f} um above --limit-um {:g}: {}; nothing written\n", 1e3 * result.largest_shift.value,
+         limit_um, pose_words(machine, poses, result.largest_shift.row));
     return kNegative;
   }
   const auto wrong = std::count_if(result.status.begin(), result.status.end(),
                                    [](CorrectionStatus status) { return !reaches_point(status); });
   if (wrong > 0) {
-    fmt::print(stderr, "abbe: the tool is not brought to {} of {} poses; the column status says where and why\n", wrong,
-               poses.count());
+    tell("abbe: the tool is not brought to {} of {} poses; the column status says where and why\n", wrong,
+         poses.count());
   }
   return wrong > 0 ? kNegative : kDone;
 }

@@ -26,6 +26,7 @@
 #include "compensate/table_options.h"
 #include "compensate/table_report.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 
 namespace abbe {
@@ -315,12 +316,12 @@ int run_table(const TableCommand& command) {
     if (command.dry_run) fmt::print("dry run: no table is written\n");
   }
   std::fflush(stdout);
-  for (const std::string& words : report.refused) fmt::print(stderr, "abbe: {}; nothing is written\n", words);
+  for (const std::string& words : report.refused) tell("abbe: {}; nothing is written\n", words);
   if (!refused && !within) {
-    fmt::print(stderr,
-               "abbe: straight lines between the nodes that {} has room for do not keep to --interpolation-um or "
-               "--interpolation-urad; no table is written\n",
-               format.name);
+    tell(
+        "abbe: straight lines between the nodes that {} has room for do not keep to --interpolation-um or "
+        "--interpolation-urad; no table is written\n",
+        format.name);
   }
   return refused || !within ? kNegative : kDone;
 }

@@ -13,6 +13,7 @@
 #include "abbe/formats/scan_file.h"
 #include "command.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "progress.h"
 #include "scan/scan.h"
@@ -102,13 +103,12 @@ int run_points(PointsOptions options) {
     }
   }
   if (summary.not_covered > 0) {
-    fmt::print(stderr,
-               "abbe: {} of {} positions lie outside the range in which the errors are known; they are left out\n",
-               summary.not_covered, summary.readings);
+    tell("abbe: {} of {} positions lie outside the range in which the errors are known; they are left out\n",
+         summary.not_covered, summary.readings);
     return kNegative;
   }
   if (summary.points == 0) {
-    fmt::print(stderr, "abbe: no reading lies within the probe's range\n");
+    tell("abbe: no reading lies within the probe's range\n");
     return kNegative;
   }
   return kDone;
