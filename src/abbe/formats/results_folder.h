@@ -1,24 +1,28 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <memory>
+#include <set>
+#include <string>
 #include <string_view>
-
-#include "abbe/formats/interruption.h"
 
 namespace abbe {
 
-/// Whether results may be written under a name: a new or an empty folder, or one that holds results already (the file
-/// ".abbe-results" in it says so, or the summary of an earlier version), which the next ones replace as a whole.
-/// For commands that compute for long before they write. @throws InputError for a file, or a folder with other files
+class UnfinishedOutput;
+
+/// Whether results may be written under a name: a new or an empty folder, or one that holds results already, as the
+/// file
+/// ".abbe-results" in it says. For commands that compute for long before they write.
+/// @throws InputError for a file, or a folder with other files
 void check_results_folder(const std::filesystem::path& name);
 
 /// A folder of results that appears whole or not at all.
 ///
-/// Everything is written to "<name>.partial-<process>"; commit() flushes it to the disk and exchanges it with an older
-/// result in one step, so that after a full disk or a killed process the older one is intact. Without commit() the
-/// destructor removes what was written, as an interruption does (interruption.h). What killed processes left behind is
-/// removed by the next writer of that name.
+/// Everything is written to a folder beside it (unfinished_output.h); commit() flushes that to the disk and exchanges
+/// it with an older result in one step, so that after a full disk or a killed process the older one is intact, and of
+/// two writers at once one is there, whole. Files in the older folder that its ".abbe-results" does not list are
+/// somebody's and stay. Without commit() the destructor removes what was written, as an interruption does
+/// (interruption.h). What killed processes left behind is removed by the next writer of that name.
 class ResultsFolder {
  public:
   /// @throws InputError if the folder cannot be made, as check_results_folder()
@@ -28,20 +32,22 @@ class ResultsFolder {
   ResultsFolder& operator=(const ResultsFolder&) = delete;
 
   const std::filesystem::path& name() const { return name_; }
-  /// Where files are being written until commit().
-  const std::filesystem::path& partial() const { return partial_; }
 
-  /// Writes and flushes one file; makes the folders in `relative`. @throws InputError if it cannot be written whole
+  /// Writes and flushes one file; makes the folders in `relative`.
+  /// @throws InputError if it cannot be written whole, or the name leads out of the folder
   void write(const std::filesystem::path& relative, std::string_view contents);
 
   /// Makes the result visible under its name. @throws InputError; the older result is then still there
   void commit();
 
  private:
-  std::filesystem::path name_;
-  std::filesystem::path partial_;
-  std::optional<UnfinishedPath> unfinished_;
-  bool committed_ = false;
+  void refuse_to_lose_files() const;
+  void put_in_place();
+
+  std::filesystem::path name_;  ///< as it was given
+  std::filesystem::path path_;  ///< resolved
+  std::unique_ptr<UnfinishedOutput> unfinished_;
+  std::set<std::string> files_;
 };
 
 /// One file that appears whole or not at all; an older file of that name stays until then. Through a link the file it

@@ -90,25 +90,131 @@ TEST(ResultsFolder, KilledWriterLeavesTheOldResultAndTheNextOneCleansUp) {
   EXPECT_EQ(entries(folder), 1U);
 }
 
-TEST(ResultsFolder, WriterKilledAtAnyMomentLeavesAWholeResult) {
+// Two writers and a kill of either at any moment, a thousand times, over a folder in which somebody keeps notes.
+TEST(ResultsFolder, WritersKilledAtAnyMomentLoseNothing) {
   const fs::path folder = test::empty_folder("abbe_killed_anywhere");
   write_result(folder / "r", "0");
+  fs::create_directory(folder / "r/notes");
+  std::ofstream(folder / "r/notes/a.txt") << "mine";
+  std::ofstream(folder / "r/maps/b.txt") << "mine too";
   int killed = 0;
-  for (int i = 0; i < 40; ++i) {
+  const auto start_writer = [&] {
     const pid_t child = ::fork();
-    if (child == 0) {
-      for (int k = 0;; ++k) write_result(folder / "r", std::to_string(k));
+    if (child != 0) return child;
+    for (int k = 0;; ++k) {
+      try {
+        write_result(folder / "r", std::to_string(k));
+      } catch (const InputError&) {
+        // The other one has exchanged the folder in between: refused, and nothing is lost.
+      }
     }
-    ::usleep(static_cast<useconds_t>(200 * (i + 1)));
-    ::kill(child, SIGKILL);
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    killed += WIFSIGNALED(status);
-    const std::string text = contents(folder / "r/summary.json");
-    ASSERT_FALSE(text.empty());
-    ASSERT_EQ(contents(folder / "r/maps/a.csv"), text + text);
+  };
+  for (int i = 0; i < 500; ++i) {
+    const pid_t writers[2] = {start_writer(), start_writer()};
+    ::usleep(static_cast<useconds_t>(1000 + 37 * i % 6000));
+    for (const pid_t writer : writers) {
+      ::kill(writer, SIGKILL);
+      int status = 0;
+      ::waitpid(writer, &status, 0);
+      killed += WIFSIGNALED(status);
+    }
+    // A kill between the exchange and the moving leaves the notes beside the results; the next writer brings them back.
+    write_result(folder / "r", "whole");
+    ASSERT_EQ(contents(folder / "r/summary.json"), "whole");
+    ASSERT_EQ(contents(folder / "r/maps/a.csv"), "wholewhole");
+    ASSERT_EQ(contents(folder / "r/notes/a.txt"), "mine") << i;
+    ASSERT_EQ(contents(folder / "r/maps/b.txt"), "mine too") << i;
+    ASSERT_EQ(entries(folder), 1U) << i;
   }
-  EXPECT_EQ(killed, 40);
+  EXPECT_EQ(killed, 1000);
+}
+
+TEST(ResultsFolder, ANewFolderInTheNameDoesNotHideWhereItLeads) {
+  const fs::path folder = test::empty_folder("abbe_dots");
+  fs::create_directory(folder / "mine");
+  std::ofstream(folder / "mine/keep.txt") << "mine";
+  EXPECT_THROW(ResultsFolder(folder / "new/../mine"), InputError);
+  EXPECT_THROW(check_results_folder(folder / "new/../mine"), InputError);
+  EXPECT_EQ(contents(folder / "mine/keep.txt"), "mine");
+  write_result(folder / "new/../r", "one");
+  write_result(folder / "r/../new/.././r/", "two");
+  EXPECT_EQ(contents(folder / "r/summary.json"), "two");
+  write_file_atomically(folder / "new/../a.txt", "one");
+  EXPECT_EQ(contents(folder / "a.txt"), "one");
+  EXPECT_EQ(entries(folder), 3U);  // no folder "new"
+}
+
+TEST(ResultsFolder, WhatAppearsWhileItIsWrittenIsNotReplaced) {
+  const fs::path folder = test::empty_folder("abbe_appeared");
+  ResultsFolder results(folder / "r");
+  results.write("summary.json", "one");
+  fs::create_directory(folder / "r");
+  std::ofstream(folder / "r/keep.txt") << "mine";
+  EXPECT_THROW(results.commit(), InputError);
+  EXPECT_EQ(contents(folder / "r/keep.txt"), "mine");
+  EXPECT_EQ(entries(folder / "r"), 1U);
+}
+
+TEST(ResultsFolder, FilesOfOthersStayWhereResultsAreReplaced) {
+  const fs::path folder = test::empty_folder("abbe_notes");
+  write_result(folder / "r", "one");
+  std::ofstream(folder / "r/notes.txt") << "mine";
+  fs::create_directories(folder / "r/pictures/old");
+  std::ofstream(folder / "r/pictures/old/a.png") << "mine";
+  std::ofstream(folder / "r/maps/notes.txt") << "mine";
+  write_result(folder / "r", "two");
+  EXPECT_EQ(contents(folder / "r/summary.json"), "two");
+  for (const char* const name : {"notes.txt", "pictures/old/a.png", "maps/notes.txt"}) {
+    EXPECT_EQ(contents(folder / "r" / name), "mine") << name;
+  }
+  EXPECT_EQ(entries(folder), 1U);
+  // A result of that name would replace it.
+  ResultsFolder results(folder / "r");
+  results.write("notes.txt", "not mine");
+  EXPECT_EQ(message_of([&] { results.commit(); }),
+            (folder / "r/notes.txt").string() +
+                ": is no result of abbe and would be replaced; expected another name for it, or another folder for the "
+                "results");
+  EXPECT_EQ(contents(folder / "r/notes.txt"), "mine");
+}
+
+TEST(ResultsFolder, FilesThatTheNextResultsDoNotHaveGo) {
+  const fs::path folder = test::empty_folder("abbe_fewer");
+  write_result(folder / "r", "one");
+  ResultsFolder results(folder / "r");
+  results.write("summary.json", "two");
+  results.commit();
+  EXPECT_FALSE(fs::exists(folder / "r/maps"));
+  EXPECT_EQ(entries(folder), 1U);
+}
+
+TEST(ResultsFolder, LinksInOlderResultsAreNotFollowed) {
+  const fs::path folder = test::empty_folder("abbe_links");
+  write_result(folder / "r", "one");
+  fs::rename(folder / "r/maps", folder / "moved");
+  fs::create_directory_symlink(folder / "moved", folder / "r/maps");
+  EXPECT_THROW(write_result(folder / "r", "two"), InputError);
+  EXPECT_EQ(contents(folder / "r/summary.json"), "one");
+  EXPECT_EQ(contents(folder / "moved/a.csv"), "oneone");
+}
+
+TEST(ResultsFolder, NamesStayInTheFolder) {
+  const fs::path folder = test::empty_folder("abbe_names");
+  ResultsFolder results(folder / "r");
+  for (const char* const name : {"../victim", "a/../../victim", "/tmp/victim", "..", ""}) {
+    EXPECT_THROW(results.write(name, "x"), InputError) << name;
+  }
+  EXPECT_FALSE(fs::exists(folder / "victim"));
+}
+
+TEST(ResultsFolder, WhatOthersCallAlikeStays) {
+  const fs::path folder = test::empty_folder("abbe_alike");
+  for (const char* const name : {"r.partial-999999", "r.old-999999", ".r.abbe-unfinished", ".r.0.abbe-older"}) {
+    std::ofstream(folder / name) << "mine";
+  }
+  write_result(folder / "r", "one");
+  write_file_atomically(folder / "r.csv", "one");
+  EXPECT_EQ(entries(folder), 6U);
 }
 
 TEST(ResultsFolder, FullDiskLeavesTheOldResult) {
@@ -169,6 +275,21 @@ TEST(ResultsFolder, AFolderWithOtherFilesIsNotReplaced) {
   fs::remove(folder / "r/summary.json");
   write_result(folder / "r", "two");  // known by its marker
   EXPECT_EQ(contents(folder / "r/summary.json"), "two");
+  fs::remove(folder / "r/.abbe-results");
+  EXPECT_EQ(message_of([&] { write_result(folder / "r", "one"); }), refused);  // anybody's summary.json
+  EXPECT_EQ(contents(folder / "r/summary.json"), "two");
+}
+
+TEST(ResultsFolder, ResultsOfTheFirstVersionAreReplacedAsAWhole) {
+  const fs::path folder = test::empty_folder("abbe_first_version");
+  fs::create_directories(folder / "r/maps");
+  std::ofstream(folder / "r/.abbe-results")
+      << "Results of abbe: the next ones written here replace this folder as a whole.\n";
+  std::ofstream(folder / "r/maps/gone.csv") << "old";
+  write_result(folder / "r", "one");
+  EXPECT_FALSE(fs::exists(folder / "r/maps/gone.csv"));
+  EXPECT_EQ(contents(folder / "r/summary.json"), "one");
+  EXPECT_EQ(entries(folder), 1U);
 }
 
 TEST(AtomicFile, ReplacesOrLeavesTheOldOne) {

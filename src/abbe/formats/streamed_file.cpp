@@ -7,8 +7,10 @@
 #include <cerrno>
 #include <cstdio>
 
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/interruption.h"
 #include "abbe/formats/kept_inputs.h"
-#include "abbe/formats/partial_names.h"
+#include "abbe/formats/unfinished_output.h"
 #include "abbe/formats/write_error.h"
 
 namespace abbe {
@@ -16,63 +18,77 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A file without a name, or none where the file system has no such files.
+Descriptor nameless_file(const fs::path& folder) {
+#ifdef O_TMPFILE
+  return Descriptor(::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666));
+#else
+  return Descriptor();
+#endif
+}
+
 }  // namespace
 
-StreamedFile::StreamedFile(const fs::path& path) : path_(file_to_write(path)), partial_(partial_name(path_)) {
+StreamedFile::StreamedFile(const fs::path& name) : name_(name), path_(file_to_write(name)) {
   refuse_input_as_output(path_);
-  remove_partials_of_killed_writers(path_);
-  unfinished_.emplace(partial_);
-  const UninterruptedSteps steps;
-  const fs::path folder = path_.parent_path().empty() ? fs::path(".") : path_.parent_path();
-#ifdef O_TMPFILE
-  file_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
-#endif
-  if (file_ < 0) {
-    file_ = ::open(partial_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    is_named_ = file_ >= 0;
-  }
-  if (file_ < 0) fail_to_write(path_, errno);
+  for_abandoned(path_, kUnfinished, [](const fs::path& abandoned) { ::unlink(abandoned.c_str()); });
+  nameless_ = std::make_unique<Descriptor>(nameless_file(path_.parent_path()));
+  if (nameless_->is_open()) return;
+  nameless_.reset();
+  unfinished_ = std::make_unique<UnfinishedOutput>(path_, UnfinishedOutput::Kind::file, name_);
 }
 
-StreamedFile::~StreamedFile() {
-  if (file_ >= 0) ::close(file_);
-  if (is_named_) ::unlink(partial_.c_str());
-}
+StreamedFile::~StreamedFile() = default;
+
+int StreamedFile::file() const { return nameless_ ? nameless_->number() : unfinished_->descriptor(); }
 
 void StreamedFile::append(std::string_view contents) {
-  while (!contents.empty()) {
-    const ssize_t written = ::write(file_, contents.data(), contents.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail_to_write(path_, errno);
-    contents.remove_prefix(static_cast<std::size_t>(written));
-  }
+  if (const int error = write_all(file(), contents)) fail_to_write(name_, error);
 }
 
 void StreamedFile::overwrite(std::size_t offset, std::string_view contents) {
   while (!contents.empty()) {
-    const ssize_t written = ::pwrite(file_, contents.data(), contents.size(), static_cast<off_t>(offset));
+    const ssize_t written = ::pwrite(file(), contents.data(), contents.size(), static_cast<off_t>(offset));
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail_to_write(path_, errno);
+    if (written < 0) fail_to_write(name_, errno);
     contents.remove_prefix(static_cast<std::size_t>(written));
     offset += static_cast<std::size_t>(written);
   }
 }
 
 void StreamedFile::commit() {
-  if (::fsync(file_) != 0) fail_to_write(path_, errno);
+  if (::fsync(file()) != 0) fail_to_write(name_, errno);
   const UninterruptedSteps steps;
-  if (!is_named_) {
-    // A file without a name cannot take the place of another one: it gets a name first.
-    ::unlink(partial_.c_str());
-    const std::string open_file = fmt::format("/proc/self/fd/{}", file_);
-    if (::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, partial_.c_str(), AT_SYMLINK_FOLLOW) != 0)
-      fail_to_write(path_, errno);
-    is_named_ = true;
+  if (nameless_) {
+    // A file without a name cannot take the place of another one: it gets a name first. Locked, so that it is nobody's
+    // to remove as abandoned.
+    lock_if_free(*nameless_);
+    const fs::path beside = name_beside(path_, kUnfinished);
+    const std::string open_file = fmt::format("/proc/self/fd/{}", nameless_->number());
+    if (::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, beside.c_str(), AT_SYMLINK_FOLLOW) != 0) {
+      fail_to_write(name_, errno);
+    }
+    try {
+      put_in_place(beside);
+    } catch (...) {
+      ::unlink(beside.c_str());
+      throw;
+    }
+  } else {
+    put_in_place(unfinished_->path());
+    unfinished_->release();
   }
-  const int closed = ::close(file_);
-  file_ = -1;
-  if (closed != 0 || ::rename(partial_.c_str(), path_.c_str()) != 0) fail_to_write(path_, errno);
-  is_named_ = false;
+}
+
+void StreamedFile::put_in_place(const fs::path& from) {
+  // The name may lead elsewhere than when it was resolved.
+  refuse_input_as_output(path_);
+  if (file_to_write(path_) != path_) {
+    throw InputError({name_.string(), 0, 0, ""}, "has become a link since the command was started",
+                     "the name of a file to write");
+  }
+  if (::rename(from.c_str(), path_.c_str()) != 0) fail_to_write(name_, errno);
+  if (const int error = flush_folder(path_.parent_path())) fail_to_write(name_, error);
 }
 
 }  // namespace abbe

@@ -2,23 +2,23 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
-#include <string>
+#include <memory>
 #include <string_view>
 
-#include "abbe/formats/interruption.h"
-
 namespace abbe {
+
+class UnfinishedOutput;
+class Descriptor;
 
 /// A file that is written piece by piece and appears whole or not at all; an older file of that name stays until then.
 ///
 /// Until commit() the file has no name where the file system can do that, so that a killed or interrupted process
-/// leaves nothing behind; elsewhere it is called "<name>.partial-<process>" and the next writer of that name removes
-/// it.
+/// leaves nothing behind; elsewhere it stands beside the older one (unfinished_output.h) and the next writer of that
+/// name removes it if its own was killed.
 class StreamedFile {
  public:
   /// @throws InputError if the file cannot be made
-  explicit StreamedFile(const std::filesystem::path& path);
+  explicit StreamedFile(const std::filesystem::path& name);
   ~StreamedFile();
   StreamedFile(const StreamedFile&) = delete;
   StreamedFile& operator=(const StreamedFile&) = delete;
@@ -31,10 +31,13 @@ class StreamedFile {
   void commit();
 
  private:
-  std::filesystem::path path_, partial_;
-  std::optional<UnfinishedPath> unfinished_;
-  int file_ = -1;
-  bool is_named_ = false;  ///< `partial_` exists
+  int file() const;
+  void put_in_place(const std::filesystem::path& from);
+
+  std::filesystem::path name_;            ///< as it was given
+  std::filesystem::path path_;            ///< resolved
+  std::unique_ptr<Descriptor> nameless_;  ///< one of these two
+  std::unique_ptr<UnfinishedOutput> unfinished_;
 };
 
 }  // namespace abbe

@@ -186,7 +186,7 @@ PlanNames plan_names(const Setup& setup) {
 Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated,
                  bool planned) {
   Setup setup;
-  setup.name = table.text("name");
+  setup.name = table.file_name("name");
   std::vector<std::string_view> words = instrument_words();
   words.insert(words.begin(), "tracker");
   const std::size_t instrument = table.word("instrument", words);

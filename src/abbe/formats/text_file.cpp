@@ -32,6 +32,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     if (memory == MAP_FAILED) fail(error);
     ::madvise(memory, size_, MADV_WILLNEED);
     data_ = static_cast<const char*>(memory);
+    named_.emplace(data_, size_, path.string());
     note_input(path);
     return;
   }

@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "abbe/formats/mapped_inputs.h"
 
 namespace abbe {
 
@@ -11,7 +14,8 @@ namespace abbe {
 /// empty
 std::string read_text_file(const std::filesystem::path& path);
 
-/// A regular file in memory for reading once, without a copy. @throws InputError as read_text_file()
+/// A regular file in memory for reading once, without a copy. A file that is cut short meanwhile ends the process
+/// (mapped_inputs.h). @throws InputError as read_text_file()
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& path);
@@ -27,6 +31,7 @@ class MappedFile {
   const char* data_ = nullptr;
   std::size_t size_ = 0;
   std::size_t forgotten_ = 0;
+  std::optional<MappedInput> named_;
 };
 
 }  // namespace abbe

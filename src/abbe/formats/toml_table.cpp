@@ -206,6 +206,17 @@ std::string TomlTable::text(std::string_view key) {
   return state_->string(state_->need(key, "a text in quotes"), full_name(key));
 }
 
+std::string TomlTable::file_name(std::string_view key) {
+  constexpr std::size_t kLongest = 100;
+  std::string name = text(key);
+  const bool is_plain = std::none_of(
+      name.begin(), name.end(), [](char c) { return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+  if (name.empty() || name.size() > kLongest || name.front() == '.' || !is_plain) {
+    fail(key, "cannot be the name of a file", "1 to 100 bytes without \"/\" and control characters, no dot in front");
+  }
+  return name;
+}
+
 std::filesystem::path TomlTable::file(std::string_view key, const std::filesystem::path& folder,
                                       const std::string& expected) {
   std::filesystem::path path = folder / text(key);

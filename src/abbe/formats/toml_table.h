@@ -37,6 +37,9 @@ class TomlTable {
 
   std::string text(std::string_view key);
   std::string text_or(std::string_view key, std::string otherwise);
+  /// A name that files are called by, as those of set-ups are. @throws InputError for one that would lead to another
+  /// folder, hide the file or not be shown: with "/", control characters, a dot in front, or of more than 100 bytes
+  std::string file_name(std::string_view key);
   /// Name of a file, resolved against a folder. @throws InputError  none of that name is there
   std::filesystem::path file(std::string_view key, const std::filesystem::path& folder, const std::string& expected);
   bool boolean_or(std::string_view key, bool otherwise);

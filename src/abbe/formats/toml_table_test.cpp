@@ -38,6 +38,20 @@ TEST(TomlTable, AcceptsByteOrderMarkAndCarriageReturns) {
   table.finish();
 }
 
+TEST(TomlTable, RefusesNamesThatFilesCannotHave) {
+  const std::string message =
+      "a.toml:1:1: name: cannot be the name of a file; expected 1 to 100 bytes without \"/\" and control characters, "
+      "no dot "
+      "in front";
+  for (const std::string& name : {std::string("../victim"), std::string("a/b"), std::string(".hidden"),
+                                  std::string("a\\u001bb"), std::string(), std::string(101, 'a')}) {
+    EXPECT_EQ(message_of_toml("name = \"" + name + "\"\n", [](TomlTable& table) { table.file_name("name"); }), message)
+        << name;
+  }
+  TomlTable table = TomlTable::parse("name = \"L\u00e4nge 2.x\"\n", "a.toml");
+  EXPECT_EQ(table.file_name("name"), "L\u00e4nge 2.x");
+}
+
 TEST(TomlTable, NamesTheUnitsThatWouldHaveBeenRight) {
   EXPECT_EQ(message_of_toml("\ntravel_kg = [0, 1]\n", read_travel),
             "a.toml:2:1: travel_kg: 'kg' is not a unit of a length; expected travel_mm, travel_um or travel_m");
