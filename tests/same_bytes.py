@@ -51,7 +51,8 @@ def examples(abbe, words=()):
 def digest(folder):
     result = {}
     for path in sorted(folder.rglob("*")):
-        if path.is_file():
+        # Which files belong to results is seen from the files.
+        if path.is_file() and path.name != ".abbe-results":
             result[str(path.relative_to(folder))] = hashlib.sha256(path.read_bytes()).hexdigest()
     return result
 

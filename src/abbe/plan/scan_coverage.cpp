@@ -30,9 +30,10 @@ std::vector<CoveredPlace> covered_places(const TriangleMesh& mesh, const std::ve
     double least = 4 * radius * radius;
     for (long i = -2; i <= 2; ++i) {
       for (long j = -2; j <= 2; ++j) {
-        for (long k = -2; k <= 2; ++k) {
-          const auto found = cells.find({cell[0] + i, cell[1] + j, cell[2] + k});
-          if (found == cells.end()) continue;
+        // The cells of a row follow each other.
+        const Cell last{cell[0] + i, cell[1] + j, cell[2] + 2};
+        auto found = cells.lower_bound({cell[0] + i, cell[1] + j, cell[2] - 2});
+        for (; found != cells.end() && found->first <= last; ++found) {
           for (const ScannedPlace& other : found->second) {
             if (other.face != face) continue;
             const double square = (other.point - point).squaredNorm();
