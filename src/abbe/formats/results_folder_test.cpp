@@ -201,7 +201,7 @@ TEST(ResultsFolder, LinksInOlderResultsAreNotFollowed) {
 TEST(ResultsFolder, NamesStayInTheFolder) {
   const fs::path folder = test::empty_folder("abbe_names");
   ResultsFolder results(folder / "r");
-  for (const char* const name : {"../victim", "a/../../victim", "/tmp/victim", "..", ""}) {
+  for (const char* const name : {"../victim", "a/../../victim", "/victim", "..", ""}) {
     EXPECT_THROW(results.write(name, "x"), InputError) << name;
   }
   EXPECT_FALSE(fs::exists(folder / "victim"));
