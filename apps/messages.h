@@ -7,7 +7,7 @@
 
 namespace abbe {
 
-/// Writes to standard error. Where that is closed or full nothing is said, and the command goes on: its exit code
+/// Writes to standard error. If that is closed or full, the text is lost and the command goes on; its exit code still
 /// tells.
 void tell_text(std::string_view text);
 
@@ -17,8 +17,8 @@ void tell(fmt::format_string<Values...> format, Values&&... values) {
   tell_text(fmt::format(format, std::forward<Values>(values)...));
 }
 
-/// For the beginning of main(): opens standard streams that are closed, so that none of the files of a command gets
-/// their number and what is said. Writing to them fails as before.
+/// For the start of main(): opens /dev/null in place of closed standard streams. Otherwise a file of the command would
+/// get the number of one, and messages would be written into it. Writing to such a stream still fails.
 void keep_numbers_of_standard_streams();
 
 }  // namespace abbe

@@ -34,7 +34,7 @@ TEST(MappedInputs, AFileThatIsCutShortIsNamedAndEndsTheProcess) {
               "a.csv: was cut short while it was read; expected a file that nobody changes meanwhile");
 }
 
-TEST(MappedInputs, MoreThanHaveANameAreReadAsWell) {
+TEST(MappedInputs, FilesBeyondThoseThatHaveANameAreReadToo) {
   const fs::path name = test::empty_folder("abbe_many") / "a.csv";
   std::ofstream(name) << "x";
   std::vector<std::unique_ptr<MappedFile>> files;
