@@ -211,6 +211,55 @@ void slopes(const Problem& problem, std::size_t axis, std::vector<GaugeCandidate
   }
 }
 
+/// Index of the direction's largest component; of equal ones the first.
+int nearest_component(const Axis& axis) {
+  int nearest = 0;
+  for (int k = 1; k < 3; ++k)
+    if (std::abs(axis.direction[k]) > std::abs(axis.direction[nearest]) + 1e-9) nearest = k;
+  return nearest;
+}
+
+/// An axis parallel to none of X, Y, Z: all its components are parameters, and a combination of them has no effect.
+bool is_oblique(const Axis& axis) {
+  return std::abs(axis.direction[nearest_component(axis)]) < 1 - 1e-12;
+}
+
+bool is_nearest_to_oblique_axis(const std::vector<Axis>& axes, const LocationError& location) {
+  const Axis& axis = axes[location.axis];
+  return is_oblique(axis) && static_cast<int>(location.component) % 3 == nearest_component(axis);
+}
+
+/// Of every axis: where the six components of its location errors stand among the estimates, -1: nowhere.
+std::vector<std::vector<Index>> places_of_locations(const Problem& problem, std::size_t motion_parameters) {
+  std::vector<std::vector<Index>> places(problem.machine.axes.size(), std::vector<Index>(kComponentCount, -1));
+  for (std::size_t i = 0; i < problem.machine_parameters.size(); ++i) {
+    const std::size_t index = problem.machine_parameters[i];
+    if (index < motion_parameters || index >= motion_parameters + problem.errors.locations.size()) continue;
+    const LocationError& location = problem.errors.locations[index - motion_parameters];
+    places[location.axis][static_cast<std::size_t>(location.component)] = static_cast<Index>(i);
+  }
+  return places;
+}
+
+/// The shift along and the turn about an oblique axis's own direction, which do nothing. Said of a single component
+/// instead, an axis 0.1 degrees off Y would have its tilt about X taken for that and fixed, and the same tilt left to a
+/// turn about Y 600 times as large.
+void along_oblique_axis(const Problem& problem, std::size_t axis, const std::vector<Index>& places,
+                        std::vector<GaugeCandidate>& list) {
+  const Axis& moving = problem.machine.axes[axis];
+  if (!is_oblique(moving)) return;
+  for (const int offset : {0, 3}) {
+    Eigen::VectorXd functional = Eigen::VectorXd::Zero(static_cast<Index>(estimated_count(problem)));
+    for (int k = 0; k < 3; ++k) {
+      const Index place = places[static_cast<std::size_t>(k + offset)];
+      if (place >= 0) functional[place] = moving.direction[k];
+    }
+    const std::string quantity = fmt::format("{} of {} {} itself", offset == 0 ? "shift" : "turn", moving.name,
+                                             offset == 0 ? "along" : "about");
+    add_candidate(list, fmt::format("the {} is zero", quantity), quantity, functional);
+  }
+}
+
 }  // namespace
 
 std::vector<GaugeCandidate> gauge_candidates(const Problem& problem, const Eigen::VectorXd& start) {
@@ -227,17 +276,35 @@ std::vector<GaugeCandidate> gauge_candidates(const Problem& problem, const Eigen
 
   std::size_t motion_parameters = 0;
   for (const ErrorMotion& motion : problem.errors.motions) motion_parameters += motion.coefficients.size();
+  const std::vector<std::vector<Index>> places = places_of_locations(problem, motion_parameters);
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) along_oblique_axis(problem, axis, places[axis], list);
   const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
+  const auto one = [&](std::size_t i) {
     const EstimatedParameter& parameter = parameters[i];
-    if (parameter.id.is_machine() && parameter.id.index < motion_parameters) continue;
     const Eigen::VectorXd functional = Eigen::VectorXd::Unit(start.size(), static_cast<Index>(i));
     if (parameter.id.is_machine())
       add_candidate(list, fmt::format("{} is zero", parameter.name), parameter.name, functional);
     else
       add_candidate(list, fmt::format("{} keeps its start value", parameter.name), parameter.name, functional,
                     start[static_cast<Index>(i)]);
+  };
+  const std::size_t locations_end = motion_parameters + problem.errors.locations.size();
+  std::vector<std::size_t> nearly_along;  // after the other location errors
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const ParameterId& id = parameters[i].id;
+    if (id.is_machine() && id.index < motion_parameters) continue;
+    if (id.is_machine() && id.index < locations_end &&
+        is_nearest_to_oblique_axis(axes, problem.errors.locations[id.index - motion_parameters])) {
+      nearly_along.push_back(i);
+      continue;
+    }
+    if (!id.is_machine() || id.index >= locations_end) {
+      for (const std::size_t k : nearly_along) one(k);
+      nearly_along.clear();
+    }
+    one(i);
   }
+  for (const std::size_t k : nearly_along) one(k);
   return list;
 }
 
