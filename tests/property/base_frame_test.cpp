@@ -9,7 +9,7 @@ struct Case {
   std::unique_ptr<TrackerObservations> observations;
   Problem problem;
   // truth: actual machine; nominal: start. Both in the old frame.
-  Case(const Machine& truth, const Machine& nominal, const RigidTransform& to, bool pose, bool offsets, std::size_t n) {
+  Case(const Machine& truth, const Machine& nominal, const RigidTransform& to, bool pose, bool offsets, std::size_t n, double noise = 0) {
     TrackerSetup setup;
     TrackerStation station;
     station.body_from_tracker.translation = {1500, 200, 700};
@@ -23,7 +23,7 @@ struct Case {
       setup.reflectors.push_back(reflector);
     }
     TrackerSimulationOptions options;
-    options.noise_factor = 0;
+    options.noise_factor = noise;
     options.line_of_sight = false;
     const PoseList poses = random_plan(truth, full_ranges(truth, 2), n, 3);
     TrackerReadings readings = simulate_tracker(truth, ErrorSet{}, setup, poses, options).readings;
@@ -57,6 +57,52 @@ void show(const char* what, Case& one) {
               r.history.empty() ? 0. : r.history.back().gradient, r.history.empty() ? 0. : r.history.back().step);
   if (std::getenv("VERBOSE")) { for (const auto& h : r.history) std::printf("   cost %.6g damp %.2g step %.3g grad %.3g %d %d\n", h.cost, h.damping, h.step, h.gradient, h.accepted, h.chord);
     for (const auto& c : r.gauge.constraints) std::printf("   %s\n", c.words.c_str()); }
+}
+
+Machine random_chain(std::uint64_t seed) {
+  RandomStream random(seed, 1);
+  const std::size_t n = 1 + static_cast<std::size_t>(random.uniform() * 9);
+  const std::size_t on_workpiece = static_cast<std::size_t>(random.uniform() * static_cast<double>(n + 1)) / 2;
+  Machine machine;
+  for (std::size_t i = 0; i < n; ++i) {
+    Axis axis;
+    const bool rotary = random.uniform() < 0.6;
+    axis.kind = rotary ? AxisKind::rotary : AxisKind::linear;
+    axis.name = std::string(rotary ? "C" : "Z") + std::to_string(i + 1);
+    axis.side = i < on_workpiece ? ChainSide::workpiece : ChainSide::tool;
+    axis.primed = axis.side == ChainSide::workpiece;
+    const double choice = random.uniform();
+    if (choice < 0.7)
+      axis.direction = Eigen::Vector3d::Unit(static_cast<int>(random.uniform() * 3)) * (random.uniform() < 0.5 ? -1 : 1);
+    else
+      axis.direction = Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    for (int k = 0; k < 3; ++k) axis.point[k] = std::round(random.uniform(-5, 5)) * 100;
+    axis.travel_min = rotary ? -2 : -300;
+    axis.travel_max = rotary ? 2 : 300;
+    machine.axes.push_back(axis);
+  }
+  machine.tool_reference = {100, 50, 900};
+  return machine;
+}
+
+TEST(BaseFrame, chains) {
+  const int from = std::getenv("FROM") ? std::atoi(std::getenv("FROM")) : 1, to = std::getenv("TO") ? std::atoi(std::getenv("TO")) : 20;
+  const double rel = std::getenv("REL") ? std::atof(std::getenv("REL")) : 0.05;
+  const double noise = std::getenv("NOISE") ? std::atof(std::getenv("NOISE")) : 0;
+  for (int seed = from; seed <= to; ++seed) {
+    const Machine truth = random_chain(static_cast<std::uint64_t>(seed));
+    const Machine nominal = perturbed(truth, rel, rel * 5 * M_PI / 180 / 0.05, static_cast<std::uint64_t>(seed));
+    std::printf("seed %d: %s\n", seed, truth.chain().c_str());
+    for (const bool pose : {false, true})
+    for (const double turn : {0.0, 0.1, 2.0, 777.0}) {
+      RandomStream random(static_cast<std::uint64_t>(seed), 5);
+      const Eigen::Vector3d any(random.normal(), random.normal(), random.normal());
+      const RigidTransform frame = turn == 777 ? RigidTransform{rotation_from_vector(2 * any), {random.normal()*1000, random.normal()*1000, random.normal()*1000}} :
+        RigidTransform{rotation_about(Eigen::Vector3d(0, 0, 1), turn * M_PI / 180), {0, 0, 0}};
+      Case one(truth, nominal, frame, pose, true, 30 + 12 * truth.axes.size(), noise);
+      show(("  pose " + std::to_string(pose) + " turn " + std::to_string(turn).substr(0, 4)).c_str(), one);
+    }
+  }
 }
 
 TEST(BaseFrame, reproduce) {

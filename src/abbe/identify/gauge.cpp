@@ -15,6 +15,9 @@ namespace {
 using Index = Eigen::Index;
 // A candidate is taken if at least this part of it (as a cosine) lies in what is still open.
 constexpr double kOpenPart = 1e-3;
+// A location error that would fix a direction waits if another one fixes that direction by this much more: equations
+// that hardly fix what they are meant for turn small errors of the machine into large parameters.
+constexpr double kClearPart = 0.1;
 // Entries of a direction that are named, relative to its largest scaled entry.
 constexpr double kInseparableEntry = 0.02;
 constexpr std::size_t kMostInseparableNamed = 8;
@@ -76,21 +79,52 @@ std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& 
   Eigen::MatrixXd taken(q, 0);  // orthonormal, the part of the null space that is fixed
 
   if (choice == GaugeChoice::iso) {
-    for (const GaugeCandidate& candidate : gauge_candidates(problem, start)) {
-      if (taken.cols() == q) break;
-      const Eigen::VectorXd scaled = candidate.functional.cwiseQuotient(scale);
-      Eigen::VectorXd part = open.transpose() * scaled / scaled.norm();
+    const std::vector<GaugeCandidate> candidates = gauge_candidates(problem, start);
+    Eigen::MatrixXd parts(q, static_cast<Index>(candidates.size()));  // of every candidate in what is open
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const Eigen::VectorXd scaled = candidates[i].functional.cwiseQuotient(scale);
+      parts.col(static_cast<Index>(i)) = open.transpose() * scaled / scaled.norm();
+    }
+    const auto left_open = [&](std::size_t i) {
+      Eigen::VectorXd part = parts.col(static_cast<Index>(i));
       for (int pass = 0; pass < 2; ++pass) part -= taken * (taken.transpose() * part);
-      if (part.norm() < kOpenPart) continue;
+      return part;
+    };
+    // Another location error fixes much better what this one would fix: then that one's turn comes first.
+    const auto has_to_wait = [&](const Eigen::VectorXd& part) {
+      const Eigen::VectorXd fixed = part.normalized();
+      for (std::size_t i = 0; i < candidates.size(); ++i)
+        if (candidates[i].of_location &&
+            kClearPart * std::abs(fixed.dot(parts.col(static_cast<Index>(i)))) > part.norm())
+          return true;
+      return false;
+    };
+    const auto take = [&](std::size_t i, bool may_wait) {
+      const Eigen::VectorXd part = left_open(i);
+      if (part.norm() < kOpenPart) return true;
+      if (may_wait && candidates[i].of_location && has_to_wait(part)) return false;
       taken.conservativeResize(q, taken.cols() + 1);
       taken.rightCols(1) = part.normalized();
       GaugeConstraint constraint;
-      constraint.words = candidate.words;
-      constraint.functional = candidate.functional;
-      constraint.value = candidate.value;
+      constraint.words = candidates[i].words;
+      constraint.functional = candidates[i].functional;
+      constraint.value = candidates[i].value;
       constraints.push_back(std::move(constraint));
-      quantities.push_back(candidate.quantity);
+      quantities.push_back(candidates[i].quantity);
+      return true;
+    };
+    std::vector<std::size_t> waiting;
+    for (std::size_t i = 0; i < candidates.size() && taken.cols() < q; ++i) {
+      if (!candidates[i].of_location) {
+        for (const std::size_t k : waiting)
+          if (taken.cols() < q) take(k, false);
+        waiting.clear();
+        if (taken.cols() == q) break;
+      }
+      if (!take(i, true)) waiting.push_back(i);
     }
+    for (const std::size_t k : waiting)
+      if (taken.cols() < q) take(k, false);
   }
   if (taken.cols() < q) {
     const Index rest = q - taken.cols();

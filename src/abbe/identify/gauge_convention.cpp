@@ -220,9 +220,7 @@ int nearest_component(const Axis& axis) {
 }
 
 /// An axis parallel to none of X, Y, Z: all its components are parameters, and a combination of them has no effect.
-bool is_oblique(const Axis& axis) {
-  return std::abs(axis.direction[nearest_component(axis)]) < 1 - 1e-12;
-}
+bool is_oblique(const Axis& axis) { return std::abs(axis.direction[nearest_component(axis)]) < 1 - 1e-12; }
 
 bool is_nearest_to_oblique_axis(const std::vector<Axis>& axes, const LocationError& location) {
   const Axis& axis = axes[location.axis];
@@ -254,8 +252,8 @@ void along_oblique_axis(const Problem& problem, std::size_t axis, const std::vec
       const Index place = places[static_cast<std::size_t>(k + offset)];
       if (place >= 0) functional[place] = moving.direction[k];
     }
-    const std::string quantity = fmt::format("{} of {} {} itself", offset == 0 ? "shift" : "turn", moving.name,
-                                             offset == 0 ? "along" : "about");
+    const std::string quantity =
+        fmt::format("{} of {} {} itself", offset == 0 ? "shift" : "turn", moving.name, offset == 0 ? "along" : "about");
     add_candidate(list, fmt::format("the {} is zero", quantity), quantity, functional);
   }
 }
@@ -279,6 +277,7 @@ std::vector<GaugeCandidate> gauge_candidates(const Problem& problem, const Eigen
   const std::vector<std::vector<Index>> places = places_of_locations(problem, motion_parameters);
   for (std::size_t axis = 0; axis < axes.size(); ++axis) along_oblique_axis(problem, axis, places[axis], list);
   const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
+  const std::size_t locations_end = motion_parameters + problem.errors.locations.size();
   const auto one = [&](std::size_t i) {
     const EstimatedParameter& parameter = parameters[i];
     const Eigen::VectorXd functional = Eigen::VectorXd::Unit(start.size(), static_cast<Index>(i));
@@ -287,8 +286,8 @@ std::vector<GaugeCandidate> gauge_candidates(const Problem& problem, const Eigen
     else
       add_candidate(list, fmt::format("{} keeps its start value", parameter.name), parameter.name, functional,
                     start[static_cast<Index>(i)]);
+    list.back().of_location = parameter.id.is_machine() && parameter.id.index < locations_end;
   };
-  const std::size_t locations_end = motion_parameters + problem.errors.locations.size();
   std::vector<std::size_t> nearly_along;  // after the other location errors
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const ParameterId& id = parameters[i].id;
