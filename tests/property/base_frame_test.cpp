@@ -93,6 +93,7 @@ TEST(BaseFrame, chains) {
     const Machine truth = random_chain(static_cast<std::uint64_t>(seed));
     const Machine nominal = perturbed(truth, rel, rel * 5 * M_PI / 180 / 0.05, static_cast<std::uint64_t>(seed));
     std::printf("seed %d: %s\n", seed, truth.chain().c_str());
+    if (std::getenv("GV")) for (const Axis& a : truth.axes) std::printf("  %s d %.4f %.4f %.4f p %.0f %.0f %.0f\n", a.name.c_str(), a.direction[0], a.direction[1], a.direction[2], a.point[0], a.point[1], a.point[2]);
     for (const bool pose : {false, true})
     for (const double turn : {0.0, 0.1, 2.0, 777.0}) {
       RandomStream random(static_cast<std::uint64_t>(seed), 5);

@@ -69,7 +69,7 @@ Eigen::MatrixXd nearest_to_parameters(Eigen::MatrixXd space) {
 }  // namespace
 
 std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& null_space,
-                                       const Eigen::VectorXd& start, GaugeChoice choice) {
+                                       const Eigen::VectorXd& start, GaugeChoice choice, GaugeOrder order) {
   std::vector<GaugeConstraint> constraints;
   std::vector<std::string> quantities;
   const Index p = start.size(), q = null_space.basis.cols();
@@ -114,17 +114,32 @@ std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& 
       return true;
     };
     std::vector<std::size_t> waiting;
-    for (std::size_t i = 0; i < candidates.size() && taken.cols() < q; ++i) {
-      if (!candidates[i].of_location) {
+    std::size_t next = 0;
+    for (; next < candidates.size() && taken.cols() < q; ++next) {
+      if (order == GaugeOrder::firmest && candidates[next].exchangeable) break;
+      if (!candidates[next].of_location) {
         for (const std::size_t k : waiting)
           if (taken.cols() < q) take(k, false);
         waiting.clear();
         if (taken.cols() == q) break;
       }
-      if (!take(i, true)) waiting.push_back(i);
+      if (!take(next, true)) waiting.push_back(next);
     }
     for (const std::size_t k : waiting)
       if (taken.cols() < q) take(k, false);
+    while (order == GaugeOrder::firmest && taken.cols() < q && next < candidates.size()) {
+      std::size_t best = next;
+      double most = 0;
+      for (std::size_t i = next; i < candidates.size(); ++i) {
+        const double part = left_open(i).norm();
+        if (part > (1 + kAlike) * most) {
+          best = i;
+          most = part;
+        }
+      }
+      if (most < kOpenPart) break;
+      take(best, false);
+    }
   }
   if (taken.cols() < q) {
     const Index rest = q - taken.cols();

@@ -16,6 +16,12 @@ enum class GaugeChoice {
   none           ///< leave them: a rank-deficient problem then ends with that status
 };
 
+/// Which of the location errors, the tool offset and the set-up unknowns are fixed where any of them would do.
+enum class GaugeOrder {
+  convention,  ///< the first in the order of gauge_convention.h
+  firmest      ///< what fixes most of what is open: for machines so far from the start that the first cannot be met
+};
+
 /// One equation c'x = value that fixes one unseen direction.
 struct GaugeConstraint {
   std::string words;                     ///< "mean of EXC over the turn is zero"
@@ -61,7 +67,8 @@ NullSpace find_null_space(const ReadingStream& stream, const Eigen::VectorXd& es
 /// smallest change from the start and marked (by_convention = false).
 /// @param start  [p], set-up unknowns that have to be fixed keep this value
 std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& null_space,
-                                       const Eigen::VectorXd& start, GaugeChoice choice);
+                                       const Eigen::VectorXd& start, GaugeChoice choice,
+                                       GaugeOrder order = GaugeOrder::convention);
 
 /// Solutions of all equations, as near to `start` as a move along the unseen directions allows.
 ConstrainedSpace constrained_space(const std::vector<GaugeConstraint>& constraints, const Eigen::VectorXd& start,

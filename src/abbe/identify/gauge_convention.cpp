@@ -286,6 +286,7 @@ std::vector<GaugeCandidate> gauge_candidates(const Problem& problem, const Eigen
     else
       add_candidate(list, fmt::format("{} keeps its start value", parameter.name), parameter.name, functional,
                     start[static_cast<Index>(i)]);
+    list.back().exchangeable = true;
     list.back().of_location = parameter.id.is_machine() && parameter.id.index < locations_end;
   };
   std::vector<std::size_t> nearly_along;  // after the other location errors

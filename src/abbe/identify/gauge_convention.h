@@ -14,6 +14,7 @@ struct GaugeCandidate {
   std::string quantity;        ///< the quantity: "constant of EXZ"
   Eigen::VectorXd functional;  ///< [p]
   double value = 0;            ///< mm or rad
+  bool exchangeable = false;   ///< of location errors, the tool offset and the set-up: see GaugeOrder
   bool of_location = false;    ///< of location errors: waits where another of them fixes the same direction better
 };
 

@@ -25,6 +25,11 @@ constexpr double kLarge = 5e8;  // residuals times square of the parameters
 constexpr int kMostGaugeRounds = 2;
 constexpr double kSeenByCost = 1e-9;
 constexpr double kRestriction = 0.1;
+// A gauge may have slipped if the scaled Jacobian's condition is above the first, and so many times that at the start.
+constexpr double kSlippedCondition = 1e5;
+constexpr double kSlipped = 100;
+constexpr double kOpenDamping = 1e-9;  // keeps steps along unseen directions short
+constexpr double kSameCost = 1e-6;
 
 std::vector<double> scaled_norms(const Problem& problem, const std::vector<std::vector<double>>& norms) {
   std::vector<double> result;
@@ -39,6 +44,7 @@ class Run {
   Run(Problem& problem, const IdentifyOptions& options)
       : problem_(problem),
         options_(options),
+        solver_(options.solver),
         stream_(problem, options.solver.threads),
         start_(present_values(problem)) {}
 
@@ -54,19 +60,9 @@ class Run {
       return fail(IdentifyStatus::not_finite, "a residual or derivative at the start is not a finite number");
     if (!fix()) return fail(IdentifyStatus::rank_deficient, rank_message());
     const Eigen::VectorXd given = start_;
-    SolverResult solved;
-    const ConstrainedSpace* space = nullptr;
-    for (int round = 0;; ++round) {
-      space = result_.gauge.constraints.empty() ? nullptr : &result_.space;
-      solved = options_.loss == LossKind::none ? least_squares(space) : robust(space);
-      result_.history.insert(result_.history.end(), solved.history.begin(), solved.history.end());
-      if (round == kMostGaugeRounds || solved.status != IdentifyStatus::converged || !space || !restricts(solved))
-        break;
-      // What was unseen at the start is seen here: a property of that point, not of the problem.
-      start_ = solved.estimates;
-      at_start_ = stream_.sums(start_, Loss{}, Wanted::normal);
-      take_gauge(find_null_space(stream_, start_, at_start_));
-    }
+    SolverResult solved = solve_in_gauge(given);
+    if (options_.gauge == GaugeChoice::iso && gauge_has_slipped(solved)) solve_before_gauge(given, solved);
+    const ConstrainedSpace* space = present_space();
     if (solved.status == IdentifyStatus::not_finite || solved.status == IdentifyStatus::rank_deficient) start_ = given;
     result_.status = solved.status;
     if (solved.status == IdentifyStatus::not_finite || solved.status == IdentifyStatus::rank_deficient)
@@ -106,17 +102,86 @@ class Run {
       result_.gauge.singular_values = null_space.singular_values;
       return false;
     }
-    take_gauge(null_space);
+    take_gauge(null_space, start_);
     return true;
   }
 
-  void take_gauge(const NullSpace& null_space) {
+  const ConstrainedSpace* present_space() const { return result_.gauge.constraints.empty() ? nullptr : &result_.space; }
+
+  SolverResult solve_in_gauge(const Eigen::VectorXd& given) {
+    for (int round = 0;; ++round) {
+      const SolverResult solved = solve_now(present_space());
+      if (round == kMostGaugeRounds || solved.status != IdentifyStatus::converged || !present_space() ||
+          !restricts(solved))
+        return solved;
+      // What was unseen at the start is seen here: a property of that point, not of the problem.
+      start_from(solved.estimates);
+      take_gauge(find_null_space(stream_, start_, at_start_), given);
+    }
+  }
+
+  SolverResult solve_now(const ConstrainedSpace* space) {
+    SolverResult solved = options_.loss == LossKind::none ? least_squares(space) : robust(space);
+    result_.history.insert(result_.history.end(), solved.history.begin(), solved.history.end());
+    return solved;
+  }
+
+  void start_from(const Eigen::VectorXd& estimates) {
+    start_ = estimates;
+    at_start_ = stream_.sums(start_, Loss{}, Wanted::normal);
+  }
+
+  // True where the equations of the gauge, chosen at the start, may have become all but unable to fix what is unseen.
+  // The solver then gets nowhere, or stops at a point that only this singularity makes stationary.
+  bool gauge_has_slipped(const SolverResult& solved) const {
+    if (!present_space() || solved.status == IdentifyStatus::not_finite) return false;
+    if (solved.status != IdentifyStatus::converged) return true;
+    const auto condition = [&](const NormalEquations& sums) {
+      return observability_of(sums.normal, present_space(), 1).condition;
+    };
+    NormalEquations there;
+    there.normal = solved.normal;
+    const double condition_there = condition(there);
+    return condition_there > kSlippedCondition && condition_there > kSlipped * condition(at_start_);
+  }
+
+  // First the readings, by steps that are the shortest where nothing is seen, then the gauge that suits the machine
+  // found: far from the start other equations may be needed than there.
+  void solve_before_gauge(const Eigen::VectorXd& given, SolverResult& solved) {
+    const GaugeReport gauge = result_.gauge;
+    const ConstrainedSpace space = result_.space;
+    start_from(given);
+    solver_.least_damping = kOpenDamping;
+    const SolverResult open = solve_now(nullptr);
+    solver_.least_damping = 0;
+    for (const GaugeOrder order : {GaugeOrder::convention, GaugeOrder::firmest}) {
+      if (open.status != IdentifyStatus::converged) break;
+      start_from(open.estimates);
+      order_ = order;
+      take_gauge(find_null_space(stream_, start_, at_start_), given);
+      const SolverResult again = solve_in_gauge(given);
+      if (again.status == IdentifyStatus::converged && again.cost <= (1 + kSameCost) * open.cost + kSameCost) {
+        solved = again;
+        return;
+      }
+    }
+    result_.gauge = gauge;
+    result_.space = space;
+    start_ = given;
+    // Stationary, but not known to be the minimum: there is a lower point, or nothing is known of it.
+    if (solved.status == IdentifyStatus::converged &&
+        !(open.status == IdentifyStatus::converged && solved.cost <= (1 + kSameCost) * open.cost + kSameCost))
+      solved.status = IdentifyStatus::no_convergence;
+  }
+
+  /// @param given  the start of the identification: what set-up unknowns keep that the gauge fixes
+  void take_gauge(const NullSpace& null_space, const Eigen::VectorXd& given) {
     lack_of_data_ = false;
     result_.gauge.warnings.clear();
     result_.gauge.rank_at_start = null_space.rank;
     result_.gauge.weak_at_start = null_space.weak;
     result_.gauge.singular_values = null_space.singular_values;
-    result_.gauge.constraints = fix_gauge(problem_, null_space, start_, options_.gauge);
+    result_.gauge.constraints = fix_gauge(problem_, null_space, given, options_.gauge, order_);
     result_.space = constrained_space(result_.gauge.constraints, start_, null_space.column_norms);
     for (const GaugeConstraint& constraint : result_.gauge.constraints) {
       lack_of_data_ = lack_of_data_ || !constraint.by_convention;
@@ -141,7 +206,7 @@ class Run {
   }
 
   SolverResult least_squares(const ConstrainedSpace* space) {
-    return solve(stream_, start_, space, Loss{}, options_.solver, space ? nullptr : &at_start_);
+    return solve(stream_, start_, space, Loss{}, solver_, space ? nullptr : &at_start_);
   }
 
   double stated_or_robust_scale(const Eigen::VectorXd& at) const {
@@ -153,7 +218,7 @@ class Run {
   SolverResult robust(const ConstrainedSpace* space) {
     Eigen::VectorXd x = start_;
     double scale = std::max(1.0, stated_or_robust_scale(x));
-    SolverOptions rough = options_.solver;
+    SolverOptions rough = solver_;
     rough.relative_cost = 1e-4;
     rough.step = 1e-6;
     rough.max_iterations = std::min(rough.max_iterations, 20);
@@ -173,7 +238,7 @@ class Run {
     if (!options_.scale_from_residuals) scale = 1;
     loss_ = Loss{options_.loss, options_.loss_tuning, scale};
     result_.robust_scale = scale;
-    return solve(stream_, x, space, loss_, options_.solver, nullptr);
+    return solve(stream_, x, space, loss_, solver_, nullptr);
   }
 
   void finish(const SolverResult& solved, const ConstrainedSpace* space) {
@@ -289,6 +354,8 @@ class Run {
 
   Problem& problem_;
   const IdentifyOptions& options_;
+  SolverOptions solver_;
+  GaugeOrder order_ = GaugeOrder::convention;
   ReadingStream stream_;
   Eigen::VectorXd start_;
   NormalEquations at_start_;

@@ -17,6 +17,10 @@ constexpr double kLargestDamping = 1e16;
 // Below this predicted relative decrease the difference of two costs is rounding.
 constexpr double kCostResolution = 1e-11;
 constexpr double kStillFalling = 0.98;
+// A point is stationary if the undamped quadratic model promises no more than this part of the cost, or no more than
+// this of a standard uncertainty (squared), which readings without noise come down to.
+constexpr double kStationary = 1e-10;
+constexpr double kStationaryAbsolute = 1e-12;
 
 /// The iteration's state in the free variables y of x = particular + directions y.
 class Minimiser {
@@ -46,7 +50,7 @@ class Minimiser {
       sums_ = stream_.sums(x_, loss_, Wanted::normal);
       take_normal(sums_.normal);
     }
-    if (result.status == IdentifyStatus::converged && !well_determined())
+    if (result.status == IdentifyStatus::converged && options_.least_damping == 0 && !well_determined())
       result.status = IdentifyStatus::rank_deficient;
     result.estimates = x_;
     result.normal = normal_;
@@ -84,6 +88,8 @@ class Minimiser {
     return factored_;
   }
 
+  double least_damping() const { return std::max(options_.least_damping, 1e-15); }
+
   // Size of the present point in the scaled variables, as far as a step can be compared with it.
   double point_size() const {
     if (!space_) return x_.cwiseProduct(scale_).norm();
@@ -96,6 +102,18 @@ class Minimiser {
     const Eigen::VectorXd inverse = norms.cwiseInverse();
     const Ldlt<> factor(inverse.asDiagonal() * reduced_ * inverse.asDiagonal());
     return factor.info() == Eigen::Success && factor.diagonal().minCoeff() > 1e-15;
+  }
+
+  /// True if what is left to gain is nothing: half the square of the gradient in the metric of the covariance.
+  ///
+  /// Without damping. A damped step is short where the readings hardly see, whether or not the minimum is near.
+  bool is_stationary(const Eigen::VectorXd& gradient) const {
+    Eigen::MatrixXd normal = reduced_;
+    normal.diagonal().array() += options_.least_damping;
+    const Cholesky undamped(normal);
+    if (undamped.info() != Eigen::Success) return true;  // and rank deficient: run() says so
+    const double gain = undamped.half_solve(gradient).squaredNorm() / 2;
+    return gain <= std::max(std::max(kStationary, options_.relative_cost) * sums_.cost, kStationaryAbsolute);
   }
 
   void iterate(SolverResult& result) {
@@ -114,12 +132,12 @@ class Minimiser {
         result.history.push_back(record);
         result.status = IdentifyStatus::converged;
       };
-      if (record.gradient <= options_.gradient) return finish();
+      if (record.gradient <= options_.gradient && is_stationary(gradient)) return finish();
 
       if (!chord) {
         bool solvable = factor(damping);
         while (!solvable && damping < kLargestDamping) {
-          damping = std::max(damping * 10, 1e-15);
+          damping = std::max(damping * 10, least_damping());
           solvable = factor(damping);
         }
         if (!solvable) break;
@@ -139,12 +157,19 @@ class Minimiser {
         last_decrement = -1;
         continue;
       }
-      if (factor_damping_ <= 1e-2 && predicted <= options_.relative_cost * sums_.cost) return finish();
-      if (record.step <= options_.step) {
-        // A step shortened by damping alone says nothing about the minimum.
-        if (factor_damping_ <= 1e-2 || record.gradient < 1e-4) return finish();
-        result.history.push_back(record);
-        break;
+      if (predicted <= options_.relative_cost * sums_.cost || record.step <= options_.step) {
+        if (is_stationary(gradient)) return finish();
+        // The damping alone made the step short.
+        if (factor_damping_ <= 1e-2 && factor_damping_ > least_damping()) {
+          damping = std::max(damping * 1e-3, least_damping());
+          chord = false;
+          last_decrement = -1;
+          continue;
+        }
+        if (record.step <= options_.step && factor_damping_ > 1e-2) {
+          result.history.push_back(record);
+          break;
+        }
       }
 
       const Eigen::VectorXd free_step = step.cwiseQuotient(scale_);
@@ -161,9 +186,17 @@ class Minimiser {
             space_ ? Eigen::VectorXd(space_->directions.transpose() * next.gradient) : next.gradient;
         const Eigen::VectorXd scaled = free.cwiseQuotient(scale_);
         const bool falls = factor_.solve(scaled).dot(scaled) < kStillFalling * decrement;
-        if (!falls) {
+        if (!falls && is_stationary(gradient)) {
           result.status = IdentifyStatus::converged;
           return;
+        }
+        if (!falls) {
+          damping = std::max(damping, least_damping()) * growth;
+          growth *= 2;
+          if (damping > kLargestDamping) break;
+          chord = false;
+          last_decrement = -1;
+          continue;
         }
         x_ = trial;
         sums_ = std::move(next);
@@ -171,7 +204,7 @@ class Minimiser {
         chord = expect_chord;
         last_decrement = expect_chord ? decrement : -1;
         if (!expect_chord) take_normal(sums_.normal);
-        damping = std::max(damping * 0.1, 1e-16);
+        damping = std::max(damping * 0.1, least_damping());
         continue;
       }
       if (!record.accepted) {
@@ -182,16 +215,16 @@ class Minimiser {
           last_decrement = -1;
         }
         last_ratio_is_good_ = false;
-        damping = std::max(damping, 1e-15) * growth;
+        damping = std::max(damping, least_damping()) * growth;
         growth *= 2;
         if (damping > kLargestDamping) break;
         continue;
       }
-      const double decrease = sums_.cost - next.cost;
       x_ = trial;
       sums_ = std::move(next);
       damping *= std::max(1.0 / 3.0, 1 - std::pow(2 * std::min(ratio, 2.0) - 1, 3));
       if (ratio > 0.9 && ratio < 1.1) damping *= 0.1;
+      damping = std::max(damping, options_.least_damping);
       growth = 2;
       last_ratio_is_good_ = std::abs(ratio - 1) < 0.1;
       normal_is_current_ = false;
@@ -202,11 +235,6 @@ class Minimiser {
         take_normal(sums_.normal);
         chord = false;
         last_decrement = -1;
-      }
-      if (factor_damping_ <= 1e-2 && decrease <= options_.relative_cost * sums_.cost &&
-          predicted <= options_.relative_cost * sums_.cost) {
-        result.status = IdentifyStatus::converged;
-        return;
       }
     }
   }

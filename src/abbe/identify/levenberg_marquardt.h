@@ -12,7 +12,7 @@ namespace abbe {
 
 enum class IdentifyStatus {
   not_run,
-  converged,
+  converged,         ///< at a stationary point, see solve()
   no_convergence,    ///< iteration limit reached, or no step lowers the cost
   rank_deficient,    ///< parameters that the readings cannot separate and no gauge was stated
   too_few_readings,  ///< fewer residuals and priors than parameters (after the gauge)
@@ -28,6 +28,7 @@ struct SolverOptions {
   double gradient = 1e-10;       ///< converged if the residuals are orthogonal to every column: largest cosine below
   double step = 1e-11;           ///< converged if |D dx| < step |D x|, D: column norms of the Jacobian
   double start_damping = 1e-6;   ///< relative to the (unit) diagonal of the scaled normal matrix
+  double least_damping = 0;      ///< above 0: directions may be open without a gauge, and the rank is not judged
   bool chord_iterations = true;  ///< keep the factor while it still lowers the gradient well
   int threads = 0;               ///< 0: all; the result does not depend on it
 };
@@ -59,6 +60,8 @@ struct SolverResult {
 /// Minimises the (robust) sum of squares from `start`, inside the constrained space if one is given.
 ///
 /// Levenberg-Marquardt with Nielsen's damping in column-scaled variables (IMM-REP-1999-05; More, LNM 630 (1978) 105).
+/// Converged only where g'H^-1 g / 2, what the model without damping could still gain, is no more than 1e-10 of the
+/// cost (or relative_cost, if larger) or 1e-12: a stationary point to 1e-6 of the standard uncertainties.
 /// @param start  [p]; its part along the constrained directions is used
 SolverResult solve(const Problem& problem, const Eigen::VectorXd& start, const ConstrainedSpace* space,
                    const Loss& loss, const SolverOptions& options);
