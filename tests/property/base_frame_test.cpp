@@ -52,7 +52,7 @@ void show(const char* what, Case& one) {
   const Identification r = identify(one.problem);
   double worst = 0;
   for (std::size_t k = 0; k < one.observations->reading_count(); ++k) worst = std::max(worst, one.observations->distance(k).norm());
-  std::printf("%-28s %-18s p %zd fixed %zu it %zu chi2 %.3g worst %.3g um cond %.3g | grad %.3g step %.3g\n", what, status_text(r.status), r.estimates.size(),
+  std::printf("%-28s %-18s p %zd fixed %zu it %zu chi2 %.12g worst %.3g um cond %.3g | grad %.3g step %.3g\n", what, status_text(r.status), r.estimates.size(),
               r.gauge.constraints.size(), r.history.size(), r.statistics.chi_square, 1e3 * worst, r.statistics.observability.condition,
               r.history.empty() ? 0. : r.history.back().gradient, r.history.empty() ? 0. : r.history.back().step);
   if (std::getenv("VERBOSE")) { for (const auto& h : r.history) std::printf("   cost %.6g damp %.2g step %.3g grad %.3g %d %d\n", h.cost, h.damping, h.step, h.gradient, h.accepted, h.chord);

@@ -25,9 +25,10 @@ constexpr double kLarge = 5e8;  // residuals times square of the parameters
 constexpr int kMostGaugeRounds = 2;
 constexpr double kSeenByCost = 1e-9;
 constexpr double kRestriction = 0.1;
-// A gauge may have slipped if the scaled Jacobian's condition is above the first, and so many times that at the start.
-constexpr double kSlippedCondition = 1e5;
-constexpr double kSlipped = 100;
+// A gauge may have slipped if the inverse condition of the scaled Jacobian is below the first, and below this part of
+// that at the start.
+constexpr double kSlippedObservability = 1e-5;
+constexpr double kSlipped = 0.01;
 constexpr double kOpenDamping = 1e-9;  // keeps steps along unseen directions short
 constexpr double kSameCost = 1e-6;
 
@@ -136,13 +137,9 @@ class Run {
   bool gauge_has_slipped(const SolverResult& solved) const {
     if (!present_space() || solved.status == IdentifyStatus::not_finite) return false;
     if (solved.status != IdentifyStatus::converged) return true;
-    const auto condition = [&](const NormalEquations& sums) {
-      return observability_of(sums.normal, present_space(), 1).condition;
-    };
-    NormalEquations there;
-    there.normal = solved.normal;
-    const double condition_there = condition(there);
-    return condition_there > kSlippedCondition && condition_there > kSlipped * condition(at_start_);
+    const auto seen = [&](const Eigen::MatrixXd& normal) { return observability_of(normal, present_space(), 1).o2; };
+    const double seen_there = seen(solved.normal);
+    return seen_there < kSlippedObservability && seen_there < kSlipped * seen(at_start_.normal);
   }
 
   // First the readings, by steps that are the shortest where nothing is seen, then the gauge that suits the machine
