@@ -3,16 +3,13 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "abbe/errors/error_set.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/geometry/rotation.h"
-#include "abbe/identify/identify.h"
-#include "abbe/instruments/measurement_plan.h"
-#include "abbe/instruments/tracker_observations.h"
-#include "abbe/instruments/tracker_simulation.h"
+#include "abbe/machine/machine.h"
 
 namespace abbe::test {
 
@@ -29,6 +26,7 @@ inline Machine moved(Machine machine, const RigidTransform& to) {
   return machine;
 }
 
+/// Every location error that the machine can have, at zero.
 inline ErrorSet all_locations(const Machine& machine) {
   ErrorSet errors;
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis)
@@ -54,6 +52,49 @@ inline Machine seven_axis_arm() {
     machine.axes.push_back(axis);
   }
   machine.tool_reference = {0, 0, 1266};
+  return machine;
+}
+
+/// One to nine axes, rotary and linear, on both sides of the bed; most of them along X, Y or Z, many parallel.
+inline Machine random_chain(std::uint64_t seed) {
+  RandomStream random(seed, 1);
+  const std::size_t count = 1 + static_cast<std::size_t>(random.uniform() * 9);
+  const std::size_t on_workpiece = static_cast<std::size_t>(random.uniform() * static_cast<double>(count + 1)) / 2;
+  Machine machine;
+  for (std::size_t i = 0; i < count; ++i) {
+    Axis axis;
+    const bool rotary = random.uniform() < 0.6;
+    axis.kind = rotary ? AxisKind::rotary : AxisKind::linear;
+    axis.name = (rotary ? "C" : "Z") + std::to_string(i + 1);
+    axis.side = i < on_workpiece ? ChainSide::workpiece : ChainSide::tool;
+    axis.primed = axis.side == ChainSide::workpiece;
+    if (random.uniform() < 0.7)
+      axis.direction =
+          Eigen::Vector3d::Unit(static_cast<int>(random.uniform() * 3)) * (random.uniform() < 0.5 ? -1 : 1);
+    else
+      axis.direction = Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+    for (int k = 0; k < 3; ++k) axis.point[k] = std::round(random.uniform(-5, 5)) * 100;
+    axis.travel_min = rotary ? -2 : -300;
+    axis.travel_max = rotary ? 2 : 300;
+    machine.axes.push_back(axis);
+  }
+  machine.tool_reference = {100, 50, 900};
+  return machine;
+}
+
+/// A description of a machine that is off: every coordinate of a point and every turn of an axis by up to so much.
+inline Machine misjudged(Machine machine, double length_mm, double angle, std::uint64_t seed) {
+  RandomStream random(seed);
+  const auto up_to = [&](double most) {
+    Eigen::Vector3d result;
+    for (int k = 0; k < 3; ++k) result[k] = random.uniform(-1, 1) * most;
+    return result;
+  };
+  for (Axis& axis : machine.axes) {
+    axis.direction = rotation_from_vector(up_to(angle)) * axis.direction;
+    axis.point += up_to(length_mm);
+  }
+  machine.tool_reference += up_to(length_mm);
   return machine;
 }
 

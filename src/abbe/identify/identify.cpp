@@ -25,6 +25,7 @@ constexpr double kLarge = 5e8;  // residuals times square of the parameters
 constexpr int kMostGaugeRounds = 2;
 constexpr double kSeenByCost = 1e-9;
 constexpr double kRestriction = 0.1;
+constexpr double kNoCost = 1e-9;  // readings without noise leave rounding, which says nothing about the gauge
 // A gauge may have slipped if the inverse condition of the scaled Jacobian is below the first, and below this part of
 // that at the start.
 constexpr double kSlippedObservability = 1e-5;
@@ -197,7 +198,7 @@ class Run {
       const double seen = n.dot(solved.normal * n);
       if (!(seen > kSeenByCost * n.cwiseAbs2().dot(solved.normal.diagonal()))) continue;
       const double slope = sums.gradient.dot(n);
-      if (slope * slope / (2 * seen) > kRestriction * std::max(solved.cost, 1e-300)) return true;
+      if (slope * slope / (2 * seen) > kRestriction * std::max(solved.cost, kNoCost)) return true;
     }
     return false;
   }
