@@ -23,10 +23,14 @@ class LeastMedian {
         survey_(survey),
         constraints_(constraints),
         scored_(spread_sample(survey.sample, Vector3d::Zero(), 200)),
+        met_(points_met(kind, free_parameters(kind, constraints).size())),
         generator_(seed) {}
 
   /// The best that differ from each other, best first.
   std::vector<ShapeFrame> search() {
+    // Of few points without a wrong one, the shape of all is better than that of any few.
+    const BestStart all = best_start(kind_, survey_, constraints_);
+    if (all.found) score(all.frame);
     if (kind_ == ShapeKind::cylinder || kind_ == ShapeKind::cone) {
       along_all_directions();
     } else {
@@ -64,7 +68,7 @@ class LeastMedian {
     for (Index i = 0; i < scored_.cols(); ++i) {
       d[static_cast<std::size_t>(i)] = std::abs(point_slopes(frame, scored_.col(i)).distance);
     }
-    const double value = middle(d);
+    const double value = median_distance(d, met_);
     if (!std::isfinite(value)) return std::numeric_limits<double>::infinity();
     if (best_.size() == kKept && !(value < best_.back().value)) return value;
     // Huge circles come near everything that is small: a radius has to be of the data's order.
@@ -141,6 +145,7 @@ class LeastMedian {
   const Survey& survey_;
   const FitConstraints& constraints_;
   Matrix3Xd scored_;
+  std::size_t met_;
   std::mt19937_64 generator_;
   static constexpr std::size_t kKept = 5;
   struct Scored {
@@ -152,9 +157,10 @@ class LeastMedian {
 
 }  // namespace
 
-double middle(std::vector<double>& values) {
-  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), half, values.end());
+double median_distance(std::vector<double>& distances, std::size_t met) {
+  met = std::min(met, distances.size() - 1);
+  const auto half = distances.begin() + static_cast<std::ptrdiff_t>(met + (distances.size() - met) / 2);
+  std::nth_element(distances.begin(), half, distances.end());
   return *half;
 }
 

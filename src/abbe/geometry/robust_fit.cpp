@@ -50,6 +50,7 @@ struct Setting {
   double least_scale = 0;       ///< that of rounding, mm
   double size = 1;              ///< mm
   double largest_scale = std::numeric_limits<double>::infinity();  ///< mm
+  std::size_t met = 0;  ///< points through which the shape can always be laid
   std::vector<int> free;
 };
 
@@ -68,7 +69,7 @@ Reweighted reweigh(const ShapeFrame& start, const FitPoints& points, const Setti
   for (int step = 0; step < most && !result.rested; ++step) {
     distances(result.frame, points, d, threads);
     std::transform(d.begin(), d.end(), sorted.begin(), [](double x) { return std::abs(x); });
-    const double next = std::clamp(middle(sorted) / setting.median_of_normal, setting.least_scale,
+    const double next = std::clamp(median_distance(sorted, setting.met) / setting.median_of_normal, setting.least_scale,
                                    std::max(setting.least_scale, setting.largest_scale));
     // Late steps keep the scale, which could go to and fro with the middle point.
     const double before = result.scale;
@@ -81,7 +82,12 @@ Reweighted reweigh(const ShapeFrame& start, const FitPoints& points, const Setti
     const double moved_by = change(refined.frame, result.frame, setting.size);
     result.frame = refined.frame;
     if (!std::isfinite(moved_by)) break;
-    result.rested = moved_by < 1e-12 && std::abs(result.scale - before) <= 1e-9 * result.scale;
+    // Where the points hardly hold the shape, it may go to and fro by more without a distance changing.
+    distances(result.frame, points, sorted, threads);
+    double changed = 0;
+    for (std::size_t i = 0; i < d.size(); ++i) changed = std::max(changed, std::abs(std::abs(sorted[i]) - std::abs(d[i])));
+    const bool scale_rests = std::abs(result.scale - before) <= 1e-9 * result.scale;
+    result.rested = scale_rests && (moved_by < 1e-12 || changed <= 1e-11 * result.scale);
     // With the scale at rounding there is nothing more to weigh.
     result.rested = result.rested || (moved_by < 1e-10 && result.scale <= 2 * setting.least_scale);
   }
@@ -109,8 +115,16 @@ std::vector<double> losses(const ShapeFrame& frame, const Matrix3Xd& sample, dou
   return loss;
 }
 
+/// How many of the points that the answer leaves out another shape takes.
+std::size_t left_out_taken(const std::vector<double>& loss, const std::vector<double>& own_loss) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < loss.size(); ++i) count += loss[i] < 1 && own_loss[i] >= 1 ? 1 : 0;
+  return count;
+}
+
 /// Other shapes of the sample: what the other candidates lead to, and the best shape of the points that the answer
-/// leaves out. One whose mean loss is not larger by more than three times its uncertainty and 0.005 is as good.
+/// leaves out. One whose mean loss is not larger by more than 0.005 is as good, and so is one that explains some of the
+/// points left out and whose mean loss is not larger by more than three times its uncertainty and 0.005.
 void add_rivals(ShapeFit& fit, const ShapeFrame& answer, double scale, const std::vector<ShapeFrame>& candidates,
                 const Survey& survey, const Setting& setting, const FitConstraints& constraints, std::uint64_t seed) {
   constexpr double kLeftOut = 0.25, kWorthNaming = 0.35;
@@ -169,7 +183,9 @@ void add_rivals(ShapeFit& fit, const ShapeFrame& answer, double scale, const std
     rival.shape = shape_of(placed, survey.centroid.mean);
     rival.share = share;
     fit.rivals.push_back(rival);
-    if (mean <= 3 * uncertainty + 0.005 && fit.ok()) {
+    // One that takes up to as many of the points left out as any shape can be laid through explains nothing.
+    const bool explains_more = left_out_taken(loss, own_loss) > setting.met;
+    if (mean <= (explains_more ? 3 * uncertainty : 0) + 0.005 && fit.ok()) {
       fit.status = FitStatus::ambiguous;
       fit.reason = "another shape explains nearly as many points";
     }
@@ -209,6 +225,7 @@ ShapeFit robust_fit(ShapeKind kind, const FitPoints& points, const RobustOptions
   setting.least_scale = 1e-14 * (survey.size + survey.centre.cwiseAbs().maxCoeff());
   setting.size = survey.size;
   setting.free = free;
+  setting.met = points_met(kind, free.size());
   const Reweighted rest = reweigh(frame, points, setting, 200, options.threads);
   fit.iterations = rest.iterations;
   frame = rest.frame;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <stdexcept>
 
@@ -45,6 +46,11 @@ double relative_size(const Step& step, double size) {
                    std::abs(step[kRadius]) / size, std::abs(step[kHalfAngle])});
 }
 
+/// Of a computed distance, mm: coordinates are taken from the centre of the data, and the radius may be larger.
+double distance_rounding(const ShapeFrame& frame, double size) {
+  return 4e-16 * (size + std::abs(frame.radius) + frame.origin.norm());
+}
+
 }  // namespace
 
 Refined refine(const ShapeFrame& start, const FitPoints& points, std::span<const double> weights,
@@ -57,10 +63,11 @@ Refined refine(const ShapeFrame& start, const FitPoints& points, std::span<const
     result.converged = true;
     return result;
   }
+  const double count = static_cast<double>(points.cols());
   double damping = 0, before = 0;
+  Refined lowest;  // by the decrement, among frames whose sums of squares rounding does not tell apart
+  double least = std::numeric_limits<double>::infinity(), decrement = least;
   int stalled = 0;
-  // Differences of sums of squares below this are rounding.
-  const double rounding = static_cast<double>(points.cols()) * std::pow(1e-15 * size, 2);
   while (result.iterations < most_iterations) {
     Step step = damped_step(result.sums, free, damping);
     const double length = relative_size(step, size);
@@ -73,25 +80,45 @@ Refined refine(const ShapeFrame& start, const FitPoints& points, std::span<const
       result.converged = true;
       return result;
     }
+    // The distances are rounded, so that sums of squares below `blur` of each other are the same.
+    const double rounding = distance_rounding(result.frame, size);
+    const double blur = 4 * rounding * (std::sqrt(count * result.sums.squares) + count * rounding);
+    const Step whole = damping == 0 ? step : damped_step(result.sums, free, 0);
+    decrement = -whole.dot(result.sums.gradient);
+    const bool at_bottom = std::abs(decrement) <= blur && relative_size(whole, size) <= 0.5;
+    if (at_bottom) {
+      // Only the gradient, which has no such blur, can judge whole steps: they are taken while they lead lower.
+      step = whole;
+      stalled = decrement < 0.5 * least ? 0 : stalled + 1;
+      if (decrement < least) {
+        least = decrement;
+        lowest = result;
+      }
+      if (stalled >= 3) break;
+    }
     const ShapeFrame trial = moved(result.frame, step);
     const NormalSums sums = normal_sums(trial, points, weights, threads);
     ++result.iterations;
-    if (!(sums.squares <= result.sums.squares * (1 + 1e-12) + rounding)) {
+    if (!(sums.squares <= result.sums.squares + (at_bottom ? blur : 0))) {
       damping = damping == 0 ? 1e-4 : damping * 10;
-      if (damping > 1e12) return result;
+      if (damping > 1e12) break;
       continue;
     }
-    stalled = damping == 0 && length < 1e-10 && length > 0.3 * before ? stalled + 1 : 0;
-    before = damping == 0 ? length : 0;
-    damping = damping < 1e-7 ? 0 : damping / 10;
+    before = damping == 0 || at_bottom ? length : 0;
+    damping = damping < 1e-7 || at_bottom ? 0 : damping / 10;
+    if (!at_bottom) least = std::numeric_limits<double>::infinity();
     result.frame = trial;
     result.sums = sums;
-    if (stalled >= 2) {
-      result.converged = true;
-      return result;
-    }
   }
-  result.converged = before > 0 && before < 1e-8;
+  if (least < std::numeric_limits<double>::infinity()) {
+    lowest.iterations = result.iterations;
+    result = lowest;
+    decrement = least;
+  }
+  const double rounding = distance_rounding(result.frame, size);
+  const double variance = result.sums.squares / count;
+  // The step that is left, in standard uncertainties of the parameters, or what rounding of the distances makes of it.
+  result.converged = decrement <= std::pow(1e-6, 2) * variance + 4 * count * std::pow(rounding, 2);
   return result;
 }
 
