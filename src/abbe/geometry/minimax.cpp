@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "abbe/geometry/decompositions.h"
+#include "abbe/geometry/quadratic_program.h"
 
 namespace abbe::fits {
 namespace {
@@ -85,49 +86,6 @@ Step step_of(const VectorXd& y, const std::vector<int>& free) {
   Step step = Step::Zero();
   for (std::size_t j = 0; j < free.size(); ++j) step[free[j]] = y[static_cast<Index>(j)];
   return step;
-}
-
-/// min c.x subject to C x <= b by Mehrotra's predictor-corrector; x strictly inside at the start.
-/// @return multipliers of the rows, empty if it did not end
-VectorXd linear_program(const MatrixXd& rows, const VectorXd& bound, const VectorXd& cost, VectorXd& x) {
-  const Index m = rows.rows();
-  VectorXd s = (bound - rows * x).cwiseMax(1e-3);
-  VectorXd lambda = VectorXd::Constant(m, 1.0 / static_cast<double>(m));
-  for (int iteration = 0; iteration < 80; ++iteration) {
-    const VectorXd dual = cost + rows.transpose() * lambda;
-    const VectorXd primal = rows * x + s - bound;
-    const double mu = s.dot(lambda) / static_cast<double>(m);
-    if (mu < 1e-15 && dual.cwiseAbs().maxCoeff() < 1e-12 && primal.cwiseAbs().maxCoeff() < 1e-12) return lambda;
-    const VectorXd ratio = lambda.cwiseQuotient(s);
-    MatrixXd normal = rows.transpose() * ratio.asDiagonal() * rows;
-    normal.diagonal().array() += 1e-14 * normal.diagonal().maxCoeff();
-    const Ldlt<> factor(normal);
-    const auto direction = [&](const VectorXd& complement, VectorXd& dx, VectorXd& ds, VectorXd& dl) {
-      const VectorXd inner = (lambda.cwiseProduct(primal) - complement).cwiseQuotient(s);
-      dx = factor.solve(-dual - rows.transpose() * inner);
-      ds = -primal - rows * dx;
-      dl = -(complement + lambda.cwiseProduct(ds)).cwiseQuotient(s);
-    };
-    const auto room = [](const VectorXd& v, const VectorXd& dv) {
-      double a = 1;
-      for (Index i = 0; i < v.size(); ++i) {
-        if (dv[i] < 0) a = std::min(a, -v[i] / dv[i]);
-      }
-      return a;
-    };
-    VectorXd dx, ds, dl;
-    direction(s.cwiseProduct(lambda), dx, ds, dl);
-    const double after = (s + room(s, ds) * ds).dot(lambda + room(lambda, dl) * dl) / static_cast<double>(m);
-    const double centring = std::pow(after / mu, 3);
-    direction((s.cwiseProduct(lambda) + ds.cwiseProduct(dl)).array() - centring * mu, dx, ds, dl);
-    if (!dx.allFinite() || !dl.allFinite()) break;
-    const double a = std::min(1.0, 0.995 * room(s, ds)), b = std::min(1.0, 0.995 * room(lambda, dl));
-    x += a * dx;
-    s += a * ds;
-    lambda += b * dl;
-    if (mu < 1e-14 && iteration > 60) return lambda;
-  }
-  return s.dot(lambda) / static_cast<double>(m) < 1e-9 ? lambda : VectorXd();
 }
 
 /// Leaves out points until the columns (gradient, 1) of the rest are independent, the combination unchanged
@@ -214,6 +172,12 @@ MatrixXd curvature(const ShapeFrame& frame, const std::vector<SignedPoint>& acti
   return (w + w.transpose()) / 2;
 }
 
+/// What is left of a symmetric matrix without its negative eigenvalues.
+MatrixXd convex_part(const MatrixXd& symmetric) {
+  const SymmetricEigen<> eigen(symmetric);
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() * eigen.eigenvectors().transpose();
+}
+
 /// True if the combination of the active values bends upwards wherever they all stay equal to first order.
 bool is_minimum(const MatrixXd& curvature, const MatrixXd& gradient, double size) {
   FullLu<> lu(gradient);
@@ -298,8 +262,13 @@ Minimax minimise_largest(const ShapeFrame& start, const std::vector<SignedPoint>
   Minimax answer;
   answer.frame = start;
   const auto p = static_cast<Index>(free.size()), points_count = static_cast<Index>(points.size());
+  // So many steps by linear programs; where they do not end it, the way bends: along a curved valley, straight steps
+  // would go to and fro between its sides.
+  constexpr int kStraight = 6;
   double reach = 1;
-  for (int iteration = 0; iteration < 100; ++iteration) {
+  // Second derivatives of the combination of the points that touched last.
+  MatrixXd bend = MatrixXd::Zero(p, p);
+  for (int iteration = 0; iteration < 200; ++iteration) {
     const Cuts cuts = cut(answer.frame, points, free);
     const Index m = cuts.value.size();
     const double top = cuts.value.maxCoeff();
@@ -316,8 +285,15 @@ Minimax minimise_largest(const ShapeFrame& start, const std::vector<SignedPoint>
     rows.block(m + p, 0, p, p) = -MatrixXd::Identity(p, p);
     bound.tail(2 * p).setConstant(reach);
     x[p] = 1;
-    const VectorXd lambda = linear_program(rows, bound, VectorXd::Unit(p + 1, p), x);
-    if (lambda.size() == 0) return answer;
+    MatrixXd quadratic = MatrixXd::Zero(p + 1, p + 1);
+    quadratic.topLeftCorner(p, p) = spread * convex_part(scale.asDiagonal() * bend * scale.asDiagonal());
+    const VectorXd lambda = quadratic_program(rows, bound, VectorXd::Unit(p + 1, p), quadratic, x);
+    if (lambda.size() == 0) {
+      bend.setZero();
+      reach *= 0.3;
+      if (reach < 1e-13) return answer;
+      continue;
+    }
     // The points that touch, and Newton from here: only an answer that is optimal for all points is taken.
     const VectorXd row_slack = bound.head(m) - rows.topRows(m) * x;
     VectorXd slack = VectorXd::Constant(points_count, std::numeric_limits<double>::infinity());
@@ -337,7 +313,7 @@ Minimax minimise_largest(const ShapeFrame& start, const std::vector<SignedPoint>
     }
     const ShapeFrame trial = moved(answer.frame, step_of((x.head(p).cwiseProduct(scale) * spread).eval(), free));
     const double value = largest(trial, points);
-    const double predicted = -x[p] * spread, gained = top - value;
+    const double predicted = -(x[p] + x.dot(quadratic * x) / 2) * spread, gained = top - value;
     const Linearised l = linearise(gained > 0 ? trial : answer.frame, points, free);
     reduce(l, scale, active, multiplier);
     // Alone, the points with multipliers may leave directions open that others, which touch without one, close.
@@ -354,7 +330,12 @@ Minimax minimise_largest(const ShapeFrame& start, const std::vector<SignedPoint>
       }
     }
     if (gained > 0) answer.frame = trial;
-    if (gained > 0.75 * predicted) reach *= 2;
+    if (iteration >= kStraight) {
+      std::vector<SignedPoint> touching;
+      for (const Index k : active) touching.push_back(points[static_cast<std::size_t>(k)]);
+      bend = curvature(answer.frame, touching, multiplier, free, size);
+    }
+    if (gained > (iteration < kStraight ? 0.75 : 0.5) * predicted) reach *= 2;
     if (gained < 0.25 * predicted) reach *= gained > 0 ? 0.5 : 0.25;
     if (reach < 1e-13) return answer;
   }

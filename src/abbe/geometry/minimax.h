@@ -25,7 +25,8 @@ struct Minimax {
   Eigen::MatrixXd response;         ///< [free + 1, active] change of (steps, value) per change of an active f
 };
 
-/// Linear programs within a trust region find the active points, then Newton's method on the conditions of optimality
+/// Linear programs within a trust region find the active points (quadratic ones, with the curvature of the active
+/// distances, where the straight steps do not end it), then Newton's method on the conditions of optimality
 /// (with the curvature of the active distances) ends it: quadratic also where fewer points than parameters + 1 touch.
 ///
 /// Source: K. Madsen, J. Inst. Maths Applics 16 (1975) 321; S. Mehrotra, SIAM J. Optim. 2 (1992) 575 (linear programs).

@@ -85,7 +85,8 @@ Reweighted reweigh(const ShapeFrame& start, const FitPoints& points, const Setti
     // Where the points hardly hold the shape, it may go to and fro by more without a distance changing.
     distances(result.frame, points, sorted, threads);
     double changed = 0;
-    for (std::size_t i = 0; i < d.size(); ++i) changed = std::max(changed, std::abs(std::abs(sorted[i]) - std::abs(d[i])));
+    for (std::size_t i = 0; i < d.size(); ++i)
+      changed = std::max(changed, std::abs(std::abs(sorted[i]) - std::abs(d[i])));
     const bool scale_rests = std::abs(result.scale - before) <= 1e-9 * result.scale;
     result.rested = scale_rests && (moved_by < 1e-12 || changed <= 1e-11 * result.scale);
     // With the scale at rounding there is nothing more to weigh.

@@ -159,15 +159,15 @@ inline SimulatedSet simulated_set(ShapeKind kind, Numbers& numbers, bool closed 
   }
   if (in_plane) set.points.row(2).setZero();
   shape.point = place;
-  shape.direction = kind == ShapeKind::line2 ? axes.col(0) : kind == ShapeKind::sphere ? Eigen::Vector3d(0, 0, 0)
-                                                                                       : axes.col(2);
+  shape.direction = kind == ShapeKind::line2    ? axes.col(0)
+                    : kind == ShapeKind::sphere ? Eigen::Vector3d(0, 0, 0)
+                                                : axes.col(2);
   set.slopes.resize(static_cast<Eigen::Index>(rows.size()), rows.front().size());
   for (std::size_t k = 0; k < rows.size(); ++k) set.slopes.row(static_cast<Eigen::Index>(k)) = rows[k].transpose();
   // Standard uncertainties in units of the size and rad.
   const double relative = std::hypot(set.noise, 2e-16 * set.far) / set.size;
   const Eigen::MatrixXd covariance =
-      relative * relative *
-      (set.slopes.transpose() * set.slopes).completeOrthogonalDecomposition().pseudoInverse();
+      relative * relative * (set.slopes.transpose() * set.slopes).completeOrthogonalDecomposition().pseudoInverse();
   const Eigen::VectorXd u = covariance.diagonal().cwiseMax(0).cwiseSqrt();
   set.uncertainty = u.maxCoeff();
   if (kind == ShapeKind::circle2) set.uncertainty = std::max(set.uncertainty, u[2] * set.size / shape.radius);
