@@ -41,11 +41,7 @@ ShapeFit least_squares_fit(ShapeKind kind, const FitPoints& points, const FitOpt
   const double sigma = options.sigma > 0             ? options.sigma
                        : fit.degrees_of_freedom == 0 ? 0
                                                      : std::sqrt(refined.sums.squares / dof);
-  // Where all directions are equally good, it is rounding whether the iteration rests.
-  if (!refined.converged && !direction_is_open(kind, survey, free)) {
-    fit.status = FitStatus::not_converged;
-    fit.reason = "the iteration did not come to rest";
-  } else if (start.rival) {
+  if (start.rival) {
     fit.status = FitStatus::ambiguous;
     fit.reason = "another shape fits the points as well";
   }
@@ -54,6 +50,11 @@ ShapeFit least_squares_fit(ShapeKind kind, const FitPoints& points, const FitOpt
     fit.reason = "the points are on a line or plane: the radius has no bound";
   }
   report_fit(fit, refined.frame, survey, points, free, refined.sums.matrix, sigma, options.threads);
+  // Where the points do not determine the shape, which is said, it is rounding whether the iteration rests.
+  if (!refined.converged && fit.ok()) {
+    fit.status = FitStatus::not_converged;
+    fit.reason = "the iteration did not come to rest";
+  }
   if (options.sigma <= 0 && fit.degrees_of_freedom == 0) fit.has_covariance = false;
   return fit;
 }

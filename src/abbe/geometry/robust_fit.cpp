@@ -82,13 +82,14 @@ Reweighted reweigh(const ShapeFrame& start, const FitPoints& points, const Setti
     const double moved_by = change(refined.frame, result.frame, setting.size);
     result.frame = refined.frame;
     if (!std::isfinite(moved_by)) break;
-    // Where the points hardly hold the shape, it may go to and fro by more without a distance changing.
+    // In the distances rest means the same for all shapes, sizes and noises.
     distances(result.frame, points, sorted, threads);
     double changed = 0;
     for (std::size_t i = 0; i < d.size(); ++i)
       changed = std::max(changed, std::abs(std::abs(sorted[i]) - std::abs(d[i])));
     const bool scale_rests = std::abs(result.scale - before) <= 1e-9 * result.scale;
-    result.rested = scale_rests && (moved_by < 1e-12 || changed <= 1e-11 * result.scale);
+    const double rounding = 2e-15 * (setting.size + std::abs(result.frame.radius));
+    result.rested = scale_rests && changed <= 1e-10 * result.scale + rounding;
     // With the scale at rounding there is nothing more to weigh.
     result.rested = result.rested || (moved_by < 1e-10 && result.scale <= 2 * setting.least_scale);
   }

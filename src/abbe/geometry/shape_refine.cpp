@@ -66,7 +66,7 @@ Refined refine(const ShapeFrame& start, const FitPoints& points, std::span<const
   const double count = static_cast<double>(points.cols());
   double damping = 0, before = 0;
   Refined lowest;  // by the decrement, among frames whose sums of squares rounding does not tell apart
-  double least = std::numeric_limits<double>::infinity(), decrement = least;
+  double least = std::numeric_limits<double>::infinity(), decrement = 0;
   int stalled = 0;
   while (result.iterations < most_iterations) {
     Step step = damped_step(result.sums, free, damping);
@@ -110,7 +110,8 @@ Refined refine(const ShapeFrame& start, const FitPoints& points, std::span<const
     result.frame = trial;
     result.sums = sums;
   }
-  if (least < std::numeric_limits<double>::infinity()) {
+  decrement = -damped_step(result.sums, free, 0).dot(result.sums.gradient);
+  if (least < decrement) {
     lowest.iterations = result.iterations;
     result = lowest;
     decrement = least;
