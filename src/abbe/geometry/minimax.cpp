@@ -268,7 +268,7 @@ Minimax minimise_largest(const ShapeFrame& start, const std::vector<SignedPoint>
   double reach = 1;
   // Second derivatives of the combination of the points that touched last.
   MatrixXd bend = MatrixXd::Zero(p, p);
-  for (int iteration = 0; iteration < 200; ++iteration) {
+  for (int iteration = 0; iteration < 1000; ++iteration) {
     const Cuts cuts = cut(answer.frame, points, free);
     const Index m = cuts.value.size();
     const double top = cuts.value.maxCoeff();
@@ -337,7 +337,8 @@ Minimax minimise_largest(const ShapeFrame& start, const std::vector<SignedPoint>
     }
     if (gained > (iteration < kStraight ? 0.75 : 0.5) * predicted) reach *= 2;
     if (gained < 0.25 * predicted) reach *= gained > 0 ? 0.5 : 0.25;
-    if (reach < 1e-13) return answer;
+    // Beyond: on the way to infinity, where an inscribed shape that nothing surrounds goes.
+    if (reach < 1e-13 || reach > 1e14) return answer;
   }
   return answer;
 }
