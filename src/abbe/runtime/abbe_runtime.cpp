@@ -27,19 +27,23 @@ bool tool_of(const abbe_runtime& machine, const double* given, Triple& tool) {
   return true;
 }
 
-/// Commands with cosines and sines; entries of solved axes are left at zero.
+/// Commands with cosines and sines; entries of solved axes are left for solve_point().
 bool load(const abbe_runtime& machine, const double* values, bool but_solved, FrozenCommands& commands) {
   for (std::size_t i = 0; i < machine.axes; ++i) {
     if (but_solved && machine.axis[i].solved != FrozenAxis::kNotSolved) continue;
     if (!usable(values[i])) return false;
-    commands.q[i] = values[i];
-    if (machine.axis[i].rotary) commands.turn[i] = {std::cos(values[i]), std::sin(values[i])};
+    set_axis(machine.axis[i], i, values[i], commands);
   }
   return true;
 }
 
 void store(const abbe_runtime& machine, const FrozenCommands& commands, double* values) {
-  for (std::size_t i = 0; i < machine.axes; ++i) values[i] = commands.q[i];
+  for (std::size_t i = 0; i < machine.axes; ++i) values[i] = commands.at(i);
+}
+
+bool within(double value, double from, double to) {
+  // A range as wide as a file can state has no end.
+  return (value >= from || from <= -frozen::kLongest) && (value <= to || to >= frozen::kLongest);
 }
 
 /// Flags of a pose: where the errors are known is a matter of nominal joints, travel one of the joints.
@@ -48,9 +52,8 @@ int flags(const abbe_runtime& machine, const FrozenCommands& nominal, const Froz
   int result = 0;
   for (std::size_t i = 0; i < machine.axes; ++i) {
     const FrozenAxis& axis = machine.axis[i];
-    if (enable > 0 && !(nominal.q[i] >= axis.map_min && nominal.q[i] <= axis.map_max)) result |= ABBE_OUTSIDE_MAP;
-    if (!axis.endless && !(joints.q[i] >= axis.travel_min && joints.q[i] <= axis.travel_max))
-      result |= ABBE_OUTSIDE_TRAVEL;
+    if (enable > 0 && !within(nominal.at(i), axis.map_min, axis.map_max)) result |= ABBE_OUTSIDE_MAP;
+    if (!axis.endless && !within(joints.at(i), axis.travel_min, axis.travel_max)) result |= ABBE_OUTSIDE_TRAVEL;
   }
   // Of a tool of exactly one length the last digit may be another one.
   constexpr double kSpare = 1e-9;
@@ -71,7 +74,7 @@ FrozenCommands started(const abbe_runtime& machine, const abbe_runtime_state* st
       const std::size_t i = choice.axis[k];
       const double bound = machine.axis[i].rotary ? machine.largest_turn : largest;
       const double correction = state->correction[i];
-      if (std::abs(correction) <= bound) move_axis(machine.axis[i], i, from.q[i] + sign * correction, commands);
+      if (std::abs(correction) <= bound) move_axis(machine.axis[i], i, from, sign * correction, commands);
     }
   };
   start(machine.turning, machine.largest_turn);
@@ -82,7 +85,9 @@ FrozenCommands started(const abbe_runtime& machine, const abbe_runtime_state* st
 void keep(const abbe_runtime& machine, const FrozenCommands& nominal, const FrozenCommands& joints, int iterations,
           abbe_runtime_state* state) {
   if (state == nullptr) return;
-  for (std::size_t i = 0; i < machine.axes; ++i) state->correction[i] = joints.q[i] - nominal.q[i];
+  // The commands that both have come from are the same but for axes that were solved from the point.
+  for (std::size_t i = 0; i < machine.axes; ++i)
+    state->correction[i] = (joints.q[i] - nominal.q[i]) + (joints.by[i] - nominal.by[i]);
   state->iterations = iterations;
 }
 
@@ -102,7 +107,7 @@ int compensate(const abbe_runtime& machine, abbe_runtime_state* state, const Fro
 void place_origins(const abbe_runtime& machine, const FrozenCommands& commands, NominalView& view) {
   Triple moved{};
   for (std::size_t i = 0; i < machine.axes; ++i) {
-    if (machine.axis[i].solved != FrozenAxis::kNotSolved) moved = moved + commands.q[i] * view.column[i];
+    if (machine.axis[i].solved != FrozenAxis::kNotSolved) moved = moved + commands.at(i) * view.column[i];
     view.origin[i] = view.origin[i] + moved;
   }
 }
@@ -224,7 +229,7 @@ int abbe_runtime_uncertainty(const abbe_runtime* runtime, const double* joints, 
   if (!tool_of(*runtime, tool, of_tool)) return ABBE_NOT_FINITE;
   if (!usable(joints, runtime->axes)) return ABBE_NOT_FINITE;
   FrozenCommands commands;
-  std::copy_n(joints, runtime->axes, commands.q.begin());
+  for (std::size_t i = 0; i < runtime->axes; ++i) set_axis(runtime->axis[i], i, joints[i], commands);
   *uncertainty_mm = runtime->uncertainty.at(joints, -dot(of_tool, runtime->tool_direction));
   // The lattice has not all axes and tools: what it leaves out has ends as well.
   return flags(*runtime, commands, commands, of_tool, 1);

@@ -44,12 +44,12 @@ class Convergence {
 
 double component(const Triple& a, std::size_t k) { return k == 0 ? a.x : k == 1 ? a.y : a.z; }
 
-/// How far the commands of two sets lie apart, in the units of the systems.
+/// How far two sets have moved from the same commands, in the units of the systems.
 std::array<double, 2> turns(const abbe_runtime& machine, const FrozenCommands& from, const FrozenCommands& to) {
   std::array<double, 2> y{};
   for (std::size_t k = 0; k < machine.turning.count; ++k) {
     const std::size_t i = machine.turning.axis[k];
-    y[k] = to.q[i] - from.q[i];
+    y[k] = to.by[i] - from.by[i];
   }
   return y;
 }
@@ -57,7 +57,7 @@ Triple shifts(const abbe_runtime& machine, const FrozenCommands& from, const Fro
   double z[3] = {};
   for (std::size_t k = 0; k < machine.reaching.count; ++k) {
     const std::size_t i = machine.reaching.axis[k];
-    z[k] = (to.q[i] - from.q[i]) / machine.reaching_unit[k];
+    z[k] = (to.by[i] - from.by[i]) / machine.reaching_unit[k];
   }
   return {z[0], z[1], z[2]};
 }
@@ -67,12 +67,12 @@ void set_from(const abbe_runtime& machine, const FrozenCommands& from, double si
               const Triple& z, bool reach, FrozenCommands& commands) {
   for (std::size_t k = 0; k < machine.turning.count; ++k) {
     const std::size_t i = machine.turning.axis[k];
-    move_axis(machine.axis[i], i, from.q[i] + sign * y[k], commands);
+    move_axis(machine.axis[i], i, from, sign * y[k], commands);
   }
   if (!reach) return;
   for (std::size_t k = 0; k < machine.reaching.count; ++k) {
     const std::size_t i = machine.reaching.axis[k];
-    move_axis(machine.axis[i], i, from.q[i] + sign * machine.reaching_unit[k] * component(z, k), commands);
+    move_axis(machine.axis[i], i, from, sign * machine.reaching_unit[k] * component(z, k), commands);
   }
 }
 
@@ -180,9 +180,11 @@ bool solve_point(const abbe_runtime& machine, const NominalView& view, const Tri
   const double determinant = dot(a, normal);
   if (!(std::abs(determinant) > kDependent)) return false;
   const Triple rest = point - view.point;
-  commands.q[machine.solved.axis[0]] = dot(normal, rest) / determinant;
-  commands.q[machine.solved.axis[1]] = dot(cross(c, a), rest) / determinant;
-  commands.q[machine.solved.axis[2]] = dot(cross(a, b), rest) / determinant;
+  const Triple found = (1 / determinant) * Triple{dot(normal, rest), dot(cross(c, a), rest), dot(cross(a, b), rest)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t i = machine.solved.axis[k];
+    set_axis(machine.axis[i], i, component(found, k), commands);
+  }
   return true;
 }
 

@@ -43,12 +43,14 @@ struct FrozenGroup {
   Kind kind = Kind::chebyshev;
   bool everywhere = false;    ///< periodic: no end of range
   bool same_turn = false;     ///< fourier of period 2 pi, everywhere: its first harmonic is that of the axis command
+  bool whole_turns = false;   ///< everywhere, of a rotary axis: a whole number of periods makes a turn
   std::size_t functions = 0;  ///< chebyshev, fourier: functions; piecewise: intervals
   double lowest = 0;          ///< positions beyond these two take the errors of the end
   double highest = 0;
-  double scale = 0, shift = 0;                     ///< chebyshev: s = scale q + shift; fourier: scale = 2 pi / period
-  double origin = 0, period = 0, per_spacing = 0;  ///< piecewise; per_spacing 0: the nodes are not evenly spaced
-  const double* nodes = nullptr;                   ///< [functions + 1]
+  double scale = 0, shift = 0;         ///< chebyshev: s = scale q + shift; fourier: scale = 2 pi / period
+  double period = 0;                   ///< fourier; piecewise: 0 if it does not repeat
+  double origin = 0, per_spacing = 0;  ///< piecewise; per_spacing 0: the nodes are not evenly spaced
+  const double* nodes = nullptr;       ///< [functions + 1]
   /// [functions][6] (piecewise: [functions][4][6], rising powers of the part of the interval): the six components
   const double* coefficients = nullptr;
 };

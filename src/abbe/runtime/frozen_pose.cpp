@@ -132,18 +132,27 @@ Line line_of(const FrozenAxis& axis, double position, const CosineSine& turn, do
   return line;
 }
 
-/// Sum of all error motions of one axis; `turn` is that of the command.
-SixErrors axis_errors(const abbe_runtime& machine, const FrozenAxis& axis, double position, const CosineSine& turn) {
+/// Where functions are taken: within one period of those that repeat, at an end beyond the range of others.
+double place_in(const FrozenGroup& group, const FrozenCommands& commands, std::size_t i) {
+  if (!group.everywhere) return std::clamp(commands.at(i), group.lowest, group.highest);
+  // The remainder is exact, so that nothing is lost after many periods.
+  const double in_period = group.whole_turns ? commands.in_turn[i] : std::remainder(commands.q[i], group.period);
+  return in_period + commands.by[i];
+}
+
+/// Sum of all error motions of one axis.
+SixErrors axis_errors(const abbe_runtime& machine, std::size_t i, const FrozenCommands& commands) {
+  const FrozenAxis& axis = machine.axis[i];
   SixErrors errors;
   for (std::size_t g = axis.first_group; g < axis.first_group + axis.groups; ++g) {
     const FrozenGroup& group = machine.group[g];
-    const double q = group.everywhere ? position : std::clamp(position, group.lowest, group.highest);
+    const double q = place_in(group, commands, i);
     switch (group.kind) {
       case FrozenGroup::Kind::chebyshev:
         add_chebyshev(group, q, errors);
         break;
       case FrozenGroup::Kind::fourier:
-        add_fourier(group, group.same_turn ? turn : turn_of(group.scale * q), errors);
+        add_fourier(group, group.same_turn ? commands.turn[i] : turn_of(group.scale * q), errors);
         break;
       case FrozenGroup::Kind::piecewise_cubic:
         add_piecewise(group, q, errors);
@@ -155,12 +164,13 @@ SixErrors axis_errors(const abbe_runtime& machine, const FrozenAxis& axis, doubl
 
 /// Point and direction carried by one axis: those of the tool side towards the bed, then away from it on the
 /// workpiece side.
-PointAndDirection carried(const abbe_runtime& machine, const FrozenAxis& axis, double position, const CosineSine& turn,
-                          double enable, PointAndDirection v) {
-  const SixErrors e = axis_errors(machine, axis, position, turn);
+PointAndDirection carried(const abbe_runtime& machine, std::size_t i, const FrozenCommands& commands, double enable,
+                          PointAndDirection v) {
+  const FrozenAxis& axis = machine.axis[i];
+  const SixErrors e = axis_errors(machine, i, commands);
   const SmallRotation error{turn_of(enable * e.za[1]), turn_of(enable * e.bc[0]), turn_of(enable * e.bc[1])};
   const Triple shifted = axis.point + enable * Triple{e.xy[0], e.xy[1], e.za[0]};
-  const Line line = line_of(axis, position, turn, enable);
+  const Line line = line_of(axis, commands.at(i), commands.turn[i], enable);
   const auto by_error = [&](const PointAndDirection& at) {
     return moved(error.of(moved(at, -1 * axis.point)), shifted);
   };
@@ -186,9 +196,28 @@ CosineSine turn_of(double angle) {
           angle * (1 - a * (1.0 / 6 - a * (1.0 / 120 - a * (1.0 / 5040))))};
 }
 
-void move_axis(const FrozenAxis& axis, std::size_t i, double to, FrozenCommands& commands) {
-  if (axis.rotary) commands.turn[i] = turned_on(commands.turn[i], turn_of(to - commands.q[i]));
-  commands.q[i] = to;
+double less_whole_turns(double angle) {
+  constexpr double kTurn = 6.283185307179586476925286766559;
+  // 2 pi in two parts (Cody and Waite, Software Manual for the Elementary Functions, 1980): the first has 33 bits, so
+  // that up to 2^20 of it are exact, and so is what they leave of the angle.
+  constexpr double kFirst = 0x1.921fb544p+2;
+  constexpr double kSecond = 0x1.0b4611a626331p-32;
+  if (std::abs(angle) <= kTurn / 2) return angle;
+  const double turns = std::nearbyint(angle / kTurn);
+  return (angle - turns * kFirst) - turns * kSecond;
+}
+
+void set_axis(const FrozenAxis& axis, std::size_t i, double to, FrozenCommands& commands) {
+  commands.q[i] = commands.in_turn[i] = to;
+  commands.by[i] = 0;
+  if (!axis.rotary) return;
+  commands.in_turn[i] = less_whole_turns(to);
+  commands.turn[i] = {std::cos(commands.in_turn[i]), std::sin(commands.in_turn[i])};
+}
+
+void move_axis(const FrozenAxis& axis, std::size_t i, const FrozenCommands& from, double by, FrozenCommands& commands) {
+  commands.by[i] = by;
+  if (axis.rotary) commands.turn[i] = turned_on(from.turn[i], turn_of(by));
 }
 
 NominalView nominal_view(const abbe_runtime& machine, const FrozenCommands& commands, const Triple& tool,
@@ -202,7 +231,7 @@ NominalView nominal_view(const abbe_runtime& machine, const FrozenCommands& comm
     const Triple along = w * u;
     view.column[i] = axis.chain_sign * along;
     if (!axis.rotary) {
-      if (!solve_later || axis.solved == FrozenAxis::kNotSolved) t = t + commands.q[i] * view.column[i];
+      if (!solve_later || axis.solved == FrozenAxis::kNotSolved) t = t + commands.at(i) * view.column[i];
       continue;
     }
     const Triple origin = t + w * axis.point;
@@ -224,7 +253,7 @@ ActualTool actual_tool(const abbe_runtime& machine, const FrozenCommands& comman
   PointAndDirection at{{start.x, direction.x}, {start.y, direction.y}, {start.z, direction.z}};
   // The chain from the tool on: tool-side axes carry towards the bed, workpiece-side axes are left behind.
   for (std::size_t i = machine.axes; i-- > 0;) {
-    at = carried(machine, machine.axis[i], commands.q[i], commands.turn[i], enable, at);
+    at = carried(machine, i, commands, enable, at);
   }
   return {machine.workpiece_from_bed * Triple{at.x[0], at.y[0], at.z[0]} + machine.workpiece_from_bed_shift,
           machine.workpiece_from_bed * Triple{at.x[1], at.y[1], at.z[1]}};

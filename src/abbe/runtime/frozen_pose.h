@@ -6,11 +6,22 @@
 
 namespace abbe {
 
-/// Commands of all axes with cosines and sines of the rotary ones.
+/// Commands of all axes with cosines and sines of the rotary ones. What iterations move is kept beside the command that
+/// came in: in the sum of both, after many turns, the steps that are looked for would be lost in rounding.
 struct FrozenCommands {
-  std::array<double, kFrozenAxes> q;
+  std::array<double, kFrozenAxes> q;        ///< as given, mm or rad
+  std::array<double, kFrozenAxes> in_turn;  ///< rotary: q less whole turns, from -pi to pi; linear: q
+  std::array<double, kFrozenAxes> by;       ///< moved from there by so much
   std::array<CosineSine, kFrozenAxes> turn;
+
+  double at(std::size_t i) const { return q[i] + by[i]; }
 };
+
+/// An angle of up to 1e6 rad less the nearest whole number of turns, rounded once.
+double less_whole_turns(double angle);
+
+/// Sets an axis to a command that came in.
+void set_axis(const FrozenAxis& axis, std::size_t i, double to, FrozenCommands& commands);
 
 /// Cosine and sine of small angles (series, to rounding); of others by the library.
 CosineSine turn_of(double angle);
@@ -20,8 +31,8 @@ inline CosineSine turned_on(const CosineSine& a, const CosineSine& b) {
   return {a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s};
 }
 
-/// Sets an axis and keeps its cosine and sine in step: by the small difference where there is one.
-void move_axis(const FrozenAxis& axis, std::size_t i, double to, FrozenCommands& commands);
+/// Moves an axis from where it stands in `from`, which is not moved itself, with its cosine and sine.
+void move_axis(const FrozenAxis& axis, std::size_t i, const FrozenCommands& from, double by, FrozenCommands& commands);
 
 /// The axes of a machine without errors, seen from the workpiece.
 struct NominalView {
