@@ -60,6 +60,17 @@ FreezeOptions options_of(const FreezeArguments& arguments, const Machine& machin
   return options;
 }
 
+/// What is left at the poses that are known to be compensated; never the largest of none.
+std::string remaining_text(const FrozenCompensation& frozen) {
+  if (frozen.points_compared == 0) return "not known, as no pose was reached where the errors are known";
+  std::string text = fmt::format("{:.1e} mm", frozen.accuracy);
+  if (frozen.directions_compared > 0) text += fmt::format(" and {:.1e} rad", frozen.accuracy_turn);
+  text += " at most";
+  if (frozen.directions_compared == 0) text += ", the direction of the tool is not corrected";
+  if (frozen.unreached > 0) text += fmt::format(" ({} of {} poses)", frozen.points_compared, frozen.poses);
+  return text;
+}
+
 void print_result(const FreezeArguments& arguments, const Machine& machine, const FrozenCompensation& frozen,
                   const LeftOutErrors& left_out, bool written) {
   fmt::print("{}: errors of {} frozen\n", machine.name, arguments.errors);
@@ -82,8 +93,8 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
                            ? " at " + position_words(machine, frozen.largest_joint_at[i], "{:.4g}")
                            : "");
   }
-  fmt::print("  after it, by the full model{}: {:.1e} mm and {:.1e} rad at most\n",
-             left_out.names.empty() ? "" : " with what is left out", frozen.accuracy, frozen.accuracy_turn);
+  fmt::print("  after it, by the full model{}: {}\n", left_out.names.empty() ? "" : " with what is left out",
+             remaining_text(frozen));
   if (frozen.largest_uncertainty > 0) {
     fmt::print(
         "  standard uncertainty of the tool's correction: {:.2f} um on average, at most {:.2f} um; in the file to "
@@ -126,9 +137,15 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
   }
   json["largest_correction_at"] = position_json(machine, frozen.where);
   json["largest_joint_corrections"] = joints;
-  json["accuracy_mm"] = frozen.accuracy;
-  json["accuracy_rad"] = frozen.accuracy_turn;
-  json["difference_by_freezing_mm"] = frozen.difference;
+  // null: the largest of nothing.
+  const auto known = [](std::size_t count, double value) {
+    return count > 0 ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+  };
+  json["accuracy_mm"] = known(frozen.points_compared, frozen.accuracy);
+  json["accuracy_rad"] = known(frozen.directions_compared, frozen.accuracy_turn);
+  json["difference_by_freezing_mm"] = known(frozen.points_compared, frozen.difference);
+  json["points_compared"] = frozen.points_compared;
+  json["directions_compared"] = frozen.directions_compared;
   if (frozen.largest_uncertainty > 0) {
     json["largest_standard_uncertainty_um"] = 1e3 * frozen.largest_uncertainty;
     json["mean_standard_uncertainty_um"] = 1e3 * frozen.mean_uncertainty;
@@ -145,6 +162,27 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
   json["turn_bounded"] = frozen.limited;
   json["point_not_reached"] = frozen.unreached;
   fmt::print("{}", json_text(json));
+}
+
+/// Why no pose was compensated, and what can be done.
+std::string nothing_reached(const FrozenCompensation& frozen) {
+  if (frozen.unreached < frozen.poses) {
+    return "at none of the poses that were reached do the axes stay where the errors are known, so nothing says what "
+           "remains; state the errors over the whole travel";
+  }
+  std::string text = fmt::format(
+      "at none of {} poses can the axes take all of the error of the point, so nothing says "
+      "what remains",
+      frozen.poses);
+  if (frozen.point_axes < 3) {
+    text += fmt::format(
+        "; that takes three linear axes, or two and a rotary axis, and this machine has {} such ax{}. An arm cannot "
+        "be compensated so: correct its errors in the parameters of its control",
+        frozen.point_axes == 0 ? "no" : fmt::format("{}", frozen.point_axes), frozen.point_axes == 1 ? "is" : "es");
+  } else {
+    text += "; are the errors larger than corrections may be (10 mm, --largest-turn-deg)?";
+  }
+  return text;
 }
 
 int run_freeze(const FreezeArguments& arguments) {
@@ -171,6 +209,8 @@ int run_freeze(const FreezeArguments& arguments) {
     refused = fmt::format("the correction is {:.1f} um, above --limit-um {:g}, at {}, tool {:g} mm",
                           1e3 * frozen.largest_correction, limit_um, position_words(machine, frozen.where, "{:.4g}"),
                           frozen.tool_length_there);
+  } else if (frozen.points_compared == 0) {
+    refused = nothing_reached(frozen);
   } else if (!(frozen.difference <= kLargestDifference)) {
     refused = fmt::format("the frozen compensation differs by {:.2e} mm from the full model", frozen.difference);
   }

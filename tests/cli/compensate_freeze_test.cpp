@@ -31,6 +31,31 @@ TEST_F(CompensateFreezeTest, WritesAFileAndSaysWhatItDoes) {
   EXPECT_NE(again.out.find("largest correction of the tool: "), std::string::npos);
 }
 
+TEST_F(CompensateFreezeTest, AnArmIsRefusedAsNothingIsKnownOfWhatRemains) {
+  const std::string arm = (folder.path() / "arm.machine.toml").string();
+  const std::string arm_errors = (folder.path() / "arm.errors.toml").string();
+  std::ofstream(arm) << "name = \"arm\"\nchain = \"w b C1 B1 B2 A1 B3 A2 t\"\n"
+                        "[axis.C1]\ntravel_deg = [-165, 165]\npoint_mm = [0, 0, 0]\n"
+                        "[axis.B1]\ntravel_deg = [-110, 110]\npoint_mm = [0, 0, 290]\n"
+                        "[axis.B2]\ntravel_deg = [-110, 70]\npoint_mm = [0, 0, 560]\n"
+                        "[axis.A1]\ntravel_deg = [-160, 160]\npoint_mm = [0, 0, 630]\n"
+                        "[axis.B3]\ntravel_deg = [-120, 120]\npoint_mm = [302, 0, 630]\n"
+                        "[axis.A2]\ntravel_deg = [-400, 400]\npoint_mm = [374, 0, 630]\n"
+                        "[tool]\nreference_mm = [374, 0, 630]\ndirection = [-1, 0, 0]\n";
+  std::ofstream(arm_errors) << "[[motion]]\nname = \"EZB1\"\nbasis = \"legendre\"\norder = 1\n"
+                               "coefficients_um = [20, 30]\n";
+  const CommandResult result = abbe({"compensate", "freeze", arm, arm_errors, "-o", output});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_NE(result.err.find("at none of 12000 poses"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("has no such axes"), std::string::npos) << result.err;
+  EXPECT_NE(result.out.find("not known"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("0.0e+00 mm"), std::string::npos) << result.out;
+  EXPECT_FALSE(std::filesystem::exists(output));
+  const CommandResult as_json = abbe({"compensate", "freeze", arm, arm_errors, "--dry-run", "--json"});
+  EXPECT_EQ(as_json.exit_code, 1);
+  EXPECT_TRUE(nlohmann::json::parse(as_json.out)["accuracy_mm"].is_null());
+}
+
 TEST_F(CompensateFreezeTest, TheFileCarriesTheUncertaintyOfTheErrors) {
   const std::string uncertain = std::string(ABBE_SOURCE_DIR "/examples/compensate/trunnion.errors.toml");
   const CommandResult result =

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "abbe/compensate/correction_step.h"
@@ -27,6 +28,21 @@ AxisPointers pointers(const std::array<Lanes, kMaxAxes>& lanes) {
   AxisPointers axes;
   for (std::size_t i = 0; i < kMaxAxes; ++i) axes[i] = lanes[i].data();
   return axes;
+}
+
+constexpr double kTurn = 2 * std::numbers::pi;
+/// rad; turns of axes within it cost no digit that matters, beyond it whole turns are set aside.
+constexpr double kFewTurns = 100;
+
+/// True where the machine is the same after each turn of an axis.
+bool repeats_each_turn(const Axis& axis, std::size_t i, const ErrorSet& errors) {
+  if (!axis.endless) return false;
+  return std::all_of(errors.motions.begin(), errors.motions.end(), [&](const ErrorMotion& motion) {
+    if (motion.axis != i) return true;
+    const double periods = motion.basis.period > 0 ? kTurn / motion.basis.period : 0;
+    return motion.basis.covers(motion.basis.to + kTurn) && periods > 0.5 &&
+           std::abs(periods - std::round(periods)) <= 1e-15 * periods;
+  });
 }
 
 RotationArrays pointers(std::array<Lanes, 9>& lanes) {
@@ -78,6 +94,7 @@ struct CompensatedInverse::Implementation {
       }
       kept.push_back({axis, 0});
     }
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) repeats[i] = repeats_each_turn(machine.axes[i], i, errors);
     stepper = std::make_unique<CorrectionStep>(machine, options, kept);
     actual = std::make_unique<ChainPlan>(machine, errors, Body::tool, Body::workpiece);
     nominal = std::make_unique<ChainPlan>(machine, ErrorSet{}, Body::tool, Body::workpiece);
@@ -230,6 +247,12 @@ struct CompensatedInverse::Implementation {
     }
   }
 
+  /// What is solved for: after many turns the last digits of a command are larger than the tolerances. The remainder
+  /// is exact, and the turn as a number of 64 bits is wrong by less than the last digit of a command.
+  double in_turn(std::size_t axis, double command) const {
+    return repeats[axis] && std::abs(command) > kFewTurns ? std::remainder(command, kTurn) : command;
+  }
+
   /// Marks poses without numbers; their places are filled with harmless ones.
   void load(Block& block, PositionArrays commands, std::size_t first) const {
     block.any_at_end = false;
@@ -240,7 +263,7 @@ struct CompensatedInverse::Implementation {
     }
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
       for (std::size_t k = 0; k < block.count; ++k) {
-        const double value = commands.axis[i][first + k];
+        const double value = in_turn(i, commands.axis[i][first + k]);
         block.command[i][k] = value;
         block.position[i][k] = std::isfinite(value) ? value : 0;
         if (!std::isfinite(value)) CorrectionStep::finish(block, k, CorrectionStatus::not_finite);
@@ -266,11 +289,18 @@ struct CompensatedInverse::Implementation {
     }
   }
 
-  void store(const Block& block, const CorrectedArrays& corrected, std::size_t first) const {
+  /// @param commands  may be the arrays that are written
+  void store(const Block& block, PositionArrays commands, const CorrectedArrays& corrected, std::size_t first) const {
     for (std::size_t k = 0; k < block.count; ++k) {
       const bool as_came = block.status[k] == CorrectionStatus::not_finite;
       for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        corrected.axis[i][first + k] = as_came ? block.command[i][k] : block.position[i][k];
+        const double command = commands.axis[i][first + k];
+        double& out = corrected.axis[i][first + k];
+        if (as_came || in_turn(i, command) == command) {
+          out = as_came ? command : block.position[i][k];
+        } else {
+          out = command + (block.position[i][k] - block.command[i][k]);
+        }
       }
       if (corrected.status != nullptr) corrected.status[first + k] = block.status[k];
       if (corrected.position_residual != nullptr) corrected.position_residual[first + k] = block.position_residual[k];
@@ -325,7 +355,7 @@ struct CompensatedInverse::Implementation {
       goals(block, first);
       load_goals(block);
       solve(block);
-      store(block, corrected, first);
+      store(block, commands, corrected, first);
     }
   }
 
@@ -336,6 +366,7 @@ struct CompensatedInverse::Implementation {
   std::unique_ptr<ChainPlan> actual, nominal;
   std::array<Lanes, 3> actual_tool, nominal_tool;
   Lanes zeros, ones;
+  std::array<bool, kMaxAxes> repeats{};
 };
 
 CompensatedInverse::CompensatedInverse(const Machine& machine, const ErrorSet& errors, const CorrectionOptions& options,

@@ -48,6 +48,9 @@ struct FrozenCompensation {
   double uncertainty_lattice = 0;  ///< mm, largest difference of the file's uncertainty from the full model's
   int worst_iterations = 0;        ///< of all calls, both directions
   std::size_t poses = 0, limited = 0, unreached = 0;  ///< tried; turn bounded; point not reached
+  std::size_t points_compared = 0;      ///< poses that accuracy and difference are the largest of; 0: nothing is known
+  std::size_t directions_compared = 0;  ///< the same of accuracy_turn
+  std::size_t point_axes = 0;           ///< axes that take the error of the point; three are needed for all of it
 };
 
 /// Functional points from the gauge point with which a frozen compensation is tried, mm: that of the default tool, of

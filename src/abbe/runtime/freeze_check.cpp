@@ -157,6 +157,7 @@ void freeze_check(const Machine& machine, const ErrorSet& errors, const FreezeOp
                   FrozenCompensation& result) {
   const std::unique_ptr<abbe_runtime, Free> runtime = load(result);
   if (!runtime) return;
+  result.point_axes = runtime->reaching.count;
   result.largest_joint.assign(machine.axes.size(), 0.0);
   result.largest_joint_at.assign(machine.axes.size(), {});
   for_each_pose(machine, options, *runtime, [&](const Machine& with_tool, const std::vector<double>& nominal) {
@@ -183,15 +184,18 @@ void freeze_check(const Machine& machine, const ErrorSet& errors, const FreezeOp
     }
     // Beyond the map nothing is known, by the full model neither.
     if (status == ABBE_POSITION_LEFT || !within_map(*runtime, joints)) return;
+    ++result.points_compared;
     const RigidTransform alone = actual_workpiece_from_tool(with_tool, errors, joints);
     result.difference = std::max(result.difference, (alone.translation - wanted.translation).norm());
     const RigidTransform after =
         options.all_errors ? actual_workpiece_from_tool(with_tool, *options.all_errors, joints) : alone;
     result.accuracy = std::max(result.accuracy, (after.translation - wanted.translation).norm());
     if (status != ABBE_OK) return;
-    const double turned = angle(after.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction);
     // Machines without rotary axes for it do not correct the direction.
-    if (runtime->turning.count > 0) result.accuracy_turn = std::max(result.accuracy_turn, turned);
+    if (runtime->turning.count == 0) return;
+    ++result.directions_compared;
+    const double turned = angle(after.rotation * machine.tool_direction, wanted.rotation * machine.tool_direction);
+    result.accuracy_turn = std::max(result.accuracy_turn, turned);
   });
 }
 
