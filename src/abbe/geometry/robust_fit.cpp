@@ -260,7 +260,11 @@ ShapeFit robust_fit(ShapeKind kind, const FitPoints& points, const RobustOptions
     fit.status = FitStatus::not_converged;
     fit.reason = "weights and shape did not come to rest";
   }
-  if (2 * count < static_cast<double>(fit.points) || scale > 0.15 * survey.extent[0]) {
+  // How near half of the points are, all of them: those that any shape meets count as well.
+  std::vector<double> amounts(fit.points);
+  std::transform(d.begin(), d.end(), amounts.begin(), [](double x) { return std::abs(x); });
+  const double nearness = std::min(scale, median_distance(amounts, 0) / setting.median_of_normal);
+  if (2 * count < static_cast<double>(fit.points) || nearness > 0.15 * survey.extent[0]) {
     fit.status = FitStatus::no_consensus;
     fit.reason = "no such shape explains half of the points";
   }
