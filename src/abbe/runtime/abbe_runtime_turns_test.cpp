@@ -104,19 +104,26 @@ TEST(RuntimeTurns, ErrorsThatDoNotRepeatWithTheTurnsAreTakenWhereTheyAre) {
   };
   const auto error = [&](const test::RuntimePointer& runtime, double command, int flags) {
     const Called called = uncorrect(runtime.get(), {}, {command});
+    EXPECT_GE(called.result, 0) << command;
     EXPECT_EQ(called.result & (ABBE_OUTSIDE_MAP | ABBE_OUTSIDE_TRAVEL), flags) << command;
-    return called.result >= 0;
+    return called.state.correction[0];
   };
   // A gear that meets again after three turns.
   const Basis gear{.kind = BasisKind::fourier, .order = 1, .from = 0, .to = 3 * kTurn, .period = 3 * kTurn};
   const test::RuntimePointer repeats = of(gear, {0, 1e-4, 0});
-  for (const double turns : {0.0, 3.0, 99999.0}) EXPECT_TRUE(error(repeats, 1 + kTurn * turns, 0));
+  const double first = error(repeats, 1, 0);
+  EXPECT_NEAR(std::abs(first), 1e-4 * std::cos(1.0 / 3), 1e-8);
+  // The command itself is rounded to 1.2e-10 rad, and the error changes by less than 1e-4 of that.
+  for (const double turns : {3.0, 99999.0}) EXPECT_NEAR(error(repeats, 1 + kTurn * turns, 0), first, 1e-11);
+  EXPECT_GT(std::abs(error(repeats, 1 + kTurn, 0) - first), 1e-5);
   // Measured over ten turns: beyond them nothing is known, and it is said.
   const Basis ten{.kind = BasisKind::legendre, .order = 1, .from = 0, .to = 10 * kTurn};
   const test::RuntimePointer once = of(ten, {0, 1e-4});
-  EXPECT_TRUE(error(once, 9.5 * kTurn, 0));
-  EXPECT_TRUE(error(once, 10.5 * kTurn, ABBE_OUTSIDE_MAP));
-  EXPECT_TRUE(error(once, 1000 * kTurn, ABBE_OUTSIDE_MAP));
+  const double inside = error(once, 9.5 * kTurn, 0), held = error(once, 10.5 * kTurn, ABBE_OUTSIDE_MAP);
+  // Legendre's first polynomial is 0.9 there; at the end it is 1.
+  EXPECT_NEAR(std::abs(inside), 0.9e-4, 1e-7);
+  EXPECT_NEAR(std::abs(held), 1e-4, 1e-7);
+  EXPECT_NEAR(error(once, 1000 * kTurn, ABBE_OUTSIDE_MAP), held, 1e-11);
 }
 
 /// From the last place before a turn ends to the first after it, in steps as small as commands have.

@@ -50,8 +50,6 @@ std::uint64_t crc(const unsigned char* bytes, std::size_t size) {
 
 namespace {
 
-constexpr double kTurn = 6.283185307179586476925286766559;
-
 template <typename T>
 T read_at(const unsigned char* bytes, std::size_t place) {
   T value;
@@ -196,7 +194,7 @@ void read_parameters(Values& values, FrozenGroup& group, double first, double se
       return;
     case FrozenGroup::Kind::fourier:
       values.require(first >= 1e-3 && group.functions % 2 == 1, "period of a group");
-      if (values.ok()) group.scale = kTurn / first;
+      if (values.ok()) group.scale = kWholeTurn / first;
       group.period = first;
       return;
     case FrozenGroup::Kind::piecewise_cubic:
@@ -252,9 +250,9 @@ void read_group(Values& values, const abbe_runtime& m, FrozenGroup& group, std::
   }
   // As the commands do, the first harmonic of a whole turn.
   constexpr double kLastDigits = 2 * std::numeric_limits<double>::epsilon();
-  const double periods = group.period > 0 ? std::round(kTurn / group.period) : 0;
+  const double periods = group.period > 0 ? std::round(kWholeTurn / group.period) : 0;
   group.whole_turns = group.everywhere && m.axis[axis].rotary && periods >= 1 &&
-                      std::abs(group.period * periods - kTurn) <= kLastDigits * kTurn;
+                      std::abs(group.period * periods - kWholeTurn) <= kLastDigits * kWholeTurn;
   group.same_turn = group.kind == FrozenGroup::Kind::fourier && group.whole_turns && periods == 1;
   group.coefficients = room;
   for (std::size_t k = 0; k < all; ++k, room += 6) {

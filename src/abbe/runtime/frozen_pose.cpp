@@ -197,13 +197,12 @@ CosineSine turn_of(double angle) {
 }
 
 double less_whole_turns(double angle) {
-  constexpr double kTurn = 6.283185307179586476925286766559;
   // 2 pi in two parts (Cody and Waite, Software Manual for the Elementary Functions, 1980): the first has 33 bits, so
   // that up to 2^20 of it are exact, and so is what they leave of the angle.
   constexpr double kFirst = 0x1.921fb544p+2;
   constexpr double kSecond = 0x1.0b4611a626331p-32;
-  if (std::abs(angle) <= kTurn / 2) return angle;
-  const double turns = std::nearbyint(angle / kTurn);
+  if (std::abs(angle) <= kWholeTurn / 2) return angle;
+  const double turns = std::nearbyint(angle / kWholeTurn);
   return (angle - turns * kFirst) - turns * kSecond;
 }
 

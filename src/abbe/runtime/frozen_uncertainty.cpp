@@ -3,12 +3,6 @@
 #include <cmath>
 
 namespace abbe {
-namespace {
-
-constexpr double kTurn = 6.283185307179586476925286766559;
-
-}  // namespace
-
 double FrozenUncertainty::at(const double* joints, double tool_length) const noexcept {
   std::array<std::size_t, kMostDimensions> stride, first;
   std::array<double, kMostDimensions> part;
@@ -16,7 +10,7 @@ double FrozenUncertainty::at(const double* joints, double tool_length) const noe
   for (std::size_t k = dimensions; k-- > 0;) {
     const Dimension& d = dimension[k];
     double position = d.axis == kToolLength ? tool_length : joints[d.axis];
-    if (d.is_periodic) position -= kTurn * std::floor((position - d.from) / kTurn);
+    if (d.is_periodic) position -= kWholeTurn * std::floor((position - d.from) / kWholeTurn);
     double at = (position - d.from) / (d.to - d.from) * static_cast<double>(d.nodes - 1);
     const double last = static_cast<double>(d.nodes - 1);
     if (!(at > 0)) at = 0;

@@ -7,6 +7,8 @@
 
 namespace abbe {
 
+inline constexpr double kWholeTurn = 6.283185307179586476925286766559;  ///< rad
+
 /// Standard uncertainty of the correction of the functional point, on a lattice over axes and tool lengths.
 struct FrozenUncertainty {
   static constexpr std::size_t kMostDimensions = 8;
