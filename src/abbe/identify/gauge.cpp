@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/geometry/decompositions.h"
+#include "abbe/identify/conventional_gauge.h"
 #include "abbe/identify/gauge_convention.h"
 #include "abbe/identify/parameter_words.h"
 
@@ -13,11 +14,6 @@ namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
-// A candidate is taken if at least this part of it (as a cosine) lies in what is still open.
-constexpr double kOpenPart = 1e-3;
-// A location error that would fix a direction waits if another one fixes that direction by this much more: equations
-// that hardly fix what they are meant for turn small errors of the machine into large parameters.
-constexpr double kClearPart = 0.1;
 // Entries of a direction that are named, relative to its largest scaled entry.
 constexpr double kInseparableEntry = 0.02;
 constexpr std::size_t kMostInseparableNamed = 8;
@@ -80,66 +76,16 @@ std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& 
 
   if (choice == GaugeChoice::iso) {
     const std::vector<GaugeCandidate> candidates = gauge_candidates(problem, start);
-    Eigen::MatrixXd parts(q, static_cast<Index>(candidates.size()));  // of every candidate in what is open
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      const Eigen::VectorXd scaled = candidates[i].functional.cwiseQuotient(scale);
-      parts.col(static_cast<Index>(i)) = open.transpose() * scaled / scaled.norm();
-    }
-    const auto left_open = [&](std::size_t i) {
-      Eigen::VectorXd part = parts.col(static_cast<Index>(i));
-      for (int pass = 0; pass < 2; ++pass) part -= taken * (taken.transpose() * part);
-      return part;
-    };
-    // Another location error fixes much better what this one would fix: then that one's turn comes first.
-    const auto has_to_wait = [&](const Eigen::VectorXd& part) {
-      const Eigen::VectorXd fixed = part.normalized();
-      for (std::size_t i = 0; i < candidates.size(); ++i)
-        if (candidates[i].of_location &&
-            kClearPart * std::abs(fixed.dot(parts.col(static_cast<Index>(i)))) > part.norm())
-          return true;
-      return false;
-    };
-    const auto take = [&](std::size_t i, bool may_wait) {
-      const Eigen::VectorXd part = left_open(i);
-      if (part.norm() < kOpenPart) return true;
-      if (may_wait && candidates[i].of_location && has_to_wait(part)) return false;
-      taken.conservativeResize(q, taken.cols() + 1);
-      taken.rightCols(1) = part.normalized();
+    ConventionalGauge gauge(candidates, scale, open);
+    for (const std::size_t i : gauge.chosen(order)) {
       GaugeConstraint constraint;
       constraint.words = candidates[i].words;
       constraint.functional = candidates[i].functional;
       constraint.value = candidates[i].value;
       constraints.push_back(std::move(constraint));
       quantities.push_back(candidates[i].quantity);
-      return true;
-    };
-    std::vector<std::size_t> waiting;
-    std::size_t next = 0;
-    for (; next < candidates.size() && taken.cols() < q; ++next) {
-      if (order == GaugeOrder::firmest && candidates[next].exchangeable) break;
-      if (!candidates[next].of_location) {
-        for (const std::size_t k : waiting)
-          if (taken.cols() < q) take(k, false);
-        waiting.clear();
-        if (taken.cols() == q) break;
-      }
-      if (!take(next, true)) waiting.push_back(next);
     }
-    for (const std::size_t k : waiting)
-      if (taken.cols() < q) take(k, false);
-    while (order == GaugeOrder::firmest && taken.cols() < q && next < candidates.size()) {
-      std::size_t best = next;
-      double most = 0;
-      for (std::size_t i = next; i < candidates.size(); ++i) {
-        const double part = left_open(i).norm();
-        if (part > (1 + kAlike) * most) {
-          best = i;
-          most = part;
-        }
-      }
-      if (most < kOpenPart) break;
-      take(best, false);
-    }
+    taken = gauge.fixed();
   }
   if (taken.cols() < q) {
     const Index rest = q - taken.cols();
