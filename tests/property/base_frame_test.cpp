@@ -91,7 +91,7 @@ RigidTransform about_z(double degrees) {
   return {rotation_about(Eigen::Vector3d::UnitZ(), degrees * kDegree), Eigen::Vector3d::Zero()};
 }
 
-TEST(BaseFrame, an_arm_of_seven_axes_is_found_however_its_base_is_turned) {
+TEST(BaseFrame, AnArmOfSevenAxesIsFoundHoweverItsBaseIsTurned) {
   Campaign campaign;
   campaign.truth = test::seven_axis_arm();
   Axis& last = campaign.truth.axes.back();
@@ -113,7 +113,7 @@ TEST(BaseFrame, an_arm_of_seven_axes_is_found_however_its_base_is_turned) {
 
 class AnyChain : public testing::TestWithParam<int> {};
 
-TEST_P(AnyChain, has_the_same_chi_square_in_every_base_frame) {
+TEST_P(AnyChain, HasTheSameChiSquareInEveryBaseFrame) {
   const std::uint64_t seed = static_cast<std::uint64_t>(GetParam());
   RandomStream random(seed, 5);
   const Eigen::Vector3d turn(random.normal(), random.normal(), random.normal());

@@ -1,6 +1,9 @@
 // A sample of tests/property/fit_simulation_test.cpp, and small, clean and extreme sets.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "abbe/geometry/simulated_fits_for_test.h"
 
 namespace abbe {

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
+#include <vector>
 
 #include "abbe/geometry/extended_fit_for_test.h"
 #include "abbe/geometry/extreme_fit.h"

@@ -2,11 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <optional>
+#include <vector>
 
 #include "abbe/geometry/numbers_for_test.h"
 #include "abbe/geometry/rotation.h"
@@ -175,13 +173,6 @@ inline SimulatedSet simulated_set(ShapeKind kind, Numbers& numbers, bool closed 
   if (kind == ShapeKind::sphere) set.uncertainty = std::max(set.uncertainty, u[3] * set.size / shape.radius);
   if (kind == ShapeKind::cylinder) set.uncertainty = std::max(set.uncertainty, u[4] * set.size / shape.radius);
   return set;
-}
-
-/// Sum of squared distances, mm^2.
-inline double squares_about(const Shape& shape, const Eigen::Matrix3Xd& points) {
-  double sum = 0;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) sum += std::pow(distance(shape, points.col(i)), 2);
-  return sum;
 }
 
 }  // namespace abbe::test
