@@ -62,11 +62,11 @@ FreezeOptions options_of(const FreezeArguments& arguments, const Machine& machin
 
 /// What is left at the poses that are known to be compensated; never the largest of none.
 std::string remaining_text(const FrozenCompensation& frozen) {
-  if (frozen.points_compared == 0) return "not known, as no pose was reached where the errors are known";
+  if (frozen.points_compared == 0) return "not known: no pose where the errors are known was reached";
   std::string text = fmt::format("{:.1e} mm", frozen.accuracy);
   if (frozen.directions_compared > 0) text += fmt::format(" and {:.1e} rad", frozen.accuracy_turn);
   text += " at most";
-  if (frozen.directions_compared == 0) text += ", the direction of the tool is not corrected";
+  if (frozen.directions_compared == 0) text += "; the direction of the tool is not corrected";
   if (frozen.unreached > 0) text += fmt::format(" ({} of {} poses)", frozen.points_compared, frozen.poses);
   return text;
 }
@@ -167,20 +167,19 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
 /// Why no pose was compensated, and what can be done.
 std::string nothing_reached(const FrozenCompensation& frozen) {
   if (frozen.unreached < frozen.poses) {
-    return "at none of the poses that were reached do the axes stay where the errors are known, so nothing says what "
-           "remains; state the errors over the whole travel";
+    return "the remaining error is not known: at every pose that was reached, a correction leads out of the range "
+           "where the errors are known; state the errors over the whole travel";
   }
-  std::string text = fmt::format(
-      "at none of {} poses can the axes take all of the error of the point, so nothing says "
-      "what remains",
-      frozen.poses);
+  std::string text =
+      fmt::format("the remaining error is not known: at none of {} poses can the axes correct the position completely",
+                  frozen.poses);
   if (frozen.point_axes < 3) {
     text += fmt::format(
-        "; that takes three linear axes, or two and a rotary axis, and this machine has {} such ax{}. An arm cannot "
-        "be compensated so: correct its errors in the parameters of its control",
+        ". This takes three linear axes, or two linear axes and one rotary axis; this machine has {} such ax{}. "
+        "Correct the errors of an arm in the parameters of its control instead",
         frozen.point_axes == 0 ? "no" : fmt::format("{}", frozen.point_axes), frozen.point_axes == 1 ? "is" : "es");
   } else {
-    text += "; are the errors larger than corrections may be (10 mm, --largest-turn-deg)?";
+    text += ". Check whether the errors are larger than the largest correction (10 mm, and --largest-turn-deg)";
   }
   return text;
 }
