@@ -256,9 +256,9 @@ void add_deviate_command(CommandLine& line) {
       ->excludes("--faces-deg");
   add_number(app, "--colour-um", Quantity::length, "um", {0, 1e9}, command->colour_mm,
              "Deviation of the full colour (default: by the 98th percentile)");
-  app->add_option("-o,--output", command->options.output,
-                  "Results folder to write: evaluation.json, deviation.csv, deviation.ply (coloured), plot.svg, "
-                  "report.html (part in three dimensions, sections)");
+  app->add_output_folder("-o,--output", command->options.output,
+                         "Results folder to write: evaluation.json, deviation.csv, deviation.ply (coloured), plot.svg, "
+                         "report.html (part in three dimensions, sections)");
   app->add_option("--tolerance", command->options.tolerances,
                   "Largest permitted amount of a figure, such as maximum_um=50; may be given again. Exit code 1 if "
                   "exceeded")

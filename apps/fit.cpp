@@ -254,9 +254,9 @@ void add_fit_command(CommandLine& line) {
              "Standard uncertainty of a point across the shape; default: from the residuals");
   app->add_option("--unit", command->unit, "Unit of files that state none: mm (default), m, inch")
       ->check(one_of({"mm", "m", "inch"}));
-  app->add_option("--residuals", command->residuals, "CSV file to write: the points with their deviation_mm");
-  app->add_option("-o,--output", command->options.output,
-                  "Results folder to write: evaluation.json, plot.svg, report.html; default: print only");
+  app->add_output_file("--residuals", command->residuals, "CSV file to write: the points with their deviation_mm");
+  app->add_output_folder("-o,--output", command->options.output,
+                         "Results folder to write: evaluation.json, plot.svg, report.html; default: print only");
   app->add_option(
          "--tolerance", command->options.tolerances,
          "Largest permitted value of a figure, such as form_um=10; may be given again. Exit code 1 if exceeded")

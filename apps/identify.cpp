@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/errors_file.h"
+#include "abbe/formats/existing_output.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/study_file.h"
@@ -29,7 +30,8 @@ void add_identify_command(CommandLine& line) {
                                  "  abbe identify examples/aguado/aguado.study.toml -o aguado.errors.toml\n"
                                  "  abbe identify examples/aguado/aguado.study.toml --parameters");
   command->add_option("study", options->study, "Study file (*.study.toml) with an [identify] table")->required();
-  command->add_option("-o,--output", options->output, "Errors file to write (*.errors.toml), covariance beside it");
+  command->add_output_file("-o,--output", options->output,
+                           "Errors file to write (*.errors.toml), covariance beside it");
   command->add_flag("--parameters", options->parameters, "List every parameter with its standard uncertainty");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] {
@@ -37,6 +39,7 @@ void add_identify_command(CommandLine& line) {
       const Study study = read_study(options->study);
       if (!study.identification)
         throw InputError({.file = options->study}, "nothing to identify", "an [identify] table");
+      if (!options->output.empty()) refuse_existing_output(covariance_beside(options->output));
       StudyResult result;
       {
         Progress progress(study.simulation ? "simulating readings" : "reading measurements");

@@ -8,6 +8,7 @@
 #include <string>
 #include <system_error>
 
+#include "abbe/formats/existing_output.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/interruption.h"
 #include "abbe/formats/kept_inputs.h"
@@ -97,6 +98,7 @@ int main(int argc, char** argv) {
   abbe::end_where_an_input_was_cut_short(abbe::kBadInput);
   // A limit on the size of files is then an error of writing, with a message and nothing half done, not the end.
   std::signal(SIGXFSZ, SIG_IGN);
-  const abbe::KeptInputs kept;
+  const abbe::KeptInputs kept_inputs;
+  const abbe::KeptOutputs kept_outputs;
   return abbe::run_command(argc, argv);
 }

@@ -183,7 +183,7 @@ void add_map_command(CommandLine& line) {
       ->excludes("--grid");
   command->add_flag("--fit-datum", options->fit_datum,
                     "Remove the best-fit rigid motion (choice of the workpiece datum)");
-  command->add_option("-o,--output", options->outputs, "File to write: .csv, .vts or .vtu (ParaView); repeatable");
+  command->add_output_file("-o,--output", options->outputs, "File to write: .csv, .vts or .vtu (ParaView); repeatable");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options]() -> int { return run_map(*options); }; });
 }

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "abbe/formats/input_error.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/results_folder.h"
 #include "command.h"
@@ -12,7 +11,6 @@ namespace abbe {
 void add_new_command(CommandLine& line) {
   struct Options {
     std::string chain, output;
-    bool force = false;
   };
   auto options = std::make_shared<Options>();
   Subcommand* command =
@@ -21,17 +19,13 @@ void add_new_command(CommandLine& line) {
                "The chain runs from the workpiece (w) over the bed (b) to the tool (t), axes in ISO 841 letters; "
                "a prime\nmarks an axis that carries the workpiece.");
   command->add_option("chain", options->chain, "Chain, for example \"w C' X' b Z t\"")->required();
-  command->add_option("-o,--output", options->output, "File to write (default: standard output)");
-  command->add_flag("--force", options->force, "Replace an existing file");
+  command->add_output_file("-o,--output", options->output, "File to write (default: standard output)");
   command->callback([&line, options] {
     line.run = [options]() -> int {
       const std::string text = commented_machine_file(options->chain);
       if (options->output.empty()) {
         fmt::print("{}", text);
         return kDone;
-      }
-      if (!options->force && std::filesystem::exists(options->output)) {
-        throw InputError({.file = options->output}, "the file exists", "another name, or --force to replace it");
       }
       write_file_atomically(options->output, text);
       fmt::print("{} written; edit it, then: abbe check {}\n", options->output, options->output);

@@ -1,6 +1,12 @@
 #include "options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "abbe/formats/existing_output.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/results_folder.h"
 
 namespace abbe {
 namespace {
@@ -135,6 +141,66 @@ Option* Subcommand::add_flag(const std::string& name, bool& value, const std::st
   return own(*app_->add_flag(name, value, description));
 }
 
+void Subcommand::add_force() {
+  if (has_force_) return;
+  has_force_ = true;
+  add_flag("--force", force_, "Replace files that exist");
+}
+
+Option* Subcommand::add_output(const std::string& name, std::string& value, const std::string& description,
+                               OutputKind kind, const bool* not_written) {
+  Option* const option = add_option(name, value, description);
+  if (kind != OutputKind::folder) add_force();
+  outputs_.push_back({kind, [&value] { return std::vector<std::string>{value}; }, not_written});
+  return option;
+}
+
+Option* Subcommand::add_output_file(const std::string& name, std::string& value, const std::string& description,
+                                    const bool* not_written) {
+  return add_output(name, value, description, OutputKind::file, not_written);
+}
+
+Option* Subcommand::add_output_file(const std::string& name, std::vector<std::string>& value,
+                                    const std::string& description) {
+  Option* const option = add_option(name, value, description);
+  add_force();
+  outputs_.push_back({OutputKind::file, [&value] { return value; }, nullptr});
+  return option;
+}
+
+Option* Subcommand::add_output_folder(const std::string& name, std::string& value, const std::string& description) {
+  return add_output(name, value, description, OutputKind::folder, nullptr);
+}
+
+Option* Subcommand::add_output_file_or_folder(const std::string& name, std::string& value,
+                                              const std::string& description, const bool* not_written) {
+  return add_output(name, value, description, OutputKind::file_or_folder, not_written);
+}
+
+void Subcommand::check_outputs() const {
+  if (force_) replace_existing_outputs();
+  std::vector<std::filesystem::path> all;
+  for (const Output& output : outputs_) {
+    if (output.not_written != nullptr && *output.not_written) continue;
+    for (const std::string& name : output.names()) {
+      if (name.empty()) continue;
+      if (output.kind == OutputKind::folder) {
+        check_results_folder(name);
+      } else if (output.kind == OutputKind::file || !std::filesystem::is_directory(name)) {
+        check_output_file(name);
+      }
+      const std::filesystem::path place = std::filesystem::weakly_canonical(std::filesystem::absolute(name));
+      if (std::find(all.begin(), all.end(), place) != all.end()) {
+        throw InputError({.file = name}, "is the name of two outputs", "another name for one of them");
+      }
+      all.push_back(place);
+    }
+  }
+  for (const std::unique_ptr<Subcommand>& subcommand : subcommands_) {
+    if (subcommand->parsed()) subcommand->check_outputs();
+  }
+}
+
 Subcommand* Subcommand::add_subcommand(const std::string& name, const std::string& description) {
   return subcommands_.emplace_back(std::make_unique<Subcommand>(*app_->add_subcommand(name, description))).get();
 }
@@ -184,6 +250,9 @@ ParseResult Program::parse(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     // Help and version come this way too, with code 0.
     return app_->exit(error) == 0 ? ParseResult::shown : ParseResult::refused;
+  }
+  for (const std::unique_ptr<Subcommand>& subcommand : subcommands_) {
+    if (subcommand->parsed()) subcommand->check_outputs();
   }
   return ParseResult::command;
 }

@@ -90,6 +90,19 @@ class Subcommand {
   /// An option without a value.
   Option* add_flag(const std::string& name, bool& value, const std::string& description);
 
+  /// The name of a file that the command writes. Adds --force, without which a file that exists is not replaced
+  /// (abbe/formats/existing_output.h); that is checked when the command line was parsed and again by the writer.
+  /// @param not_written  if it is not null and true then, the file will not be written and its name is not checked
+  Option* add_output_file(const std::string& name, std::string& value, const std::string& description,
+                          const bool* not_written = nullptr);
+  Option* add_output_file(const std::string& name, std::vector<std::string>& value, const std::string& description);
+  /// The name of a folder of results, which may replace older results (abbe/formats/results_folder.h); that is checked
+  /// when the command line was parsed.
+  Option* add_output_folder(const std::string& name, std::string& value, const std::string& description);
+  /// add_output_file(), or the name of a folder, which the command checks.
+  Option* add_output_file_or_folder(const std::string& name, std::string& value, const std::string& description,
+                                    const bool* not_written = nullptr);
+
   Subcommand* add_subcommand(const std::string& name, const std::string& description);
   /// How many subcommands have to be given.
   void require_subcommand(int count);
@@ -108,7 +121,20 @@ class Subcommand {
   /// Names of the options and arguments that were given, in the order in which they were added.
   std::vector<std::string> given_options() const;
 
+  /// For Program, of a command that the command line names: whether outputs may take the names they were given.
+  /// @throws InputError
+  void check_outputs() const;
+
  private:
+  enum class OutputKind { file, folder, file_or_folder };
+  struct Output {
+    OutputKind kind;
+    std::function<std::vector<std::string>()> names;
+    const bool* not_written;
+  };
+  Option* add_output(const std::string& name, std::string& value, const std::string& description, OutputKind kind,
+                     const bool* not_written);
+  void add_force();
   template <typename Value>
   Option* add(const std::string& name, Value& value, const std::string& description);
   Option* own(CLI::Option& option);
@@ -116,6 +142,8 @@ class Subcommand {
   CLI::App* app_;
   std::vector<std::unique_ptr<Option>> options_;
   std::vector<std::unique_ptr<Subcommand>> subcommands_;
+  std::vector<Output> outputs_;
+  bool has_force_ = false, force_ = false;
 };
 
 /// How parsing a command line ended.
@@ -143,6 +171,7 @@ class Program {
   /// A flag for the help of all subcommands.
   void set_help_all_flag(const std::string& name, const std::string& description);
 
+  /// @throws InputError for an output whose name is not free, and what functions of options throw
   ParseResult parse(int argc, const char* const* argv);
 
  private:

@@ -249,8 +249,9 @@ void add_path_command(CommandLine& line) {
   command->add_option("--decimals", options->decimals, "Of mm and degrees in the program")->check(in_range(1, 12));
   command->add_flag("--feed-per-minute", options->feed_per_minute,
                     "Write F in mm/min (G94) instead of inverse time (G93)");
-  command->add_option("-o,--output", options->outputs, "File to write: .ngc, .nc, .tap, .mpf or .csv; repeatable");
-  command->add_option("--report", options->report, "Page to write (.html): the tool on its path, played, on the part");
+  command->add_output_file("-o,--output", options->outputs, "File to write: .ngc, .nc, .tap, .mpf or .csv; repeatable");
+  command->add_output_file("--report", options->report,
+                           "Page to write (.html): the tool on its path, played, on the part");
   command->add_option("--part", options->part, "Mesh of the workpiece for that page (.stl .ply .obj .step), mm")
       ->needs("--report");
   command->add_flag("--json", options->json, "Print JSON for programs");

@@ -122,9 +122,9 @@ void add_register_command(CommandLine& line) {
              "Standard uncertainty of a point along the normal (default: from the residuals)");
   app->add_option("--seed", command->seed, "Seed of the random choices of the search (default 1)");
   app->add_flag("--uncertainty", command->uncertainty, "Print the covariance of the pose too");
-  app->add_option("-o,--output", command->output,
-                  "Results folder to write: registered.ply (the scan in the frame of the part), transform.csv, "
-                  "registration.json, report.html (deviations on the part)");
+  app->add_output_folder("-o,--output", command->output,
+                         "Results folder to write: registered.ply (the scan in the frame of the part), transform.csv, "
+                         "registration.json, report.html (deviations on the part)");
   app->add_flag("--json", command->json, "Print JSON for programs");
   app->callback([&line, command] { line.run = [command] { return run_register(*command); }; });
 }

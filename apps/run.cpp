@@ -28,7 +28,7 @@ void add_run_command(CommandLine& line) {
                "  abbe run examples/aguado/aguado.study.toml\n"
                "  abbe run examples/three_axis/level-and-autocollimator.study.toml -o results/level --json");
   command->add_option("study", options->study, "Study file (*.study.toml)")->required();
-  command->add_option("-o,--output", options->output, "Results folder (default: as in the study)");
+  command->add_output_folder("-o,--output", options->output, "Results folder (default: as in the study)");
   command->add_flag("--json", options->json, "Print the summary as JSON for programs");
   command->callback([&line, options] {
     line.run = [options]() -> int {

@@ -10,7 +10,7 @@ void add_scan_command(CommandLine& line) {
       "scan", "Scans with a displacement probe on any machine",
       "  abbe scan points examples/machines/liu-scanner.machine.toml examples/cradle_scanner/readings.csv -o p.ply\n"
       "  abbe scan plan examples/cradle_scanner/pyramid.stl --machine examples/machines/liu-scanner.machine.toml -o "
-      "path.csv\n\n"
+      "pyramid-path.csv\n\n"
       "abbe scan points --help says what the readings look like.");
   command->require_subcommand(1);
   add_scan_plan(*command, line);

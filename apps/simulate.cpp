@@ -23,7 +23,7 @@ void add_simulate_command(CommandLine& line) {
                "  abbe simulate examples/aguado/aguado.study.toml -o readings\n\n"
                "Writes SETUP.csv for every set-up and truth.errors.toml with the errors behind them.");
   command->add_option("study", options->study, "Study file (*.study.toml) with a [simulate]")->required();
-  command->add_option("-o,--output", options->output, "Folder to write")->required();
+  command->add_output_folder("-o,--output", options->output, "Folder to write")->required();
   command->callback([&line, options] {
     line.run = [options]() -> int {
       const Study study = read_study(options->study);

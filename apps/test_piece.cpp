@@ -20,7 +20,6 @@ struct TestPieceOptions {
   TestPieceSizes sizes;
   std::string output;
   double feed_mm_per_min = 1200, chord_um = 1;
-  bool force = false;
 };
 
 template <typename Piece>
@@ -34,9 +33,6 @@ int write_piece(const TestPieceOptions& options, const char* what, const std::st
     fmt::print("{}", text);
     return kDone;
   }
-  if (!options.force && std::filesystem::exists(options.output)) {
-    throw InputError({.file = options.output}, "the file exists", "another name, or --force to replace it");
-  }
   write_file_atomically(options.output, text);
   fmt::print("{}: {} points written; axis commands and program: abbe path MACHINE {} -o program.ngc\n", options.output,
              piece.curve.points.size(), options.output);
@@ -44,8 +40,8 @@ int write_piece(const TestPieceOptions& options, const char* what, const std::st
 }
 
 void add_common(Subcommand& piece, TestPieceOptions& options) {
-  piece.add_option("-o,--output", options.output,
-                   "CSV to write: points and directions of the tool (default: standard output)");
+  piece.add_output_file("-o,--output", options.output,
+                        "CSV to write: points and directions of the tool (default: standard output)");
   piece.add_option("--feed-mm-per-min", options.feed_mm_per_min, "Feed of the middle of the tool's end")
       ->check(in_range(0.001, 1e6))
       ->capture_default_str();
@@ -54,7 +50,6 @@ void add_common(Subcommand& piece, TestPieceOptions& options) {
                   "Largest distance of the tool's path from the lines between its points")
       ->check(in_range(0.001, 1000.0))
       ->capture_default_str();
-  piece.add_flag("--force", options.force, "Replace an existing file");
 }
 
 }  // namespace

@@ -33,9 +33,6 @@ int run_verify(const VerifyOptions& options) {
     if (!std::filesystem::path(options.output).extension().string().starts_with(".htm")) {
       throw InputError({.file = options.output}, "unknown kind of page", "a name ending in .html");
     }
-    if (!options.force && std::filesystem::exists(options.output)) {
-      throw InputError({.file = options.output}, "the file exists", "another name, or --force to replace it");
-    }
   }
   const VerifyResult result = verify(options);
   if (!options.output.empty()) write_file_atomically(options.output, verify_page(options, result));
@@ -106,8 +103,7 @@ void add_verify_command(CommandLine& line) {
   command->add_option("--reach-mm", options.reach, "A sample farther from the test piece's tool path does not cut it")
       ->check(in_range(0.01, 10.0))
       ->capture_default_str();
-  command->add_option("-o,--output", options.output, "Page to write (*.html)");
-  command->add_flag("--force", options.force, "Replace an existing page");
+  command->add_output_file("-o,--output", options.output, "Page to write (*.html)");
   command->add_flag("--json", options.json, "Print JSON for programs");
   command->require_subcommand(0, 2);
   Subcommand* const cone =

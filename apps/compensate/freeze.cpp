@@ -243,10 +243,10 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
       "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml examples/trunnion/table.errors.toml -o "
       "mill.abbec\n"
       "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml examples/trunnion/table.errors.toml -o "
-      "mill.abbec --tool-length-mm 60 220 --limit-um 500");
+      "long-tools.abbec --tool-length-mm 60 220 --limit-um 500");
   command->add_option("machine", arguments->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("errors", arguments->errors, "Errors file (*.errors.toml)")->required();
-  command->add_option("-o,--output", arguments->output, "File to write (*.abbec)");
+  command->add_output_file("-o,--output", arguments->output, "File to write (*.abbec)", &arguments->dry_run);
   command->add_flag("--dry-run", arguments->dry_run, "Say all, largest corrections and where; write nothing");
   command
       ->add_option("--tool-mm", arguments->tool,

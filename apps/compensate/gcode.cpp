@@ -131,7 +131,7 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
   command->add_option("program", options->program, "NC program (RS274/NGC, ISO 6983)")->required();
   command->add_option("--machine", options->machine, "machine file")->required();
   command->add_option("--errors", options->errors, "errors file of the machine")->required();
-  command->add_option("-o,--output", options->output, "the corrected program");
+  command->add_output_file("-o,--output", options->output, "the corrected program", &options->dry_run);
   command
       ->add_option("--tolerance-um", options->tolerance_um,
                    "largest distance of the actual tool from the commanded path between corrected poses")

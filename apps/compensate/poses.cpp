@@ -278,7 +278,8 @@ void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
   command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
   command->add_option("poses", options->poses, "CSV with one column of commands per axis (X_mm, C_deg, ...)")
       ->required();
-  command->add_option("-o,--output", options->output, "CSV to write: corrected commands, status, what is left");
+  command->add_output_file("-o,--output", options->output, "CSV to write: corrected commands, status, what is left",
+                           &options->dry_run);
   command->add_option("--hold", options->hold, "Axis that keeps its commands; repeatable");
   command
       ->add_option("--largest-turn-deg", options->largest_turn_deg,

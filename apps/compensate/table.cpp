@@ -166,12 +166,6 @@ void check_outputs(const TableCommand& command) {
   }
   if (command.map.empty()) return;
   refuse_input_as_output(command.map);
-  const auto place = [](const std::string& name) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(name));
-  };
-  if (!command.output.empty() && place(command.map) == place(command.output)) {
-    throw InputError({.field = "--map " + command.map}, "is where the tables go", "another name for the map");
-  }
   const std::string extension = std::filesystem::path(command.map).extension().string();
   if (extension != ".csv" && extension != ".vts" && extension != ".vtu") {
     throw InputError({.file = command.map}, "unknown kind of map file", "a name ending in .csv, .vts or .vtu");
@@ -345,8 +339,9 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
   command->add_option("--for", options->format, "Format, see below")->required();
-  command->add_option("-o,--output", options->output,
-                      "File to write, or a folder (a name without ending) where there are several");
+  command->add_output_file_or_folder("-o,--output", options->output,
+                                     "File to write, or a folder (a name without ending) where there are several",
+                                     &options->dry_run);
   command->add_flag("--dry-run", options->dry_run, "Say all, write no table");
   command->add_option("--at", options->at,
                       "AXIS_unit=position: where an axis stands while another moves or that is not in a grid; default "
@@ -379,7 +374,7 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
       "--reference-position", options->reference_position,
       "fanuc-pitch, fanuc-3d: AXIS_unit=position, where the control's reference position is in the machine file; "
       "default 0, or the end of the travel next to it; repeatable");
-  command->add_option("--map", options->map, "Map of the error before, after and ideal: .csv, .vts or .vtu");
+  command->add_output_file("--map", options->map, "Map of the error before, after and ideal: .csv, .vts or .vtu");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options, command] {
     for (const FormatOption& option : format_options()) {

@@ -89,8 +89,8 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
   Subcommand* command = evaluate.add_subcommand(kind, description);
   command->footer("Columns of the file:\n" + columns + "\n\nExample:\n" + example);
   command->add_option("file", options.file, "Readings (*.csv)")->required();
-  command->add_option("-o,--output", options.output,
-                      "Results folder to write: evaluation.json, plot.svg, report.html; default: print only");
+  command->add_output_folder("-o,--output", options.output,
+                             "Results folder to write: evaluation.json, plot.svg, report.html; default: print only");
   command
       ->add_option("--tolerance", options.tolerances,
                    "Largest permitted value of a figure, such as A_um=10; may be given again. Exit code 1 if exceeded")

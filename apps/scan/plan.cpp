@@ -165,12 +165,12 @@ void add_scan_plan(Subcommand& scan, CommandLine& line) {
                    "Closed mesh (.stl .ply .obj) or CAD file (.step .stp), mm, frame of the part")
       ->required();
   command->add_option("--machine", options->machine, "Machine file (*.machine.toml)")->required();
-  command->add_option("-o,--output", options->output, "Path as CSV");
-  command->add_option("--program", options->program, "Path as NC program (G1, inverse time feed)");
+  command->add_output_file("-o,--output", options->output, "Path as CSV");
+  command->add_output_file("--program", options->program, "Path as NC program (G1, inverse time feed)");
   command->add_option("--word", options->words, "Word of an axis in the program, such as C1=C");
-  command->add_option("--coverage", options->coverage, "Coverage as coloured points (.ply)");
-  command->add_option("--report", options->report,
-                      "Page to write (.html): the path played on the part, coverage in colour, figures");
+  command->add_output_file("--coverage", options->coverage, "Coverage as coloured points (.ply)");
+  command->add_output_file("--report", options->report,
+                           "Page to write (.html): the path played on the part, coverage in colour, figures");
   command
       ->add_option("--beyond-plane-mm", options->beyond,
                    "Only what lies beyond a plane: NX x + NY y + NZ z >= D, frame of the part; more than once")

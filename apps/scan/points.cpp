@@ -133,7 +133,7 @@ void add_scan_points(Subcommand& scan, CommandLine& line) {
   command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("readings", options->readings, "CSV of axis positions and indications")->required();
   command->add_option("--errors", options->errors, "Errors file (*.errors.toml): calibrated axes and all other errors");
-  command->add_option("-o,--output", options->output, "Points: .csv (x_mm,y_mm,z_mm) or .ply (binary, double)")
+  command->add_output_file("-o,--output", options->output, "Points: .csv (x_mm,y_mm,z_mm) or .ply (binary, double)")
       ->required();
   command
       ->add_option("--beam-zero-mm", options->zero,

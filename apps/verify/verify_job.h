@@ -30,7 +30,7 @@ struct VerifyOptions {
   std::uint64_t seed = 1;
   double reach = 1;  ///< mm
   std::optional<double> least_reduction, largest_ratio;
-  bool json = false, force = false;
+  bool json = false;
 };
 
 /// One run of a test piece.

@@ -26,7 +26,7 @@ TEST_F(CompensateFreezeTest, WritesAFileAndSaysWhatItDoes) {
   EXPECT_GT(json["largest_correction_um"].get<double>(), 1);
   EXPECT_LT(json["accuracy_mm"].get<double>(), 1e-9);
   EXPECT_GE(json["worst_iterations"].get<int>(), 2);
-  const CommandResult again = abbe({"compensate", "freeze", machine, errors, "-o", output});
+  const CommandResult again = abbe({"compensate", "freeze", machine, errors, "--force", "-o", output});
   EXPECT_NE(again.out.find(json["checksum"].get<std::string>()), std::string::npos);
   EXPECT_NE(again.out.find("largest correction of the tool: "), std::string::npos);
 }
@@ -78,7 +78,7 @@ TEST_F(CompensateFreezeTest, TheFileCarriesTheUncertaintyOfTheErrors) {
   EXPECT_LT(json["difference_by_freezing_mm"].get<double>(), 1e-9);
   EXPECT_EQ(json["source_checksum"], all["source_checksum"]);
   EXPECT_NE(json["checksum"], all["checksum"]);
-  const CommandResult without = abbe({"compensate", "freeze", machine, errors, "-o", output});
+  const CommandResult without = abbe({"compensate", "freeze", machine, errors, "--force", "-o", output});
   EXPECT_NE(without.out.find("not stated by the errors file"), std::string::npos) << without.out;
 }
 
@@ -155,7 +155,7 @@ TEST_F(CompensateFreezeTest, InputsAreNeverWrittenOver) {
   std::filesystem::create_symlink("mine.errors.toml", folder.path() / "link.abbec");
   const std::string before = folder.read("mine.errors.toml");
   for (const std::string name : {"mine.errors.toml", "./mine.errors.toml", "link.abbec"}) {
-    const CommandResult result = abbe({"compensate", "freeze", machine, "mine.errors.toml", "-o", name});
+    const CommandResult result = abbe({"compensate", "freeze", machine, "mine.errors.toml", "--force", "-o", name});
     EXPECT_EQ(result.exit_code, bad_input);
     EXPECT_NE(result.err.find("is an input of the command"), std::string::npos) << result.err;
     EXPECT_EQ(folder.read("mine.errors.toml"), before);
@@ -191,8 +191,8 @@ TEST_F(CompensateFreezeTest, ReversalValuesAreLinesForTheControlsOwnBacklash) {
   EXPECT_EQ(result.err, "");
   EXPECT_NE(result.out.find("[JOINT_1]BACKLASH = 0.0120000    (Y, mm"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("[JOINT_4]BACKLASH    0.0020054 deg less"), std::string::npos) << result.out;
-  const nlohmann::json json =
-      nlohmann::json::parse(abbe({"compensate", "freeze", machine, "r.errors.toml", "-o", output, "--json"}).out);
+  const nlohmann::json json = nlohmann::json::parse(
+      abbe({"compensate", "freeze", machine, "r.errors.toml", "--force", "-o", output, "--json"}).out);
   ASSERT_EQ(json["backlash"].size(), 2U);
   EXPECT_EQ(json["backlash"][0]["axis"], "Y");
   EXPECT_NEAR(json["backlash"][0]["lost_motion_mm"].get<double>(), 0.012, 1e-12);

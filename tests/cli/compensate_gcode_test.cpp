@@ -262,8 +262,9 @@ TEST_F(CompensateGcode, ThreadsAndTapsStayOneMoveWithTheirPitch) {
       "G80\nM2\n");
   const auto mill = (kExamples / "machines/three-axis-mill.machine.toml").string();
   const auto mill_errors = (kExamples / "compensate/mill.errors.toml").string();
-  std::vector<std::string> arguments = {"compensate", "gcode", "thread.ngc", "--machine",      mill, "--errors",
-                                        mill_errors,  "-o",    "out.ngc",    "--tolerance-um", "5"};
+  std::vector<std::string> arguments = {"compensate", "gcode",    "thread.ngc",     "--machine",
+                                        mill,         "--errors", mill_errors,      "--force",
+                                        "-o",         "out.ngc",  "--tolerance-um", "5"};
   const CommandResult result = abbe(arguments);
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   NcProgramOptions options;
@@ -301,7 +302,7 @@ TEST_F(CompensateGcode, InputsAreNeverWritten) {
   const std::vector<std::string> base = {"compensate", "gcode", "p.ngc", "--machine", machine, "--errors", errors};
   for (const std::string output : {"p.ngc", "./p.ngc"}) {
     std::vector<std::string> arguments = base;
-    arguments.insert(arguments.end(), {"-o", output});
+    arguments.insert(arguments.end(), {"--force", "-o", output});
     const CommandResult result = abbe(arguments);
     EXPECT_EQ(result.exit_code, ExitCode::bad_input);
     EXPECT_THAT(result.err, HasSubstr("is an input"));

@@ -135,14 +135,15 @@ TEST_F(CompensatePoses, LimitsAndInputsAreKept) {
     EXPECT_EQ(none.exit_code, ExitCode::bad_input) << limit;
     EXPECT_THAT(none.err, HasSubstr("--limit-um")) << limit;
   }
-  const CommandResult over = poses("poses.csv", {"-o", "./poses.csv"});
+  const CommandResult over = poses("poses.csv", {"--force", "-o", "./poses.csv"});
   EXPECT_EQ(over.exit_code, ExitCode::bad_input);
   EXPECT_THAT(over.err, HasSubstr("is an input of the command"));
   EXPECT_THAT(folder.read("poses.csv"), HasSubstr("30,-40,20,100,-200"));
   // What only the errors file names is an input too.
   folder.write("t.errors.toml", "[[motion]]\nname = \"EXX\"\nbasis = \"table-linear\"\ntable = \"exx.csv\"\n");
   folder.write("exx.csv", "X_mm,EXX_um\n-300,4\n300,-4\n");
-  const CommandResult beside = abbe({"compensate", "poses", mill, "t.errors.toml", "poses.csv", "-o", "exx.csv"});
+  const CommandResult beside =
+      abbe({"compensate", "poses", mill, "t.errors.toml", "poses.csv", "--force", "-o", "exx.csv"});
   EXPECT_EQ(beside.exit_code, ExitCode::bad_input);
   EXPECT_THAT(beside.err, HasSubstr("exx.csv: is an input"));
   EXPECT_THAT(folder.read("exx.csv"), HasSubstr("300,-4"));
@@ -170,8 +171,8 @@ TEST_F(CompensatePoses, WhatIsLeftOutIsSmallTogetherAndInWhatIsLeft) {
   folder.write("poses.csv", "C_deg,A_deg,Y_mm,X_mm,Z_mm\n30,-40,20,100,-200\n200,25,0,-150,-80\n");
   const auto run = [&](double correlation) {
     folder.write("c.csv", two_in_one(correlation));
-    const CommandResult result = abbe({"compensate", "poses", mill, "two.errors.toml", "poses.csv", "-o", "out.csv",
-                                       "--leave-out-below-uncertainty", "1", "--json"});
+    const CommandResult result = abbe({"compensate", "poses", mill, "two.errors.toml", "poses.csv", "--force", "-o",
+                                       "out.csv", "--leave-out-below-uncertainty", "1", "--json"});
     EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
     return nlohmann::json::parse(result.out);
   };

@@ -306,12 +306,13 @@ TEST_F(CompensateTable, MapHasTheErrorBeforeAfterAndIdeal) {
 TEST_F(CompensateTable, InputsAreNeverWrittenOverAndWrongOptionsAreNamed) {
   std::filesystem::copy(errors, folder.path() / "mine.errors.toml");
   const std::string before = folder.read("mine.errors.toml");
-  const CommandResult over =
-      abbe({"compensate", "table", mill, "mine.errors.toml", "--for", "siemens-cec", "-o", "mine.errors.toml"});
+  const CommandResult over = abbe(
+      {"compensate", "table", mill, "mine.errors.toml", "--for", "siemens-cec", "--force", "-o", "mine.errors.toml"});
   EXPECT_EQ(over.exit_code, ExitCode::bad_input);
   EXPECT_THAT(over.err, HasSubstr("is an input of the command"));
   EXPECT_EQ(folder.read("mine.errors.toml"), before);
-  EXPECT_THAT(table("siemens-eec", {"-o", "both.csv", "--map", "./both.csv"}).err, HasSubstr("is where the tables go"));
+  EXPECT_THAT(table("siemens-eec", {"-o", "both.csv", "--map", "./both.csv"}).err,
+              HasSubstr("is the name of two outputs"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "both.csv"));
   // A map of the wrong kind is found before anything is written.
   EXPECT_EQ(table("siemens-eec", {"-o", "eec.ini", "--map", "map.vtu"}).exit_code, ExitCode::bad_input);

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/command_test.h"
 
@@ -53,6 +55,82 @@ TEST_F(Outputs, NotesInAFolderOfResultsStay) {
   folder.write("results/notes.txt", "mine");
   ASSERT_EQ(abbe(fit).exit_code, ExitCode::done);
   EXPECT_EQ(folder.read("results/notes.txt"), "mine");
+}
+
+TEST_F(Outputs, NoCommandReplacesAFileUnasked) {
+  const std::string examples = ABBE_SOURCE_DIR "/examples/", machines = examples + "machines/";
+  const std::string mill = machines + "trunnion-mill.machine.toml", scanner = machines + "liu-scanner.machine.toml";
+  const std::string errors = examples + "compensate/trunnion.errors.toml", engraver = examples + "laser_engraver/";
+  const std::string study = examples + "trunnion/trunnion.study.toml";
+  const std::vector<std::string> path{"path", machines + "yin-engraver-u.machine.toml", engraver + "table-a4.csv"};
+  const std::vector<std::string> scan{"scan", "plan", examples + "cradle_scanner/pyramid.stl", "--machine", scanner};
+  const std::vector<std::string> table{"compensate", "table", mill, errors, "--for", "siemens-eec"};
+  const std::vector<std::pair<std::vector<std::string>, std::string>> commands{
+      {{"new", "w X b Z t"}, "-o"},
+      {{"test-piece", "s-shape"}, "-o"},
+      {{"map", mill, errors}, "-o"},
+      {{"identify", study}, "-o"},
+      {{"plan", study}, "-o"},
+      {{"plan", study}, "--svg"},
+      {path, "-o"},
+      {path, "--report"},
+      {{"position", engraver + "scanner.positioning.toml"}, "-o"},
+      {{"fit", examples + "fit/bore.csv", "--shape", "cylinder"}, "--residuals"},
+      {scan, "-o"},
+      {scan, "--program"},
+      {scan, "--coverage"},
+      {scan, "--report"},
+      {{"scan", "points", scanner, examples + "cradle_scanner/readings.csv"}, "-o"},
+      {{"verify", "--machine", mill, "--errors", errors, "--truth", errors}, "-o"},
+      {{"compensate", "gcode", examples + "compensate/cone.ngc", "--machine", mill, "--errors", errors}, "-o"},
+      {{"compensate", "freeze", mill, errors}, "-o"},
+      {{"compensate", "poses", mill, errors, examples + "compensate/poses.csv"}, "-o"},
+      {table, "-o"},
+      {table, "--map"}};
+  for (const std::string name : {"mine.csv", "mine.html"}) folder.write(name, "mine");
+  for (auto [command, option] : commands) {
+    const std::string name = command[0] == "verify" ? "mine.html" : "mine.csv";
+    command.insert(command.end(), {option, name});
+    const CommandResult result = abbe(command);
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input) << testing::PrintToString(command);
+    EXPECT_THAT(result.err, HasSubstr(name + ": the file exists; expected another name, or --force to replace it"))
+        << testing::PrintToString(command);
+    EXPECT_EQ(folder.read(name), "mine") << testing::PrintToString(command);
+  }
+}
+
+TEST_F(Outputs, AFileThatExistsIsReplacedWhereThatIsAskedFor) {
+  const std::vector<std::string> map{"map",
+                                     ABBE_SOURCE_DIR "/examples/machines/trunnion-mill.machine.toml",
+                                     ABBE_SOURCE_DIR "/examples/compensate/trunnion.errors.toml",
+                                     "--grid",
+                                     "X_mm=0",
+                                     "-o",
+                                     "map.csv"};
+  folder.write("map.csv", "mine");
+  std::vector<std::string> forced = map;
+  forced.emplace_back("--force");
+  EXPECT_NE(abbe(forced).exit_code, ExitCode::bad_input);
+  EXPECT_THAT(folder.read("map.csv"), HasSubstr("X_mm"));
+  fs::remove(folder.path() / "map.csv");
+  EXPECT_NE(abbe(map).exit_code, ExitCode::bad_input);
+  EXPECT_THAT(folder.read("map.csv"), HasSubstr("X_mm"));
+  // A link that leads nowhere is somebody's too, and the name of a folder is none of a file.
+  fs::create_symlink("nowhere", folder.path() / "link.csv");
+  EXPECT_THAT(abbe({"new", "w X b Z t", "-o", "link.csv"}).err, HasSubstr("the file exists"));
+  EXPECT_THAT(abbe({"new", "w X b Z t", "-o", "mine"}).err, HasSubstr("mine: cannot be written: Is a directory"));
+  EXPECT_THAT(abbe({"plan", ABBE_SOURCE_DIR "/examples/trunnion/trunnion.study.toml", "-o", "x", "--svg", "./x"}).err,
+              HasSubstr("./x: is the name of two outputs"));
+}
+
+TEST_F(Outputs, TheCovarianceBesideAnErrorsFileIsNotReplacedEither) {
+  folder.write("found.covariance.csv", "mine");
+  const CommandResult result =
+      abbe({"identify", ABBE_SOURCE_DIR "/examples/aguado/aguado.study.toml", "-o", "found.errors.toml"});
+  EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(result.err, HasSubstr("found.covariance.csv: the file exists"));
+  EXPECT_EQ(folder.read("found.covariance.csv"), "mine");
+  EXPECT_FALSE(fs::exists(folder.path() / "found.errors.toml"));
 }
 
 TEST_F(Outputs, WhereNothingCanBeSaidTheExitCodeStillTells) {

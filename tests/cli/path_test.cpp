@@ -90,6 +90,7 @@ TEST_F(Path, TableA4EqualsTheReferenceInBothConventionsReadingsBranchesAndTableA
                                                 reading[1] == 'B' ? placement : "other.placement.toml",
                                                 "--hold",
                                                 "C2_deg=" + c2,
+                                                "--force",
                                                 "-o",
                                                 "commands.csv"};
           for (const char* axis : {"X", "Y", "Z", "A_deg", "C1_deg"}) {

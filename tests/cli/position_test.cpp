@@ -109,7 +109,7 @@ TEST_F(PositionTest, ThePlacementMapsTheWayThatIsAskedFor) {
   const std::string file = engraver + "scanner.positioning.toml";
   const auto written = [&](const std::vector<std::string>& options) {
     const std::string placement = (folder.path() / "asked.placement.toml").string();
-    std::vector<std::string> words = {"position", file, "-o", placement};
+    std::vector<std::string> words = {"position", file, "--force", "-o", placement};
     words.insert(words.end(), options.begin(), options.end());
     EXPECT_EQ(abbe(words).exit_code, done);
     std::ifstream text(placement);

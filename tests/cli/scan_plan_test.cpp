@@ -239,9 +239,9 @@ TEST_F(ScanPlanCommand, MarksWaysThatAreNotClearAndStopsTheProgramBeforeThem) {
   ASSERT_NE(z, std::string::npos);
   text.replace(text.find("100]", z), 4, "11.2]");
   folder.write("low.machine.toml", text);
-  const std::vector<std::string> command{"scan",       "plan",      pyramid,        "--machine", "low.machine.toml",
-                                         "--along-mm", "2",         "--between-mm", "2",         "-o",
-                                         "path.csv",   "--program", "path.ngc"};
+  const std::vector<std::string> command{"scan",       "plan",     pyramid,        "--machine", "low.machine.toml",
+                                         "--along-mm", "2",        "--between-mm", "2",         "--force",
+                                         "-o",         "path.csv", "--program",    "path.ngc"};
   const CommandResult words = abbe(command);
   EXPECT_EQ(words.exit_code, ExitCode::computation_says_no) << words.err;
   EXPECT_NE(words.out.find("0 places not reached"), std::string::npos) << words.out;

@@ -62,12 +62,14 @@ TEST_F(ScanPoints, WhatIsWrongIsNamedAndNothingIsWritten) {
   EXPECT_NE(travel.err.find("outside the travel of axis X"), std::string::npos) << travel.err;
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "p.csv"));
   EXPECT_EQ(abbe({"scan", "points", machine, "r.csv", "-o", "p.csv", "--any-travel"}).exit_code, ExitCode::done);
-  const CommandResult column = abbe({"scan", "points", machine, "r.csv", "-o", "p.csv", "--column", "indication_um=h"});
+  const CommandResult column =
+      abbe({"scan", "points", machine, "r.csv", "--force", "-o", "p.csv", "--column", "indication_um=h"});
   EXPECT_EQ(column.exit_code, ExitCode::bad_input);
   EXPECT_EQ(abbe({"scan", "points", machine, "r.csv", "-o", "p.xyz"}).exit_code, ExitCode::bad_input);
-  EXPECT_EQ(abbe({"scan", "points", machine, "r.csv", "-o", "p.csv", "--beam", "0", "0", "0"}).exit_code,
+  EXPECT_EQ(abbe({"scan", "points", machine, "r.csv", "--force", "-o", "p.csv", "--beam", "0", "0", "0"}).exit_code,
             ExitCode::bad_input);
-  EXPECT_EQ(abbe({"scan", "points", machine, "r.csv", "-o", "p.csv", "--any-travel", "--indication-range-mm", "1", "2"})
+  EXPECT_EQ(abbe({"scan", "points", machine, "r.csv", "--force", "-o", "p.csv", "--any-travel", "--indication-range-mm",
+                  "1", "2"})
                 .exit_code,
             ExitCode::computation_says_no);
 }

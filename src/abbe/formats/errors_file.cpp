@@ -256,13 +256,18 @@ std::string errors_text(const Machine& machine, const ErrorsFile& contents, cons
   return text;
 }
 
+std::filesystem::path covariance_beside(const std::filesystem::path& path) {
+  std::string name = path.stem().string();
+  if (name.ends_with(".errors")) name.resize(name.size() - 7);
+  return path.parent_path() / (name + ".covariance.csv");
+}
+
 void write_errors(const std::filesystem::path& path, const Machine& machine, const ErrorsFile& contents) {
   std::string beside;
   if (contents.covariance.size() > 0) {
-    beside = path.stem().string();
-    if (beside.ends_with(".errors")) beside.resize(beside.size() - 7);
-    beside += ".covariance.csv";
-    write_file_atomically(path.parent_path() / beside, covariance_text(machine, contents));
+    const std::filesystem::path covariance = covariance_beside(path);
+    beside = covariance.filename().string();
+    write_file_atomically(covariance, covariance_text(machine, contents));
   }
   write_file_atomically(path, errors_text(machine, contents, beside));
 }

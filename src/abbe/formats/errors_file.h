@@ -34,8 +34,10 @@ std::string errors_text(const Machine& machine, const ErrorsFile& contents, cons
 /// (um, urad).
 std::string covariance_text(const Machine& machine, const ErrorsFile& contents);
 
-/// Writes `path` and, if there is a covariance, a CSV beside it ("x.errors.toml" -> "x.covariance.csv"), each
-/// atomically.
+/// Where the covariance of an errors file is written: "x.errors.toml" -> "x.covariance.csv" beside it.
+std::filesystem::path covariance_beside(const std::filesystem::path& path);
+
+/// Writes `path` and, if there is a covariance, covariance_beside(), each atomically.
 void write_errors(const std::filesystem::path& path, const Machine& machine, const ErrorsFile& contents);
 
 }  // namespace abbe

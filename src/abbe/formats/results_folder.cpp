@@ -36,14 +36,6 @@ void write_and_flush(const fs::path& path, std::string_view contents, const fs::
   if (const int error = file.close()) fail_to_write(called, error);
 }
 
-/// Moves `from` to a name that nothing has. @returns errno, 0 if done
-int rename_to_new(const fs::path& from, const fs::path& to) {
-  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
-  if (errno != EINVAL && errno != ENOSYS) return errno;
-  // A folder takes the place of an empty one at most.
-  return ::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
-}
-
 /// Exchanges two names in one step where the file system can. @returns errno, 0 if done
 int exchange(const fs::path& a, const fs::path& b) {
   return ::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0 ? 0 : errno;

@@ -51,7 +51,8 @@ class ResultsFolder {
 };
 
 /// One file that appears whole or not at all; an older file of that name stays until then. Through a link the file it
-/// leads to is written. @throws InputError, also where the name is that of a folder or a device
+/// leads to is written. @throws InputError, also where the name is that of a folder or a device, or of a file that is
+/// to stay (existing_output.h)
 void write_file_atomically(const std::filesystem::path& name, std::string_view contents);
 
 }  // namespace abbe

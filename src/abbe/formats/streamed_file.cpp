@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 
+#include "abbe/formats/existing_output.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/interruption.h"
 #include "abbe/formats/kept_inputs.h"
@@ -31,6 +32,7 @@ Descriptor nameless_file(const fs::path& folder) {
 
 StreamedFile::StreamedFile(const fs::path& name) : name_(name), path_(file_to_write(name)) {
   refuse_input_as_output(path_);
+  refuse_existing_output(name_);
   for_abandoned(path_, kUnfinished, [](const fs::path& abandoned) { ::unlink(abandoned.c_str()); });
   nameless_ = std::make_unique<Descriptor>(nameless_file(path_.parent_path()));
   if (nameless_->is_open()) return;
@@ -87,7 +89,13 @@ void StreamedFile::put_in_place(const fs::path& from) {
     throw InputError({name_.string(), 0, 0, ""}, "has become a link since the command was started",
                      "the name of a file to write");
   }
-  if (::rename(from.c_str(), path_.c_str()) != 0) fail_to_write(name_, errno);
+  if (existing_outputs_stay()) {
+    const int error = rename_to_new(from, path_);
+    if (error == EEXIST) refuse_existing_output(name_);
+    if (error != 0) fail_to_write(name_, error);
+  } else if (::rename(from.c_str(), path_.c_str()) != 0) {
+    fail_to_write(name_, errno);
+  }
   if (const int error = flush_folder(path_.parent_path())) fail_to_write(name_, error);
 }
 

@@ -10,7 +10,8 @@ namespace abbe {
 class UnfinishedOutput;
 class Descriptor;
 
-/// A file that is written piece by piece and appears whole or not at all; an older file of that name stays until then.
+/// A file that is written piece by piece and appears whole or not at all; an older file of that name stays until then,
+/// and for good where existing_output.h says so.
 ///
 /// Until commit() the file has no name where the file system can do that, so that a killed or interrupted process
 /// leaves nothing behind; elsewhere it stands beside the older one (unfinished_output.h) and the next writer of that
@@ -27,7 +28,7 @@ class StreamedFile {
   void append(std::string_view contents);
   /// Writes over what was written before, such as a header whose numbers are known at the end. @throws InputError
   void overwrite(std::size_t offset, std::string_view contents);
-  /// Flushes and makes the file visible under its name. @throws InputError; the older file is then still there
+  /// Flushes and makes the file visible under its name. @throws InputError; an older file is then still there
   void commit();
 
  private:

@@ -83,6 +83,10 @@ bool lock_if_free(const Descriptor& file);
 /// Writes all of it. @returns errno, 0 if done
 int write_all(int file, std::string_view contents);
 
+/// Moves a finished file or folder to a name that nothing has, in one step where the file system can. @returns errno, 0
+/// if done
+int rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// Flushes the entries of a folder to the disk. @returns errno, 0 if done
 int flush_folder(const std::filesystem::path& folder);
 

@@ -1,0 +1,48 @@
+#include "abbe/formats/existing_output.h"
+
+#include <atomic>
+#include <system_error>
+
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/unfinished_output.h"
+
+namespace abbe {
+namespace {
+
+struct OutputRule {
+  std::atomic<bool> kept = false;      // a KeptOutputs lives
+  std::atomic<bool> replaced = false;  // and replace_existing_outputs() was called
+};
+
+OutputRule& output_rule() {
+  static OutputRule one;
+  return one;
+}
+
+}  // namespace
+
+KeptOutputs::KeptOutputs() { output_rule().kept = true; }
+
+KeptOutputs::~KeptOutputs() {
+  output_rule().kept = false;
+  output_rule().replaced = false;
+}
+
+void replace_existing_outputs() { output_rule().replaced = true; }
+
+bool existing_outputs_stay() { return output_rule().kept && !output_rule().replaced; }
+
+void refuse_existing_output(const std::filesystem::path& name) {
+  if (!existing_outputs_stay()) return;
+  std::error_code error;
+  // A link that leads nowhere is somebody's too.
+  if (!std::filesystem::exists(std::filesystem::symlink_status(name, error))) return;
+  throw InputError({.file = name.string()}, "the file exists", "another name, or --force to replace it");
+}
+
+void check_output_file(const std::filesystem::path& name) {
+  file_to_write(name);
+  refuse_existing_output(name);
+}
+
+}  // namespace abbe

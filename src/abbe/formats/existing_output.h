@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+
+namespace abbe {
+
+/// While one lives, a file that exists is not replaced by an output until replace_existing_outputs() is called: writers
+/// throw InputError instead. For main(): it is the one rule of all commands, whose option --force calls that. Without
+/// one, writers replace, as programs that link this library expect. Folders of results that abbe wrote are not files;
+/// their own rule is in results_folder.h. At most one at a time.
+class KeptOutputs {
+ public:
+  KeptOutputs();
+  ~KeptOutputs();
+  KeptOutputs(const KeptOutputs&) = delete;
+  KeptOutputs& operator=(const KeptOutputs&) = delete;
+};
+
+/// From now on outputs replace files that exist.
+void replace_existing_outputs();
+
+/// Whether files that exist stay.
+bool existing_outputs_stay();
+
+/// For commands before they begin to compute; writers check again when the file is finished.
+/// @throws InputError if a file or a link has this name and is to stay
+void refuse_existing_output(const std::filesystem::path& name);
+
+/// refuse_existing_output(), and what else is wrong with the name of a file to write: that of a folder or a device.
+/// @throws InputError
+void check_output_file(const std::filesystem::path& name);
+
+}  // namespace abbe
