@@ -13,6 +13,7 @@
 #include "abbe/formats/interruption.h"
 #include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/mapped_inputs.h"
+#include "abbe/formats/utf8.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "exit_code.h"
@@ -23,6 +24,8 @@
 namespace abbe {
 namespace {
 
+constexpr std::size_t kLongestArgument = 500;
+
 /// What was said comes before what went wrong, also where both go to one file.
 void complain(const std::string& message) {
   std::fflush(stdout);
@@ -32,7 +35,7 @@ void complain(const std::string& message) {
 /// Results that were printed and did not arrive are not done. @returns the code of the command if they did
 int printed(int code) {
   errno = 0;
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  if (flush_standard_output() == 0 && std::ferror(stdout) == 0) return code;
   const int error = errno;
   complain("standard output: cannot be written" +
            (error == 0 ? std::string() : ": " + std::generic_category().message(error)) +
@@ -41,6 +44,13 @@ int printed(int code) {
 }
 
 int run_command(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (!has_control_character(argv[i])) continue;
+    // Names of files go into comments of programs and tables.
+    complain(printable(argv[i], kLongestArgument, LineFeeds::escaped) +
+             ": has control characters in it; expected a name or an option on one line");
+    return kBadInput;
+  }
   CommandLine line;
   add_run_command(line);
   add_new_command(line);
@@ -92,8 +102,10 @@ int run_command(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   abbe::keep_numbers_of_standard_streams();
+  abbe::make_standard_output_printable();
   abbe::end_cleanly_when_interrupted([](int /*signal*/) {
-    abbe::tell("{}abbe: interrupted; what was not finished is removed\n", isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "");
+    if (isatty(STDERR_FILENO) == 1) abbe::draw("\r\x1b[K");
+    abbe::tell("abbe: interrupted; what was not finished is removed\n");
   });
   abbe::end_where_an_input_was_cut_short(abbe::kBadInput);
   // A limit on the size of files is then an error of writing, with a message and nothing half done, not the end.

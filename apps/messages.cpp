@@ -3,11 +3,34 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <string>
+
+#include "abbe/formats/unfinished_output.h"
+#include "abbe/formats/utf8.h"
 
 namespace abbe {
+namespace {
 
-void tell_text(std::string_view text) {
+/// Never destroyed: streams are flushed after everything else at the end of the process.
+PrintableText& standard_output_text() {
+  static auto* const text = new PrintableText;
+  return *text;
+}
+
+/// The write function of a stream. @returns `size`, or 0 and errno
+ssize_t write_printable(void* /*stream*/, const char* data, std::size_t size) {
+  const std::string shown = standard_output_text().next({data, size});
+  errno = write_all(STDOUT_FILENO, shown);
+  return errno == 0 ? static_cast<ssize_t>(size) : 0;
+}
+
+}  // namespace
+
+void tell_text(std::string_view text) { draw(printable(text, text.size())); }
+
+void draw(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
@@ -18,6 +41,20 @@ void keep_numbers_of_standard_streams() {
     // open() takes the smallest number that is free, which is this one.
     ::open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
+}
+
+void make_standard_output_printable() {
+  standard_output_text();
+  std::FILE* const stream = ::fopencookie(nullptr, "w", {nullptr, write_printable, nullptr, nullptr});
+  if (stream == nullptr) return;
+  std::setvbuf(stream, nullptr, ::isatty(STDOUT_FILENO) == 1 ? _IOLBF : _IOFBF, BUFSIZ);
+  stdout = stream;
+}
+
+int flush_standard_output() {
+  if (std::fflush(stdout) != 0) return EOF;
+  errno = write_all(STDOUT_FILENO, standard_output_text().rest());
+  return errno == 0 ? 0 : EOF;
 }
 
 }  // namespace abbe

@@ -7,8 +7,8 @@
 
 namespace abbe {
 
-/// Writes to standard error. If that is closed or full, the text is lost and the command goes on; its exit code still
-/// tells.
+/// Writes to standard error what a terminal can be shown of it (abbe/formats/utf8.h). If standard error is closed or
+/// full, the text is lost and the command goes on; its exit code still tells.
 void tell_text(std::string_view text);
 
 /// tell_text() of a format.
@@ -17,8 +17,18 @@ void tell(fmt::format_string<Values...> format, Values&&... values) {
   tell_text(fmt::format(format, std::forward<Values>(values)...));
 }
 
+/// Writes to standard error as it is, for what a terminal is to obey: progress that is drawn over.
+void draw(std::string_view text);
+
 /// For the start of main(): opens /dev/null in place of closed standard streams. Otherwise a file of the command would
 /// get the number of one, and messages would be written into it. Writing to such a stream still fails.
 void keep_numbers_of_standard_streams();
+
+/// For the start of main(): from now on `stdout` passes on what a terminal can be shown. Names and fields come from
+/// files, and whoever made these must not move the cursor, colour text or turn it round.
+void make_standard_output_printable();
+
+/// std::fflush(stdout), with what is left of text that ended within a character. @returns 0 if all of it was written
+int flush_standard_output();
 
 }  // namespace abbe

@@ -3,10 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 
 #include "abbe/formats/existing_output.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/results_folder.h"
+#include "messages.h"
 
 namespace abbe {
 namespace {
@@ -249,7 +251,11 @@ ParseResult Program::parse(int argc, const char* const* argv) {
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // Help and version come this way too, with code 0.
-    return app_->exit(error) == 0 ? ParseResult::shown : ParseResult::refused;
+    std::ostringstream shown, problem;
+    const int code = app_->exit(error, shown, problem);
+    fmt::print("{}", shown.str());
+    tell_text(problem.str());
+    return code == 0 ? ParseResult::shown : ParseResult::refused;
   }
   for (const std::unique_ptr<Subcommand>& subcommand : subcommands_) {
     if (subcommand->parsed()) subcommand->check_outputs();

@@ -19,7 +19,7 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 Progress::Progress(std::string what) : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) == 1), start_(now()) {}
 
 Progress::~Progress() {
-  if (drawn_) tell("\r\x1b[K");
+  if (drawn_) draw("\r\x1b[K");
 }
 
 void Progress::operator()(std::size_t done, std::size_t total) {
@@ -30,8 +30,7 @@ void Progress::operator()(std::size_t done, std::size_t total) {
   drawn_ = true;
   const double share = static_cast<double>(done) / static_cast<double>(total);
   const double left = share > 0 ? (time - start_) * (1 - share) / share : 0;
-  tell("\r\x1b[K{}  {:3.0f} %  {:.0f} s left", what_, 100 * share, left);
-  std::fflush(stderr);
+  draw(fmt::format("\r\x1b[K{}  {:3.0f} %  {:.0f} s left", what_, 100 * share, left));
 }
 
 }  // namespace abbe

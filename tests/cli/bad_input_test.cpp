@@ -1,5 +1,8 @@
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
 #include "cli/command_test.h"
 
 namespace abbe {
@@ -40,6 +43,37 @@ TEST_F(BadInput, NamesFileLineFieldAndUnit) {
       "m.toml:6:17: axis.X.travel_mm[2]: 1e308 is too large; expected a length in mm, at most 1e9 mm");
   expect_machine_refused("[axis.X]", "[axis.Y]",
                          "m.toml:5:7: axis.Y: the chain has no axis Y; expected one of C, X, Z");
+}
+
+TEST_F(BadInput, ControlCharactersOfNamesAndArgumentsAreRefused) {
+  expect_machine_refused("\"m\"", R"("m\u001b[2J\nall is well")",
+                         "m.toml:1:8: name: has control characters in it; expected a text on one line");
+  expect_refused({"check", "a\nb\x1b[31m.toml"},
+                 "a\\x0ab\\x1b[31m.toml: has control characters in it; expected a name or an option on one line");
+  expect_refused({"check", "a\xff\u202e.toml"}, "a\\xff\\xe2\\x80\\xae.toml: there is no such file");
+}
+
+TEST_F(BadInput, WhatATerminalWouldObeyIsShownAsNumbersAndReadsBackFromJson) {
+  // Letters behind the direction override would be read from right to left, and the byte 0xff is no UTF-8.
+  std::string text = kEndlessTable;
+  text.replace(text.find("\"m\""), 3, "\"mill \\u202e\u00fc\"");
+  const std::string name = "m\xff.toml";
+  folder.write(name, text);
+  const CommandResult people = abbe({"check", name});
+  EXPECT_EQ(people.exit_code, ExitCode::done) << people.err;
+  EXPECT_THAT(people.out, testing::HasSubstr("mill \\xe2\\x80\\xae\u00fc"));
+  EXPECT_THAT(people.out, testing::Not(testing::HasSubstr("\u202e")));
+  const CommandResult programs = abbe({"check", name, "--json"});
+  EXPECT_THAT(programs.out, testing::HasSubstr("mill \\u202e\u00fc"));
+  EXPECT_EQ(nlohmann::json::parse(programs.out).at("name"), "mill \u202e\u00fc");
+  // Escape codes of a table of points come to the message of what is wrong with them, and of a file's name to the
+  // title.
+  std::filesystem::copy(ABBE_SOURCE_DIR "/examples/fit/bore.csv", folder.path() / "bore\xff.csv");
+  const CommandResult fit = abbe({"fit", "bore\xff.csv", "--shape", "cylinder"});
+  EXPECT_THAT(fit.out, testing::HasSubstr("bore\\xff.csv"));
+  EXPECT_THAT(fit.out, testing::Not(testing::HasSubstr("\xff")));
+  const CommandResult json = abbe({"fit", "bore\xff.csv", "--shape", "cylinder", "--json"});
+  EXPECT_NO_THROW(static_cast<void>(nlohmann::json::parse(json.out))) << json.out;
 }
 
 TEST_F(BadInput, EmptyAndMissingFiles) {

@@ -197,7 +197,7 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
     table->finish();
   }
   if (auto table = root.optional_table("provenance")) {
-    for (const std::string& key : table->keys()) contents.provenance.emplace_back(key, table->text(key));
+    for (const std::string& key : table->keys()) contents.provenance.emplace_back(key, table->free_text(key));
   }
   if (root.has("covariance")) {
     const std::filesystem::path csv = folder / root.text("covariance");

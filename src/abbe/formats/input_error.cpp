@@ -13,11 +13,12 @@ namespace {
 constexpr std::size_t kLongestField = 120, kLongestProblem = 2000;
 
 std::string message(const InputError::Place& place, const std::string& problem, const std::string& expected) {
-  std::string text = printable(place.file, kLongestProblem);
+  // A name is on one line whatever is in it.
+  std::string text = printable(place.file, kLongestProblem, LineFeeds::escaped);
   if (place.line > 0) text += fmt::format(":{}", place.line);
   if (place.line > 0 && place.column > 0) text += fmt::format(":{}", place.column);
   if (!text.empty()) text += ": ";
-  if (!place.field.empty()) text += printable(place.field, kLongestField) + ": ";
+  if (!place.field.empty()) text += printable(place.field, kLongestField, LineFeeds::escaped) + ": ";
   text += printable(problem, kLongestProblem);
   if (!expected.empty()) text += "; expected " + expected;
   return text;

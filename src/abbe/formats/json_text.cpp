@@ -1,11 +1,14 @@
 #include "abbe/formats/json_text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "abbe/formats/number_text.h"
+#include "abbe/formats/utf8.h"
 
 namespace abbe {
 namespace {
@@ -14,6 +17,26 @@ using Json = nlohmann::ordered_json;
 
 bool is_flat(const Json& array) {
   return std::all_of(array.begin(), array.end(), [](const Json& element) { return element.is_primitive(); });
+}
+
+/// In quotes. Bytes that are no UTF-8 (file names may be any) become the replacement character, and what a terminal
+/// would obey becomes "\u202e".
+std::string quoted(const Json& string) {
+  const std::string dumped = string.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text;
+  for (std::size_t at = 0; at < dumped.size();) {
+    const std::size_t length = std::max<std::size_t>(utf8_length(dumped, at), 1);
+    if (is_obeyed(dumped, at)) {
+      // All of them are of at most three bytes.
+      unsigned code = static_cast<unsigned char>(dumped[at]) & (length == 1 ? 0x7FU : length == 2 ? 0x1FU : 0x0FU);
+      for (std::size_t i = 1; i < length; ++i) code = code << 6U | (static_cast<unsigned char>(dumped[at + i]) & 0x3FU);
+      text += fmt::format("\\u{:04x}", code);
+    } else {
+      text += dumped.substr(at, length);
+    }
+    at += length;
+  }
+  return text;
 }
 
 void append(const Json& value, const std::string& path, std::size_t depth, std::string& text) {
@@ -26,7 +49,7 @@ void append(const Json& value, const std::string& path, std::size_t depth, std::
     text += "{\n";
     bool first = true;
     for (const auto& [key, element] : value.items()) {
-      text += (first ? "" : ",\n") + inner + Json(key).dump() + ": ";
+      text += (first ? "" : ",\n") + inner + quoted(Json(key)) + ": ";
       append(element, path + "/" + key, depth + 1, text);
       first = false;
     }
@@ -41,8 +64,7 @@ void append(const Json& value, const std::string& path, std::size_t depth, std::
     }
     text += flat ? "]" : "\n" + outer + "]";
   } else {
-    // Texts that are no UTF-8 (file names may be any bytes) get the replacement character.
-    text += value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    text += value.is_string() ? quoted(value) : value.dump();
   }
 }
 

@@ -24,6 +24,18 @@ TEST(JsonText, IsStableAndReadable) {
             " ]\n}\n");
 }
 
+TEST(JsonText, WhatATerminalWouldObeyIsEscapedAndReadsBack) {
+  const std::string hostile = "a\x1b[31m\x7f\u0085\u202e\u2028\n\u00b5";
+  Json value;
+  value[hostile] = {hostile};
+  const std::string text = json_text(value);
+  EXPECT_NE(text.find("a\\u001b[31m\\u007f\\u0085\\u202e\\u2028\\n\u00b5"), std::string::npos) << text;
+  EXPECT_EQ(Json::parse(text), value);
+  Json broken;
+  broken["\xff"] = "\xe2\x80";
+  EXPECT_EQ(json_text(broken), "{\n  \"\ufffd\": \"\ufffd\"\n}\n");
+}
+
 TEST(JsonText, NumbersReadBackToTheSameBits) {
   std::mt19937_64 generator(9);
   std::normal_distribution<double> normal;

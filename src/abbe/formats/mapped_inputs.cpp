@@ -8,7 +8,10 @@
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
+
+#include "abbe/formats/utf8.h"
 
 namespace abbe {
 namespace {
@@ -55,8 +58,9 @@ MappedInput::MappedInput(const char* begin, std::size_t size, const std::string&
   }
   if (place_ == kPlaces) return;
   Place& place = places[place_];
-  const std::size_t length = std::min(name.size(), place.name.size() - 1);
-  std::memcpy(place.name.data(), name.data(), length);
+  const std::string shown = printable(name, place.name.size(), LineFeeds::escaped);
+  const std::size_t length = std::min(shown.size(), place.name.size() - 1);
+  std::memcpy(place.name.data(), shown.data(), length);
   place.name[length] = '\0';
   place.begin = reinterpret_cast<std::uintptr_t>(begin);
   place.end = place.begin + size;

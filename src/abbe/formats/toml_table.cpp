@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "abbe/formats/toml_document.h"
+#include "abbe/formats/utf8.h"
 
 namespace abbe {
 
@@ -169,6 +170,10 @@ struct TomlTable::State {
 
   std::string string(const toml::node& node, const std::string& field) const {
     if (!node.is_string()) fail_at(node, field, "is not a text", "a text in quotes");
+    // Names go into messages, comments of programs and tables, where a line feed would begin another line.
+    if (has_control_character(node.as_string()->get())) {
+      fail_at(node, field, "has control characters in it", "a text on one line");
+    }
     return node.as_string()->get();
   }
 };
@@ -206,23 +211,9 @@ std::string TomlTable::text(std::string_view key) {
   return state_->string(state_->need(key, "a text in quotes"), full_name(key));
 }
 
-std::string TomlTable::file_name(std::string_view key) {
-  constexpr std::size_t kLongest = 100;
-  std::string name = text(key);
-  const bool is_plain = std::none_of(
-      name.begin(), name.end(), [](char c) { return c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
-  if (name.empty() || name.size() > kLongest || name.front() == '.' || !is_plain) {
-    fail(key, "cannot be the name of a file", "1 to 100 bytes without \"/\" and control characters, no dot in front");
-  }
-  return name;
-}
-
-std::filesystem::path TomlTable::file(std::string_view key, const std::filesystem::path& folder,
-                                      const std::string& expected) {
-  std::filesystem::path path = folder / text(key);
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) fail(key, fmt::format("there is no file {}", path.string()), expected);
-  return path;
+std::string TomlTable::free_text(std::string_view key) {
+  const toml::node& node = state_->need(key, "a text in quotes");
+  return node.is_string() ? node.as_string()->get() : state_->string(node, full_name(key));
 }
 
 std::string TomlTable::text_or(std::string_view key, std::string otherwise) {

@@ -35,7 +35,10 @@ class TomlTable {
   /// Keys in the order of the file.
   std::vector<std::string> keys() const;
 
+  /// On one line: without control characters.
   std::string text(std::string_view key);
+  /// Of any number of lines.
+  std::string free_text(std::string_view key);
   std::string text_or(std::string_view key, std::string otherwise);
   /// A name that files are called by, as those of set-ups are. @throws InputError for one that would lead to another
   /// folder, hide the file or not be shown: with "/", control characters, a dot in front, or of more than 100 bytes

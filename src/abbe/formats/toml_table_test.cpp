@@ -44,10 +44,12 @@ TEST(TomlTable, RefusesNamesThatFilesCannotHave) {
       "no dot "
       "in front";
   for (const std::string& name : {std::string("../victim"), std::string("a/b"), std::string(".hidden"),
-                                  std::string("a\\u001bb"), std::string(), std::string(101, 'a')}) {
+                                  std::string("a\\tb"), std::string(), std::string(101, 'a')}) {
     EXPECT_EQ(message_of_toml("name = \"" + name + "\"\n", [](TomlTable& table) { table.file_name("name"); }), message)
         << name;
   }
+  EXPECT_EQ(message_of_toml("x = 1\nname = \"a\\u001bb\"\n", [](TomlTable& table) { table.file_name("name"); }),
+            "a.toml:2:1: name: has control characters in it; expected a text on one line");
   TomlTable table = TomlTable::parse("name = \"L\u00e4nge 2.x\"\n", "a.toml");
   EXPECT_EQ(table.file_name("name"), "L\u00e4nge 2.x");
 }
