@@ -72,17 +72,22 @@ int run_gcode(const GcodeOptions& options) {
     result.left_out = leave_out_uncertain(
         machine, corrected_errors, parameter_covariance(errors.errors, errors.covariance), options.leave_out_factor);
   }
-  ProgramCorrection correction(machine, corrected_errors, words, gcode_correction_options(options));
+  MappedFile program(options.program);
+  const std::size_t size = program.text().size();
+  const GcodeBudget allowed_budget = gcode_budget(options, size);
+  ProgramBudget budget(static_cast<std::size_t>(1e6 * allowed_budget.megabytes), 60 * allowed_budget.minutes);
+  text_options.budget = &budget;
+  ProgramCorrectionOptions correction_options = gcode_correction_options(options);
+  correction_options.budget = &budget;
+  ProgramCorrection correction(machine, corrected_errors, words, correction_options);
   if (!correction.problem().empty()) throw InputError({.file = options.errors}, correction.problem());
   ToolCentreMoves tool_centre(correction);
   MoveCorrector& corrector = options.tool_centre ? static_cast<MoveCorrector&>(tool_centre) : correction;
 
-  MappedFile program(options.program);
   std::optional<StreamedFile> out;
   if (!options.output.empty()) refuse_input_as_output(options.output);
   if (!options.dry_run) out.emplace(options.output);
   Progress progress("correcting the program");
-  const std::size_t size = program.text().size();
   result.text = correct_nc_program(
       program.text(), options.program, text_options, corrector,
       [&](std::string_view text) {
@@ -100,7 +105,11 @@ int run_gcode(const GcodeOptions& options) {
                      "X, Y and Z as three independent linear axes without a rotary axis between them");
   }
   state_uncertainties(machine, errors, words, result);
-  result.refused = reasons_to_refuse(options, allowed, machine, result.report);
+  if (result.text.spent == ProgramBudget::Spent::nothing) {
+    result.refused = reasons_to_refuse(options, allowed, machine, result.report);
+  } else {
+    result.refused = {given_up_words(options, allowed_budget, result.text)};
+  }
   if (out && result.refused.empty()) out->commit();
   if (options.json) {
     fmt::print("{}", json_text(gcode_json(options, machine, result)));
@@ -172,6 +181,10 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
   command->add_option("--allow", options->allow,
                       "write the program in spite of: not-covered, outside-travel, held-start, position-left, "
                       "not-converged, not-proven");
+  command->add_option("--max-output-mb", options->max_output_mb,
+                      "give up a program that becomes longer (default: 200, and 20 times the size of the program)");
+  command->add_option("--max-minutes", options->max_minutes,
+                      "give up a program that takes longer (default: 5, and 1 for every 10 MB of the program)");
   command->add_flag("--dry-run", options->dry_run, "only the report: largest corrections and where; writes nothing");
   command->add_flag("--json", options->json, "print JSON for programs");
   command->callback([&line, options] { line.run = [options] { return run_gcode(*options); }; });

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/path_program.h"
 #include "abbe/geometry/angle_units.h"
@@ -111,6 +114,19 @@ NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& 
   text.decimals_mm = text.decimals_deg = options.decimals;
   text.batch = 1 << 14;
   return text;
+}
+
+GcodeBudget gcode_budget(const GcodeOptions& options, std::size_t size) {
+  const double megabytes = 1e-6 * static_cast<double>(size);
+  GcodeBudget budget{200 + 20 * megabytes, 5 + 0.1 * megabytes};
+  constexpr double kMost = 1e9;
+  if (options.max_output_mb) {
+    budget.megabytes = std::min(kMost, positive("--max-output-mb", *options.max_output_mb, "a size in MB"));
+  }
+  if (options.max_minutes) {
+    budget.minutes = std::min(kMost, positive("--max-minutes", *options.max_minutes, "a time in min"));
+  }
+  return budget;
 }
 
 ProgramCorrectionOptions gcode_correction_options(const GcodeOptions& options) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@ struct GcodeOptions {
   std::vector<std::string> words, start, allow;
   std::string tool_table, parameters;
   int tool = -1, decimals = 6;
+  std::optional<double> max_output_mb, max_minutes;
   bool tool_table_in_inches = false, parameters_in_inches = false;
   bool tool_centre = false, inches = false, block_delete = false, dry_run = false, json = false;
 };
@@ -35,6 +37,12 @@ AllowedProblems allowed_problems(const GcodeOptions& options);
 /// Axes of the program's words. @throws InputError if one is of the wrong kind, or if there is none
 WordAxes gcode_words(const GcodeOptions& options, const Machine& machine);
 NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& machine, const WordAxes& words);
+/// What a program may become and take.
+struct GcodeBudget {
+  double megabytes = 0, minutes = 0;
+};
+/// @param size  of the program, bytes @throws InputError for numbers that are not above zero
+GcodeBudget gcode_budget(const GcodeOptions& options, std::size_t size);
 /// @throws InputError for numbers out of range
 ProgramCorrectionOptions gcode_correction_options(const GcodeOptions& options);
 

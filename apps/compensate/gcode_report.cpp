@@ -113,6 +113,26 @@ constexpr NamedStatus kStatuses[] = {
 
 }  // namespace
 
+std::string given_up_words(const GcodeOptions& options, const GcodeBudget& budget, const NcProgramResult& text) {
+  const std::string place = fmt::format("{}:{}: given up", options.program, text.given_up_line);
+  switch (text.spent) {
+    case ProgramBudget::Spent::nothing:
+      return {};
+    case ProgramBudget::Spent::bytes:
+      return fmt::format(
+          "{} after {} moves: the corrected program would be longer than {:.6g} MB; --max-output-mb allows more", place,
+          text.moves, budget.megabytes);
+    case ProgramBudget::Spent::time:
+      return fmt::format("{} after {} moves: it takes longer than {:.6g} min; --max-minutes allows more", place,
+                         text.moves, budget.minutes);
+    case ProgramBudget::Spent::pieces:
+      break;
+  }
+  return fmt::format(
+      "{}: moves that are corrected together become more than {} pieces; a larger --tolerance-um makes fewer", place,
+      ProgramBudget::kMostPieces);
+}
+
 std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const AllowedProblems& allowed,
                                            const Machine& machine, const ProgramReport& report) {
   std::vector<std::string> reasons;
@@ -290,6 +310,7 @@ nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& ma
   json["tool_length_changes"] = count_json(report.tool_changes);
   json["inverse_time_pieces"] = count_json(report.inverse_time);
   json["uncorrected_rapid_moves"] = result.text.uncorrected_moves;
+  if (result.text.given_up_line > 0) json["given_up_line"] = result.text.given_up_line;
   json["first_line_in_assumed_work_offset"] = result.text.first_assumed_offset_line;
   state_left_out(machine, result.left_out, json);
   return json;

@@ -25,6 +25,8 @@ struct GcodeResult {
   std::vector<std::string> refused;          ///< why nothing is written; empty: it is
 };
 
+/// Why the program was given up, with the place and the option that allows more.
+std::string given_up_words(const GcodeOptions& options, const GcodeBudget& budget, const NcProgramResult& text);
 /// Reasons not to write the program that are not allowed.
 std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const AllowedProblems& allowed,
                                            const Machine& machine, const ProgramReport& report);

@@ -297,6 +297,30 @@ TEST_F(CompensateGcode, ThreadsAndTapsStayOneMoveWithTheirPitch) {
               HasSubstr("threads or taps, which are not split, not proven to stay within the tolerance, at most "));
 }
 
+TEST_F(CompensateGcode, ProgramsThatDoNotEndAreGivenUpAndNothingIsWritten) {
+  write("out.ngc", "mine");
+  const auto given_up = [&](const std::string& program, const std::vector<std::string>& more) {
+    write("p.ngc", "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\n" + program + "M2\n");
+    std::vector<std::string> arguments = {"compensate", "gcode", "p.ngc",   "--machine", machine,
+                                          "--errors",   errors,  "--force", "-o",        "out.ngc"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const CommandResult result = abbe(arguments);
+    EXPECT_EQ(result.exit_code, ExitCode::computation_says_no) << program;
+    EXPECT_THAT(result.err, HasSubstr("abbe: nothing written\n")) << program;
+    EXPECT_EQ(folder.read("out.ngc"), "mine") << program;
+    return result.err;
+  };
+  EXPECT_THAT(given_up("O1 repeat [9000000]\nG1 X1 F100\nX0\nO1 endrepeat\n", {"--max-output-mb", "1"}),
+              testing::ContainsRegex("p.ngc:[45]: given up after [0-9]+ moves: the corrected program would be longer "
+                                     "than 1 MB; --max-output-mb allows more"));
+  EXPECT_THAT(given_up("O1 while [1]\nG2 I9 P99999 F100\nO1 endwhile\n", {"--max-minutes", "0.01"}),
+              HasSubstr("moves: it takes longer than 0.01 min; --max-minutes allows more"));
+  const CommandResult none = abbe(
+      {"compensate", "gcode", "p.ngc", "--machine", machine, "--errors", errors, "--dry-run", "--max-minutes", "0"});
+  EXPECT_EQ(none.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(none.err, HasSubstr("--max-minutes: 0 is not above zero; expected a time in min"));
+}
+
 TEST_F(CompensateGcode, InputsAreNeverWritten) {
   write("p.ngc", "G21 G90\nG0 X0 Y0 Z-5 A-20 C0\nM2\n");
   const std::vector<std::string> base = {"compensate", "gcode", "p.ngc", "--machine", machine, "--errors", errors};

@@ -1,6 +1,7 @@
 #include "abbe/compensate/program_correction.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -247,6 +248,10 @@ struct ProgramCorrection::Implementation {
     return true;
   }
 
+  bool is_spent() const {
+    return options.budget != nullptr && options.budget->spent(pieces_of_batch) != ProgramBudget::Spent::nothing;
+  }
+
   void give_move(const ProgramMove& move, const ProgramMove* earlier, std::size_t i, Chunk& chunk) const {
     if (chunk.tool[i] == kNoTool) {
       chunk.report.impossible.add(move.line);
@@ -254,7 +259,7 @@ struct ProgramCorrection::Implementation {
       return;
     }
     const CorrectedNode &start = chunk.nodes[chunk.start[i]], &end = chunk.nodes[chunk.end[i]];
-    bool whole = chunk.proven[i] != 0;
+    bool whole = chunk.proven[i] != 0 || is_spent();
     if (!whole && (!start.point_reached() || !end.point_reached()) &&
         !goes_from_or_to_held(move, earlier, start, end, chunk)) {
       // Nothing is proven about it. Where a rapid move comes from a place unknown to the errors, as at the start of a
@@ -266,6 +271,7 @@ struct ProgramCorrection::Implementation {
       if (!whole) bound_single(move, i, start, end, chunk);
       whole = true;
     }
+    pieces_of_batch += whole ? 1 : 0;
     if (whole) {
       const std::array<CorrectedNode, 2> both = {start, end};
       const std::array<double, 2> shares = {0, 1};
@@ -275,6 +281,7 @@ struct ProgramCorrection::Implementation {
     MoveSplitter& splitter = *chunk.splitter;
     if (!splitter.split(move, chunk.tool[i], tolerance_of(move), start, end)) chunk.report.not_proven.add(move.line);
     if (splitter.nodes().size() > 2) ++chunk.report.split_moves;
+    pieces_of_batch += splitter.nodes().size() - 1;
     give_nodes(move, splitter.nodes(), splitter.shares(), chunk);
   }
 
@@ -406,6 +413,7 @@ struct ProgramCorrection::Implementation {
   ProgramReversals reversals;
   std::vector<std::unique_ptr<Chunk>> chunks;
   std::optional<ProgramMove> last_move;
+  mutable std::atomic<std::size_t> pieces_of_batch = 0;
   ProgramReport total;
 };
 
@@ -420,6 +428,7 @@ void ProgramCorrection::correct(std::span<const ProgramMove> moves, CorrectedPie
   Implementation& self = *implementation_;
   corrected.pieces.clear();
   corrected.first.clear();
+  self.pieces_of_batch = 0;
   if (!self.problem.empty()) {
     for (const ProgramMove& move : moves) {
       corrected.first.push_back(corrected.pieces.size());

@@ -7,6 +7,7 @@
 
 #include "abbe/compensate/compensated_inverse.h"
 #include "abbe/compensate/move_splitting.h"
+#include "abbe/compensate/program_budget.h"
 #include "abbe/compensate/program_move.h"
 #include "abbe/compensate/program_report.h"
 #include "abbe/compensate/word_axes.h"
@@ -27,6 +28,9 @@ struct ProgramCorrectionOptions {
   std::vector<double> rest;             ///< [axes] commands of axes that no word moves, mm or rad; empty: zero
   int threads = 0;                      ///< 0: as many as the machine has
   std::size_t largest_pieces = 100000;  ///< of one move
+  /// Where it is spent, moves are no longer split: correct() ends soon, and its pieces are no corrected program. Not
+  /// owned; null: none.
+  const ProgramBudget* budget = nullptr;
 };
 
 /// Corrects the moves of a program so that the tool of a machine with errors follows the commanded path.

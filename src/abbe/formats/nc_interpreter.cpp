@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kForgetEvery = std::size_t{1} << 22;
 constexpr std::size_t kTellEvery = std::size_t{1} << 18;  // lines, of loops
+constexpr std::size_t kLinesBetweenLooks = 256;           // at the budget
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// Some editors put it before a text.
@@ -113,6 +114,8 @@ std::size_t NcInterpreter::run(const std::function<void(std::size_t)>& read_to) 
   bool percent = false;
   while (flow_.next_line(line, number)) {
     ++lines;
+    line_ = number;
+    if (lines % kLinesBetweenLooks == 0) refuse_spent_budget(options_);
     if (read_to && (flow_.offset() > told + kForgetEvery || lines % kTellEvery == 0)) {
       read_to(told = std::max(told, flow_.offset()));
     }

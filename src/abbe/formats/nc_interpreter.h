@@ -30,6 +30,7 @@ class NcInterpreter final : public NcSystemValues {
   /// @returns lines that were run
   std::size_t run(const std::function<void(std::size_t)>& read_to);
 
+  std::size_t line() const { return line_; }  ///< that is run
   std::size_t first_assumed_offset_line() const { return first_assumed_offset_line_; }
 
   bool numbered(int number, double& value) const override;
@@ -124,6 +125,7 @@ class NcInterpreter final : public NcSystemValues {
   std::uint32_t machine_words_ = 0;  ///< bits of the axis words that the machine has
   Words position_{};
   std::uint32_t known_ = 0;
+  std::size_t line_ = 0;
   std::array<Words, 9> systems_{};  ///< work offsets G54 to G59.3
   std::array<bool, 9> system_is_said_{};
   std::size_t first_assumed_offset_line_ = 0;

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "abbe/compensate/plane_kinematics.h"
+#include "abbe/compensate/program_budget.h"
 #include "abbe/compensate/program_move.h"
 
 namespace abbe {
@@ -39,6 +40,7 @@ struct NcProgramOptions {
   std::size_t most_moves = 100'000'000;          ///< more are an error: a loop that does not end
   std::size_t most_repeated_moves = 10'000'000;  ///< in loops and subroutines without a new line of what calls them
   std::size_t most_idle_rounds = 1'000'000;      ///< of loops and calls without a move
+  ProgramBudget* budget = nullptr;               ///< where it is spent the program is given up; not owned
 };
 
 /// What was done with a program.
@@ -53,6 +55,9 @@ struct NcProgramResult {
   /// First move in a work offset (G54-G59.3) that neither the parameters nor the program have said, so that it was
   /// taken for zero; 0: none.
   std::size_t first_assumed_offset_line = 0;
+  /// What was spent when the program was given up: what was written until then is no program.
+  ProgramBudget::Spent spent = ProgramBudget::Spent::nothing;
+  std::size_t given_up_line = 0;
 };
 
 /// Runs an NC program (RS274/NGC as LinuxCNC reads it, ISO 6983), has its moves corrected and writes it again.

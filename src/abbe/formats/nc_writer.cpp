@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
 
 #include "abbe/formats/decimal_text.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/nc_number.h"
 #include "abbe/formats/nc_units.h"
+#include "abbe/formats/nc_word_units.h"
 #include "abbe/geometry/angle_units.h"
 
 namespace abbe {
@@ -22,49 +21,35 @@ constexpr std::size_t kChunk = std::size_t{1} << 18;
 constexpr std::size_t kLongestLine = 512;
 /// LinuxCNC refuses lines of 256 characters and more.
 constexpr std::size_t kLongestBlock = 250;
-constexpr double kLargestUnits = 9e15;
-
-char* write_text(std::string_view text, char* at) {
-  std::memcpy(at, text.data(), text.size());
-  return at + text.size();
-}
-
-constexpr std::uint32_t kRotaryWords = 0b111000;
-
-/// Half away from zero; a number that no word has if it is too large.
-std::int64_t rounded(double units) {
-  if (!(std::abs(units) < kLargestUnits)) return std::numeric_limits<std::int64_t>::min();
-  return static_cast<std::int64_t>(units + (units < 0 ? -0.5 : 0.5));
-}
-
-std::string_view mode_word(FeedMode mode) {
-  switch (mode) {
-    case FeedMode::inverse_time:
-      return "G93 ";
-    case FeedMode::per_minute:
-      return "G94 ";
-    case FeedMode::per_revolution:
-      break;
-  }
-  return "G95 ";
-}
+constexpr std::size_t kPiecesTogether = 1'000'000;
 
 }  // namespace
 
 NcWriter::NcWriter(const std::string& file, const NcProgramOptions& options, MoveCorrector& corrector,
                    const std::function<void(std::string_view)>& write)
-    : file_(file), options_(options), corrector_(corrector), write_(write), frames_(1), paths_{"G64"} {
+    : file_(file),
+      options_(options),
+      corrector_(corrector),
+      write_(write),
+      frames_(1),
+      paths_{"G64"},
+      batch_(std::max<std::size_t>(options.batch, 1)) {
   out_.resize(kChunk + kLongestLine);
   at_ = out_.data();
   frames_[0].inches = options.inches;
-  const std::size_t batch = std::max<std::size_t>(options.batch, 1);
-  moves_.reserve(batch);
-  items_.reserve(batch);
+  moves_.reserve(batch_);
+  items_.reserve(batch_);
   frame_ = frames_[0];
   for (std::size_t k = 0; k < kAxisWords; ++k) {
     decimals_[k] = decimals(k);
     scale_[k] = program_scale(k);
   }
+}
+
+void refuse_spent_budget(const NcProgramOptions& options, std::size_t pieces) {
+  if (options.budget == nullptr) return;
+  const ProgramBudget::Spent spent = options.budget->spent(pieces);
+  if (spent != ProgramBudget::Spent::nothing) throw NcGivenUp{spent};
 }
 
 int NcWriter::decimals(std::size_t axis) const {
@@ -148,11 +133,12 @@ void NcWriter::move(const ProgramMove& move, std::uint32_t words, bool is_correc
   item.is_corrected = is_corrected;
   events_ = {};
   moves_.push_back(move);
-  if (moves_.size() >= options_.batch || texts_.size() > kChunk) flush();
+  if (moves_.size() >= batch_ || texts_.size() > kChunk) flush();
 }
 
 void NcWriter::flush() {
-  std::size_t i = 0;
+  std::size_t i = 0, pieces = 0;
+  refuse_spent_budget(options_);
   while (i < moves_.size()) {
     if (!items_[i].is_corrected) {
       CorrectedPiece piece;
@@ -163,12 +149,17 @@ void NcWriter::flush() {
     std::size_t end = i;
     while (end < moves_.size() && items_[end].is_corrected) ++end;
     corrector_.correct(std::span<const ProgramMove>(moves_).subspan(i, end - i), corrected_);
+    refuse_spent_budget(options_, corrected_.pieces.size());
+    pieces += corrected_.pieces.size();
     for (std::size_t k = i; k < end; ++k) {
       const std::size_t first = corrected_.first[k - i];
       write_item(k, corrected_.pieces.data() + first, corrected_.first[k - i + 1] - first);
     }
     i = end;
   }
+  // Of moves that become many pieces few go together: the pieces are in memory.
+  batch_ = std::clamp<std::size_t>(kPiecesTogether * moves_.size() / std::max<std::size_t>(pieces, 1), 1,
+                                   std::max<std::size_t>(options_.batch, 1));
   const std::size_t behind = items_.empty() ? 0 : items_.back().comments;
   append(std::string_view(texts_).substr(behind));
   apply(events_);
@@ -275,11 +266,11 @@ void NcWriter::write_piece(const ProgramMove& move, const Item& item, const Corr
     if ((item.axes >> k & 1) == 0) continue;
     const double units = word_units(k, piece.end[k]);
     if (!(std::abs(units) < kLargestUnits)) fail(move, "the corrected position is not a number that can be written");
-    words[k] = rounded(units);
+    words[k] = rounded_units(units);
     const std::uint32_t bit = std::uint32_t{1} << k;
     if ((is_said_ & bit) == 0) {
       changed |= bit;
-      if (words[k] != rounded(word_units(k, stands_[k]))) moved |= bit;
+      if (words[k] != rounded_units(word_units(k, stands_[k]))) moved |= bit;
     } else if (words[k] != said_[k] && !is_no_motion(k, words[k])) {
       changed |= bit;
       moved |= bit;
@@ -351,92 +342,6 @@ bool NcWriter::is_no_motion(std::size_t axis, std::int64_t word) const {
 
 double NcWriter::word_units(std::size_t axis, double value) const {
   return ((is_rotary_word(axis) ? value / kDegree : value) - frame_.offset[axis]) * scale_[axis];
-}
-
-double NcWriter::feed_word(const ProgramMove& move, const CorrectedPiece& piece, std::uint32_t moved,
-                           FeedMode& mode) const {
-  const double length_unit = frame_.inches ? kInch : 1;
-  if (mode == FeedMode::inverse_time || move.kind == MoveKind::rapid) return piece.feed;
-  if (mode == FeedMode::per_revolution) return piece.feed / length_unit;
-  // Where only rotary axes move, F is an angle per minute to the control, and in the move.
-  const bool is_angle = moved != 0 && (moved & ~kRotaryWords) == 0;
-  if (is_angle == moves_only_rotary_axes(move) || moved == 0) return piece.feed / (is_angle ? kDegree : length_unit);
-  // Rounding has made one of the other: the time says what is meant.
-  constexpr double kFastest_per_min = 1e8;
-  double squared = 0;
-  for (std::size_t k = 0; k < kAxisWords; ++k) {
-    if (is_rotary_word(k) != is_angle) squared += (piece.end[k] - stands_[k]) * (piece.end[k] - stands_[k]);
-  }
-  mode = FeedMode::inverse_time;
-  return squared > 0 ? std::min(piece.feed / std::sqrt(squared), kFastest_per_min) : kFastest_per_min;
-}
-
-FeedMode NcWriter::slow_feed(const ProgramMove& move, const std::array<std::int64_t, kAxisWords>& words,
-                             std::uint32_t changed, double& feed) const {
-  // In inverse time LinuxCNC 2.9 makes of F a feed per minute, and of one below this value this value.
-  constexpr double kSlowestOfInverseTime = 0.1;
-  if (move.feed_mode == FeedMode::inverse_time && !moves_only_rotary_axes(move)) return FeedMode::inverse_time;
-  const double per_minute = feed_length(words, changed) * feed;
-  if (!(per_minute > 0 && per_minute < kSlowestOfInverseTime)) return FeedMode::inverse_time;
-  feed = per_minute;
-  return FeedMode::per_minute;
-}
-
-double NcWriter::feed_of_angle(const std::array<std::int64_t, kAxisWords>& words, std::uint32_t changed,
-                               double feed) const {
-  const double angle = feed_length(words, changed & kRotaryWords);
-  const double length = feed_length(words, changed);
-  return angle > 0 && length > 0 ? feed * length / angle : feed;
-}
-
-double NcWriter::feed_length(const std::array<std::int64_t, kAxisWords>& words, std::uint32_t changed) const {
-  for (const std::uint32_t group : {0b111U, 0b111000000U, kRotaryWords}) {
-    if ((changed & group) == 0) continue;
-    double squared = 0;
-    for (std::size_t k = 0; k < kAxisWords; ++k) {
-      if (((changed & group) >> k & 1) == 0) continue;
-      const std::int64_t from = (is_said_ >> k & 1) != 0 ? said_[k] : rounded(word_units(k, stands_[k]));
-      const double way = static_cast<double>(words[k] - from) / scale_[k];
-      squared += way * way;
-    }
-    return std::sqrt(squared) / (group != kRotaryWords && frame_.inches ? kInch : 1);
-  }
-  return 0;
-}
-
-char* NcWriter::write_modes(const ProgramMove& move, FeedMode mode, char* at) {
-  if (!units_said_) at = write_text(frame_.inches ? "G20 " : "G21 ", at);
-  if (!absolute_said_) at = write_text("G90 ", at);
-  units_said_ = absolute_said_ = true;
-  // G33 and G33.1 have their pitch in any mode.
-  const bool has_feed =
-      move.kind != MoveKind::rapid && move.spindle != SpindleMove::thread && move.spindle != SpindleMove::rigid_tapping;
-  if (has_feed && (!mode_said_ || mode_ != mode)) {
-    at = write_text(mode_word(mode), at);
-    mode_ = mode;
-    mode_said_ = true;
-    feed_ = -1;
-  }
-  return at;
-}
-
-char* NcWriter::write_pitch(const ProgramMove& move, double pitch, char* at) const {
-  if (!(pitch > 0) || !(pitch < 1e6)) fail(move, "the corrected pitch is not a positive number");
-  at = write_text(" K", at);
-  return write_scaled(std::max<std::int64_t>(std::llround(pitch * 1e9), 1), 9, true, at);
-}
-
-char* NcWriter::write_feed(const ProgramMove& move, FeedMode mode, double feed, char* at) {
-  if (!(feed > 0) || !(feed < 1e9)) fail(move, "the corrected feed is not above zero and below 1e9");
-  // The same number said in the other unit is another feed to lengths.
-  if (feed == feed_ && feed_in_inches_ == frame_.inches && mode != FeedMode::inverse_time) return at;
-  const int digits = feed < 1 ? 9 : 6;
-  const auto number = static_cast<std::int64_t>(std::llround(feed * (feed < 1 ? 1e9 : 1e6)));
-  at = write_text(" F", at);
-  at = write_scaled(std::max<std::int64_t>(number, 1), digits, true, at);
-  feed_ = feed;
-  feed_in_inches_ = frame_.inches;
-  return at;
 }
 
 }  // namespace abbe

@@ -20,6 +20,13 @@ struct NcProgramFrame {
   bool inches = false;
 };
 
+/// Thrown where the budget of the options is spent; caught by correct_nc_program().
+struct NcGivenUp {
+  ProgramBudget::Spent spent;
+};
+/// @param pieces  corrected and not yet written @throws NcGivenUp
+void refuse_spent_budget(const NcProgramOptions& options, std::size_t pieces = 0);
+
 /// Collects the moves of a program and what stands between them, has them corrected and writes both in their order.
 class NcWriter {
  public:
@@ -119,6 +126,7 @@ class NcWriter {
   std::vector<NcProgramFrame> frames_;
   std::vector<std::string> paths_;
   std::string texts_;  ///< of the items, and behind them the lines before the next one
+  std::size_t batch_;  ///< moves that are corrected together
   std::string number_, words_, comments_;
   Events events_;
   CorrectedPieces corrected_;

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+
+namespace abbe {
+
+/// How much a corrected program may become and how long that may take. A program of a few lines can have loops, turns
+/// and arcs that become gigabytes or never end. May be asked from any thread; the time runs from the construction.
+class ProgramBudget {
+ public:
+  enum class Spent {
+    nothing,
+    bytes,  ///< of the corrected program
+    time,
+    pieces,  ///< of moves that are corrected together, which need memory
+  };
+  static constexpr std::size_t kMostPieces = 4'000'000;
+
+  ProgramBudget(std::size_t most_bytes, double most_seconds)
+      : most_bytes_(most_bytes), most_seconds_(most_seconds), start_(std::chrono::steady_clock::now()) {}
+
+  void wrote(std::size_t bytes) { bytes_ += bytes; }
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  /// @param pieces  of moves that are corrected together, not yet written
+  Spent spent(std::size_t pieces = 0) const {
+    if (bytes_ > most_bytes_) return Spent::bytes;
+    if (pieces > kMostPieces) return Spent::pieces;
+    return seconds() > most_seconds_ ? Spent::time : Spent::nothing;
+  }
+
+ private:
+  std::size_t most_bytes_;
+  double most_seconds_;
+  std::chrono::steady_clock::time_point start_;
+  std::atomic<std::size_t> bytes_ = 0;
+};
+
+}  // namespace abbe
