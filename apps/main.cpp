@@ -7,6 +7,7 @@
 #include <exception>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "abbe/formats/existing_output.h"
 #include "abbe/formats/input_error.h"
@@ -32,6 +33,17 @@ void complain(const std::string& message) {
   tell("abbe: {}\n", message);
 }
 
+/// Whoever reads that something failed has to know what was written before.
+void tell_complete_outputs() {
+  const std::vector<std::string> names = complete_outputs();
+  if (names.empty()) return;
+  std::string all;
+  for (const std::string& name : names) {
+    all += (all.empty() ? "" : ", ") + printable(name, kLongestArgument, LineFeeds::escaped);
+  }
+  tell("abbe: complete before that: {}\n", all);
+}
+
 /// Results that were printed and did not arrive are not done. @returns the code of the command if they did
 int printed(int code) {
   errno = 0;
@@ -40,6 +52,7 @@ int printed(int code) {
   complain("standard output: cannot be written" +
            (error == 0 ? std::string() : ": " + std::generic_category().message(error)) +
            "; expected a place with enough space");
+  tell_complete_outputs();
   return kBadInput;
 }
 
@@ -89,10 +102,12 @@ int run_command(int argc, char** argv) {
     return printed(line.run ? line.run() : static_cast<int>(kInternalError));
   } catch (const InputError& error) {
     complain(error.what());
+    tell_complete_outputs();
     return kBadInput;
   } catch (const std::exception& error) {
     if (std::ferror(stdout) != 0) return printed(kBadInput);
     complain(std::string("internal error: ") + error.what());
+    tell_complete_outputs();
     return kInternalError;
   }
 }

@@ -123,6 +123,25 @@ TEST_F(Outputs, AFileThatExistsIsReplacedWhereThatIsAskedFor) {
               HasSubstr("./x: is the name of two outputs"));
 }
 
+TEST_F(Outputs, WhereSomethingFailsTheMessageSaysWhatIsComplete) {
+  const auto shell = [&](const std::string& words) {
+    return run_program("/bin/sh", {"-c", ABBE_COMMAND " " + words}, folder.path());
+  };
+  const CommandResult full = shell("test-piece cone-frustum -o cone.csv >/dev/full");
+  EXPECT_EQ(full.exit_code, ExitCode::bad_input);
+  EXPECT_EQ(full.err,
+            "abbe: standard output: cannot be written: No space left on device; expected a place with enough space\n"
+            "abbe: complete before that: cone.csv\n");
+  EXPECT_THAT(folder.read("cone.csv"), HasSubstr("# cone frustum"));
+  const CommandResult second = abbe({"map", ABBE_SOURCE_DIR "/examples/machines/trunnion-mill.machine.toml",
+                                     ABBE_SOURCE_DIR "/examples/compensate/trunnion.errors.toml", "--grid", "X_mm=0",
+                                     "-o", "map.csv", "-o", "none/map.csv"});
+  EXPECT_EQ(second.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(second.err, HasSubstr("none/map.csv: cannot be written: No such file or directory"));
+  EXPECT_THAT(second.err, HasSubstr("\nabbe: complete before that: map.csv\n"));
+  EXPECT_THAT(shell("check nothing.machine.toml").err, testing::Not(HasSubstr("complete")));
+}
+
 TEST_F(Outputs, TheCovarianceBesideAnErrorsFileIsNotReplacedEither) {
   folder.write("found.covariance.csv", "mine");
   const CommandResult result =

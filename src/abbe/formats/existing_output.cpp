@@ -1,6 +1,7 @@
 #include "abbe/formats/existing_output.h"
 
 #include <atomic>
+#include <mutex>
 #include <system_error>
 
 #include "abbe/formats/input_error.h"
@@ -12,6 +13,8 @@ namespace {
 struct OutputRule {
   std::atomic<bool> kept = false;      // a KeptOutputs lives
   std::atomic<bool> replaced = false;  // and replace_existing_outputs() was called
+  std::mutex list;
+  std::vector<std::string> complete;
 };
 
 OutputRule& output_rule() {
@@ -26,6 +29,8 @@ KeptOutputs::KeptOutputs() { output_rule().kept = true; }
 KeptOutputs::~KeptOutputs() {
   output_rule().kept = false;
   output_rule().replaced = false;
+  const std::lock_guard<std::mutex> locked(output_rule().list);
+  output_rule().complete.clear();
 }
 
 void replace_existing_outputs() { output_rule().replaced = true; }
@@ -38,6 +43,17 @@ void refuse_existing_output(const std::filesystem::path& name) {
   // A link that leads nowhere is somebody's too.
   if (!std::filesystem::exists(std::filesystem::symlink_status(name, error))) return;
   throw InputError({.file = name.string()}, "the file exists", "another name, or --force to replace it");
+}
+
+void note_complete_output(const std::filesystem::path& name) {
+  if (!output_rule().kept) return;
+  const std::lock_guard<std::mutex> locked(output_rule().list);
+  output_rule().complete.push_back(name.string());
+}
+
+std::vector<std::string> complete_outputs() {
+  const std::lock_guard<std::mutex> locked(output_rule().list);
+  return output_rule().complete;
 }
 
 void check_output_file(const std::filesystem::path& name) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace abbe {
 
@@ -25,6 +27,12 @@ bool existing_outputs_stay();
 /// For commands before they begin to compute; writers check again when the file is finished.
 /// @throws InputError if a file or a link has this name and is to stay
 void refuse_existing_output(const std::filesystem::path& name);
+
+/// For writers: an output is in its place, whole. Nothing happens outside the life of a KeptOutputs.
+void note_complete_output(const std::filesystem::path& name);
+
+/// Outputs that were noted, as they were called, in their order: what stands where something fails later.
+std::vector<std::string> complete_outputs();
 
 /// refuse_existing_output(), and what else is wrong with the name of a file to write: that of a folder or a device.
 /// @throws InputError

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "abbe/formats/existing_output.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/interruption.h"
 #include "abbe/formats/kept_inputs.h"
@@ -150,6 +151,7 @@ void ResultsFolder::commit() {
   if (const int problem = flush_folder(unfinished)) fail_to_write(name_, problem);
   put_in_place();
   if (const int problem = flush_folder(path_.parent_path())) fail_to_write(name_, problem);
+  note_complete_output(name_);
 }
 
 void ResultsFolder::put_in_place() {

@@ -97,6 +97,7 @@ void StreamedFile::put_in_place(const fs::path& from) {
     fail_to_write(name_, errno);
   }
   if (const int error = flush_folder(path_.parent_path())) fail_to_write(name_, error);
+  note_complete_output(name_);
 }
 
 }  // namespace abbe
