@@ -14,6 +14,7 @@
 #include "abbe/formats/interruption.h"
 #include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/mapped_inputs.h"
+#include "abbe/formats/not_finite.h"
 #include "abbe/formats/utf8.h"
 #include "command.h"
 #include "compensate/compensate.h"
@@ -104,6 +105,11 @@ int run_command(int argc, char** argv) {
     complain(error.what());
     tell_complete_outputs();
     return kBadInput;
+  } catch (const NotFinite& error) {
+    complain(std::string("there is no result: ") + error.what() +
+             "; expected inputs of sizes that a machine and its errors can have");
+    tell_complete_outputs();
+    return kNegative;
   } catch (const std::exception& error) {
     if (std::ferror(stdout) != 0) return printed(kBadInput);
     complain(std::string("internal error: ") + error.what());

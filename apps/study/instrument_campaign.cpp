@@ -82,9 +82,11 @@ std::shared_ptr<const Instrument> true_device(const Study& study, std::size_t se
   return device.with_values(values);
 }
 
-/// A dial along its face, a beam past its mirror: nothing could be read there on the nominal machine.
+/// A dial along its face, a beam past its mirror: nothing can be read there.
+/// @param place  file or set-up to be named
+/// @param with   the machine on which: "", " with the true errors of the simulation"
 void refuse_unreadable(const Machine& machine, const Instrument& device, const InstrumentReadings& readings,
-                       const std::string& setup) {
+                       const std::string& place, const std::string& with, const std::string& expected) {
   for (std::size_t c = 0; c < readings.measured.size(); ++c) {
     for (std::size_t k = 0; k < readings.count(); ++k) {
       if (std::isfinite(readings.measured[c][k])) continue;
@@ -94,9 +96,9 @@ void refuse_unreadable(const Machine& machine, const Instrument& device, const I
         pose += fmt::format("{}{} = {:.6g} {}", i > 0 ? ", " : "", machine.axes[i].name,
                             readings.poses.axis[i][k] * (rotary ? 180 / std::numbers::pi : 1), rotary ? "deg" : "mm");
       }
-      throw InputError({.file = setup, .field = device.components()[c].name},
-                       fmt::format("reads nothing at {} ({})", pose, device.items()[readings.item[k]].name),
-                       "an instrument that meets what it measures at all poses of the plan");
+      throw InputError({.file = place, .field = device.components()[c].name},
+                       fmt::format("reads nothing at {} ({}){}", pose, device.items()[readings.item[k]].name, with),
+                       expected);
     }
   }
 }
@@ -119,7 +121,12 @@ void simulate(const Study& study, std::size_t setup_index, const ErrorSet& truth
     options.noise_factor = 0;
     options.outlier_fraction = 0;
     refuse_unreadable(study.machine, *device,
-                      simulate_instrument(study.machine, ErrorSet{}, setup.device, plan, options).readings, setup.name);
+                      simulate_instrument(study.machine, ErrorSet{}, setup.device, plan, options).readings, setup.name,
+                      "", "an instrument that meets what it measures at all poses of the plan");
+    const std::filesystem::path errors_file = study.simulation->errors_file.value_or(setup.name);
+    refuse_unreadable(study.machine, *device, simulated.readings, errors_file.string(),
+                      fmt::format(" in set-up {} with the true errors", setup.name),
+                      "errors, and true values of the set-up, with which the instrument still meets what it measures");
     const std::size_t offset = result.readings.count();
     for (const std::uint32_t outlier : simulated.outliers) {
       result.outliers.push_back(static_cast<std::uint32_t>(offset) + outlier);

@@ -73,7 +73,30 @@ TEST_F(BadInput, WhatATerminalWouldObeyIsShownAsNumbersAndReadsBackFromJson) {
   EXPECT_THAT(fit.out, testing::HasSubstr("bore\\xff.csv"));
   EXPECT_THAT(fit.out, testing::Not(testing::HasSubstr("\xff")));
   const CommandResult json = abbe({"fit", "bore\xff.csv", "--shape", "cylinder", "--json"});
-  EXPECT_NO_THROW(static_cast<void>(nlohmann::json::parse(json.out))) << json.out;
+  EXPECT_TRUE(nlohmann::json::accept(json.out)) << json.out;
+}
+
+TEST_F(BadInput, TrueErrorsThatNoMachineHasOrThatLeaveNothingToReadAreNamed) {
+  const std::filesystem::path examples = ABBE_SOURCE_DIR "/examples";
+  for (const std::string part : {"cradle_scanner", "machines"}) {
+    std::filesystem::copy(examples / part, folder.path() / part, std::filesystem::copy_options::recursive);
+  }
+  const std::string text = folder.read("cradle_scanner/stages.errors.toml"), value = "value_deg = -0.8466";
+  const auto simulated_with = [&](const std::string& other) {
+    std::string changed = text;
+    folder.write("cradle_scanner/stages.errors.toml", changed.replace(changed.find(value), value.size(), other));
+    return abbe({"simulate", "cradle_scanner/calibration.study.toml", "-o", "out"});
+  };
+  const CommandResult implausible = simulated_with("value_deg = -846.6");
+  EXPECT_EQ(implausible.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(implausible.err, testing::HasSubstr("stages.errors.toml:23:1: location[7].value_deg: is too large for an "
+                                                  "error of a machine; expected at most 90 deg to either side"));
+  const CommandResult unreadable = simulated_with("value_deg = 45");
+  EXPECT_EQ(unreadable.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(unreadable.err,
+              testing::HasSubstr("stages.errors.toml: indication: reads nothing at C = 90 deg, A = 0 deg, X = 3 mm"));
+  EXPECT_THAT(unreadable.err, testing::HasSubstr("in set-up chuck with the true errors"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
 TEST_F(BadInput, EmptyAndMissingFiles) {

@@ -36,6 +36,7 @@ class Interruption : public CommandTest {
             distance_mm,
             "--between-mm",
             distance_mm,
+            "--force",
             "-o",
             "path.csv"};
   }

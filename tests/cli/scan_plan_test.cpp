@@ -172,7 +172,7 @@ TEST_F(ScanPlanCommand, ThePageHoldsPathAndCoverageWithTheFiguresOfTheSummary) {
   }
   const CommandResult words = abbe(command);
   ASSERT_EQ(words.exit_code, ExitCode::computation_says_no) << words.err;
-  command.emplace_back("--json");
+  command.insert(command.end(), {"--json", "--force"});
   const nlohmann::json summary = nlohmann::json::parse(abbe(command).out);
   const nlohmann::json page = data_of(folder.read("plan.html"));
   ASSERT_TRUE(page.is_object());

@@ -16,7 +16,7 @@ class ProgramBudget {
     time,
     pieces,  ///< of moves that are corrected together, which need memory
   };
-  static constexpr std::size_t kMostPieces = 4'000'000;
+  static constexpr std::size_t kMostPieces = 2'000'000;
 
   ProgramBudget(std::size_t most_bytes, double most_seconds)
       : most_bytes_(most_bytes), most_seconds_(most_seconds), start_(std::chrono::steady_clock::now()) {}

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
 #include <string_view>
 
 #include "abbe/formats/covariance_file.h"
@@ -30,6 +32,16 @@ void read_name(TomlTable& table, const Machine& machine, bool location, std::siz
     table.fail("name", fmt::format("\"{}\" is {}", name, is_location ? "a location error" : "an error motion"),
                is_location ? "it under [[location]]" : "it under [[motion]]");
   }
+}
+
+/// What no error of an axis is, and from where on a computation need not have a result.
+constexpr double kLargestErrorAngle = 0.5 * std::numbers::pi, kLargestErrorLength = 1e5;
+
+void refuse_implausible(const TomlTable& table, std::string_view base, Quantity quantity, double value) {
+  const bool is_angle = quantity == Quantity::angle;
+  if (std::abs(value) <= (is_angle ? kLargestErrorAngle : kLargestErrorLength)) return;
+  table.fail_quantity(base, quantity, "is too large for an error of a machine",
+                      is_angle ? "at most 90 deg to either side" : "at most 100 m to either side");
 }
 
 void read_uncertainty(TomlTable& table, ErrorMotion& motion) {
@@ -77,6 +89,9 @@ void read_table(TomlTable& table, const std::filesystem::path& folder, const Mac
   } else {
     nodes = table.numbers("at", axis_quantity(axis));
     motion.coefficients = table.numbers("coefficients", error_quantity(motion.component), nodes.size());
+    for (const double value : motion.coefficients) {
+      refuse_implausible(table, "coefficients", error_quantity(motion.component), value);
+    }
     read_uncertainty(table, motion);
   }
   table.text_or("table", "");
@@ -103,6 +118,9 @@ void read_values(TomlTable& table, const std::filesystem::path& folder, const Ma
     read_table(table, folder, machine, motion);
   } else {
     motion.coefficients = table.numbers("coefficients", error_quantity(motion.component), motion.basis.size());
+    for (const double value : motion.coefficients) {
+      refuse_implausible(table, "coefficients", error_quantity(motion.component), value);
+    }
     read_uncertainty(table, motion);
   }
 }
@@ -165,6 +183,7 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
       if (other.axis == location.axis && other.component == location.component) table.fail("name", "stands twice");
     }
     location.value = table.number("value", quantity);
+    refuse_implausible(table, "value", quantity, location.value);
     location.standard_uncertainty = table.size_or("standard_uncertainty", quantity, 0);
     table.finish();
     errors.locations.push_back(location);
@@ -181,6 +200,7 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
     }
     const Quantity quantity = axis_quantity(machine.axes[reversal.axis]);
     reversal.value = table.number("value", quantity);
+    refuse_implausible(table, "value", quantity, reversal.value);
     reversal.standard_uncertainty = table.size_or("standard_uncertainty", quantity, 0);
     table.finish();
     errors.reversals.push_back(reversal);

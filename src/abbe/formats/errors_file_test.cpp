@@ -152,6 +152,18 @@ TEST(ErrorsFile, RefusesWhatIsNoErrorOfTheMachine) {
             "e.toml:1:1: chain: the errors belong to \"w b X t\"; expected \"w C' X' b Z t\"");
 }
 
+TEST(ErrorsFile, RefusesValuesThatAreTooLargeForErrors) {
+  EXPECT_EQ(message_of_errors("[[location]]\nname=\"EA0C\"\nvalue_deg=-846.6\n"),
+            "e.toml:3:1: location[1].value_deg: is too large for an error of a machine; expected at most 90 deg to "
+            "either side");
+  EXPECT_EQ(message_of_errors("[[reversal]]\naxis=\"X\"\nvalue_m=-101\n"),
+            "e.toml:3:1: reversal[1].value_m: is too large for an error of a machine; expected at most 100 m to "
+            "either side");
+  EXPECT_EQ(message_of_errors("[[motion]]\nname=\"EXX\"\nbasis=\"legendre\"\norder=0\ncoefficients_um=[1e11]\n"),
+            "e.toml:5:1: motion[1].coefficients_um: is too large for an error of a machine; expected at most 100 m to "
+            "either side");
+}
+
 TEST(ErrorsFile, RefusesWrongUnitsNumbersAndBases) {
   const std::string start = "[[motion]]\nname=\"EAX\"\nbasis=\"legendre\"\norder=1\n";
   EXPECT_EQ(message_of_errors(start + "coefficients_um=[0, 1]\n"),

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
+#include "abbe/formats/not_finite.h"
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/utf8.h"
 
@@ -43,7 +43,7 @@ void append(const Json& value, const std::string& path, std::size_t depth, std::
   const std::string inner(2 * depth + 2, ' '), outer(2 * depth, ' ');
   if (value.is_number_float()) {
     const double number = value.get<double>();
-    if (!std::isfinite(number)) throw std::logic_error("number that is not finite in JSON at " + path);
+    if (!std::isfinite(number)) throw NotFinite("the result " + path);
     text += shortest_text(number);
   } else if (value.is_object() && !value.empty()) {
     text += "{\n";

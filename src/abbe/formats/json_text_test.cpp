@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "abbe/formats/not_finite.h"
+
 namespace abbe {
 namespace {
 
@@ -46,8 +48,8 @@ TEST(JsonText, NumbersReadBackToTheSameBits) {
 }
 
 TEST(JsonText, NeverWritesNanAsANumber) {
-  EXPECT_THROW(json_text({{"a", std::numeric_limits<double>::quiet_NaN()}}), std::logic_error);
-  EXPECT_THROW(json_text({{"a", {1.0, std::numeric_limits<double>::infinity()}}}), std::logic_error);
+  EXPECT_THROW(json_text({{"a", std::numeric_limits<double>::quiet_NaN()}}), NotFinite);
+  EXPECT_THROW(json_text({{"a", {1.0, std::numeric_limits<double>::infinity()}}}), NotFinite);
 }
 
 }  // namespace

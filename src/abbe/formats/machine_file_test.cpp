@@ -60,7 +60,7 @@ TEST(MachineFile, ReadsBackWhatItWrites) {
   machine.axes[0].travel_min = -1.2345678901234567;
   machine.axes[0].travel_max = 2 * std::numbers::pi;
   machine.axes[0].direction = Eigen::Vector3d(0.1, -0.2, 3).normalized();
-  machine.name = "with \"quotes\", \\ and\nlines";
+  machine.name = "with \"quotes\", \\ and\ttabs";
   const Machine back = parse_machine(machine_text(machine), "m.toml");
   EXPECT_EQ(back.name, machine.name);
   ASSERT_EQ(back.axes.size(), machine.axes.size());

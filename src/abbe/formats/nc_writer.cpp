@@ -21,7 +21,8 @@ constexpr std::size_t kChunk = std::size_t{1} << 18;
 constexpr std::size_t kLongestLine = 512;
 /// LinuxCNC refuses lines of 256 characters and more.
 constexpr std::size_t kLongestBlock = 250;
-constexpr std::size_t kPiecesTogether = 1'000'000;
+constexpr std::size_t kPiecesTogether = 500'000;
+constexpr std::size_t kFirstBatch = 256;  // moves, of which is not known yet how many pieces they become
 
 }  // namespace
 
@@ -33,12 +34,12 @@ NcWriter::NcWriter(const std::string& file, const NcProgramOptions& options, Mov
       write_(write),
       frames_(1),
       paths_{"G64"},
-      batch_(std::max<std::size_t>(options.batch, 1)) {
+      batch_(std::clamp<std::size_t>(options.batch, 1, kFirstBatch)) {
   out_.resize(kChunk + kLongestLine);
   at_ = out_.data();
   frames_[0].inches = options.inches;
-  moves_.reserve(batch_);
-  items_.reserve(batch_);
+  moves_.reserve(options.batch);
+  items_.reserve(options.batch);
   frame_ = frames_[0];
   for (std::size_t k = 0; k < kAxisWords; ++k) {
     decimals_[k] = decimals(k);

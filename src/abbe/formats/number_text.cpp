@@ -5,9 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <stdexcept>
 
 #include "abbe/formats/ascii_letters.h"
+#include "abbe/formats/not_finite.h"
 
 namespace abbe {
 namespace {
@@ -116,7 +116,7 @@ NumberProblem parse_number(std::string_view text, int decimal_shift, double& val
 }
 
 std::string shortest_text(double value, int decimal_shift) {
-  if (!std::isfinite(value)) throw std::logic_error("a number to be written is not finite");
+  if (!std::isfinite(value)) throw NotFinite("a number to be written");
   std::array<char, 32> buffer;
   const auto result =
       std::to_chars(buffer.data(), buffer.data() + buffer.size(), std::abs(value), std::chars_format::scientific);

@@ -49,7 +49,7 @@ TEST(TomlTable, RefusesNamesThatFilesCannotHave) {
         << name;
   }
   EXPECT_EQ(message_of_toml("x = 1\nname = \"a\\u001bb\"\n", [](TomlTable& table) { table.file_name("name"); }),
-            "a.toml:2:1: name: has control characters in it; expected a text on one line");
+            "a.toml:2:8: name: has control characters in it; expected a text on one line");
   TomlTable table = TomlTable::parse("name = \"L\u00e4nge 2.x\"\n", "a.toml");
   EXPECT_EQ(table.file_name("name"), "L\u00e4nge 2.x");
 }

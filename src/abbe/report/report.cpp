@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "abbe/formats/not_finite.h"
 #include "abbe/report/page_template.h"
 
 namespace abbe {
@@ -15,7 +16,7 @@ constexpr std::string_view kPlace = "@@ABBE_DATA@@";
 /// JSON has no NaN: the writer would turn it into null, and an absent number would look intended.
 void require_finite(const nlohmann::json& value, const std::string& path) {
   if (value.is_number_float() && !std::isfinite(value.get<double>())) {
-    throw std::invalid_argument("report data: " + path + " is not a finite number");
+    throw NotFinite("report data: " + path);
   }
   if (value.is_object()) {
     for (const auto& item : value.items())
