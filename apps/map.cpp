@@ -20,6 +20,7 @@
 #include "study/job.h"
 #include "study/results.h"
 #include "study/summary.h"
+#include "study/volumetric_figures.h"
 
 namespace abbe {
 namespace {
@@ -27,7 +28,7 @@ namespace {
 struct MapOptions {
   std::string machine, errors, reference, poses;
   std::vector<std::string> grid, outputs;
-  bool fit_datum = false, json = false;
+  bool fit_datum = false, keep_datum = false, json = false;
 };
 
 /// "X_mm=0:1400:9" or "C_deg=30": from:to:count, or a fixed position.
@@ -49,18 +50,33 @@ void apply_grid_option(const Machine& machine, const std::string& text, std::vec
   }
 }
 
-void print_json(const Machine& machine, const ErrorMap& before, const ErrorMap* after) {
+/// What a map says, in numbers.
+struct MapReport {
+  const Machine* machine = nullptr;
+  const ErrorMap* before = nullptr;
+  const ErrorMap* after = nullptr;           ///< null without --minus
+  std::optional<VolumetricFigures> figures;  ///< with the fitted datum only: without it these are other quantities
+  bool after_is_true = false;                ///< the errors are the truth of a simulation
+};
+
+void print_json(const MapReport& report) {
+  const ErrorMap& before = *report.before;
   nlohmann::ordered_json json;
-  json["machine"] = machine.name;
+  json["machine"] = report.machine->name;
   json["poses"] = before.statistics.count;
   json["outside_range"] = before.statistics.excluded;
   if (before.statistics.count > 0) {
-    json["position_before_um"] = statistics_um(before.statistics);
-    json["orientation_before_urad"] = orientation_urad(before);
-    if (after != nullptr) {
-      json["position_after_um"] = statistics_um(after->statistics);
-      json["orientation_after_urad"] = orientation_urad(*after);
+    if (report.figures) {
+      add_volumetric_figures(*report.figures, json);
+      if (report.after != nullptr && !report.after_is_true) {
+        json["volumetric_error_minus_um"] = statistics_um(report.after->statistics);
+      }
+    } else {
+      json["displacement_before_um"] = statistics_um(before.statistics);
+      if (report.after != nullptr) json["displacement_after_um"] = statistics_um(report.after->statistics);
     }
+    json["orientation_before_urad"] = orientation_urad(before);
+    if (report.after != nullptr) json["orientation_after_urad"] = orientation_urad(*report.after);
     if (!before.norm_uncertainty.empty()) {
       json["standard_uncertainty_um"] = statistics_um(sample_statistics(before.norm_uncertainty, before.covered));
     }
@@ -68,21 +84,31 @@ void print_json(const Machine& machine, const ErrorMap& before, const ErrorMap* 
   fmt::print("{}", json_text(json));
 }
 
-void print_text(const Machine& machine, const ErrorMap& before, const ErrorMap* after) {
-  fmt::print("{} poses of {}\n", before.statistics.count, machine.name);
+void print_text(const MapReport& report) {
+  const ErrorMap& before = *report.before;
+  fmt::print("{} poses of {}\n", before.statistics.count, report.machine->name);
   if (before.statistics.count == 0) return;
-  const auto print = [](const char* name, const SampleStatistics& s, double unit, const char* unit_name) {
-    fmt::print("{:<25} mean {:.3f}  rms {:.3f}  95 % {:.3f}  99 % {:.3f}  max {:.3f} {}\n", name, unit * s.mean,
-               unit * s.rms, unit * s.p95, unit * s.p99, unit * s.maximum, unit_name);
+  const auto print = [](const char* name, const SampleStatistics& s) {
+    fmt::print("  {:<46} mean {:>9.3f}   95 % {:>9.3f}   max {:>9.3f} urad\n", name, 1e6 * s.mean, 1e6 * s.p95,
+               1e6 * s.maximum);
   };
-  print(after != nullptr ? "volumetric error, before" : "volumetric error", before.statistics, 1e3, "um");
-  if (after != nullptr) print("volumetric error, after", after->statistics, 1e3, "um");
-  if (!before.norm_uncertainty.empty()) {
-    print("standard uncertainty", sample_statistics(before.norm_uncertainty, before.covered), 1e3, "um");
+  const bool two = report.after != nullptr;
+  if (report.figures) {
+    print_volumetric_figures(*report.figures);
+    if (two && !report.after_is_true) {
+      print_error_line("difference from the errors of --minus", report.after->statistics);
+    }
+  } else {
+    fmt::print("displacement of the functional point, the workpiece datum as it is\n");
+    print_error_line(two ? "before" : "as it is", before.statistics);
+    if (two) print_error_line("after", report.after->statistics);
   }
-  print(after != nullptr ? "orientation error, before" : "orientation error", orientation_statistics(before), 1e6,
-        "urad");
-  if (after != nullptr) print("orientation error, after", orientation_statistics(*after), 1e6, "urad");
+  if (!before.norm_uncertainty.empty()) {
+    print_error_line("standard uncertainty along the displacement",
+                     sample_statistics(before.norm_uncertainty, before.covered));
+  }
+  print(two ? "orientation error, before" : "orientation error", orientation_statistics(before));
+  if (two) print("orientation error, after", orientation_statistics(*report.after));
 }
 
 int run_map(const MapOptions& options) {
@@ -91,51 +117,63 @@ int run_map(const MapOptions& options) {
   std::optional<ErrorsFile> reference;
   if (!options.reference.empty()) reference = read_errors(options.reference, machine);
 
-  PoseList poses;
-  std::vector<std::size_t> grid;
+  StatedPoses stated;
   if (!options.poses.empty()) {
-    poses = read_poses(options.poses, machine);
+    stated.poses = read_poses(options.poses, machine);
+    stated.words =
+        fmt::format("{} poses of {}", stated.poses.count(), std::filesystem::path(options.poses).filename().string());
   } else {
-    std::vector<AxisRange> ranges;
+    std::vector<const ErrorSet*> known = {&errors.errors};
+    if (reference) known.push_back(&reference->errors);
+    std::vector<AxisRange> ranges = stated_ranges(machine, known);
     std::vector<bool> given(machine.axes.size(), false);
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-      ranges.push_back(known_range(machine, errors.errors, i, machine.axes.size() > 3 ? 5 : 9));
-    }
     for (const std::string& text : options.grid) apply_grid_option(machine, text, ranges, given);
-    PoseGrid positions;
-    for (const AxisRange& range : ranges) {
-      grid.push_back(range.is_fixed() ? 1 : range.count);
-      positions.values.push_back(evenly_spaced(range.from, range.to, grid.back()));
+    double count = 1;
+    for (const AxisRange& range : ranges) count *= static_cast<double>(range.is_fixed() ? 1 : range.count);
+    if (count > 20e6) {
+      throw InputError({.field = "--grid"}, fmt::format("{:.0f} poses", count), "at most 20,000,000 poses in a file");
     }
-    const PoseSource source = pose_source(positions);
-    if (source.count > 20'000'000) {
-      throw InputError({.field = "--grid"}, fmt::format("{} poses", source.count),
-                       "at most 20,000,000 poses in a file");
-    }
-    poses.axis.assign(machine.axes.size(), std::vector<double>(source.count));
-    std::vector<double*> pointers;
-    for (std::vector<double>& values : poses.axis) pointers.push_back(values.data());
-    source.fill(0, source.count, pointers.data());
+    stated = grid_over(machine, ranges);
   }
+  const PoseList& poses = stated.poses;
 
   Progress progress("mapping the volumetric error");
   ErrorMapOptions map_options;
-  map_options.remove_rigid_motion = options.fit_datum;
+  map_options.remove_rigid_motion = !options.keep_datum;
   map_options.progress = progress.callback();
-  ParameterCovariance covariance;
-  if (errors.covariance.size() > 0) {
-    covariance.covariance = errors.covariance;
-    for (std::size_t p = 0; p < errors.errors.parameter_count(); ++p) covariance.parameters.push_back(p);
-    map_options.covariance = &covariance;
+  const auto with_covariance = [&](const ErrorsFile& file, ParameterCovariance& covariance) {
+    ErrorMapOptions with = map_options;
+    covariance.covariance = covariance_of(file);
+    for (std::size_t p = 0; p < file.errors.parameter_count(); ++p) covariance.parameters.push_back(p);
+    if (covariance.covariance.size() > 0) with.covariance = &covariance;
+    return with;
+  };
+  ParameterCovariance covariance, covariance_of_reference;
+  ErrorMap before = error_map(machine, errors.errors, nullptr, pose_source(poses), with_covariance(errors, covariance));
+  std::optional<ErrorMap> after, predicted;
+  MapReport report;
+  report.machine = &machine;
+  report.before = &before;
+  if (reference) {
+    after = error_map(machine, errors.errors, &reference->errors, pose_source(poses), map_options);
+    report.after = &*after;
   }
-  ErrorMap before = error_map(machine, errors.errors, nullptr, pose_source(poses), map_options);
-  std::optional<ErrorMap> after;
-  if (reference) after = error_map(machine, errors.errors, &reference->errors, pose_source(poses), map_options);
   std::vector<ErrorMap*> maps = {&before};
   if (after) maps.push_back(&*after);
   keep_common_poses(maps);
+  if (!options.keep_datum && is_truth(errors)) {
+    report.after_is_true = true;
+    if (reference) {
+      predicted = error_map(machine, reference->errors, nullptr, pose_source(poses),
+                            with_covariance(*reference, covariance_of_reference));
+    }
+    report.figures =
+        figures_of_maps(stated.words, predicted ? &*predicted : nullptr, &before, after ? &*after : nullptr);
+  } else if (!options.keep_datum) {
+    report.figures = figures_of_maps(stated.words, &before, nullptr, nullptr);
+  }
 
-  const MapData data = map_data(machine, poses, grid, before, after ? &*after : nullptr, &before);
+  const MapData data = map_data(machine, poses, stated.grid, before, after ? &*after : nullptr, &before);
   const std::string vtk = map_is_structured(data) ? ".vts" : ".vtu";
   const auto extension_of = [](const std::string& name) { return std::filesystem::path(name).extension().string(); };
   for (const std::string& output : options.outputs) {
@@ -148,9 +186,9 @@ int run_map(const MapOptions& options) {
   }
   const std::size_t outside = before.statistics.excluded;
   if (options.json) {
-    print_json(machine, before, after ? &*after : nullptr);
+    print_json(report);
   } else {
-    print_text(machine, before, after ? &*after : nullptr);
+    print_text(report);
     for (const std::string& output : options.outputs) fmt::print("{} written\n", output);
   }
   if (outside > 0) {
@@ -170,9 +208,9 @@ void add_map_command(CommandLine& line) {
                                  "examples/aguado/results/aguado/errors.toml --grid C_deg=0:315:8 -o "
                                  "map.csv -o map.vts\n"
                                  "  abbe map examples/machines/aguado.machine.toml readings/truth.errors.toml --minus "
-                                 "examples/aguado/results/aguado/errors.toml "
-                                 "--fit-datum\n\n"
-                                 "The files are those that the examples of run and simulate write.\n"
+                                 "examples/aguado/results/aguado/errors.toml\n\n"
+                                 "The files are those that the examples of run and simulate write. The names of the\n"
+                                 "figures are those of docs/conventions.md.\n"
                                  "Without --grid every axis runs over the range in which its errors are known.");
   command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
@@ -181,8 +219,12 @@ void add_map_command(CommandLine& line) {
   command->add_option("--grid", options->grid, "AXIS_unit=from:to:count or AXIS_unit=position; repeat per axis");
   command->add_option("--poses", options->poses, "CSV with one column per axis (X_mm, C_deg, ...) instead of a grid")
       ->excludes("--grid");
-  command->add_flag("--fit-datum", options->fit_datum,
-                    "Remove the best-fit rigid motion (choice of the workpiece datum)");
+  command->add_flag("--keep-datum", options->keep_datum,
+                    "Leave the workpiece datum where it is: displacements, not the volumetric error");
+  command
+      ->add_flag("--fit-datum", options->fit_datum,
+                 "Take the best-fit rigid motion of the workpiece out (done unless --keep-datum is given)")
+      ->excludes("--keep-datum");
   command->add_output_file("-o,--output", options->outputs, "File to write: .csv, .vts or .vtu (ParaView); repeatable");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options]() -> int { return run_map(*options); }; });

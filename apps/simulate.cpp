@@ -43,8 +43,7 @@ void add_simulate_command(CommandLine& line) {
         if (setup->hidden > 0) fmt::print("; {} without a line of sight left out", setup->hidden);
         fmt::print("\n");
       }
-      const ErrorsFile truth{
-          .errors = *campaign.truth, .covariance = {}, .provenance = {{"method", "truth of a simulation"}}};
+      const ErrorsFile truth{.errors = *campaign.truth, .covariance = {}, .provenance = {{"method", kMethodOfTruth}}};
       folder.write("truth.errors.toml", errors_text(study.machine, truth));
       folder.commit();
       fmt::print("{}/truth.errors.toml  {} parameters\n", options->output, truth.errors.parameter_count());

@@ -140,10 +140,10 @@ void look_at_limits(const TableCommand& command, const ControllerTables& tables,
   };
   const double before = report.before.position_statistics.rms, after = report.after.position_statistics.rms;
   if (!tables.tables.empty() && after > kWorse * before) {
-    report.refused.push_back(
-        fmt::format("the volumetric error would grow from {:.3f} to {:.3f} um rms: the tables hold near the reference "
-                    "pose only (--at, --axis)",
-                    1e3 * before, 1e3 * after));
+    report.refused.push_back(fmt::format(
+        "the displacement of the tool would grow from {:.3f} to {:.3f} um rms: the tables hold near the reference "
+        "pose only (--at, --axis)",
+        1e3 * before, 1e3 * after));
   }
   for (const TableSummary& table : tables.tables) {
     refuse(table.largest, table.is_angle, "table " + table.name);
@@ -239,7 +239,8 @@ int run_table(const TableCommand& command) {
   report.machine = &machine;
   report.poses = travel_grid(machine, errors, checked_positions(command, machine), report.grid);
 
-  const Eigen::MatrixXd covariance = file.covariance.size() > 0 ? file.covariance : stated_variances(errors);
+  const Eigen::MatrixXd covariance = covariance_of(file);
+  report.volumetric = volumetric_figures(machine, &errors, covariance, nullptr, stated_grid(machine, {&errors}));
   // What the tables are made of; they are judged by the errors of the file.
   ErrorSet carried = errors;
   std::vector<LeftOutReversal> left_out;
@@ -274,6 +275,7 @@ int run_table(const TableCommand& command) {
   report.tolerance_rad = request.tolerance_rad;
   report.before = deviations_with(machine, errors, report.poses, NoCorrection());
   report.after = deviations_with(machine, errors, report.poses, *tables.correction);
+  report.left_by_tables = volumetric_error_with(machine, errors, report.poses, *tables.correction);
   report.ideal = ideal_deviations(machine, errors, report.poses, report.ideal_not_reached);
   {
     std::vector<std::size_t> unused;
@@ -356,7 +358,7 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   command->add_option("--max-points", options->max_points,
                       "Nodes per table the control has room for; of a grid in all");
   command->add_option("--positions", options->positions,
-                      "Positions per axis for the volumetric error (9, 5 above 3 axes)");
+                      "Positions per axis between the nodes, where the displacement is stated (9, 5 above 3 axes)");
   command->add_option("--limit-um", options->limit_um, "Refuse any correction of a linear axis above this, um");
   command->add_option("--limit-urad", options->limit_urad, "Refuse any correction of a rotary axis above this, urad");
   command->add_option("--leave-out-below-uncertainty", options->times_uncertainty,
@@ -374,7 +376,8 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
       "--reference-position", options->reference_position,
       "fanuc-pitch, fanuc-3d: AXIS_unit=position, where the control's reference position is in the machine file; "
       "default 0, or the end of the travel next to it; repeatable");
-  command->add_output_file("--map", options->map, "Map of the error before, after and ideal: .csv, .vts or .vtu");
+  command->add_output_file("--map", options->map,
+                           "Map of the displacement without tables, with them and ideal: .csv, .vts or .vtu");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options, command] {
     for (const FormatOption& option : format_options()) {

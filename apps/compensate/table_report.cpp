@@ -102,15 +102,20 @@ void print_table_report(const TableReport& report) {
   for (const std::string& name : report.left_out_kept)
     fmt::print("  kept, as not small together with others: {}\n", name);
   print_errors(report);
-  fmt::print("volumetric error over {} poses:\n", report.poses.count());
-  print_deviations("before", report.before);
+  print_volumetric_figures(report.volumetric);
+  print_error_line("left of it by these tables, between their nodes", report.left_by_tables);
+  fmt::print(
+      "displacement of the tool over {} poses between the nodes, the datum as it is, from the worse direction of "
+      "approach:\n",
+      report.poses.count());
+  print_deviations("without tables", report.before);
   print_deviations("with these tables", report.after);
   print_deviations("ideal compensation", report.ideal);
   if (report.ideal_not_reached > 0) {
     fmt::print("  (ideal: the point is not reached at {} poses)\n", report.ideal_not_reached);
   }
   if (report.uncertainty_statistics) {
-    fmt::print("standard uncertainty of that error: mean {:.3f}  95 % {:.3f} um\n",
+    fmt::print("standard uncertainty along that displacement: mean {:.3f}  95 % {:.3f} um\n",
                in_um(report.uncertainty_statistics->mean), in_um(report.uncertainty_statistics->p95));
   }
   if (report.largest_mm > 0) {
@@ -168,6 +173,8 @@ void print_table_json(const TableReport& report) {
   }
   json["why_not"] = report.format->cannot;
   json["poses"] = report.poses.count();
+  add_volumetric_figures(report.volumetric, json);
+  json["volumetric_error_left_by_tables_um"] = statistics_um(report.left_by_tables);
   json["before"] = statistics_json(report.before);
   json["after"] = statistics_json(report.after);
   json["ideal"] = statistics_json(report.ideal);

@@ -7,6 +7,7 @@
 #include "abbe/errors/poses.h"
 #include "abbe/verify/table_loss.h"
 #include "compensate/table_formats.h"
+#include "study/volumetric_figures.h"
 
 namespace abbe {
 
@@ -18,6 +19,12 @@ struct TableReport {
   double tolerance_mm = 0, tolerance_rad = 0;  ///< of straight lines between nodes
   PoseList poses;
   std::vector<std::size_t> grid;  ///< positions per axis, chain order
+  /// Predicted from the errors file over the grid of all commands (docs/conventions.md).
+  VolumetricFigures volumetric;
+  /// Volumetric error that these tables leave of it over `poses`, the datum fitted; mm.
+  SampleStatistics left_by_tables;
+  /// Over `poses`, which lie between the nodes: displacement as a control sees it, no datum fitted, the worse direction
+  /// of approach.
   PoseDeviations before, after, ideal;
   std::size_t ideal_not_reached = 0;
   std::vector<CarriedError> errors;
@@ -31,7 +38,7 @@ struct TableReport {
   double largest_mm = 0;  ///< of the sum of corrections of a linear axis over the grid
   double largest_rad = 0;
   std::string largest_mm_at, largest_rad_at;
-  /// Standard uncertainty of the volumetric error that is corrected, over the grid; mm.
+  /// Standard uncertainty of the displacement that is corrected, over `poses`; mm.
   std::optional<SampleStatistics> uncertainty_statistics;
 };
 

@@ -127,7 +127,18 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     }
   }
   result.not_identified = find_not_identified(study, result);
+  result.volumetric = study_volumetric_figures(study, result);
   if (progress) progress(1, 1);
+}
+
+VolumetricFigures study_volumetric_figures(const Study& study, const StudyResult& result) {
+  const ErrorSet& identified = result.identification.errors;
+  const ErrorSet* const truth = result.campaign.truth ? &*result.campaign.truth : nullptr;
+  std::vector<const ErrorSet*> known = {&identified};
+  if (truth != nullptr) known.push_back(truth);
+  return volumetric_figures(study.machine, &identified,
+                            machine_covariance(result.identification, identified.parameter_count()), truth,
+                            stated_grid(study.machine, known), study.threads);
 }
 
 StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress) {

@@ -14,6 +14,7 @@
 #include "study/model.h"
 #include "study/not_identified.h"
 #include "study/unseen.h"
+#include "study/volumetric_figures.h"
 
 namespace abbe {
 
@@ -37,6 +38,7 @@ struct StudyResult {
   Identification identification;
   std::optional<MonteCarloResult> monte_carlo;
   std::optional<UnseenPoses> unseen;
+  std::optional<VolumetricFigures> volumetric;  ///< over the grid of all commands; usable results only
   std::optional<StudyMap> map;
   std::vector<std::string> warnings;
   std::vector<Advice> advice;    ///< what the readings do not see, and what would show it
@@ -49,8 +51,11 @@ struct StudyResult {
 /// Options of the solver as the study states them.
 IdentifyOptions identify_options(const Study& study);
 
-/// The identification of a study from its readings, with validation; no map.
+/// The identification of a study from its readings, with the volumetric error that it predicts; no map.
 void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress = {});
+
+/// Figures of the volumetric error over the grid that all commands state (docs/conventions.md).
+VolumetricFigures study_volumetric_figures(const Study& study, const StudyResult& result);
 
 /// Map of the study's plan, or of 7 positions per axis over the known range.
 StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress = {});

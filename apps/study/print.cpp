@@ -5,14 +5,31 @@
 #include <nlohmann/json.hpp>
 
 #include "study/advice.h"
+#include "study/residual_figures.h"
 #include "study/summary.h"
 
 namespace abbe {
 namespace {
 
-void print_statistics(const char* name, const SampleStatistics& s) {
-  fmt::print("  {:<34} mean {:>9.3f}   95 % {:>9.3f}   max {:>9.3f} um\n", name, 1e3 * s.mean, 1e3 * s.p95,
-             1e3 * s.maximum);
+void print_unseen(const UnseenPoses& unseen, bool conditional) {
+  const bool residual = unseen.quantity == UnseenQuantity::held_out_residual;
+  const bool fitted_again = unseen.quantity != UnseenQuantity::volumetric_error;
+  fmt::print("\n{}: {}\n", quantity_name(unseen.quantity), unseen.description);
+  print_error_line(fitted_again ? "nominal machine, its set-up fitted again" : "before", unseen.before_statistics);
+  print_error_line(fitted_again ? "identified machine" : "after", unseen.after_statistics);
+  print_error_line(residual ? "expanded uncertainty of the model alone" : "predicted expanded uncertainty",
+                   unseen.uncertainty_statistics);
+  if (conditional) fmt::print("    (of the {}: see \"not identified\")\n", kIdentifiedErrorsOnly);
+  if (unseen.against_truth) {
+    fmt::print("  {:.1f} % of the coordinates within two standard uncertainties of the prediction\n",
+               100 * unseen.coverage);
+  }
+  if (residual && unseen.times_noise > 0) {
+    fmt::print(
+        "  {:.3g} times the stated uncertainties of these readings, whose noise is in it: not an error of the "
+        "machine\n",
+        unseen.times_noise);
+  }
 }
 
 }  // namespace
@@ -49,20 +66,14 @@ void print_study(const Study& study, const StudyResult& result) {
     }
     fmt::print("\n");
   }
-  if (result.unseen && !result.unseen->after.empty()) {
-    const UnseenPoses& unseen = *result.unseen;
-    fmt::print("\nvolumetric error at {}\n", unseen.description);
-    print_statistics("before", unseen.before_statistics);
-    print_statistics("after", unseen.after_statistics);
-    print_statistics("predicted expanded uncertainty", unseen.uncertainty_statistics);
-    if (!result.not_identified.errors.empty())
-      fmt::print("    (of the {}: see \"not identified\")\n", kIdentifiedErrorsOnly);
-    if (unseen.against_truth) {
-      fmt::print("  {:.1f} % of the coordinates within two standard uncertainties of the prediction\n",
-                 100 * unseen.coverage);
-    }
+  const bool conditional = !result.not_identified.errors.empty();
+  if (result.volumetric) {
+    fmt::print("\n");
+    print_volumetric_figures(*result.volumetric, prediction_covers(result));
   }
-  if (!result.not_identified.errors.empty()) fmt::print("\nwarning: {}\n", not_identified_text(study, result));
+  print_residual_figures(residual_figures(study, result));
+  if (result.unseen && !result.unseen->after.empty()) print_unseen(*result.unseen, conditional);
+  if (conditional) fmt::print("\nwarning: {}\n", not_identified_text(study, result));
   if (result.unseen && !result.unseen->open.empty())
     fmt::print("\nwarning: {}\n", open_directions_text(*result.unseen));
   if (!identified.gauge.constraints.empty()) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -158,7 +159,9 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
     const auto percentiles = [](const SampleStatistics& s) {
       return nlohmann::ordered_json{{"median", 1e3 * s.median}, {"p95", 1e3 * s.p95}};
     };
-    json["histograms"] = {{{"title", "Volumetric error: " + unseen.description},
+    std::string title = quantity_name(unseen.quantity);
+    title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+    json["histograms"] = {{{"title", title + ": " + unseen.description},
                            {"before_um", before},
                            {"after_um", after},
                            {"before_percentiles_um", percentiles(unseen.before_statistics)},

@@ -111,8 +111,7 @@ nlohmann::ordered_json write_results(const Study& study, const StudyResult& resu
     for (const std::unique_ptr<CampaignSetup>& setup : result.campaign.setups) {
       folder.write("readings/" + setup->name + ".csv", setup->readings_text(study.machine));
     }
-    ErrorsFile truth{
-        .errors = *result.campaign.truth, .covariance = {}, .provenance = {{"method", "truth of a simulation"}}};
+    ErrorsFile truth{.errors = *result.campaign.truth, .covariance = {}, .provenance = {{"method", kMethodOfTruth}}};
     folder.write("truth.errors.toml", errors_text(study.machine, truth));
   }
   if (result.usable()) {

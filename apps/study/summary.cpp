@@ -9,22 +9,10 @@
 #include "abbe/geometry/rotation.h"
 #include "abbe/identify/monte_carlo_comparison.h"
 #include "study/advice.h"
+#include "study/residual_figures.h"
 
 namespace abbe {
 namespace {
-
-/// Lengths of the fit's residuals at the measured poses, not weighted, mm; angles take no part.
-SampleStatistics fit_residuals(const StudyResult& result) {
-  std::vector<double> lengths;
-  for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
-    const Observations& observations = *result.model.observations[s];
-    const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
-    for (std::size_t k = 0; k < observations.reading_count(); ++k) {
-      if (use.empty() || use[k] != 0) append_length(observations, k, lengths);
-    }
-  }
-  return sample_statistics(lengths);
-}
 
 /// Statistics over the poses of a map that have a result.
 void add_map_statistics(const StudyMap& map, nlohmann::ordered_json& entry) {
@@ -66,6 +54,14 @@ nlohmann::ordered_json statistics_urad(const SampleStatistics& s) { return scale
 
 nlohmann::ordered_json orientation_urad(const ErrorMap& map) { return statistics_urad(orientation_statistics(map)); }
 
+std::string prediction_covers(const StudyResult& result) {
+  std::string text = result.not_identified.errors.empty() ? "" : kIdentifiedErrorsOnly;
+  if (result.unseen && !result.unseen->open.empty()) {
+    text += std::string(text.empty() ? "" : ", ") + "directions that the readings determine only";
+  }
+  return text;
+}
+
 std::string study_verdict(const Study& study, const StudyResult& result) {
   if (!study.identification) return "";
   if (!result.usable()) {
@@ -73,12 +69,23 @@ std::string study_verdict(const Study& study, const StudyResult& result) {
                                              ? status_text(result.identification.status)
                                              : result.identification.message);
   }
-  if (!result.unseen || result.unseen->after.empty()) return "Identified; not validated at unseen poses.";
-  const UnseenPoses& unseen = *result.unseen;
-  return fmt::format(
-      "Mean volumetric error {:.4g} um before, {:.3g} um after, at {}; largest {:.4g} um before, {:.3g} um after.",
-      1e3 * unseen.before_statistics.mean, 1e3 * unseen.after_statistics.mean, unseen.description,
-      1e3 * unseen.before_statistics.maximum, 1e3 * unseen.after_statistics.maximum);
+  std::string text;
+  if (result.volumetric && result.volumetric->poses > 0) {
+    text = volumetric_sentence(*result.volumetric, prediction_covers(result));
+  }
+  if (text.empty()) text = "Identified; no pose has a volumetric error.";
+  if (!result.campaign.truth) {
+    const ResidualFigures residual = residual_figures(study, result);
+    text += fmt::format(" Residual of the readings: {:.3g} times their stated uncertainties",
+                        residual.times_noise_without_outliers);
+    if (residual.outliers > 0) {
+      text +=
+          fmt::format(" without the {} outlier{}, {:.3g} times with {}", residual.outliers,
+                      residual.outliers == 1 ? "" : "s", residual.times_noise, residual.outliers == 1 ? "it" : "them");
+    }
+    text += ".";
+  }
+  return text;
 }
 
 nlohmann::ordered_json study_summary(const Study& study, const StudyResult& result) {
@@ -118,7 +125,9 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
       json["observability_index_kind"] = "O1";
       json["condition_number"] = identified.statistics.observability.condition;
       json["normalised_residual_rms"] = std::sqrt(identified.statistics.variance_factor);
-      json["fit_residual_um"] = statistics_um(fit_residuals(result));
+      const ResidualFigures residual = residual_figures(study, result);
+      json["fit_residual_um"] = statistics_um(residual.length);
+      json["residual"] = residual_json(residual);
       if (result.monte_carlo && result.monte_carlo->status == MonteCarloStatus::done) {
         const MonteCarloComparison comparison = compare_with_covariance(identified, *result.monte_carlo);
         json["monte_carlo"] = {{"samples", comparison.samples},
@@ -137,12 +146,17 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
   if (!result.advice.empty()) json["not_seen"] = advice_json(result);
   const bool conditional = !result.not_identified.errors.empty();
   if (conditional) json["not_identified"] = not_identified_json(study, result);
+  if (result.volumetric) {
+    add_volumetric_figures(*result.volumetric, json, prediction_covers(result));
+  }
   if (result.unseen && !result.unseen->after.empty()) {
     const UnseenPoses& unseen = *result.unseen;
     nlohmann::ordered_json held_out;
     held_out["poses"] = unseen.after.size();
     held_out["description"] = unseen.description;
     held_out["reference"] = unseen.against_truth ? "truth" : "readings";
+    held_out["quantity"] = quantity_name(unseen.quantity);
+    if (unseen.times_noise > 0) held_out["times_stated_uncertainty"] = unseen.times_noise;
     held_out["position_before_um"] = statistics_um(unseen.before_statistics);
     held_out["position_after_um"] = statistics_um(unseen.after_statistics);
     held_out["predicted_expanded_uncertainty_um"] = statistics_um(unseen.uncertainty_statistics);

@@ -20,6 +20,10 @@ SampleStatistics orientation_statistics(const ErrorMap& map);
 /// The same as the report writes it, in urad.
 nlohmann::ordered_json orientation_urad(const ErrorMap& map);
 
+/// What the predicted uncertainty covers, if not everything: "identified errors only", "directions that the readings
+/// determine only", or both; else empty.
+std::string prediction_covers(const StudyResult& result);
+
 /// The verdict in one sentence.
 std::string study_verdict(const Study& study, const StudyResult& result);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/identify/identify.h"
 #include "abbe/identify/prediction.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/tracker_start.h"
@@ -22,12 +23,19 @@ namespace {
 struct Tally {
   UnseenPoses& unseen;
   std::size_t within = 0, coordinates = 0;
+  double noise_square = 0;  ///< sum of squares of residuals over stated uncertainties
+  std::size_t noise_count = 0;
 
   void add(const PredictedReadings& prediction) {
     unseen.after.insert(unseen.after.end(), prediction.error.begin(), prediction.error.end());
     for (const double u : prediction.uncertainty) unseen.expanded_uncertainty.push_back(2 * u);
     within += prediction.within;
     coordinates += prediction.coordinates;
+  }
+  /// @param observations  at the identified values, weighted with the uncertainties that are stated for the readings
+  void add_against_noise(const Observations& observations) {
+    for (const double residual : residuals_by_reading(observations)) noise_square += residual * residual;
+    noise_count += observations.reading_count() * static_cast<std::size_t>(observations.rows());
   }
 };
 
@@ -86,6 +94,11 @@ void add_tracker(const Study& study, const StudyResult& result, std::size_t s, c
   const bool simulated = tally.unseen.against_truth;
   const std::vector<double> before = nominal_errors(study.machine, simulated ? setup.truth : setup.start, readings);
   tally.unseen.before.insert(tally.unseen.before.end(), before.begin(), before.end());
+  if (!simulated) {
+    TrackerObservations as_stated(study.machine, identified, setup.start, readings);
+    as_stated.set_parameters(identified.parameters(), result.identification.setup[s]);
+    tally.add_against_noise(as_stated);
+  }
   // The observations carry the identified poses and offsets; build them as the fit did, so that the unknowns
   // correspond.
   TrackerSetup weighed = setup.start;
@@ -141,6 +154,11 @@ void add_instrument(const Study& study, const StudyResult& result, std::size_t s
   InstrumentReadings readings = setup.readings.subset(held_out);
   const std::vector<double> before = nominal_deviations(study, result, s, readings);
   tally.unseen.before.insert(tally.unseen.before.end(), before.begin(), before.end());
+  {
+    InstrumentObservations as_stated(study.machine, result.identification.errors, setup.device, readings);
+    as_stated.set_parameters(result.identification.errors.parameters(), result.identification.setup[s]);
+    tally.add_against_noise(as_stated);
+  }
   readings.uncertainty.assign(components.size(), std::vector<double>(readings.count(), 1e-3));
   InstrumentObservations observations(study.machine, result.identification.errors, setup.device, std::move(readings));
   observations.set_parameters(result.identification.errors.parameters(), result.identification.setup[s]);
@@ -246,14 +264,32 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
   }
   unseen.coverage =
       tally.coordinates > 0 ? static_cast<double>(tally.within) / static_cast<double>(tally.coordinates) : 0;
+  if (tally.noise_count > 0) {
+    unseen.times_noise = std::sqrt(tally.noise_square / static_cast<double>(tally.noise_count));
+  }
+  unseen.quantity = !unseen.against_truth ? UnseenQuantity::held_out_residual
+                    : trackers_only       ? UnseenQuantity::error_at_reflectors
+                                          : UnseenQuantity::volumetric_error;
   unseen.before_statistics = sample_statistics(unseen.before);
   unseen.after_statistics = sample_statistics(unseen.after);
   unseen.uncertainty_statistics = sample_statistics(unseen.expanded_uncertainty);
   unseen.description =
       unseen.against_truth
-          ? fmt::format("{} random poses that were not measured, against the simulated truth", unseen.after.size())
+          ? fmt::format("{} random poses that were not measured (seed {}), against the simulated truth",
+                        unseen.after.size(), unseen_seed(study, 0))
           : fmt::format("{} readings held out of the fit", unseen.after.size());
   return unseen;
+}
+
+const char* quantity_name(UnseenQuantity quantity) {
+  switch (quantity) {
+    case UnseenQuantity::error_at_reflectors:
+      return "true error at the reflectors";
+    case UnseenQuantity::held_out_residual:
+      return "residual of held-out readings";
+    default:
+      return "true volumetric error";
+  }
 }
 
 std::string open_directions_text(const UnseenPoses& unseen) {

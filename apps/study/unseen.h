@@ -10,14 +10,28 @@ namespace abbe {
 struct Study;
 struct StudyResult;
 
+/// What the figures at unseen poses are; each has its name in docs/conventions.md.
+enum class UnseenQuantity {
+  volumetric_error,     ///< true error of the functional point, after the best fit of the workpiece datum
+  error_at_reflectors,  ///< true error of what a tracker sees, its station fitted
+  held_out_residual     ///< readings against the model: the noise of the instrument is in it
+};
+
+/// "true volumetric error", "true error at the reflectors", "residual of held-out readings".
+const char* quantity_name(UnseenQuantity quantity);
+
 /// Errors at poses that took no part in the identification.
 struct UnseenPoses {
+  UnseenQuantity quantity = UnseenQuantity::volumetric_error;
   std::string description;
-  bool against_truth = false;                ///< else against held-out readings, which carry their own noise
-  std::vector<double> before;                ///< nominal machine, its set-up fitted to the readings; mm
+  bool against_truth = false;  ///< else against held-out readings, which carry their own noise
+  /// Nominal machine; mm. Of reflectors and readings its set-up is fitted again: station or datum, and offsets that the
+  /// identification estimates.
+  std::vector<double> before;
   std::vector<double> after;                 ///< identified machine; mm
   std::vector<double> expanded_uncertainty;  ///< k = 2 of the prediction, root of the trace of its covariance; mm
-  double coverage = 0;                       ///< share of the coordinates within 2 u of the prediction; 0..1
+  double times_noise = 0;  ///< held-out readings: root mean square of residuals over stated uncertainties
+  double coverage = 0;     ///< share of the coordinates within 2 u of the prediction; 0..1
   /// Conventions on which the volumetric error depends other than by the choice of the workpiece datum: the readings
   /// do not determine it in these directions.
   std::vector<std::string> open;

@@ -183,6 +183,7 @@ std::vector<VerifyVerdict> verdicts_on(const VerifyOptions& options, const Compe
 
 VerifyResult verify(const VerifyOptions& options) {
   VerifyResult result;
+  result.seed = options.seed;
   std::error_code ignored;
   if (!options.results.empty() && !fs::is_directory(options.results, ignored)) {
     throw InputError({.file = options.results}, "is no folder", "results of abbe run");
@@ -226,6 +227,9 @@ VerifyResult verify(const VerifyOptions& options) {
                            "determined",
                      "ranges that spread the poses over an area, 1 mm or more across");
   }
+  const ErrorSet &identified = result.identified.errors, &truth = result.truth.errors;
+  result.volumetric = volumetric_figures(result.machine, &identified, result.identified.covariance, &truth,
+                                         stated_grid(result.machine, {&identified, &truth}));
   result.verdicts = verdicts_on(options, result.poses);
   for (const VerifyPiece& piece : options.pieces) result.pieces.push_back(verify_piece(result, piece, options.reach));
   return result;

@@ -10,6 +10,7 @@
 #include "abbe/machine/machine.h"
 #include "abbe/verify/compensated_poses.h"
 #include "abbe/verify/test_piece_deviation.h"
+#include "study/volumetric_figures.h"
 #include "test_piece/sizes.h"
 
 namespace abbe {
@@ -61,9 +62,11 @@ struct VerifyResult {
   ErrorsFile identified, truth;
   std::string errors_file, truth_file;
   std::vector<AxisRange> ranges;
+  std::uint64_t seed = 1;          ///< of the random poses
   bool correlations_known = true;  ///< false: the errors file states standard uncertainties only
   bool both_directions = false;    ///< there are reversal values: axes come from either side
-  CompensatedPoses poses;
+  CompensatedPoses poses;          ///< random, commands corrected, axes from either side
+  VolumetricFigures volumetric;    ///< over the grid that all commands state
   std::vector<PieceResult> pieces;
   std::vector<VerifyVerdict> verdicts;
 };

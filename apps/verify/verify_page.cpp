@@ -270,6 +270,9 @@ std::string verify_page(const VerifyOptions& options, const VerifyResult& result
       (result.pieces.empty() ? "" : ", and on test pieces");
   data["evaluation"] = {{"kind", "verify"}, {"facts", facts(options, result, summary)}};
   data["summary"] = {{"verdict", verify_sentence(result)}, {"held_out", nlohmann::json(unseen_poses_json(poses))}};
+  nlohmann::ordered_json volumetric;
+  add_volumetric_figures(result.volumetric, volumetric);
+  data["summary"].update(nlohmann::json(volumetric));
   if (summary.is_object()) {
     for (const char* const key : {"readings", "outliers", "parameters", "machine_parameters", "setup_parameters",
                                   "rank", "null_space", "normalised_residual_rms"}) {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "study/summary.h"
+#include "study/unseen.h"
 
 namespace abbe {
 namespace {
@@ -82,33 +82,20 @@ void print_piece(const PieceResult& piece) {
 std::string verify_sentence(const VerifyResult& result) {
   const CompensatedPoses& poses = result.poses;
   std::string text = fmt::format(
-      "Volumetric error at {} unseen poses: mean {:.3g} um before, {:.2g} um after compensation, {:.3g} times smaller",
-      poses.after.size(), 1e3 * poses.before_statistics.mean, 1e3 * poses.after_statistics.mean, poses.reduction());
+      "True volumetric error at {} random poses (seed {}): mean {:.3g} um before, {:.2g} um after compensation, {:.3g} "
+      "times smaller",
+      poses.after.size(), result.seed, 1e3 * poses.before_statistics.mean, 1e3 * poses.after_statistics.mean,
+      poses.reduction());
   if (poses.uncertainty_ratio() > 0) {
     text += fmt::format("; {:.2f} times what its uncertainty predicts", poses.uncertainty_ratio());
   }
   return text + ".";
 }
 
-std::string ranges_text(const Machine& machine, const std::vector<AxisRange>& ranges) {
-  std::string text;
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    const double unit = rotary ? 180 / std::numbers::pi : 1;
-    const char* const name = rotary ? "deg" : "mm";
-    text += fmt::format("{}{} ", i > 0 ? ", " : "", machine.axes[i].name);
-    if (ranges[i].is_fixed()) {
-      text += fmt::format("{:.6g} {}", unit * ranges[i].from, name);
-    } else {
-      text += fmt::format("{:.6g} to {:.6g} {}", unit * ranges[i].from, unit * ranges[i].to, name);
-    }
-  }
-  return text;
-}
-
 nlohmann::ordered_json unseen_poses_json(const CompensatedPoses& poses) {
   nlohmann::ordered_json json;
   json["poses"] = poses.after.size();
+  json["quantity"] = quantity_name(UnseenQuantity::volumetric_error);
   json["position_before_um"] = statistics_um(poses.before_statistics);
   json["position_after_um"] = statistics_um(poses.after_statistics);
   json["reduction"] = poses.reduction();
@@ -129,14 +116,15 @@ nlohmann::ordered_json unseen_poses_json(const CompensatedPoses& poses) {
 void print_verify(const VerifyResult& result) {
   const CompensatedPoses& poses = result.poses;
   fmt::print("{}\n\n", verify_sentence(result));
-  fmt::print("{}: {}{}\n", result.machine.name, ranges_text(result.machine, result.ranges),
+  fmt::print("{}: {} random poses (seed {}) over {}{}\n", result.machine.name, poses.after.size(), result.seed,
+             ranges_text(result.machine, result.ranges),
              result.both_directions ? ", axes coming from either side" : "");
   const auto row = [](const char* name, const SampleStatistics& s, double unit, const char* unit_name) {
     fmt::print("  {:<46} mean {:.3f}  rms {:.3f}  95 % {:.3f}  max {:.3f} {}\n", name, unit * s.mean, unit * s.rms,
                unit * s.p95, unit * s.maximum, unit_name);
   };
-  row("volumetric error, before", poses.before_statistics, 1e3, "um");
-  row("volumetric error, after", poses.after_statistics, 1e3, "um");
+  row("true volumetric error, before", poses.before_statistics, 1e3, "um");
+  row("true volumetric error, after compensation", poses.after_statistics, 1e3, "um");
   if (!poses.uncertainty.empty()) {
     row("predicted standard uncertainty", poses.uncertainty_statistics, 1e3, "um");
     fmt::print("  {:<46} {:.1f} %\n", "coordinates within twice their uncertainty", 100 * poses.coverage);
@@ -147,6 +135,8 @@ void print_verify(const VerifyResult& result) {
     fmt::print("  left out: {} poses whose corrected commands leave the travel, {} where errors are not known\n",
                poses.outside_travel, poses.not_covered);
   }
+  fmt::print("\n");
+  print_volumetric_figures(result.volumetric);
   for (const PieceResult& piece : result.pieces) print_piece(piece);
   if (!result.verdicts.empty()) fmt::print("\n");
   for (const VerifyVerdict& verdict : result.verdicts) fmt::print("{}\n", verdict.text);
@@ -165,6 +155,7 @@ nlohmann::ordered_json verify_json(const VerifyOptions& options, const VerifyRes
   unseen["outside_travel"] = poses.outside_travel;
   unseen["outside_range"] = poses.not_covered;
   json["unseen_poses"] = unseen;
+  add_volumetric_figures(result.volumetric, json);
   json["test_pieces"] = nlohmann::ordered_json::array();
   for (const PieceResult& piece : result.pieces) {
     json["test_pieces"].push_back({{"name", piece.is_cone ? "cone-frustum" : "s-shape"},

@@ -7,11 +7,8 @@
 
 namespace abbe {
 
-/// What was achieved, in one sentence: "Volumetric error at 1000 unseen poses: 61 um before, 2.4 um after, ...".
+/// What was achieved, in one sentence: "True volumetric error at 1000 random poses (seed 1): mean 61 um before, ...".
 std::string verify_sentence(const VerifyResult& result);
-
-/// "X -200 to 200 mm, ..."
-std::string ranges_text(const Machine& machine, const std::vector<AxisRange>& ranges);
 
 /// Figures of the unseen poses, with the keys of `held_out` in docs/report-data.md.
 nlohmann::ordered_json unseen_poses_json(const CompensatedPoses& poses);

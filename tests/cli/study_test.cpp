@@ -388,14 +388,14 @@ TEST_F(Studies, AMapWithoutKnownPosesStatesNoFigures) {
   const nlohmann::json json = nlohmann::json::parse(program.out);
   EXPECT_EQ(json["poses"], 0);
   EXPECT_GT(json["outside_range"], 0);
-  EXPECT_FALSE(json.contains("position_before_um"));
+  EXPECT_FALSE(json.contains("predicted_volumetric_error"));
 }
 
 TEST_F(Studies, AMapAfterCorrectionKeepsToWhereTheCorrectionIsKnown) {
   write_study();
   ASSERT_EQ(abbe({"run", "s.study.toml"}).exit_code, ExitCode::done);
-  const std::vector<std::string> arguments = {"map",     "m.machine.toml",  "out/truth.errors.toml",
-                                              "--minus", "out/errors.toml", "--fit-datum"};
+  const std::vector<std::string> arguments = {"map", "m.machine.toml", "out/truth.errors.toml", "--minus",
+                                              "out/errors.toml"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), arguments.begin(), arguments.end());
     return abbe(more);
@@ -407,7 +407,8 @@ TEST_F(Studies, AMapAfterCorrectionKeepsToWhereTheCorrectionIsKnown) {
   const nlohmann::json json =
       nlohmann::json::parse(with({"--grid", "X_mm=0:1400:5", "--grid", "Z_mm=100:500:3", "--json"}).out);
   EXPECT_EQ(2 * json["poses"].get<int>(), 3 * json["outside_range"].get<int>());
-  EXPECT_LT(json["position_after_um"]["mean"], 0.1 * json["position_before_um"]["mean"].get<double>());
+  const nlohmann::json& truth = json["true_volumetric_error"];
+  EXPECT_LT(truth["after_um"]["mean"], 0.1 * truth["before_um"]["mean"].get<double>());
   EXPECT_LT(json["orientation_after_urad"]["p99"], json["orientation_before_urad"]["p99"]);
   const std::string csv = folder.read("map.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + json["poses"].get<int>());

@@ -20,6 +20,10 @@ export interface PoseErrors {
   poses?: number;
   description?: string;
   reference?: string;
+  /// Name of what is stated: "true volumetric error", "residual of held-out readings", ...
+  quantity?: string;
+  /// Held-out readings: root mean square of residuals over stated uncertainties.
+  times_stated_uncertainty?: number;
   position_before_um?: Statistics;
   position_after_um?: Statistics;
   orientation_before_urad?: Statistics;
@@ -33,6 +37,27 @@ export interface PoseErrors {
   reduction?: number;
   /// Root mean square after over that of the predicted standard uncertainty.
   uncertainty_ratio?: number;
+}
+
+/// Volumetric error over the grid of all commands. Predicted: what is left is stated with k = 2.
+export interface VolumetricError {
+  poses?: number;
+  description?: string;
+  outside_range?: number;
+  before_um?: Statistics;
+  after_um?: Statistics;
+  after_expanded_um?: Statistics;
+  uncertainty_covers?: string;
+}
+
+/// What the fit leaves of the readings, against their stated uncertainties.
+export interface ResidualFigures {
+  residuals?: number;
+  outliers?: number;
+  times_stated_uncertainty?: number;
+  times_stated_uncertainty_without_outliers?: number;
+  length_um?: Statistics;
+  length_without_outliers_um?: Statistics;
 }
 
 export interface Summary {
@@ -59,6 +84,9 @@ export interface Summary {
   condition_number?: number;
   normalised_residual_rms?: number;
   fit_residual_um?: Statistics;
+  residual?: ResidualFigures;
+  predicted_volumetric_error?: VolumetricError;
+  true_volumetric_error?: VolumetricError;
   held_out?: PoseErrors;
   map?: PoseErrors;
   monte_carlo?: MonteCarlo;

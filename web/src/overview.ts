@@ -5,7 +5,7 @@ import {html} from './dom';
 import {evaluationFacts} from './evaluation';
 import {count, micro, number, quantity} from './format';
 
-/// The errors a reader asks for first: at unseen poses if there are any, else over the map.
+/// Errors at poses: at unseen ones if there are any, else over the map.
 function headline(summary: Summary): {errors: PoseErrors; key: 'held_out' | 'map'; where: string} | undefined {
   if (summary.held_out?.position_before_um) {
     const held = summary.held_out;
@@ -25,12 +25,13 @@ export function verdict(summary: Summary): string {
   if (!head) return '';
   const {errors, where} = head;
   const before = errors.position_before_um?.mean;
+  const name = errors.quantity ?? 'volumetric error';
   const after = errors.position_after_um?.mean;
   if (before === undefined) return '';
-  if (after === undefined) return `Mean volumetric error ${quantity(before, 'µm')} ${where}.`;
+  if (after === undefined) return `Mean ${name} ${quantity(before, 'µm')} ${where}.`;
   const predicted = errors.predicted_expanded_uncertainty_um?.mean;
   const interval = predicted === undefined ? '' : ` (predicted expanded uncertainty${errors.uncertainty_covers ? ` of the ${errors.uncertainty_covers}` : ''} ${quantity(predicted, 'µm')}, k\u00a0=\u00a02)`;
-  return `Mean volumetric error ${quantity(before, 'µm')} before, ${quantity(after, 'µm')} after correction ${where}${interval}.`;
+  return `Mean ${name} ${quantity(before, 'µm')} before, ${quantity(after, 'µm')} after correction ${where}${interval}.`;
 }
 
 interface Tile {
@@ -41,46 +42,68 @@ interface Tile {
   note?: string;
 }
 
-function errorTiles(errors: PoseErrors, key: string, where = ''): HTMLElement[] {
-  const tiles: HTMLElement[] = [];
-  const pair = (label: string, before: Statistics | undefined, after: Statistics | undefined, stem: string, unit: string) => {
-    if (!before) return;
-    const side = (name: string, statistics: Statistics, style: string, stateKey: string) =>
+interface Side {
+  name: string;
+  statistics: Statistics | undefined;
+  style: string;
+  key: string;
+}
+
+/// One quantity on two sides: mean, 95 % and maximum of each.
+function pairTile(label: string, unit: string, sides: Side[]): HTMLElement | undefined {
+  if (!sides[0].statistics) return undefined;
+  const side = ({name, statistics, style, key}: Side) =>
+    statistics &&
+    html(
+      'div',
+      {class: `side ${style}`},
+      html('span', {class: 'state'}, name),
+      html('span', {class: 'figure'}, html('span', {'data-key': `${key}.mean`}, number(statistics.mean)), html('small', {}, `\u2009${unit}`)),
       html(
-        'div',
-        {class: `side ${style}`},
-        html('span', {class: 'state'}, name),
-        html(
-          'span',
-          {class: 'figure'},
-          html('span', {'data-key': `${stateKey}.mean`}, number(statistics.mean)),
-          html('small', {}, `\u2009${unit}`),
-        ),
-        html(
-          'span',
-          {class: 'note'},
-          statistics.p95 !== undefined && html('span', {}, '95\u2009% below ', html('b', {'data-key': `${stateKey}.p95`}, number(statistics.p95))),
-          statistics.p95 !== undefined && statistics.max !== undefined && ' · ',
-          statistics.max !== undefined && html('span', {}, 'max ', html('b', {'data-key': `${stateKey}.max`}, number(statistics.max))),
-        ),
-      );
-    tiles.push(
-      html(
-        'div',
-        {class: 'tile pair'},
-        html('h3', {}, label),
-        html(
-          'div',
-          {class: 'sides'},
-          side(after ? 'before' : 'as it is', before, 'before', `${key}.${stem}_before_${unit === 'µm' ? 'um' : 'urad'}`),
-          after && side('after', after, 'after', `${key}.${stem}_after_${unit === 'µm' ? 'um' : 'urad'}`),
-        ),
+        'span',
+        {class: 'note'},
+        statistics.p95 !== undefined && html('span', {}, '95\u2009% below ', html('b', {'data-key': `${key}.p95`}, number(statistics.p95))),
+        statistics.p95 !== undefined && statistics.max !== undefined && ' · ',
+        statistics.max !== undefined && html('span', {}, 'max ', html('b', {'data-key': `${key}.max`}, number(statistics.max))),
       ),
     );
+  return html('div', {class: 'tile pair'}, html('h3', {}, label), html('div', {class: 'sides'}, ...sides.map(side)));
+}
+
+/// The named figures over the grid of all commands: what is true where that is known, and what is predicted.
+function volumetricTiles(summary: Summary): HTMLElement[] {
+  const tiles: (HTMLElement | undefined)[] = [];
+  const truth = summary.true_volumetric_error;
+  const predicted = summary.predicted_volumetric_error;
+  if (truth)
+    tiles.push(pairTile('True volumetric error, mean', 'µm', [
+      {name: truth.after_um ? 'before' : 'as it is', statistics: truth.before_um, style: 'before', key: 'true_volumetric_error.before_um'},
+      {name: 'after', statistics: truth.after_um, style: 'after', key: 'true_volumetric_error.after_um'}]));
+  if (predicted)
+    tiles.push(pairTile('Predicted volumetric error, mean', 'µm', [
+      {name: predicted.after_expanded_um ? 'before' : 'as it is', statistics: predicted.before_um, style: 'before', key: 'predicted_volumetric_error.before_um'},
+      {name: `after, k\u00a0=\u00a02${predicted.uncertainty_covers ? `, ${predicted.uncertainty_covers}` : ''}`, statistics: predicted.after_expanded_um, style: 'after', key: 'predicted_volumetric_error.after_expanded_um'}]));
+  return tiles.filter((tile): tile is HTMLElement => tile !== undefined);
+}
+
+const capitalised = (text: string) => text[0].toUpperCase() + text.slice(1);
+
+function errorTiles(errors: PoseErrors, key: string, where = ''): HTMLElement[] {
+  const quantity = errors.quantity ?? 'volumetric error';
+  // Of reflectors and readings the set-up is fitted again for the nominal machine.
+  const fitted = errors.quantity !== undefined && !errors.quantity.endsWith('volumetric error');
+  const states = fitted ? ['nominal machine, set-up fitted again', 'identified machine'] : ['before', 'after'];
+  const pair = (label: string, before: Statistics | undefined, after: Statistics | undefined, stem: string, unit: string) => {
+    const suffix = unit === 'µm' ? 'um' : 'urad';
+    return pairTile(label, unit, [
+      {name: after ? states[0] : 'as it is', statistics: before, style: 'before', key: `${key}.${stem}_before_${suffix}`},
+      {name: states[1], statistics: after, style: 'after', key: `${key}.${stem}_after_${suffix}`}]);
   };
-  pair('Volumetric error, mean', errors.position_before_um, errors.position_after_um, 'position', 'µm');
-  pair(`Orientation error, mean${where}`, errors.orientation_before_urad, errors.orientation_after_urad, 'orientation', 'µrad');
-  return tiles;
+  const at = key === 'held_out' ? ' at unseen poses' : '';
+  return [
+    pair(`${capitalised(quantity)}${quantity.startsWith('residual') ? '' : at}, mean`, errors.position_before_um, errors.position_after_um, 'position', 'µm'),
+    pair(`Orientation error, mean${where}`, errors.orientation_before_urad, errors.orientation_after_urad, 'orientation', 'µrad'),
+  ].filter((tile): tile is HTMLElement => tile !== undefined);
 }
 
 function smallTiles(summary: Summary, errors: PoseErrors | undefined, key: string): Tile[] {
@@ -92,8 +115,10 @@ function smallTiles(summary: Summary, errors: PoseErrors | undefined, key: strin
   if (errors) {
     add('Reduction', `${key}.reduction`, errors.reduction, 3, 'times', 'mean before over mean after');
     add('Against its prediction', `${key}.uncertainty_ratio`, errors.uncertainty_ratio, 3, '', 'error over predicted standard uncertainty, root mean squares; 1 if it is right');
-    add('Remaining error', `${key}.remaining_percent`, errors.remaining_percent, 3, '%', 'of the mean before');
-    add('Predicted uncertainty', `${key}.predicted_expanded_uncertainty_um.mean`, errors.predicted_expanded_uncertainty_um?.mean, 3, 'µm',
+    if (errors.quantity?.startsWith('residual'))
+      add('Held-out residual', `${key}.times_stated_uncertainty`, errors.times_stated_uncertainty, 3, 'times', 'the stated uncertainties of the readings, root mean squares; their noise is in it');
+    else add('Remaining error', `${key}.remaining_percent`, errors.remaining_percent, 3, '%', 'of the mean before');
+    add(errors.quantity?.startsWith('residual') ? 'Uncertainty of the model there' : 'Predicted uncertainty', `${key}.predicted_expanded_uncertainty_um.mean`, errors.predicted_expanded_uncertainty_um?.mean, 3, 'µm',
         [errors.uncertainty_covers && `of the ${errors.uncertainty_covers}`, 'k = 2, mean',
           errors.coverage_percent !== undefined && `covers ${number(errors.coverage_percent)}\u2009% of the coordinates`].filter(Boolean).join('; '));
   }
@@ -108,6 +133,9 @@ function smallTiles(summary: Summary, errors: PoseErrors | undefined, key: strin
   add('Degrees of freedom', 'degrees_of_freedom', summary.degrees_of_freedom, 0, '',
       summary.chi_square === undefined || summary.chi_square === null ? '' : `χ² = ${number(summary.chi_square, 4)}` +
           (summary.chi_square_probability === undefined ? '' : `, p = ${number(summary.chi_square_probability, 2)}`));
+  const residual = summary.residual;
+  if (residual?.outliers && residual.times_stated_uncertainty !== undefined)
+    add('Residual with outliers', 'residual.times_stated_uncertainty', residual.times_stated_uncertainty, 3, 'times', `the stated uncertainties; ${number(residual.times_stated_uncertainty_without_outliers)} times without the ${count(residual.outliers)} outlier${residual.outliers === 1 ? '' : 's'}`);
   add('Residual, normalised', 'normalised_residual_rms', summary.normalised_residual_rms, 3, '', summary.residuals === undefined ? '1 if model and noise are right' : `of ${count(summary.residuals)} residuals; 1 if model and noise are right`);
   add('Observability index', 'observability_index', summary.observability_index, 3, '', summary.observability_index_kind ?? '');
   return tiles;
@@ -159,7 +187,9 @@ export function overview(report: Report): HTMLElement {
     warnings(report),
   );
   const tiles = html('div', {class: 'tiles'});
-  if (head) tiles.append(...errorTiles(head.errors, head.key));
+  tiles.append(...volumetricTiles(summary));
+  // The map repeats what the named figures say of its poses.
+  if (head && (head.key === 'held_out' || !tiles.children.length)) tiles.append(...errorTiles(head.errors, head.key));
   // Unseen poses may say nothing of the orientation; the map does.
   if (head?.key === 'held_out' && !head.errors.orientation_before_urad && summary.map?.orientation_before_urad)
     tiles.append(...errorTiles({orientation_before_urad: summary.map.orientation_before_urad, orientation_after_urad: summary.map.orientation_after_urad}, 'map', ' over the map'));
@@ -175,6 +205,8 @@ export function overview(report: Report): HTMLElement {
       ),
     );
   if (tiles.children.length) box.append(tiles);
+  const stated = summary.true_volumetric_error?.description ?? summary.predicted_volumetric_error?.description;
+  if (stated) box.append(html('p', {class: 'note under'}, `Volumetric error over ${stated}.`));
   if (head?.errors.description) {
     const against: Record<string, string> = {truth: 'compared with the known truth', readings: 'compared with readings not used in the fit', model: 'predicted by the model'};
     const reference = head.errors.reference;

@@ -8,6 +8,7 @@
 #include "abbe/compensate/point_correction.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/reversal.h"
+#include "abbe/geometry/best_fit_transform.h"
 
 namespace abbe {
 namespace {
@@ -88,6 +89,24 @@ PoseDeviations deviations_with(const Machine& machine, const ErrorSet& errors, c
   }
   summarise(largest);
   return largest;
+}
+
+SampleStatistics volumetric_error_with(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
+                                       const CommandCorrection& correction) {
+  PoseList mean = commands, added;
+  mean.approach.clear();
+  correction.evaluate(mean, added);
+  std::vector<Eigen::Vector3d> actual, wanted;
+  for (std::size_t k = 0; k < commands.count(); ++k) {
+    std::vector<double> stands = commands.pose(k);
+    wanted.push_back(nominal_workpiece_from_tool(machine, stands).translation);
+    for (std::size_t i = 0; i < stands.size(); ++i) stands[i] += added.axis[i][k];
+    actual.push_back(actual_workpiece_from_tool(machine, errors, stands).translation);
+  }
+  const RigidTransform datum = best_fit_transform(actual, wanted).target_from_source;
+  std::vector<double> left;
+  for (std::size_t k = 0; k < actual.size(); ++k) left.push_back((datum * actual[k] - wanted[k]).norm());
+  return sample_statistics(left);
 }
 
 PoseDeviations ideal_deviations(const Machine& machine, const ErrorSet& errors, const PoseList& commands,

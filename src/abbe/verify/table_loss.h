@@ -28,8 +28,13 @@ struct PoseDeviations {
 PoseDeviations deviations_with(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
                                const CommandCorrection& correction);
 
-/// The same with the best that the axes can do (CompensatedInverse: point, and direction where rotary axes work for
-/// it), travel limits apart (with_room_beyond_travel).
+/// Volumetric error with a correction added to the commands: displacement of the functional point after the best fit of
+/// the workpiece datum over all poses, mean of both directions of approach (docs/conventions.md), mm.
+SampleStatistics volumetric_error_with(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
+                                       const CommandCorrection& correction);
+
+/// The same as deviations_with() with the best that the axes can do (CompensatedInverse: point, and direction where
+/// rotary axes work for it), travel limits apart (with_room_beyond_travel).
 /// @param not_reached  number of poses where the point is not reached; their deviation is as it then is
 PoseDeviations ideal_deviations(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
                                 std::size_t& not_reached);

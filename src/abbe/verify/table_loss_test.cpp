@@ -7,6 +7,7 @@
 #include "abbe/compensate/line_tables.h"
 #include "abbe/errors/random_errors.h"
 #include "abbe/machine/machines_for_test.h"
+#include "abbe/verify/error_map.h"
 
 namespace abbe {
 namespace {
@@ -123,6 +124,23 @@ TEST(TableLoss, TablesOfBothDirectionsCarryReversalValuesAndTheMeanDoesNot) {
     EXPECT_NEAR(named(carried, "reversal_X").carried(), directions ? 1 : 0, 1e-6);
     EXPECT_NEAR(named(carried, "reversal_C").carried(), directions ? 1 : 0, 1e-6);
   }
+}
+
+TEST(TableLoss, WithoutTablesTheVolumetricErrorIsThatOfTheErrorMapWhateverTheReversalValues) {
+  const Machine machine = test::three_axis_mill();
+  RandomErrorOptions options;
+  options.seed = 4;
+  ErrorSet errors = random_errors(machine, options);
+  const PoseList poses = commanded_poses(machine, 60);
+  ErrorMapOptions map_options;
+  map_options.remove_rigid_motion = true;
+  const ErrorMap map = error_map(machine, errors, nullptr, pose_source(poses), map_options);
+  errors.reversals = {{machine.find_axis("X"), -0.02, 0}};
+  const SampleStatistics error = volumetric_error_with(machine, errors, poses, NoCorrection());
+  EXPECT_NEAR(error.mean, map.statistics.mean, 1e-9);
+  EXPECT_NEAR(error.maximum, map.statistics.maximum, 1e-9);
+  EXPECT_LT(error.rms, 0.99 * deviations_with(machine, errors, poses, NoCorrection()).position_statistics.rms)
+      << "the datum is not fitted";
 }
 
 }  // namespace
