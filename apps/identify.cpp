@@ -64,7 +64,7 @@ void add_identify_command(CommandLine& line) {
         fmt::print("{}", json_text(json));
         return result.usable() ? kDone : kNegative;
       }
-      print_study(study, result);
+      print_study(study, result, options->parameters);
       if (options->parameters && result.usable()) {
         const Identification& identified = result.identification;
         fmt::print("\n{:<24} {:>16} {:>16}\n", "parameter", "value", "u");

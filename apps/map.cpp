@@ -14,13 +14,14 @@
 #include "axis_option.h"
 #include "command.h"
 #include "exit_code.h"
-#include "messages.h"
 #include "options.h"
+#include "partial_errors.h"
 #include "progress.h"
 #include "study/job.h"
 #include "study/results.h"
 #include "study/summary.h"
 #include "study/volumetric_figures.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 namespace {
@@ -28,7 +29,7 @@ namespace {
 struct MapOptions {
   std::string machine, errors, reference, poses;
   std::vector<std::string> grid, outputs;
-  bool fit_datum = false, keep_datum = false, json = false;
+  bool fit_datum = false, keep_datum = false, accept_uncovered = false, json = false;
 };
 
 /// "X_mm=0:1400:9" or "C_deg=30": from:to:count, or a fixed position.
@@ -53,6 +54,7 @@ void apply_grid_option(const Machine& machine, const std::string& text, std::vec
 /// What a map says, in numbers.
 struct MapReport {
   const Machine* machine = nullptr;
+  const PartialErrors* partial = nullptr;
   const ErrorMap* before = nullptr;
   const ErrorMap* after = nullptr;           ///< null without --minus
   std::optional<VolumetricFigures> figures;  ///< with the fitted datum only: without it these are other quantities
@@ -81,12 +83,15 @@ void print_json(const MapReport& report) {
       json["standard_uncertainty_um"] = statistics_um(sample_statistics(before.norm_uncertainty, before.covered));
     }
   }
+  add_partial_errors(*report.partial, json);
   fmt::print("{}", json_text(json));
 }
 
 void print_text(const MapReport& report) {
   const ErrorMap& before = *report.before;
-  fmt::print("{} poses of {}\n", before.statistics.count, report.machine->name);
+  const PartialErrors& partial = *report.partial;
+  fmt::print("{} poses of {}{}\n", before.statistics.count, report.machine->name,
+             partial.is_partial() ? ", " + partial.short_words() : "");
   if (before.statistics.count == 0) return;
   const auto print = [](const char* name, const SampleStatistics& s) {
     fmt::print("  {:<46} mean {:>9.3f}   95 % {:>9.3f}   max {:>9.3f} urad\n", name, 1e6 * s.mean, 1e6 * s.p95,
@@ -109,6 +114,7 @@ void print_text(const MapReport& report) {
   }
   print(two ? "orientation error, before" : "orientation error", orientation_statistics(before));
   if (two) print("orientation error, after", orientation_statistics(*report.after));
+  if (partial.is_partial()) fmt::print("caution: {}\n", partial.caution());
 }
 
 int run_map(const MapOptions& options) {
@@ -184,19 +190,15 @@ int run_map(const MapOptions& options) {
   for (const std::string& output : options.outputs) {
     write_file_atomically(output, extension_of(output) == ".csv" ? map_csv(data) : map_vtk(data));
   }
-  const std::size_t outside = before.statistics.excluded;
+  const PartialErrors partial = partial_errors(machine, errors);
+  report.partial = &partial;
   if (options.json) {
     print_json(report);
   } else {
     print_text(report);
     for (const std::string& output : options.outputs) fmt::print("{} written\n", output);
   }
-  if (outside > 0) {
-    tell("abbe: {} of {} poses lie outside the range in which the errors are known; they are left out\n", outside,
-         poses.count());
-    return kNegative;
-  }
-  return kDone;
+  return tell_uncovered(before.statistics.excluded, poses.count(), options.accept_uncovered);
 }
 
 }  // namespace
@@ -225,6 +227,7 @@ void add_map_command(CommandLine& line) {
       ->add_flag("--fit-datum", options->fit_datum,
                  "Take the best-fit rigid motion of the workpiece out (done unless --keep-datum is given)")
       ->excludes("--keep-datum");
+  command->add_flag("--accept-uncovered", options->accept_uncovered, kAcceptUncoveredWords);
   command->add_output_file("-o,--output", options->outputs, "File to write: .csv, .vts or .vtu (ParaView); repeatable");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options]() -> int { return run_map(*options); }; });

@@ -14,13 +14,14 @@
 #include "study/print.h"
 #include "study/results.h"
 #include "study/summary.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 
 void add_run_command(CommandLine& line) {
   struct Options {
     std::string study, output;
-    bool json = false;
+    bool accept_uncovered = false, all_values = false, json = false;
   };
   auto options = std::make_shared<Options>();
   Subcommand* command =
@@ -29,6 +30,8 @@ void add_run_command(CommandLine& line) {
                "  abbe run examples/three_axis/level-and-autocollimator.study.toml -o results/level --json");
   command->add_option("study", options->study, "Study file (*.study.toml)")->required();
   command->add_output_folder("-o,--output", options->output, "Results folder (default: as in the study)");
+  command->add_flag("--accept-uncovered", options->accept_uncovered, kAcceptUncoveredWords);
+  command->add_flag("--all-values", options->all_values, "Print every identified value and every outlier");
   command->add_flag("--json", options->json, "Print the summary as JSON for programs");
   command->callback([&line, options] {
     line.run = [options]() -> int {
@@ -56,11 +59,14 @@ void add_run_command(CommandLine& line) {
       if (options->json) {
         fmt::print("{}", json_text(summary));
       } else {
-        print_study(study, result);
+        print_study(study, result, options->all_values);
         fmt::print("\nresults in {}\n", study.output.string());
         if (study.report.page) fmt::print("report:    {}\n", (study.output / "report.html").string());
       }
-      return study.identification && !result.usable() ? kNegative : kDone;
+      if (study.identification && !result.usable()) return kNegative;
+      if (!result.map) return kDone;
+      return tell_uncovered(result.map->before.statistics.excluded, result.map->poses.count(),
+                            options->accept_uncovered);
     };
   });
 }

@@ -43,7 +43,8 @@ void add_simulate_command(CommandLine& line) {
         if (setup->hidden > 0) fmt::print("; {} without a line of sight left out", setup->hidden);
         fmt::print("\n");
       }
-      const ErrorsFile truth{.errors = *campaign.truth, .covariance = {}, .provenance = {{"method", kMethodOfTruth}}};
+      const ErrorsFile truth{
+          .errors = *campaign.truth, .covariance = {}, .provenance = {{"method", kTruthOfSimulation}}};
       folder.write("truth.errors.toml", errors_text(study.machine, truth));
       folder.commit();
       fmt::print("{}/truth.errors.toml  {} parameters\n", options->output, truth.errors.parameter_count());

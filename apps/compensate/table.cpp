@@ -9,7 +9,6 @@
 #include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/compensate/left_out_errors.h"
 #include "abbe/compensate/line_tables.h"
-#include "abbe/compensate/point_correction.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/kept_inputs.h"
@@ -25,6 +24,8 @@
 #include "compensate/table_left_out.h"
 #include "compensate/table_options.h"
 #include "compensate/table_report.h"
+#include "compensate/travel_grid.h"
+#include "compensate/useless_tables.h"
 #include "exit_code.h"
 #include "messages.h"
 #include "options.h"
@@ -32,7 +33,6 @@
 namespace abbe {
 namespace {
 
-constexpr double kAside = 0.19;
 /// Tables that make the error larger by more than this are refused.
 constexpr double kWorse = 1.02;
 
@@ -40,7 +40,7 @@ struct TableCommand {
   std::string machine, errors, format, output, map;
   std::vector<std::string> at, axes, names, reference_position;
   std::optional<double> interpolation_um, limit_um, limit_urad;
-  double interpolation_urad = 0.1, times_uncertainty = 0;
+  double interpolation_urad = 0.1, times_uncertainty = 0, least_reduction_percent = 1;
   std::optional<std::size_t> max_points, positions;
   std::size_t first_table = 0, encoder = 0;
   double unit_um = 1;
@@ -48,37 +48,6 @@ struct TableCommand {
   bool json = false, dry_run = false, negate = false;
   std::vector<std::string> given;  ///< of the options that not every format has
 };
-
-/// Grid over what is known of the travel; of a whole turn the end, which is its beginning, is left out.
-PoseList travel_grid(const Machine& machine, const ErrorSet& errors, std::size_t count,
-                     std::vector<std::size_t>& grid) {
-  PoseGrid positions;
-  grid.clear();
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const KnownTravel travel = known_travel(machine, errors, i);
-    std::vector<double> values;
-    if (!(travel.to > travel.from)) {
-      values = {travel.from};
-    } else if (travel.whole_turn) {
-      values = evenly_spaced(travel.from, travel.to, count + 1);
-      values.pop_back();
-    } else {
-      values = evenly_spaced(travel.from, travel.to, count);
-    }
-    // Off round fractions of the travel, where nodes of tables are and the interpolation has no error.
-    const double aside = kAside * (travel.to - travel.from) / static_cast<double>(count);
-    for (std::size_t k = 1; k + 1 < values.size(); ++k) values[k] += k % 2 == 0 ? aside : -aside;
-    grid.push_back(values.size());
-    positions.values.push_back(std::move(values));
-  }
-  const PoseSource source = pose_source(positions);
-  PoseList poses;
-  poses.axis.assign(machine.axes.size(), std::vector<double>(source.count));
-  std::vector<double*> pointers;
-  for (std::vector<double>& values : poses.axis) pointers.push_back(values.data());
-  source.fill(0, source.count, pointers.data());
-  return poses;
-}
 
 std::size_t checked_positions(const TableCommand& command, const Machine& machine) {
   if (!command.positions) return machine.axes.size() > 3 ? 5 : 9;
@@ -237,6 +206,7 @@ int run_table(const TableCommand& command) {
   TableReport report;
   report.format = &format;
   report.machine = &machine;
+  report.partial = partial_errors(machine, file);
   report.poses = travel_grid(machine, errors, checked_positions(command, machine), report.grid);
 
   const Eigen::MatrixXd covariance = covariance_of(file);
@@ -292,6 +262,10 @@ int run_table(const TableCommand& command) {
   state_reversals(carried, request, report);
   look_at_limits(command, tables, report);
   report.refused.insert(report.refused.end(), tables.problems.begin(), tables.problems.end());
+  if (report.refused.empty()) {
+    const std::string useless = useless_tables(carried, request, report, command.least_reduction_percent);
+    if (!useless.empty()) report.refused.push_back(useless);
+  }
   const bool within =
       std::all_of(tables.tables.begin(), tables.tables.end(), [](const TableSummary& table) { return table.within; });
   const bool refused = !report.refused.empty();
@@ -361,6 +335,11 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
                       "Positions per axis between the nodes, where the displacement is stated (9, 5 above 3 axes)");
   command->add_option("--limit-um", options->limit_um, "Refuse any correction of a linear axis above this, um");
   command->add_option("--limit-urad", options->limit_urad, "Refuse any correction of a rotary axis above this, urad");
+  command
+      ->add_option("--least-reduction-percent", options->least_reduction_percent,
+                   "Refuse tables that take away less of the error than this; 0: write them all the same")
+      ->check(in_range(0.0, 100.0))
+      ->capture_default_str();
   command->add_option("--leave-out-below-uncertainty", options->times_uncertainty,
                       "Leave out tables that are nowhere more than so many standard uncertainties");
   command->add_option("--type", options->type, "linuxcnc: COMP_FILE_TYPE, 0 or 1 (1)");

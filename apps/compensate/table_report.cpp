@@ -118,6 +118,7 @@ void print_table_report(const TableReport& report) {
     fmt::print("standard uncertainty along that displacement: mean {:.3f}  95 % {:.3f} um\n",
                in_um(report.uncertainty_statistics->mean), in_um(report.uncertainty_statistics->p95));
   }
+  if (report.partial.is_partial()) fmt::print("caution: {}\n", report.partial.caution());
   if (report.largest_mm > 0) {
     fmt::print("largest sum of corrections: {} at {}\n", size_words(report.largest_mm, false), report.largest_mm_at);
   }
@@ -180,6 +181,7 @@ void print_table_json(const TableReport& report) {
   json["ideal"] = statistics_json(report.ideal);
   json["ideal_not_reached"] = report.ideal_not_reached;
   if (report.uncertainty_statistics) json["standard_uncertainty_um"] = statistics_um(*report.uncertainty_statistics);
+  add_partial_errors(report.partial, json);
   json["largest_correction_um"] = in_um(report.largest_mm);
   json["largest_correction_urad"] = in_micro(report.largest_rad);
   json["settings"] = report.tables->remarks;

@@ -7,6 +7,7 @@
 #include "abbe/errors/poses.h"
 #include "abbe/verify/table_loss.h"
 #include "compensate/table_formats.h"
+#include "partial_errors.h"
 #include "study/volumetric_figures.h"
 
 namespace abbe {
@@ -27,6 +28,7 @@ struct TableReport {
   /// of approach.
   PoseDeviations before, after, ideal;
   std::size_t ideal_not_reached = 0;
+  PartialErrors partial;  ///< what the errors file does not state
   std::vector<CarriedError> errors;
   std::vector<double>
       uncertainty;  ///< [tables] largest standard uncertainty of a correction, mm or rad; empty: not stated

@@ -32,6 +32,8 @@ class CampaignSetup {
 
   virtual const PoseList& poses() const = 0;
   virtual const std::vector<double>& time_s() const = 0;
+  /// [readings] names of the points in the input, or empty.
+  virtual const std::vector<std::string>& points() const = 0;
   std::size_t reading_count() const { return poses().count(); }
 
   /// The readings as a measurement file.

@@ -8,6 +8,7 @@
 
 #include "abbe/formats/measurement_file.h"
 #include "abbe/identify/prediction.h"
+#include "study/coverage.h"
 
 namespace abbe {
 namespace {
@@ -150,7 +151,6 @@ StudyMap map_study(const Study& study, const StudyResult& result, const Progress
     map.description = fmt::format("{} poses of {}", map.poses.count(), study.map->poses_file->filename().string());
   } else {
     std::vector<AxisRange> ranges;
-    bool narrowed = false;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
       if (!study.map) {
         ranges.push_back(known_range(machine, identified, i, machine.axes.size() > 3 ? 5 : 9));
@@ -159,7 +159,7 @@ StudyMap map_study(const Study& study, const StudyResult& result, const Progress
       // Outside the measured range there is no result; a range entirely outside stays, and its poses are left out.
       AxisRange range = study.map->axes[i];
       if (!range.is_fixed() && narrow_to_known(identified, i, range) && range.from < range.to) {
-        narrowed = true;
+        map.moved.push_back(moved_range_sentence(machine.axes[i], study.map->axes[i], range));
         ranges.push_back(range);
       } else {
         ranges.push_back(study.map->axes[i]);
@@ -178,7 +178,7 @@ StudyMap map_study(const Study& study, const StudyResult& result, const Progress
     map.description = "grid of";
     for (std::size_t i = 0; i < map.grid.size(); ++i)
       map.description += fmt::format("{} {}", i == 0 ? "" : " x", map.grid[i]);
-    map.description += narrowed ? " poses over the measured range" : " poses";
+    map.description += map.moved.empty() ? " poses" : " poses over the range in which the errors are known";
   }
   const PoseSource poses = pose_source(map.poses);
   ErrorMapOptions options;

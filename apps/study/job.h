@@ -23,6 +23,7 @@ struct StudyMap {
   PoseList poses;
   std::vector<std::size_t> grid;  ///< positions per axis in chain order; empty: no grid
   std::string description;
+  std::vector<std::string> moved;  ///< ranges that were asked for and are not known throughout, a sentence each
   bool against_truth = false;  ///< before and after are true; else before is the identified error and after is absent
   ErrorMap before;
   std::optional<ErrorMap> after;

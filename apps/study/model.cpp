@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <set>
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/errors_file.h"
@@ -37,10 +35,15 @@ bool covers_turn(const std::vector<double>& sorted, const Basis& basis) {
   return gap <= basis.period / (2.0 * basis.order + 1.0) + 1e-9 * basis.period;
 }
 
-std::string range_text(const Axis& axis, double from, double to) {
-  const bool rotary = axis.kind == AxisKind::rotary;
-  const double unit = rotary ? std::numbers::pi / 180 : 1;
-  return fmt::format("{} = {:.6g} .. {:.6g} {}", axis.name, from / unit, to / unit, rotary ? "deg" : "mm");
+/// Keeps one entry for each axis: where all of its error motions are stated.
+void note_coverage(const AxisCoverage& coverage, std::vector<AxisCoverage>& list) {
+  for (AxisCoverage& other : list) {
+    if (other.axis != coverage.axis) continue;
+    other.wanted = {std::max(other.wanted.from, coverage.wanted.from), std::min(other.wanted.to, coverage.wanted.to)};
+    other.stated = {std::max(other.stated.from, coverage.stated.from), std::min(other.stated.to, coverage.stated.to)};
+    return;
+  }
+  list.push_back(coverage);
 }
 
 /// Nodes of a table to be identified: evenly over its range, or around the period.
@@ -110,7 +113,6 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
   ErrorSet errors;
   std::optional<ErrorSet> initial;
   if (plan.initial_errors) initial = read_errors(*plan.initial_errors, study.machine).errors;
-  std::set<std::size_t> said;
   for (const IdentifiedMotion& identified : plan.motions) {
     const Axis& axis = study.machine.axes[identified.axis];
     const std::vector<double> positions = measured_positions(campaign, identified.axis);
@@ -121,14 +123,12 @@ ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& 
           fmt::format("axis {} stands still in all readings: its error motions cannot be identified", axis.name);
     } else if (basis.kind == BasisKind::fourier ? !covers_turn(positions, basis)
                                                 : basis.nodes.empty() && !basis.periodic) {
-      const double from = std::max(basis.from, positions.front()), to = std::min(basis.to, positions.back());
-      if (from < to && (from > basis.from || to < basis.to)) {
-        basis.from = from;
-        basis.to = to;
-        if (said.insert(identified.axis).second) {
-          model.notes.push_back(fmt::format("Error motions of {} are known over the measured range {} only.", axis.name,
-                                            range_text(axis, from, to)));
-        }
+      const PositionRange measured = {positions.front(), positions.back()}, wanted = {basis.from, basis.to};
+      const PositionRange stated = stated_range(basis, measured, 0.01 * plan.coverage_margin_percent);
+      if (stated.from < stated.to) {
+        basis.from = stated.from;
+        basis.to = stated.to;
+        note_coverage({identified.axis, wanted, measured, stated}, model.coverage);
       }
     }
     if (basis.kind == BasisKind::table_linear) place_nodes(basis);

@@ -7,6 +7,7 @@
 #include "abbe/identify/order_selection.h"
 #include "abbe/identify/problem.h"
 #include "study/campaign.h"
+#include "study/coverage.h"
 
 namespace abbe {
 
@@ -15,12 +16,13 @@ struct StudyModel {
   std::vector<std::unique_ptr<Observations>> observations;  ///< one per set-up
   Problem problem;
   std::vector<OrderGroup> order_groups;  ///< for the automatic choice of orders, if the study asks for it
-  std::vector<std::string> notes;        ///< assumptions, in words
+  std::vector<AxisCoverage> coverage;    ///< one for each axis whose error motions are known over a range
   std::string impossible;                ///< not empty: why nothing can be identified, in words
 };
 
 /// Error motions and location errors to be identified, at their start values. The range of every error motion is
-/// narrowed to the positions that were measured, because an error motion is not known where nothing was measured.
+/// narrowed to the positions that were measured and the margin beside them (stated_range()), because an error motion is
+/// not known where nothing was measured.
 ErrorSet model_errors(const Study& study, const Campaign& campaign, StudyModel& model);
 
 /// Builds observations and problem; readings that are held out are marked in problem.observations[].use.

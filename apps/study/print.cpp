@@ -5,6 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "study/advice.h"
+#include "study/coverage.h"
+#include "study/found_values_words.h"
+#include "study/outlier_list.h"
 #include "study/residual_figures.h"
 #include "study/summary.h"
 
@@ -34,7 +37,7 @@ void print_unseen(const UnseenPoses& unseen, bool conditional) {
 
 }  // namespace
 
-void print_study(const Study& study, const StudyResult& result) {
+void print_study(const Study& study, const StudyResult& result, bool all_values) {
   fmt::print("{}: {}   ({})\n", study.name, study.machine.name, study.machine.chain());
   if (result.campaign.truth) fmt::print("simulated: the true errors are known\n");
   fmt::print("{} readings\n", result.campaign.reading_count());
@@ -73,14 +76,17 @@ void print_study(const Study& study, const StudyResult& result) {
   }
   print_residual_figures(residual_figures(study, result));
   if (result.unseen && !result.unseen->after.empty()) print_unseen(*result.unseen, conditional);
+  std::vector<std::string> ranges = coverage_sentences(study, result);
+  if (result.map) ranges.insert(ranges.end(), result.map->moved.begin(), result.map->moved.end());
+  if (!ranges.empty()) fmt::print("\nranges\n");
+  for (const std::string& sentence : ranges) fmt::print("  {}\n", sentence);
   if (conditional) fmt::print("\nwarning: {}\n", not_identified_text(study, result));
   if (result.unseen && !result.unseen->open.empty())
     fmt::print("\nwarning: {}\n", open_directions_text(*result.unseen));
+  print_found_values(found_values(study, result), all_values);
+  print_outliers(study, result, all_values);
   if (!identified.gauge.constraints.empty()) {
-    fmt::print("\nwhat the readings cannot see, and what was assumed instead\n");
-    for (const GaugeConstraint& constraint : identified.gauge.constraints) {
-      fmt::print("  {}: {}\n", constraint.words, constraint.inseparable_words);
-    }
+    print_gauge_table(identified);
     if (result.unseen && result.unseen->open_known && result.unseen->open.empty()) {
       fmt::print("  none of these changes the volumetric error other than by the choice of the workpiece datum\n");
     }

@@ -14,6 +14,7 @@
 #include "study/report_residuals.h"
 #include "study/summary.h"
 #include "study/truth_in_gauge.h"
+#include "uncovered_poses.h"
 #include "vector_json.h"
 
 namespace abbe {
@@ -137,6 +138,11 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
   }
   if (!result.not_identified.errors.empty()) {
     json["warnings"].push_back({{"level", "warning"}, {"text", not_identified_text(study, result)}});
+  }
+  if (result.map && result.map->before.statistics.excluded > 0) {
+    json["warnings"].push_back(
+        {{"level", "warning"},
+         {"text", uncovered_words(result.map->before.statistics.excluded, result.map->poses.count())}});
   }
   json["assumptions"] = report_assumptions(study, result);
   if (result.map && result.map->before.statistics.count > 0) {

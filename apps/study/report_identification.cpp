@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "study/coverage.h"
 #include "study/report_data.h"
 
 namespace abbe {
@@ -149,7 +150,7 @@ void identification_assumptions(const Study& study, const StudyResult& result, s
         "Orders are chosen by the residuals at readings left out of the fit; the uncertainties hold for the "
         "chosen orders and do not include that choice.");
   }
-  for (const std::string& note : result.model.notes) list.push_back(note);
+  for (const std::string& sentence : coverage_sentences(study, result)) list.push_back(sentence);
   if (!result.identification.gauge.constraints.empty()) {
     list.push_back(
         fmt::format("{} directions that the readings cannot see are fixed by convention (ISO 230); predictions at "
@@ -196,6 +197,9 @@ std::vector<std::string> report_assumptions(const Study& study, const StudyResul
   if (result.map) {
     list.emplace_back(
         "Maps show the deviation of the functional point after the best fit of the workpiece datum (six numbers).");
+  }
+  if (result.map) {
+    for (const std::string& sentence : result.map->moved) list.push_back(sentence);
   }
   for (const std::string& note : result.campaign.notes) list.push_back(note);
   return list;

@@ -80,6 +80,11 @@ nlohmann::ordered_json setup_json(const Machine& machine, const StudyResult& res
     for (std::size_t k : shown) times.push_back(time_s[k]);
     setup["time_s"] = times;
   }
+  if (const std::vector<std::string>& points = result.campaign.setups[s]->points(); !points.empty()) {
+    std::vector<std::string> names;
+    for (std::size_t k : shown) names.push_back(points[k]);
+    setup["point"] = names;
+  }
   setup["positions"] = position_columns(machine, observations, shown);
   setup["components"] = nlohmann::ordered_json::array();
   for (const ResidualComponent& component : components) {

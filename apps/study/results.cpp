@@ -71,20 +71,22 @@ MapData map_data(const Machine& machine, const PoseList& poses, const std::vecto
 
 std::string residuals_csv(const Study& study, const StudyResult& result) {
   const Machine& machine = study.machine;
-  std::string text = "setup,reading";
+  std::string text = "setup,reading,point";
   for (const Axis& axis : machine.axes)
     text += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
   text += ",used,weight,component,normalised,residual,unit\n";
   for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
     const Observations& observations = *result.model.observations[s];
     const std::vector<ResidualComponent> components = residual_components(observations);
+    const std::vector<std::string>& points = result.campaign.setups[s]->points();
     const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
     std::map<std::size_t, double> weights;
     for (const Outlier& outlier : result.identification.outliers) {
       if (outlier.observations == s) weights[outlier.reading] = outlier.weight;
     }
     for (std::size_t k = 0; k < observations.reading_count(); ++k) {
-      std::string start = fmt::format("{},{}", csv_field(result.campaign.setups[s]->name), k);
+      std::string start = fmt::format("{},{},", csv_field(result.campaign.setups[s]->name), k);
+      if (!points.empty() && !points[k].empty()) start += csv_field(points[k]);
       const std::vector<double> positions = observations.positions(k);
       for (std::size_t i = 0; i < positions.size(); ++i) {
         const bool rotary = machine.axes[i].kind == AxisKind::rotary;
@@ -111,7 +113,8 @@ nlohmann::ordered_json write_results(const Study& study, const StudyResult& resu
     for (const std::unique_ptr<CampaignSetup>& setup : result.campaign.setups) {
       folder.write("readings/" + setup->name + ".csv", setup->readings_text(study.machine));
     }
-    ErrorsFile truth{.errors = *result.campaign.truth, .covariance = {}, .provenance = {{"method", kMethodOfTruth}}};
+    ErrorsFile truth{
+        .errors = *result.campaign.truth, .covariance = {}, .provenance = {{"method", kTruthOfSimulation}}};
     folder.write("truth.errors.toml", errors_text(study.machine, truth));
   }
   if (result.usable()) {

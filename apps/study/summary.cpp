@@ -8,7 +8,11 @@
 
 #include "abbe/geometry/rotation.h"
 #include "abbe/identify/monte_carlo_comparison.h"
+#include "partial_errors.h"
 #include "study/advice.h"
+#include "study/coverage.h"
+#include "study/found_values_words.h"
+#include "study/outlier_list.h"
 #include "study/residual_figures.h"
 
 namespace abbe {
@@ -54,6 +58,18 @@ nlohmann::ordered_json statistics_urad(const SampleStatistics& s) { return scale
 
 nlohmann::ordered_json orientation_urad(const ErrorMap& map) { return statistics_urad(orientation_statistics(map)); }
 
+namespace {
+
+/// That only a part of the machine's errors is identified, in front of figures that could be taken for all of them.
+std::string known_words(const Study& study, const StudyResult& result) {
+  const std::size_t missing = result.not_identified.errors.size();
+  if (missing == 0) return {};
+  const std::size_t known = known_error_count(study.machine, result.identification.errors);
+  return fmt::format("{} of the {} errors that move the tool are identified. ", known, known + missing);
+}
+
+}  // namespace
+
 std::string prediction_covers(const StudyResult& result) {
   std::string text = result.not_identified.errors.empty() ? "" : kIdentifiedErrorsOnly;
   if (result.unseen && !result.unseen->open.empty()) {
@@ -69,11 +85,12 @@ std::string study_verdict(const Study& study, const StudyResult& result) {
                                              ? status_text(result.identification.status)
                                              : result.identification.message);
   }
-  std::string text;
+  std::string text = known_words(study, result);
   if (result.volumetric && result.volumetric->poses > 0) {
-    text = volumetric_sentence(*result.volumetric, prediction_covers(result));
+    text += volumetric_sentence(*result.volumetric, prediction_covers(result));
+  } else {
+    text += "Identified; no pose has a volumetric error.";
   }
-  if (text.empty()) text = "Identified; no pose has a volumetric error.";
   if (!result.campaign.truth) {
     const ResidualFigures residual = residual_figures(study, result);
     text += fmt::format(" Residual of the readings: {:.3g} times their stated uncertainties",
@@ -128,6 +145,9 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
       const ResidualFigures residual = residual_figures(study, result);
       json["fit_residual_um"] = statistics_um(residual.length);
       json["residual"] = residual_json(residual);
+      if (!identified.outliers.empty()) json["outlier_list"] = outliers_json(study, result);
+      json["identified"] = found_values_json(found_values(study, result));
+      json["gauge"] = gauge_table_json(identified);
       if (result.monte_carlo && result.monte_carlo->status == MonteCarloStatus::done) {
         const MonteCarloComparison comparison = compare_with_covariance(identified, *result.monte_carlo);
         json["monte_carlo"] = {{"samples", comparison.samples},
@@ -143,8 +163,13 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
       }
     }
   }
+  if (!result.model.coverage.empty()) json["ranges"] = coverage_json(study, result);
   if (!result.advice.empty()) json["not_seen"] = advice_json(result);
   const bool conditional = !result.not_identified.errors.empty();
+  if (conditional) {
+    json["errors_known"] = known_error_count(study.machine, result.identification.errors);
+    json["errors_of_machine"] = json["errors_known"].get<std::size_t>() + result.not_identified.errors.size();
+  }
   if (conditional) json["not_identified"] = not_identified_json(study, result);
   if (result.volumetric) {
     add_volumetric_figures(*result.volumetric, json, prediction_covers(result));
@@ -179,6 +204,7 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
     entry["reference"] = map.against_truth ? "truth" : "model";
     if (map.before.statistics.count > 0) add_map_statistics(map, entry);
     if (conditional) entry["uncertainty_covers"] = kIdentifiedErrorsOnly;
+    if (!map.moved.empty()) entry["moved"] = map.moved;
     if (map.before.statistics.excluded > 0) entry["outside_range"] = map.before.statistics.excluded;
     json["map"] = entry;
   }

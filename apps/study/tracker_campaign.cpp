@@ -55,6 +55,7 @@ void append_readings(TrackerReadings& all, const TrackerReadings& more) {
   }
   const auto join = [](auto& a, const auto& b) { a.insert(a.end(), b.begin(), b.end()); };
   const double time_offset = all.time_s.empty() ? 0 : all.time_s.back();
+  join_labels(all.point_name, all.count(), more.point_name, more.count());
   join_poses(all.poses, more.poses);
   join(all.station, more.station);
   join(all.reflector, more.reflector);

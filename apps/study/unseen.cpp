@@ -60,6 +60,7 @@ TrackerReadings select(const TrackerReadings& all, const std::vector<std::uint8_
     part.station.push_back(all.station[k]);
     part.reflector.push_back(all.reflector[k]);
     for (std::size_t i = 0; i < 3; ++i) part.measured[i].push_back(all.measured[i][k]);
+    if (!all.point_name.empty()) part.point_name.push_back(all.point_name[k]);
     if (!all.time_s.empty()) part.time_s.push_back(all.time_s[k]);
     for (std::size_t i = 0; i < 6; ++i) {
       if (!all.uncertainty[i].empty()) part.uncertainty[i].push_back(all.uncertainty[i][k]);

@@ -112,7 +112,7 @@ VolumetricFigures figures_of_maps(const std::string& poses_words, ErrorMap* pred
 
 bool is_truth(const ErrorsFile& file) {
   return std::any_of(file.provenance.begin(), file.provenance.end(),
-                     [](const auto& entry) { return entry.first == "method" && entry.second == kMethodOfTruth; });
+                     [](const auto& entry) { return entry.first == "method" && entry.second == kTruthOfSimulation; });
 }
 
 Eigen::MatrixXd covariance_of(const ErrorsFile& file) {

@@ -59,9 +59,6 @@ std::string ranges_text(const Machine& machine, const std::vector<AxisRange>& ra
 VolumetricFigures figures_of_maps(const std::string& poses_words, ErrorMap* predicted, ErrorMap* before,
                                   ErrorMap* after);
 
-/// What errors files of simulations have as their provenance `method`.
-inline constexpr const char* kMethodOfTruth = "truth of a simulation";
-
 /// Whether these errors are said to be the truth of a simulation.
 bool is_truth(const ErrorsFile& file);
 

@@ -203,6 +203,7 @@ VerifyResult verify(const VerifyOptions& options) {
     throw InputError({.file = result.errors_file}, "states no uncertainties, and --largest-ratio asks for them",
                      "the errors.toml of an identification");
   }
+  result.partial = partial_errors(result.machine, result.identified);
   const PoseList poses = unseen_poses(options, result);
   try {
     result.poses = check_compensated_poses(result.machine, result.truth.errors, result.identified.errors,

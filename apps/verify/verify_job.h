@@ -10,6 +10,7 @@
 #include "abbe/machine/machine.h"
 #include "abbe/verify/compensated_poses.h"
 #include "abbe/verify/test_piece_deviation.h"
+#include "partial_errors.h"
 #include "study/volumetric_figures.h"
 #include "test_piece/sizes.h"
 
@@ -64,6 +65,7 @@ struct VerifyResult {
   std::vector<AxisRange> ranges;
   std::uint64_t seed = 1;          ///< of the random poses
   bool correlations_known = true;  ///< false: the errors file states standard uncertainties only
+  PartialErrors partial;           ///< what the identified errors do not state
   bool both_directions = false;    ///< there are reversal values: axes come from either side
   CompensatedPoses poses;          ///< random, commands corrected, axes from either side
   VolumetricFigures volumetric;    ///< over the grid that all commands state

@@ -239,6 +239,10 @@ nlohmann::json notes(const VerifyResult& result) {
                        : "Predicted uncertainty: from the standard uncertainties that the errors file states, as if "
                          "they were independent.");
   }
+  if (result.partial.is_partial()) {
+    list.push_back(fmt::format("The prediction is {}; the others are not in it: {}.", result.partial.short_words(),
+                               result.partial.missing_names()));
+  }
   if (result.poses.outside_travel > 0 || result.poses.not_covered > 0) {
     list.push_back(fmt::format(
         "{} random poses are left out: {} whose corrected commands leave the travel, {} where errors are not known.",

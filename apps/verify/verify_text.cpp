@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "study/not_identified.h"
 #include "study/summary.h"
 #include "study/unseen.h"
 
@@ -131,6 +132,10 @@ void print_verify(const VerifyResult& result) {
   }
   row("direction of the tool, before", poses.direction_before_statistics, 1e6, "urad");
   row("direction of the tool, after", poses.direction_after_statistics, 1e6, "urad");
+  if (result.partial.is_partial()) {
+    fmt::print("  caution: the prediction is {}; the others are not in it: {}\n", result.partial.short_words(),
+               result.partial.missing_names());
+  }
   if (poses.outside_travel > 0 || poses.not_covered > 0) {
     fmt::print("  left out: {} poses whose corrected commands leave the travel, {} where errors are not known\n",
                poses.outside_travel, poses.not_covered);
@@ -149,6 +154,7 @@ nlohmann::ordered_json verify_json(const VerifyOptions& options, const VerifyRes
   json["machine"] = result.machine.name;
   json["verdict"] = verify_sentence(result);
   nlohmann::ordered_json unseen = unseen_poses_json(poses);
+  if (result.partial.is_partial()) unseen["uncertainty_covers"] = kIdentifiedErrorsOnly;
   unseen["seed"] = options.seed;
   unseen["ranges"] = ranges_text(result.machine, result.ranges);
   unseen["both_directions"] = result.both_directions;
@@ -156,6 +162,11 @@ nlohmann::ordered_json verify_json(const VerifyOptions& options, const VerifyRes
   unseen["outside_range"] = poses.not_covered;
   json["unseen_poses"] = unseen;
   add_volumetric_figures(result.volumetric, json);
+  if (result.partial.is_partial()) {
+    json["errors_known"] = result.partial.known;
+    json["errors_of_machine"] = result.partial.all();
+    json["not_known"] = result.partial.missing;
+  }
   json["test_pieces"] = nlohmann::ordered_json::array();
   for (const PieceResult& piece : result.pieces) {
     json["test_pieces"].push_back({{"name", piece.is_cone ? "cone-frustum" : "s-shape"},

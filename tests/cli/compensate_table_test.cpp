@@ -86,6 +86,35 @@ TEST_F(CompensateTable, SagTablesCarryStraightnessAndSquarenessAndEncoderTablesD
   EXPECT_THAT(folder.read("EEC.INI"), HasSubstr("$AA_ENC_COMP_STEP[0,X1]=23.75\n"));
 }
 
+TEST_F(CompensateTable, TablesThatCorrectNextToNothingAreRefusedWithTheWayThatWorks) {
+  folder.write("square.errors.toml",
+               "[[location]]\nname = \"EC0Y\"\nvalue_urad = 80\n[[location]]\nname = \"EB0Z\"\nvalue_urad = -60\n");
+  const auto of = [&](const std::string& format, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"compensate", "table", mill, "square.errors.toml",
+                                          "--for",      format,  "-o", "out-" + format};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return abbe(arguments);
+  };
+  for (const char* format : {"linuxcnc", "siemens-eec", "fanuc-pitch"}) {
+    const CommandResult refused = of(format);
+    EXPECT_EQ(refused.exit_code, ExitCode::computation_says_no) << format;
+    EXPECT_THAT(refused.err, HasSubstr("EC0Y")) << format;
+    EXPECT_THAT(refused.err, HasSubstr("siemens-cec (")) << format;
+    EXPECT_THAT(refused.err, HasSubstr("`abbe compensate gcode`")) << format;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / (std::string("out-") + format))) << format;
+  }
+  for (const char* format : {"siemens-cec", "marlin", "lattice-csv"}) {
+    EXPECT_EQ(of(format).exit_code, ExitCode::done) << format;
+  }
+  EXPECT_EQ(of("linuxcnc", {"--least-reduction-percent", "0"}).exit_code, ExitCode::done);
+  // A scale that is corrected well is of use, however much larger the squareness is.
+  folder.write("scale.errors.toml",
+               "[[motion]]\nname = \"EXX\"\nbasis = \"legendre\"\norder = 1\ncoefficients_um = [0, 3]\n"
+               "[[location]]\nname = \"EC0Y\"\nvalue_urad = 300\n");
+  EXPECT_EQ(abbe({"compensate", "table", mill, "scale.errors.toml", "--for", "linuxcnc", "-o", "scale"}).exit_code,
+            ExitCode::done);
+}
+
 TEST_F(CompensateTable, EveryFormatReducesTheErrorWhenTheControlIsSimulatedWithTheFileReadBack) {
   struct Expected {
     const char* format;

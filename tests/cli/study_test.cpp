@@ -202,13 +202,15 @@ TEST_F(Studies, MonteCarloConfirmsTheUncertaintiesOfTheCovariance) {
 }
 
 TEST_F(Studies, AMapKeepsToTheMeasuredRangeAndItsStatisticsToTheSamePoses) {
-  write_study();
+  write_study({{"axis.X = {}", "axis.X = { range_mm = [100, 1300] }"}});
   const nlohmann::json summary = run_json(), map = report_data()["map"];
-  // Asked for over the whole travel, measured at random positions inside it.
+  // Asked for over the whole travel, measured at random positions over a part of it.
   const std::vector<double> x = map["positions"]["X_mm"].get<std::vector<double>>();
-  EXPECT_GT(*std::min_element(x.begin(), x.end()), 0);
-  EXPECT_LT(*std::max_element(x.begin(), x.end()), 1400);
-  EXPECT_THAT(summary["map"]["description"].get<std::string>(), HasSubstr("over the measured range"));
+  EXPECT_GT(*std::min_element(x.begin(), x.end()), 100);
+  EXPECT_LT(*std::max_element(x.begin(), x.end()), 1300);
+  EXPECT_THAT(summary["map"]["description"].get<std::string>(), HasSubstr("in which the errors are known"));
+  ASSERT_EQ(summary["map"]["moved"].size(), 1U);
+  EXPECT_THAT(summary["map"]["moved"][0].get<std::string>(), HasSubstr("asked for X from 0 to 1400 mm"));
   ASSERT_EQ(summary["map"]["poses"], x.size());
   const auto mean_length = [&](const char* key) {
     double sum = 0;
@@ -228,8 +230,12 @@ TEST_F(Studies, AMapKeepsToTheMeasuredRangeAndItsStatisticsToTheSamePoses) {
 }
 
 TEST_F(Studies, AMapWithoutAnyMeasuredPoseStatesNoFigure) {
-  write_study({{"axis.X = { count = 3 }", "axis.X = { range_mm = [1399.9, 1400], count = 2 }"}});
-  const nlohmann::json map = run_json()["map"];
+  write_study({{"axis.X = {}", "axis.X = { range_mm = [100, 1300] }"},
+               {"axis.X = { count = 3 }", "axis.X = { range_mm = [1350, 1400], count = 2 }"}});
+  const CommandResult left_out = abbe({"run", "s.study.toml", "--json"});
+  EXPECT_EQ(left_out.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(left_out.err, HasSubstr("24 of 24 poses of the map lie outside the range in which the errors are known"));
+  const nlohmann::json map = nlohmann::json::parse(left_out.out)["map"];
   EXPECT_EQ(map["poses"], 0);
   EXPECT_GT(map["outside_range"], 0);
   EXPECT_FALSE(map.contains("position_before_um"));
@@ -377,7 +383,7 @@ TEST_F(Studies, MapOfAnErrorsFileSaysWhatLiesOutsideItsRange) {
 
 TEST_F(Studies, AMapWithoutKnownPosesStatesNoFigures) {
   write_study();
-  ASSERT_EQ(abbe({"run", "s.study.toml"}).exit_code, ExitCode::done);
+  ASSERT_EQ(abbe({"run", "s.study.toml", "--accept-uncovered"}).exit_code, ExitCode::done);
   const std::string machine = std::regex_replace(folder.read("m.machine.toml"), std::regex("1400"), "5000");
   folder.write("m.machine.toml", machine);
   const CommandResult text = abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=3000:4000:5"});
@@ -392,7 +398,7 @@ TEST_F(Studies, AMapWithoutKnownPosesStatesNoFigures) {
 }
 
 TEST_F(Studies, AMapAfterCorrectionKeepsToWhereTheCorrectionIsKnown) {
-  write_study();
+  write_study({{"axis.X = {}", "axis.X = { range_mm = [100, 1300] }"}});
   ASSERT_EQ(abbe({"run", "s.study.toml"}).exit_code, ExitCode::done);
   const std::vector<std::string> arguments = {"map", "m.machine.toml", "out/truth.errors.toml", "--minus",
                                               "out/errors.toml"};

@@ -43,6 +43,14 @@ std::vector<std::vector<std::int8_t>> approach_in_order(const PoseList& poses) {
   return approach;
 }
 
+void join_labels(std::vector<std::string>& all, std::size_t count, const std::vector<std::string>& more,
+                 std::size_t more_count) {
+  if (all.empty() && more.empty()) return;
+  all.resize(count);
+  all.insert(all.end(), more.begin(), more.end());
+  all.resize(count + more_count);
+}
+
 void join_poses(PoseList& all, const PoseList& more) {
   const std::size_t before = all.count();
   all.axis.resize(more.axis.size());

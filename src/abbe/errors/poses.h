@@ -59,6 +59,10 @@ std::vector<std::vector<std::int8_t>> approach_in_order(const PoseList& poses);
 /// Adds to `all` the poses of `more`, which may know the approach or not.
 void join_poses(PoseList& all, const PoseList& more);
 
+/// Joins names of readings, [count] each or empty: what has none gets empty ones beside the other's.
+void join_labels(std::vector<std::string>& all, std::size_t count, const std::vector<std::string>& more,
+                 std::size_t more_count);
+
 /// Evenly spread positions from `from` to `to`, both included; one position: the middle.
 std::vector<double> evenly_spaced(double from, double to, std::size_t count);
 

@@ -28,6 +28,12 @@ std::optional<OutsideTravel> first_outside_travel(const Axis& axis, std::span<co
   return std::nullopt;
 }
 
+CsvColumn point_column() {
+  CsvColumn column{"point", Quantity::dimensionless, true, false, CsvColumn::Range::any};
+  column.is_label = true;
+  return column;
+}
+
 std::vector<CsvColumn> axis_columns(const Machine& machine) {
   std::vector<CsvColumn> columns;
   for (const Axis& axis : machine.axes) {

@@ -30,6 +30,9 @@ std::optional<OutsideTravel> first_outside_travel(const Axis& axis, std::span<co
 PoseList take_poses(std::string_view text, const std::string& file, const Machine& machine, CsvTable& table,
                     bool check_travel);
 
+/// Optional column "point": what the input calls the point of a reading.
+CsvColumn point_column();
+
 /// Optional columns "X_approach": from which side the axis came, +1, -1 or 0 (not known).
 /// @returns index of the first of them; one per axis, chain order
 std::size_t add_approach_columns(const Machine& machine, std::vector<CsvColumn>& columns);

@@ -30,6 +30,7 @@ struct Target {
   const CsvColumn* wanted = nullptr;
   double* numbers = nullptr;
   std::uint32_t* words = nullptr;
+  std::string* labels = nullptr;
   int decimal_shift = 0;
   double factor = 1;
 };
@@ -141,6 +142,10 @@ class RowReader {
 
   bool read_field(std::string_view field, const char* start, const Target& target, std::size_t row) {
     if (target.wanted == nullptr) return true;
+    if (target.labels != nullptr) {
+      target.labels[row] = field;
+      return true;
+    }
     if (target.words != nullptr) {
       if (field.empty()) return refuse(start, target.column->name, "is empty", "a name");
       const std::uint32_t word = word_index(field, target.column->wanted);
@@ -198,7 +203,9 @@ void join_names(const std::vector<RowBlock>& blocks, std::size_t wanted, CsvValu
 }
 
 void make_room(const CsvColumn& wanted, std::size_t rows, CsvValues& values) {
-  if (wanted.is_text) {
+  if (wanted.is_label) {
+    values.labels.resize(rows);
+  } else if (wanted.is_text) {
     values.words.resize(rows);
   } else {
     values.numbers.resize(rows);
@@ -216,7 +223,9 @@ std::vector<Target> targets_of(const std::vector<CsvFileColumn>& columns, const 
       values.present = true;
       values.header = column.name;
       target.wanted = &wanted[column.wanted];
-      if (target.wanted->is_text) {
+      if (target.wanted->is_label) {
+        target.labels = values.labels.data();
+      } else if (target.wanted->is_text) {
         target.words = values.words.data();
       } else {
         target.numbers = values.numbers.data();

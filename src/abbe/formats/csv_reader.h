@@ -25,6 +25,7 @@ struct CsvColumn {
   bool is_text = false;  ///< a name instead of a number; no unit
   bool required = true;
   Range range = Range::any;
+  bool is_label = false;  ///< with is_text: a text of its own in every row, which may be empty
 };
 
 /// What was read of one wanted column.
@@ -34,6 +35,7 @@ struct CsvValues {
   std::vector<double> numbers;       ///< [rows] mm, rad, s
   std::vector<std::uint32_t> words;  ///< [rows] index into `names`
   std::vector<std::string> names;    ///< in order of appearance
+  std::vector<std::string> labels;   ///< [rows] of a label, instead of words and names
 };
 
 struct CsvTable {

@@ -11,6 +11,9 @@
 
 namespace abbe {
 
+/// Provenance "method" of errors that a simulation is about: what the file does not state is zero.
+inline constexpr const char* kTruthOfSimulation = "truth of a simulation";
+
 /// Contents of a `*.errors.toml` file: errors, their covariance and where they come from.
 struct ErrorsFile {
   ErrorSet errors;

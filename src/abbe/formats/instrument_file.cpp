@@ -98,7 +98,8 @@ InstrumentReadings parse_instrument_readings(std::string_view text, const std::s
   }
   const std::size_t time = wanted.size();
   wanted.push_back({"time", Quantity::time, false, false, CsvColumn::Range::any});
-
+  const std::size_t point = wanted.size();
+  wanted.push_back(point_column());
   const std::size_t approach = add_approach_columns(machine, wanted);
 
   CsvTable table = read_csv(text, file, wanted, options.mapping, options.threads);
@@ -124,6 +125,7 @@ InstrumentReadings parse_instrument_readings(std::string_view text, const std::s
                      accepted_names(wanted[absent].base, wanted[absent].quantity) +
                          ": the uncertainties of all components, or of none");
   }
+  readings.point_name = std::move(table.columns[point].labels);
   if (table.columns[time].present) readings.time_s = std::move(table.columns[time].numbers);
   return readings;
 }
@@ -175,6 +177,7 @@ std::string instrument_readings_text(const Machine& machine, const Instrument& i
     if (i == axes && named) text += ",item";
     text += (i == 0 ? "" : ",") + columns[i].header;
   }
+  if (!readings.point_name.empty()) text += ",point";
   text += '\n';
   for (std::size_t row = 0; row < readings.count(); ++row) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -182,6 +185,7 @@ std::string instrument_readings_text(const Machine& machine, const Instrument& i
       if (i > 0) text += ',';
       text += quantity_text((*columns[i].numbers)[row], *columns[i].unit);
     }
+    if (!readings.point_name.empty()) text += "," + csv_field(readings.point_name[row]);
     text += '\n';
   }
   return text;

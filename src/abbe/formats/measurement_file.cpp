@@ -50,6 +50,8 @@ class MeasurementReader {
     const std::size_t cov_xyz = add_covariance(TrackerMeasure::cartesian);
     const std::size_t cov_range = add_covariance(TrackerMeasure::range_and_angles);
     const std::size_t time = layout_.add("time", Quantity::time);
+    const std::size_t point = layout_.columns.size();
+    layout_.columns.push_back(point_column());
     const std::size_t approach = add_approach_columns(machine_, layout_.columns);
 
     csv_ = read_csv(text_, file_, layout_.columns, options_.mapping, options_.threads);
@@ -62,6 +64,7 @@ class MeasurementReader {
     refuse_other(cartesian ? cov_range : cov_xyz, 6);
     read_uncertainty(cartesian ? u_xyz : u_range, cartesian ? cov_xyz : cov_range);
     if (!cartesian && readings.stated != StatedUncertainty::none) refuse_vertical_beams(csv_.columns[range + 2].header);
+    readings.point_name = std::move(csv_.columns[point].labels);
     if (csv_.columns[time].present) readings.time_s = std::move(csv_.columns[time].numbers);
     read_names(station, readings.station, table_.stations);
     if (table_.stations.empty()) table_.stations.emplace_back();

@@ -15,6 +15,7 @@ struct MeasurementColumn {
   const Unit* unit = nullptr;
   const std::uint16_t* words = nullptr;
   const std::vector<std::string>* names = nullptr;
+  const std::vector<std::string>* labels = nullptr;
   const std::vector<Eigen::Vector3d>* offsets = nullptr;  // of the reflector in `words`
   Eigen::Index direction = 0;
 };
@@ -33,6 +34,12 @@ class Columns {
     column.header = header;
     column.words = words.data();
     column.names = &names;
+    columns_.push_back(column);
+  }
+  void add_labels(const char* header, const std::vector<std::string>& labels) {
+    MeasurementColumn column;
+    column.header = header;
+    column.labels = &labels;
     columns_.push_back(column);
   }
   void add_offsets(const std::vector<std::uint16_t>& words, const std::vector<Eigen::Vector3d>& offsets) {
@@ -56,6 +63,8 @@ class Columns {
         if (i > 0) text += ',';
         if (column.numbers != nullptr) {
           text += quantity_text(column.numbers[row], *column.unit);
+        } else if (column.labels != nullptr) {
+          text += csv_field((*column.labels)[row]);
         } else if (column.offsets != nullptr) {
           text += shortest_text((*column.offsets)[column.words[row]][column.direction]);
         } else {
@@ -110,6 +119,7 @@ std::string measurements_text(const Machine& machine, const MeasurementTable& ta
     for (std::size_t k = 0; k < 6; ++k) columns.add(stated[k].base, stated[k].quantity, stated[k].unit, u[k]);
   }
   if (!readings.time_s.empty()) columns.add("time", Quantity::time, "s", readings.time_s);
+  if (!readings.point_name.empty()) columns.add_labels("point", readings.point_name);
   std::vector<std::vector<double>> approach;
   for (const std::vector<std::int8_t>& sides : readings.poses.approach) approach.push_back(approach_numbers(sides));
   for (std::size_t i = 0; i < approach.size(); ++i) {

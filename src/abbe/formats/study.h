@@ -168,8 +168,11 @@ struct IdentificationPlan {
   double tolerance = 1e-10;                            ///< relative change of the cost and of the parameters
   double held_out_fraction = 0.1;                      ///< of the readings, not used in the fit
   std::optional<std::filesystem::path> held_out_file;  ///< measurement file for validation instead of a fraction
-  bool select_order = false;                           ///< some motion has smallest_order < basis.order
-  int monte_carlo = 0;                                 ///< simulated identifications; 0: none
+  /// An error motion is stated up to the end of its range where the gap to the outermost reading is at most this much
+  /// of the range of the readings.
+  double coverage_margin_percent = 2;
+  bool select_order = false;  ///< some motion has smallest_order < basis.order
+  int monte_carlo = 0;        ///< simulated identifications; 0: none
 };
 
 /// Where the volumetric error is predicted.

@@ -9,6 +9,9 @@
 namespace abbe {
 namespace {
 
+// Beyond that an error motion would be an extrapolation and not the end of a range.
+constexpr double kLargestCoverageMargin = 10;
+
 constexpr Component kComponents[] = {Component::X, Component::Y, Component::Z,
                                      Component::A, Component::B, Component::C};
 
@@ -200,6 +203,10 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
   plan.tolerance = table.size_or("tolerance", Quantity::dimensionless, 1e-10);
   plan.held_out_fraction = table.size_or("held_out_fraction", Quantity::dimensionless, 0.1);
   if (plan.held_out_fraction > 0.9) table.fail("held_out_fraction", "is too large", "a fraction from 0 to 0.9");
+  plan.coverage_margin_percent = table.size_or("coverage_margin_percent", Quantity::dimensionless, 2);
+  if (plan.coverage_margin_percent > kLargestCoverageMargin) {
+    table.fail("coverage_margin_percent", "is too large", "a percentage of the measured range from 0 to 10");
+  }
   if (table.has("held_out_file")) plan.held_out_file = folder / table.text("held_out_file");
   table.text_or("held_out_file", "");
   plan.monte_carlo = static_cast<int>(table.integer_or("monte_carlo", 0, 0, 10'000'000));

@@ -53,6 +53,23 @@ double BoardMarks::standard_uncertainty(const InstrumentReadings&, std::size_t, 
   return width_ && component + 1 == components_.size() ? width_noise_ : position_noise_;
 }
 
+std::vector<InstrumentPlace> BoardMarks::places() const {
+  std::vector<InstrumentPlace> places;
+  for (const InstrumentItem& item : items_) {
+    const std::vector<std::size_t>& q = item.quantities;
+    const auto value = [&](std::size_t i) { return quantities_[q[i]].value; };
+    if (places.empty()) {
+      places.push_back({name_ + ".beam", item.from, Eigen::Vector3d(value(0), value(1), value(2)), std::nullopt,
+                        Eigen::Vector3d(beam_.tilted(value(3), value(4))),
+                        std::vector<std::size_t>(q.begin(), q.begin() + 5)});
+    }
+    places.push_back({item.name, item.to, Eigen::Vector3d(value(5), value(6), value(7)),
+                      Eigen::Matrix3d(rotation_zyx(value(8), value(9), value(10))), std::nullopt,
+                      std::vector<std::size_t>(q.begin() + 5, q.begin() + 11)});
+  }
+  return places;
+}
+
 std::vector<std::vector<double>> BoardMarks::planned_inputs(std::size_t) const {
   if (position_ != BoardMarksSetup::Position::line) return {{}};
   return {{0}, {std::numbers::pi / 2}};

@@ -65,6 +65,8 @@ class BoardMarks : public EquationInstrument<BoardMarks, 13, 3> {
                               std::size_t component) const override;
   /// The focus and the origin of the board.
   std::optional<MeetingPoints> meeting_points(std::size_t item) const override;
+  /// The beam and the boards.
+  std::vector<InstrumentPlace> places() const override;
   PoseFreedom pose_freedom() const override { return PoseFreedom::together; }
   /// Lines: one read along u and one along v.
   std::vector<std::vector<double>> planned_inputs(std::size_t item) const override;

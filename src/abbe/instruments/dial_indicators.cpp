@@ -1,5 +1,6 @@
 #include "abbe/instruments/dial_indicators.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -53,6 +54,24 @@ DialIndicators::DialIndicators(const DialIndicatorsSetup& setup)
 
 double DialIndicators::standard_uncertainty(const InstrumentReadings&, std::size_t, std::size_t) const {
   return noise_;
+}
+
+std::vector<InstrumentPlace> DialIndicators::places() const {
+  std::vector<InstrumentPlace> places;
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    for (const Touch& touch : touches_[i]) {
+      const auto first = items_[i].quantities.begin() + static_cast<std::ptrdiff_t>(touch.face);
+      const std::vector<std::size_t> q(first, first + 3);
+      const bool known = std::any_of(places.begin(), places.end(),
+                                     [&](const InstrumentPlace& place) { return place.quantities == q; });
+      if (known) continue;
+      const std::string& name = quantities_[q[0]].name;
+      places.push_back({name.substr(0, name.size() - std::string(".offset").size()), items_[i].to,
+                        Eigen::Vector3d(touch.point + quantities_[q[0]].value * touch.normal.direction), std::nullopt,
+                        Eigen::Vector3d(touch.normal.tilted(quantities_[q[1]].value, quantities_[q[2]].value)), q});
+    }
+  }
+  return places;
 }
 
 std::optional<MeetingPoints> DialIndicators::meeting_points(std::size_t item) const {

@@ -68,6 +68,8 @@ class DialIndicators : public EquationInstrument<DialIndicators, 42, 6> {
                               std::size_t component) const override;
   /// Tip of the first dial and the nominal point of its face.
   std::optional<MeetingPoints> meeting_points(std::size_t item) const override;
+  /// The faces.
+  std::vector<InstrumentPlace> places() const override;
   PoseFreedom pose_freedom() const override { return PoseFreedom::along_line; }
 
   template <typename S>

@@ -49,6 +49,7 @@ void InstrumentReadings::append(const std::vector<double>& positions, std::size_
 }
 
 void InstrumentReadings::append(const InstrumentReadings& more) {
+  join_labels(point_name, count(), more.point_name, more.count());
   join_poses(poses, more.poses);
   item.insert(item.end(), more.item.begin(), more.item.end());
   append_columns(inputs, more.inputs);
@@ -70,6 +71,9 @@ InstrumentReadings InstrumentReadings::subset(const std::vector<std::size_t>& re
   for (const std::vector<double>& column : measured) part.measured.push_back(picked(column, readings));
   for (const std::vector<double>& column : uncertainty) part.uncertainty.push_back(picked(column, readings));
   if (!time_s.empty()) part.time_s = picked(time_s, readings);
+  for (const std::size_t k : readings) {
+    if (!point_name.empty()) part.point_name.push_back(point_name[k]);
+  }
   return part;
 }
 

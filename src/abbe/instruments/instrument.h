@@ -35,6 +35,7 @@ struct InstrumentReadings {
   std::vector<std::vector<double>> measured;     ///< [components][count], mm or rad; a plan has none
   std::vector<std::vector<double>> uncertainty;  ///< [components][count] standard uncertainties, or empty: noise model
   std::vector<double> time_s;                    ///< [count] or empty
+  std::vector<std::string> point_name;           ///< [count] name of the point in the input, or empty: it gives none
 
   std::size_t count() const { return item.size(); }
   /// Adds one reading to a plan (nothing measured yet).
@@ -49,6 +50,16 @@ struct InstrumentReadings {
 struct MeetingPoints {
   Eigen::Vector3d on_from = Eigen::Vector3d::Zero();  ///< mm, frame of the item's `from` body
   Eigen::Vector3d on_to = Eigen::Vector3d::Zero();    ///< mm, frame of its `to` body
+};
+
+/// A place of the set-up that several quantities describe together: a placement, a clamping, a beam.
+struct InstrumentPlace {
+  std::string name;
+  Body body = Body::workpiece;                 ///< in whose frame the rest is
+  Eigen::Vector3d position{0, 0, 0};           ///< mm
+  std::optional<Eigen::Matrix3d> rotation{};   ///< columns: its axes
+  std::optional<Eigen::Vector3d> direction{};  ///< unit, of what has a direction alone: an axis, a normal, a beam
+  std::vector<std::size_t> quantities{};       ///< indices into Instrument::quantities() on which it depends
 };
 
 /// At which other poses an instrument that stands where it stands could be read too.
@@ -109,6 +120,10 @@ class Instrument {
   /// @return [quantities()]; as given where nothing needs to be found
   virtual std::vector<double> start_values(const Machine& machine, const InstrumentReadings& readings,
                                            std::vector<std::string>& notes) const;
+
+  /// Places of the set-up at the present values of the quantities, where these are deviations from a nominal place or
+  /// angles; a point that is a quantity itself needs none.
+  virtual std::vector<InstrumentPlace> places() const { return {}; }
 
   /// Nominal points of an item that plans bring together; none where the instrument has no such points.
   virtual std::optional<MeetingPoints> meeting_points(std::size_t item) const;

@@ -53,7 +53,42 @@ SurfaceProbe::SurfaceProbe(const SurfaceProbeSetup& setup)
   }
 }
 
+template <typename S>
+Eigen::Matrix<S, 3, 1> SurfaceProbe::clamped_point(const Mounted& mounted, const S* quantities) const {
+  Eigen::Matrix<S, 3, 1> result;
+  for (int i = 0; i < 3; ++i) {
+    if (standard_ == SurfaceProbeSetup::Standard::sphere) {
+      result[i] = quantities[5 + i] + S(mounted.point[i]);
+    } else {
+      result[i] = quantities[5] * S(mounted.frame.first[i]) + quantities[6] * S(mounted.frame.second[i]) +
+                  quantities[7] * S(mounted.frame.direction[i]) + S(mounted.point[i]);
+    }
+  }
+  return result;
+}
+
 double SurfaceProbe::standard_uncertainty(const InstrumentReadings&, std::size_t, std::size_t) const { return noise_; }
+
+std::vector<InstrumentPlace> SurfaceProbe::places() const {
+  std::vector<InstrumentPlace> places;
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    const std::vector<std::size_t>& q = items_[i].quantities;
+    double value[12];
+    for (std::size_t k = 0; k < 12; ++k) value[k] = quantities_[q[k]].value;
+    if (places.empty()) {
+      places.push_back({name_ + ".beam", items_[i].from, Eigen::Vector3d(value[0], value[1], value[2]), std::nullopt,
+                        Eigen::Vector3d(beam_.tilted(value[3], value[4])),
+                        std::vector<std::size_t>(q.begin(), q.begin() + 5)});
+    }
+    InstrumentPlace place{items_[i].name, items_[i].to, clamped_point(mounted_[i], value),
+                          std::nullopt,   std::nullopt, std::vector<std::size_t>(q.begin() + 5, q.begin() + 10)};
+    if (standard_ != SurfaceProbeSetup::Standard::sphere) {
+      place.direction = mounted_[i].frame.tilted(value[8], value[9]);
+    }
+    places.push_back(std::move(place));
+  }
+  return places;
+}
 
 std::optional<MeetingPoints> SurfaceProbe::meeting_points(std::size_t item) const {
   double value[12];
@@ -70,20 +105,6 @@ std::optional<MeetingPoints> SurfaceProbe::meeting_points(std::size_t item) cons
   const Eigen::Vector3d point = clamped_point(mounted, value);
   const bool plane = standard_ == SurfaceProbeSetup::Standard::plane;
   return MeetingPoints{{value[0], value[1], value[2]}, plane ? point : Eigen::Vector3d(point + value[10] * against)};
-}
-
-template <typename S>
-Eigen::Matrix<S, 3, 1> SurfaceProbe::clamped_point(const Mounted& mounted, const S* quantities) const {
-  Eigen::Matrix<S, 3, 1> result;
-  for (int i = 0; i < 3; ++i) {
-    if (standard_ == SurfaceProbeSetup::Standard::sphere) {
-      result[i] = quantities[5 + i] + S(mounted.point[i]);
-    } else {
-      result[i] = quantities[5] * S(mounted.frame.first[i]) + quantities[6] * S(mounted.frame.second[i]) +
-                  quantities[7] * S(mounted.frame.direction[i]) + S(mounted.point[i]);
-    }
-  }
-  return result;
 }
 
 template <typename S>

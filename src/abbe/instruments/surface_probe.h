@@ -69,6 +69,8 @@ class SurfaceProbe : public EquationInstrument<SurfaceProbe, 12, 1> {
                               std::size_t component) const override;
   /// The probe's zero and the nearest point of the standard against the beam.
   std::optional<MeetingPoints> meeting_points(std::size_t item) const override;
+  /// The beam and the clampings.
+  std::vector<InstrumentPlace> places() const override;
   PoseFreedom pose_freedom() const override { return PoseFreedom::together; }
 
   template <typename S>

@@ -54,6 +54,23 @@ TouchProbe::TouchProbe(const TouchProbeSetup& setup)
 
 double TouchProbe::standard_uncertainty(const InstrumentReadings&, std::size_t, std::size_t) const { return noise_; }
 
+std::vector<InstrumentPlace> TouchProbe::places() const {
+  std::vector<InstrumentPlace> places;
+  std::size_t last = quantities_.size();
+  for (const InstrumentItem& item : items_) {
+    const std::vector<std::size_t>& q = item.quantities;
+    if (q[3] == last) continue;  // Another sphere of the same placement.
+    last = q[3];
+    const auto value = [&](std::size_t i) { return quantities_[q[i]].value; };
+    const std::string& name = quantities_[q[3]].name;
+    places.push_back({name.substr(0, name.size() - std::string(".position.x").size()), item.to,
+                      Eigen::Vector3d(value(3), value(4), value(5)),
+                      Eigen::Matrix3d(rotation_zyx(value(6), value(7), value(8))), std::nullopt,
+                      std::vector<std::size_t>(q.begin() + 3, q.begin() + 9)});
+  }
+  return places;
+}
+
 std::vector<std::vector<double>> TouchProbe::planned_inputs(std::size_t) const {
   if (measure_ == TouchProbeSetup::Measure::centre) return {{}};
   return {{0, 0, -1}, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};

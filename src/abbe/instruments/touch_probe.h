@@ -68,6 +68,8 @@ class TouchProbe : public EquationInstrument<TouchProbe, 15, 3> {
   double standard_uncertainty(const InstrumentReadings& readings, std::size_t reading,
                               std::size_t component) const override;
   std::optional<MeetingPoints> meeting_points(std::size_t item) const override;
+  /// The placements.
+  std::vector<InstrumentPlace> places() const override;
   PoseFreedom pose_freedom() const override { return PoseFreedom::together; }
   /// Touches: from above and from four sides.
   std::vector<std::vector<double>> planned_inputs(std::size_t item) const override;

@@ -70,6 +70,7 @@ void check_sizes(const Machine& machine, const TrackerReadings& readings) {
   check("reflector", readings.reflector.size(), false);
   for (const std::vector<double>& values : readings.measured) check("measured", values.size(), false);
   check("time", readings.time_s.size(), true);
+  check("point", readings.point_name.size(), true);
   const std::size_t stated = readings.stated == StatedUncertainty::none       ? 0
                              : readings.stated == StatedUncertainty::standard ? 3
                                                                               : 6;

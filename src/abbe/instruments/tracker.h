@@ -95,6 +95,7 @@ struct TrackerReadings {
   std::vector<std::uint16_t> reflector;         ///< [count] index into TrackerSetup::reflectors
   std::array<std::vector<double>, 3> measured;  ///< [count] each: see TrackerMeasure
   std::vector<double> time_s;                   ///< [count] or empty
+  std::vector<std::string> point_name;          ///< [count] name of the point in the input, or empty: it gives none
   /// standard: [0..2] are the standard uncertainties of the measured components (mm or rad; azimuth as the angle
   /// itself, not across the beam). covariance: xx, yy, zz, xy, xz, yz of the measured components. Else empty.
   std::array<std::vector<double>, 6> uncertainty;
