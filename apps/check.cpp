@@ -13,6 +13,7 @@
 #include "check_frozen.h"
 #include "check_geometry.h"
 #include "command.h"
+#include "errors_for_use.h"
 #include "exit_code.h"
 #include "options.h"
 
@@ -157,13 +158,14 @@ void add_check_command(CommandLine& line) {
       nlohmann::ordered_json json = machine_json(machine);
       std::size_t coefficients = 0, terms = 0;
       if (!options->errors.empty()) {
-        const ErrorsFile errors = read_errors(options->errors, machine);
+        const ErrorsFile errors = read_errors_and_tell(options->errors, machine);
         terms = errors.errors.motions.size();
         coefficients = errors.errors.parameter_count();
         json["errors"] = {{"motion_terms", terms},
                           {"location_errors", errors.errors.locations.size()},
                           {"parameters", coefficients},
-                          {"covariance", errors.covariance.size() > 0}};
+                          {"covariance", errors.covariance.size() > 0},
+                          {"distrusted", errors.distrusted}};
       }
       if (options->json) {
         fmt::print("{}", json_text(json));

@@ -7,9 +7,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/study_file.h"
-#include "abbe/identify/prediction.h"
 #include "command.h"
-#include "exit_code.h"
 #include "options.h"
 #include "progress.h"
 #include "study/advice.h"
@@ -17,13 +15,14 @@
 #include "study/print.h"
 #include "study/report_parameters.h"
 #include "study/summary.h"
+#include "study/trust.h"
 
 namespace abbe {
 
 void add_identify_command(CommandLine& line) {
   struct Options {
     std::string study, output;
-    bool json = false, parameters = false;
+    bool json = false, parameters = false, accept_misfit = false;
   };
   auto options = std::make_shared<Options>();
   Subcommand* command = line.add("identify", "Identify the errors of a study's machine, without maps and report",
@@ -34,6 +33,8 @@ void add_identify_command(CommandLine& line) {
                            "Errors file to write (*.errors.toml), covariance beside it");
   command->add_flag("--parameters", options->parameters, "List every parameter with its standard uncertainty");
   command->add_flag("--json", options->json, "Print JSON for programs");
+  command->add_flag("--accept-misfit", options->accept_misfit,
+                    "End with exit code 0 and usable errors although the result is not to be trusted");
   command->callback([&line, options] {
     line.run = [options]() -> int {
       const Study study = read_study(options->study);
@@ -41,6 +42,7 @@ void add_identify_command(CommandLine& line) {
         throw InputError({.file = options->study}, "nothing to identify", "an [identify] table");
       if (!options->output.empty()) refuse_existing_output(covariance_beside(options->output));
       StudyResult result;
+      result.misfit_accepted = options->accept_misfit;
       {
         Progress progress(study.simulation ? "simulating readings" : "reading measurements");
         result.campaign = gather_readings(study, progress.callback());
@@ -50,10 +52,9 @@ void add_identify_command(CommandLine& line) {
       if (result.usable()) {
         result.unseen = evaluate_unseen(study, result);
         tell_datum_apart(result, *result.unseen);
+        judge_trust(study, result);
         if (!options->output.empty()) {
-          ErrorsFile file;
-          file.errors = result.identification.errors;
-          file.covariance = machine_covariance(result.identification, file.errors.parameter_count());
+          ErrorsFile file = identified_errors_file(study, result);
           file.provenance = {{"study", study.name}, {"method", "abbe identify"}};
           write_errors(options->output, study.machine, file);
         }
@@ -62,7 +63,8 @@ void add_identify_command(CommandLine& line) {
         nlohmann::ordered_json json = study_summary(study, result);
         if (result.usable()) json["parameter_table"] = report_parameters(study.machine, result, nullptr);
         fmt::print("{}", json_text(json));
-        return result.usable() ? kDone : kNegative;
+        tell_distrust(result);
+        return study_exit_code(study, result);
       }
       print_study(study, result, options->parameters);
       if (options->parameters && result.usable()) {
@@ -77,7 +79,8 @@ void add_identify_command(CommandLine& line) {
         }
       }
       if (!options->output.empty() && result.usable()) fmt::print("\n{} written\n", options->output);
-      return result.usable() ? kDone : kNegative;
+      tell_distrust(result);
+      return study_exit_code(study, result);
     };
   });
 }

@@ -13,6 +13,7 @@
 #include "abbe/verify/error_map.h"
 #include "axis_option.h"
 #include "command.h"
+#include "errors_for_use.h"
 #include "exit_code.h"
 #include "options.h"
 #include "partial_errors.h"
@@ -119,9 +120,9 @@ void print_text(const MapReport& report) {
 
 int run_map(const MapOptions& options) {
   const Machine machine = read_machine(options.machine);
-  const ErrorsFile errors = read_errors(options.errors, machine);
+  const ErrorsFile errors = read_errors_and_tell(options.errors, machine);
   std::optional<ErrorsFile> reference;
-  if (!options.reference.empty()) reference = read_errors(options.reference, machine);
+  if (!options.reference.empty()) reference = read_errors_and_tell(options.reference, machine);
 
   StatedPoses stated;
   if (!options.poses.empty()) {

@@ -22,6 +22,7 @@
 #include "abbe/machine/tool_path.h"
 #include "axis_option.h"
 #include "command.h"
+#include "errors_for_use.h"
 #include "exit_code.h"
 #include "messages.h"
 #include "options.h"
@@ -36,7 +37,7 @@ struct PathCommand {
   std::vector<std::string> hold, start, words, outputs;
   double feed_mm_per_min = 0, retract_mm = 0, tolerance_um = 0;
   int decimals = 6;
-  bool feed_per_minute = false, json = false;
+  bool feed_per_minute = false, json = false, accept_misfit = false;
 };
 
 PathProgramOptions program_options(const PathCommand& command, const Machine& machine) {
@@ -136,7 +137,8 @@ int run_path(const PathCommand& command) {
   const Machine nominal = read_machine(command.machine);
   CalibratedMachine calibrated{nominal, std::vector<double>(nominal.axes.size(), 0.0), {}};
   if (!command.errors.empty()) {
-    calibrated = calibrated_machine(nominal, read_errors(command.errors, nominal).errors);
+    calibrated =
+        calibrated_machine(nominal, read_errors_for_use(command.errors, nominal, command.accept_misfit).errors);
     if (!calibrated.variable.empty()) {
       throw InputError({.file = command.errors, .field = calibrated.variable},
                        "an error motion, which depends on the position of its axis",
@@ -254,6 +256,7 @@ void add_path_command(CommandLine& line) {
                            "Page to write (.html): the tool on its path, played, on the part");
   command->add_option("--part", options->part, "Mesh of the workpiece for that page (.stl .ply .obj .step), mm")
       ->needs("--report");
+  add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options]() -> int { return run_path(*options); }; });
 }

@@ -6,7 +6,6 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/study_file.h"
 #include "command.h"
-#include "exit_code.h"
 #include "options.h"
 #include "progress.h"
 #include "study/advice.h"
@@ -14,6 +13,7 @@
 #include "study/print.h"
 #include "study/results.h"
 #include "study/summary.h"
+#include "study/trust.h"
 #include "uncovered_poses.h"
 
 namespace abbe {
@@ -21,7 +21,7 @@ namespace abbe {
 void add_run_command(CommandLine& line) {
   struct Options {
     std::string study, output;
-    bool accept_uncovered = false, all_values = false, json = false;
+    bool accept_uncovered = false, accept_misfit = false, all_values = false, json = false;
   };
   auto options = std::make_shared<Options>();
   Subcommand* command =
@@ -33,12 +33,15 @@ void add_run_command(CommandLine& line) {
   command->add_flag("--accept-uncovered", options->accept_uncovered, kAcceptUncoveredWords);
   command->add_flag("--all-values", options->all_values, "Print every identified value and every outlier");
   command->add_flag("--json", options->json, "Print the summary as JSON for programs");
+  command->add_flag("--accept-misfit", options->accept_misfit,
+                    "End with exit code 0 and usable errors although the result is not to be trusted");
   command->callback([&line, options] {
     line.run = [options]() -> int {
       Study study = read_study(options->study);
       if (!options->output.empty()) study.output = options->output;
       check_results_folder(study.output);
       StudyResult result;
+      result.misfit_accepted = options->accept_misfit;
       {
         Progress progress(study.simulation ? "simulating readings" : "reading measurements");
         result.campaign = gather_readings(study, progress.callback());
@@ -51,6 +54,7 @@ void add_run_command(CommandLine& line) {
         if (result.usable()) {
           result.unseen = evaluate_unseen(study, result);
           tell_datum_apart(result, *result.unseen);
+          judge_trust(study, result);
           Progress progress("mapping the volumetric error");
           result.map = map_study(study, result, progress.callback());
         }
@@ -63,10 +67,14 @@ void add_run_command(CommandLine& line) {
         fmt::print("\nresults in {}\n", study.output.string());
         if (study.report.page) fmt::print("report:    {}\n", (study.output / "report.html").string());
       }
-      if (study.identification && !result.usable()) return kNegative;
-      if (!result.map) return kDone;
-      return tell_uncovered(result.map->before.statistics.excluded, result.map->poses.count(),
-                            options->accept_uncovered);
+      tell_distrust(result);
+      int code = study_exit_code(study, result);
+      if (result.map) {
+        const int uncovered = tell_uncovered(result.map->before.statistics.excluded, result.map->poses.count(),
+                                             options->accept_uncovered);
+        if (code == kDone) code = uncovered;
+      }
+      return code;
     };
   });
 }

@@ -24,6 +24,7 @@
 #include "compensate/position_words.h"
 #include "compensate/reversal_words.h"
 #include "compensate/safety.h"
+#include "errors_for_use.h"
 #include "exit_code.h"
 #include "messages.h"
 #include "options.h"
@@ -40,7 +41,7 @@ struct FreezeArguments {
   std::optional<double> limit_um;
   double largest_turn_deg = 0.57;
   double leave_out_factor = 0;
-  bool json = false, dry_run = false;
+  bool json = false, dry_run = false, accept_misfit = false;
 };
 
 FreezeOptions options_of(const FreezeArguments& arguments, const Machine& machine, const ErrorsFile& errors) {
@@ -186,7 +187,7 @@ std::string nothing_reached(const FrozenCompensation& frozen) {
 
 int run_freeze(const FreezeArguments& arguments) {
   const Machine machine = read_machine(arguments.machine);
-  const ErrorsFile errors = read_errors(arguments.errors, machine);
+  const ErrorsFile errors = read_errors_for_use(arguments.errors, machine, arguments.accept_misfit);
   if (arguments.output.empty() && !arguments.dry_run) {
     throw InputError({.field = "-o"}, "missing", "a file for the frozen compensation (*.abbec), or --dry-run");
   }
@@ -267,6 +268,7 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
       ->capture_default_str();
   command->add_option("--leave-out-below-uncertainty", arguments->leave_out_factor,
                       "Leave out errors that are smaller than so many of their standard uncertainties everywhere");
+  add_accept_misfit(*command, arguments->accept_misfit);
   command->add_flag("--json", arguments->json, "Print the result as JSON");
   command->callback([arguments, &line] { line.run = [arguments] { return run_freeze(*arguments); }; });
 }

@@ -25,6 +25,7 @@
 #include "compensate/gcode_options.h"
 #include "compensate/gcode_report.h"
 #include "compensate/safety.h"
+#include "errors_for_use.h"
 #include "exit_code.h"
 #include "messages.h"
 #include "options.h"
@@ -57,7 +58,7 @@ int run_gcode(const GcodeOptions& options) {
     throw InputError({.field = "-o"}, "missing", "a file for the corrected program, or --dry-run");
   }
   const Machine machine = read_machine(options.machine);
-  const ErrorsFile errors = read_errors(options.errors, machine);
+  const ErrorsFile errors = read_errors_for_use(options.errors, machine, options.accept_misfit);
   check_leave_out(options.leave_out_factor, errors, options.errors);
   const WordAxes words = gcode_words(options, machine);
   NcProgramOptions text_options = gcode_text_options(options, machine, words);
@@ -186,6 +187,7 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
   command->add_option("--max-minutes", options->max_minutes,
                       "give up a program that takes longer (default: 5, and 1 for every 10 MB of the program)");
   command->add_flag("--dry-run", options->dry_run, "only the report: largest corrections and where; writes nothing");
+  add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "print JSON for programs");
   command->callback([&line, options] { line.run = [options] { return run_gcode(*options); }; });
 }

@@ -23,7 +23,7 @@ struct GcodeOptions {
   int tool = -1, decimals = 6;
   std::optional<double> max_output_mb, max_minutes;
   bool tool_table_in_inches = false, parameters_in_inches = false;
-  bool tool_centre = false, inches = false, block_delete = false, dry_run = false, json = false;
+  bool accept_misfit = false, tool_centre = false, inches = false, block_delete = false, dry_run = false, json = false;
 };
 
 /// What a program may meet and still be written, by its name for --allow.

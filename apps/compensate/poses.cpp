@@ -25,6 +25,7 @@
 #include "compensate/compensate.h"
 #include "compensate/position_words.h"
 #include "compensate/safety.h"
+#include "errors_for_use.h"
 #include "exit_code.h"
 #include "messages.h"
 #include "options.h"
@@ -37,7 +38,7 @@ struct PosesCommand {
   std::vector<std::string> hold;
   std::optional<double> limit_um;
   double largest_turn_deg = 0.5, leave_out_factor = 0;
-  bool dry_run = false, json = false;
+  bool dry_run = false, json = false, accept_misfit = false;
 };
 
 /// A figure and the row of the file where it is, from 1; 0: nowhere.
@@ -227,7 +228,7 @@ int run_poses(const PosesCommand& command) {
   if (command.output.empty() && !command.dry_run)
     throw InputError({.field = "-o"}, "missing", "a file for the corrected commands (*.csv), or --dry-run");
   const Machine machine = read_machine(command.machine);
-  const ErrorsFile errors = read_errors(command.errors, machine);
+  const ErrorsFile errors = read_errors_for_use(command.errors, machine, command.accept_misfit);
   const PoseList poses = read_poses(command.poses, machine);
   if (!command.output.empty()) refuse_input_as_output(command.output);
   check_leave_out(command.leave_out_factor, errors, command.errors);
@@ -289,6 +290,7 @@ void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
   command->add_option("--leave-out-below-uncertainty", options->leave_out_factor,
                       "Leave out errors that are smaller than so many of their standard uncertainties everywhere");
   command->add_flag("--dry-run", options->dry_run, "Say all, largest corrections and where; write nothing");
+  add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options] { return run_poses(*options); }; });
 }

@@ -26,6 +26,7 @@
 #include "compensate/table_report.h"
 #include "compensate/travel_grid.h"
 #include "compensate/useless_tables.h"
+#include "errors_for_use.h"
 #include "exit_code.h"
 #include "messages.h"
 #include "options.h"
@@ -45,7 +46,7 @@ struct TableCommand {
   std::size_t first_table = 0, encoder = 0;
   double unit_um = 1;
   int type = 1;
-  bool json = false, dry_run = false, negate = false;
+  bool json = false, dry_run = false, accept_misfit = false, negate = false;
   std::vector<std::string> given;  ///< of the options that not every format has
 };
 
@@ -196,7 +197,7 @@ int run_table(const TableCommand& command) {
   const TableFormat& format = table_format(command.format);
   refuse_options_of_other_formats(format, command.given);
   const Machine machine = read_machine(command.machine);
-  const ErrorsFile file = read_errors(command.errors, machine);
+  const ErrorsFile file = read_errors_for_use(command.errors, machine, command.accept_misfit);
   check_outputs(command);
   check_leave_out(command.times_uncertainty, file, command.errors);
   refusal_limit("--limit-um", command.limit_um, "um");
@@ -357,6 +358,7 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
       "default 0, or the end of the travel next to it; repeatable");
   command->add_output_file("--map", options->map,
                            "Map of the displacement without tables, with them and ideal: .csv, .vts or .vtu");
+  add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options, command] {
     for (const FormatOption& option : format_options()) {

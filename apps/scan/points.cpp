@@ -12,6 +12,7 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/scan_file.h"
 #include "command.h"
+#include "errors_for_use.h"
 #include "exit_code.h"
 #include "messages.h"
 #include "options.h"
@@ -26,7 +27,7 @@ struct PointsOptions {
   std::vector<double> zero, beam, range;
   std::vector<std::string> columns, ignore;
   ScanOptions scan;
-  bool any_travel = false, json = false;
+  bool any_travel = false, json = false, accept_misfit = false;
 };
 
 /// "indication_um=h": our name with its unit = name in the file.
@@ -62,7 +63,7 @@ ProbeBeam beam_of(const PointsOptions& options, const Machine& machine) {
 int run_points(PointsOptions options) {
   const Machine machine = read_machine(options.machine);
   ErrorSet errors;
-  if (!options.errors.empty()) errors = read_errors(options.errors, machine).errors;
+  if (!options.errors.empty()) errors = read_errors_for_use(options.errors, machine, options.accept_misfit).errors;
   read_mapping(options, options.scan.mapping);
   options.scan.check_travel = !options.any_travel;
   if (!options.range.empty()) {
@@ -155,6 +156,7 @@ void add_scan_points(Subcommand& scan, CommandLine& line) {
       ->check(in_range(0, 12));
   command->add_flag("--any-travel", options->any_travel, "Accept positions outside the travel of an axis");
   command->add_option("--threads", options->scan.threads, "Threads (0: all)")->check(in_range(0, 64));
+  add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options] { return run_points(*options); }; });
 }

@@ -26,18 +26,6 @@ bool narrow_to_known(const ErrorSet& errors, std::size_t axis, AxisRange& range)
   return range.from != from || range.to != to;
 }
 
-/// Uncertainties follow from those stated for the readings: residuals that these do not explain make them too small.
-void warn_of_misfit(StudyResult& result) {
-  constexpr double kNoChance = 1e-4;
-  const FitStatistics& fit = result.identification.statistics;
-  if (!(fit.degrees_of_freedom > 0) || !(fit.variance_factor > 1) || !(fit.p_value < kNoChance)) return;
-  result.warnings.push_back(fmt::format(
-      "the residuals are {:.3g} times as large as the stated uncertainties of the readings explain (chi-square "
-      "probability below {:.0e}): the model lacks errors that the readings show, or the readings are less certain than "
-      "stated. The stated uncertainties of the result are too small.",
-      std::sqrt(fit.variance_factor), kNoChance));
-}
-
 }  // namespace
 
 void keep_common_poses(std::span<ErrorMap* const> maps) {
@@ -113,7 +101,6 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     result.advice = unseen_advice(problem, result.identification, possible_measurements(problem));
   }
   if (!result.usable()) return;
-  warn_of_misfit(result);
   if (plan.monte_carlo > 0) {
     MonteCarloOptions monte_carlo_options;
     monte_carlo_options.samples = static_cast<std::size_t>(plan.monte_carlo);

@@ -8,6 +8,7 @@
 #include "abbe/identify/monte_carlo.h"
 #include "abbe/identify/order_selection.h"
 #include "abbe/identify/strategies.h"
+#include "abbe/identify/trust.h"
 #include "abbe/identify/unseen.h"
 #include "abbe/verify/error_map.h"
 #include "study/campaign.h"
@@ -42,8 +43,10 @@ struct StudyResult {
   std::optional<VolumetricFigures> volumetric;  ///< over the grid of all commands; usable results only
   std::optional<StudyMap> map;
   std::vector<std::string> warnings;
-  std::vector<Advice> advice;    ///< what the readings do not see, and what would show it
-  NotIdentified not_identified;  ///< errors of the machine that are not in the model; empty unless usable
+  std::vector<Advice> advice;        ///< what the readings do not see, and what would show it
+  NotIdentified not_identified;      ///< errors of the machine that are not in the model; empty unless usable
+  std::vector<Distrust> distrusted;  ///< why a usable result must not be used as it is, see judge_trust()
+  bool misfit_accepted = false;      ///< the user wants to use it nevertheless
 
   /// True if the result may be used: converged and nothing impossible.
   bool usable() const { return identification.status == IdentifyStatus::converged; }

@@ -42,6 +42,7 @@ void print_study(const Study& study, const StudyResult& result, bool all_values)
   if (result.campaign.truth) fmt::print("simulated: the true errors are known\n");
   fmt::print("{} readings\n", result.campaign.reading_count());
   for (const std::string& warning : result.warnings) fmt::print("warning: {}\n", warning);
+  for (const Distrust& reason : result.distrusted) fmt::print("not to be trusted: {}\n", reason.text);
   if (!study.identification) return;
   const Identification& identified = result.identification;
   fmt::print("\n{}\n", study_verdict(study, result));

@@ -13,6 +13,7 @@
 #include "study/report_parameters.h"
 #include "study/report_residuals.h"
 #include "study/summary.h"
+#include "study/trust.h"
 #include "study/truth_in_gauge.h"
 #include "uncovered_poses.h"
 #include "vector_json.h"
@@ -128,17 +129,13 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
   json["machine"] = report_machine(study.machine);
   json["summary"] = summary;
   json["warnings"] = nlohmann::ordered_json::array();
-  for (const std::string& warning : result.warnings)
-    json["warnings"].push_back({{"level", "warning"}, {"text", warning}});
+  for (const Distrust& reason : result.distrusted)
+    json["warnings"].push_back({{"level", "error"}, {"text", "Not to be trusted: " + reason.text + "."}});
   if (study.identification && !result.usable()) {
     json["warnings"].push_back({{"level", "error"}, {"text", study_verdict(study, result)}});
   }
-  if (result.unseen && !result.unseen->open.empty()) {
-    json["warnings"].push_back({{"level", "warning"}, {"text", open_directions_text(*result.unseen)}});
-  }
-  if (!result.not_identified.errors.empty()) {
-    json["warnings"].push_back({{"level", "warning"}, {"text", not_identified_text(study, result)}});
-  }
+  for (const std::string& warning : study_warnings(study, result))
+    json["warnings"].push_back({{"level", "warning"}, {"text", warning}});
   if (result.map && result.map->before.statistics.excluded > 0) {
     json["warnings"].push_back(
         {{"level", "warning"},

@@ -13,11 +13,11 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/map_file.h"
 #include "abbe/formats/results_folder.h"
-#include "abbe/identify/prediction.h"
 #include "abbe/report/report.h"
 #include "study/report_data.h"
 #include "study/report_residuals.h"
 #include "study/summary.h"
+#include "study/trust.h"
 
 namespace abbe {
 namespace {
@@ -118,9 +118,7 @@ nlohmann::ordered_json write_results(const Study& study, const StudyResult& resu
     folder.write("truth.errors.toml", errors_text(study.machine, truth));
   }
   if (result.usable()) {
-    ErrorsFile errors;
-    errors.errors = result.identification.errors;
-    errors.covariance = machine_covariance(result.identification, errors.errors.parameter_count());
+    ErrorsFile errors = identified_errors_file(study, result);
     errors.provenance = {
         {"study", study.name}, {"method", "abbe identify"}, {"gauge", "ISO 230 conventions, see report"}};
     folder.write("errors.toml", errors_text(study.machine, errors, "errors.covariance.csv"));

@@ -14,6 +14,7 @@
 #include "study/found_values_words.h"
 #include "study/outlier_list.h"
 #include "study/residual_figures.h"
+#include "study/trust.h"
 
 namespace abbe {
 namespace {
@@ -85,7 +86,12 @@ std::string study_verdict(const Study& study, const StudyResult& result) {
                                              ? status_text(result.identification.status)
                                              : result.identification.message);
   }
-  std::string text = known_words(study, result);
+  std::string text;
+  if (!result.distrusted.empty()) {
+    text = fmt::format("{} ({}). ", result.misfit_accepted ? "Accepted despite doubts" : "Not to be trusted",
+                       distrust_kinds(result));
+  }
+  text += known_words(study, result);
   if (result.volumetric && result.volumetric->poses > 0) {
     text += volumetric_sentence(*result.volumetric, prediction_covers(result));
   } else {
@@ -124,6 +130,11 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
     json["converged"] = result.usable();
     json["readings"] = result.campaign.reading_count();
     if (result.usable()) {
+      json["trusted"] = result.distrusted.empty();
+      if (!result.distrusted.empty()) {
+        json["distrusted"] = distrust_json(result);
+        json["misfit_accepted"] = result.misfit_accepted;
+      }
       std::size_t machine_parameters = 0;
       for (const EstimatedParameter& parameter : identified.parameters)
         machine_parameters += parameter.id.is_machine() ? 1U : 0U;
@@ -164,6 +175,7 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
     }
   }
   if (!result.model.coverage.empty()) json["ranges"] = coverage_json(study, result);
+  json["warnings"] = study_warnings(study, result);
   if (!result.advice.empty()) json["not_seen"] = advice_json(result);
   const bool conditional = !result.not_identified.errors.empty();
   if (conditional) {

@@ -100,6 +100,7 @@ void add_tracker(const Study& study, const StudyResult& result, std::size_t s, c
     as_stated.set_parameters(identified.parameters(), result.identification.setup[s]);
     tally.add_against_noise(as_stated);
   }
+  tally.unseen.fitted_before += 6 * setup.start.stations.size();
   // The observations carry the identified poses and offsets; build them as the fit did, so that the unknowns
   // correspond.
   TrackerSetup weighed = setup.start;

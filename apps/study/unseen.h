@@ -30,8 +30,9 @@ struct UnseenPoses {
   std::vector<double> before;
   std::vector<double> after;                 ///< identified machine; mm
   std::vector<double> expanded_uncertainty;  ///< k = 2 of the prediction, root of the trace of its covariance; mm
-  double times_noise = 0;  ///< held-out readings: root mean square of residuals over stated uncertainties
-  double coverage = 0;     ///< share of the coordinates within 2 u of the prediction; 0..1
+  double times_noise = 0;         ///< held-out readings: root mean square of residuals over stated uncertainties
+  std::size_t fitted_before = 0;  ///< numbers of the set-up fitted to these readings for `before`, not for `after`
+  double coverage = 0;            ///< share of the coordinates within 2 u of the prediction; 0..1
   /// Conventions on which the volumetric error depends other than by the choice of the workpiece datum: the readings
   /// do not determine it in these directions.
   std::vector<std::string> open;

@@ -12,6 +12,7 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/trace_file.h"
 #include "axis_option.h"
+#include "errors_for_use.h"
 #include "study/job.h"
 
 namespace abbe {
@@ -192,7 +193,7 @@ VerifyResult verify(const VerifyOptions& options) {
   result.errors_file = found(options.errors, options.results, "errors.toml", "--errors");
   result.truth_file = found(options.truth, options.results, "truth.errors.toml", "--truth");
   result.machine = read_machine(machine_file);
-  result.identified = read_errors(result.errors_file, result.machine);
+  result.identified = read_errors_and_tell(result.errors_file, result.machine);
   result.truth = read_errors(result.truth_file, result.machine);
   // Without correlations, which is the best that can be said of a file that states uncertainties only.
   if (result.identified.covariance.size() == 0) {

@@ -21,6 +21,9 @@ struct ErrorsFile {
   Eigen::MatrixXd covariance;
   /// Free text about the origin, in order: {"method", "joint identification"}.
   std::vector<std::pair<std::string, std::string>> provenance;
+  std::vector<std::string> distrusted{};  ///< why they must not be used as they are, a sentence each; empty: trusted
+  bool misfit_accepted = false;           ///< somebody who knew these reasons wanted to use the errors nevertheless
+  std::vector<std::string> warnings{};    ///< what else the identification had to say
 };
 
 /// Reads the errors of a machine and the CSV files that the file names (beside it). Bases without from/to run over the

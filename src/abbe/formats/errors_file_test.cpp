@@ -74,10 +74,18 @@ TEST(ErrorsFile, ReadsBackTheSameBits) {
     ErrorsFile contents;
     contents.errors = random_set(generator);
     contents.provenance = {{"method", "joint \"fit\""}, {"date", "2026-01-01"}};
+    if (i % 2 == 1) {
+      contents.distrusted = {"the residuals are \"large\"", "EX0C is 700 mm"};
+      contents.misfit_accepted = i % 4 == 1;
+      contents.warnings = {"not identified: EXX"};
+    }
     const ErrorsFile back = parsed_errors(errors_text(test::endless_turntable(), contents));
     expect_same(back.errors, contents.errors);
     EXPECT_EQ(back.errors.parameters(), contents.errors.parameters());
     ASSERT_EQ(back.provenance.size(), 2U);
+    EXPECT_EQ(back.distrusted, contents.distrusted);
+    EXPECT_EQ(back.misfit_accepted, contents.misfit_accepted);
+    EXPECT_EQ(back.warnings, contents.warnings);
   }
 }
 

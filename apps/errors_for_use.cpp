@@ -1,0 +1,33 @@
+#include "errors_for_use.h"
+
+#include "abbe/formats/input_error.h"
+#include "messages.h"
+#include "options.h"
+
+namespace abbe {
+
+ErrorsFile read_errors_for_use(const std::filesystem::path& path, const Machine& machine, bool accept_misfit) {
+  ErrorsFile contents = read_errors(path, machine);
+  if (contents.distrusted.empty()) return contents;
+  if (!accept_misfit && !contents.misfit_accepted) {
+    throw InputError({.file = path.string(), .field = "distrusted"},
+                     "the identification marked these errors as not to be trusted: " + contents.distrusted.front(),
+                     "errors whose cause was found, or --accept-misfit to use them as they are");
+  }
+  for (const std::string& reason : contents.distrusted)
+    tell("abbe: {}: used although marked as not to be trusted: {}\n", path.string(), reason);
+  return contents;
+}
+
+ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine& machine) {
+  ErrorsFile contents = read_errors(path, machine);
+  for (const std::string& reason : contents.distrusted)
+    tell("abbe: {}: marked as not to be trusted: {}\n", path.string(), reason);
+  return contents;
+}
+
+void add_accept_misfit(Subcommand& command, bool& accept_misfit) {
+  command.add_flag("--accept-misfit", accept_misfit, "Use errors that are marked as not to be trusted");
+}
+
+}  // namespace abbe

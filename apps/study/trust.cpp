@@ -1,0 +1,104 @@
+#include "study/trust.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "abbe/identify/prediction.h"
+#include "exit_code.h"
+#include "messages.h"
+#include "study/job.h"
+
+namespace abbe {
+namespace {
+
+/// Less than chance, but not enough to refuse the result: worth telling.
+constexpr double kHardlyChance = 1e-4;
+
+std::string warning_of_poor_fit(const FitStatistics& fit) {
+  if (!(fit.degrees_of_freedom > 0) || !(fit.variance_factor > 1) || !(fit.p_value < kHardlyChance)) return {};
+  return fmt::format(
+      "the residuals are {:.3g} times as large as the stated uncertainties of the readings explain (chi-square "
+      "probability {:.1e}): the model lacks errors that the readings show, or the readings are less certain than "
+      "stated. The stated uncertainties of the result are too small.",
+      std::sqrt(fit.variance_factor), fit.p_value);
+}
+
+}  // namespace
+
+void judge_trust(const Study& study, StudyResult& result) {
+  if (!result.usable()) return;
+  const Identification& identified = result.identification;
+  const auto doubt = [&](std::optional<Distrust> found) {
+    if (found) result.distrusted.push_back(std::move(*found));
+  };
+  const auto warn = [&](std::string text) {
+    if (!text.empty()) result.warnings.push_back(std::move(text));
+  };
+  std::optional<Distrust> misfit = distrust_of_fit(identified.statistics);
+  if (!misfit) warn(warning_of_poor_fit(identified.statistics));
+  warn(warning_of_overstated_noise(identified.statistics));
+  doubt(std::move(misfit));
+  if (result.unseen && !result.unseen->after.empty()) {
+    const UnseenPoses& unseen = *result.unseen;
+    doubt(distrust_of_held_out({.mean_before = unseen.before_statistics.mean,
+                                .mean_after = unseen.after_statistics.mean,
+                                .count = 3 * static_cast<double>(unseen.before_statistics.count),
+                                .fitted_before = static_cast<double>(unseen.fitted_before)}));
+  }
+  for (Distrust& size : distrust_of_sizes(study.machine, identified.errors))
+    result.distrusted.push_back(std::move(size));
+}
+
+std::vector<std::string> study_warnings(const Study& study, const StudyResult& result) {
+  std::vector<std::string> warnings = result.warnings;
+  if (result.unseen && !result.unseen->open.empty()) warnings.push_back(open_directions_text(*result.unseen));
+  if (!result.not_identified.errors.empty()) warnings.push_back(not_identified_text(study, result));
+  return warnings;
+}
+
+std::string distrust_kinds(const StudyResult& result) {
+  std::string kinds;
+  for (const Distrust& reason : result.distrusted) {
+    const std::string kind = kind_text(reason.kind);
+    if (kinds.find(kind) == std::string::npos) kinds += (kinds.empty() ? "" : ", ") + kind;
+  }
+  return kinds;
+}
+
+nlohmann::ordered_json distrust_json(const StudyResult& result) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Distrust& reason : result.distrusted) {
+    nlohmann::ordered_json entry = {{"kind", kind_text(reason.kind)}, {"text", reason.text}};
+    for (const auto& [name, value] : reason.numbers) entry[name] = value;
+    list.push_back(entry);
+  }
+  return list;
+}
+
+void tell_distrust(const StudyResult& result) {
+  for (const Distrust& reason : result.distrusted) tell("abbe: not to be trusted: {}\n", reason.text);
+  if (result.distrusted.empty()) return;
+  tell("abbe: {}\n", result.misfit_accepted
+                         ? "accepted by --accept-misfit, which its errors file says"
+                         : "its errors are marked and abbe compensate refuses them; once the cause is known and "
+                           "harmless, --accept-misfit accepts the result");
+}
+
+ErrorsFile identified_errors_file(const Study& study, const StudyResult& result) {
+  ErrorsFile file;
+  file.errors = result.identification.errors;
+  file.covariance = machine_covariance(result.identification, file.errors.parameter_count());
+  for (const Distrust& reason : result.distrusted) file.distrusted.push_back(reason.text);
+  file.misfit_accepted = result.misfit_accepted && !result.distrusted.empty();
+  file.warnings = study_warnings(study, result);
+  return file;
+}
+
+int study_exit_code(const Study& study, const StudyResult& result) {
+  if (!study.identification) return kDone;
+  return result.usable() && (result.distrusted.empty() || result.misfit_accepted) ? kDone : kNegative;
+}
+
+}  // namespace abbe

@@ -1,0 +1,192 @@
+// A result that must not be trusted does not look like a good one: exit code, standard error, files, and what the
+// commands that use errors do with it.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/command_test.h"
+#include "cli/machine_for_test.h"
+
+namespace abbe {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr const char* kTrueErrors = R"(chain = "w X' b Z t"
+[[motion]]
+name = "EXX"
+basis = "legendre"
+order = 2
+coefficients_um = [0, 30, 20]
+[[motion]]
+name = "EZX"
+basis = "legendre"
+order = 2
+coefficients_um = [0, 0, -25]
+[[motion]]
+name = "EZZ"
+basis = "legendre"
+order = 2
+coefficients_um = [0, -20, 15]
+)";
+
+constexpr const char* kSetup = R"([[setup]]
+name = "tracker"
+instrument = "tracker"
+noise = { xyz_um = 5 }
+[[setup.station]]
+name = "S"
+pose = "find"
+true_pose = { position_mm = [300, -900, 150], angles_deg = [5, -3, 130] }
+[[setup.reflector]]
+name = "R1"
+offset_mm = [60, 0, -150]
+[[setup.reflector]]
+name = "R2"
+offset_mm = [0, 80, -250]
+[[setup.reflector]]
+name = "R3"
+offset_mm = [-70, -30, -100]
+)";
+
+constexpr const char* kPlan = "[[setup.plan]]\nkind = \"grid\"\naxis.X = { count = 12 }\naxis.Z = { count = 6 }\n";
+
+constexpr const char* kIdentify = R"([identify]
+held_out_fraction = 0.2
+[[identify.motion]]
+errors = ["E?X", "E?Z"]
+basis = "legendre"
+order = 2
+)";
+
+class TrustOfResults : public CommandTest {
+ protected:
+  TrustOfResults() {
+    folder.write("m.toml", kTableXColumnZ);
+    folder.write("truth.errors.toml", kTrueErrors);
+  }
+
+  static std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+  }
+
+  /// Readings of the true machine in simulated/readings/tracker.csv. @param setup  as it really is
+  void measure(const std::string& setup = kSetup) const {
+    folder.write("simulated.study.toml",
+                 "machine = \"m.toml\"\noutput = \"simulated\"\n[simulate]\nerrors = \"truth."
+                 "errors.toml\"\n" +
+                     replaced(setup, "pose = \"find\"\n", "") + kPlan);
+    ASSERT_EQ(abbe({"run", "simulated.study.toml"}).exit_code, done);
+  }
+
+  /// The study of those readings. @param setup  as its user states it
+  void write_study(const std::string& setup = kSetup, const std::string& identify = kIdentify) const {
+    folder.write("s.study.toml", "machine = \"m.toml\"\noutput = \"out\"\n" +
+                                     replaced(setup,
+                                              "true_pose = { position_mm = [300, -900, 150], angles_deg = [5, -3, "
+                                              "130] }\n",
+                                              "") +
+                                     "[[setup.data]]\nfile = \"simulated/readings/tracker.csv\"\n" + identify);
+  }
+
+  nlohmann::json summary() const { return nlohmann::json::parse(folder.read("out/summary.json")); }
+};
+
+TEST_F(TrustOfResults, AGoodOneIsTrusted) {
+  measure();
+  write_study();
+  const CommandResult run = abbe({"run", "s.study.toml"});
+  EXPECT_EQ(run.exit_code, done) << run.err << run.out;
+  EXPECT_THAT(run.err, Not(HasSubstr("trusted")));
+  EXPECT_EQ(summary()["trusted"], true);
+  EXPECT_FALSE(summary().contains("distrusted"));
+  EXPECT_THAT(folder.read("out/errors.toml"), Not(HasSubstr("distrusted")));
+  EXPECT_EQ(abbe({"compensate", "freeze", "m.toml", "out/errors.toml", "--dry-run"}).err.find("trusted"),
+            std::string::npos);
+}
+
+TEST_F(TrustOfResults, AReflectorOneMillimetreOffIsRefusedEverywhere) {
+  measure(replaced(kSetup, "offset_mm = [60, 0, -150]", "offset_mm = [61, 0, -150]"));
+  write_study();
+  const CommandResult run = abbe({"run", "s.study.toml"});
+  EXPECT_EQ(run.exit_code, computation_says_no) << run.out;
+  EXPECT_THAT(run.err, AllOf(HasSubstr("abbe: not to be trusted: the residuals are"), HasSubstr("--accept-misfit")));
+  EXPECT_THAT(run.out, HasSubstr("\nNot to be trusted (misfit"));
+  EXPECT_EQ(summary()["trusted"], false);
+  EXPECT_EQ(summary()["misfit_accepted"], false);
+  EXPECT_EQ(summary()["distrusted"][0]["kind"], "misfit");
+  EXPECT_THAT(folder.read("out/report.html"), HasSubstr("Not to be trusted: the residuals are"));
+  EXPECT_THAT(folder.read("out/errors.toml"), HasSubstr("distrusted = [\n  \"the residuals are"));
+  EXPECT_EQ(abbe({"identify", "s.study.toml", "-o", "i.errors.toml"}).exit_code, computation_says_no);
+  EXPECT_THAT(folder.read("i.errors.toml"), HasSubstr("distrusted = [\n"));
+
+  folder.write("p.csv", "X_mm,Z_mm\n100,100\n");
+  folder.write("p.ngc", "G21 G90 G0 X0 Z0\nG1 F100 X100 Z100\nM2\n");
+  const std::vector<std::vector<std::string>> uses = {
+      {"compensate", "freeze", "m.toml", "out/errors.toml", "-o", "m.abbec"},
+      {"compensate", "poses", "m.toml", "out/errors.toml", "p.csv", "-o", "c.csv"},
+      {"compensate", "table", "m.toml", "out/errors.toml", "--for", "linuxcnc", "-o", "comp"},
+      {"compensate", "gcode", "p.ngc", "--machine", "m.toml", "--errors", "out/errors.toml", "-o", "c.ngc"}};
+  for (std::vector<std::string> use : uses) {
+    const CommandResult refused = abbe(use);
+    EXPECT_EQ(refused.exit_code, bad_input) << use[1] << refused.out;
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("out/errors.toml: distrusted: the identification marked these errors"),
+                                   HasSubstr("--accept-misfit")))
+        << use[1];
+    use.emplace_back("--accept-misfit");
+    const CommandResult accepted = abbe(use);
+    EXPECT_NE(accepted.exit_code, bad_input) << use[1] << accepted.err;
+    EXPECT_THAT(accepted.err, HasSubstr("used although marked as not to be trusted")) << use[1];
+  }
+  const CommandResult map = abbe({"map", "m.toml", "out/errors.toml"});
+  EXPECT_EQ(map.exit_code, done);
+  EXPECT_THAT(map.err, HasSubstr("marked as not to be trusted"));
+}
+
+TEST_F(TrustOfResults, AcceptedItIsUsedButStaysMarked) {
+  measure(replaced(kSetup, "offset_mm = [60, 0, -150]", "offset_mm = [61, 0, -150]"));
+  write_study();
+  const CommandResult run = abbe({"run", "s.study.toml", "--accept-misfit"});
+  EXPECT_EQ(run.exit_code, done) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("accepted by --accept-misfit"));
+  EXPECT_THAT(run.out, HasSubstr("Accepted despite doubts (misfit"));
+  EXPECT_EQ(summary()["trusted"], false);
+  EXPECT_EQ(summary()["misfit_accepted"], true);
+  EXPECT_THAT(folder.read("out/errors.toml"), HasSubstr("misfit_accepted = true\n"));
+  const CommandResult freeze = abbe({"compensate", "freeze", "m.toml", "out/errors.toml", "--dry-run"});
+  EXPECT_NE(freeze.exit_code, bad_input) << freeze.err;
+  EXPECT_THAT(freeze.err, HasSubstr("used although marked"));
+}
+
+TEST_F(TrustOfResults, ErrorsThatMakeHeldOutPosesWorseAreRefused) {
+  // The stated noise hides the misfit; what is identified is another axis's error.
+  measure();
+  write_study(replaced(kSetup, "xyz_um = 5", "xyz_um = 1000"),
+              replaced(kIdentify, "errors = [\"E?X\", \"E?Z\"]", "errors = [\"EAX\", \"EBZ\"]"));
+  const CommandResult run = abbe({"run", "s.study.toml", "--json"});
+  const nlohmann::json figures = nlohmann::json::parse(run.out);
+  const double before = figures["held_out"]["position_before_um"]["mean"];
+  const double after = figures["held_out"]["position_after_um"]["mean"];
+  ASSERT_GT(after, before);
+  EXPECT_EQ(run.exit_code, computation_says_no) << run.err;
+  EXPECT_EQ(figures["distrusted"][0]["kind"], "worse held out");
+}
+
+TEST_F(TrustOfResults, WarningsStandInEveryFile) {
+  measure();
+  write_study(replaced(kSetup, "xyz_um = 5", "xyz_um = 50"));
+  const CommandResult run = abbe({"run", "s.study.toml"});
+  EXPECT_EQ(run.exit_code, done) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("warning: the residuals are only 0.09"));
+  EXPECT_THAT(summary()["warnings"], Contains(HasSubstr("the residuals are only 0.09")));
+  EXPECT_THAT(folder.read("out/errors.toml"), HasSubstr("warnings = [\n  \"the residuals are only 0.09"));
+}
+
+}  // namespace
+}  // namespace abbe
