@@ -97,6 +97,7 @@ TEST(BaseFrame, AnArmOfSevenAxesIsFoundHoweverItsBaseIsTurned) {
   Axis& last = campaign.truth.axes.back();
   last.direction = rotation_about(Eigen::Vector3d::UnitX(), 2 * kDegree) * last.direction;
   campaign.offsets_unknown = false;
+  double free_residuals = 0;
   for (const double share : {0.0, 0.01, 0.05})
     for (const bool pose_unknown : {false, true})
       for (const double degrees : {0.0, 0.1, 2.0, 30.0}) {
@@ -104,6 +105,8 @@ TEST(BaseFrame, AnArmOfSevenAxesIsFoundHoweverItsBaseIsTurned) {
         campaign.start = test::misjudged(test::seven_axis_arm(), share * 1000, share * 100 * kDegree, 8);
         campaign.pose_unknown = pose_unknown;
         const Fit fit = identify_in(campaign, about_z(degrees));
+        if (degrees == 0) free_residuals = fit.degrees_of_freedom;
+        EXPECT_EQ(fit.degrees_of_freedom, free_residuals);
         EXPECT_EQ(fit.status, IdentifyStatus::converged);
         EXPECT_LT(fit.chi_square, 1e-9);
         EXPECT_LT(fit.largest_um, 1e-4);
@@ -121,6 +124,7 @@ TEST_P(AnyChain, HasTheSameChiSquareInEveryBaseFrame) {
   const RigidTransform anywhere{rotation_from_vector(2 * turn), 1000 * shift};
   Campaign campaign;
   campaign.truth = test::random_chain(seed);
+  campaign.offsets_unknown = seed % 2 == 0;
   for (const bool far : {false, true})
     for (const bool pose_unknown : {false, true})
       for (const double noise : {0.0, 1.0}) {

@@ -77,14 +77,10 @@ PieceBounder::PieceBounder(const Machine& machine, const ErrorSet& errors, const
     Eigen::Vector3d tilt = Eigen::Vector3d::Zero(), shift = Eigen::Vector3d::Zero();
     for (const LocationError& location : errors.locations) {
       if (location.axis != i) continue;
-      const Eigen::Index k = static_cast<Eigen::Index>(location.component) % 3;
-      if (is_zero_position_error(axis, location.component)) {
-        model.zero_position += location.value;
-      } else if (is_rotation(location.component)) {
-        tilt[k] += location.value;
-      } else {
-        shift[k] += location.value;
-      }
+      const LocationEffect effect = location_effect(axis, location.component);
+      model.zero_position += location.value * effect.zero_position;
+      tilt += location.value * effect.tilt;
+      shift += location.value * effect.shift;
     }
     model.zero_position = std::abs(model.zero_position);
     model.line_turn = tilt.lpNorm<1>();

@@ -57,7 +57,7 @@ double own_correction(const Machine& machine, const ErrorSet& errors, std::size_
   const Axis& one = machine.axes[axis];
   double zero = 0;
   for (const LocationError& location : errors.locations) {
-    if (location.axis == axis && is_zero_position_error(one, location.component)) zero += location.value;
+    if (location.axis == axis) zero += location.value * location_effect(one, location.component).zero_position;
   }
   double correction = -zero;
   // The error motion changes by parts in ten thousand of the correction: three steps are at the last bit.

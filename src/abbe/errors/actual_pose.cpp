@@ -21,14 +21,10 @@ AxisLine displaced_line(const Axis& axis, const ErrorSet& errors, std::size_t in
   AxisLine line{axis.direction, axis.point};
   for (const LocationError& location : errors.locations) {
     if (location.axis != index) continue;
-    const int k = static_cast<int>(location.component) % 3;
-    if (is_zero_position_error(axis, location.component)) {
-      line.zero_position += location.value;
-    } else if (is_rotation(location.component)) {
-      line.tilt[k] += location.value;
-    } else {
-      line.centre[k] += location.value;
-    }
+    const LocationEffect effect = location_effect(axis, location.component);
+    line.zero_position += location.value * effect.zero_position;
+    line.tilt += location.value * effect.tilt;
+    line.centre += location.value * effect.shift;
   }
   line.direction = rotation_from_error_angles(line.tilt) * axis.direction;
   return line;
@@ -85,7 +81,7 @@ struct Twist {
 /// Derivatives of one axis's displacement by what moves it, as twists in the frame on its bed side.
 struct AxisTwists {
   std::array<Twist, kComponentCount> errors;     ///< by EX .. EC
-  std::array<Twist, kComponentCount> locations;  ///< by EX0 .. EC0, zero position where the component is one
+  std::array<Twist, kComponentCount> locations;  ///< by EX0 .. EC0
   Twist position;                                ///< by the command, error motions included
 };
 
@@ -107,16 +103,14 @@ AxisTwists twists_of_axis(const Machine& machine, const ErrorSet& errors, std::s
   const Twist along = axis.kind == AxisKind::linear ? Twist::translation(axis.sense() * line.direction)
                                                     : Twist::rotation(axis.sense() * line.direction, line.centre);
   const Eigen::Matrix3d tilt_axes = error_angle_axes(line.tilt);
-  for (int k = 0; k < 3; ++k) {
-    const std::size_t t = static_cast<std::size_t>(k);
-    const Twist shift = Twist::translation(Eigen::Vector3d::Unit(k));
-    const Twist tilt = Twist::rotation(tilt_axes.col(k), line.centre);
+  for (int c = 0; c < kComponentCount; ++c) {
+    const LocationEffect effect = location_effect(axis, static_cast<Component>(c));
+    const Twist shift = Twist::translation(effect.shift);
+    const Twist tilt = Twist::rotation(tilt_axes * effect.tilt, line.centre);
     // L M L^-1 changes by the displacement of the line seen before the motion, less the same carried through it.
-    twists.locations[t] = shift.minus(shift.carried_by(motion));
-    twists.locations[t + 3] = tilt.minus(tilt.carried_by(motion));
-    for (Component component : {static_cast<Component>(k), static_cast<Component>(k + 3)}) {
-      if (is_zero_position_error(axis, component)) twists.locations[static_cast<std::size_t>(component)] = along;
-    }
+    twists.locations[static_cast<std::size_t>(c)] = shift.minus(shift.carried_by(motion))
+                                                        .plus(tilt.minus(tilt.carried_by(motion)), 1)
+                                                        .plus(along, effect.zero_position);
   }
   twists.position = along;
   if (error_first) {

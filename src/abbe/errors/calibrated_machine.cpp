@@ -20,14 +20,10 @@ CalibratedMachine calibrated_machine(const Machine& machine, const ErrorSet& err
     Eigen::Vector3d tilt = Eigen::Vector3d::Zero();
     for (const LocationError& location : errors.locations) {
       if (location.axis != i) continue;
-      const int k = static_cast<int>(location.component) % 3;
-      if (is_zero_position_error(machine.axes[i], location.component)) {
-        result.zero[i] += location.value;
-      } else if (is_rotation(location.component)) {
-        tilt[k] += location.value;
-      } else {
-        axis.point[k] += location.value;
-      }
+      const LocationEffect effect = location_effect(machine.axes[i], location.component);
+      result.zero[i] += location.value * effect.zero_position;
+      tilt += location.value * effect.tilt;
+      axis.point += location.value * effect.shift;
     }
     // Rounding of the product must not make the direction any other than a unit vector.
     axis.direction = (rotation_from_error_angles(tilt) * axis.direction).normalized();

@@ -12,7 +12,9 @@ namespace {
 TEST(CalibratedMachine, ItsNominalPoseIsTheActualOneForAllLocationErrors) {
   for (const char* chain :
        {"w C2' X Y b Z C1 A t", "w C2' b X Y Z C1 A t", "w A' C' X' b Y Z t", "w B' X' b Z Y C A t"}) {
-    const Machine machine = parse_chain(chain).machine;
+    Machine machine = parse_chain(chain).machine;
+    machine.axes.front().direction = Eigen::Vector3d(-0.6, 0.48, -0.64);
+    machine.axes.back().direction = Eigen::Vector3d(0.1, 0.2, 0.9).normalized();
     RandomStream random(11);
     ErrorSet errors;
     for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {

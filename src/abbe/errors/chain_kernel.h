@@ -63,8 +63,9 @@ struct BasisUse {
 /// One axis on the way from one body to the other: its motion and its error motion.
 struct AxisStep {
   struct Location {
-    int channel = 0;  ///< 0 .. 2 shifts, 3 .. 5 tilts, 6 zero position
     std::size_t parameter = 0;
+    double effect[7] = {};  ///< of one unit: 0 .. 2 shifts, 3 .. 5 tilts, 6 zero position
+    int only = -1;          ///< the one of them that is 1 where all others are 0; -1: several
   };
   std::size_t axis = 0;
   bool rotary = false;

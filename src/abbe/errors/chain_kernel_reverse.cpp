@@ -17,7 +17,7 @@ struct Sweep {
   Lane point[3];
   Lane force[kRowsAtOnce][3];
   Lane moment[kRowsAtOnce][3];
-  Lane channel[kRowsAtOnce][7];  ///< derivative by what moves the present step
+  Lane channel[kRowsAtOnce][8];  ///< derivative by what moves the present step; the last by several of them together
   Lane by_command[kRowsAtOnce];
   AxisLanes lanes;
   Lane slope[6];  ///< derivative of the error motions by the command
@@ -237,11 +237,24 @@ HWY_NOINLINE void write_errors(const CompiledChain& chain, const AxisStep& step,
   }
 }
 
+/// Channel 7 becomes the derivative by a location error that acts through several channels.
+HWY_NOINLINE void combine(const AxisStep::Location& location, std::size_t rows, std::size_t end, Sweep& s) {
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t k = 0; k < end; k += hn::Lanes(Tag())) {
+      Vector sum = hn::Zero(Tag());
+      for (int c = 0; c < 7; ++c) sum = hn::MulAdd(load(s.channel[row][c].v + k), set(location.effect[c]), sum);
+      store(sum, s.channel[row][7].v + k);
+    }
+  }
+}
+
 HWY_NOINLINE void write_motion(const AxisStep& step, const Selection& selection, const Target& target, std::size_t end,
                                Sweep& s) {
   for (const AxisStep::Location& location : step.locations) {
     for (std::size_t j = selection.begin(location.parameter); j < selection.end(location.parameter + 1); ++j) {
-      if (selection.parameters[j] == location.parameter) write_column(target, s, location.channel, nullptr, j);
+      if (selection.parameters[j] != location.parameter) continue;
+      if (location.only < 0) combine(location, target.rows, end, s);
+      write_column(target, s, location.only < 0 ? 7 : location.only, nullptr, j);
     }
   }
   for (std::size_t row = 0; row < target.rows; ++row) {

@@ -63,6 +63,18 @@ std::vector<std::size_t> axes_of(const Machine& machine, Body body) {
   return axes;
 }
 
+AxisStep::Location channels_of(const LocationEffect& effect, std::size_t parameter) {
+  AxisStep::Location location{parameter};
+  for (int k = 0; k < 3; ++k) location.effect[k] = effect.shift[k];
+  for (int k = 0; k < 3; ++k) location.effect[3 + k] = effect.tilt[k];
+  location.effect[6] = effect.zero_position;
+  const auto* end = location.effect + 7;
+  const auto* first = std::find_if(location.effect, end, [](double value) { return value != 0; });
+  if (first != end && *first == 1 && std::all_of(first + 1, end, [](double value) { return value == 0; }))
+    location.only = static_cast<int>(first - location.effect);
+  return location;
+}
+
 }  // namespace
 
 struct ChainPlan::Implementation {
@@ -92,8 +104,7 @@ struct ChainPlan::Implementation {
     std::size_t parameter = first_reversal(errors) - errors.locations.size();
     for (const LocationError& location : errors.locations) {
       if (location.axis == index) {
-        const int channel = is_zero_position_error(axis, location.component) ? 6 : static_cast<int>(location.component);
-        step.locations.push_back({channel, parameter});
+        step.locations.push_back(channels_of(location_effect(axis, location.component), parameter));
         chain.influences[parameter] = 1;
       }
       ++parameter;
@@ -113,13 +124,9 @@ struct ChainPlan::Implementation {
     step.zero_position = 0;
     for (const AxisStep::Location& location : step.locations) {
       const double value = values[location.parameter];
-      if (location.channel == 6) {
-        step.zero_position += value;
-      } else if (location.channel >= 3) {
-        tilt[location.channel - 3] += value;
-      } else {
-        centre[location.channel] += value;
-      }
+      for (int k = 0; k < 3; ++k) centre[k] += value * location.effect[k];
+      for (int k = 0; k < 3; ++k) tilt[k] += value * location.effect[3 + k];
+      step.zero_position += value * location.effect[6];
     }
     const Eigen::Vector3d direction = rotation_from_error_angles(tilt) * line.direction;
     const Eigen::Matrix3d axes = error_angle_axes(tilt);

@@ -117,19 +117,40 @@ bool parse_error_name(const Machine& machine, const std::string& text, std::size
   return axis != Machine::npos;
 }
 
-bool location_error_is_valid(const Axis& axis, Component component) {
+LocationEffect location_effect(const Axis& axis, Component component) {
+  const int k = static_cast<int>(component) % 3;
   const int principal = principal_direction(axis);
-  const int direction = static_cast<int>(component) % 3;
-  if (axis.kind == AxisKind::linear) {
-    if (is_rotation(component)) return direction != principal;
-    return direction == principal;
+  const bool rotary = axis.kind == AxisKind::rotary;
+  const bool turns = is_rotation(component);
+  const Eigen::Vector3d unit = Eigen::Vector3d::Unit(k);
+  LocationEffect effect;
+  if (turns == rotary) {
+    if (principal >= 0) {
+      effect.zero_position = k == principal ? 1 : 0;
+    } else {
+      Eigen::Index nearest = 0;
+      axis.direction.cwiseAbs().maxCoeff(&nearest);
+      effect.zero_position = axis.direction[nearest] < 0 ? -axis.direction[k] : axis.direction[k];
+    }
   }
-  return is_rotation(component) || direction != principal;
+  if (!turns) {
+    if (rotary && k != principal) effect.shift = unit;
+  } else if (k != principal) {
+    // u u' is the same for both signs of the direction.
+    effect.tilt = unit;
+    if (rotary && principal < 0) effect.tilt -= axis.direction[k] * axis.direction;
+  }
+  return effect;
+}
+
+bool location_error_is_valid(const Axis& axis, Component component) {
+  const LocationEffect effect = location_effect(axis, component);
+  return !effect.shift.isZero(0) || !effect.tilt.isZero(0) || effect.zero_position != 0;
 }
 
 bool is_zero_position_error(const Axis& axis, Component component) {
-  return static_cast<int>(component) % 3 == principal_direction(axis) &&
-         is_rotation(component) == (axis.kind == AxisKind::rotary);
+  const LocationEffect effect = location_effect(axis, component);
+  return effect.zero_position != 0 && effect.shift.isZero(0) && effect.tilt.isZero(0);
 }
 
 }  // namespace abbe

@@ -32,8 +32,9 @@ struct ErrorMotion {
 /// the axis is at zero.
 ///
 /// With L = [Rz Ry Rx of (EA0, EB0, EC0) | (EX0, EY0, EZ0)] about Axis::point the nominal motion M(q) becomes L M(q)
-/// L^-1. The component along (about) the axis's own direction is its zero position error instead: M(q + value), for
-/// rotary EC0C, for linear EX0X. Where a component can have no effect it is not valid (see location_error_is_valid).
+/// L^-1. The part along (about) the axis's own direction is its zero position error instead: M(q + value), for rotary
+/// EC0C, for linear EX0X. An axis parallel to none of X, Y, Z has it as a part of several components (LocationEffect).
+/// Where a component can have no effect it is not valid (see location_error_is_valid).
 struct LocationError {
   std::size_t axis = 0;
   Component component = Component::A;
@@ -101,13 +102,24 @@ std::vector<bool> parameters_are_angles(const Machine& machine, const ErrorSet& 
 bool parse_error_name(const Machine& machine, const std::string& text, std::size_t& axis, Component& component,
                       bool& is_location);
 
+/// What one unit (mm or rad) of a location error does to its axis.
+///
+/// With u the axis's direction, turned round if its largest component is negative, a rotation r of a rotary axis tilts
+/// its line by r - (r . u) u and adds r . u to its position; a translation of a linear axis adds r . u to its position.
+/// What an axis can have is therefore the same in every machine frame.
+struct LocationEffect {
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< of the axis line
+  Eigen::Vector3d tilt = Eigen::Vector3d::Zero();   ///< of the axis line, about X, Y, Z
+  double zero_position = 0;                         ///< added to the command
+};
+LocationEffect location_effect(const Axis& axis, Component component);
+
 /// Roll of a linear axis about its own direction, shift of a linear axis line and shift of a rotary axis line along
-/// itself have no effect and are not location errors. For directions not parallel to X, Y or Z all components are valid
-/// for rotary axes and all rotations for linear ones; the combination without effect is then found by the gauge
-/// analysis.
+/// itself have no effect and are not location errors. For directions not parallel to X, Y or Z all components are
+/// valid; the combinations without effect are then found by the gauge analysis.
 bool location_error_is_valid(const Axis& axis, Component component);
 
-/// True if the component is along (about) the axis's own principal direction: the zero position error.
+/// True if the component does nothing but add to the position of its axis: the zero position error.
 bool is_zero_position_error(const Axis& axis, Component component);
 
 }  // namespace abbe

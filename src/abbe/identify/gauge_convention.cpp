@@ -219,7 +219,7 @@ int nearest_component(const Axis& axis) {
   return nearest;
 }
 
-/// An axis parallel to none of X, Y, Z: all its components are parameters, and a combination of them has no effect.
+/// An axis parallel to none of X, Y, Z: all its components are parameters, and combinations of them have no effect.
 bool is_oblique(const Axis& axis) { return std::abs(axis.direction[nearest_component(axis)]) < 1 - 1e-12; }
 
 bool is_nearest_to_oblique_axis(const std::vector<Axis>& axes, const LocationError& location) {
@@ -239,23 +239,28 @@ std::vector<std::vector<Index>> places_of_locations(const Problem& problem, std:
   return places;
 }
 
-/// The shift along and the turn about an oblique axis's own direction, which do nothing. Said of a single component
-/// instead, an axis 0.1 degrees off Y would have its tilt about X taken for that and fixed, and the same tilt left to a
-/// turn about Y 600 times as large.
-void along_oblique_axis(const Problem& problem, std::size_t axis, const std::vector<Index>& places,
+/// What of its location errors lies along an oblique axis's own direction: its zero position error, and what does
+/// nothing, the shift of a rotary axis along itself and the roll of a linear one. Said of a single component instead,
+/// an axis 0.1 degrees off Y would have its tilt about X taken for that and fixed, and the same tilt left to a turn
+/// about Y 600 times as large.
+void along_oblique_axis(const Problem& problem, std::size_t axis, const std::vector<Index>& places, bool zero_position,
                         std::vector<GaugeCandidate>& list) {
   const Axis& moving = problem.machine.axes[axis];
   if (!is_oblique(moving)) return;
-  for (const int offset : {0, 3}) {
-    Eigen::VectorXd functional = Eigen::VectorXd::Zero(static_cast<Index>(estimated_count(problem)));
-    for (int k = 0; k < 3; ++k) {
-      const Index place = places[static_cast<std::size_t>(k + offset)];
-      if (place >= 0) functional[place] = moving.direction[k];
-    }
-    const std::string quantity =
-        fmt::format("{} of {} {} itself", offset == 0 ? "shift" : "turn", moving.name, offset == 0 ? "along" : "about");
-    add_candidate(list, fmt::format("the {} is zero", quantity), quantity, functional);
+  const bool rotary = moving.kind == AxisKind::rotary;
+  const int offset = zero_position == rotary ? 3 : 0;
+  const double sign = moving.direction[nearest_component(moving)] < 0 ? -1 : 1;
+  Eigen::VectorXd functional = Eigen::VectorXd::Zero(static_cast<Index>(estimated_count(problem)));
+  for (int k = 0; k < 3; ++k) {
+    const Index place = places[static_cast<std::size_t>(k + offset)];
+    if (place >= 0) functional[place] = sign * moving.direction[k];
   }
+  if (functional.isZero(0)) return;
+  const std::string quantity = zero_position ? "zero position error of " + moving.name
+                                             : fmt::format("{} of {} {} itself", rotary ? "shift" : "turn", moving.name,
+                                                           rotary ? "along" : "about");
+  add_candidate(list, fmt::format("the {} is zero", quantity), quantity, functional);
+  list.back().exchangeable = list.back().of_location = zero_position;
 }
 
 }  // namespace
@@ -275,7 +280,9 @@ std::vector<GaugeCandidate> gauge_candidates(const Problem& problem, const Eigen
   std::size_t motion_parameters = 0;
   for (const ErrorMotion& motion : problem.errors.motions) motion_parameters += motion.coefficients.size();
   const std::vector<std::vector<Index>> places = places_of_locations(problem, motion_parameters);
-  for (std::size_t axis = 0; axis < axes.size(); ++axis) along_oblique_axis(problem, axis, places[axis], list);
+  for (const bool zero_position : {false, true})
+    for (std::size_t axis = 0; axis < axes.size(); ++axis)
+      along_oblique_axis(problem, axis, places[axis], zero_position, list);
   const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
   const std::size_t locations_end = motion_parameters + problem.errors.locations.size();
   const auto one = [&](std::size_t i) {
