@@ -68,10 +68,10 @@ AxisStep::Location channels_of(const LocationEffect& effect, std::size_t paramet
   for (int k = 0; k < 3; ++k) location.effect[k] = effect.shift[k];
   for (int k = 0; k < 3; ++k) location.effect[3 + k] = effect.tilt[k];
   location.effect[6] = effect.zero_position;
-  const auto* end = location.effect + 7;
-  const auto* first = std::find_if(location.effect, end, [](double value) { return value != 0; });
-  if (first != end && *first == 1 && std::all_of(first + 1, end, [](double value) { return value == 0; }))
-    location.only = static_cast<int>(first - location.effect);
+  const auto effects =
+      std::count_if(std::begin(location.effect), std::end(location.effect), [](double value) { return value != 0; });
+  const auto* one = std::find(std::begin(location.effect), std::end(location.effect), 1.0);
+  if (effects == 1 && one != std::end(location.effect)) location.only = static_cast<int>(one - location.effect);
   return location;
 }
 
