@@ -12,6 +12,7 @@
 #include "abbe/formats/evaluation_positioning.h"
 #include "abbe/formats/evaluation_rotation_file.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/linkage_file.h"
 #include "abbe/verify/circular_diagnosis.h"
 #include "abbe/verify/squareness.h"
 
@@ -84,12 +85,24 @@ void squareness(std::string_view text) {
   if (!std::isfinite(result.value) || !std::isfinite(result.uncertainty)) std::abort();
 }
 
+void linkage(std::string_view text) {
+  const abbe::LinkageReadings readings = abbe::parse_linkage(text, "fuzz.csv");
+  // What is written is read back as it was.
+  const abbe::LinkageReadings back = abbe::parse_linkage(abbe::linkage_text(readings), "again.csv");
+  if (back.focus_width != readings.focus_width || back.circle_marks != readings.circle_marks) std::abort();
+  const abbe::LinkageEvaluation result = abbe::evaluate_linkage(readings, {});
+  if (result.status != abbe::LinkageStatus::ok) return;
+  for (const double value : result.linkage.values()) {
+    if (!std::isfinite(value)) std::abort();
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   // One line for every kind of evaluation.
-  for (const auto read : {positioning, diagonals, circular, rotation, straightness, squareness}) {
+  for (const auto read : {positioning, diagonals, circular, rotation, straightness, squareness, linkage}) {
     try {
       read(text);
     } catch (const abbe::InputError&) {

@@ -128,11 +128,13 @@ nlohmann::json contour_points_block(const std::vector<const ContourDeviation*>& 
   block["joined"] = joined;
   block["also"] = also("out of the surface", heights);
   if (errors.size() == across.size()) return block;
-  const SampleStatistics all = sample_statistics(across);
   block["points"] = across.size();
-  block["mean_um"] = all.mean;
-  block["largest_um"] = std::max(std::abs(all.minimum), std::abs(all.maximum));
-  block["standard_deviation_um"] = all.deviation;
+  block["bias_um"] = sample_statistics(across).mean;
+  for (double& error : across) error = std::abs(error);
+  const SampleStatistics amounts = sample_statistics(across);
+  block["mean_um"] = amounts.mean;
+  block["largest_um"] = amounts.maximum;
+  block["standard_deviation_um"] = amounts.deviation;
   return block;
 }
 

@@ -43,5 +43,6 @@ void add_evaluate_rotation(Subcommand& evaluate, CommandLine& line);
 void add_evaluate_straightness(Subcommand& evaluate, CommandLine& line);
 void add_evaluate_squareness(Subcommand& evaluate, CommandLine& line);
 void add_evaluate_contour(Subcommand& evaluate, CommandLine& line);
+void add_evaluate_linkage(Subcommand& evaluate, CommandLine& line);
 
 }  // namespace abbe

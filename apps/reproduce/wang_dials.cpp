@@ -7,7 +7,7 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/decompositions.h"
-#include "abbe/verify/error_map.h"
+#include "reproduce/wang_integrated.h"
 #include "reproduce/wang_study.h"
 #include "reproduce/wang_tables.h"
 
@@ -204,57 +204,36 @@ WangDialStudy wang_dial_study(std::uint64_t seed) {
   return study;
 }
 
-WangDialMap wang_dial_map(const WangDialStudy& study, int threads) {
-  const Machine machine = wang_machine();
-  WangDialMap result;
+WangDialMap wang_dial_map(const WangDialStudy& study) {
   PoseGrid grid;
-  for (const Axis& axis : machine.axes) {
+  for (const Axis& axis : wang_machine().axes) {
     const std::size_t table = static_cast<std::size_t>(
         std::find(std::begin(kWangAxisNames), std::end(kWangAxisNames), axis.name) - std::begin(kWangAxisNames));
     const std::vector<double> positions = table_positions(table, kMeasuredRows);
     grid.values.push_back({positions[1], positions[5], positions[9]});
   }
-  ParameterCovariance covariance;
-  covariance.covariance = study.with_noise.covariance;
-  for (std::size_t p = 0; p < study.with_noise.errors.parameter_count(); ++p) covariance.parameters.push_back(p);
-  ErrorMapOptions options;
-  options.orientation = false;
-  options.threads = threads;
-  options.covariance = &covariance;
-  const ErrorMap map = error_map(machine, study.with_noise.errors, nullptr, pose_source(grid), options);
-  const ErrorMap off =
-      error_map(machine, study.with_noise.errors, &study.without_noise.errors, pose_source(grid), options);
-  result.poses = map.count();
+  const PoseList poses = wang_poses_of(grid);
+  const Eigen::MatrixXd& covariance = study.with_noise.covariance;
+  const WangMap map = wang_map(study.with_noise.errors, poses, &covariance);
+  const WangMap without_noise = wang_map(study.without_noise.errors, poses);
+  WangDialMap result;
+  result.poses = map.norm.size();
   result.norm = map.statistics;
   result.uncertainty = sample_statistics(map.norm_uncertainty);
   std::size_t inside = 0;
   for (std::size_t d = 0; d < 3; ++d) {
-    for (std::size_t k = 0; k < off.count(); ++k)
-      inside += std::abs(off.displacement[d][k]) <= 2 * off.uncertainty[d][k];
+    for (std::size_t k = 0; k < map.norm.size(); ++k)
+      inside += std::abs(map.error[d][k] - without_noise.error[d][k]) <= 2 * map.uncertainty[d][k];
   }
-  result.inside = static_cast<double>(inside) / static_cast<double>(3 * off.count());
+  result.inside = static_cast<double>(inside) / static_cast<double>(3 * map.norm.size());
 
-  // E of equations (12) to (18) takes two points that do not coincide: derivatives by central differences of the exact
-  // composition, which is as good as linear over them.
-  const std::vector<double> zero = wang_positions({0, 0, 0, 0, 6, 0});
-  ErrorSet errors = study.with_noise.errors;
-  result.zero_pose = wang_integrated_error(machine, errors, zero).machine;
-  const std::vector<double> values = errors.parameters();
-  Eigen::MatrixXd by_parameters(3, static_cast<Eigen::Index>(values.size()));
-  std::vector<double> changed = values;
-  for (std::size_t p = 0; p < values.size(); ++p) {
-    constexpr double kStep = 1e-5;
-    changed[p] = values[p] + kStep;
-    errors.set_parameters(changed);
-    const Eigen::Vector3d up = wang_integrated_error(machine, errors, zero).machine;
-    changed[p] = values[p] - kStep;
-    errors.set_parameters(changed);
-    by_parameters.col(static_cast<Eigen::Index>(p)) =
-        (up - wang_integrated_error(machine, errors, zero).machine) / (2 * kStep);
-    changed[p] = values[p];
+  PoseList zero;
+  zero.append(wang_positions({0, 0, 0, 0, 6, 0}));
+  const WangMap at_zero = wang_map(study.with_noise.errors, zero, &covariance);
+  for (std::size_t d = 0; d < 3; ++d) {
+    result.zero_pose[static_cast<Eigen::Index>(d)] = at_zero.error[d][0];
+    result.zero_pose_uncertainty[static_cast<Eigen::Index>(d)] = at_zero.uncertainty[d][0];
   }
-  result.zero_pose_uncertainty =
-      (by_parameters * study.with_noise.covariance * by_parameters.transpose()).diagonal().cwiseSqrt();
   return result;
 }
 

@@ -39,16 +39,16 @@ struct WangDialStudy {
 };
 WangDialStudy wang_dial_study(std::uint64_t seed);
 
-/// Uncertainty of the error map of the decoupled errors.
+/// E of equation (18) from the decoupled errors, with its uncertainty.
 struct WangDialMap {
   std::size_t poses = 0;
-  SampleStatistics norm;                                ///< displacement by the error motions found, mm
+  SampleStatistics norm;                                ///< |E| by the error motions found, mm
   SampleStatistics uncertainty;                         ///< standard uncertainty along it, mm
-  double inside = 0;                                    ///< share of components within k = 2 of the noise-free map
-  Eigen::Vector3d zero_pose = Eigen::Vector3d::Zero();  ///< the paper's E at its zero pose, mm
+  double inside = 0;                                    ///< share of components within k = 2 of those without noise
+  Eigen::Vector3d zero_pose = Eigen::Vector3d::Zero();  ///< E at the paper's zero pose, mm
   Eigen::Vector3d zero_pose_uncertainty = Eigen::Vector3d::Zero();  ///< mm
 };
-WangDialMap wang_dial_map(const WangDialStudy& study, int threads = 0);
+WangDialMap wang_dial_map(const WangDialStudy& study);
 
 /// One dial over grids on two faces of a linear axis, without noise: zeros 50 and -20 um, settings 30 and -20 urad.
 struct WangGridComparison {

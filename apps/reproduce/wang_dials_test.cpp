@@ -40,7 +40,7 @@ TEST(WangDials, StatedUncertaintiesHoldOverSeeds) {
 }
 
 TEST(WangDials, MapUncertaintyIsThatOfItsScatterOverCampaigns) {
-  const WangDialMap map = wang_dial_map(wang_dial_study(1), 1);
+  const WangDialMap map = wang_dial_map(wang_dial_study(1));
   EXPECT_EQ(map.poses, 729U);
   EXPECT_GT(map.inside, 0.8);
   // E at the zero pose over 150 campaigns against the propagated uncertainty.

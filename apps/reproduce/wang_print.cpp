@@ -52,10 +52,10 @@ std::string component_name(const WangDialAxis& axis, std::size_t component) {
 
 }  // namespace
 
-WangDialFigures wang_dial_figures(int threads) {
+WangDialFigures wang_dial_figures() {
   WangDialFigures figures;
   figures.study = wang_dial_study(kDialSeed);
-  figures.map = wang_dial_map(figures.study, threads);
+  figures.map = wang_dial_map(figures.study);
   figures.grids = wang_grid_comparison();
   return figures;
 }
@@ -111,9 +111,9 @@ void print_wang_dials(const WangDialFigures& figures) {
              study.values, 100.0 * static_cast<double>(study.inside) / static_cast<double>(study.values));
   const WangDialMap& map = figures.map;
   fmt::print(
-      "  Map over {} poses: displacement mean {:.2f}, largest {:.2f} um; its standard uncertainty mean {:.2f},\n",
+      "  |E| of equation (18) over {} poses: mean {:.2f}, largest {:.2f} um; its standard uncertainty mean {:.2f},\n",
       map.poses, 1e3 * map.norm.mean, 1e3 * map.norm.maximum, 1e3 * map.uncertainty.mean);
-  fmt::print("  largest {:.2f} um; {:.1f} % of the components within k = 2 of the map without noise.\n",
+  fmt::print("  largest {:.2f} um; {:.1f} % of the components within k = 2 of those without noise.\n",
              1e3 * map.uncertainty.maximum, 100 * map.inside);
   fmt::print(
       "  Zero pose: E = ({:.2f}, {:.2f}, {:.2f}) um, u = ({:.2f}, {:.2f}, {:.2f}) um, location errors left out.\n\n",

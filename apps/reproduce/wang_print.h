@@ -16,7 +16,7 @@ struct WangDialFigures {
   std::vector<WangGridComparison> grids;
 };
 
-WangDialFigures wang_dial_figures(int threads);
+WangDialFigures wang_dial_figures();
 void print_wang_dials(const WangDialFigures& figures);
 void print_wang_ball_bar(const WangDialStudy& study, double displacements_only_mm);
 nlohmann::ordered_json wang_dials_json(const WangDialFigures& figures);

@@ -1,14 +1,15 @@
 #include "reproduce/wang_study.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 
 #include "abbe/errors/actual_pose.h"
-#include "abbe/errors/chain_plan.h"
 #include "abbe/errors/poses.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/parallel_blocks.h"
+#include "reproduce/wang_integrated.h"
 #include "reproduce/wang_tables.h"
 
 namespace abbe {
@@ -85,30 +86,11 @@ std::vector<double> wang_positions(const std::vector<std::size_t>& rows_xyzabc) 
   return positions;
 }
 
-namespace {
-
-/// Points of both bodies in the machine frame over a block of poses.
-struct BlockPoints {
-  std::array<std::vector<double>, 3> xyz;
-  explicit BlockPoints(std::size_t count) { xyz.fill(std::vector<double>(count)); }
-  PointArrays arrays() { return {xyz[0].data(), xyz[1].data(), xyz[2].data()}; }
-  void fill(const Eigen::Vector3d& point, std::size_t count) {
-    for (int k = 0; k < 3; ++k) std::fill_n(xyz[static_cast<std::size_t>(k)].begin(), count, point[k]);
-  }
-  ConstPointArrays constant() const { return {xyz[0].data(), xyz[1].data(), xyz[2].data()}; }
-};
-
-}  // namespace
-
 WangPopulation wang_all_poses(const WangReading& reading, int threads) {
   const auto start_time = std::chrono::steady_clock::now();
   const Machine machine = wang_machine();
   const ErrorSet errors = wang_errors(reading);
-  const ErrorSet none;
-  const ChainPlan tool_actual(machine, errors, Body::tool, Body::bed),
-      tool_nominal(machine, none, Body::tool, Body::bed);
-  const ChainPlan work_actual(machine, errors, Body::workpiece, Body::bed);
-  const ChainPlan work_nominal(machine, none, Body::workpiece, Body::bed);
+  const WangIntegratedPlan plan(machine, errors);
 
   PoseGrid grid;
   for (std::size_t table : kChainToTable) {
@@ -133,19 +115,11 @@ WangPopulation wang_all_poses(const WangReading& reading, int threads) {
     poses.fill(first, count, writable.data());
     const PositionArrays positions{readable, count};
 
-    BlockPoints start(count), tool(count), tool_without(count), work(count), work_without(count);
-    start.fill(machine.tool_offset, count);
-    tool_actual.transform(positions, start.constant(), tool.arrays());
-    tool_nominal.transform(positions, start.constant(), tool_without.arrays());
-    start.fill(wang_workpiece_point(), count);
-    work_actual.transform(positions, start.constant(), work.arrays());
-    work_nominal.transform(positions, start.constant(), work_without.arrays());
+    std::array<std::vector<double>, 3> e;
+    e.fill(std::vector<double>(count));
+    plan.evaluate(positions, {e[0].data(), e[1].data(), e[2].data()});
     for (std::size_t k = 0; k < count; ++k) {
-      Eigen::Vector3d error;
-      for (std::size_t d = 0; d < 3; ++d) {
-        error[static_cast<int>(d)] =
-            (work.xyz[d][k] - tool.xyz[d][k]) - (work_without.xyz[d][k] - tool_without.xyz[d][k]);
-      }
+      const Eigen::Vector3d error(e[0][k], e[1][k], e[2][k]);
       norm[first + k] = error.norm();
       sums[block] += error;
       largest[block] = largest[block].cwiseMax(error.cwiseAbs());
@@ -158,6 +132,9 @@ WangPopulation wang_all_poses(const WangReading& reading, int threads) {
     population.mean_components += sums[block] / static_cast<double>(poses.count);
     population.largest_components = population.largest_components.cwiseMax(largest[block]);
   }
+  const double low = std::sqrt(0.1), high = std::sqrt(10.0);
+  const auto near = std::count_if(norm.begin(), norm.end(), [&](double e) { return e >= low && e <= high; });
+  population.share_of_order_1_mm = static_cast<double>(near) / static_cast<double>(norm.size());
   population.histogram = histogram(norm, 0, population.norm.maximum, 60);
   population.worst_pose.resize(kWangAxes);
   std::array<double*, kWangAxes> worst;

@@ -48,6 +48,7 @@ struct WangPopulation {
   SampleStatistics norm;                                         ///< mm
   Eigen::Vector3d mean_components = Eigen::Vector3d::Zero();     ///< mm
   Eigen::Vector3d largest_components = Eigen::Vector3d::Zero();  ///< largest magnitude of each, mm
+  double share_of_order_1_mm = 0;                                ///< |E| from 0.316 to 3.16 mm, 0 to 1
   std::vector<double> worst_pose;                                ///< chain order
   Histogram histogram;                                           ///< of norm, mm
   double seconds = 0;                                            ///< time the evaluation took, for people only

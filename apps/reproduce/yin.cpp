@@ -35,6 +35,7 @@ void write_folder(const YinResults& r, const std::filesystem::path& output) {
   folder.write("report.html", report.page.is_object() ? report_page(evaluation_data(report)) : evaluation_page(report));
   for (const EvaluationPlot& plot : report.plots) folder.write(plot.name + ".svg", plot.svg);
   folder.write("sections.csv", sections_csv(r.sections.sections));
+  folder.write("axis_commands.csv", yin_commands_csv(r.commands));
   folder.write("engraved.csv", engraved_csv(r.sections));
   const YinScanFiles files = yin_scan_files(r.scans, "scans.csv");
   folder.write("scans.csv", files.points);

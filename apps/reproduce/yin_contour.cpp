@@ -17,18 +17,6 @@ namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-/// Commands for a point and a direction in the table's frame, convention U, branch A > 0.
-SwingHeadCommand command_for(const SwingHeadLinkage& linkage, const Eigen::Vector3d& p, const Eigen::Vector3d& v) {
-  SwingHeadCommand c;
-  c.a = std::atan2(std::hypot(v.x(), v.y()), v.z());
-  c.c1 = std::atan2(v.x(), -v.y());
-  const Eigen::Vector3d at_zero = swing_head_focus(linkage, LinkageConvention::table_moves, c);
-  c.x = at_zero.x() - p.x();
-  c.y = at_zero.y() - p.y();
-  c.z = p.z() - at_zero.z();
-  return c;
-}
-
 /// The whole chain from measuring the machine to measuring the engraved curve.
 class Engraving {
  public:
@@ -84,7 +72,8 @@ class Engraving {
     if (tilt != nullptr) tilt->clear();
     for (std::size_t i = 0; i < curve_.size(); ++i) {
       const YinPoint& point = curve_[i];
-      SwingHeadCommand c = command_for(linkage, measured_place * point.point, measured_place.rotation * point.normal);
+      SwingHeadCommand c = swing_head_command(linkage, LinkageConvention::table_moves, measured_place * point.point,
+                                              measured_place.rotation * point.normal);
       c.x += next();
       c.y += next();
       c.z += next();

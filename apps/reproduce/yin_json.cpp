@@ -128,10 +128,12 @@ ordered_json sections_json(const YinSections& s) {
 
 ordered_json yin_json(const YinResults& r) {
   ordered_json json;
+  json["equations"] = yin_equations_json(r.equations);
   json["linkage"] = linkage_json(r);
   json["positioning"] = positions_json(r.positioning);
   json["positioning"]["simulated_scans"] = scans_json(r);
   if (r.positioning.failure.empty()) {
+    json["axis_commands"] = yin_commands_json(r.commands);
     json["contour"] = contour_json(r);
     json["sections"] = sections_json(r.sections);
   }

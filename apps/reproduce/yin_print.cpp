@@ -122,8 +122,10 @@ void print_contour(const YinResults& r) {
 }  // namespace
 
 void print_yin(const YinResults& r) {
+  print_yin_equations(r.equations);
   print_linkage(r);
   print_positioning(r);
+  print_yin_commands(r.commands);
   print_contour(r);
   for (const std::string& failure : r.failures) fmt::print("NOT FOUND: {}\n", failure);
   fmt::print("{} with the reference to 1e-9 mm\n", r.agrees ? "agrees" : "DOES NOT AGREE");

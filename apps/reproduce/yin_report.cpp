@@ -68,6 +68,36 @@ EvaluationTable positioning_table(const YinResults& r) {
   return table;
 }
 
+EvaluationTable equations_table(const std::vector<YinEquation>& equations) {
+  EvaluationTable table{"Equations (1) to (8), each put to a test that does not use it",
+                        {"equation", "", "printed fails by", "right fails by", "printed", "right", "test"},
+                        {}};
+  for (const YinEquation& e : equations) {
+    table.rows.push_back({e.number, e.is_right ? "right" : "wrong", fmt::format("{:.3g} {}", e.printed_off, e.unit),
+                          fmt::format("{:.1g} {}", e.right_off, e.unit), e.printed, e.right, e.test});
+  }
+  return table;
+}
+
+EvaluationTable commands_table(const std::vector<YinAxisCommands>& commands) {
+  EvaluationTable table{
+      "Table A4 (paper, workpiece frame) and the axis commands for it: Tables 2 and 3, convention U, C2 = 0, A > 0",
+      {"No.", "paper x in mm", "paper y in mm", "paper z in mm", "X in mm", "Y in mm", "Z in mm", "A in \xC2\xB0",
+       "C1 in \xC2\xB0", "beam by (6) as printed off by"},
+      {}};
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const YinAxisCommands& c = commands[i];
+    std::vector<std::string> row = {fmt::format("{}", i + 1)};
+    for (const double v : {c.point.x(), c.point.y(), c.point.z()}) row.push_back(fmt::format("{:.3f}", v));
+    for (const double v : {c.positive.x, c.positive.y, c.positive.z, c.positive.a / kDegree, c.positive.c1 / kDegree}) {
+      row.push_back(fmt::format("{:.4f}", v));
+    }
+    row.push_back(fmt::format("{:.2f}\xC2\xB0", c.printed_beam_off / kDegree));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 EvaluationTable budget_table(const UncertaintyBudget& budget) {
   EvaluationTable table{"Uncertainty budget: standard uncertainty in \xC2\xB5m, root mean square over the points",
                         {"cause", "inputs", "across, by sensitivity", "across, by Monte Carlo", "along, by sensitivity",
@@ -155,7 +185,7 @@ EvaluationReport yin_report(const YinResults& r) {
                   {"inputs", fmt::format("{}", r.contour.budget.inputs)}};
   for (const std::string& failure : r.failures) report.notes.push_back("Not found: " + failure + ".");
   add_figures(report, "paper", "contour error as the paper measured it", kYinMeasured);
-  report.tables = {linkage_table(r), positioning_table(r)};
+  report.tables = {linkage_table(r), positioning_table(r), equations_table(r.equations)};
   if (!r.positioning.failure.empty()) return report;
   add_figures(report, "predicted", "predicted contour error across the curve", r.contour.across);
   add_figures(report, "below95", "95 % of machines stay below", r.contour.upper);
@@ -164,6 +194,7 @@ EvaluationReport yin_report(const YinResults& r) {
   report.plots = {contour_plot(r), budget_plot(r.contour.budget)};
   report.page = {{"contour", contour_block(r.sections)}};
   report.tables.insert(report.tables.begin(), budget_table(r.contour.budget));
+  report.tables.push_back(commands_table(r.commands));
   report.notes.emplace_back(
       "P1 P2, which the paper calls the contour error, is the rounding of the edge and does not depend on where the "
       "edge is; the contour error is the distance of P2 from the commanded curve.");

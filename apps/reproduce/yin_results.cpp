@@ -34,11 +34,13 @@ YinResults yin_results(std::uint64_t seed) {
   YinResults r;
   r.table_moves = yin_steps(LinkageConvention::table_moves);
   r.head_moves = yin_steps(LinkageConvention::head_moves);
+  r.equations = yin_equations();
   r.joint = yin_joint_fit(r.table_moves.found);
   r.positioning = yin_positioning();
   r.scans = yin_simulated_scans(seed);
   r.located = yin_locate(r.scans);
   if (r.positioning.failure.empty()) {
+    r.commands = yin_axis_commands(r.positioning);
     BudgetOptions options;
     options.seed = seed;
     r.contour = yin_contour(r.positioning, options);

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "abbe/report/evaluation_report.h"
+#include "reproduce/yin_commands.h"
 #include "reproduce/yin_contour.h"
+#include "reproduce/yin_equations.h"
 #include "reproduce/yin_marks.h"
 #include "reproduce/yin_scans.h"
 
@@ -19,7 +21,9 @@ inline constexpr YinFigures kYinMeasured = {15.1, 29.5, 6.8};
 struct YinResults {
   YinSteps table_moves, head_moves;
   YinJointFit joint;
+  std::vector<YinEquation> equations;  ///< (1) to (8)
   YinPositioning positioning;
+  std::vector<YinAxisCommands> commands;  ///< of Table A4
   YinScans scans;
   YinScansFound located;
   YinContour contour;

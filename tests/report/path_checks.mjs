@@ -126,11 +126,12 @@ async function contoursOf(page, blocks, expect, shot, parse) {
   expect(figures.length === wanted.length, `${figures.length} contours for ${wanted.length}`);
   for (const [i, block] of wanted.entries()) {
     const values = block.error_um;
-    const mean = block.mean_um ?? values.reduce((a, b) => a + b, 0) / values.length;
+    const meanOf = (of) => of.reduce((a, b) => a + b, 0) / of.length;
+    const mean = block.mean_um ?? meanOf(values.map(Math.abs)), bias = block.bias_um ?? meanOf(values);
     const largest = block.largest_um ?? Math.max(...values.map(Math.abs));
-    const stated = figures[i].caption.match(/mean (.*?)\u2009µm, largest amount (.*?)\u2009µm/);
-    expect(stated && Math.abs(parse(stated[1]) - mean) <= 6e-4 * Math.abs(mean) && Math.abs(parse(stated[2]) - largest) <= 6e-4 * largest,
-      `contour: ${figures[i].caption} for ${mean}, ${largest}`);
+    const stated = figures[i].caption.match(/mean amount (.*?)\u2009µm, largest amount (.*?)\u2009µm.*mean with signs (.*?)\u2009µm/);
+    expect(stated && Math.abs(parse(stated[1]) - mean) <= 6e-4 * Math.abs(mean) && Math.abs(parse(stated[2]) - largest) <= 6e-4 * largest &&
+      Math.abs(parse(stated[3]) - bias) <= 6e-4 * Math.abs(bias) + 1e-9, `contour: ${figures[i].caption} for ${mean}, ${largest}, ${bias}`);
     if (values.length <= 200) expect(figures[i].dots === values.length, `contour: ${figures[i].dots} dots for ${values.length} points`);
     expect(figures[i].band === (block.u_um ? 1 : 0), 'contour: band of the uncertainty');
     expect(figures[i].rules === (block.limits_um?.length ?? 0), 'contour: limits');

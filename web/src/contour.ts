@@ -7,12 +7,16 @@ import {count, number, quantity} from './format';
 import {band, dots, line, plot, readout, rule} from './plot';
 import {extent} from './scale';
 
-/// Mean, largest amount and standard deviation (n - 1), as stated or of the points drawn; of one value there is none.
-function figures(block: ContourBlock): {mean: number; largest: number; deviation?: number} {
-  const values = block.error_um;
-  const mean = values.reduce((a, b) => a + b, 0) / values.length;
-  const square = values.reduce((a, b) => a + (b - mean) ** 2, 0);
-  return {mean: block.mean_um ?? mean, largest: block.largest_um ?? values.reduce((a, b) => Math.max(a, Math.abs(b)), 0),
+interface Figures { mean: number; bias: number; largest: number; deviation?: number }
+
+/// Of the amounts: mean, largest and standard deviation (n - 1), and the mean with signs; as stated or of the points
+/// drawn. Of one value there is no deviation.
+function figures(block: ContourBlock): Figures {
+  const values = block.error_um, amounts = values.map(Math.abs);
+  const meanOf = (of: number[]) => of.reduce((a, b) => a + b, 0) / of.length;
+  const mean = meanOf(amounts);
+  const square = amounts.reduce((a, b) => a + (b - mean) ** 2, 0);
+  return {mean: block.mean_um ?? mean, bias: block.bias_um ?? meanOf(values), largest: block.largest_um ?? amounts.reduce((a, b) => Math.max(a, b), 0),
     deviation: block.standard_deviation_um ?? (values.length > 1 ? Math.sqrt(square / (values.length - 1)) : undefined)};
 }
 
@@ -31,7 +35,7 @@ function drawing(block: ContourBlock): HTMLElement {
   responsive(box, (width) => {
     const target = plot({width, height: 300, x: {label: block.counted ?? 'length along the curve / mm', range: extent([...s, ...also.flatMap((one) => one.s_mm)])},
       y: {label: 'contour error / µm', range: [from, to], nice: true},
-      zeroLine: true, description: `Contour error along the curve: mean ${quantity(stated.mean, 'µm')}, largest ${quantity(stated.largest, 'µm')}`});
+      zeroLine: true, description: `Contour error along the curve: mean amount ${quantity(stated.mean, 'µm')}, largest ${quantity(stated.largest, 'µm')}`});
     if (u) band(target, s, low, high, '');
     also.forEach((one, i) => dots(target, one.s_mm, one.value_um, `also${i % 2}`));
     if (block.joined !== false) line(target, s, error, 'value');
@@ -60,8 +64,8 @@ export function contourSection(all: ContourBlock | ContourBlock[] | undefined): 
       const beyond = block.limits_um?.length === 2 ? block.error_um.filter((e) => e < block.limits_um![0] || e > block.limits_um![1]).length : undefined;
       const words = `${block.title ? `${block.title}. ` : ''}${count(block.points ?? block.error_um.length)} ${block.sections ? 'sections' : 'points'}` +
         `${block.points && block.points > block.error_um.length ? `, ${count(block.error_um.length)} drawn` : ''}: ` +
-        `mean ${number(stated.mean, 4)}\u2009µm, largest amount ${number(stated.largest, 4)}\u2009µm` +
-        `${stated.deviation === undefined ? '' : `, standard deviation ${number(stated.deviation, 4)}\u2009µm`}.` +
+        `mean amount ${number(stated.mean, 4)}\u2009µm, largest amount ${number(stated.largest, 4)}\u2009µm` +
+        `${stated.deviation === undefined ? '' : `, standard deviation of the amounts ${number(stated.deviation, 4)}\u2009µm`}; mean with signs ${number(stated.bias, 4)}\u2009µm.` +
         `${block.u_um ? ' Band: expanded uncertainty, k = 2.' : ''}${beyond === undefined ? '' : ` ${beyond ? count(beyond) : 'None'} of the points drawn beyond the limits.`}`;
       const box = figure(words, drawing(block));
       const colours = legend(block);

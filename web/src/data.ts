@@ -248,9 +248,11 @@ export interface ContourBlock {
   u_um?: number[];
   /// Lower and upper, or one.
   limits_um?: number[];
+  /// Of the amounts; the mean with signs is the bias.
   mean_um?: number;
   largest_um?: number;
   standard_deviation_um?: number;
+  bias_um?: number;
   /// False: neighbours are not one behind the other on the curve, no line joins them.
   joined?: boolean;
   /// What s_mm counts if it is no length: "section".

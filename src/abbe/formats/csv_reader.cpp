@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "abbe/formats/csv_rows.h"
 #include "abbe/formats/decimal_text.h"
@@ -152,6 +153,10 @@ class RowReader {
       if (word >= kLargestNameCount)
         return refuse(start, target.column->name, "too many different names", "at most 1000");
       target.words[row] = word;
+      return true;
+    }
+    if (field.empty() && target.wanted->may_be_empty) {
+      target.numbers[row] = std::numeric_limits<double>::quiet_NaN();
       return true;
     }
     double value = 0;

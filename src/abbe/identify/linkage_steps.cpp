@@ -11,6 +11,8 @@ namespace abbe {
 namespace {
 
 constexpr double kRightAngle = std::numbers::pi / 2;
+// So many times better must the circle fit with the angles reversed to say that they are.
+constexpr double kReversedMisfit = 5;
 
 /// dp/dX: +1 where the axes carry the head, -1 where they carry the table. The same number turns heights into -p_z.
 double sense(LinkageConvention convention) { return convention == LinkageConvention::table_moves ? -1.0 : 1.0; }
@@ -52,12 +54,15 @@ bool fit_parabola(const std::vector<double>& z, const std::vector<double>& width
 }
 
 /// Arm r and centre c of marks m = c + R(angle) r, by linear least squares.
-bool fit_arm(const std::vector<double>& angle, const std::vector<Eigen::Vector2d>& marks, Eigen::Vector2d& arm) {
+/// @param direction  +1, or -1 for the angles with the other sign
+/// @param misfit     root of the sum of squares, mm
+bool fit_arm(const std::vector<double>& angle, double direction, const std::vector<Eigen::Vector2d>& marks,
+             Eigen::Vector2d& arm, double& misfit) {
   const auto n = static_cast<Eigen::Index>(angle.size());
   Eigen::MatrixXd rows(2 * n, 4);
   Eigen::VectorXd right(2 * n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double c = std::cos(angle[static_cast<std::size_t>(i)]), s = std::sin(angle[static_cast<std::size_t>(i)]);
+    const double turn = direction * angle[static_cast<std::size_t>(i)], c = std::cos(turn), s = std::sin(turn);
     rows.row(2 * i) << 1, 0, c, -s;
     rows.row(2 * i + 1) << 0, 1, s, c;
     right.segment<2>(2 * i) = marks[static_cast<std::size_t>(i)];
@@ -65,7 +70,9 @@ bool fit_arm(const std::vector<double>& angle, const std::vector<Eigen::Vector2d
   PivotedQr solver(rows);
   solver.set_threshold(1e-6);
   if (solver.rank() < 4) return false;
-  arm = solver.solve(right).tail<2>();
+  const Eigen::VectorXd found = solver.solve(right);
+  arm = found.tail<2>();
+  misfit = (rows * found - right).norm();
   return true;
 }
 
@@ -93,8 +100,18 @@ LinkageEvaluation evaluate_steps(const LinkageReadings& r) {
   if (parabola.lowest < *lowest_z || parabola.lowest > *highest_z) {
     return refused(LinkageStatus::focus_outside, "the focus lies outside the series of widths");
   }
-  if (!r.circle_marks.empty() && !fit_arm(r.table_angle, r.circle_marks, result.circle_arm)) {
-    return refused(LinkageStatus::circle_undetermined, "the table has not turned between the marks of the circle");
+  if (!r.circle_marks.empty()) {
+    double misfit = 0, misfit_reversed = 0;
+    Eigen::Vector2d reversed;
+    if (!fit_arm(r.table_angle, 1, r.circle_marks, result.circle_arm, misfit)) {
+      return refused(LinkageStatus::circle_undetermined, "the table has not turned between the marks of the circle");
+    }
+    // Angles with the wrong sign make no circle, and an arm that is wrong by its own length.
+    if (fit_arm(r.table_angle, -1, r.circle_marks, reversed, misfit_reversed) &&
+        misfit > std::max(kReversedMisfit * misfit_reversed, 1e-9)) {
+      return refused(LinkageStatus::circle_reversed,
+                     "the marks of the circle go round against the stated angles: their sign is wrong");
+    }
   }
   result.status = LinkageStatus::ok;
   result.focus_z = parabola.lowest;

@@ -50,10 +50,11 @@ struct LinkageAccuracy {
 enum class LinkageStatus {
   not_run,
   ok,
-  too_few_readings,    ///< fewer than four widths, or one mark of the circle
-  no_focus,            ///< the widths have no smallest value
-  focus_outside,       ///< the parabola's lowest point lies outside the series: extrapolated
-  circle_undetermined  ///< the table has not turned between the marks of the circle
+  too_few_readings,     ///< fewer than four widths, or one mark of the circle
+  no_focus,             ///< the widths have no smallest value
+  focus_outside,        ///< the parabola's lowest point lies outside the series: extrapolated
+  circle_undetermined,  ///< the table has not turned between the marks of the circle
+  circle_reversed       ///< the marks go round against the stated angles
 };
 
 /// Variances of the parameters from one cause.

@@ -48,6 +48,21 @@ Eigen::Vector3d swing_head_beam(const SwingHeadCommand& command) {
   return {std::sin(command.a) * std::sin(command.c1), -std::sin(command.a) * std::cos(command.c1), std::cos(command.a)};
 }
 
+SwingHeadCommand swing_head_command(const SwingHeadLinkage& linkage, LinkageConvention convention,
+                                    const Eigen::Vector3d& point, const Eigen::Vector3d& beam, int sign,
+                                    double held_c1) {
+  const double across = std::hypot(beam.x(), beam.y());
+  SwingHeadCommand c;
+  c.a = std::atan2(sign * across, beam.z());
+  c.c1 = across > 0 ? std::atan2(sign * beam.x(), -sign * beam.y()) : held_c1;
+  const Eigen::Vector3d missing = point - swing_head_focus(linkage, convention, c);
+  const double s = side(convention);
+  c.x = s * missing.x();
+  c.y = s * missing.y();
+  c.z = missing.z();
+  return c;
+}
+
 void set_linkage(Machine& machine, const SwingHeadLinkage& linkage, LinkageConvention convention) {
   const double s = side(convention);
   Axis& c1 = machine.axes[axis_named(machine, "C1")];
@@ -64,7 +79,8 @@ SwingHeadLinkage linkage_of(const Machine& machine, LinkageConvention convention
   const Eigen::Vector3d& c1 = machine.axes[axis_named(machine, "C1")].point;
   const Eigen::Vector3d& a = machine.axes[axis_named(machine, "A")].point;
   const Eigen::Vector3d focus = machine.tool_reference + machine.tool_offset;
-  return {s * (focus.z() - a.z()), a.x() - c1.x(), focus.y() - a.y(), a.y() - c1.y(), {c1.x(), c1.y(), s * a.z()}};
+  // The place of a point along its own axis means nothing: R_C1 is that of the beam.
+  return {s * (focus.z() - a.z()), focus.x() - c1.x(), focus.y() - a.y(), a.y() - c1.y(), {c1.x(), c1.y(), s * a.z()}};
 }
 
 }  // namespace abbe

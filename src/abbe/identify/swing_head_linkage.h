@@ -46,6 +46,17 @@ Eigen::Vector3d swing_head_focus(const SwingHeadLinkage& linkage, LinkageConvent
 /// Unit vector from the focus to the source in U, along the beam's Z+ in P; same frame.
 Eigen::Vector3d swing_head_beam(const SwingHeadCommand& command);
 
+/// Commands that bring the focus to a point with the beam along a direction.
+///
+/// Two answers exist: A = +atan2(hypot(i, j), k) with C1 = atan2(i, -j), and A < 0 with C1 = atan2(-i, j). With the
+/// beam along Z, C1 is free.
+/// @param point, beam  frame of the table C2 at C2 = 0, mm; the beam as swing_head_beam() has it, of any length
+/// @param sign         +1 or -1: of A
+/// @param held_c1      taken where C1 is free, rad
+SwingHeadCommand swing_head_command(const SwingHeadLinkage& linkage, LinkageConvention convention,
+                                    const Eigen::Vector3d& point, const Eigen::Vector3d& beam, int sign = 1,
+                                    double held_c1 = 0);
+
 /// Puts the parameters into a machine with axes named C1 and A and the tool along Z.
 /// @throws std::invalid_argument if the machine has no axis C1 or A
 void set_linkage(Machine& machine, const SwingHeadLinkage& linkage, LinkageConvention convention);

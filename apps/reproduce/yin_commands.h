@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "abbe/identify/swing_head_linkage.h"
+#include "reproduce/yin_study.h"
+
+namespace abbe {
+
+/// Commands of the five axes for one point of Table A4, convention U, C2 = 0.
+struct YinAxisCommands {
+  Eigen::Vector3d point;                ///< Table A4, workpiece frame, mm
+  SwingHeadCommand positive, negative;  ///< both signs of A
+  SwingHeadCommand printed;             ///< by equation (6) as printed, with the linkage in convention P
+  double printed_beam_off = 0;          ///< between the beam that this gives in (5) and the one wanted, rad
+};
+/// @param positioning  with a position of the workpiece
+std::vector<YinAxisCommands> yin_axis_commands(const YinPositioning& positioning);
+
+nlohmann::ordered_json yin_commands_json(const std::vector<YinAxisCommands>& commands);
+void print_yin_commands(const std::vector<YinAxisCommands>& commands);
+/// All commands, one line per point; units in the header.
+std::string yin_commands_csv(const std::vector<YinAxisCommands>& commands);
+
+}  // namespace abbe
