@@ -25,8 +25,8 @@ struct CsvColumn {
   bool is_text = false;  ///< a name instead of a number; no unit
   bool required = true;
   Range range = Range::any;
-  bool is_label = false;  ///< with is_text: a text of its own in every row, which may be empty
   bool may_be_empty = false;  ///< of a number: an empty field is read as a quiet NaN, which no field can say
+  bool is_label = false;      ///< with is_text: a text of its own in every row, which may be empty
 };
 
 /// What was read of one wanted column.
