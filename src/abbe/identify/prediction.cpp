@@ -4,12 +4,16 @@
 #include <cmath>
 
 #include "abbe/geometry/decompositions.h"
+#include "abbe/identify/distributions.h"
 #include "abbe/identify/normal_equations.h"
 
 namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
+
+constexpr double kCoverageFactor = 2;
+constexpr double kBeyondCoverage = 0.0455;  // of normal values: outside two standard deviations
 
 }  // namespace
 
@@ -67,6 +71,46 @@ std::vector<HeldOutReading> held_out_readings(const Problem& problem, const Iden
   });
   std::vector<HeldOutReading> result;
   for (const std::vector<HeldOutReading>& piece : pieces) result.insert(result.end(), piece.begin(), piece.end());
+  return result;
+}
+
+void ReadingCoverage::add(const ReadingCoverage& more) {
+  components += more.components;
+  components_within += more.components_within;
+  readings += more.readings;
+  readings_within += more.readings_within;
+}
+
+ReadingCoverage reading_coverage(const Observations& observations, const Identification& identification,
+                                 std::size_t setup, const ReadingVariance& variance) {
+  std::vector<std::size_t> machine, unknowns;
+  std::vector<Index> columns;
+  // The order of the estimates: machine parameters, then unknowns.
+  for (std::size_t i = 0; i < identification.parameters.size(); ++i) {
+    const ParameterId& id = identification.parameters[i].id;
+    if (!id.is_machine() && id.observations != setup) continue;
+    (id.is_machine() ? machine : unknowns).push_back(id.index);
+    columns.push_back(static_cast<Index>(i));
+  }
+  const Eigen::MatrixXd covariance = identification.covariance(columns, columns);
+  const Index rows = observations.rows(), p = covariance.rows();
+  const double limit = chi_square_quantile(kBeyondCoverage, static_cast<double>(rows));
+  ReadingCoverage result;
+  Eigen::VectorXd residual(rows);
+  Eigen::MatrixXd jacobian(rows, p), displacement(rows, 3);
+  for (std::size_t k = 0; k < observations.reading_count(); ++k) {
+    observations.evaluate(k, 1, machine, unknowns, residual.data(), jacobian.data(), static_cast<std::size_t>(rows));
+    Eigen::MatrixXd spread = jacobian * covariance * jacobian.transpose();
+    spread.diagonal().array() += variance.factor;
+    if (variance.pose > 0 && observations.displacement_rows(k, 1, displacement.data()))
+      spread += variance.pose * displacement * displacement.transpose();
+    for (Index row = 0; row < rows; ++row) {
+      ++result.components;
+      result.components_within += std::abs(residual[row]) <= kCoverageFactor * std::sqrt(spread(row, row)) ? 1U : 0U;
+    }
+    ++result.readings;
+    result.readings_within += residual.dot(Cholesky(spread).solve(residual)) <= limit ? 1U : 0U;
+  }
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "abbe/identify/identify.h"
+#include "abbe/identify/weighed_observations.h"
 
 namespace abbe {
 
@@ -29,5 +30,22 @@ struct HeldOutReading {
 /// @param problem  observations stand at the estimates
 std::vector<HeldOutReading> held_out_readings(const Problem& problem, const Identification& identification,
                                               int threads = 0);
+
+/// How many readings that took no part in the fit lie within what is stated about them.
+struct ReadingCoverage {
+  std::size_t components = 0;
+  std::size_t components_within = 0;  ///< |measured - modelled| is at most 2 standard uncertainties
+  std::size_t readings = 0;
+  std::size_t readings_within = 0;  ///< all components of a reading together: in the region of the same probability
+  /// Sums over several sets of readings.
+  void add(const ReadingCoverage& more);
+};
+
+/// Compares readings with the identified model. The covariance of a difference is that of the prediction, J Cov J', and
+/// that of the reading, with its variance factor and pose noise.
+/// @param observations  readings that were not used, weighted as stated; at the estimates
+/// @param setup         index of the observations of the problem whose unknowns they share
+ReadingCoverage reading_coverage(const Observations& observations, const Identification& identification,
+                                 std::size_t setup, const ReadingVariance& variance = {});
 
 }  // namespace abbe

@@ -313,6 +313,34 @@ void InstrumentObservations::evaluate(std::size_t first, std::size_t count,
   }
 }
 
+bool InstrumentObservations::displacement_rows(std::size_t first, std::size_t count, double* rows_out) const {
+  const Implementation& own = *implementation_;
+  assert(count <= kBlockSize && first + count <= own.readings.count());
+  InstrumentScratch& s = instrument_scratch();
+  double residuals[kMaxRows * kBlockSize];
+  double no_columns = 0;  // asks for derivatives; nothing is written, as no column is wanted
+  for (std::size_t pair = 0; pair < own.pairs.size(); ++pair) {
+    const std::size_t members = own.find_members(first, count, pair, s);
+    if (members == 0) continue;
+    own.load(own.pairs[pair], first, members, s);
+    own.see(own.pairs[pair], members, s);
+    for (std::size_t begin = 0; begin < members;) {
+      std::size_t end = begin + 1;
+      while (end < members && own.readings.item[first + s.at[end]] == own.readings.item[first + s.at[begin]]) ++end;
+      own.model_item(begin, end, first, count, {}, 0, residuals, &no_columns, 0);
+      begin = end;
+    }
+    for (std::size_t direction = 0; direction < 3; ++direction) {
+      for (std::size_t row = 0; row < own.rows(); ++row) {
+        for (std::size_t k = 0; k < members; ++k) {
+          rows_out[(direction * own.rows() + row) * count + s.at[k]] = s.force[row][direction][k];
+        }
+      }
+    }
+  }
+  return true;
+}
+
 std::vector<double> InstrumentObservations::deviation(std::size_t reading) const {
   std::vector<double> result(implementation_->rows());
   evaluate(reading, 1, {}, {}, result.data(), nullptr, 0);

@@ -32,6 +32,7 @@ class InstrumentObservations : public Observations {
   void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
                 std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                 std::size_t stride) const override;
+  bool displacement_rows(std::size_t first, std::size_t count, double* rows_out) const override;
 
   const Instrument& instrument() const;
   const InstrumentReadings& readings() const;

@@ -65,6 +65,17 @@ class Observations {
   virtual void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
                         std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                         std::size_t stride) const = 0;
+
+  /// Derivatives of the modelled values of readings first .. first + count - 1 by a displacement of what is seen (the
+  /// reflector, the body that carries the item), in the frame of the body on which the instrument stands, at the
+  /// present point and weighted as residuals are. Thread-safe.
+  ///
+  /// @param rows_out  out, rows_out[(direction * rows() + row) * count + k], per mm; direction 0..2: along x, y, z
+  /// @return false if these observations do not come from such a displacement; rows_out is then left as it is
+  virtual bool displacement_rows(std::size_t first, std::size_t count, double* rows_out) const {
+    static_cast<void>(first), static_cast<void>(count), static_cast<void>(rows_out);
+    return false;
+  }
 };
 
 }  // namespace abbe

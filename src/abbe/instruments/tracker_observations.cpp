@@ -419,6 +419,30 @@ void TrackerObservations::evaluate(std::size_t first, std::size_t count,
   }
 }
 
+bool TrackerObservations::displacement_rows(std::size_t first, std::size_t count, double* rows_out) const {
+  const Implementation& own = *implementation_;
+  assert(count <= kBlockSize && first + count <= own.readings.count());
+  TrackerScratch& s = tracker_scratch();
+  Members members;
+  for (std::size_t pair = 0; pair < own.pairs.size(); ++pair) {
+    own.find_members(first, count, pair, members);
+    if (members.count == 0) continue;
+    own.load(members, first, s);
+    own.pairs[pair].plan.transform({s.axis, members.count}, {s.start[0], s.start[1], s.start[2]},
+                                   {s.seen[0], s.seen[1], s.seen[2]});
+    own.residuals_of_runs(members, true, s);
+    for (std::size_t direction = 0; direction < 3; ++direction) {
+      for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t k = 0; k < members.count; ++k) {
+          rows_out[(direction * 3 + row) * count + members.at[k]] = s.force[row][direction][k];
+        }
+      }
+    }
+    if (members.whole_block) break;
+  }
+  return true;
+}
+
 TrackerSetup TrackerObservations::setup() const {
   const Implementation& own = *implementation_;
   TrackerSetup present = own.given;

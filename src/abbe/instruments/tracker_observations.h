@@ -39,6 +39,7 @@ class TrackerObservations : public Observations {
   void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
                 std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                 std::size_t stride) const override;
+  bool displacement_rows(std::size_t first, std::size_t count, double* rows_out) const override;
 
   /// The set-up with the present values of the unknowns.
   TrackerSetup setup() const;
