@@ -185,7 +185,7 @@ def main():
             (folder / "in.ngc").write_text(text)
             calls, problem = parse(gcode, folder, text)
             ran = subprocess.run([abbe, "compensate", "gcode", name + "/in.ngc", "--machine", name + "/wide.machine.toml", "--errors",
-                                  name + "/errors.toml", "-o", name + "/out.ngc", "--parameters", name + "/start.var",
+                                  name + "/errors.toml", "--force", "-o", name + "/out.ngc", "--parameters", name + "/start.var",
                                   "--tool-table", name + "/tools.tbl", "--decimals", "9",
                                   *[w for a in ("X_mm", "Y_mm", "Z_mm", "A_deg", "C_deg") for w in ("--start", a + "=0")]],
                                  check=False, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
