@@ -23,11 +23,11 @@ bool is_reversal(const TableReport& report, const CarriedError& error) {
                      [&](const std::pair<std::string, std::string>& one) { return one.first == error.name; });
 }
 
-/// Formats that correct these errors on this machine, with what they leave of the volumetric error.
+/// Formats that take most of these errors away on this machine.
 std::vector<std::string> formats_that_do(const ErrorSet& errors, const TableRequest& request,
                                          const TableReport& report) {
   const Machine& machine = *report.machine;
-  std::vector<std::string> words;
+  std::vector<std::string> names;
   for (const TableFormat& format : table_formats()) {
     if (format.name == report.format->name) continue;
     try {
@@ -38,17 +38,16 @@ std::vector<std::string> formats_that_do(const ErrorSet& errors, const TableRequ
       quick.most_nodes = 0;
       quick.nodes = kQuickNodes;
       const ControllerTables tables = format.make(machine, errors, quick);
-      if (tables.tables.empty() || !tables.problems.empty()) continue;
+      if (!tables.problems.empty()) continue;
       const PoseDeviations after = deviations_with(machine, errors, report.poses, *tables.correction);
-      const double left = after.position_statistics.rms, before = report.before.position_statistics.rms;
-      if (left <= kWorthNaming * before) {
-        words.push_back(fmt::format("{} ({:.3g} um would stay)", format.name, 1e3 * left));
+      if (after.position_statistics.rms <= kWorthNaming * report.before.position_statistics.rms) {
+        names.push_back(format.name);
       }
     } catch (const InputError&) {
       continue;  // The format needs options that only the user knows, or another machine.
     }
   }
-  return words;
+  return names;
 }
 
 }  // namespace

@@ -14,6 +14,9 @@
 namespace abbe {
 namespace {
 
+/// Mm and rad: less is rounding.
+constexpr double kNoUncertainty = 1e-9;
+
 double position_unit(const Axis& axis) { return axis.kind == AxisKind::rotary ? kDegree : 1; }
 
 const char* position_suffix(const Axis& axis) { return axis.kind == AxisKind::rotary ? "deg" : "mm"; }
@@ -80,8 +83,9 @@ std::vector<std::string> coverage_sentences(const Study& study, const StudyResul
           "range (coverage_margin_percent).",
           axis.name, range_words(axis, coverage.measured), range_words(axis, coverage.stated),
           study.identification->coverage_margin_percent);
-      if (result.usable()) {
-        const EndUncertainty end = end_uncertainty(result, coverage);
+      const EndUncertainty end = result.usable() ? end_uncertainty(result, coverage) : EndUncertainty{};
+      // At a reference position they are zero by convention.
+      if (end.translation > kNoUncertainty || end.rotation > kNoUncertainty) {
         text += fmt::format(" Their expanded uncertainty at the end of the range is at most {:.3g} um and {:.3g} urad.",
                             1e3 * end.translation, 1e6 * end.rotation);
       }
