@@ -6,6 +6,7 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/study_file.h"
 #include "command.h"
+#include "exit_code.h"
 #include "options.h"
 #include "progress.h"
 #include "study/advice.h"
