@@ -52,7 +52,9 @@ void add_identify_command(CommandLine& line) {
       if (result.usable()) {
         result.unseen = evaluate_unseen(study, result);
         tell_datum_apart(result, *result.unseen);
-        judge_trust(study, result);
+      }
+      judge_trust(study, result);
+      if (result.usable()) {
         if (!options->output.empty()) {
           ErrorsFile file = identified_errors_file(study, result);
           file.provenance = {{"study", study.name}, {"method", "abbe identify"}};
@@ -63,7 +65,7 @@ void add_identify_command(CommandLine& line) {
         nlohmann::ordered_json json = study_summary(study, result);
         if (result.usable()) json["parameter_table"] = report_parameters(study.machine, result, nullptr);
         fmt::print("{}", json_text(json));
-        tell_distrust(result);
+        tell_distrust(study, result);
         return study_exit_code(study, result);
       }
       print_study(study, result, options->parameters);
@@ -79,7 +81,7 @@ void add_identify_command(CommandLine& line) {
         }
       }
       if (!options->output.empty() && result.usable()) fmt::print("\n{} written\n", options->output);
-      tell_distrust(result);
+      tell_distrust(study, result);
       return study_exit_code(study, result);
     };
   });

@@ -60,6 +60,7 @@ void add_run_command(CommandLine& line) {
           result.map = map_study(study, result, progress.callback());
         }
       }
+      if (study.identification && !result.usable()) judge_trust(study, result);
       const nlohmann::ordered_json summary = write_results(study, result);
       if (options->json) {
         fmt::print("{}", json_text(summary));
@@ -68,7 +69,7 @@ void add_run_command(CommandLine& line) {
         fmt::print("\nresults in {}\n", study.output.string());
         if (study.report.page) fmt::print("report:    {}\n", (study.output / "report.html").string());
       }
-      tell_distrust(result);
+      tell_distrust(study, result);
       int code = study_exit_code(study, result);
       if (result.map) {
         const int uncovered = tell_uncovered(result.map->before.statistics.excluded, result.map->poses.count(),

@@ -8,6 +8,7 @@
 
 #include "abbe/errors/error_set.h"
 #include "abbe/formats/study.h"
+#include "abbe/identify/reading_facts.h"
 #include "abbe/instruments/observations.h"
 
 namespace abbe {
@@ -38,6 +39,9 @@ class CampaignSetup {
 
   /// The readings as a measurement file.
   virtual std::string readings_text(const Machine& machine) const = 0;
+
+  /// What else is known of the readings, to look for patterns in them.
+  virtual ReadingFacts facts() const = 0;
 
   /// Finds from the data what has to be known roughly before an identification can start.
   virtual void find_start(const Machine& machine, std::vector<std::string>& warnings,

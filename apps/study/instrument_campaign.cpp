@@ -164,6 +164,18 @@ std::string InstrumentCampaign::readings_text(const Machine& machine) const {
   return instrument_readings_text(machine, *device, readings);
 }
 
+ReadingFacts InstrumentCampaign::facts() const {
+  ReadingFacts facts;
+  facts.setup = name;
+  facts.time_s = readings.time_s;
+  facts.labels = {{"target", {}, readings.item}};
+  for (const InstrumentItem& item : device->items()) facts.labels[0].names.push_back(item.name);
+  facts.measured = readings.measured;
+  facts.inputs = readings.inputs;
+  facts.arm.assign(readings.measured.size(), 1.0);
+  return facts;
+}
+
 void InstrumentCampaign::find_start(const Machine& machine, std::vector<std::string>& warnings,
                                     std::vector<std::string>&) {
   std::vector<std::string> said;

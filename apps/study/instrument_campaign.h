@@ -20,6 +20,7 @@ class InstrumentCampaign : public CampaignSetup {
   const std::vector<double>& time_s() const override { return readings.time_s; }
   const std::vector<std::string>& points() const override { return readings.point_name; }
   std::string readings_text(const Machine& machine) const override;
+  ReadingFacts facts() const override;
   void find_start(const Machine& machine, std::vector<std::string>& warnings, std::vector<std::string>& notes) override;
   std::unique_ptr<Observations> observations(const Machine& machine, const ErrorSet& errors) const override;
   std::unique_ptr<Observations> exact_observations(const Machine& machine, const ErrorSet& errors) const override;

@@ -207,6 +207,23 @@ std::string TrackerCampaign::readings_text(const Machine& machine) const {
   return measurements_text(machine, table);
 }
 
+ReadingFacts TrackerCampaign::facts() const {
+  ReadingFacts facts;
+  facts.setup = name;
+  facts.time_s = readings.time_s;
+  facts.labels = {{"station", {}, readings.station}, {"reflector", {}, readings.reflector}};
+  for (const TrackerStation& station : start.stations) facts.labels[0].names.push_back(station.name);
+  for (const Reflector& reflector : start.reflectors) facts.labels[1].names.push_back(reflector.name);
+  facts.measured.assign(readings.measured.begin(), readings.measured.end());
+  facts.arm = {1, 1, 1};
+  if (readings.measure == TrackerMeasure::range_and_angles) {
+    double range = 0;
+    for (const double one : readings.measured[0]) range += one / static_cast<double>(readings.count());
+    facts.arm = {1, range, range};
+  }
+  return facts;
+}
+
 void TrackerCampaign::find_start(const Machine& machine, std::vector<std::string>& warnings,
                                  std::vector<std::string>&) {
   const TrackerStart found = find_station_poses(machine, ErrorSet{}, start, readings);

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "abbe/identify/outlier_clusters.h"
 #include "abbe/identify/prediction.h"
+#include "abbe/identify/repeated_readings.h"
 #include "exit_code.h"
 #include "messages.h"
 #include "study/job.h"
+#include "study/summary.h"
 
 namespace abbe {
 namespace {
@@ -25,11 +28,46 @@ std::string warning_of_poor_fit(const FitStatistics& fit) {
       std::sqrt(fit.variance_factor), fit.p_value);
 }
 
+std::vector<ReadingFacts> facts_of(const Campaign& campaign) {
+  std::vector<ReadingFacts> facts;
+  for (const std::unique_ptr<CampaignSetup>& setup : campaign.setups) facts.push_back(setup->facts());
+  return facts;
+}
+
+/// Outliers that stand together: the first three places, the most significant first.
+void judge_outliers(const std::vector<ReadingFacts>& facts, bool robust, StudyResult& result) {
+  constexpr std::size_t kMostTold = 3;
+  std::vector<OutlierCluster> clusters = outlier_clusters(result.model.problem, result.identification.outliers, facts);
+  if (clusters.size() > kMostTold) clusters.resize(kMostTold);
+  for (const OutlierCluster& cluster : clusters) {
+    const std::string text = cluster_text(cluster);
+    if (robust && cluster.is_region_left_out()) {
+      result.distrusted.push_back(
+          {DistrustKind::region_left_out,
+           text + ": the robust loss leaves a whole region out, of which the result says nothing",
+           {{"readings", static_cast<double>(cluster.readings)},
+            {"outliers", static_cast<double>(cluster.outliers)},
+            {"readings_elsewhere", static_cast<double>(cluster.readings_elsewhere)},
+            {"outliers_elsewhere", static_cast<double>(cluster.outliers_elsewhere)},
+            {"probability", cluster.probability}}});
+    } else {
+      result.warnings.push_back(
+          fmt::format("outliers stand together: {} (by chance with a probability of {:.1e}). Something was different "
+                      "there, or the model does not hold.",
+                      text, cluster.probability));
+    }
+  }
+}
+
 }  // namespace
 
 void judge_trust(const Study& study, StudyResult& result) {
-  if (!result.usable()) return;
   const Identification& identified = result.identification;
+  if (!result.usable()) {
+    // What stands apart may be what keeps it from converging.
+    if (!identified.outliers.empty()) judge_outliers(facts_of(result.campaign), false, result);
+    return;
+  }
   const auto doubt = [&](std::optional<Distrust> found) {
     if (found) result.distrusted.push_back(std::move(*found));
   };
@@ -46,6 +84,12 @@ void judge_trust(const Study& study, StudyResult& result) {
                                 .mean_after = unseen.after_statistics.mean,
                                 .count = 3 * static_cast<double>(unseen.before_statistics.count),
                                 .fitted_before = static_cast<double>(unseen.fitted_before)}));
+  }
+  const std::vector<ReadingFacts> facts = facts_of(result.campaign);
+  judge_outliers(facts, study.identification->loss != LossKind::none, result);
+  for (std::size_t s = 0; s < facts.size(); ++s) {
+    const RepeatedReadings repeated = repeated_readings(*result.model.observations[s], facts[s]);
+    if (repeated.are_copies()) warn(copies_text(repeated, facts[s]));
   }
   for (Distrust& size : distrust_of_sizes(study.machine, identified.errors))
     result.distrusted.push_back(std::move(size));
@@ -77,7 +121,8 @@ nlohmann::ordered_json distrust_json(const StudyResult& result) {
   return list;
 }
 
-void tell_distrust(const StudyResult& result) {
+void tell_distrust(const Study& study, const StudyResult& result) {
+  if (study.identification && !result.usable()) tell("abbe: {}\n", study_verdict(study, result));
   for (const Distrust& reason : result.distrusted) tell("abbe: not to be trusted: {}\n", reason.text);
   if (result.distrusted.empty()) return;
   tell("abbe: {}\n", result.misfit_accepted

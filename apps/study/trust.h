@@ -11,8 +11,8 @@ namespace abbe {
 struct Study;
 struct StudyResult;
 
-/// Looks for reasons why the result must not be used as it is, and adds what is only to be told to the warnings. Does
-/// nothing unless the result is usable.
+/// Looks for reasons why the result must not be used as it is, and adds what is only to be told to the warnings. Of a
+/// result that is not usable it only says where outliers stand together.
 /// @param result  with its evaluation at unseen poses
 void judge_trust(const Study& study, StudyResult& result);
 
@@ -25,8 +25,8 @@ std::string distrust_kinds(const StudyResult& result);
 /// The reasons for programs, each with its kind, text and figures.
 nlohmann::ordered_json distrust_json(const StudyResult& result);
 
-/// Tells the reasons on standard error.
-void tell_distrust(const StudyResult& result);
+/// Tells on standard error why there is no result, or the reasons not to trust it.
+void tell_distrust(const Study& study, const StudyResult& result);
 
 /// The identified errors as an errors file holds them, marked if they are not to be trusted. The result is usable.
 ErrorsFile identified_errors_file(const Study& study, const StudyResult& result);

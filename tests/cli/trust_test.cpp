@@ -2,7 +2,9 @@
 // commands that use errors do with it.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/command_test.h"
 #include "cli/machine_for_test.h"
@@ -186,6 +188,49 @@ TEST_F(TrustOfResults, WarningsStandInEveryFile) {
   EXPECT_THAT(run.out, HasSubstr("warning: the residuals are only 0.09"));
   EXPECT_THAT(summary()["warnings"], Contains(HasSubstr("the residuals are only 0.09")));
   EXPECT_THAT(folder.read("out/errors.toml"), HasSubstr("warnings = [\n  \"the residuals are only 0.09"));
+}
+
+TEST_F(TrustOfResults, ARegionThatARobustLossThrowsOutIsRefused) {
+  measure();
+  // Every reading beyond X = 1100 mm is a tenth of a millimetre off.
+  std::string shifted;
+  std::istringstream lines(folder.read("simulated/readings/tracker.csv"));
+  std::vector<std::string> header;
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> cells;
+    std::istringstream of_line(line);
+    for (std::string cell; std::getline(of_line, cell, ',');) cells.push_back(cell);
+    if (header.empty() && line.find("X_mm") != std::string::npos) {
+      header = cells;
+    } else if (!header.empty()) {
+      const auto column = [&](const std::string& name) {
+        return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
+      };
+      const std::size_t x = column("X_mm"), measured = column("measured_x_mm");
+      ASSERT_LT(std::max(x, measured), cells.size()) << line;
+      if (std::stod(cells[x]) > 1100) cells[measured] = std::to_string(std::stod(cells[measured]) + 0.1);
+    }
+    for (std::size_t i = 0; i < cells.size(); ++i) shifted += (i > 0 ? "," : "") + cells[i];
+    shifted += "\n";
+  }
+  folder.write("simulated/readings/tracker.csv", shifted);
+  write_study(kSetup, replaced(kIdentify, "[identify]", "[identify]\nloss = \"tukey\""));
+  const CommandResult run = abbe({"run", "s.study.toml"});
+  EXPECT_EQ(run.exit_code, computation_says_no) << run.out;
+  EXPECT_EQ(summary()["distrusted"][0]["kind"], "region left out") << summary()["distrusted"];
+  EXPECT_THAT(run.err, HasSubstr("readings with X from 1145.45 to 1400 mm are outliers"));
+}
+
+TEST_F(TrustOfResults, RowsThatStandTwiceAreToldOf) {
+  measure();
+  write_study();
+  const std::string study = folder.read("s.study.toml");
+  const std::string data = "[[setup.data]]\nfile = \"simulated/readings/tracker.csv\"\n";
+  folder.write("s.study.toml", replaced(study, data, data + data));
+  const CommandResult run = abbe({"run", "s.study.toml"});
+  EXPECT_EQ(run.exit_code, done) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("216 of 216 pairs of readings at the same pose agree to the last digit"));
+  EXPECT_THAT(summary()["warnings"], Contains(HasSubstr("rows that stand twice")));
 }
 
 }  // namespace

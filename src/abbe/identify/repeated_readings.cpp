@@ -15,7 +15,7 @@ namespace abbe {
 namespace {
 
 constexpr double kCopiesByChance = 1e-4;
-constexpr int kMostDecimals = 9;
+constexpr int kMostDecimals = 12;
 constexpr double kDigitsPerStep = 5;  // an instrument may count in fives of its last digit
 constexpr std::size_t kSampledValues = 2000;
 

@@ -12,7 +12,7 @@ constexpr double kWorthTelling = 0.95;  // residuals / stated uncertainties
 }  // namespace
 
 const char* kind_text(DistrustKind kind) {
-  constexpr const char* kNames[] = {"misfit", "worse held out", "implausible size"};
+  constexpr const char* kNames[] = {"misfit", "worse held out", "implausible size", "region left out"};
   return kNames[static_cast<int>(kind)];
 }
 

@@ -11,9 +11,10 @@
 namespace abbe {
 
 enum class DistrustKind {
-  misfit,           ///< chi-square too large for chance
-  worse_held_out,   ///< the error at poses not used is larger after the correction than before
-  implausible_size  ///< an error larger than any machine in use has
+  misfit,            ///< chi-square too large for chance
+  worse_held_out,    ///< the error at poses not used is larger after the correction than before
+  implausible_size,  ///< an error larger than any machine in use has
+  region_left_out    ///< a robust loss throws out most readings of a region, a station, a reflector or a time
 };
 
 /// "misfit", "worse held out", ... as written in files.
