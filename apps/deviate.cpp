@@ -151,9 +151,21 @@ Counted counted_points(const Eigen::Matrix3Xd& points, const SurfaceDeviation& d
   return result;
 }
 
+/// The transform, refused where the registration that wrote it found no pose.
+TransformFile pose_of(const DeviateCommand& command) {
+  if (command.transform.empty()) return {};
+  TransformFile pose = read_transform_file(command.transform);
+  if (!pose.status.empty() && pose.status != "ok" && pose.status != "ambiguous" && pose.status != "undetermined") {
+    throw InputError({.file = command.transform, .field = "status"},
+                     fmt::format("the registration that wrote this transform says {}", pose.status),
+                     "the transform of a registration that found a pose (ok, ambiguous or undetermined)");
+  }
+  return pose;
+}
+
 int run_deviate(DeviateCommand command) {
-  const RigidTransform part_from_scan =
-      command.transform.empty() ? RigidTransform{} : read_transform(command.transform);
+  const TransformFile pose = pose_of(command);
+  const RigidTransform& part_from_scan = pose.transform;
   const bool has_band = command.lower_mm != 0 || command.upper_mm != 0;
   if (command.lower_mm > command.upper_mm) {
     throw InputError({.field = "--lower-um"}, "lies above --upper-um", "a band from lower to upper");
@@ -214,6 +226,11 @@ int run_deviate(DeviateCommand command) {
   if (command.transform.empty()) {
     report.notes.emplace_back(
         "The scan was taken as it stands: no --transform, so it must be in the frame of the part.");
+  }
+  if (pose.status == "ambiguous" || pose.status == "undetermined") {
+    report.notes.push_back(fmt::format(
+        "The registration that wrote {} says {}: the scan fits in other poses as well, with other deviations.",
+        command.transform, pose.status));
   }
   if (command.largest_mm == 0) {
     report.notes.emplace_back("No --largest-mm: stray points count with their whole distance.");

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -168,7 +169,7 @@ int run_path(const PathCommand& command) {
     options.path.inverse.held.push_back(held);
   }
   if (!command.start.empty()) {
-    options.path.start.assign(machine.axes.size(), 0.0);
+    options.path.start.assign(machine.axes.size(), std::numeric_limits<double>::quiet_NaN());
     for (const std::string& text : command.start) {
       const HeldAxis at = axis_option(machine, "--start", text);
       options.path.start[at.axis] = at.position + calibrated.zero[at.axis];
@@ -181,6 +182,7 @@ int run_path(const PathCommand& command) {
     throw InputError({.field = "--retract-mm"}, path.message, "a distance above zero");
   }
   if (path.status == ToolPathStatus::invalid_options) throw InputError({.file = command.curve}, path.message);
+  if (path.status == ToolPathStatus::start_undecided) throw InputError({.field = "--start"}, path.message);
   if (path.status != ToolPathStatus::followed && path.status != ToolPathStatus::jumps_while_working) {
     tell("abbe: point {} of {}: {}\n", path.failed_point + 1, command.curve, path.message);
     return kNegative;
@@ -235,8 +237,10 @@ void add_path_command(CommandLine& line) {
   command->add_option("--errors", options->errors, "Identified location errors and tool offset (*.errors.toml)");
   command->add_option("--placement", options->placement, "Where the workpiece is clamped (*.placement.toml)");
   command->add_option("--hold", options->hold, "Axis kept at a command, AXIS_unit=position; repeatable");
-  command->add_option("--start", options->start,
-                      "Commands before the path, AXIS_unit=position; repeatable: chooses among branches");
+  command->add_option(
+      "--start", options->start,
+      "Where an axis stands before the path, AXIS_unit=position; repeatable. The nearest branch is taken; "
+      "of axes not named nothing is assumed");
   command->add_option("--feed-mm-per-min", options->feed_mm_per_min, "Feed where the curve has none")
       ->check(positive_number());
   command

@@ -75,8 +75,12 @@ int run_register(const RegisterCommand& command) {
     const PointCloud placed = moved(scan.cloud, result.fine.mesh_from_scan);
     ResultsFolder folder(command.output);
     folder.write("registration.json", json_text(json));
-    folder.write("transform.csv", transform_csv(result.fine.mesh_from_scan));
-    folder.write("registered.ply", ply_bytes({.points = placed.points, .normals = placed.normals}));
+    if (has_pose(result)) {
+      const bool sure = result.status == RegistrationStatus::ok;
+      folder.write("transform.csv",
+                   transform_csv(result.fine.mesh_from_scan, sure ? "" : registration_status_name(result.status)));
+      folder.write("registered.ply", ply_bytes({.points = placed.points, .normals = placed.normals}));
+    }
     const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
     EvaluationReport page =
         registration_page(fmt::format("Registration of {} on {}", name(command.files.scan), name(command.files.part)),
@@ -94,7 +98,10 @@ int run_register(const RegisterCommand& command) {
     for (const auto& [name, text] : facts_of(scan, part)) fmt::print("  {}: {}\n", name, text);
     fmt::print("\n{}", registration_text(result, scan.cloud.size(), command.uncertainty));
     for (const std::string& note : part.notes) fmt::print("note: {}: {}\n", command.files.part, note);
-    if (!command.output.empty()) fmt::print("\nresults in {}\n", command.output);
+    if (!command.output.empty()) {
+      fmt::print("\nresults in {}{}\n", command.output,
+                 has_pose(result) ? "" : ", without transform.csv and registered.ply, as there is no pose");
+    }
   }
   return result.status == RegistrationStatus::ok ? kDone : kNegative;
 }
@@ -122,9 +129,10 @@ void add_register_command(CommandLine& line) {
              "Standard uncertainty of a point along the normal (default: from the residuals)");
   app->add_option("--seed", command->seed, "Seed of the random choices of the search (default 1)");
   app->add_flag("--uncertainty", command->uncertainty, "Print the covariance of the pose too");
-  app->add_output_folder("-o,--output", command->output,
-                         "Results folder to write: registered.ply (the scan in the frame of the part), transform.csv, "
-                         "registration.json, report.html (deviations on the part)");
+  app->add_output_folder(
+      "-o,--output", command->output,
+      "Results folder to write: registered.ply (the scan in the frame of the part), transform.csv, "
+      "registration.json, report.html (deviations on the part); the first two only if a pose was found");
   app->add_flag("--json", command->json, "Print JSON for programs");
   app->callback([&line, command] { line.run = [command] { return run_register(*command); }; });
 }

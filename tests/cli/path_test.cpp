@@ -178,6 +178,33 @@ TEST_F(Path, RegionsAndIdentifiedErrorsChangeTheCommands) {
   EXPECT_THAT(text_of("true.mpf"), HasSubstr("C2=12.000000"));
 }
 
+TEST_F(Path, TheStartCountsByTheAxesThatItNames) {
+  const std::vector<CsvRow> reference = csv_rows(source / "tests/golden/yin/p0_A4_chain.csv");
+  const auto row = std::find_if(reference.begin(), reference.end(), [](const CsvRow& at) {
+    return at.at("conv") == "U" && at.at("eq8_means") == "DBW" && number(at, "C2_deg") == 0;
+  });
+  ASSERT_NE(row, reference.end());
+  const std::vector<std::string> path = {"path",   u_machine,  a4,   "--placement", placement,
+                                         "--hold", "C2_deg=0", "-o", "out.csv"};
+  for (const std::string branch : {"pos_", "neg_"}) {
+    for (const std::string axis : {"A_deg", "C1_deg"}) {
+      std::vector<std::string> arguments = path;
+      arguments.insert(arguments.end(), {"--start", axis + "=" + row->at(branch + axis)});
+      const CommandResult result = abbe(arguments);
+      ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+      EXPECT_NEAR(number(csv_rows(folder.path() / "out.csv").at(0), "A_deg"), number(*row, branch + "A_deg"), 1e-9)
+          << branch << axis;
+    }
+  }
+  // Both branches tilt by the same amount to either side.
+  std::vector<std::string> arguments = path;
+  arguments.insert(arguments.end(), {"--start", "A_deg=0"});
+  const CommandResult result = abbe(arguments);
+  EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(result.err, HasSubstr("--start: the start does not decide between the branches: it needs a command of"));
+  EXPECT_THAT(result.err, HasSubstr("C1"));
+}
+
 TEST_F(Path, WhatCannotBeDoneIsSaid) {
   write("curve.csv", "x_mm,y_mm,z_mm,i,j,k\n0,0,0,0,0,1\n5000,0,0,0,0,1\n");
   const CommandResult feed = abbe({"path", u_machine, "curve.csv"});

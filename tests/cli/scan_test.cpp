@@ -116,6 +116,38 @@ TEST_F(Scan, GroupsOfAnObjFileAreFacesOfTheDeviation) {
   EXPECT_THAT(abbe({"check", "steps.obj"}).out, HasSubstr("groups                 2"));
 }
 
+TEST_F(Scan, WithoutAPoseThereIsNoTransform) {
+  folder.write("few.csv", "x_mm,y_mm,z_mm\n1,2,3\n4,5,6\n7,1,2\n");
+  // What an earlier registration left there goes as well.
+  json({"register", file("pin-scan.csv"), file("pin.stl"), "-o", "out"}, ExitCode::computation_says_no);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/transform.csv"));
+  const CommandResult none = abbe({"register", "few.csv", file("pin.stl"), "-o", "out"});
+  EXPECT_EQ(none.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(none.out, HasSubstr("too few points for a pose"));
+  EXPECT_THAT(none.out, HasSubstr("results in out, without transform.csv and registered.ply"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/registration.json"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/transform.csv"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/registered.ply"));
+}
+
+TEST_F(Scan, DeviateLooksAtWhatTheRegistrationSaid) {
+  json({"register", file("pin-scan.csv"), file("pin.stl"), "-o", "out"}, ExitCode::computation_says_no);
+  EXPECT_THAT(folder.read("out/transform.csv"), testing::StartsWith("# status: undetermined\n"));
+  const std::vector<std::string> deviate{"deviate", file("pin-scan.csv"), file("pin.stl"), "--transform"};
+  std::vector<std::string> arguments = deviate;
+  arguments.emplace_back("out/transform.csv");
+  const CommandResult turned = abbe(arguments);
+  EXPECT_EQ(turned.exit_code, ExitCode::done) << turned.err;
+  EXPECT_THAT(turned.out, HasSubstr("out/transform.csv says undetermined"));
+  folder.write("lost.csv",
+               "# status: not_converged\nrotation_x,rotation_y,rotation_z,translation_mm\n1,0,0,0\n0,1,0,0\n0,0,1,0\n");
+  arguments.back() = "lost.csv";
+  const CommandResult lost = abbe(arguments);
+  EXPECT_EQ(lost.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(lost.err, HasSubstr("lost.csv"));
+  EXPECT_THAT(lost.err, HasSubstr("says not_converged; expected the transform of a registration that found a pose"));
+}
+
 TEST_F(Scan, ATolerancePassedIsAnsweredNo) {
   const auto found = json({"deviate", file("pin-scan.csv"), file("pin.stl"), "--transform", file("pin-transform.csv"),
                            "--tolerance", "maximum_um=5"},

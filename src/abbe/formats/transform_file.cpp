@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/input_error.h"
@@ -10,6 +11,23 @@
 #include "abbe/formats/text_file.h"
 
 namespace abbe {
+namespace {
+
+constexpr std::string_view kStatusComment = "# status: ";
+
+/// The first status among the comments before the header.
+std::string status_of_transform(std::string_view contents) {
+  while (!contents.empty()) {
+    std::string_view line = contents.substr(0, contents.find('\n'));
+    contents.remove_prefix(std::min(contents.size(), line.size() + 1));
+    while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.remove_suffix(1);
+    if (line.starts_with(kStatusComment)) return std::string(line.substr(kStatusComment.size()));
+    if (!line.empty() && line.front() != '#') break;
+  }
+  return {};
+}
+
+}  // namespace
 
 RigidTransform parse_transform(std::string_view contents, const std::string& file) {
   const CsvTable table = read_csv(contents, file,
@@ -47,8 +65,17 @@ RigidTransform read_transform(const std::filesystem::path& path) {
   return parse_transform(read_text_file(path), path.string());
 }
 
-std::string transform_csv(const RigidTransform& transform) {
-  std::string text = "rotation_x,rotation_y,rotation_z,translation_mm\n";
+TransformFile parse_transform_file(std::string_view contents, const std::string& file) {
+  return {parse_transform(contents, file), status_of_transform(contents)};
+}
+
+TransformFile read_transform_file(const std::filesystem::path& path) {
+  return parse_transform_file(read_text_file(path), path.string());
+}
+
+std::string transform_csv(const RigidTransform& transform, const std::string& status) {
+  std::string text = status.empty() ? "" : std::string(kStatusComment) + status + "\n";
+  text += "rotation_x,rotation_y,rotation_z,translation_mm\n";
   for (int row = 0; row < 3; ++row) {
     for (int k = 0; k < 3; ++k) text += shortest_text(transform.rotation(row, k)) + ",";
     text += shortest_text(transform.translation[row]) + "\n";

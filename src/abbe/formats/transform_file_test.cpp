@@ -22,6 +22,16 @@ TEST(TransformFile, ReadsBackToTheSameBits) {
   EXPECT_EQ(back.translation, pose.translation);
 }
 
+TEST(TransformFile, KeepsTheStatusOfTheRegistration) {
+  const RigidTransform pose{rotation_from_vector({0.4, -1.1, 2.0}), {12, -4, 1}};
+  const TransformFile back = parse_transform_file(transform_csv(pose, "not_converged"), "t.csv");
+  EXPECT_EQ(back.status, "not_converged");
+  EXPECT_EQ(back.transform.translation, pose.translation);
+  EXPECT_EQ(parse_transform_file(transform_csv(pose), "t.csv").status, "");
+  const std::string elsewhere = "# from a drawing\r\n\r\n# status: ambiguous\r\n" + transform_csv(pose);
+  EXPECT_EQ(parse_transform_file(elsewhere, "t.csv").status, "ambiguous");
+}
+
 TEST(TransformFile, TakesTheNearestRotationOfRoundedDigitsAndOtherUnits) {
   const RigidTransform read = parse_transform(
       "rotation_x,rotation_y,rotation_z,translation_m\n0.866025,-0.5,0,1\n0.5,0.866025,0,2\n0,0,1,3\n", "t.csv");

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <random>
 
-#include "abbe/geometry/rotation.h"
-
 namespace abbe {
 namespace {
 
@@ -15,7 +13,6 @@ using Eigen::Vector3d;
 
 constexpr double kAngleBin = 0.2618;  ///< 15 degrees
 constexpr double kDistanceBins = 24;  ///< over the diameter
-constexpr std::size_t kScored = 256, kFirstScored = 24;
 constexpr std::size_t kPairsDrawn = 6000;
 
 /// What two points with normals look like from any side.
@@ -66,16 +63,12 @@ class PairSearch {
  public:
   PairSearch(const PointCloud& part, const ThinnedScan& scan, const DistanceGrid& grid,
              const PairSearchOptions& options)
-      : part_(part), scan_(scan), grid_(grid), options_(options), generator_(options.seed) {
-    const Vector3d low = part.points.rowwise().minCoeff(), high = part.points.rowwise().maxCoeff();
-    diameter_ = (high - low).norm();
-    middle_ = scan.points.rowwise().mean();
-    // In random order, so that the first ones speak for all.
-    std::vector<Eigen::Index> order(static_cast<std::size_t>(scan.points.cols()));
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Eigen::Index>(i);
-    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[generator_() % i]);
-    order.resize(std::min(order.size(), kScored));
-    for (const Eigen::Index i : order) scored_.push_back(scan.points.col(i));
+      : part_(part),
+        scan_(scan),
+        options_(options),
+        generator_(options.seed),
+        diameter_((part.points.rowwise().maxCoeff() - part.points.rowwise().minCoeff()).norm()),
+        best_(grid, scan.points, options.reach_mm, diameter_, options.candidates, generator_) {
     for (Eigen::Index i = 0; i < part.size(); ++i) {
       for (Eigen::Index j = 0; j < part.size(); ++j) {
         const PairFeature feature = part_feature(i, j);
@@ -107,9 +100,7 @@ class PairSearch {
       if (tried >= options_.poses) break;
       tried += try_pair(pair.from, pair.to);
     }
-    std::sort(best_.begin(), best_.end(),
-              [](const PoseCandidate& a, const PoseCandidate& b) { return a.score > b.score; });
-    return best_;
+    return best_.sorted();
   }
 
  private:
@@ -144,7 +135,7 @@ class PairSearch {
           RigidTransform pose;
           pose.rotation = axes_of(b - a, part_.normals.col(i)) * scan_axes.transpose();
           pose.translation = 0.5 * (a + b) - pose.rotation * (0.5 * (p + q));
-          keep({pose, score(pose)});
+          best_.add(pose);
           ++tried;
         }
       }
@@ -152,54 +143,13 @@ class PairSearch {
     return tried;
   }
 
-  double score(const RigidTransform& pose) const {
-    const double reach_square = options_.reach_mm * options_.reach_mm;
-    double sum = 0;
-    for (std::size_t k = 0; k < scored_.size(); ++k) {
-      const double distance = static_cast<double>(grid_.at(pose * scored_[k]));
-      sum += std::max(0.0, 1 - distance * distance / reach_square);
-      // Poses that start far below what is kept do not recover: a term scatters by 0.4 at most.
-      if ((k + 1) % kFirstScored == 0) {
-        const double count = static_cast<double>(k + 1);
-        if (sum < least() * count - 1.2 * std::sqrt(count)) break;
-      }
-    }
-    return sum / static_cast<double>(scored_.size());
-  }
-  double least() const { return best_.size() < options_.candidates ? 0 : least_; }
-
-  bool alike(const RigidTransform& a, const RigidTransform& b) const {
-    return (a * middle_ - b * middle_).norm() < 0.08 * diameter_ &&
-           rotation_vector(a.rotation * b.rotation.transpose()).norm() < 0.35;
-  }
-
-  void keep(const PoseCandidate& candidate) {
-    if (candidate.score <= least()) return;
-    const auto same = std::find_if(best_.begin(), best_.end(), [&](const PoseCandidate& other) {
-      return alike(candidate.mesh_from_scan, other.mesh_from_scan);
-    });
-    if (same != best_.end()) {
-      if (candidate.score > same->score) *same = candidate;
-    } else if (best_.size() < options_.candidates) {
-      best_.push_back(candidate);
-    } else {
-      *std::min_element(best_.begin(), best_.end(), less) = candidate;
-    }
-    least_ = std::min_element(best_.begin(), best_.end(), less)->score;
-  }
-  static bool less(const PoseCandidate& a, const PoseCandidate& b) { return a.score < b.score; }
-
   const PointCloud& part_;
   const ThinnedScan& scan_;
-  const DistanceGrid& grid_;
   PairSearchOptions options_;
   std::mt19937_64 generator_;
   double diameter_ = 0;
-  Vector3d middle_;
-  std::vector<Vector3d> scored_;
+  PoseCandidates best_;
   std::vector<PartPair> pairs_;
-  std::vector<PoseCandidate> best_;
-  double least_ = 0;
 };
 
 }  // namespace

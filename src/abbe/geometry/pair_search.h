@@ -3,18 +3,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "abbe/geometry/distance_grid.h"
 #include "abbe/geometry/point_cloud.h"
-#include "abbe/geometry/rigid_transform.h"
+#include "abbe/geometry/pose_candidates.h"
 #include "abbe/geometry/surface_samples.h"
 
 namespace abbe {
-
-/// A pose that brings much of a scan near the surface.
-struct PoseCandidate {
-  RigidTransform mesh_from_scan;
-  double score = 0;  ///< 0 .. 1: mean over the scan of 1 - (distance / reach)^2, zero beyond the reach
-};
 
 struct PairSearchOptions {
   std::uint64_t seed = 1;

@@ -6,6 +6,7 @@
 
 #include "abbe/geometry/pair_search.h"
 #include "abbe/geometry/pose_difference.h"
+#include "abbe/geometry/triple_search.h"
 
 namespace abbe {
 namespace {
@@ -13,7 +14,8 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-constexpr Eigen::Index kPartSamples = 600;
+constexpr Eigen::Index kPartSamples = 600, kTripleSamples = 300;
+constexpr Eigen::Index kEnoughNormals = 256;  ///< of the thinned scan, for the search by pairs alone
 constexpr Eigen::Index kRoughPoints = 400, kComparedPoints = 2500, kFirstFinePoints = 50000;
 constexpr std::size_t kCompared = 12;
 constexpr double kSamePose = 0.02;  ///< of the diameter: nearer poses count as one
@@ -88,11 +90,17 @@ struct RegistrationTarget::Inside {
     const DistanceGrid grid(surface, low, high, 2 * reach, 64, options.threads);
     const ThinnedScan thinned = thin_scan(scan, 0.03 * diameter);
     std::vector<RigidTransform> poses;
-    const std::vector<PoseCandidate> found =
-        search_poses(samples, thinned, grid, {.seed = options.seed, .reach_mm = reach});
-    for (const PoseCandidate& candidate : found) {
-      if (candidate.score < kHopeless * found.front().score) break;
-      poses.push_back(candidate.mesh_from_scan);
+    const auto take = [&](const std::vector<PoseCandidate>& found) {
+      for (const PoseCandidate& candidate : found) {
+        if (candidate.score < kHopeless * found.front().score) break;
+        poses.push_back(candidate.mesh_from_scan);
+      }
+    };
+    take(search_poses(samples, thinned, grid, {.seed = options.seed, .reach_mm = reach}));
+    // Points too far apart for normals of their own, or none that agree with the part's.
+    if (poses.empty() || (!thinned.outwards && thinned.points.cols() < kEnoughNormals)) {
+      take(search_triples(some_of(samples.points, kTripleSamples), thinned.places, grid,
+                          {.seed = options.seed, .reach_mm = reach}));
     }
     return poses;
   }

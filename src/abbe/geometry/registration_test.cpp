@@ -67,6 +67,18 @@ TEST(Registration, FindsAnyPoseOfPartialScansWithThirtyPercentOutliers) {
   }
 }
 
+TEST(Registration, PointsTooFarApartForNormalsAreEnough) {
+  const TriangleMesh step = parts::stepped_box(), blade = parts::blade(40, 50);
+  const PosedScan exact = posed_scan_of(step, 100, 101, 0, 0, Vector3d::Zero());
+  const Registration found = RegistrationTarget(step).register_scan(exact.cloud);
+  EXPECT_EQ(found.status, RegistrationStatus::ok) << registration_status_name(found.status);
+  EXPECT_LT(error_mm(found.fine.mesh_from_scan, exact.mesh_from_scan, step), 1e-6);
+  const PosedScan stray = posed_scan_of(blade, 250, 202, 0.01, 0.2, Vector3d::Zero());
+  const Registration among = RegistrationTarget(blade).register_scan(stray.cloud);
+  EXPECT_EQ(among.status, RegistrationStatus::ok) << registration_status_name(among.status);
+  EXPECT_LT(error_mm(among.fine.mesh_from_scan, stray.mesh_from_scan, blade), 0.05);
+}
+
 TEST(Registration, PosesOfASymmetricPartAreAllReported) {
   // A square bar: four turns about z, each also upside down.
   const TriangleMesh bar = parts::subdivided(parts::prism({{-5, -5}, {5, -5}, {5, 5}, {-5, 5}}, 40));

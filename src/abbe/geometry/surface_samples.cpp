@@ -82,6 +82,12 @@ Vector3d plane_normal(const Eigen::Matrix3Xd& points, const Cells& cells, Eigen:
   return solver.eigenvectors().col(0);
 }
 
+Eigen::Matrix3Xd columns_of(const std::vector<Vector3d>& vectors) {
+  Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(vectors.size()));
+  for (std::size_t i = 0; i < vectors.size(); ++i) result.col(static_cast<Eigen::Index>(i)) = vectors[i];
+  return result;
+}
+
 }  // namespace
 
 PointCloud sample_surface(const TriangleMesh& mesh, Eigen::Index count, std::uint64_t seed) {
@@ -116,7 +122,7 @@ ThinnedScan thin_scan(const PointCloud& cloud, double cell) {
   result.outwards = cloud.has_normals();
   const Eigen::Index stride = std::max<Eigen::Index>(1, cloud.size() / kMostPoints);
   const Cells cells(cloud.points, stride, cell);
-  std::vector<Vector3d> points, normals;
+  std::vector<Vector3d> places, points, normals;
   const std::vector<Cells::Entry>& entries = cells.entries();
   for (std::size_t i = 0; i < entries.size(); ++i) {
     // The middle one in the order of the scan stands for its cell.
@@ -124,18 +130,16 @@ ThinnedScan thin_scan(const PointCloud& cloud, double cell) {
     while (end + 1 < entries.size() && entries[end + 1].key == entries[i].key) ++end;
     const Eigen::Index point = entries[(i + end) / 2].point;
     i = end;
+    places.emplace_back(cloud.points.col(point));
     const Vector3d normal =
         result.outwards ? Vector3d(cloud.normals.col(point)) : plane_normal(cloud.points, cells, point, cell);
     if (!(normal.norm() > 0.5)) continue;
     points.push_back(cloud.points.col(point));
     normals.push_back(normal.normalized());
   }
-  result.points.resize(3, static_cast<Eigen::Index>(points.size()));
-  result.normals.resize(3, static_cast<Eigen::Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    result.points.col(static_cast<Eigen::Index>(i)) = points[i];
-    result.normals.col(static_cast<Eigen::Index>(i)) = normals[i];
-  }
+  result.places = columns_of(places);
+  result.points = columns_of(points);
+  result.normals = columns_of(normals);
   return result;
 }
 

@@ -17,6 +17,8 @@ namespace {
 
 /// Cost of a jump (mm): more than any machine moves along a path, so that jumps are counted first.
 constexpr double kJumpCost = 1e9;
+/// Of the move between two beginnings: distances from the start that differ less do not tell which of them is meant.
+constexpr double kStartDecides = 1e-3;
 
 using Nodes = std::vector<InverseSolution>;
 
@@ -33,8 +35,9 @@ class PathSearch {
       result.status = PathStatus::invalid_options;
       return result;
     }
+    const std::vector<double> start = known_start();
     for (std::size_t i = 0; i < path_.size(); ++i) {
-      const InverseResult found = inverse_.solve(path_[i], options_.start);
+      const InverseResult found = inverse_.solve(path_[i], start);
       if (found.status != InverseStatus::solved) {
         result.status =
             found.status == InverseStatus::outside_travel ? PathStatus::outside_travel : PathStatus::not_reached;
@@ -46,6 +49,11 @@ class PathSearch {
     }
     give_free_axes_their_neighbours_commands();
     search(result);
+    if (!result.undecided.empty()) {
+      result.solutions.clear();
+      result.status = PathStatus::start_undecided;
+      return result;
+    }
     list_jumps(result);
     result.status = PathStatus::followed;
     return result;
@@ -55,6 +63,17 @@ class PathSearch {
   static InverseOptions all_turns(InverseOptions options) {
     options.all_turns = true;
     return options;
+  }
+
+  /// The start for the inverse kinematics, which takes turns and free axes from it: where nothing is known, the command
+  /// nearest to zero within travel, as without a start.
+  std::vector<double> known_start() const {
+    std::vector<double> start = options_.start;
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      const Axis& axis = machine_.axes[i];
+      if (std::isnan(start[i])) start[i] = axis.endless ? 0 : std::clamp(0.0, axis.travel_min, axis.travel_max);
+    }
+    return start;
   }
 
   static Nodes within_travel(const InverseResult& result) {
@@ -152,15 +171,72 @@ class PathSearch {
     return from.singular_axis == axis || to.singular_axis == axis ? 0.999 * kJumpCost : kJumpCost;
   }
 
+  bool start_is_known(std::size_t axis) const { return !options_.start.empty() && !std::isnan(options_.start[axis]); }
+
+  /// [first nodes] over the axes of which the start is known; zero without a start.
+  std::vector<double> lengths_from_start() const {
+    std::vector<double> lengths;
+    for (const InverseSolution& first : nodes_[0]) {
+      InverseSolution start = first;
+      for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+        if (start_is_known(i)) start.position[i] = options_.start[i];
+      }
+      lengths.push_back(length(start, first));
+    }
+    return lengths;
+  }
+
+  double step_cost(const InverseSolution& from, const InverseSolution& to, double tool_turn) const {
+    return length(from, to) + jump_cost(from, to, tool_turn);
+  }
+
+  /// [first nodes] cost of the best sequence that begins there.
+  std::vector<double> costs_of_beginnings() const {
+    std::vector<double> cost(nodes_.back().size(), 0.0), next;
+    for (std::size_t pose = nodes_.size(); pose-- > 1;) {
+      const Nodes &before = nodes_[pose - 1], &here = nodes_[pose];
+      const double tool_turn = turn_of_tool(pose);
+      next.assign(before.size(), std::numeric_limits<double>::infinity());
+      for (std::size_t j = 0; j < before.size(); ++j) {
+        for (std::size_t k = 0; k < here.size(); ++k) {
+          next[j] = std::min(next[j], step_cost(before[j], here[k], tool_turn) + cost[k]);
+        }
+      }
+      cost.swap(next);
+    }
+    return cost;
+  }
+
+  /// Axes that the start leaves out and of which another beginning has other commands, though it is as near to the
+  /// start by the axes given and leads to no more jumps.
+  std::vector<std::size_t> axes_that_would_decide(std::size_t chosen) const {
+    std::vector<std::size_t> axes;
+    const bool partly_known =
+        std::any_of(options_.start.begin(), options_.start.end(), [](double command) { return std::isnan(command); });
+    if (!partly_known) return axes;
+    const std::vector<double> from_start = lengths_from_start(), onwards = costs_of_beginnings();
+    const InverseSolution& best = nodes_[0][chosen];
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      if (start_is_known(i)) continue;
+      for (std::size_t k = 0; k < nodes_[0].size(); ++k) {
+        const InverseSolution& other = nodes_[0][k];
+        const double apart = length(best, other);
+        const double weight = machine_.axes[i].kind == AxisKind::rotary ? options_.mm_per_radian : 1;
+        const bool as_near = std::abs(from_start[k] - from_start[chosen]) <= kStartDecides * apart;
+        const bool as_smooth = onwards[k] < onwards[chosen] + 0.0005 * kJumpCost;
+        if (as_near && as_smooth && weight * std::abs(move(i, best, other)) > 0.01 * apart) {
+          axes.push_back(i);
+          break;
+        }
+      }
+    }
+    return axes;
+  }
+
   void search(PathResult& result) const {
     if (nodes_.empty()) return;
     std::vector<std::vector<std::size_t>> came_from(nodes_.size());
-    std::vector<double> cost(nodes_[0].size(), 0.0), next;
-    if (!options_.start.empty()) {
-      InverseSolution start;
-      std::copy(options_.start.begin(), options_.start.end(), start.position.begin());
-      for (std::size_t k = 0; k < cost.size(); ++k) cost[k] = length(start, nodes_[0][k]);
-    }
+    std::vector<double> cost = lengths_from_start(), next;
     for (std::size_t pose = 1; pose < nodes_.size(); ++pose) {
       const Nodes &before = nodes_[pose - 1], &here = nodes_[pose];
       const double tool_turn = turn_of_tool(pose);
@@ -168,7 +244,7 @@ class PathSearch {
       came_from[pose].assign(here.size(), 0);
       for (std::size_t k = 0; k < here.size(); ++k) {
         for (std::size_t j = 0; j < before.size(); ++j) {
-          const double total = cost[j] + length(before[j], here[k]) + jump_cost(before[j], here[k], tool_turn);
+          const double total = cost[j] + step_cost(before[j], here[k], tool_turn);
           if (total < next[k]) next[k] = total, came_from[pose][k] = j;
         }
       }
@@ -180,6 +256,7 @@ class PathSearch {
       result.solutions[pose] = nodes_[pose][k];
       if (pose > 0) k = came_from[pose][k];
     }
+    result.undecided = axes_that_would_decide(k);
     for (std::size_t pose = 1; pose < nodes_.size(); ++pose) {
       result.length += length(result.solutions[pose - 1], result.solutions[pose]);
       unwind(result.solutions[pose - 1], result.solutions[pose]);
@@ -229,6 +306,16 @@ class PathSearch {
   std::vector<Pending> pending_;  ///< nodes of singular poses, exchanged when all have been looked at
 };
 
+/// "A", "A or C", "X, A or C".
+std::string joined_names(const Machine& machine, const std::vector<std::size_t>& axes) {
+  std::string text;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (i > 0) text += i + 1 == axes.size() ? " or " : ", ";
+    text += machine.axes[axes[i]].name;
+  }
+  return text;
+}
+
 std::string four_digits(double value) { return fmt::format("{:.4g}", value); }
 
 }  // namespace
@@ -245,6 +332,9 @@ std::string describe(const Machine& machine, const PathResult& result) {
     case PathStatus::outside_travel:
     case PathStatus::not_reached:
       return failed + describe(machine, result.failure);
+    case PathStatus::start_undecided:
+      return "the start does not decide between the branches: it needs a command of " +
+             joined_names(machine, result.undecided);
     case PathStatus::invalid_options:
       return "the machine or the options are not usable";
     case PathStatus::followed:

@@ -124,6 +124,44 @@ TEST(Path, FollowsEndlessAxesOverManyTurns) {
   EXPECT_NEAR(result.solutions.front().position[0], 100 * 2 * pi, pi);
 }
 
+TEST(Path, BeginsOnTheBranchNearestToTheAxesThatTheStartNames) {
+  const Machine machine = test::gantry_fork_head();  // X, Y, Z, C, A
+  std::vector<PoseTarget> path;
+  for (int i = 0; i < 10; ++i) path.push_back(PoseTarget::at({2000, 1000, 700}, tilted(0.4, 0.02 * i)));
+  const std::size_t c = machine.find_axis("C"), a = machine.find_axis("A");
+  const auto solutions = InverseKinematics(machine).solve(path[0]).solutions;
+  ASSERT_GE(solutions.size(), 2u);
+  for (const InverseSolution& branch : solutions) {
+    if (!branch.within_travel) continue;
+    for (const std::size_t named : {a, c}) {
+      PathOptions options;
+      options.start.assign(machine.axes.size(), std::nan(""));
+      options.start[named] = branch.position[named] + 0.05;
+      const PathResult result = follow_path(machine, path, options);
+      ASSERT_EQ(result.status, PathStatus::followed) << describe(machine, result);
+      EXPECT_NEAR(result.solutions[0].position[a], branch.position[a], 1e-9) << machine.axes[named].name;
+      EXPECT_NEAR(std::remainder(result.solutions[0].position[c] - branch.position[c], 2 * pi), 0, 1e-9);
+    }
+  }
+}
+
+TEST(Path, AStartThatDoesNotDecideSaysWhichAxesWould) {
+  const Machine machine = test::gantry_fork_head();
+  const std::vector<PoseTarget> path = {PoseTarget::at({2000, 1000, 700}, tilted(0.4, 0))};
+  PathOptions options;
+  options.start.assign(machine.axes.size(), std::nan(""));
+  // Half way between the two tilts of the head.
+  options.start[machine.find_axis("A")] = 0;
+  const PathResult result = follow_path(machine, path, options);
+  EXPECT_EQ(result.status, PathStatus::start_undecided);
+  EXPECT_TRUE(result.solutions.empty());
+  EXPECT_NE(describe(machine, result).find("it needs a command of "), std::string::npos);
+  EXPECT_NE(describe(machine, result).find("C"), std::string::npos) << describe(machine, result);
+  // Where a branch needs a jump later the other one is meant.
+  PathOptions none;
+  EXPECT_EQ(follow_path(machine, path, none).status, PathStatus::followed);
+}
+
 TEST(Path, IsTheShortestOfAllSequencesOfBranches) {
   // Against exhaustive search on a short path with both branches everywhere.
   const Machine machine = test::gantry_fork_head();

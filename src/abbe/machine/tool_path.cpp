@@ -100,12 +100,14 @@ class Planner {
 
   bool failed(const PathResult& path, const std::vector<Pose>& poses) {
     if (path.status == PathStatus::followed) return false;
-    result_.status = path.status == PathStatus::outside_travel ? ToolPathStatus::outside_travel
-                     : path.status == PathStatus::not_reached  ? ToolPathStatus::not_reached
-                                                               : ToolPathStatus::invalid_options;
+    result_.status = path.status == PathStatus::outside_travel    ? ToolPathStatus::outside_travel
+                     : path.status == PathStatus::not_reached     ? ToolPathStatus::not_reached
+                     : path.status == PathStatus::start_undecided ? ToolPathStatus::start_undecided
+                                                                  : ToolPathStatus::invalid_options;
     result_.failed_point = path.failed_pose < poses.size() ? poses[path.failed_pose].point : 0;
-    result_.message = path.status == PathStatus::invalid_options ? InverseKinematics(machine_, inverse_).problem()
-                                                                 : describe(machine_, path.failure);
+    result_.message = path.status == PathStatus::invalid_options   ? InverseKinematics(machine_, inverse_).problem()
+                      : path.status == PathStatus::start_undecided ? describe(machine_, path)
+                                                                   : describe(machine_, path.failure);
     return true;
   }
 

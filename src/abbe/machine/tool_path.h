@@ -64,8 +64,9 @@ enum class ToolPathStatus {
   jumps_while_working,  ///< the axes jump on a move on which the tool works; such steps are listed
   outside_travel,       ///< at `failed_point`
   not_reached,
-  too_many_poses,  ///< the tolerance needs more than largest_count
-  no_retract,      ///< several regions and no retract distance
+  start_undecided,  ///< as PathStatus::start_undecided; the message names the axes
+  too_many_poses,   ///< the tolerance needs more than largest_count
+  no_retract,       ///< several regions and no retract distance
   invalid_options
 };
 
