@@ -90,9 +90,16 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
           "orders: no model of the range could be identified with poses held out; the largest orders are used");
     }
   }
-  StagedIdentification staged = identify_in_stages(problem, plan.strategy, options);
-  result.stages = std::move(staged.stages);
-  result.identification = std::move(staged.total);
+  const VarianceComponentChoice variances{.variance_factor = plan.estimate_variance_factor,
+                                          .pose_noise = plan.estimate_pose_noise};
+  if (variances.any()) {
+    result.weighed = identify_with_variances(problem, variances, options);
+    result.identification = std::move(result.weighed->identification);
+  } else {
+    StagedIdentification staged = identify_in_stages(problem, plan.strategy, options);
+    result.stages = std::move(staged.stages);
+    result.identification = std::move(staged.total);
+  }
   // What a convention fixes is listed with the gauge; what had to be fixed without one is a warning.
   for (const GaugeConstraint& constraint : result.identification.gauge.constraints) {
     if (!constraint.by_convention) result.warnings.push_back(constraint.words + ": " + constraint.inseparable_words);
@@ -108,7 +115,8 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     monte_carlo_options.threads = study.threads;
     monte_carlo_options.loss = options.loss;
     monte_carlo_options.loss_tuning = options.loss_tuning;
-    result.monte_carlo = monte_carlo(problem, result.identification, monte_carlo_options);
+    result.monte_carlo =
+        monte_carlo(result.weighed ? result.weighed->problem : problem, result.identification, monte_carlo_options);
     if (result.monte_carlo->not_settled > 0) {
       result.warnings.push_back(fmt::format("Monte Carlo: {} of {} robust fits had not settled",
                                             result.monte_carlo->not_settled, result.monte_carlo->samples));

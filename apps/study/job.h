@@ -10,6 +10,7 @@
 #include "abbe/identify/strategies.h"
 #include "abbe/identify/trust.h"
 #include "abbe/identify/unseen.h"
+#include "abbe/identify/variance_components.h"
 #include "abbe/verify/error_map.h"
 #include "study/campaign.h"
 #include "study/model.h"
@@ -38,6 +39,7 @@ struct StudyResult {
   std::optional<OrderSelection> order_selection;
   std::vector<Identification> stages;
   Identification identification;
+  std::optional<WeighedIdentification> weighed;  ///< variances of the readings, if estimated; its result is moved out
   std::optional<MonteCarloResult> monte_carlo;
   std::optional<UnseenPoses> unseen;
   std::optional<VolumetricFigures> volumetric;  ///< over the grid of all commands; usable results only

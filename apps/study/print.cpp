@@ -14,6 +14,14 @@
 namespace abbe {
 namespace {
 
+void print_coverage(const ReadingCoverage& found) {
+  fmt::print("  {:.1f} % of {} components of held-out readings within two standard uncertainties of the difference\n",
+             100 * static_cast<double>(found.components_within) / static_cast<double>(found.components),
+             found.components);
+  fmt::print("  {:.1f} % of the readings, all components together, in the region of the same probability\n",
+             100 * static_cast<double>(found.readings_within) / static_cast<double>(found.readings));
+}
+
 void print_unseen(const UnseenPoses& unseen, bool conditional) {
   const bool residual = unseen.quantity == UnseenQuantity::held_out_residual;
   const bool fitted_again = unseen.quantity != UnseenQuantity::volumetric_error;
@@ -27,11 +35,32 @@ void print_unseen(const UnseenPoses& unseen, bool conditional) {
     fmt::print("  {:.1f} % of the coordinates within two standard uncertainties of the prediction\n",
                100 * unseen.coverage);
   }
+  if (unseen.readings && unseen.readings->readings > 0) print_coverage(*unseen.readings);
   if (residual && unseen.times_noise > 0) {
     fmt::print(
         "  {:.3g} times the stated uncertainties of these readings, whose noise is in it: not an error of the "
         "machine\n",
         unseen.times_noise);
+  }
+}
+
+/// Variances of the readings that were estimated from their residuals.
+void print_variances(const VarianceComponents& components) {
+  fmt::print("  variances of the readings, by restricted maximum likelihood:\n");
+  if (components.estimated.variance_factor) {
+    fmt::print("    variance factor of the stated uncertainties {:.4g}, standard uncertainty {:.2g}\n",
+               components.variance.factor, components.variance_factor_uncertainty());
+  }
+  if (components.pose_noise_at_zero) {
+    fmt::print("    pose noise: none found; not above {:.3g} um (k = 2)\n", 1e3 * components.pose_noise_uncertainty());
+  } else if (components.estimated.pose_noise) {
+    fmt::print("    pose noise {:.4g} um in every direction, standard uncertainty {:.2g} um\n",
+               1e3 * components.pose_noise(), 1e3 * components.pose_noise_uncertainty());
+  }
+  fmt::print("    with the uncertainties as stated, chi-square is {:.1f} with {:.0f} degrees of freedom\n",
+             components.stated_chi_square, components.stated_degrees_of_freedom);
+  if (components.estimated.variance_factor) {
+    fmt::print("    (chi-square above is no test: the variance factor makes it what it is)\n");
   }
 }
 
@@ -57,6 +86,7 @@ void print_study(const Study& study, const StudyResult& result, bool all_values)
              identified.parameters.size() - identified.gauge.constraints.size(), identified.gauge.constraints.size());
   fmt::print("  chi-square {:.1f} with {:.0f} degrees of freedom (probability {:.3f}); observability O1 {:.4g}\n",
              fit.chi_square, fit.degrees_of_freedom, fit.p_value, fit.observability.o1);
+  if (result.weighed) print_variances(result.weighed->components);
   if (result.monte_carlo && result.monte_carlo->status == MonteCarloStatus::done) {
     const nlohmann::ordered_json figures = study_summary(study, result)["monte_carlo"];
     fmt::print("  Monte Carlo, {} samples: uncertainties {:.3f} to {:.3f} times those of the covariance\n",

@@ -111,6 +111,39 @@ std::string noise_words(const Setup& setup) {
                    setup.name, along, across);
 }
 
+/// What was found about the variances of the readings, and what that means.
+void variance_assumptions(const StudyResult& result, std::vector<std::string>& list) {
+  const VarianceComponents& components = result.weighed->components;
+  list.emplace_back(
+      "Residual = (measured - modelled) / standard uncertainty as stated. The variances of the readings are estimated "
+      "from the residuals by restricted maximum likelihood, and the uncertainties of the result follow from them.");
+  if (components.estimated.variance_factor) {
+    list.push_back(fmt::format(
+        "Variance factor of the stated uncertainties: {:.4g}, standard uncertainty {:.2g}. Chi-square then equals the "
+        "degrees of freedom and is no test of the model.",
+        components.variance.factor, components.variance_factor_uncertainty()));
+  }
+  if (components.pose_noise_at_zero) {
+    list.push_back(
+        fmt::format("Pose noise (a displacement common to all readings at one pose): none found, not above "
+                    "{:.3g} um (k = 2).",
+                    1e3 * components.pose_noise_uncertainty()));
+  } else if (components.estimated.pose_noise) {
+    list.push_back(fmt::format(
+        "Pose noise (a displacement common to all readings at one pose): {:.4g} um in every direction, standard "
+        "uncertainty {:.2g} um. It stands for errors of the machine that are not in the model and differ from pose to "
+        "pose; predicted errors of the machine do not include it.",
+        1e3 * components.pose_noise(), 1e3 * components.pose_noise_uncertainty()));
+  }
+  if (result.unseen && result.unseen->readings && result.unseen->readings->readings > 0) {
+    const ReadingCoverage& found = *result.unseen->readings;
+    list.push_back(fmt::format(
+        "Of the components of {} held-out readings {:.1f} % lie within two standard uncertainties of the difference "
+        "from the prediction (expected: 95 %).",
+        found.readings, 100 * static_cast<double>(found.components_within) / static_cast<double>(found.components)));
+  }
+}
+
 void identification_assumptions(const Study& study, const StudyResult& result, std::vector<std::string>& list) {
   const IdentificationPlan& plan = *study.identification;
   list.emplace_back(
@@ -120,9 +153,13 @@ void identification_assumptions(const Study& study, const StudyResult& result, s
           : "Every error motion is a function of the position of its own axis only, the mean of both directions of "
             "approach, apart from the reversal values: no temperature, load or speed; location errors are constants.");
   for (const Setup& setup : study.setups) list.push_back(noise_words(setup));
-  list.emplace_back(
-      "Residual = (measured - modelled) / standard uncertainty. Uncertainties of the result follow from those of the "
-      "readings alone (covariance of the fit); they are not scaled with the residuals.");
+  if (result.weighed) {
+    variance_assumptions(result, list);
+  } else {
+    list.emplace_back(
+        "Residual = (measured - modelled) / standard uncertainty. Uncertainties of the result follow from those of the "
+        "readings alone (covariance of the fit); they are not scaled with the residuals.");
+  }
   list.emplace_back(
       "Expanded uncertainties and bands are k = 2 standard uncertainties, about 95 % coverage for normal "
       "distributions.");

@@ -111,6 +111,28 @@ std::string study_verdict(const Study& study, const StudyResult& result) {
   return text;
 }
 
+/// Estimated variances of the readings. Chi-square is that of the uncertainties as stated: with estimated ones it is
+/// what the estimate makes it.
+nlohmann::ordered_json variances_json(const VarianceComponents& components) {
+  nlohmann::ordered_json json;
+  if (components.estimated.variance_factor) {
+    json["variance_factor"] = components.variance.factor;
+    json["variance_factor_standard_uncertainty"] = components.variance_factor_uncertainty();
+  }
+  if (components.estimated.pose_noise) {
+    json["pose_noise_um"] = 1e3 * components.pose_noise();
+    json["pose_noise_standard_uncertainty_um"] = 1e3 * components.pose_noise_uncertainty();
+    json["pose_noise_at_zero"] = components.pose_noise_at_zero;
+  }
+  json["method"] = "restricted maximum likelihood";
+  json["identifications"] = components.iterations;
+  json["stated_chi_square"] = components.stated_chi_square;
+  json["stated_degrees_of_freedom"] = components.stated_degrees_of_freedom;
+  json["stated_chi_square_probability"] = components.stated_p_value;
+  json["chi_square_is_a_test"] = !components.estimated.variance_factor;
+  return json;
+}
+
 nlohmann::ordered_json study_summary(const Study& study, const StudyResult& result) {
   nlohmann::ordered_json json;
   json["format"] = "abbe-summary/1";
@@ -153,6 +175,7 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
       json["observability_index_kind"] = "O1";
       json["condition_number"] = identified.statistics.observability.condition;
       json["normalised_residual_rms"] = std::sqrt(identified.statistics.variance_factor);
+      if (result.weighed) json["reading_variances"] = variances_json(result.weighed->components);
       const ResidualFigures residual = residual_figures(study, result);
       json["fit_residual_um"] = statistics_um(residual.length);
       json["residual"] = residual_json(residual);
@@ -199,6 +222,16 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
     held_out["predicted_expanded_uncertainty_um"] = statistics_um(unseen.uncertainty_statistics);
     if (conditional) held_out["uncertainty_covers"] = kIdentifiedErrorsOnly;
     if (unseen.against_truth) held_out["coverage_percent"] = 100 * unseen.coverage;
+    if (unseen.readings && unseen.readings->readings > 0) {
+      const ReadingCoverage& found = *unseen.readings;
+      held_out["reading_coverage"] = {{"coverage_factor", 2},
+                                      {"readings", found.readings},
+                                      {"components", found.components},
+                                      {"components_within_percent", 100 * static_cast<double>(found.components_within) /
+                                                                        static_cast<double>(found.components)},
+                                      {"readings_within_percent", 100 * static_cast<double>(found.readings_within) /
+                                                                      static_cast<double>(found.readings)}};
+    }
     if (unseen.before_statistics.mean > 0) {
       held_out["remaining_percent"] = 100 * unseen.after_statistics.mean / unseen.before_statistics.mean;
     }

@@ -39,6 +39,15 @@ struct Tally {
   }
 };
 
+/// @param observations  readings that were held out, weighted as stated; takes them to the estimates
+void add_coverage(const StudyResult& result, std::size_t s, Observations& observations, Tally& tally) {
+  if (!result.weighed || tally.unseen.against_truth) return;
+  const Identification& identified = result.identification;
+  observations.set_parameters(identified.errors.parameters(), identified.setup[s]);
+  if (!tally.unseen.readings) tally.unseen.readings.emplace();
+  tally.unseen.readings->add(reading_coverage(observations, identified, s, result.weighed->components.variance));
+}
+
 void weigh_in_micrometres(TrackerSetup& setup, TrackerReadings& readings) {
   for (TrackerStation& station : setup.stations) station.noise = TrackerNoise::isotropic(1, 0);
   readings.stated = StatedUncertainty::none;
@@ -103,6 +112,10 @@ void add_tracker(const Study& study, const StudyResult& result, std::size_t s, c
   tally.unseen.fitted_before += 6 * setup.start.stations.size();
   // The observations carry the identified poses and offsets; build them as the fit did, so that the unknowns
   // correspond.
+  if (result.weighed) {
+    TrackerObservations stated(study.machine, identified, setup.start, readings);
+    add_coverage(result, s, stated, tally);
+  }
   TrackerSetup weighed = setup.start;
   weigh_in_micrometres(weighed, readings);
   TrackerObservations observations(study.machine, identified, weighed, std::move(readings));
@@ -160,6 +173,7 @@ void add_instrument(const Study& study, const StudyResult& result, std::size_t s
     InstrumentObservations as_stated(study.machine, result.identification.errors, setup.device, readings);
     as_stated.set_parameters(result.identification.errors.parameters(), result.identification.setup[s]);
     tally.add_against_noise(as_stated);
+    if (result.weighed) add_coverage(result, s, as_stated, tally);
   }
   readings.uncertainty.assign(components.size(), std::vector<double>(readings.count(), 1e-3));
   InstrumentObservations observations(study.machine, result.identification.errors, setup.device, std::move(readings));

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "abbe/identify/prediction.h"
 #include "abbe/verify/statistics.h"
 
 namespace abbe {
@@ -33,6 +35,9 @@ struct UnseenPoses {
   double times_noise = 0;         ///< held-out readings: root mean square of residuals over stated uncertainties
   std::size_t fitted_before = 0;  ///< numbers of the set-up fitted to these readings for `before`, not for `after`
   double coverage = 0;            ///< share of the coordinates within 2 u of the prediction; 0..1
+  /// Held-out readings, where the variances of the readings were estimated: how many lie within the uncertainty of the
+  /// prediction and their own together.
+  std::optional<ReadingCoverage> readings;
   /// Conventions on which the volumetric error depends other than by the choice of the workpiece datum: the readings
   /// do not determine it in these directions.
   std::vector<std::string> open;

@@ -159,11 +159,13 @@ struct IdentificationPlan {
   std::vector<IdentifiedLocation> locations;
   std::vector<std::size_t> reversals;  ///< axes
   bool tool_offset = false;
+  bool estimate_variance_factor = false;  ///< of the stated covariance of the readings, from their residuals
+  bool estimate_pose_noise = false;       ///< of a displacement common to all readings at one pose
   std::optional<std::filesystem::path> initial_errors;  ///< start values; else zero
   std::vector<ParameterPrior> priors;
   Strategy strategy = Strategy::joint;
   LossKind loss = LossKind::none;
-  double loss_scale = 0;  ///< in standard uncertainties; 0: the loss's usual value (95 % efficiency)
+  double loss_scale = 0;                  ///< in standard uncertainties; 0: the loss's usual value (95 % efficiency)
   int max_iterations = 50;
   double tolerance = 1e-10;                            ///< relative change of the cost and of the parameters
   double held_out_fraction = 0.1;                      ///< of the readings, not used in the fit

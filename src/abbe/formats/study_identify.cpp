@@ -151,6 +151,20 @@ void read_prior(TomlTable& table, std::vector<ParameterPrior>& priors) {
   }
 }
 
+/// Which variances of the readings are estimated from their residuals.
+void read_variances(TomlTable& table, IdentificationPlan& plan) {
+  plan.estimate_variance_factor = table.word_or("variance_factor", 0, {"stated", "estimated"}) == 1;
+  plan.estimate_pose_noise = table.word_or("pose_noise", 0, {"none", "estimated"}) == 1;
+  const char* field = plan.estimate_variance_factor ? "variance_factor" : "pose_noise";
+  if (!plan.estimate_variance_factor && !plan.estimate_pose_noise) return;
+  if (plan.loss != LossKind::none) {
+    table.fail(field, "is estimated from sums of squares, which a robust loss does not have", "loss = \"none\"");
+  }
+  if (plan.strategy != Strategy::joint) {
+    table.fail(field, "is estimated together with all parameters", "strategy = \"joint\"");
+  }
+}
+
 }  // namespace
 
 bool matches_pattern(std::string_view text, std::string_view pattern) {
@@ -199,6 +213,7 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
   plan.strategy = static_cast<Strategy>(table.word_or("strategy", 0, {"joint", "independent", "combined"}));
   plan.loss = static_cast<LossKind>(table.word_or("loss", 0, {"none", "huber", "cauchy", "tukey"}));
   plan.loss_scale = table.size_or("loss_scale", Quantity::dimensionless, 0);
+  read_variances(table, plan);
   plan.max_iterations = static_cast<int>(table.integer_or("max_iterations", 50, 1, 100000));
   plan.tolerance = table.size_or("tolerance", Quantity::dimensionless, 1e-10);
   plan.held_out_fraction = table.size_or("held_out_fraction", Quantity::dimensionless, 0.1);
