@@ -180,10 +180,10 @@ AguadoFit fit_aguado(const AguadoTruth& truth, const TrackerReadings& readings, 
   fit.identification = identify_in_stages(problem, strategy, options).total;
   fit.residual = lengths(observations);
 
-  const TrackerSetup identified = observations.setup();
+  fit.setup = observations.setup();
   std::vector<AxisRange> ranges = full_ranges(machine, 2);
   // Offsets that were not measured either: inside and outside the three that were.
-  TrackerSetup true_setup = truth.setup, identified_setup = identified;
+  TrackerSetup true_setup = truth.setup, identified_setup = fit.setup;
   const Eigen::Vector3d offsets[] = {{50, 50, -100}, {-50, 50, -200}, {0, -50, -150}};
   for (std::size_t i = 0; i < 3; ++i)
     true_setup.reflectors[i].offset = identified_setup.reflectors[i].offset = offsets[i];
@@ -196,6 +196,21 @@ AguadoFit fit_aguado(const AguadoTruth& truth, const TrackerReadings& readings, 
       compare_predictions(machine, {&truth.errors, &true_setup}, {&none, &true_setup}, poses, sights, threads);
   fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time).count();
   return fit;
+}
+
+std::vector<double> aguado_distances(const AguadoTruth& truth, const ErrorSet& errors, const TrackerSetup& setup,
+                                     const PoseList& poses) {
+  TrackerSimulationOptions options;
+  options.sights = {{0, 0}};
+  options.noise_factor = 0;
+  const Machine machine = aguado_machine();
+  const SimulatedTracker seen = simulate_tracker(machine, truth.errors, truth.setup, poses, options);
+  TrackerSetup predicted = setup;
+  predicted.stations[0].noise = TrackerNoise::isotropic(1, 0);  // only weights, which distances do not have
+  const TrackerObservations observations(machine, errors, predicted, seen.readings);
+  std::vector<double> distances(observations.reading_count());
+  for (std::size_t k = 0; k < distances.size(); ++k) distances[k] = observations.distance(k).norm();
+  return distances;
 }
 
 }  // namespace abbe

@@ -43,6 +43,7 @@ ErrorSet aguado_model(const AguadoOrders& orders);
 
 struct AguadoFit {
   Identification identification;
+  TrackerSetup setup;              ///< station and reflectors as identified
   SampleStatistics initial;        ///< nominal machine at the true station pose, at the readings, mm
   SampleStatistics residual;       ///< after the fit, at the readings, mm
   SampleStatistics unseen;         ///< identified against true, at poses and offsets that were not measured, mm
@@ -53,5 +54,10 @@ struct AguadoFit {
 /// Identifies readings by one strategy and compares with the truth at 2,000 unseen random poses with new offsets.
 AguadoFit fit_aguado(const AguadoTruth& truth, const TrackerReadings& readings, const TrackerNoise& noise,
                      const AguadoOrders& orders, Strategy strategy = Strategy::joint, int threads = 0);
+
+/// Distance between what the tracker sees on the true machine and what a state predicts, pose by pose with the first
+/// reflector, mm.
+std::vector<double> aguado_distances(const AguadoTruth& truth, const ErrorSet& errors, const TrackerSetup& setup,
+                                     const PoseList& poses);
 
 }  // namespace abbe

@@ -51,11 +51,17 @@ MaExample example_of(const nlohmann::json& json, PolygonFaceOrder order) {
   return example;
 }
 
-void take_largest(const TableMotion& difference, SixMotions& largest) {
+SixMotions six_of(const TableMotion& motion) {
+  SixMotions six;
   for (std::size_t i = 0; i < 3; ++i) {
-    largest[i] = std::max(largest[i], std::abs(difference.angles[static_cast<int>(i)]));
-    largest[3 + i] = std::max(largest[3 + i], std::abs(difference.displacement[static_cast<int>(i)]));
+    six[i] = motion.angles[static_cast<int>(i)];
+    six[3 + i] = motion.displacement[static_cast<int>(i)];
   }
+  return six;
+}
+
+void take_largest(const SixMotions& difference, SixMotions& largest) {
+  for (std::size_t i = 0; i < 6; ++i) largest[i] = std::max(largest[i], std::abs(difference[i]));
 }
 
 }  // namespace
@@ -146,21 +152,23 @@ MaInversions ma_inversions(const MaExample& example) {
   result.all_converged = true;
   for (std::size_t k = 0; k < readings.size(); ++k) {
     const auto miss = [&](const TableMotion& found) {
-      return TableMotion{found.angles - example.motions[k].angles,
-                         found.displacement - example.motions[k].displacement};
+      return six_of({found.angles - example.motions[k].angles, found.displacement - example.motions[k].displacement});
     };
     const auto by_formula = [&](PolygonFormula formula) {
       return first_order_motion(formula, readings[k], readings[0], example.polygon, example.mount, example.bench,
                                 example.positions[k], example.positions[0]);
     };
-    take_largest(miss(by_formula(PolygonFormula::printed)), result.printed);
-    take_largest(miss(by_formula(PolygonFormula::corrected)), result.corrected);
+    result.printed_at.push_back(miss(by_formula(PolygonFormula::printed)));
+    result.corrected_at.push_back(miss(by_formula(PolygonFormula::corrected)));
+    take_largest(result.printed_at.back(), result.printed);
+    take_largest(result.corrected_at.back(), result.corrected);
     for (const PolygonInversionOrder order : {PolygonInversionOrder::stepwise, PolygonInversionOrder::simultaneous}) {
       const PolygonInversion found = invert_polygon_readings(readings[k], example.polygon, example.mount, example.bench,
                                                              example.positions[k], order);
       result.all_converged = result.all_converged && found.status == PolygonInversionStatus::converged;
       take_largest(miss(found.motion),
                    order == PolygonInversionOrder::stepwise ? result.stepwise : result.simultaneous);
+      if (order == PolygonInversionOrder::simultaneous) result.simultaneous_at.push_back(miss(found.motion));
     }
   }
   return result;

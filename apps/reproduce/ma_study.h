@@ -45,12 +45,25 @@ inline constexpr double kMicrometre = 1e-3;  ///< mm
 /// Largest absolute values of six motions: eps_x, eps_y, eps_z (rad), delta_x, delta_y, delta_z (mm).
 using SixMotions = std::array<double, 6>;
 
+/// The readings from which eps_x, eps_y, eps_z, delta_x, delta_y, delta_z are found.
+inline constexpr std::array<PolygonReading, 6> kMaReadingOf = {
+    PolygonReading::autocollimator_y_about_x, PolygonReading::autocollimator_x_about_y,
+    PolygonReading::autocollimator_x_about_z, PolygonReading::displacement_x,
+    PolygonReading::displacement_y,           PolygonReading::displacement_z};
+
 /// How far each way of evaluating section 3.3 misses the motions that were set.
 struct MaInversions {
   SixMotions printed{}, corrected{}, stepwise{}, simultaneous{};
+  /// Found minus set at every position (Figure 3), signed.
+  std::vector<SixMotions> printed_at, corrected_at, simultaneous_at;
   bool all_converged = false;
 };
 MaInversions ma_inversions(const MaExample& example);
+
+/// Motions position by position over all runs.
+struct MaCourses {
+  std::vector<SixMotions> mean, half_range;  ///< [positions]; half of the peak-to-peak value
+};
 
 /// Ten runs of a table like the SKQ-12200 of section 4, measured stepwise with one autocollimator and one sensor.
 struct MaTable {
@@ -62,6 +75,8 @@ struct MaTable {
   SixMotions absorbed{};  ///< true motion that the fit took for installation
   /// Section 4: half the peak-to-peak value of the runs, largest over the positions.
   SixMotions repeatability_before{}, repeatability_fitted{}, repeatability_inverted{}, repeatability_truth{};
+  std::vector<double> angles;  ///< of the positions, rad
+  MaCourses courses_before, courses_fitted, courses_inverted, courses_truth;
 };
 MaTable ma_table(std::size_t runs, std::uint64_t seed);
 

@@ -87,7 +87,9 @@ Course without_first_harmonic(const Course& course, Course* removed = nullptr) {
 struct Runs {
   std::vector<Courses> courses;
 
-  void evaluate(SixMotions& largest, SixMotions& repeatability) const {
+  void evaluate(SixMotions& largest, SixMotions& repeatability, MaCourses& at) const {
+    at.mean.resize(kSteps);
+    at.half_range.resize(kSteps);
     for (std::size_t i = 0; i < 6; ++i) {
       for (std::size_t k = 0; k < kSteps; ++k) {
         double mean = 0, low = courses[0][i][k], high = low;
@@ -98,6 +100,8 @@ struct Runs {
         }
         largest[i] = std::max(largest[i], std::abs(mean));
         repeatability[i] = std::max(repeatability[i], (high - low) / 2);
+        at.mean[k][i] = mean;
+        at.half_range[k][i] = (high - low) / 2;
       }
     }
   }
@@ -114,14 +118,10 @@ void prism_errors(PolygonCampaign& campaign, RandomStream& random) {
 }
 
 Courses courses_of(const std::vector<PolygonReadings>& readings) {
-  // In the order eps_x, eps_y, eps_z, delta_x, delta_y, delta_z.
-  constexpr PolygonReading kOf[] = {PolygonReading::autocollimator_y_about_x, PolygonReading::autocollimator_x_about_y,
-                                    PolygonReading::autocollimator_x_about_z, PolygonReading::displacement_x,
-                                    PolygonReading::displacement_y,           PolygonReading::displacement_z};
   Courses courses{};
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t k = 0; k < kSteps; ++k) {
-      const std::size_t reading = static_cast<std::size_t>(kOf[i]);
+      const std::size_t reading = static_cast<std::size_t>(kMaReadingOf[i]);
       courses[i][k] = readings[k][reading] - readings[0][reading];
     }
   return courses;
@@ -203,10 +203,11 @@ MaTable ma_table(std::size_t runs, std::uint64_t seed) {
     truth.courses.push_back(true_courses);
   }
   MaTable table;
-  raw.evaluate(table.before, table.repeatability_before);
-  fitted.evaluate(table.fitted, table.repeatability_fitted);
-  exact.evaluate(table.inverted, table.repeatability_inverted);
-  truth.evaluate(table.truth, table.repeatability_truth);
+  for (std::size_t k = 0; k < kSteps; ++k) table.angles.push_back(step_angle(k));
+  raw.evaluate(table.before, table.repeatability_before, table.courses_before);
+  fitted.evaluate(table.fitted, table.repeatability_fitted, table.courses_fitted);
+  exact.evaluate(table.inverted, table.repeatability_inverted, table.courses_inverted);
+  truth.evaluate(table.truth, table.repeatability_truth, table.courses_truth);
   for (const std::size_t i : {0U, 1U, 3U, 4U}) {
     Course removed;
     without_first_harmonic(mean[i], &removed);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -39,10 +40,15 @@ TEST_F(ReproduceMa, TextStatesTheGaugeAndWhatIsWrongInPrint) {
   }
 }
 
-TEST_F(ReproduceMa, AFolderIsRefused) {
+TEST_F(ReproduceMa, TheFolderHoldsTablesFiguresAndThePage) {
   const CommandResult result = abbe({"reproduce", "ma", "-o", "results"});
-  EXPECT_EQ(result.exit_code, ExitCode::bad_input);
-  EXPECT_NE(result.err.find("--output"), std::string::npos) << result.err;
+  ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
+  for (const char* name :
+       {"summary.json", "report.html", "tables/published.csv", "tables/table-1.csv", "tables/errors-46.csv",
+        "tables/table-3.csv", "tables/figure-3.csv", "tables/figure-5.csv", "figures/figure-3a.svg",
+        "figures/figure-3b.svg", "figures/figure-5-eps_x.svg", "study/section-3-3-readings-face-order.csv"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "results" / name)) << name;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,88 @@
+#include "reproduce/reproduce_output.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "reproduce/reproduce_text.h"
+
+namespace abbe {
+namespace {
+
+Reproduction sample_reproduction() {
+  Reproduction made;
+  made.paper = "sample";
+  made.citation = "Author (2020), Journal 1, 2";
+  made.title = "A study";
+  made.agrees = true;
+  made.published = {{"Table 1, average final error", "um", 112.57, 100.5, ""},
+                    {"Table 1, maximum final error", "um", 186.06, {}, "the paper gives no readings"}};
+  made.tables = {{"table-1",
+                  "Table 1",
+                  {{"case"}, {"average before", "um"}, {"left", "%", 1}, {"angle", "um/mrad", 3}, {"why"}},
+                  {{"one, of two", 12.345678, 20.45, 1e-9,
+                    "words that are longer than what is left of a line, so that "
+                    "they need two of them at the end of the row"},
+                   {"two", {}, 3, 1.0, ""}},
+                  {"A note."}}};
+  made.details = {{"rank", 72}};
+  return made;
+}
+
+TEST(ReproduceOutput, UnitsStandInTheHeaderOfATable) {
+  EXPECT_EQ(column_key({"average before", "um"}), "average_before_um");
+  EXPECT_EQ(column_key({"left", "%"}), "left_percent");
+  EXPECT_EQ(column_key({"angle", "um/mrad"}), "angle_um_per_mrad");
+  std::istringstream csv(reproduction_csv(sample_reproduction().tables[0]));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "case,average_before_um,left_percent,angle_um_per_mrad,why");
+  std::getline(csv, line);
+  EXPECT_TRUE(line.starts_with("\"one, of two\",12.345678,20.45,1e-09,\"words")) << line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "two,,3,1,");
+}
+
+TEST(ReproduceOutput, PublishedNumbersHaveTheirDifferenceOrTheReasonWhyThereIsNone) {
+  const nlohmann::ordered_json json = reproduction_json(sample_reproduction());
+  EXPECT_NEAR(json["published"][0]["difference"].get<double>(), -12.07, 1e-9);
+  EXPECT_TRUE(json["published"][1]["here"].is_null());
+  EXPECT_EQ(json["published"][1]["note"], "the paper gives no readings");
+  EXPECT_EQ(json["rank"], 72);
+  EXPECT_EQ(json["tables"]["table-1"]["rows"][0]["left_percent"], 20.45);
+}
+
+TEST(ReproduceOutput, TextIsAlignedAndWrapped) {
+  std::istringstream text(reproduction_text(sample_reproduction()));
+  std::size_t lines = 0;
+  for (std::string line; std::getline(text, line); ++lines) {
+    EXPECT_LE(line.size(), 118U) << line;
+    EXPECT_TRUE(line.empty() || line.back() != ' ') << line;
+  }
+  EXPECT_GT(lines, 12U);
+  EXPECT_EQ(cell_text(1e-9, {"angle", "um", 3}), "1e-09");
+  EXPECT_EQ(cell_text(0.0, {"angle", "um", 3}), "0.000");
+}
+
+TEST(ReproduceOutput, WhatFailedOrDoesNotAgreeIsNoSuccess) {
+  Reproduction made = sample_reproduction();
+  EXPECT_TRUE(made.successful());
+  made.failures = {"the edge of section 3"};
+  EXPECT_FALSE(made.successful());
+  EXPECT_NE(reproduction_text(made).find("Not found"), std::string::npos);
+  made.failures.clear();
+  made.agrees = false;
+  EXPECT_FALSE(made.successful());
+}
+
+TEST(ReproduceOutput, ThePageHoldsFiguresAndTables) {
+  Reproduction made = sample_reproduction();
+  made.figures = {{"figure-6", "Histogram", "<svg id=\"here\"></svg>"}};
+  const std::string page = reproduction_page(made);
+  for (const char* words : {"average before / ", "the paper gives no readings", "A note.", "Histogram"}) {
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  }
+}
+
+}  // namespace
+}  // namespace abbe
