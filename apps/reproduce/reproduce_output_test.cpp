@@ -38,7 +38,7 @@ TEST(ReproduceOutput, UnitsStandInTheHeaderOfATable) {
   std::getline(csv, line);
   EXPECT_EQ(line, "case,average_before_um,left_percent,angle_um_per_mrad,why");
   std::getline(csv, line);
-  EXPECT_TRUE(line.starts_with("\"one, of two\",12.345678,20.45,1e-09,\"words")) << line;
+  EXPECT_TRUE(line.starts_with("\"one, of two\",12.345678,20.45,1e-9,\"words")) << line;
   std::getline(csv, line);
   EXPECT_EQ(line, "two,,3,1,");
 }

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-constexpr const char* kTrueErrors = R"(chain = "w X' b Z t"
+constexpr const char* kTrustTruth = R"(chain = "w X' b Z t"
 [[motion]]
 name = "EXX"
 basis = "legendre"
@@ -36,7 +36,7 @@ order = 2
 coefficients_um = [0, -20, 15]
 )";
 
-constexpr const char* kSetup = R"([[setup]]
+constexpr const char* kTrustSetup = R"([[setup]]
 name = "tracker"
 instrument = "tracker"
 noise = { xyz_um = 5 }
@@ -55,9 +55,9 @@ name = "R3"
 offset_mm = [-70, -30, -100]
 )";
 
-constexpr const char* kPlan = "[[setup.plan]]\nkind = \"grid\"\naxis.X = { count = 12 }\naxis.Z = { count = 6 }\n";
+constexpr const char* kTrustPlan = "[[setup.plan]]\nkind = \"grid\"\naxis.X = { count = 12 }\naxis.Z = { count = 6 }\n";
 
-constexpr const char* kIdentify = R"([identify]
+constexpr const char* kTrustIdentify = R"([identify]
 held_out_fraction = 0.2
 [[identify.motion]]
 errors = ["E?X", "E?Z"]
@@ -69,7 +69,7 @@ class TrustOfResults : public CommandTest {
  protected:
   TrustOfResults() {
     folder.write("m.toml", kTableXColumnZ);
-    folder.write("truth.errors.toml", kTrueErrors);
+    folder.write("truth.errors.toml", kTrustTruth);
   }
 
   static std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -79,16 +79,16 @@ class TrustOfResults : public CommandTest {
   }
 
   /// Readings of the true machine in simulated/readings/tracker.csv. @param setup  as it really is
-  void measure(const std::string& setup = kSetup) const {
+  void measure(const std::string& setup = kTrustSetup) const {
     folder.write("simulated.study.toml",
                  "machine = \"m.toml\"\noutput = \"simulated\"\n[simulate]\nerrors = \"truth."
                  "errors.toml\"\n" +
-                     replaced(setup, "pose = \"find\"\n", "") + kPlan);
+                     replaced(setup, "pose = \"find\"\n", "") + kTrustPlan);
     ASSERT_EQ(abbe({"run", "simulated.study.toml"}).exit_code, done);
   }
 
   /// The study of those readings. @param setup  as its user states it
-  void write_study(const std::string& setup = kSetup, const std::string& identify = kIdentify) const {
+  void write_study(const std::string& setup = kTrustSetup, const std::string& identify = kTrustIdentify) const {
     folder.write("s.study.toml", "machine = \"m.toml\"\noutput = \"out\"\n" +
                                      replaced(setup,
                                               "true_pose = { position_mm = [300, -900, 150], angles_deg = [5, -3, "
@@ -114,7 +114,7 @@ TEST_F(TrustOfResults, AGoodOneIsTrusted) {
 }
 
 TEST_F(TrustOfResults, AReflectorOneMillimetreOffIsRefusedEverywhere) {
-  measure(replaced(kSetup, "offset_mm = [60, 0, -150]", "offset_mm = [61, 0, -150]"));
+  measure(replaced(kTrustSetup, "offset_mm = [60, 0, -150]", "offset_mm = [61, 0, -150]"));
   write_study();
   const CommandResult run = abbe({"run", "s.study.toml"});
   EXPECT_EQ(run.exit_code, computation_says_no) << run.out;
@@ -152,7 +152,7 @@ TEST_F(TrustOfResults, AReflectorOneMillimetreOffIsRefusedEverywhere) {
 }
 
 TEST_F(TrustOfResults, AcceptedItIsUsedButStaysMarked) {
-  measure(replaced(kSetup, "offset_mm = [60, 0, -150]", "offset_mm = [61, 0, -150]"));
+  measure(replaced(kTrustSetup, "offset_mm = [60, 0, -150]", "offset_mm = [61, 0, -150]"));
   write_study();
   const CommandResult run = abbe({"run", "s.study.toml", "--accept-misfit"});
   EXPECT_EQ(run.exit_code, done) << run.err;
@@ -169,8 +169,8 @@ TEST_F(TrustOfResults, AcceptedItIsUsedButStaysMarked) {
 TEST_F(TrustOfResults, ErrorsThatMakeHeldOutPosesWorseAreRefused) {
   // The stated noise hides the misfit; what is identified is another axis's error.
   measure();
-  write_study(replaced(kSetup, "xyz_um = 5", "xyz_um = 1000"),
-              replaced(kIdentify, "errors = [\"E?X\", \"E?Z\"]", "errors = [\"EAX\", \"EBZ\"]"));
+  write_study(replaced(kTrustSetup, "xyz_um = 5", "xyz_um = 1000"),
+              replaced(kTrustIdentify, "errors = [\"E?X\", \"E?Z\"]", "errors = [\"EAX\", \"EBZ\"]"));
   const CommandResult run = abbe({"run", "s.study.toml", "--json"});
   const nlohmann::json figures = nlohmann::json::parse(run.out);
   const double before = figures["held_out"]["position_before_um"]["mean"];
@@ -182,7 +182,7 @@ TEST_F(TrustOfResults, ErrorsThatMakeHeldOutPosesWorseAreRefused) {
 
 TEST_F(TrustOfResults, WarningsStandInEveryFile) {
   measure();
-  write_study(replaced(kSetup, "xyz_um = 5", "xyz_um = 50"));
+  write_study(replaced(kTrustSetup, "xyz_um = 5", "xyz_um = 50"));
   const CommandResult run = abbe({"run", "s.study.toml"});
   EXPECT_EQ(run.exit_code, done) << run.err;
   EXPECT_THAT(run.out, HasSubstr("warning: the residuals are only 0.09"));
@@ -214,7 +214,7 @@ TEST_F(TrustOfResults, ARegionThatARobustLossThrowsOutIsRefused) {
     shifted += "\n";
   }
   folder.write("simulated/readings/tracker.csv", shifted);
-  write_study(kSetup, replaced(kIdentify, "[identify]", "[identify]\nloss = \"tukey\""));
+  write_study(kTrustSetup, replaced(kTrustIdentify, "[identify]", "[identify]\nloss = \"tukey\""));
   const CommandResult run = abbe({"run", "s.study.toml"});
   EXPECT_EQ(run.exit_code, computation_says_no) << run.out;
   EXPECT_EQ(summary()["distrusted"][0]["kind"], "region left out") << summary()["distrusted"];

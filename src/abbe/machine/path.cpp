@@ -20,6 +20,9 @@ constexpr double kJumpCost = 1e9;
 /// Of the move between two beginnings: distances from the start that differ less do not tell which of them is meant.
 constexpr double kStartDecides = 1e-3;
 
+/// mm per rad: so little that it decides between turns only.
+constexpr double kShorterTurn = 1e-6;
+
 using Nodes = std::vector<InverseSolution>;
 
 /// Shortest-path search over the solutions of all poses.
@@ -173,7 +176,18 @@ class PathSearch {
 
   bool start_is_known(std::size_t axis) const { return !options_.start.empty() && !std::isnan(options_.start[axis]); }
 
-  /// [first nodes] over the axes of which the start is known; zero without a start.
+  /// The same branch, a rotary axis whole turns further.
+  bool differ_by_turns(const InverseSolution& one, const InverseSolution& other) const {
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+      const double difference = other.position[i] - one.position[i];
+      const bool rotary = machine_.axes[i].kind == AxisKind::rotary;
+      if (std::abs(rotary ? std::remainder(difference, kTurn) : difference) > 1e-6) return false;
+    }
+    return true;
+  }
+
+  /// [first nodes] over the axes of which the start is known; zero without a start. Of several turns of an axis that it
+  /// does not name, the one nearest to zero is a little shorter.
   std::vector<double> lengths_from_start() const {
     std::vector<double> lengths;
     for (const InverseSolution& first : nodes_[0]) {
@@ -181,7 +195,12 @@ class PathSearch {
       for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
         if (start_is_known(i)) start.position[i] = options_.start[i];
       }
-      lengths.push_back(length(start, first));
+      double turns = 0;
+      for (std::size_t i = 0; i < options_.start.size(); ++i) {
+        if (!start_is_known(i) && machine_.axes[i].kind == AxisKind::rotary && !machine_.axes[i].endless)
+          turns += std::abs(first.position[i]);
+      }
+      lengths.push_back(length(start, first) + kShorterTurn * turns);
     }
     return lengths;
   }
@@ -223,6 +242,7 @@ class PathSearch {
         const double apart = length(best, other);
         const double weight = machine_.axes[i].kind == AxisKind::rotary ? options_.mm_per_radian : 1;
         const bool as_near = std::abs(from_start[k] - from_start[chosen]) <= kStartDecides * apart;
+        if (differ_by_turns(best, other)) continue;
         const bool as_smooth = onwards[k] < onwards[chosen] + 0.0005 * kJumpCost;
         if (as_near && as_smooth && weight * std::abs(move(i, best, other)) > 0.01 * apart) {
           axes.push_back(i);

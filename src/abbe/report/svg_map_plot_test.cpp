@@ -22,8 +22,8 @@ TEST(MapPlot, EveryPanelHasItsOwnScaleAndEmptyCellsAreNotDrawn) {
   plot.add({"after", {-1, 2, -3, 4, std::numeric_limits<double>::quiet_NaN(), 5.5}});
   const std::string svg = plot.svg();
   EXPECT_EQ(xml_problem(svg), "");
-  // 11 cells and two scales of 20 steps.
-  EXPECT_EQ(count_of(svg, "fill=\"var(--s"), 51U);
+  // 11 cells, two scales of 20 steps, and 8 numbers in the soft colour at each panel.
+  EXPECT_EQ(count_of(svg, "fill=\"var(--s"), 67U);
   for (const char* text : {">812<", ">5.5<", ">-5.5<", ">1400<", ">before<", ">after<", ">error in um<"}) {
     EXPECT_THAT(svg, testing::HasSubstr(text));
   }
