@@ -53,7 +53,7 @@ class BadMeasurements : public CommandTest {
         for (int r = 0; r < 3; ++r) {
           const int x = 200 * i, z = 150 * k;
           text += std::to_string(x) + "," + std::to_string(z) + ",R" + std::to_string(r + 1) + "," +
-                  std::to_string(offsets[r][0] - x) + "," + std::to_string(offsets[r][1]) + "," +
+                  std::to_string(offsets[r][0] + x) + "," + std::to_string(offsets[r][1]) + "," +
                   std::to_string(offsets[r][2] + z) + "\n";
         }
     return text;

@@ -185,7 +185,7 @@ TEST_F(Path, TheStartCountsByTheAxesThatItNames) {
   });
   ASSERT_NE(row, reference.end());
   const std::vector<std::string> path = {"path",   u_machine,  a4,   "--placement", placement,
-                                         "--hold", "C2_deg=0", "-o", "out.csv"};
+                                         "--hold", "C2_deg=0", "-o", "out.csv",     "--force"};
   for (const std::string branch : {"pos_", "neg_"}) {
     for (const std::string axis : {"A_deg", "C1_deg"}) {
       std::vector<std::string> arguments = path;

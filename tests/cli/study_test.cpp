@@ -313,9 +313,9 @@ TEST_F(Studies, ThirtyPercentGrossOutliersCostNoMoreThanTwiceTheCleanError) {
     EXPECT_LT(summary["held_out"]["position_after_um"]["mean"], 2 * clean) << loss;
     EXPECT_GT(summary["outliers"], 90) << loss;
   }
-  // Least squares must fail here, else the test shows nothing.
+  // Least squares must fail here, else the test shows nothing; its result is not to be trusted.
   write_study({{"[[setup]]", "[simulate.outliers]\nfraction = 0.3\nsize_um = 3000\n[[setup]]"}});
-  EXPECT_GT(run_json()["held_out"]["position_after_um"]["mean"], 5 * clean);
+  EXPECT_GT(run_json(ExitCode::computation_says_no)["held_out"]["position_after_um"]["mean"], 5 * clean);
 }
 
 TEST_F(Studies, FewerReadingsThanParametersAreSaid) {

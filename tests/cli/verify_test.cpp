@@ -153,8 +153,9 @@ TEST_F(VerifyCommand, ErrorsWithoutUncertaintiesAreComparedWithoutAPrediction) {
   arguments.insert(arguments.end(), {"--poses", "50"});
   const CommandResult result = abbe(arguments);
   EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("Volumetric error at 50 unseen poses"));
-  EXPECT_THAT(result.out, testing::Not(HasSubstr("predicted")));
+  EXPECT_THAT(result.out, HasSubstr("True volumetric error at 50 random poses"));
+  EXPECT_THAT(result.out, HasSubstr("predicted volumetric error, before"));
+  EXPECT_THAT(result.out, testing::Not(HasSubstr("predicted volumetric error, after")));
   arguments.insert(arguments.end(), {"--largest-ratio", "1.5"});
   EXPECT_EQ(abbe(arguments).exit_code, ExitCode::bad_input);
 }

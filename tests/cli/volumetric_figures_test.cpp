@@ -43,7 +43,7 @@ TEST_F(VolumetricFigures, HaveTheSameNumbersUnderTheSameNamesInEveryCommand) {
   const std::string machine = "results/machine.toml", errors = "results/errors.toml";
   const nlohmann::json map = json_of({"map", machine, errors});
   const nlohmann::json table =
-      json_of({"compensate", "table", machine, errors, "--for", "linuxcnc", "--limit-um", "1000", "--dry-run"});
+      json_of({"compensate", "table", machine, errors, "--for", "siemens-cec", "--limit-um", "1000", "--dry-run"});
   const nlohmann::json verify = json_of({"verify", "results"});
   const nlohmann::json truth = json_of({"map", machine, "results/truth.errors.toml", "--minus", errors});
   const std::string predicted = "predicted_volumetric_error", known = "true_volumetric_error";

@@ -260,7 +260,7 @@ void along_oblique_axis(const Problem& problem, std::size_t axis, const std::vec
                                              : fmt::format("{} of {} {} itself", rotary ? "shift" : "turn", moving.name,
                                                            rotary ? "along" : "about");
   add_candidate(list, fmt::format("the {} is zero", quantity), quantity, functional);
-  list.back().exchangeable = list.back().of_location = zero_position;
+  list.back().exchangeable = zero_position;
 }
 
 }  // namespace
