@@ -165,7 +165,7 @@ struct IdentificationPlan {
   std::vector<ParameterPrior> priors;
   Strategy strategy = Strategy::joint;
   LossKind loss = LossKind::none;
-  double loss_scale = 0;                  ///< in standard uncertainties; 0: the loss's usual value (95 % efficiency)
+  double loss_scale = 0;  ///< in standard uncertainties; 0: the loss's usual value (95 % efficiency)
   int max_iterations = 50;
   double tolerance = 1e-10;                            ///< relative change of the cost and of the parameters
   double held_out_fraction = 0.1;                      ///< of the readings, not used in the fit
