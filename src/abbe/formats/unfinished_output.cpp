@@ -105,6 +105,8 @@ int UnfinishedOutput::make(Kind kind) {
   if (kind == Kind::folder) {
     if (::mkdir(path_.c_str(), 0777) != 0) return errno;
     held_ = opened(path_);
+    // Removed before it could be opened.
+    if (!held_.is_open() && errno == ENOENT) return EEXIST;
   } else {
     held_ = Descriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
   }
