@@ -240,7 +240,7 @@ void add_path_command(CommandLine& line) {
   command->add_option(
       "--start", options->start,
       "Where an axis stands before the path, AXIS_unit=position; repeatable. The nearest branch is taken; "
-      "of axes not named nothing is assumed");
+      "axes that are not named may stand anywhere");
   command->add_option("--feed-mm-per-min", options->feed_mm_per_min, "Feed where the curve has none")
       ->check(positive_number());
   command

@@ -183,9 +183,9 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
                       "write the program in spite of: not-covered, outside-travel, held-start, position-left, "
                       "not-converged, not-proven");
   command->add_option("--max-output-mb", options->max_output_mb,
-                      "give up a program that becomes longer (default: 200, and 20 times the size of the program)");
+                      "give up on a program that becomes longer (default: 200, and 20 times the size of the program)");
   command->add_option("--max-minutes", options->max_minutes,
-                      "give up a program that takes longer (default: 5, and 1 for every 10 MB of the program)");
+                      "give up on a program that takes longer (default: 5, and 1 for every 10 MB of the program)");
   command->add_flag("--dry-run", options->dry_run, "only the report: largest corrections and where; writes nothing");
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "print JSON for programs");

@@ -338,7 +338,7 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   command->add_option("--limit-urad", options->limit_urad, "Refuse any correction of a rotary axis above this, urad");
   command
       ->add_option("--least-reduction-percent", options->least_reduction_percent,
-                   "Refuse tables that take away less of the error than this; 0: write them all the same")
+                   "Refuse tables that take away less of the error than this; 0 writes them anyway")
       ->check(in_range(0.0, 100.0))
       ->capture_default_str();
   command->add_option("--leave-out-below-uncertainty", options->times_uncertainty,

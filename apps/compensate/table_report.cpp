@@ -103,7 +103,7 @@ void print_table_report(const TableReport& report) {
     fmt::print("  kept, as not small together with others: {}\n", name);
   print_errors(report);
   print_volumetric_figures(report.volumetric);
-  print_error_line("left of it by these tables, between their nodes", report.left_by_tables);
+  print_error_line("what these tables leave of it between their nodes", report.left_by_tables);
   fmt::print(
       "displacement of the tool over {} poses between the nodes, the datum as it is, from the worse direction of "
       "approach:\n",
