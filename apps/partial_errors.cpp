@@ -10,17 +10,13 @@
 #include "abbe/instruments/measurement_plan.h"
 #include "abbe/verify/unmodelled_errors.h"
 #include "study/job.h"
+#include "study/volumetric_figures.h"
 
 namespace abbe {
 namespace {
 
 constexpr std::size_t kPosesForParts = 250;
 constexpr std::size_t kNamesShown = 6;
-
-bool is_simulated_truth(const ErrorsFile& file) {
-  return std::any_of(file.provenance.begin(), file.provenance.end(),
-                     [](const auto& entry) { return entry.second == kTruthOfSimulation; });
-}
 
 }  // namespace
 
@@ -56,7 +52,7 @@ std::size_t known_error_count(const Machine& machine, const ErrorSet& errors) {
 PartialErrors partial_errors(const Machine& machine, const ErrorsFile& file) {
   PartialErrors partial;
   partial.known = known_error_count(machine, file.errors);
-  if (is_simulated_truth(file)) return partial;
+  if (is_truth(file)) return partial;
   std::vector<AxisRange> ranges;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) ranges.push_back(known_range(machine, file.errors, i, 2));
   const PoseList poses = random_plan(machine, ranges, kPosesForParts, 1);

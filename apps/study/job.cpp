@@ -160,16 +160,9 @@ StudyMap map_study(const Study& study, const StudyResult& result, const Progress
         ranges.push_back(study.map->axes[i]);
       }
     }
-    PoseGrid grid;
-    for (const AxisRange& range : ranges) {
-      map.grid.push_back(range.is_fixed() ? 1 : range.count);
-      grid.values.push_back(evenly_spaced(range.from, range.to, map.grid.back()));
-    }
-    const PoseSource source = pose_source(grid);
-    map.poses.axis.assign(machine.axes.size(), std::vector<double>(source.count));
-    std::vector<double*> pointers;
-    for (std::vector<double>& values : map.poses.axis) pointers.push_back(values.data());
-    source.fill(0, source.count, pointers.data());
+    StatedPoses stated = grid_over(machine, ranges);
+    map.grid = std::move(stated.grid);
+    map.poses = std::move(stated.poses);
     map.description = "grid of";
     for (std::size_t i = 0; i < map.grid.size(); ++i)
       map.description += fmt::format("{} {}", i == 0 ? "" : " x", map.grid[i]);
