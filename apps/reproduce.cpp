@@ -23,7 +23,7 @@ void add_reproduce_command(CommandLine& line) {
                "  abbe reproduce aguado -o results/aguado_paper\n\n"
                "Papers:\n"
                "  aguado  laser tracker on a machine w C' X' b Z t, strategies of identification (2014)\n"
-               "  liu     cradle-type five-axis scanner: points, error terms, virtual measurement (2021)\n"
+               "  liu     cradle-type five-axis scanner: points, error terms, calibrations, virtual measurement (2021)\n"
                "  ma      six motions of a rotary table by a polygon prism (2021)\n"
                "  wang    36 measured errors of a grinder w C b X Z A Y B t, integrated error (2020)\n"
                "  yin     laser engraver measures its linkage and the place of its workpiece (2021)");

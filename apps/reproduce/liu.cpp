@@ -1,13 +1,7 @@
-#include <fmt/format.h>
-
 #include <array>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/results_folder.h"
-#include "exit_code.h"
 #include "progress.h"
 #include "reproduce/liu_folder.h"
 #include "reproduce/liu_machine.h"
@@ -31,7 +25,7 @@ Eigen::Matrix3Xd closed_form(const Machine& machine, const ErrorSet& errors, con
 }
 
 constexpr std::array<double, 3> kSphereShares = {0.25, 0.5, 0.7};
-constexpr double kTaper = 0.014 / 23.5;
+constexpr std::size_t kLiuCampaigns = 100;
 
 /// A part with the path over it and the figures of the paper.
 LiuMeasuredPart planned(const Machine& machine, LiuPart model, LiuUnit unit, double before, double after) {
@@ -55,12 +49,12 @@ std::vector<LiuMeasuredPart> planned_parts(const Machine& machine, LiuUnit unit)
 LiuUnitResults measure_parts(const Machine& machine, LiuUnit unit) {
   LiuScanner scanner;
   scanner.unit = unit;
-  scanner.taper = kTaper;
+  scanner.taper = kLiuTaper;
   LiuUnitResults results{unit, liu_calibrate(machine, scanner), planned_parts(machine, unit)};
   for (std::size_t i = 0; i < results.parts.size(); ++i) {
     LiuMeasuredPart& part = results.parts[i];
     // The first part is the standard cylinder, which is not quite one.
-    const TriangleMesh scanned = i == 0 ? liu_cylinder(10, kTaper).mesh : part.model.mesh;
+    const TriangleMesh scanned = i == 0 ? liu_cylinder(10, kLiuTaper).mesh : part.model.mesh;
     part.measurement = liu_measure(machine, scanner, results.calibration.errors, part.model, scanned, part.plan);
   }
   return results;
@@ -99,6 +93,8 @@ LiuResults liu_results() {
   }
   r.agrees = r.agrees && r.recursion[1] < kLiuAgreement;
   r.sensitivity = liu_sensitivity(machine);
+  r.figures = liu_figure_study(machine, kLiuCampaigns);
+  r.agrees = r.agrees && r.figures.complete() && r.figures.reference.difference < kLiuAgreement;
 
   Progress progress("scanning the parts");
   for (const LiuUnit unit : {LiuUnit::millimetre, LiuUnit::micrometre}) {
@@ -110,7 +106,7 @@ LiuResults liu_results() {
     }
   }
   LiuScanner exact_cylinder, tapered, reversed, wrong_radius;
-  tapered.taper = reversed.taper = kTaper;
+  tapered.taper = reversed.taper = kLiuTaper;
   reversed.reversed = true;
   wrong_radius.radius_error = 0.021;
   const std::array<std::pair<const char*, LiuScanner>, 4> scanners = {
@@ -126,18 +122,44 @@ LiuResults liu_results() {
   return r;
 }
 
+std::vector<std::string> liu_failures(const LiuResults& r) {
+  std::vector<std::string> failures;
+  if (!r.figures.complete()) failures.emplace_back("a calibration of section 4.2 does not converge");
+  for (const LiuUnitResults& unit : r.units) {
+    if (!unit.calibration.converged) failures.push_back("calibration of the stages: " + unit.calibration.message);
+    for (const LiuMeasuredPart& part : unit.parts) {
+      if (!part.measurement.before.registered || !part.measurement.after.registered) {
+        failures.push_back(part.model.name + " is not registered");
+      }
+    }
+  }
+  return failures;
+}
+
+Reproduction liu_reproduction() {
+  const LiuResults r = liu_results();
+  Reproduction made;
+  made.paper = "liu";
+  made.citation = "Liu, Zhu, Miao, Li, Fang, Zhang (2021), Sensors 21, 4609";
+  made.title =
+      "Cradle-type five-axis point scanner: closed form, error terms, calibration of stages and clamping, paths, "
+      "virtual "
+      "measurement";
+  made.facts = {{"machine", r.machine.chain() + ", confocal probe on Z"}};
+  made.tables = liu_tables(r);
+  made.published = liu_published(r);
+  made.figures = liu_figures(r.figures);
+  made.conclusions = liu_conclusions(r);
+  made.corrections = liu_corrections();
+  made.failures = liu_failures(r);
+  made.agrees = r.agrees;
+  made.details = liu_details(r);
+  made.write_study = [r](ResultsFolder& folder) { write_liu_study(r, folder); };
+  return made;
+}
+
 }  // namespace
 
-int reproduce_liu(const ReproduceOptions& options) {
-  if (!options.output.empty()) check_results_folder(options.output);
-  const LiuResults results = liu_results();
-  if (!options.output.empty()) write_liu_folder(results, options.output);
-  if (options.json) {
-    fmt::print("{}", json_text(liu_json(results)));
-  } else {
-    print_liu(results);
-  }
-  return results.agrees ? kDone : kNegative;
-}
+int reproduce_liu(const ReproduceOptions& options) { return run_reproduction(options, liu_reproduction); }
 
 }  // namespace abbe

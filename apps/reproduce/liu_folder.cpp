@@ -4,10 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "abbe/formats/errors_file.h"
 #include "abbe/formats/json_text.h"
+#include "abbe/formats/machine_file.h"
+#include "abbe/formats/number_text.h"
 #include "abbe/formats/ply_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/scan_plan_file.h"
+#include "abbe/geometry/angle_units.h"
 #include "reproduce/liu_machine.h"
 #include "scan/plan_page.h"
 
@@ -40,30 +44,53 @@ std::string mesh_ply(const TriangleMesh& mesh) {
   return ply_bytes(parts);
 }
 
+/// Axis positions and indications.
+std::string readings_csv(const Machine& machine, const LiuScan& scan) {
+  std::string text;
+  for (const Axis& axis : machine.axes) text += axis.name + (axis.kind == AxisKind::rotary ? "_deg," : "_mm,");
+  text += "indication_um\n";
+  for (std::size_t k = 0; k < scan.indication.size(); ++k) {
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      const double unit = machine.axes[i].kind == AxisKind::rotary ? kDegree : 1;
+      text += shortest_text(scan.positions.axis[i][k] / unit) + ',';
+    }
+    text += shortest_text(1e3 * scan.indication[k]) + '\n';
+  }
+  return text;
+}
+
 }  // namespace
 
-void write_liu_folder(const LiuResults& results, const std::filesystem::path& folder) {
-  ResultsFolder out(folder);
-  out.write("summary.json", json_text(liu_json(results)));
+void write_liu_study(const LiuResults& results, ResultsFolder& out) {
+  const Machine& machine = results.machine;
+  const std::filesystem::path study = "study";
+  out.write(study / "liu-scanner.machine.toml", machine_text(machine));
+  out.write(
+      study / "table-3.errors.toml",
+      errors_text(machine, {liu_errors(machine, LiuUnit::micrometre), {}, {{"source", "Table 3, shifts in um"}}}));
+  if (results.figures.complete()) {
+    const LiuCampaign& campaign = results.figures.micrometres().noisy;
+    out.write(study / "calibrated.errors.toml",
+              errors_text(machine, {campaign.c.errors, {}, {{"source", "simulated readings, noise of Table 2"}}}));
+    out.write(study / "clamping-readings.csv", readings_csv(machine, campaign.clamping.readings));
+  }
   for (const LiuUnitResults& unit : results.units) {
     if (unit.unit != LiuUnit::micrometre) continue;
     for (const LiuMeasuredPart& part : unit.parts) {
       const std::string name = file_name(part.model.name);
-      const std::filesystem::path place = name;
+      const std::filesystem::path place = study / name;
       out.write(place / "part.ply", mesh_ply(part.model.mesh));
-      out.write(place / "path.csv", scan_plan_csv(results.machine, part.plan));
-      out.write(place / "path.ngc",
-                scan_plan_program(results.machine, part.plan, "scan of " + name + " on " + results.machine.name));
+      out.write(place / "path.csv", scan_plan_csv(machine, part.plan));
+      out.write(place / "path.ngc", scan_plan_program(machine, part.plan, "scan of " + name + " on " + machine.name));
       out.write(place / "coverage.ply", scan_coverage_ply(part.plan));
-      out.write(place / "plan.json", json_text(scan_plan_summary(results.machine, part.plan, part.model.name)));
+      out.write(place / "plan.json", json_text(scan_plan_summary(machine, part.plan, part.model.name)));
       out.write(place / "plan.html",
-                scan_plan_page(results.machine, part.model.mesh, part.plan,
+                scan_plan_page(machine, part.model.mesh, part.plan,
                                liu_plan_options(part.model, liu_clamping(unit.unit)), part.model.name));
       out.write(place / "before.ply", points_ply(part.measurement.before));
       out.write(place / "after.ply", points_ply(part.measurement.after));
     }
   }
-  out.commit();
 }
 
 }  // namespace abbe

@@ -38,7 +38,7 @@ nlohmann::ordered_json plan_json(const Machine& machine, const LiuMeasuredPart& 
 
 }  // namespace
 
-nlohmann::ordered_json liu_json(const LiuResults& r) {
+nlohmann::ordered_json liu_details(const LiuResults& r) {
   nlohmann::ordered_json json;
   json["reference_difference_mm"] = {
       {"nominal", r.reference[0]}, {"table_3_mm", r.reference[1]}, {"table_3_um", r.reference[2]}};
@@ -75,7 +75,6 @@ nlohmann::ordered_json liu_json(const LiuResults& r) {
     for (const LiuMeasurement& sphere : v.spheres) entry["spheres"].push_back(measurement_json(sphere));
     json["variants"].push_back(entry);
   }
-  json["agrees_with_reference"] = r.agrees;
   return json;
 }
 

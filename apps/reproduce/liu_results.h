@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "reproduce/liu_figure_study.h"
 #include "reproduce/liu_measurement.h"
 #include "reproduce/liu_sensitivity.h"
+#include "reproduce/reproduce_output.h"
 
 namespace abbe {
 
@@ -38,6 +40,7 @@ struct LiuResults {
   std::array<double, 3> reference{};  ///< mm, largest difference: nominal, mm, um
   std::array<double, 2> recursion{};  ///< mm, largest difference to the closed form: as worded, corrected
   LiuSensitivity sensitivity;
+  LiuFigureStudy figures;
   std::vector<LiuUnitResults> units;
   std::vector<LiuVariant> variants;
   bool agrees = true;
@@ -45,7 +48,16 @@ struct LiuResults {
 
 inline constexpr double kLiuAgreement = 1e-9;  ///< mm, against the reference
 
-nlohmann::ordered_json liu_json(const LiuResults& results);
-void print_liu(const LiuResults& results);
+std::vector<ReproducedTable> liu_tables(const LiuResults& results);
+std::vector<ReproducedTable> liu_figure_tables(const LiuFigureStudy& study);
+std::vector<PublishedNumber> liu_published(const LiuResults& results);
+std::vector<EvaluationPlot> liu_figures(const LiuFigureStudy& study);
+std::vector<std::string> liu_conclusions(const LiuResults& results);
+std::vector<std::string> liu_corrections();
+/// For programs, beside the tables.
+nlohmann::ordered_json liu_details(const LiuResults& results);
+
+/// Largest of what exact readings leave in the calibrations of the stages, or in that of the clamping, mm.
+double liu_exact_remainder(const LiuFigureStudy& study, bool stages);
 
 }  // namespace abbe
