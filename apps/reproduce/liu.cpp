@@ -149,6 +149,7 @@ Reproduction liu_reproduction() {
   made.tables = liu_tables(r);
   made.published = liu_published(r);
   made.figures = liu_figures(r.figures);
+  made.headline = liu_headline(r.figures);
   made.conclusions = liu_conclusions(r);
   made.corrections = liu_corrections();
   made.failures = liu_failures(r);

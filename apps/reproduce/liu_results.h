@@ -52,6 +52,8 @@ std::vector<ReproducedTable> liu_tables(const LiuResults& results);
 std::vector<ReproducedTable> liu_figure_tables(const LiuFigureStudy& study);
 std::vector<PublishedNumber> liu_published(const LiuResults& results);
 std::vector<EvaluationPlot> liu_figures(const LiuFigureStudy& study);
+/// The clamping as found, with U (k = 2) from the spread of the simulated campaigns.
+std::vector<EvaluationFigure> liu_headline(const LiuFigureStudy& study);
 std::vector<std::string> liu_conclusions(const LiuResults& results);
 std::vector<std::string> liu_corrections();
 /// For programs, beside the tables.

@@ -135,6 +135,27 @@ std::vector<PublishedNumber> liu_published(const LiuResults& r) {
   return numbers;
 }
 
+std::vector<EvaluationFigure> liu_headline(const LiuFigureStudy& study) {
+  if (!study.complete()) return {};
+  constexpr const char* kSymbols[] = {"tilt_x", "tilt_z", "shift_x", "shift_z"};
+  constexpr const char* kWords[] = {"tilt of the clamping about x", "tilt of the clamping about z",
+                                    "shift of the clamping along x", "shift of the clamping along z"};
+  const LiuClampingStudy& s = study.micrometres();
+  std::vector<EvaluationFigure> figures;
+  for (std::size_t i = 0; i < 4; ++i) {
+    EvaluationFigure figure;
+    figure.symbol = kSymbols[i];
+    figure.name = std::string(kWords[i]) + ", found with the noise of Table 2";
+    figure.quantity = i < 2 ? Quantity::angle : Quantity::length;
+    figure.unit = i < 2 ? "deg" : "um";
+    figure.decimals = i < 2 ? 4 : 3;
+    figure.value = s.noisy.clamping.found[i];
+    figure.uncertainty = 2 * s.spread.deviation[i];
+    figures.push_back(figure);
+  }
+  return figures;
+}
+
 std::vector<std::string> liu_conclusions(const LiuResults& r) {
   std::vector<std::string> words;
   const LiuFigureStudy& study = r.figures;

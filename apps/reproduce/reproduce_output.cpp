@@ -49,8 +49,15 @@ nlohmann::ordered_json table_json(const ReproducedTable& table) {
   return json;
 }
 
+constexpr std::size_t kLongestOnPage = 200;  // rows
+
 nlohmann::json page_table(const ReproducedTable& table) {
   nlohmann::json columns = nlohmann::json::array(), rows = nlohmann::json::array();
+  if (table.rows.size() > kLongestOnPage) {
+    columns = {"rows", "file"};
+    rows.push_back(nlohmann::json::array({fmt::format("{}", table.rows.size()), "tables/" + table.name + ".csv"}));
+    return {{"title", table.title}, {"columns", std::move(columns)}, {"rows", std::move(rows)}};
+  }
   for (const ReproducedColumn& column : table.columns) {
     columns.push_back(column.unit.empty() ? column.name : column.name + " / " + unit_symbol(column.unit));
   }

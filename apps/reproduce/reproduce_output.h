@@ -55,7 +55,7 @@ struct ReproducedTable {
   std::vector<ReproducedColumn> columns;
   std::vector<std::vector<ReproducedCell>> rows = {};
   std::vector<std::string> notes = {};  ///< paragraphs below it
-  bool in_text = true;                  ///< false: a long one, for files and the page only
+  bool in_text = true;  ///< false: a long one, for files and the page, which names the file beyond 200 rows
 };
 
 /// A number that the paper states, beside ours. Without ours the note says what is missing to compute it.

@@ -84,5 +84,16 @@ TEST(ReproduceOutput, ThePageHoldsFiguresAndTables) {
   }
 }
 
+TEST(ReproduceOutput, ThePageNamesTheFileOfALongTable) {
+  Reproduction made = sample_reproduction();
+  made.tables = {{"places", "Many places", {{"place", "", 3}}, {}, {}}};
+  for (int i = 0; i < 200; ++i) made.tables[0].rows.push_back({i + 0.125});
+  EXPECT_EQ(reproduction_page(made).find("tables/places.csv"), std::string::npos);
+  EXPECT_NE(reproduction_page(made).find("199.125"), std::string::npos);
+  made.tables[0].rows.push_back({200.125});
+  EXPECT_NE(reproduction_page(made).find(R"("rows":[["201","tables/places.csv"]])"), std::string::npos);
+  EXPECT_EQ(reproduction_page(made).find("199.125"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace abbe

@@ -89,7 +89,7 @@ async function inspect(browser, file) {
 
   const sections = await page.$$eval('main > section', (all) => all.map((e) => e.id));
   const wanted = {map: data.map, machine: data.machine?.axes?.length, motions: data.error_motions?.length, parameters: data.parameters,
-    residuals: data.residuals?.setups?.length, assumptions: data.assumptions?.length, figures: data.evaluation?.figures?.length,
+    residuals: data.residuals?.setups?.length, assumptions: data.assumptions?.length, figures: data.evaluation?.figures?.length || data.evaluation?.drawings?.length,
     surface: data.surface?.values, section: data.surface?.values, path: data.path?.time_s?.length, contour: data.contour};
   for (const [id, present] of Object.entries(wanted))
     check(sections.includes(id) === Boolean(present), problems(`section ${id} is ${present ? 'missing' : 'there without data'}`));

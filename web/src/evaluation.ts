@@ -38,10 +38,13 @@ export function evaluationSection(evaluation: Evaluation): HTMLElement {
       uncertainty && number(figure, 'expanded_uncertainty'), html('td', {}, value?.unit ?? ''),
       tolerance && number(figure, 'tolerance'), tolerance && html('td', {class: kVerdicts[verdict] ?? ''}, verdict));
   });
-  part.append(html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Figures'}, html('table', {},
-    html('caption', {class: 'unseen'}, 'Figures'),
-    html('thead', {}, html('tr', {}, ...heads.map((name) => html('th', {scope: 'col', class: numeric.has(name) ? 'number' : ''}, name || html('span', {class: 'unseen'}, 'Symbol'))))),
-    html('tbody', {}, ...rows))));
+  // A page may have drawings and no figures.
+  if (figures.length) {
+    part.append(html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Figures'}, html('table', {},
+      html('caption', {class: 'unseen'}, 'Figures'),
+      html('thead', {}, html('tr', {}, ...heads.map((name) => html('th', {scope: 'col', class: numeric.has(name) ? 'number' : ''}, name || html('span', {class: 'unseen'}, 'Symbol'))))),
+      html('tbody', {}, ...rows))));
+  }
   for (const made of evaluation.drawings ?? []) {
     const shown = drawing(made.svg, made.caption);
     if (shown) part.append(shown);

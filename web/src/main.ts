@@ -44,7 +44,7 @@ function build(report: Report): void {
   print.addEventListener('click', () => window.print());
 
   const sections = [
-    report.evaluation?.figures?.length ? evaluationSection(report.evaluation) : undefined,
+    report.evaluation?.figures?.length || report.evaluation?.drawings?.length ? evaluationSection(report.evaluation) : undefined,
     ...verificationSections(report.verification),
     ...surfaceSections(report),
     pathSection(report),
