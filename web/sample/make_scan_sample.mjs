@@ -63,7 +63,8 @@ const scan = {format: 'abbe-report/1', title: 'A probe on a ball', evaluation: {
 surface: {...ball, coverage}, path, contour, assumptions: ['A probe of 1.5 mm.']};
 
 const one = {...ball, vertex_count: 3, triangle_count: 1, triangles_of_part: 1, vertices: uint16([0, 0, 0, 65535, 0, 0, 0, 65535, 0]), triangles: uint16([0, 1, 2]), limit_um: 1e-3, value_step_um: 5e-7};
-const edge = {format: 'abbe-report/1', title: 'One triangle, no point near it', evaluation: {facts: [], figures: []},
+const edge = {format: 'abbe-report/1', title: 'One triangle, no point near it', evaluation: {facts: [], figures: [],
+  drawings: [{caption: 'A drawing without figures', svg: '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 20 20"><title>A square</title><rect width="20" height="20"/></svg>'}]},
   surface: {...one, values: int16([-32768, -32768, -32768]), points: {measured: 5, counted: 1, drawn: 1, foot: uint16([100, 100, 0]), normal: int8([0, 0, 127]), values: int16([32767])}},
   histograms: [{title: 'Distribution', edges_um: [-1, 0, 1], counts: [0, 0], below: 0, above: 1}],
   contour: [{s_mm: [0], error_um: [0]}, {s_mm: [], error_um: []},
