@@ -16,8 +16,8 @@ LiuClampingStudy clamping_study(const Machine& machine, LiuUnit unit, std::size_
   study.exact = liu_campaign(machine, truth, study.truth, {"exact readings", {}, 0, 0});
   study.noisy = liu_campaign(machine, truth, study.truth, {"noise of Table 2", liu_table_2_noise(), 0, 1});
   study.tapered = liu_campaign(machine, truth, study.truth, {"exact, standard with taper", {}, kLiuTaper, 0});
-  study.joint = liu_joint_clamping(machine, truth, study.truth);
-  study.spread = liu_clamping_spread(machine, truth, study.truth, campaigns);
+  study.joint = liu_joint_clamping(machine, truth, study.truth, 1);
+  study.spread = liu_clamping_spreads(machine, truth, study.truth, campaigns);
   return study;
 }
 

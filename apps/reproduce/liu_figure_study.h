@@ -13,7 +13,7 @@ struct LiuClampingStudy {
   LiuClampingErrors truth{};
   LiuCampaign exact, noisy, tapered;  ///< exact readings; noise of Table 2; exact, standard with 14 um of taper
   LiuJointClamping joint;
-  LiuClampingSpread spread;
+  LiuClampingSpreads spread;
 };
 
 /// All of Figures 4b, 6 to 9 and 11b.

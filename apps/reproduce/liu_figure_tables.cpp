@@ -128,9 +128,10 @@ ReproducedTable clamping_table(const LiuFigureStudy& study) {
                          {"noise", "", 3},
                          {"taper", "", 3},
                          {"u axes exact", "", 3},
-                         {"u joint", "", 3},
                          {"spread", "", 3},
-                         {"mean", "", 3}},
+                         {"mean", "", 3},
+                         {"u joint", "", 3},
+                         {"spread joint", "", 3}},
                         {},
                         {}};
   constexpr const char* kNames[] = {"tilt about x", "tilt about z", "shift along x", "shift along z"};
@@ -140,15 +141,16 @@ ReproducedTable clamping_table(const LiuFigureStudy& study) {
       const auto error = [&](const LiuCampaign& c) { return (c.clamping.found[i] - s.truth[i]) / unit; };
       table.rows.push_back({unit_words(s.unit), kNames[i], i < 2 ? "arcsec" : "um", s.truth[i] / unit, error(s.exact),
                             error(s.noisy), error(s.tapered), s.noisy.clamping.uncertainty[i] / unit,
-                            s.joint.uncertainty[i] / unit, s.spread.deviation[i] / unit, s.spread.mean[i] / unit});
+                            s.spread.steps.deviation[i] / unit, s.spread.steps.mean[i] / unit,
+                            s.joint.uncertainty[i] / unit, s.spread.joint.deviation[i] / unit});
     }
   }
   table.notes = {fmt::format(
-      "u axes exact: stated by step (c), which takes the axes for exact. u joint: of one fit of both stages and the "
-      "clamping together. Spread and mean: standard deviation and mean of found less true in {} simulated campaigns "
-      "with the noise of Table 2. From the readings of the independent program the axis of the cylinder is found to "
-      "{:.0e} mm.",
-      study.micrometres().spread.campaigns, study.reference.difference)};
+      "u axes exact: stated by step (c), which takes the axes for exact. Spread and mean: standard deviation and mean "
+      "of found less true in {} simulated campaigns with the noise of Table 2. Joint: one fit of both stages and the "
+      "clamping to the same readings. From the readings of the independent program the axis of the cylinder is found "
+      "to {:.0e} mm.",
+      study.micrometres().spread.steps.campaigns, study.reference.difference)};
   return table;
 }
 

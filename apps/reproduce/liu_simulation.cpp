@@ -117,6 +117,20 @@ LiuScan scan_stage(const Machine& machine, const std::string& stage, const Error
                            stream_of(how, stage == "A" ? stream_a : stream_c));
 }
 
+LiuClampingSpread spread_of(const std::vector<LiuClampingErrors>& found, const LiuClampingErrors& truth) {
+  LiuClampingSpread spread;
+  spread.campaigns = found.size();
+  if (found.size() < 2) return spread;
+  const auto n = static_cast<double>(found.size());
+  for (std::size_t i = 0; i < 4; ++i) {
+    double squares = 0;
+    for (const LiuClampingErrors& one : found) spread.mean[i] += (one[i] - truth[i]) / n;
+    for (const LiuClampingErrors& one : found) squares += std::pow(one[i] - truth[i] - spread.mean[i], 2);
+    spread.deviation[i] = std::sqrt(squares / (n - 1));
+  }
+  return spread;
+}
+
 }  // namespace
 
 double largest_magnitude(const std::vector<double>& values) {
@@ -216,30 +230,9 @@ LiuCampaign liu_campaign(const Machine& machine, const ErrorSet& truth, const Li
   return campaign;
 }
 
-LiuClampingSpread liu_clamping_spread(const Machine& machine, const ErrorSet& truth, const LiuClampingErrors& clamping,
-                                      std::size_t campaigns) {
-  LiuClampingSpread spread;
-  LiuClampingErrors sum{}, squares{};
-  for (std::size_t run = 0; run < campaigns; ++run) {
-    const LiuCampaign campaign = liu_campaign(machine, truth, clamping, {"", liu_table_2_noise(), 0, 100 + run});
-    if (!campaign.converged()) continue;
-    ++spread.campaigns;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const double error = campaign.clamping.found[i] - clamping[i];
-      sum[i] += error;
-      squares[i] += error * error;
-    }
-  }
-  const auto n = static_cast<double>(spread.campaigns);
-  for (std::size_t i = 0; i < 4 && spread.campaigns > 1; ++i) {
-    spread.mean[i] = sum[i] / n;
-    spread.deviation[i] = std::sqrt(std::max(0.0, (squares[i] - sum[i] * sum[i] / n) / (n - 1)));
-  }
-  return spread;
-}
-
-LiuJointClamping liu_joint_clamping(const Machine& machine, const ErrorSet& truth, const LiuClampingErrors& clamping) {
-  const LiuCase how{"", liu_table_2_noise(), 0, 1};
+LiuJointClamping liu_joint_clamping(const Machine& machine, const ErrorSet& truth, const LiuClampingErrors& clamping,
+                                    std::uint64_t run) {
+  const LiuCase how{"", liu_table_2_noise(), 0, run};
   const ErrorSet start = liu_unknowns(machine);
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY();
   InstrumentObservations on_a(machine, start, liu_probe_on(x, how.noise, "probe_a"),
@@ -257,6 +250,19 @@ LiuJointClamping liu_joint_clamping(const Machine& machine, const ErrorSet& trut
   result.found = liu_clamping_errors(liu_line(cylinder_estimates(found, "probe_w"), y));
   result.uncertainty = clamping_uncertainty(found, "probe_w");
   return result;
+}
+
+LiuClampingSpreads liu_clamping_spreads(const Machine& machine, const ErrorSet& truth,
+                                        const LiuClampingErrors& clamping, std::size_t campaigns) {
+  std::vector<LiuClampingErrors> steps, joint;
+  for (std::size_t run = 0; run < campaigns; ++run) {
+    const std::uint64_t noise = 100 + run;
+    const LiuCampaign campaign = liu_campaign(machine, truth, clamping, {"", liu_table_2_noise(), 0, noise});
+    if (campaign.converged()) steps.push_back(campaign.clamping.found);
+    const LiuJointClamping together = liu_joint_clamping(machine, truth, clamping, noise);
+    if (together.converged) joint.push_back(together.found);
+  }
+  return {spread_of(steps, clamping), spread_of(joint, clamping)};
 }
 
 }  // namespace abbe

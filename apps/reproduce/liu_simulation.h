@@ -75,20 +75,25 @@ struct LiuCampaign {
 LiuCampaign liu_campaign(const Machine& machine, const ErrorSet& truth, const LiuClampingErrors& clamping,
                          const LiuCase& how);
 
-/// Found less true clamping errors of whole campaigns with the noise of Table 2.
-struct LiuClampingSpread {
-  std::size_t campaigns = 0;
-  LiuClampingErrors mean{}, deviation{};  ///< mean and standard deviation of found less true
-};
-LiuClampingSpread liu_clamping_spread(const Machine& machine, const ErrorSet& truth, const LiuClampingErrors& clamping,
-                                      std::size_t campaigns);
-
-/// Standard uncertainties of the clamping errors if both stages and the clamping are fitted together, from the noise of
-/// Table 2: those of the axes are in them.
+/// The clamping if both stages and the clamping are fitted together from the readings of a campaign: the uncertainties
+/// of the axes are in those of the clamping.
 struct LiuJointClamping {
   bool converged = false;
   LiuClampingErrors found{}, uncertainty{};
 };
-LiuJointClamping liu_joint_clamping(const Machine& machine, const ErrorSet& truth, const LiuClampingErrors& clamping);
+/// @param run  of the noise of Table 2
+LiuJointClamping liu_joint_clamping(const Machine& machine, const ErrorSet& truth, const LiuClampingErrors& clamping,
+                                    std::uint64_t run);
+
+/// Found less true clamping errors of campaigns with the noise of Table 2.
+struct LiuClampingSpread {
+  std::size_t campaigns = 0;
+  LiuClampingErrors mean{}, deviation{};  ///< mean and standard deviation
+};
+struct LiuClampingSpreads {
+  LiuClampingSpread steps, joint;  ///< the same readings, in steps (a), (b), (c) and by one fit
+};
+LiuClampingSpreads liu_clamping_spreads(const Machine& machine, const ErrorSet& truth,
+                                        const LiuClampingErrors& clamping, std::size_t campaigns);
 
 }  // namespace abbe

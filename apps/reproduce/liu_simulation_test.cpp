@@ -48,22 +48,23 @@ TEST(LiuClampingCalibration, OfExactReadingsIsExactAndLeavesLessThanThePaper) {
   EXPECT_GT(largest_magnitude(campaign.c.places.nominal_difference(2)), 0.1);
 }
 
-TEST(LiuClampingCalibration, SpreadsAsTheJointFitStatesAndMoreThanTheLastStepStates) {
+TEST(LiuClampingCalibration, AJointFitSpreadsAsItStatesAndTheLastStepMoreThanItStates) {
   const Machine machine = liu_machine();
   const ErrorSet stages = liu_errors(machine, LiuUnit::micrometre);
   const LiuClampingErrors truth = table_3_clamping();
   const LiuCampaign campaign = liu_campaign(machine, stages, truth, {"", liu_table_2_noise(), 0, 1});
-  const LiuJointClamping joint = liu_joint_clamping(machine, stages, truth);
-  const LiuClampingSpread spread = liu_clamping_spread(machine, stages, truth, 40);
+  const LiuJointClamping joint = liu_joint_clamping(machine, stages, truth, 1);
+  const LiuClampingSpreads spread = liu_clamping_spreads(machine, stages, truth, 25);
   ASSERT_TRUE(joint.converged);
-  ASSERT_EQ(spread.campaigns, 40U);
+  ASSERT_EQ(spread.steps.campaigns, 25U);
+  ASSERT_EQ(spread.joint.campaigns, 25U);
   for (std::size_t i = 0; i < 4; ++i) {
-    // A standard deviation of 40 values is uncertain by 11 %.
-    EXPECT_NEAR(spread.deviation[i] / joint.uncertainty[i], 1, 0.45) << i;
-    EXPECT_LT(std::abs(spread.mean[i]), 4 * spread.deviation[i] / std::sqrt(40.0)) << i;
+    // A standard deviation of 25 values is uncertain by 14 %.
+    EXPECT_NEAR(spread.joint.deviation[i] / joint.uncertainty[i], 1, 0.45) << i;
+    EXPECT_LT(std::abs(spread.steps.mean[i]), 4 * spread.steps.deviation[i] / 5) << i;
     EXPECT_LT(campaign.clamping.uncertainty[i], joint.uncertainty[i]) << i;
   }
-  EXPECT_GT(spread.deviation[1], 1.5 * campaign.clamping.uncertainty[1]);
+  EXPECT_GT(spread.steps.deviation[1], 1.5 * campaign.clamping.uncertainty[1]);
 }
 
 TEST(LiuProfile, OfTiltedStagesIsAConeAndOfAWrongClampingAnObliqueCylinder) {

@@ -10,21 +10,21 @@ namespace abbe {
 namespace {
 
 std::string clamping_words(const LiuClampingStudy& s) {
-  double low = 1e9, high = 0, joint = 0;
+  const LiuClampingErrors &steps = s.spread.steps.deviation, &joint = s.spread.joint.deviation;
+  double low = 1e9, high = 0, apart = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    const double ratio = s.spread.deviation[i] / s.noisy.clamping.uncertainty[i];
+    const double ratio = steps[i] / s.noisy.clamping.uncertainty[i];
     low = std::min(low, ratio);
     high = std::max(high, ratio);
-    joint = std::max(joint, std::abs(s.spread.deviation[i] / s.joint.uncertainty[i] - 1));
+    apart = std::max(apart, std::abs(joint[i] / s.joint.uncertainty[i] - 1));
   }
   return fmt::format(
       "Clamping: from exact readings all four errors are found; with the noise of Table 2 they spread by {:.1f} and "
-      "{:.1f} arcsec, {:.2f} and {:.2f} um over {} campaigns. That is {:.1f} to {:.1f} times what the last step "
-      "states, "
-      "since it takes the calibrated axes for exact; the spread differs by at most {:.0f} % "
-      "from the uncertainty of one joint fit.",
-      s.spread.deviation[0] / kArcsec, s.spread.deviation[1] / kArcsec, 1e3 * s.spread.deviation[2],
-      1e3 * s.spread.deviation[3], s.spread.campaigns, low, high, 100 * joint);
+      "{:.1f} arcsec, {:.2f} and {:.2f} um over {} campaigns, {:.1f} to {:.1f} times what the last step states, since "
+      "it takes the calibrated axes for exact. One joint fit of the same readings spreads by {:.1f} and {:.1f} arcsec, "
+      "{:.2f} and {:.2f} um, which differs from what it states by at most {:.0f} %.",
+      steps[0] / kArcsec, steps[1] / kArcsec, 1e3 * steps[2], 1e3 * steps[3], s.spread.steps.campaigns, low, high,
+      joint[0] / kArcsec, joint[1] / kArcsec, 1e3 * joint[2], 1e3 * joint[3], 100 * apart);
 }
 
 std::string taper_words(const LiuClampingStudy& s) {
@@ -150,7 +150,7 @@ std::vector<EvaluationFigure> liu_headline(const LiuFigureStudy& study) {
     figure.unit = i < 2 ? "deg" : "um";
     figure.decimals = i < 2 ? 4 : 3;
     figure.value = s.noisy.clamping.found[i];
-    figure.uncertainty = 2 * s.spread.deviation[i];
+    figure.uncertainty = 2 * s.spread.steps.deviation[i];
     figures.push_back(figure);
   }
   return figures;
