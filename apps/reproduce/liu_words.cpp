@@ -183,7 +183,8 @@ std::vector<std::string> liu_conclusions(const LiuResults& r) {
                   "paper 9.6 to 86.25 um: Tables 2 and 3 do not explain them.",
                   1e3 * largest));
   words.emplace_back(
-      "The paper publishes no data and no numbers with Figures 4b, 6, 9 and 11b: they are compared with its words. "
+      "The paper publishes no data, and its text no numbers with Figures 4b, 6, 9 and 11b: they are compared with its "
+      "words, the curves were not read off the pictures. "
       "Figures 7 and 8 are compared with the limits that it states.");
   return words;
 }
