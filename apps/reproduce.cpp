@@ -16,17 +16,17 @@ void add_reproduce_command(CommandLine& line) {
     ReproduceOptions reproduce;
   };
   auto options = std::make_shared<Options>();
-  Subcommand* command =
-      line.add("reproduce", "Print a paper's figures beside ours, and where its equations are wrong",
-               "  abbe reproduce wang\n"
-               "  abbe reproduce wang --grids examples/wang/grids\n"
-               "  abbe reproduce aguado -o results/aguado_paper\n\n"
-               "Papers:\n"
-               "  aguado  laser tracker on a machine w C' X' b Z t, strategies of identification (2014)\n"
-               "  liu     cradle-type five-axis scanner: points, error terms, calibrations, virtual measurement (2021)\n"
-               "  ma      six motions of a rotary table by a polygon prism (2021)\n"
-               "  wang    36 measured errors of a grinder w C b X Z A Y B t, integrated error (2020)\n"
-               "  yin     laser engraver measures its linkage and the place of its workpiece (2021)");
+  Subcommand* command = line.add(
+      "reproduce", "Print a paper's figures beside ours, and where its equations are wrong",
+      "  abbe reproduce wang\n"
+      "  abbe reproduce wang --grids examples/wang/grids\n"
+      "  abbe reproduce aguado -o results/aguado_paper\n\n"
+      "Papers:\n"
+      "  aguado  laser tracker on a machine w C' X' b Z t, strategies of identification (2014)\n"
+      "  liu     cradle-type five-axis scanner: points, error terms, calibrations, virtual measurement (2021)\n"
+      "  ma      six motions of a rotary table by a polygon prism (2021)\n"
+      "  wang    36 measured errors of a grinder w C b X Z A Y B t, integrated error (2020)\n"
+      "  yin     laser engraver measures its linkage and the place of its workpiece (2021)");
   command->add_option("paper", options->paper, "aguado, liu, ma, wang or yin")
       ->required()
       ->check(one_of({"aguado", "liu", "ma", "wang", "yin"}));
