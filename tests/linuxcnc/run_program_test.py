@@ -67,6 +67,8 @@ def test_paths(run):
     run(run.program("corners.ngc", PROGRAM), "-o", str(run.folder / "corners.csv"), run.program("turns.ngc", TURNS),
         "-o", str(run.folder / "turns.csv"), run.program("slow.ngc", SLOW_TURNS), "-o", str(run.folder / "slow.csv"))
     rows = run.trace("corners.csv")
+    left = [file.name for file in run.folder.iterdir() if file.suffix not in (".ngc", ".csv")]
+    check(not left, f"files were left behind: {left}")
     check(math.dist(rows[0], [0] * 5) < 1e-9, f"the trace begins at {rows[0]}")
     check(math.dist(rows[-1], [*CORNERS[-1], 0, 0]) < 1e-6, f"the trace ends at {rows[-1]}")
     sides = list(zip(CORNERS, CORNERS[1:]))
@@ -125,6 +127,11 @@ def test_refusals(run):
     device.symlink_to("/dev/null")
     said = run(run.program("comp.ngc", PROGRAM), "-o", str(device), expected=2)
     check("is no file" in said and device.is_symlink(), said)
+    kept = run.program("kept.csv", "the trace of another day\n")
+    said = run(run.program("comp.ngc", PROGRAM), "-o", kept, expected=2)
+    check("kept.csv: the file exists" in said and "--force" in said, said)
+    with open(kept, encoding="ascii") as file:
+        check(file.read() == "the trace of another day\n", "a trace was replaced without --force")
     for option in ("--backlash=X=nan", "--limit-s=inf"):
         run(run.program("comp.ngc", PROGRAM), "-o", str(trace), option, expected=2)
     check(not trace.exists(), "there is a trace of a program that was refused")
