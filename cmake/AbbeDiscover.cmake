@@ -9,6 +9,18 @@ set(ABBE_SHARDS 0 CACHE STRING "0: each test is one of ctest's; else the parts i
 add_custom_target(abbe_parts)
 set(abbe_parts_prefixes errors. compensate. formats. runtime.)
 
+# Repetitions by the hundred and long simulated programs: minutes each under the sanitizers, which see the same code in the
+# other tests. All run in `make test`.
+set(abbe_not_sanitized
+  FineRegistration.CovarianceIsThatOfManyRepetitions
+  FitRivals.EveryRivalIsBetterThanAllShapesBesideIt
+  LeastSquaresFit.CovarianceIsTheScatterOfManyFits
+  OrderSelection.finds_the_number_of_intervals_of_splines_and_tables
+  Programs/CompensatePrograms.TheToolFollowsAsLinuxCncReadsBoth/*
+  RobustMonteCarlo.agrees_with_*
+  WangBallBar.UncertaintyOfTheTraceIsThatOfItsScatterOverCampaigns
+  YinMarks.OneFitOfMarksDeterminesAllSevenParametersBetterThanTheFiveSteps)
+
 function(abbe_discover_tests program prefix labels timeout)
   if(prefix IN_LIST abbe_parts_prefixes)
     add_dependencies(abbe_parts ${program})
@@ -18,11 +30,12 @@ function(abbe_discover_tests program prefix labels timeout)
     gtest_discover_tests(${program} TEST_PREFIX "${prefix}" DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${labels}" TIMEOUT ${timeout})
     return()
   endif()
+  list(JOIN abbe_not_sanitized ":" left_out)
   math(EXPR last "${ABBE_SHARDS} - 1")
   foreach(shard RANGE ${last})
     set(name ${prefix}part_${shard})
     add_test(NAME ${name} COMMAND ${program} --gtest_brief=1)
     set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT 1200
-      ENVIRONMENT "GTEST_TOTAL_SHARDS=${ABBE_SHARDS};GTEST_SHARD_INDEX=${shard}")
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=${ABBE_SHARDS};GTEST_SHARD_INDEX=${shard};GTEST_FILTER=-${left_out}")
   endforeach()
 endfunction()
