@@ -120,9 +120,11 @@ async function sectionsOf(page, block, at, expect, shot, parse) {
 
 async function contoursOf(page, blocks, expect, shot, parse) {
   const wanted = blocks.filter((block) => block.error_um?.length);
-  const figures = await page.$$eval('#contour > figure', (all) => all.map((e) => ({caption: e.querySelector('figcaption').textContent,
+  const read = () => page.$$eval('#contour > figure', (all) => all.map((e) => ({caption: e.querySelector('figcaption').textContent,
     also: [...e.querySelectorAll('[class*="dots also"]')].map((d) => d.getAttribute('d').split('M').length - 1), lines: e.querySelectorAll('.line.value').length,
     dots: (e.querySelector('.dots.contour')?.getAttribute('d') ?? '').split('M').length - 1, band: e.querySelectorAll('.band').length, rules: e.querySelectorAll('line.rule').length})));
+  await until(async () => (await read()).every((figure, i) => figure.dots || !(wanted[i]?.error_um.length <= 200)));
+  const figures = await read();
   expect(figures.length === wanted.length, `${figures.length} contours for ${wanted.length}`);
   for (const [i, block] of wanted.entries()) {
     const values = block.error_um;
