@@ -85,7 +85,7 @@ struct LiuJointClamping {
 LiuJointClamping liu_joint_clamping(const Machine& machine, const ErrorSet& truth, const LiuClampingErrors& clamping,
                                     std::uint64_t run);
 
-/// Found less true clamping errors of campaigns with the noise of Table 2.
+/// Found minus true clamping errors of campaigns with the noise of Table 2.
 struct LiuClampingSpread {
   std::size_t campaigns = 0;
   LiuClampingErrors mean{}, deviation{};  ///< mean and standard deviation
