@@ -118,22 +118,23 @@ ReproducedTable place_values(const LiuFigureStudy& study) {
 }
 
 ReproducedTable clamping_table(const LiuFigureStudy& study) {
-  ReproducedTable table{"clamping",
-                        "Clamping errors, calibrated in steps (a), (b), (c): found less true, and standard uncertainty",
-                        {{"shifts"},
-                         {"error"},
-                         {"unit"},
-                         {"true", "", 4},
-                         {"exact", "", 3},
-                         {"noise", "", 3},
-                         {"taper", "", 3},
-                         {"u axes exact", "", 3},
-                         {"spread", "", 3},
-                         {"mean", "", 3},
-                         {"u joint", "", 3},
-                         {"spread joint", "", 3}},
-                        {},
-                        {}};
+  ReproducedTable table{
+      "clamping",
+      "Clamping errors, calibrated in steps (a), (b), (c): found minus true, and standard uncertainty",
+      {{"shifts"},
+       {"error"},
+       {"unit"},
+       {"true", "", 4},
+       {"exact", "", 3},
+       {"noise", "", 3},
+       {"taper", "", 3},
+       {"u axes exact", "", 3},
+       {"spread", "", 3},
+       {"mean", "", 3},
+       {"u joint", "", 3},
+       {"spread joint", "", 3}},
+      {},
+      {}};
   constexpr const char* kNames[] = {"tilt about x", "tilt about z", "shift along x", "shift along z"};
   for (const LiuClampingStudy& s : study.clampings) {
     for (std::size_t i = 0; i < 4; ++i) {
@@ -147,7 +148,7 @@ ReproducedTable clamping_table(const LiuFigureStudy& study) {
   }
   table.notes = {fmt::format(
       "u axes exact: stated by step (c), which takes the axes for exact. Spread and mean: standard deviation and mean "
-      "of found less true in {} simulated campaigns with the noise of Table 2. Joint: one fit of both stages and the "
+      "of found minus true in {} simulated campaigns with the noise of Table 2. Joint: one fit of both stages and the "
       "clamping to the same readings. From the readings of the independent program the axis of the cylinder is found "
       "to {:.0e} mm.",
       study.micrometres().spread.steps.campaigns, study.reference.difference)};
