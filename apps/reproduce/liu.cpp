@@ -16,12 +16,7 @@ double largest_distance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
 }
 
 Eigen::Matrix3Xd closed_form(const Machine& machine, const ErrorSet& errors, const LiuReference& reference) {
-  VirtualScan scan;
-  scan.positions = reference.positions;
-  scan.indication = reference.indication;
-  ProbeBeam beam;
-  beam.direction = -machine.tool_direction;
-  return scanned_points(machine, errors, beam, scan);
+  return liu_points(machine, errors, reference.positions, reference.indication);
 }
 
 constexpr std::array<double, 3> kSphereShares = {0.25, 0.5, 0.7};
@@ -143,8 +138,7 @@ Reproduction liu_reproduction() {
   made.citation = "Liu, Zhu, Miao, Li, Fang, Zhang (2021), Sensors 21, 4609";
   made.title =
       "Cradle-type five-axis point scanner: closed form, error terms, calibration of stages and clamping, paths, "
-      "virtual "
-      "measurement";
+      "virtual measurement";
   made.facts = {{"machine", r.machine.chain() + ", confocal probe on Z"}};
   made.tables = liu_tables(r);
   made.published = liu_published(r);

@@ -9,7 +9,7 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/surface_probe.h"
-#include "abbe/instruments/virtual_scan.h"
+#include "reproduce/liu_machine.h"
 
 namespace abbe {
 namespace {
@@ -20,14 +20,9 @@ struct Beams {
 };
 
 Beams beams_of(const Machine& machine, const ErrorSet& errors, const PoseList& positions) {
-  ProbeBeam beam;
-  beam.direction = -machine.tool_direction;
-  VirtualScan scan;
-  scan.positions = positions;
-  scan.indication.assign(positions.count(), 0.0);
-  Beams beams{scanned_points(machine, errors, beam, scan), {}};
-  scan.indication.assign(positions.count(), 1.0);
-  beams.direction = scanned_points(machine, errors, beam, scan) - beams.zero;
+  const std::vector<double> zeros(positions.count(), 0.0), ones(positions.count(), 1.0);
+  Beams beams{liu_points(machine, errors, positions, zeros), {}};
+  beams.direction = liu_points(machine, errors, positions, ones) - beams.zero;
   return beams;
 }
 

@@ -85,8 +85,13 @@ ReproducedTable left_over(const LiuFigureStudy& study) {
     for (std::size_t i = 0; i < 3; ++i) add(s, places[i], true);
     for (const NamedPlaces& p : places) add(s, p, false);
   }
-  table.notes = {
-      "A taper is seen only in part: the axis takes up the rest (127 arcsec), and the same standard does not show it."};
+  const LiuClampingStudy& s = study.micrometres();
+  if (s.tapered.converged()) {
+    table.notes = {
+        fmt::format("A taper is seen only in part. The axis takes up the rest ({:.0f} arcsec), and the same standard "
+                    "does not show it.",
+                    std::abs(s.tapered.clamping.found[0] - s.truth[0]) / kArcsec)};
+  }
   return table;
 }
 

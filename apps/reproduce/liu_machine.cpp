@@ -12,6 +12,7 @@
 #include "abbe/formats/text_file.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
+#include "abbe/instruments/virtual_scan.h"
 #include "shared_file.h"
 
 namespace abbe {
@@ -61,8 +62,19 @@ ErrorSet liu_errors(const Machine& machine, LiuUnit unit, double angles, double 
 ErrorSet liu_unknowns(const Machine& machine) { return liu_errors(machine, LiuUnit::millimetre, 0, 0); }
 
 RigidTransform liu_clamping(LiuUnit unit) {
-  return {rotation_from_error_angles({-5.6936 * kDegree, 0, 2.2561 * kDegree}),
-          Eigen::Vector3d(0.0651, 0, -0.2498) * unit_of(unit)};
+  const auto& [tilt_x, tilt_z, shift_x, shift_z] = kLiuTable3Clamping;
+  return {rotation_from_error_angles({tilt_x * kDegree, 0, tilt_z * kDegree}),
+          Eigen::Vector3d(shift_x, 0, shift_z) * unit_of(unit)};
+}
+
+Eigen::Matrix3Xd liu_points(const Machine& machine, const ErrorSet& errors, const PoseList& positions,
+                            const std::vector<double>& indication) {
+  VirtualScan scan;
+  scan.positions = positions;
+  scan.indication = indication;
+  ProbeBeam beam;
+  beam.direction = -machine.tool_direction;
+  return scanned_points(machine, errors, beam, scan);
 }
 
 LiuReference read_liu_reference(const Machine& machine) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "abbe/errors/error_set.h"
@@ -23,8 +24,15 @@ ErrorSet liu_errors(const Machine& machine, LiuUnit unit, double angles = 1, dou
 /// The eight location errors with value zero, in the order of liu_errors().
 ErrorSet liu_unknowns(const Machine& machine);
 
-/// workpiece_from_part with the clamping errors of Table 3: tilts about x and z, shifts along x and z.
+/// Clamping errors of Table 3: tilts about x and z in degrees, shifts along x and z in the doubtful unit.
+inline constexpr std::array<double, 4> kLiuTable3Clamping = {-5.6936, 2.2561, 0.0651, -0.2498};
+/// workpiece_from_part with them.
 RigidTransform liu_clamping(LiuUnit unit);
+
+/// Points that the probe on Z indicates, [3, positions] mm, workpiece frame, as a machine with these errors sees them.
+/// @param indication  mm
+Eigen::Matrix3Xd liu_points(const Machine& machine, const ErrorSet& errors, const PoseList& positions,
+                            const std::vector<double>& indication);
 
 /// Positions, indications and points of the reference file, [rows].
 struct LiuReference {

@@ -10,7 +10,6 @@
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/shape_fit.h"
-#include "abbe/instruments/virtual_scan.h"
 
 namespace abbe {
 namespace {
@@ -26,15 +25,6 @@ PoseList turns_of_c(const Machine& machine, const std::vector<double>& heights, 
     }
   }
   return planned;
-}
-
-Eigen::Matrix3Xd points_of(const Machine& machine, const ErrorSet& evaluated, const LiuScan& readings) {
-  VirtualScan scan;
-  scan.positions = readings.positions;
-  scan.indication = readings.indication;
-  ProbeBeam beam;
-  beam.direction = -machine.tool_direction;
-  return scanned_points(machine, evaluated, beam, scan);
 }
 
 /// Centre and radius by x^2 + z^2 = 2 a x + 2 b z + c.
@@ -94,7 +84,7 @@ LiuProfile liu_profile(const Machine& machine, const LiuSectionCase& how, const 
   profile.words = how.words;
   for (const double height : heights) {
     const LiuScan scan = liu_scan_standard(machine, how.actual, turns_of_c(machine, {height}, kSteps), standard, {}, 0);
-    const Eigen::Matrix3Xd seen = points_of(machine, how.evaluated, scan);
+    const Eigen::Matrix3Xd seen = liu_points(machine, how.evaluated, scan.positions, scan.indication);
     const Eigen::Matrix3Xd points = (part_from_workpiece.rotation * seen).colwise() + part_from_workpiece.translation;
     LiuSection section;
     section.height = height;
@@ -136,7 +126,7 @@ LiuRepeats liu_repeats(const Machine& machine, const ErrorSet& truth, const LiuC
   standard.lobes = lobes;
   for (std::size_t run = 0; run < LiuRepeats::kRuns; ++run) {
     const LiuScan scan = liu_scan_standard(machine, truth, path, standard, liu_table_2_noise(), 1000 + run);
-    const Eigen::Matrix3Xd points = points_of(machine, campaign.c.errors, scan);
+    const Eigen::Matrix3Xd points = liu_points(machine, campaign.c.errors, scan.positions, scan.indication);
     const ShapeFit fit = least_squares_fit(ShapeKind::cylinder, points);
     repeats.complete = repeats.complete && fit.ok();
     if (!fit.ok()) return repeats;

@@ -73,10 +73,12 @@ LiuSensitivity liu_sensitivity(const Machine& machine) {
                             is_angle ? spread(0.01, 0.02) * kDegree : spread(0, 1e-3),
                             is_angle ? 0.004 * kDegree : 1e-3, 0, 0});
   }
-  result.terms.push_back({"tilt about x", tilt, true, spread(0, 5) * kDegree, 5.6936 * kDegree, 0, 0});
-  result.terms.push_back({"tilt about z", tilt, true, spread(0, 5) * kDegree, 2.2561 * kDegree, 0, 0});
-  result.terms.push_back({"shift along x", centrifugal, false, spread(0, 0.5), 0.0651, 0, 0});
-  result.terms.push_back({"shift along z", centrifugal, false, spread(0, 0.5), 0.2498, 0, 0});
+  result.terms.push_back(
+      {"tilt about x", tilt, true, spread(0, 5) * kDegree, std::abs(kLiuTable3Clamping[0]) * kDegree, 0, 0});
+  result.terms.push_back(
+      {"tilt about z", tilt, true, spread(0, 5) * kDegree, std::abs(kLiuTable3Clamping[1]) * kDegree, 0, 0});
+  result.terms.push_back({"shift along x", centrifugal, false, spread(0, 0.5), std::abs(kLiuTable3Clamping[2]), 0, 0});
+  result.terms.push_back({"shift along z", centrifugal, false, spread(0, 0.5), std::abs(kLiuTable3Clamping[3]), 0, 0});
 
   // Changes along the normal by every term, and by the six motions of the part.
   const std::size_t locations = errors.locations.size(), axes = machine.axes.size();

@@ -210,11 +210,12 @@ LiuReferenceClamping liu_reference_clamping(const Machine& machine) {
   // The frame of the true axis of C: the location errors of C are 4 to 7, along x and z and about x and z.
   const auto value = [&](std::size_t i) { return errors.locations[i].value; };
   const RigidTransform stage{rotation_from_error_angles({value(6), 0, value(7)}), {value(4), 0, value(5)}};
-  const Eigen::Vector3d towards(std::tan(-5.6936 * kDegree), 1, std::tan(2.2561 * kDegree));
+  const auto& [tilt_x, tilt_z, shift_x, shift_z] = kLiuTable3Clamping;
+  const Eigen::Vector3d towards(std::tan(tilt_x * kDegree), 1, std::tan(tilt_z * kDegree));
   const RigidTransform is = liu_clamped(found.found);
   for (const double along : {-12.0, 12.0}) {
     const Eigen::Vector3d at =
-        stage * Eigen::Vector3d(Eigen::Vector3d(0.0651, 0, -0.2498) + along * towards.normalized());
+        stage * Eigen::Vector3d(Eigen::Vector3d(shift_x, 0, shift_z) + along * towards.normalized());
     const Eigen::Vector3d axis = is.rotation * Eigen::Vector3d::UnitY();
     result.difference = std::max(result.difference, (at - is.translation).cross(axis).norm());
   }

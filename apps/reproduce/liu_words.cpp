@@ -58,10 +58,9 @@ std::string repeat_words(const LiuFigureStudy& study) {
   const LiuRepeats &taper = study.repeats[1], &lobes = study.repeats[2];
   return fmt::format(
       "Figure 11b: the paper calls its four distributions basically the same. The random deviations of Table 2 alone "
-      "do "
-      "not make them so: repeatability {:.2f} um, correlation of the runs {:.2f}, with a taper {:.2f}. With three "
-      "lobes "
-      "of 14 um peak to valley it is {:.2f}. Something that repeats is needed; which form or motion it was cannot be "
+      "do not make them so: repeatability {:.2f} um, correlation of the runs {:.2f}, with a taper {:.2f}. With three "
+      "lobes of 14 um peak to valley it is {:.2f}. Something that repeats is needed; which form or motion it was "
+      "cannot be "
       "told from the paper. A form within 14 um alone cannot reach its 12.42 um about the best cylinder, as no root "
       "mean square exceeds half of the peak-to-valley value.",
       1e3 * study.repeats[0].repeatability, study.repeats[0].correlation, taper.correlation, lobes.correlation);
@@ -104,10 +103,9 @@ std::vector<PublishedNumber> liu_published(const LiuResults& r) {
     numbers.push_back({"Figure 8, largest error", "nm", 1.0, 1e6 * liu_exact_remainder(study, false),
                        "the paper states a limit; exact readings", 3});
     constexpr const char* kNames[] = {"tilt 1", "tilt 2", "shift x", "shift z"};
-    constexpr double kPaper[] = {-5.6936, 2.2561, 0.0651, -0.2498};
     for (std::size_t i = 0; i < 4; ++i) {
-      numbers.push_back({fmt::format("Table 3, workholding, {}", kNames[i]), i < 2 ? "deg" : "um", kPaper[i],
-                         s.noisy.clamping.found[i] / (i < 2 ? kDegree : 1e-3),
+      numbers.push_back({fmt::format("Table 3, workholding, {}", kNames[i]), i < 2 ? "deg" : "um",
+                         kLiuTable3Clamping[i], s.noisy.clamping.found[i] / (i < 2 ? kDegree : 1e-3),
                          "set in the simulation, found with the noise of Table 2", 4});
     }
   }
