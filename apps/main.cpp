@@ -127,6 +127,7 @@ int main(int argc, char** argv) {
   abbe::end_cleanly_when_interrupted([](int /*signal*/) {
     if (isatty(STDERR_FILENO) == 1) abbe::draw("\r\x1b[K");
     abbe::tell("abbe: interrupted; what was not finished is removed\n");
+    abbe::tell_complete_outputs();
   });
   abbe::end_where_an_input_was_cut_short(abbe::kBadInput);
   // A limit on the size of files is then an error of writing, with a message and nothing half done, not the end.

@@ -171,26 +171,44 @@ TEST_F(Interruption, WhileResultsAreWrittenTheOlderOnesStayWhole) {
 }
 
 TEST_F(Interruption, WhileAFileIsWrittenNothingOfItIsLeftAndTheOlderOneStays) {
+  ASSERT_EQ(abbe(plan("0.5")).exit_code, ExitCode::done);
+  const std::string whole = folder.read("path.csv");
+  fs::remove(folder.path() / "path.csv");
   for (const bool has_older : {false, true}) {
     bool was_interrupted = false;
     for (int attempt = 0; attempt < 50 && !was_interrupted; ++attempt) {
       if (has_older) folder.write("path.csv", "older\n");
       const CommandResult result =
           interrupted(plan("0.5"), SIGINT, [&](pid_t process) { return holds_a_file_in(folder.path(), process); });
-      // Who comes too late here tries again.
-      was_interrupted = result.exit_code == 130;
-      if (has_older || !was_interrupted) {
+      // Who comes too late here tries again: the file was complete, with the end of the command still to come or not.
+      const bool is_complete = result.err.find("abbe: complete before that: path.csv\n") != std::string::npos;
+      was_interrupted = result.exit_code == 130 && !is_complete;
+      if (!was_interrupted) {
         EXPECT_THAT(names(), testing::ElementsAre("path.csv"));
+        EXPECT_TRUE(folder.read("path.csv") == whole) << "exit code " << result.exit_code << ", " << result.err;
+      } else if (has_older) {
+        EXPECT_THAT(names(), testing::ElementsAre("path.csv"));
+        EXPECT_EQ(folder.read("path.csv"), "older\n");
       } else {
         EXPECT_THAT(names(), testing::IsEmpty());
-      }
-      if (was_interrupted && has_older) {
-        EXPECT_EQ(folder.read("path.csv"), "older\n");
       }
       fs::remove(folder.path() / "path.csv");
     }
     EXPECT_TRUE(was_interrupted) << "no run was interrupted while it wrote";
   }
+}
+
+TEST_F(Interruption, SaysWhatWasCompleteBefore) {
+  // A full pipe as standard output holds the command up after its file is complete.
+  const CommandResult result =
+      run_and_signal("/bin/sh",
+                     {"-c", "mkfifo full; exec 3<>full; head -c 65536 /dev/zero >&3; exec " ABBE_COMMAND
+                            " test-piece cone-frustum -o cone.csv >&3"},
+                     folder.path(), SIGINT, [&](pid_t) { return fs::exists(folder.path() / "cone.csv"); });
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.err,
+            "abbe: interrupted; what was not finished is removed\n"
+            "abbe: complete before that: cone.csv\n");
 }
 
 TEST_F(Interruption, ASignalThatWasIgnoredBeforeStaysIgnored) {
