@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/identify/planning_design.h"
@@ -37,7 +38,8 @@ class PlanSearch {
         continue;
       }
       improve(plan);
-      if (best.status != PlanningStatus::done || plan.history.back() < best.history.back()) best = std::move(plan);
+      if (best.status != PlanningStatus::done || plan.history.back() < best.history.back() - design_.tie())
+        best = std::move(plan);
     }
     return best;
   }
@@ -150,12 +152,7 @@ class PlanSearch {
     for (int pass = 0; pass < options_.most_passes; ++pass) {
       const std::size_t exchanges_before = plan.exchanges;
       const double objective_before = design_.objective();
-      order.resize(design_.chosen().size());
-      for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-      // Those first that are missed least.
-      std::vector<double> losses(order.size());
-      for (std::size_t i = 0; i < order.size(); ++i) losses[i] = design_.loss(i);
-      std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
+      order_by_loss(order);
       std::size_t ahead = 1;
       for (std::size_t k = 0; k < order.size(); ++k) {
         if (ahead > 1 && !design_.looked_ahead(order[k]))
@@ -182,6 +179,28 @@ class PlanSearch {
     plan.history.insert(plan.history.begin(), history.begin(), history.end());
     plan.exchanges = exchanges;
     plan.passes = passes;
+  }
+
+  /// The places of the choice, those first that are missed least; equal ones in the order of their candidates.
+  void order_by_loss(std::vector<std::size_t>& order) const {
+    const std::vector<std::size_t>& chosen = design_.chosen();
+    order.resize(chosen.size());
+    std::vector<double> losses(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      order[i] = i;
+      losses[i] = design_.loss(i);
+    }
+    const auto before = [&](std::size_t a, std::size_t b) { return std::tie(losses[a], a) < std::tie(losses[b], b); };
+    std::sort(order.begin(), order.end(), before);
+    const auto by_candidate = [&](std::size_t a, std::size_t b) {
+      return std::tie(chosen[a], a) < std::tie(chosen[b], b);
+    };
+    for (auto first = order.begin(); first != order.end();) {
+      auto last = std::next(first);
+      while (last != order.end() && !(losses[*last] > losses[*std::prev(last)] + design_.tie())) ++last;
+      std::sort(first, last, by_candidate);
+      first = last;
+    }
   }
 
   bool exchange_one(std::size_t place, ReadingPlan& plan) {

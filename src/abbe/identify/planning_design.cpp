@@ -278,14 +278,14 @@ bool PlanDesign::allowed(std::size_t candidate, const Allowed& rules) const {
 }
 
 void PlanDesign::keep_better(std::size_t candidate, double change, const Allowed& rules, Best& best) const {
-  const double score = rules.per_cost ? change / space_.cost(candidate) : change;
-  if (score < best.score) best = {candidate, change, score};
+  const double unit = rules.per_cost ? space_.cost(candidate) : 1.0, score = change / unit;
+  if (score < best.score - tie() / unit) best = {candidate, change, score, tie() / unit};
 }
 
 PlanDesign::Best PlanDesign::best_of_blocks() const {
   Best best;
   for (const Best& one : best_)
-    if (one.score < best.score) best = one;
+    if (one.score < best.score - one.tie) best = one;
   return best;
 }
 

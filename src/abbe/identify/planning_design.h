@@ -3,6 +3,7 @@
 // Internal to identify: a choice of readings that can be changed one reading at a time.
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -34,6 +35,9 @@ class PlanDesign {
   double cost() const { return cost_; }
   /// To be minimised: -log det M, or the sum of variances.
   double objective() const { return objective_; }
+  /// Changes of the objective that differ by less are equal: rounding must not choose between readings that are worth
+  /// the same, as those of mirrored poses are, or every processor would have a plan of its own.
+  double tie() const { return by_variance_ ? kTie * std::abs(objective_) : kTie; }
   /// Changes since the last factorisation.
   std::size_t updates() const { return updates_; }
 
@@ -55,6 +59,7 @@ class PlanDesign {
     std::size_t candidate = static_cast<std::size_t>(-1);
     double change = kImpossible;  ///< of the objective
     double score = kImpossible;   ///< change, divided by the cost where `per_cost`
+    double tie = 0;               ///< another one has to have a score below this one's by more
   };
   /// Which candidates are allowed: not more than `repeats` times, of a cost up to `most_cost`, eligible.
   struct Allowed {
@@ -108,6 +113,10 @@ class PlanDesign {
   void keep_better(std::size_t candidate, double change, const Allowed& rules, Best& best) const;
   Best best_of_blocks() const;
   std::size_t block_count() const { return blocks_.size() - 1; }
+
+  // Far above rounding, below what counts as a gain (PlanningOptions::smallest_gain); of the logarithm of the
+  // determinant, or relative.
+  static constexpr double kTie = 1e-8;
 
   const PlanningSpace& space_;
   int threads_;

@@ -419,5 +419,44 @@ TEST(PlanningTest, RefusesWhatDoesNotAgree) {
   EXPECT_THROW(plan_readings(space, options), std::invalid_argument);
 }
 
+/// Rounding differs between processors (vectors of other lengths, fused products); so must not the plan. Readings of a
+/// symmetric machine are worth the same in groups of eight and more.
+TEST(Plan, ReadingsThatAreWorthTheSameAreChosenAlikeWhateverTheRounding) {
+  PlanningCandidates candidates;
+  candidates.rows.resize(11 * 11 * 2, 7);
+  for (Index i = 0; i < candidates.rows.rows(); ++i) {
+    const double x = static_cast<double>(i / 2 % 11 - 5) / 5, y = static_cast<double>(i / 22 - 5) / 5;
+    const double sign = i % 2 == 0 ? 1 : -1;
+    candidates.rows.row(i) << 1, x, y, x * x, x * y, y * y, sign;
+  }
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(candidates.rows.rows()); ++i) candidates.first_row.push_back(i);
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(7, 7);
+  for (const bool by_time : {false, true}) {
+    for (const PlanningCriterion criterion : {PlanningCriterion::determinant, PlanningCriterion::variance}) {
+      PlanningOptions options;
+      options.criterion = criterion;
+      if (criterion == PlanningCriterion::variance) options.functionals = unit;
+      if (by_time) {
+        options.time_s = 100;
+        for (std::size_t i = 0; i < candidates.count(); ++i) candidates.cost_s.push_back(i % 3 == 0 ? 2 : 3);
+      } else {
+        options.count = 25;
+        candidates.cost_s.clear();
+      }
+      options.starts = 3;
+      const ReadingPlan plan = plan_readings(PlanningSpace(candidates, Eigen::MatrixXd()), options);
+      ASSERT_EQ(plan.status, PlanningStatus::done);
+      for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        RandomStream random(seed);
+        PlanningCandidates rounded = candidates;
+        for (double& value : rounded.rows.reshaped()) value *= 1 + 4e-16 * random.uniform(-1, 1);
+        const ReadingPlan other = plan_readings(PlanningSpace(rounded, Eigen::MatrixXd()), options);
+        EXPECT_EQ(other.chosen, plan.chosen) << "criterion " << static_cast<int>(criterion) << ", seed " << seed;
+      }
+      candidates.cost_s.clear();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace abbe
