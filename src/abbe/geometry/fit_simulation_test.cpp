@@ -22,6 +22,43 @@ TEST(FitSimulation, SmallSetsHaveTheirCircumscribedShape) {
 TEST(FitSimulation, SmallSetsHaveTheirInscribedShape) { test::simulate_extreme(ExtremeKind::inscribed, 40, 54); }
 TEST(FitSimulation, SmallSetsHaveTheirRobustShape) { test::simulate_robust(12, 55); }
 
+/// One of the sets that simulate_robust() would make with that seed.
+SimulatedSet set_of(ShapeKind kind, std::uint64_t seed, int index) {
+  Numbers numbers(seed);
+  for (int k = 0; k < index; ++k) test::simulated_set(kind, numbers);
+  return test::simulated_set(kind, numbers);
+}
+
+TEST(FitSimulation, RobustShapesThatWereRefusedOrNotTheOptimumHaveAnAnswer) {
+  struct Case {
+    ShapeKind kind;
+    std::uint64_t seed;
+    int index;
+  };
+  // The smallest median of so few points belonged to another shape, which leaves a larger loss.
+  for (const Case& one :
+       {Case{ShapeKind::circle2, 2026, 824}, Case{ShapeKind::sphere, 1, 448}, Case{ShapeKind::circle3, 3, 495},
+        // 200 steps ended between a saddle and the optimum, or 1000 beside a saddle that is all but flat.
+        Case{ShapeKind::circle3, 2, 942}, Case{ShapeKind::line2, 3, 777}, Case{ShapeKind::cylinder, 5, 227},
+        // The first step led higher, was not taken, and that was taken for rest.
+        Case{ShapeKind::cone, 1, 1094}}) {
+    const SimulatedSet set = set_of(one.kind, one.seed, one.index);
+    const ShapeFit fit = robust_fit(one.kind, set.points);
+    test::judge_robust(set, fit);
+    EXPECT_LT(static_cast<double>(fit.rejected), 0.25 * static_cast<double>(set.count())) << test::words(set, fit);
+  }
+}
+
+/// By chance nine of fourteen points are within 0.4 um of a plane, and all within the noise of another: each is the
+/// better one at its own scale.
+TEST(FitSimulation, ASetWithTwoRobustShapesIsAmbiguous) {
+  const SimulatedSet set = set_of(ShapeKind::plane, 3, 20);
+  const ShapeFit fit = robust_fit(ShapeKind::plane, set.points);
+  EXPECT_EQ(fit.status, FitStatus::ambiguous) << test::words(set, fit);
+  EXPECT_EQ(fit.rejected, 5u);
+  EXPECT_EQ(fit.rivals.size(), 1u);
+}
+
 /// The flat rings and cones that were refused one time in two: 11 points, radius 32 mm, height 7 mm, noise 1 um.
 TEST(FitSimulation, FlatRingsAndConesOfElevenPointsHaveAnAnswerInAnyOrderOfThePoints) {
   Numbers numbers(56);

@@ -66,6 +66,7 @@ Reweighted reweigh(const ShapeFrame& start, const FitPoints& points, const Setti
   Reweighted result;
   result.frame = start;
   std::vector<double> d(static_cast<std::size_t>(points.cols())), sorted(d.size()), weights(d.size());
+  double last_change = std::numeric_limits<double>::infinity();  // of a distance, in scales
   for (int step = 0; step < most && !result.rested; ++step) {
     distances(result.frame, points, d, threads);
     std::transform(d.begin(), d.end(), sorted.begin(), [](double x) { return std::abs(x); });
@@ -77,9 +78,14 @@ Reweighted reweigh(const ShapeFrame& start, const FitPoints& points, const Setti
     for (std::size_t i = 0; i < d.size(); ++i) {
       weights[i] = influence(setting.kind, std::abs(d[i]) / (setting.tuning * result.scale)).weight;
     }
-    const Refined refined = refine(result.frame, points, weights, setting.free, setting.size, 2, threads);
+    Refined refined = refine(result.frame, points, weights, setting.free, setting.size, 2, threads);
+    double moved_by = change(refined.frame, result.frame, setting.size);
+    if (moved_by == 0 && !refined.converged) {
+      // The one step led higher and was not taken: that is no rest. With damping it becomes short enough.
+      refined = refine(result.frame, points, weights, setting.free, setting.size, 40, threads);
+      moved_by = change(refined.frame, result.frame, setting.size);
+    }
     ++result.iterations;
-    const double moved_by = change(refined.frame, result.frame, setting.size);
     result.frame = refined.frame;
     if (!std::isfinite(moved_by)) break;
     // In the distances rest means the same for all shapes, sizes and noises.
@@ -87,12 +93,15 @@ Reweighted reweigh(const ShapeFrame& start, const FitPoints& points, const Setti
     double changed = 0;
     for (std::size_t i = 0; i < d.size(); ++i)
       changed = std::max(changed, std::abs(std::abs(sorted[i]) - std::abs(d[i])));
+    last_change = changed / result.scale;
     const bool scale_rests = std::abs(result.scale - before) <= 1e-9 * result.scale;
     const double rounding = 2e-15 * (setting.size + std::abs(result.frame.radius));
     result.rested = scale_rests && changed <= 1e-10 * result.scale + rounding;
     // With the scale at rounding there is nothing more to weigh.
     result.rested = result.rested || (moved_by < 1e-10 && result.scale <= 2 * setting.least_scale);
   }
+  // Beside a saddle that is all but flat the steps grow by thousandths: stationary as a least-squares fit has to be.
+  result.rested = result.rested || (result.iterations >= most && last_change <= 1e-6);
   return result;
 }
 
@@ -124,11 +133,24 @@ std::size_t left_out_taken(const std::vector<double>& loss, const std::vector<do
   return count;
 }
 
-/// Other shapes of the sample: what the other candidates lead to, and the best shape of the points that the answer
-/// leaves out. One whose mean loss is not larger by more than 0.005 is as good, and so is one that explains some of the
-/// points left out and whose mean loss is not larger by more than three times its uncertainty and 0.005.
-void add_rivals(ShapeFit& fit, const ShapeFrame& answer, double scale, const std::vector<ShapeFrame>& candidates,
-                const Survey& survey, const Setting& setting, const FitConstraints& constraints, std::uint64_t seed) {
+/// Another shape of the sample, compared with the answer.
+struct OtherShape {
+  ShapeFrame frame;
+  std::vector<double> loss;
+  double share = 0;        ///< of the points, those that take part
+  double excess = 0;       ///< mean loss less that of the answer
+  double uncertainty = 0;  ///< up to which such an excess means nothing
+
+  bool better() const { return share >= 0.5 && excess < -uncertainty; }
+  bool as_good() const { return excess <= uncertainty; }
+};
+
+/// What the other candidates lead to, and the best shape of the points that the answer leaves out, if they take a part
+/// of the points that is worth naming. The mean loss of a shape is known to 0.005, and if it explains some of the
+/// points left out, to three times the standard uncertainty of the difference and 0.005.
+std::vector<OtherShape> other_shapes(const ShapeFrame& answer, double scale, const std::vector<ShapeFrame>& candidates,
+                                     const Survey& survey, const Setting& setting, const FitConstraints& constraints,
+                                     std::uint64_t seed) {
   constexpr double kLeftOut = 0.25, kWorthNaming = 0.35;
   const double reach = setting.tuning * std::max(scale, setting.least_scale);
   const double count = static_cast<double>(survey.sample.cols());
@@ -139,10 +161,10 @@ void add_rivals(ShapeFit& fit, const ShapeFrame& answer, double scale, const std
     return static_cast<double>(std::count_if(loss.begin(), loss.end(), [](double x) { return x < 1; })) / count;
   };
   const double own_share = share_of(own_loss);
-  std::vector<ShapeFrame> others;
+  std::vector<ShapeFrame> frames;
   for (const ShapeFrame& candidate : candidates) {
     if (unlike(candidate, own, survey)) {
-      others.push_back(reweighed_rival(candidate, survey.sample, setting, scale));
+      frames.push_back(reweighed_rival(candidate, survey.sample, setting, scale));
     }
   }
   const auto left = static_cast<Index>(std::llround((1 - own_share) * count));
@@ -154,40 +176,48 @@ void add_rivals(ShapeFit& fit, const ShapeFrame& answer, double scale, const std
       if (own_loss[static_cast<std::size_t>(i)] >= 1) rest.sample.col(next++) = survey.sample.col(i);
     }
     const std::vector<ShapeFrame> found = least_median_shapes(own.kind, rest, constraints, seed);
-    if (!found.empty()) others.push_back(reweighed_rival(found.front(), rest.sample, setting, scale));
+    if (!found.empty()) frames.push_back(reweighed_rival(found.front(), rest.sample, setting, scale));
   }
   // Another one if it lies elsewhere, or if most of its points are others.
-  struct Known {
-    ShapeFrame frame;
-    std::vector<double> loss;
-  };
-  std::vector<Known> known{{own, own_loss}};
-  for (const ShapeFrame& other : others) {
-    if (!std::isfinite(other.origin.sum())) continue;
-    const std::vector<double> loss = losses(other, survey.sample, reach);
-    const double share = share_of(loss);
-    const bool is_new = std::none_of(known.begin(), known.end(), [&](const Known& one) {
+  std::vector<OtherShape> known(1);
+  known.front().frame = own;
+  known.front().loss = own_loss;
+  for (const ShapeFrame& frame : frames) {
+    if (!std::isfinite(frame.origin.sum())) continue;
+    OtherShape other;
+    other.frame = frame;
+    other.loss = losses(frame, survey.sample, reach);
+    other.share = share_of(other.loss);
+    const bool is_new = std::none_of(known.begin(), known.end(), [&](const OtherShape& one) {
       double both = 0;
-      for (std::size_t i = 0; i < loss.size(); ++i) both += loss[i] < 1 && one.loss[i] < 1 ? 1 : 0;
-      return both > 0.5 * share * count && !unlike(one.frame, other, survey);
+      for (std::size_t i = 0; i < one.loss.size(); ++i) both += other.loss[i] < 1 && one.loss[i] < 1 ? 1 : 0;
+      return both > 0.5 * other.share * count && !unlike(one.frame, frame, survey);
     });
-    if (!is_new || share < kWorthNaming * own_share) continue;
-    known.push_back({other, loss});
+    if (!is_new || other.share < kWorthNaming * own_share) continue;
     double sum = 0, squares = 0;
-    for (std::size_t i = 0; i < loss.size(); ++i) {
-      sum += loss[i] - own_loss[i];
-      squares += std::pow(loss[i] - own_loss[i], 2);
+    for (std::size_t i = 0; i < own_loss.size(); ++i) {
+      sum += other.loss[i] - own_loss[i];
+      squares += std::pow(other.loss[i] - own_loss[i], 2);
     }
-    const double mean = sum / count, uncertainty = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
-    ShapeRival rival;
-    ShapeFrame placed = other;
-    placed.centre = survey.centre;
-    rival.shape = shape_of(placed, survey.centroid.mean);
-    rival.share = share;
-    fit.rivals.push_back(rival);
+    other.excess = sum / count;
     // One that takes up to as many of the points left out as any shape can be laid through explains nothing.
-    const bool explains_more = left_out_taken(loss, own_loss) > setting.met;
-    if (mean <= (explains_more ? 3 * uncertainty : 0) + 0.005 && fit.ok()) {
+    const bool explains_more = left_out_taken(other.loss, own_loss) > setting.met;
+    const double variance = std::max(0.0, squares / count - other.excess * other.excess) / count;
+    other.uncertainty = 0.005 + (explains_more ? 3 * std::sqrt(variance) : 0);
+    known.push_back(other);
+  }
+  known.erase(known.begin());
+  for (OtherShape& other : known) other.frame.centre = survey.centre;
+  return known;
+}
+
+void add_rivals(ShapeFit& fit, const std::vector<OtherShape>& others, const Survey& survey) {
+  for (const OtherShape& other : others) {
+    ShapeRival rival;
+    rival.shape = shape_of(other.frame, survey.centroid.mean);
+    rival.share = other.share;
+    fit.rivals.push_back(rival);
+    if (other.as_good() && fit.ok()) {
       fit.status = FitStatus::ambiguous;
       fit.reason = "another shape explains nearly as many points";
     }
@@ -210,7 +240,7 @@ ShapeFit robust_fit(ShapeKind kind, const FitPoints& points, const RobustOptions
   fit.status = survey.status;
   fit.reason = survey.reason;
   if (!fit.ok()) return fit;
-  const std::vector<ShapeFrame> candidates = least_median_shapes(kind, survey, options.constraints, robust.seed);
+  std::vector<ShapeFrame> candidates = least_median_shapes(kind, survey, options.constraints, robust.seed);
   if (candidates.empty()) {
     fit.status = FitStatus::no_consensus;
     fit.reason = "no such shape comes near half of the points";
@@ -228,9 +258,24 @@ ShapeFit robust_fit(ShapeKind kind, const FitPoints& points, const RobustOptions
   setting.size = survey.size;
   setting.free = free;
   setting.met = points_met(kind, free.size());
-  const Reweighted rest = reweigh(frame, points, setting, 200, options.threads);
-  fit.iterations = rest.iterations;
-  frame = rest.frame;
+  // The smallest median rests on one distance. Of few points another shape may leave a smaller loss at that scale, and
+  // then it is the answer; it is compared with the first one at its own scale.
+  constexpr int kMostSteps = 1000, kMostAnswers = 3;
+  Reweighted rest;
+  std::vector<OtherShape> others;
+  for (int answer = 0; answer < kMostAnswers; ++answer) {
+    rest = reweigh(frame, points, setting, kMostSteps, options.threads);
+    fit.iterations += rest.iterations;
+    frame = rest.frame;
+    others = other_shapes(frame, rest.scale, candidates, survey, setting, options.constraints, robust.seed);
+    const auto best = std::min_element(others.begin(), others.end(),
+                                       [](const OtherShape& a, const OtherShape& b) { return a.excess < b.excess; });
+    if (best == others.end() || !best->better() || answer + 1 == kMostAnswers) break;
+    candidates.push_back(frame);
+    candidates.back().centre.setZero();
+    frame = best->frame;
+    settle(frame, survey.centroid.mean);
+  }
   const double scale = rest.scale, tuning = setting.tuning;
 
   std::vector<double> d(fit.points);
@@ -268,7 +313,7 @@ ShapeFit robust_fit(ShapeKind kind, const FitPoints& points, const RobustOptions
     fit.status = FitStatus::no_consensus;
     fit.reason = "no such shape explains half of the points";
   }
-  add_rivals(fit, frame, scale, candidates, survey, setting, options.constraints, robust.seed);
+  add_rivals(fit, others, survey);
   // Huber (1981), 7.6: variance of an M-estimate.
   const double freedom = count * rows - static_cast<double>(free.size());
   const double mean_slope = psi_slopes / std::max(count, 1.0);
