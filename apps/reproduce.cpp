@@ -31,7 +31,7 @@ void add_reproduce_command(CommandLine& line) {
       ->required()
       ->check(one_of({"aguado", "liu", "ma", "wang", "yin"}));
   command->add_output_folder("-o,--output", options->output,
-                             "Results folder to write (maps, report); default: print only");
+                             "Results folder to write (tables, figures, report, study); default: print only");
   command->add_option("--grids", options->grids,
                       "wang: decouple the indications of this folder (X.csv, A.csv, ...) instead");
   command->add_option("--threads", options->reproduce.threads, "Threads (0: all)")->check(in_range(0, 64));

@@ -74,6 +74,7 @@ Reproduction ma_reproduction() {
   made.title =
       "Six motions of a rotary table by a 12-face polygon prism, two autocollimators and three displacement "
       "sensors";
+  made.facts = {{"instruments", "two autocollimators, three displacement sensors, polygon of 12 faces"}};
   made.tables = ma_tables(r);
   made.published = ma_published(r);
   made.figures = ma_figures(r);

@@ -63,7 +63,10 @@ nlohmann::json page_table(const ReproducedTable& table) {
   }
   for (const std::vector<ReproducedCell>& row : table.rows) {
     nlohmann::json cells = nlohmann::json::array();
-    for (std::size_t i = 0; i < row.size(); ++i) cells.push_back(cell_text(row[i], table.columns[i]));
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const bool missing = std::holds_alternative<std::monostate>(row[i].value);
+      cells.push_back(missing ? nlohmann::json() : nlohmann::json(cell_text(row[i], table.columns[i])));
+    }
     rows.push_back(std::move(cells));
   }
   nlohmann::json json = {{"title", table.title}, {"columns", std::move(columns)}, {"rows", std::move(rows)}};
@@ -108,7 +111,12 @@ ReproducedTable published_table(const Reproduction& made) {
       return value ? ReproducedCell(*value, number.decimals) : ReproducedCell();
     };
     std::optional<double> difference;
-    if (number.paper && number.here) difference = *number.here - *number.paper;
+    if (number.paper && number.here) {
+      // What only the rounding of the sums leaves is no difference.
+      constexpr double kRounding = 1e-12;
+      const double off = *number.here - *number.paper;
+      difference = std::abs(off) <= kRounding * (1 + std::abs(*number.paper)) ? 0 : off;
+    }
     table.rows.push_back(
         {number.where, number.unit, cell(number.paper), cell(number.here), cell(difference), number.note});
   }
@@ -118,14 +126,16 @@ ReproducedTable published_table(const Reproduction& made) {
 nlohmann::ordered_json reproduction_json(const Reproduction& made) {
   nlohmann::ordered_json json = {
       {"format", "abbe-reproduction/1"}, {"paper", made.paper}, {"citation", made.citation}, {"title", made.title}};
-  if (made.agrees) json["agrees_with_reference"] = *made.agrees;
+  // The same keys for every paper: what it does not have is null or empty.
+  json["agrees_with_reference"] = made.agrees ? nlohmann::ordered_json(*made.agrees) : nullptr;
   json["failures"] = made.failures;
+  json["facts"] = json["tables"] = nlohmann::ordered_json::object();
   for (const auto& [name, text] : made.facts) json["facts"][name] = text;
   json["published"] = table_json(published_table(made))["rows"];
   for (const ReproducedTable& table : made.tables) json["tables"][table.name] = table_json(table);
   json["conclusions"] = made.conclusions;
   json["wrong_in_print"] = made.corrections;
-  if (made.details.is_object()) json.update(made.details);
+  json["details"] = made.details;
   return json;
 }
 

@@ -80,7 +80,7 @@ struct Reproduction {
   std::vector<std::string> corrections;    ///< what is wrong in print
   std::vector<std::string> failures;       ///< what was to be found and is not
   std::optional<bool> agrees;              ///< with the reference numbers; empty: there are none
-  nlohmann::ordered_json details;          ///< more for programs, beside the rest; an object or null
+  nlohmann::ordered_json details;          ///< more for programs, with keys of its own; an object or null
   std::vector<EvaluationFigure> headline;  ///< of the page, above everything
   nlohmann::json page;                     ///< more sections of the page (docs/report-data.md), or null
   /// Machine, errors, readings, paths of the study; null: none.

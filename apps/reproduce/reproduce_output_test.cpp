@@ -48,8 +48,20 @@ TEST(ReproduceOutput, PublishedNumbersHaveTheirDifferenceOrTheReasonWhyThereIsNo
   EXPECT_NEAR(json["published"][0]["difference"].get<double>(), -12.07, 1e-9);
   EXPECT_TRUE(json["published"][1]["here"].is_null());
   EXPECT_EQ(json["published"][1]["note"], "the paper gives no readings");
-  EXPECT_EQ(json["rank"], 72);
+  EXPECT_EQ(json["details"]["rank"], 72);
   EXPECT_EQ(json["tables"]["table-1"]["rows"][0]["left_percent"], 20.45);
+}
+
+TEST(ReproduceOutput, WhatAPaperDoesNotHaveIsEmptyOrNullInJson) {
+  const nlohmann::ordered_json all = reproduction_json(sample_reproduction()), none = reproduction_json({});
+  std::vector<std::string> keys, empty_keys;
+  for (const auto& [key, value] : all.items()) keys.push_back(key);
+  for (const auto& [key, value] : none.items()) empty_keys.push_back(key);
+  EXPECT_EQ(keys, empty_keys);
+  EXPECT_TRUE(none["agrees_with_reference"].is_null());
+  EXPECT_TRUE(none["details"].is_null());
+  EXPECT_EQ(none["facts"], nlohmann::ordered_json::object());
+  EXPECT_EQ(none["tables"], nlohmann::ordered_json::object());
 }
 
 TEST(ReproduceOutput, TextIsAlignedAndWrapped) {

@@ -142,15 +142,6 @@ double wang_share_within(const WangCircle& circle, const WangCircle& without_noi
   return circle.uncertainty.empty() ? 0 : static_cast<double>(within) / static_cast<double>(circle.uncertainty.size());
 }
 
-std::string wang_circle_csv(const WangCircle& circle, const WangCircle& without_noise) {
-  std::string text = "angle_deg,deviation_um,U_k2_um,deviation_without_noise_um\n";
-  for (std::size_t k = 0; k < circle.deviation.size(); ++k) {
-    text += fmt::format("{},{:.4f},{:.4f},{:.4f}\n", degrees_at(k), 1e3 * circle.deviation[k],
-                        2e3 * circle.uncertainty[k], 1e3 * without_noise.deviation[k]);
-  }
-  return text;
-}
-
 std::string wang_circle_svg(const WangCircle& circle, const WangCircle& without_noise) {
   std::vector<PolarPoint> found, low, high, exact;
   for (std::size_t k = 0; k < circle.deviation.size(); ++k) {

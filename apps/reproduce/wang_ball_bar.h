@@ -30,10 +30,7 @@ struct WangCircle {
 /// @param covariance  null, or of ErrorSet::parameters(), [p, p]
 std::vector<WangCircle> wang_ball_bar(const ErrorSet& errors, const Eigen::MatrixXd* covariance = nullptr);
 
-/// CSV text of a circle: angle_deg, deviation_um and, with an uncertainty, U_k2_um and the deviation of
-/// `without_noise`.
-std::string wang_circle_csv(const WangCircle& circle, const WangCircle& without_noise);
-/// Polar plot of the same as SVG text, the k = 2 band by its two edges.
+/// Polar plot of a circle beside that without noise as SVG text, the k = 2 band by its two edges.
 std::string wang_circle_svg(const WangCircle& circle, const WangCircle& without_noise);
 /// Share of the angles at which the deviation of `without_noise` lies within k = 2.
 double wang_share_within(const WangCircle& circle, const WangCircle& without_noise);

@@ -86,8 +86,9 @@ nlohmann::ordered_json size_json(const SampleStatistics& s) {
   return {{"mean_um", 1e3 * s.mean}, {"smallest_um", 1e3 * s.minimum}, {"largest_um", 1e3 * s.maximum}};
 }
 
-/// To a nanometre, and no minus zero.
+/// Rounded, and no minus zero.
 double to_a_nanometre(double mm) { return std::round(1e6 * mm) / 1e6 + 0.0; }
+double to_a_picometre(double mm) { return std::round(1e9 * mm) / 1e9 + 0.0; }
 
 std::vector<PlotPoint> numbered(const std::vector<double>& norm) {
   std::vector<PlotPoint> points;
@@ -170,77 +171,65 @@ nlohmann::ordered_json wang_conclusions_json(const WangConclusions& c) {
   return json;
 }
 
-void print_wang_points(const std::vector<WangPoints>& points) {
-  fmt::print(
-      "Figures 13 and 14: |E| at 36 machining points / um. The paper shows the points in a picture without "
-      "coordinates;\nthree readings of it\n");
-  fmt::print("  {:<22} {:>10} {:>10} {:>10}\n", "", "smallest", "mean", "largest");
-  const auto row = [](const char* words, const SampleStatistics& s) {
-    fmt::print("  {:<22} {:>10.1f} {:>10.1f} {:>10.1f}\n", words, 1e3 * s.minimum, 1e3 * s.mean, 1e3 * s.maximum);
-  };
-  fmt::print("  {:<22} {:>10} {:>10} {:>10}\n", "paper, Figure 14", "", "1000", "");
-  fmt::print("  {:<22} {:>10} {:>10} {:>10}   (displacements only)\n", "paper, Figure 15", "", "100", "");
+ReproducedTable wang_point_table(const std::vector<WangPoints>& points) {
+  ReproducedTable table{
+      "machining-points",
+      "Figures 13 and 14: machining points in three readings, axis commands, and E in the machine frame",
+      {{"points"}, {"number", "", 0}},
+      {},
+      {},
+      false};
+  for (const char* axis : {"X", "Y", "Z"}) table.columns.push_back({axis, "mm", 3});
+  for (const char* axis : {"A", "B", "C"}) table.columns.push_back({axis, "deg", 3});
+  for (const char* axis : {"x", "y", "z"}) table.columns.push_back({axis, "mm", 3});
+  for (const char* angles : {"degrees", "millidegrees", "displacements"}) {
+    for (const char axis : {'x', 'y', 'z'}) table.columns.push_back({fmt::format("E {} {}", axis, angles), "um"});
+  }
   for (const WangPoints& set : points) {
-    fmt::print("  {}\n", set.words);
-    row("  degrees as printed", set.degrees.statistics);
-    row("  millidegrees", set.millidegrees.statistics);
-    row("  displacements only", set.no_angles.statistics);
+    for (std::size_t i = 0; i < set.degrees.norm.size(); ++i) {
+      const std::vector<double> pose = set.degrees.poses.pose(i);  // C X Z A Y B
+      std::vector<ReproducedCell> row = {set.name,
+                                         i + 1,
+                                         to_a_nanometre(pose[1]),
+                                         to_a_nanometre(pose[4]),
+                                         pose[2],
+                                         pose[3] / kDegree,
+                                         pose[5] / kDegree,
+                                         pose[0] / kDegree};
+      for (const std::vector<double>& place : set.degrees.machining_point) row.emplace_back(to_a_nanometre(place[i]));
+      for (const WangMap* map : {&set.degrees, &set.millidegrees, &set.no_angles}) {
+        for (const std::vector<double>& error : map->error) row.emplace_back(1e3 * to_a_picometre(error[i]));
+      }
+      table.rows.push_back(std::move(row));
+    }
   }
-  fmt::print("\n");
+  return table;
 }
 
-void print_wang_conclusions(const WangConclusions& c) {
-  fmt::print("Conclusions, |E| over all poses of the 11 measured positions per axis\n");
-  for (const auto& row : wang_conclusion_rows(c)) {
-    fmt::print("  {}\n    paper: {}\n    here:  {}\n    holds: {}\n", row[0], row[1], row[2], row[3]);
-  }
-  fmt::print("\n");
-}
-
-std::vector<std::pair<std::string, std::string>> wang_point_files(const std::vector<WangPoints>& points) {
-  std::string csv =
-      "# Figures 13 and 14 of Wang et al. (2020): 36 machining points in three readings, and E of equation (18) at "
-      "them, machine frame\n"
-      "points,number,X_mm,Y_mm,Z_mm,A_deg,B_deg,C_deg,x_mm,y_mm,z_mm";
-  for (const char* unit : {"degrees", "millidegrees", "displacements"}) {
-    for (const char axis : {'x', 'y', 'z'}) csv += fmt::format(",E_{}_{}_um", axis, unit);
-  }
-  csv += "\n";
-  XyPlot places("Machining points (Figure 13), top view", "x in mm", "y in mm"),
-      degrees("Integrated error of the machining points (Figure 14), angles in degrees as printed", "point",
-              "|E| in \xC2\xB5m"),
-      small("Integrated error of the machining points, angles in millidegrees and left out", "point",
-            "|E| in \xC2\xB5m");
+std::vector<EvaluationPlot> wang_point_plots(const std::vector<WangPoints>& points) {
+  XyPlot places("Figure 13: machining points, top view", "x in mm", "y in mm"),
+      degrees("Figure 14: angles in degrees as printed", "point", "|E| in \xC2\xB5m"),
+      small("Figure 14: angles in millidegrees, and left out", "point", "|E| in \xC2\xB5m");
   places.keep_the_same_scale();
   degrees.include_y(0);
   small.include_y(0);
   constexpr PlotColour kColours[] = {PlotColour::first, PlotColour::second, PlotColour::ink};
-  constexpr Marker kMarkers[] = {Marker::circle, Marker::cross, Marker::circle};
+  constexpr Marker kMarkers[] = {Marker::circle, Marker::cross, Marker::up};
   for (std::size_t s = 0; s < points.size(); ++s) {
     const WangPoints& set = points[s];
+    const auto& p = set.degrees.machining_point;
     std::vector<PlotPoint> top;
-    for (std::size_t i = 0; i < set.degrees.norm.size(); ++i) {
-      const std::vector<double> pose = set.degrees.poses.pose(i);  // C X Z A Y B
-      const auto& p = set.degrees.machining_point;
-      csv += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6f},{:.6f},{:.6f}", set.name, i + 1,
-                         pose[1], pose[4], pose[2], pose[3] / kDegree, pose[5] / kDegree, pose[0] / kDegree,
-                         to_a_nanometre(p[0][i]), to_a_nanometre(p[1][i]), to_a_nanometre(p[2][i]));
-      for (const WangMap* map : {&set.degrees, &set.millidegrees, &set.no_angles}) {
-        for (std::size_t d = 0; d < 3; ++d) csv += fmt::format(",{:.6f}", 1e3 * map->error[d][i]);
-      }
-      csv += "\n";
-      top.push_back({p[0][i], p[1][i]});
-    }
+    for (std::size_t i = 0; i < set.degrees.norm.size(); ++i) top.push_back({p[0][i], p[1][i]});
     places.points(top, kMarkers[s], {kColours[s], 1.4}, set.name);
     degrees.line(numbered(set.degrees.norm), {kColours[s], 1.4}, set.name);
     small.line(numbered(set.millidegrees.norm), {kColours[s], 1.4}, set.name);
     small.points(numbered(set.no_angles.norm), kMarkers[s], {kColours[s], 1.4}, set.name + ", without angles");
   }
   degrees.level(1000, "1 mm, the paper's level", {PlotColour::limit, 1, true, 1});
-  return {{"machining_points.csv", csv},
-          {"figure_13.svg", places.svg()},
-          {"figure_14_degrees.svg", degrees.svg()},
-          {"figure_14_millidegrees.svg", small.svg()}};
+  return {
+      {"figure-13", "The paper shows a picture without coordinates; three readings of it.", places.svg()},
+      {"figure-14-degrees", "Integrated error of equation (18) at the 36 points of each reading.", degrees.svg()},
+      {"figure-14-millidegrees", "Lines: angles read as millidegrees. Marks: displacement errors only.", small.svg()}};
 }
 
 }  // namespace abbe

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <array>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "reproduce/reproduce_output.h"
 #include "reproduce/wang_integrated.h"
 #include "reproduce/wang_study.h"
 
@@ -44,13 +43,13 @@ struct WangConclusions {
 
 nlohmann::ordered_json wang_points_json(const std::vector<WangPoints>& points);
 nlohmann::ordered_json wang_conclusions_json(const WangConclusions& conclusions);
-void print_wang_points(const std::vector<WangPoints>& points);
-void print_wang_conclusions(const WangConclusions& conclusions);
 
-/// A table for the page and for people: the claim, what the paper says, what the tables give, in how far it holds.
+/// The claim, what the paper says, what the tables give, in how far it holds.
 std::vector<std::array<std::string, 4>> wang_conclusion_rows(const WangConclusions& conclusions);
 
-/// Figures 13 and 14: {"machining_points.csv", text}, {"figure_13.svg", text}, {"figure_14_degrees.svg", text}, ...
-std::vector<std::pair<std::string, std::string>> wang_point_files(const std::vector<WangPoints>& points);
+/// The machining points with their commands and E, which only files and the page show.
+ReproducedTable wang_point_table(const std::vector<WangPoints>& points);
+/// Figures 13 and 14.
+std::vector<EvaluationPlot> wang_point_plots(const std::vector<WangPoints>& points);
 
 }  // namespace abbe

@@ -130,9 +130,9 @@ TEST(WangFigures, EveryReadingOfFigure13Has36PointsWithinTheTravels) {
   const auto& p = sets[0].degrees.machining_point;
   for (std::size_t i = 0; i < 36; ++i) middle += Eigen::Vector2d(p[0][i], p[1][i]) / 36;
   for (std::size_t i = 0; i < 36; ++i) EXPECT_NEAR((Eigen::Vector2d(p[0][i], p[1][i]) - middle).norm(), 100, 1e-9);
-  const auto files = wang_point_files(sets);
-  EXPECT_EQ(std::count(files[0].second.begin(), files[0].second.end(), '\n'), 2 + 3 * 36);
-  EXPECT_EQ(files[0].second.find("-0.000000"), std::string::npos);
+  const std::string csv = reproduction_csv(wang_point_table(sets));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 36);
+  EXPECT_EQ(csv.find(",-0,"), std::string::npos);
 }
 
 TEST(WangFigures, SizeOfTheStructureCountsForTheAnglesAlone) {

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "reproduce/reproduce_output.h"
+#include "reproduce/wang_dial_tables.h"
 #include "reproduce/wang_figures.h"
-#include "reproduce/wang_print.h"
 #include "reproduce/wang_study.h"
 
 namespace abbe {
@@ -31,17 +30,21 @@ struct WangResults {
   std::vector<WangPoints> points;
   WangConclusions conclusions;
   WangDialFigures dials;
+  WangMap grid;         ///< E at four positions per axis, angles in degrees as printed
+  bool agrees = false;  ///< E at the zero pose, with the numbers of an independent program (tests/golden/wang)
 };
 WangResults wang_results(int threads);
 
 /// The paper's zero pose: first column of every table, B at 0 degrees (its seventh).
 std::vector<double> wang_zero_pose();
 
-/// For programs; units in the keys.
-nlohmann::ordered_json wang_json(const WangResults& results);
-/// For people, on stdout.
-void print_wang(const WangResults& results);
-/// Maps of E, tables, machine, errors, figures and page.
-void write_wang_folder(const WangResults& results, const std::filesystem::path& output);
+std::vector<ReproducedTable> wang_tables(const WangResults& results);
+std::vector<PublishedNumber> wang_published(const WangResults& results);
+/// More for programs; units in the keys.
+nlohmann::ordered_json wang_details(const WangResults& results);
+/// Map, distributions and machine for the page.
+nlohmann::json wang_page(const WangResults& results);
+/// Machine, errors, maps of E, readings of dials and laser.
+void write_wang_study(const WangResults& results, ResultsFolder& folder);
 
 }  // namespace abbe

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "abbe/geometry/angle.h"
 #include "abbe/geometry/angle_units.h"
@@ -15,8 +15,13 @@
 namespace abbe {
 namespace {
 
-nlohmann::ordered_json command_json(const SwingHeadCommand& c) {
-  return {{"X_mm", c.x}, {"Y_mm", c.y}, {"Z_mm", c.z}, {"A_deg", c.a / kDegree}, {"C1_deg", c.c1 / kDegree}};
+void add_axis_columns(ReproducedTable& table, const std::string& which) {
+  for (const char* axis : {"X", "Y", "Z"}) table.columns.push_back({axis + which, "mm", 4});
+  for (const char* axis : {"A", "C1"}) table.columns.push_back({axis + which, "deg", 4});
+}
+
+void add_axis_cells(std::vector<ReproducedCell>& row, const SwingHeadCommand& c) {
+  for (const double value : {c.x, c.y, c.z, c.a / kDegree, c.c1 / kDegree}) row.emplace_back(value);
 }
 
 }  // namespace
@@ -38,63 +43,42 @@ std::vector<YinAxisCommands> yin_axis_commands(const YinPositioning& positioning
   return commands;
 }
 
-nlohmann::ordered_json yin_commands_json(const std::vector<YinAxisCommands>& commands) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    const YinAxisCommands& c = commands[i];
-    json.push_back({{"number", i + 1},
-                    {"point_mm", {c.point.x(), c.point.y(), c.point.z()}},
-                    {"positive_A", command_json(c.positive)},
-                    {"negative_A", command_json(c.negative)},
-                    {"equation_6_as_printed", command_json(c.printed)},
-                    {"equation_6_beam_off_deg", c.printed_beam_off / kDegree}});
-  }
-  return json;
-}
-
-void print_yin_commands(const std::vector<YinAxisCommands>& commands) {
-  if (commands.empty()) return;
-  fmt::print(
-      "Table A4: the paper's points in the workpiece frame, and the axis commands for them (Tables 2 and 3, convention "
-      "U, C2 = 0,\nbeam along the normal of the cylinder, A > 0)\n");
-  fmt::print("  {:>3}{:>10}{:>9}{:>9}  |{:>11}{:>11}{:>11}{:>10}{:>10}\n", "No.", "x / mm", "y / mm", "z / mm",
-             "X / mm", "Y / mm", "Z / mm", "A / deg", "C1 / deg");
+std::vector<ReproducedTable> yin_command_tables(const std::vector<YinAxisCommands>& commands) {
+  ReproducedTable table{
+      "axis-commands",
+      "Axis commands for the points x, y, z of Table A4 (workpiece frame): Tables 2 and 3, convention "
+      "U, C2 = 0, beam along the normal of the cylinder, A > 0",
+      {{"number", "", 0}, {"x", "mm", 3}, {"y", "mm", 3}, {"z", "mm", 3}},
+      {},
+      {}};
+  ReproducedTable others{"axis-commands-other",
+                         "The same with A < 0, and by equation (6) as printed (convention P)",
+                         {{"number", "", 0}},
+                         {},
+                         {},
+                         false};
+  add_axis_columns(table, "");
+  add_axis_columns(others, " negative");
+  add_axis_columns(others, " printed");
+  others.columns.push_back({"beam off printed", "deg", 4});
   double largest = 0;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const YinAxisCommands& c = commands[i];
-    fmt::print("  {:>3}{:>10.3f}{:>9.3f}{:>9.3f}  |{:>11.4f}{:>11.4f}{:>11.4f}{:>10.4f}{:>10.4f}\n", i + 1, c.point.x(),
-               c.point.y(), c.point.z(), c.positive.x, c.positive.y, c.positive.z, c.positive.a / kDegree,
-               c.positive.c1 / kDegree);
+    std::vector<ReproducedCell> row = {i + 1, c.point.x(), c.point.y(), c.point.z()}, other = {i + 1};
+    add_axis_cells(row, c.positive);
+    add_axis_cells(other, c.negative);
+    add_axis_cells(other, c.printed);
+    other.emplace_back(c.printed_beam_off / kDegree);
+    table.rows.push_back(std::move(row));
+    others.rows.push_back(std::move(other));
     largest = std::max(largest, c.printed_beam_off);
   }
-  fmt::print(
-      "  The paper prints no commands (its G code is \"available on request\"). A < 0 and (6) as printed are in "
-      "axis_commands.csv\n  and --json; (6) as printed turns the beam {:.2f} degrees away: it comes out of the "
-      "part.\n\n",
-      largest / kDegree);
-}
-
-std::string yin_commands_csv(const std::vector<YinAxisCommands>& commands) {
-  std::string text =
-      "# Points of Table A4 and the axis commands for them: Tables 2 and 3, convention U, C2 = 0; both signs of A; "
-      "equation (6) as printed (convention P)\n"
-      "number,x_mm,y_mm,z_mm";
-  for (const char* which : {"", "_negative", "_printed"}) {
-    for (const char* axis : {"X", "Y", "Z", "A", "C1"}) {
-      text += fmt::format(",{}{}_{}", axis, which, axis[0] == 'A' || axis[0] == 'C' ? "deg" : "mm");
-    }
-  }
-  text += ",beam_off_printed_deg\n";
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    const YinAxisCommands& c = commands[i];
-    text += fmt::format("{},{:.3f},{:.3f},{:.3f}", i + 1, c.point.x(), c.point.y(), c.point.z());
-    for (const SwingHeadCommand* command : {&c.positive, &c.negative, &c.printed}) {
-      text += fmt::format(",{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}", command->x, command->y, command->z,
-                          command->a / kDegree, command->c1 / kDegree);
-    }
-    text += fmt::format(",{:.6f}\n", c.printed_beam_off / kDegree);
-  }
-  return text;
+  table.notes = {
+      fmt::format("The paper prints the points and no commands. tables/axis-commands-other.csv and --json hold the "
+                  "commands with A < "
+                  "0 and by (6) as printed, which turns the beam {:.2f} degrees away: it comes out of the part.",
+                  largest / kDegree)};
+  return {std::move(table), std::move(others)};
 }
 
 }  // namespace abbe

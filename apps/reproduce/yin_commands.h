@@ -1,11 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <nlohmann/json_fwd.hpp>
-#include <string>
 #include <vector>
 
 #include "abbe/identify/swing_head_linkage.h"
+#include "reproduce/reproduce_output.h"
 #include "reproduce/yin_study.h"
 
 namespace abbe {
@@ -20,9 +19,7 @@ struct YinAxisCommands {
 /// @param positioning  with a position of the workpiece
 std::vector<YinAxisCommands> yin_axis_commands(const YinPositioning& positioning);
 
-nlohmann::ordered_json yin_commands_json(const std::vector<YinAxisCommands>& commands);
-void print_yin_commands(const std::vector<YinAxisCommands>& commands);
-/// All commands, one line per point; units in the header.
-std::string yin_commands_csv(const std::vector<YinAxisCommands>& commands);
+/// The commands with A > 0, then the others, which only files and the page show.
+std::vector<ReproducedTable> yin_command_tables(const std::vector<YinAxisCommands>& commands);
 
 }  // namespace abbe

@@ -200,29 +200,4 @@ std::vector<YinEquation> yin_equations() {
           check_sixth_angles(l), check_sixth_lengths(l), check_seventh(), check_eighth()};
 }
 
-nlohmann::ordered_json yin_equations_json(const std::vector<YinEquation>& equations) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const YinEquation& e : equations) {
-    json.push_back({{"equation", e.number},
-                    {"right_as_printed", e.is_right},
-                    {"printed", e.printed},
-                    {"right", e.right},
-                    {"test", e.test},
-                    {"printed_off_" + e.unit, e.printed_off},
-                    {"right_off_" + e.unit, e.right_off}});
-  }
-  return json;
-}
-
-void print_yin_equations(const std::vector<YinEquation>& equations) {
-  fmt::print("Equations (1) to (8), each put to a test that does not use it; by how much it fails\n");
-  for (const YinEquation& e : equations) {
-    fmt::print("  {:<15}{:<6} {}\n", e.number, e.is_right ? "right" : "WRONG", e.printed);
-    if (!e.is_right) fmt::print("  {:<15}right: {}\n", "", e.right);
-    fmt::print("  {:<15}test:  {}: printed {:.3g} {}, right {:.1g} {}\n", "", e.test, e.printed_off, e.unit,
-               e.right_off, e.unit);
-  }
-  fmt::print("\n");
-}
-
 }  // namespace abbe

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -18,8 +17,5 @@ struct YinEquation {
 
 /// With the linkage of Table 2 and the beams of Table A4.
 std::vector<YinEquation> yin_equations();
-
-nlohmann::ordered_json yin_equations_json(const std::vector<YinEquation>& equations);
-void print_yin_equations(const std::vector<YinEquation>& equations);
 
 }  // namespace abbe

@@ -101,44 +101,25 @@ ordered_json contour_json(const YinResults& r) {
 }
 
 ordered_json sections_json(const YinSections& s) {
-  ordered_json json = {{"edge_radius_um", 1e3 * s.radius},
-                       {"contour_error", figures_json(s.found)},
-                       {"contour_error_true", figures_json(s.truth)},
-                       {"P1_P2", figures_json(s.rounding)},
-                       {"largest_miss_um", 1e3 * s.largest_miss},
-                       {"without_an_edge", s.refused}};
-  for (std::size_t i = 0; i < s.fits.size(); ++i) {
-    const EdgeFit& fit = s.fits[i];
-    ordered_json point = {{"number", i + 1}, {"along_mm", *s.sections[i].along}, {"true_um", 1e3 * s.edge[i]}};
-    if (fit.status == EdgeStatus::ok) {
-      point["contour_error_um"] = 1e3 * fit.corner.x();
-      point["u_contour_error_um"] = 1e3 * fit.corner_uncertainty();
-      point["P1_P2_um"] = 1e3 * fit.rounding;
-      point["u_P1_P2_um"] = 1e3 * fit.rounding_uncertainty;
-    } else {
-      point["not_evaluated"] = fit.reason;
-    }
-    point["scanned_points"] = s.sections[i].points.cols();
-    json["points"].push_back(std::move(point));
-  }
-  return json;
+  return {{"edge_radius_um", 1e3 * s.radius},
+          {"contour_error", figures_json(s.found)},
+          {"contour_error_true", figures_json(s.truth)},
+          {"P1_P2", figures_json(s.rounding)},
+          {"largest_miss_um", 1e3 * s.largest_miss},
+          {"without_an_edge", s.refused}};
 }
 
 }  // namespace
 
-ordered_json yin_json(const YinResults& r) {
+ordered_json yin_details(const YinResults& r) {
   ordered_json json;
-  json["equations"] = yin_equations_json(r.equations);
   json["linkage"] = linkage_json(r);
   json["positioning"] = positions_json(r.positioning);
   json["positioning"]["simulated_scans"] = scans_json(r);
   if (r.positioning.failure.empty()) {
-    json["axis_commands"] = yin_commands_json(r.commands);
     json["contour"] = contour_json(r);
     json["sections"] = sections_json(r.sections);
   }
-  json["failures"] = r.failures;
-  json["agrees_with_reference"] = r.agrees;
   return json;
 }
 

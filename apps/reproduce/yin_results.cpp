@@ -11,7 +11,9 @@ constexpr double kYinAgreement = 1e-9;  // mm
 
 void judge(YinResults& r) {
   r.failures.clear();
-  const auto failed = [&](const std::string& what, const std::string& why) { r.failures.push_back(what + ": " + why); };
+  const auto failed = [&](const std::string& what, const std::string& why) {
+    r.failures.push_back(why.empty() ? what : what + ": " + why);
+  };
   for (const YinSteps* const steps : {&r.table_moves, &r.head_moves}) {
     if (steps->found.status == LinkageStatus::ok) continue;
     failed(steps == &r.table_moves ? "five steps, U" : "five steps, P", steps->found.reason);

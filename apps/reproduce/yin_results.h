@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
-#include "abbe/report/evaluation_report.h"
+#include "reproduce/reproduce_output.h"
 #include "reproduce/yin_commands.h"
 #include "reproduce/yin_contour.h"
 #include "reproduce/yin_equations.h"
@@ -37,11 +36,16 @@ YinResults yin_results(std::uint64_t seed);
 /// Fills failures and agrees from the rest.
 void judge(YinResults& results);
 
-/// For programs; units in the keys.
-nlohmann::ordered_json yin_json(const YinResults& results);
-/// For people, on stdout.
-void print_yin(const YinResults& results);
-/// Figures, plots and tables for the page of a results folder.
-EvaluationReport yin_report(const YinResults& results);
+std::vector<ReproducedTable> yin_tables(const YinResults& results);
+std::vector<PublishedNumber> yin_published(const YinResults& results);
+std::vector<EvaluationPlot> yin_plots(const YinResults& results);
+/// What the page shows above everything: the contour error, measured and predicted.
+std::vector<EvaluationFigure> yin_headline(const YinResults& results);
+/// The sections of the simulated part, for the page; null without them.
+nlohmann::json yin_page(const YinResults& results);
+/// More for programs; units in the keys.
+nlohmann::ordered_json yin_details(const YinResults& results);
+/// All of it, as it is shown and written.
+Reproduction yin_reproduction(const YinResults& results);
 
 }  // namespace abbe

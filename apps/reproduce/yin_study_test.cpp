@@ -240,35 +240,32 @@ TEST(YinResults, WhatIsNotFoundIsSaidAndDoesNotAgree) {
     EXPECT_FALSE(r.agrees) << words;
     ASSERT_EQ(r.failures.size(), 1U) << words;
     EXPECT_NE(r.failures[0].find(words), std::string::npos) << r.failures[0];
-    EXPECT_EQ(yin_json(r)["failures"][0], r.failures[0]);
-    EXPECT_FALSE(yin_json(r)["agrees_with_reference"]);
-    EXPECT_NE(yin_report(r).notes[0].find(words), std::string::npos);
-    testing::internal::CaptureStdout();
-    print_yin(r);
-    const std::string printed = testing::internal::GetCapturedStdout();
-    EXPECT_NE(printed.find("NOT FOUND: " + r.failures[0]), std::string::npos) << printed;
-    EXPECT_NE(printed.find("DOES NOT AGREE"), std::string::npos);
+    const Reproduction made = yin_reproduction(r);
+    EXPECT_EQ(reproduction_json(made)["failures"][0], r.failures[0]);
+    EXPECT_FALSE(reproduction_json(made)["agrees_with_reference"]);
+    EXPECT_NE(reproduction_page(made).find("Not found: " + r.failures[0]), std::string::npos);
+    const std::string printed = reproduction_text(made);
+    EXPECT_NE(printed.find("Not found\n  - " + r.failures[0].substr(0, 20)), std::string::npos) << printed;
+    EXPECT_NE(printed.find("DOES NOT agree"), std::string::npos);
   };
   YinResults r = whole;
   r.sections.sections[3].points = Eigen::Matrix2Xd(r.sections.sections[3].points.leftCols(12));
   evaluate_sections(r.sections);
   expect_failure(r, "edge of section 4: fewer than 20 points");
-  EXPECT_EQ(yin_json(r)["sections"]["points"][3].count("contour_error_um"), 0U);
+  const auto tables = [](const YinResults& results) { return reproduction_json(yin_reproduction(results))["tables"]; };
+  EXPECT_TRUE(tables(r)["sections"]["rows"][3]["contour_error_um"].is_null());
 
   r = whole;
   r.joint = {};
   r.joint.message = "not converged after 50 steps";
   expect_failure(r, "joint fit of marks: not converged after 50 steps");
-  testing::internal::CaptureStdout();
-  print_yin(r);
-  // No uncertainty of zero in the last column of the table.
-  EXPECT_NE(testing::internal::GetCapturedStdout().find("               -\n"), std::string::npos);
+  EXPECT_TRUE(tables(r)["table-2"]["rows"][0]["u_by_joint_fit_um"].is_null());  // not an uncertainty of zero
 
   r = whole;
   r.scans.scans.along_x.resize(1);
   r.located = yin_locate(r.scans);
   expect_failure(r, "simulated scanner: the scanner's position is not found");
-  const nlohmann::ordered_json scans = yin_json(r)["positioning"]["simulated_scans"];
+  const nlohmann::ordered_json scans = yin_details(r)["positioning"]["simulated_scans"];
   EXPECT_EQ(scans.count("table_to_workpiece") + scans.count("chi_square_of_six"), 0U);
   EXPECT_EQ(scans.count("not_found"), 1U);
 

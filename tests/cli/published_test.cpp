@@ -3,6 +3,7 @@
 #include <string>
 
 #include "cli/command_test.h"
+#include "cli/reproduction_layout.h"
 
 namespace abbe {
 namespace {
@@ -10,23 +11,26 @@ namespace {
 class Published : public CommandTest {};
 
 TEST_F(Published, StudiesAgreeWithTheReference) {
-  const CommandResult aguado = abbe({"reproduce", "aguado", "--json"});
+  const CommandResult aguado = abbe({"reproduce", "aguado", "--json", "-o", "aguado"});
   ASSERT_EQ(aguado.exit_code, ExitCode::done) << aguado.err;
   const nlohmann::json json = nlohmann::json::parse(aguado.out);
   EXPECT_TRUE(json["agrees_with_reference"]);
+  expect_common_layout(folder.path() / "aguado", json);
   // Three offsets: 24 directions of the published model are unseen; C0 and Z0 (6) are not parameters here.
-  EXPECT_EQ(json["reference"]["5000_noiseLT"]["parameters"], 120);
-  EXPECT_EQ(json["reference"]["5000_noiseLT"]["rank"], 102);
-  const CommandResult wang = abbe({"reproduce", "wang", "--json"});
+  EXPECT_EQ(json["details"]["reference"]["5000_noiseLT"]["parameters"], 120);
+  EXPECT_EQ(json["details"]["reference"]["5000_noiseLT"]["rank"], 102);
+  const CommandResult wang = abbe({"reproduce", "wang", "--json", "-o", "wang"});
   ASSERT_EQ(wang.exit_code, ExitCode::done) << wang.err;
   const nlohmann::json figures = nlohmann::json::parse(wang.out);
-  EXPECT_EQ(figures["mean_columns"]["equal_to_cut_off_mean"], 20);
-  EXPECT_NEAR(figures["zero_pose_error_mm"]["degrees"][0].get<double>(), -5.400842140, 1e-8);
-  EXPECT_NEAR(figures["dials"]["one_dial_grids"]["X"]["printed_rms_bias_um"][0].get<double>(), 56.751, 1e-3);
-  EXPECT_NEAR(figures["dials"]["one_dial_grids"]["X"]["correct_rms_bias_um"][0].get<double>(), 0, 1e-9);
-  EXPECT_EQ(figures["dials"]["seen_by_the_papers_instruments"], 33);
-  EXPECT_LT(figures["ball_bar_circular_deviation_um"]["displacements only"]["XY"].get<double>(), 25);
-  EXPECT_EQ(figures["populations_um"]["12^6, degrees as printed"]["poses"], 2985984);
+  EXPECT_TRUE(figures["agrees_with_reference"]);
+  expect_common_layout(folder.path() / "wang", figures);
+  EXPECT_EQ(figures["details"]["mean_columns"]["equal_to_cut_off_mean"], 20);
+  EXPECT_NEAR(figures["details"]["zero_pose_error_mm"]["degrees"][0].get<double>(), -5.400842140, 1e-8);
+  EXPECT_NEAR(figures["details"]["dials"]["one_dial_grids"]["X"]["printed_rms_bias_um"][0].get<double>(), 56.751, 1e-3);
+  EXPECT_NEAR(figures["details"]["dials"]["one_dial_grids"]["X"]["correct_rms_bias_um"][0].get<double>(), 0, 1e-9);
+  EXPECT_EQ(figures["details"]["dials"]["seen_by_the_papers_instruments"], 33);
+  EXPECT_LT(figures["details"]["ball_bar_circular_deviation_um"]["displacements only"]["XY"].get<double>(), 25);
+  EXPECT_EQ(figures["details"]["populations_um"]["12^6, degrees as printed"]["poses"], 2985984);
 }
 
 TEST_F(Published, ScannerAgreesWithTheReferenceAndTheCylinderBeforeCalibrationWithThePaper) {
@@ -34,16 +38,17 @@ TEST_F(Published, ScannerAgreesWithTheReferenceAndTheCylinderBeforeCalibrationWi
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_TRUE(json["agrees_with_reference"]);
-  for (const auto& [name, value] : json["reference_difference_mm"].items())
+  expect_common_layout(folder.path() / "results", json);
+  for (const auto& [name, value] : json["details"]["reference_difference_mm"].items())
     EXPECT_LT(value.get<double>(), 1e-9) << name;
-  EXPECT_GT(json["recursion_difference_mm"]["as_worded"].get<double>(), 1);
-  const nlohmann::json& cylinder = json["table_3_in_um"]["parts"][0];
+  EXPECT_GT(json["details"]["recursion_difference_mm"]["as_worded"].get<double>(), 1);
+  const nlohmann::json& cylinder = json["details"]["table_3_in_um"]["parts"][0];
   EXPECT_NEAR(cylinder["before"]["rms_um"].get<double>(), 101.27, 4);  // which places the path visits decides the mean
-  for (const nlohmann::json& part : json["table_3_in_um"]["parts"]) {
+  for (const nlohmann::json& part : json["details"]["table_3_in_um"]["parts"]) {
     EXPECT_LT(part["after"]["rms_um"].get<double>(), 8) << part["part"];
   }
   // Calibrated with a cylinder 21 um larger than taken for, the sphere is 21 um short, as in the paper.
-  EXPECT_NEAR(json["variants"][3]["spheres"][2]["after"]["fitted_radius_mm"].get<double>(), 12.682, 2e-3);
+  EXPECT_NEAR(json["details"]["variants"][3]["spheres"][2]["after"]["fitted_radius_mm"].get<double>(), 12.682, 2e-3);
   // Figures 7 and 8: the paper states limits of 10 and 1 nm; the clamping of Table 3 is found.
   EXPECT_EQ(json["failures"].size(), 0U);
   for (const nlohmann::json& row : json["published"]) {

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "cli/command_test.h"
+#include "cli/reproduction_layout.h"
 
 namespace abbe {
 namespace {
@@ -9,14 +10,15 @@ namespace {
 class ReproduceYin : public CommandTest {};
 
 TEST_F(ReproduceYin, LinkagePositionAndContourErrorStandBesideThePaper) {
-  const CommandResult result = abbe({"reproduce", "yin", "--json"});
+  const CommandResult result = abbe({"reproduce", "yin", "--json", "-o", "results"});
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_TRUE(json["agrees_with_reference"]);
-  EXPECT_NEAR(json["linkage"]["U"]["corrected"]["L_tA_mm"].get<double>(), -0.265, 1e-9);
-  EXPECT_NEAR(json["linkage"]["U"]["printed"]["L_tA_mm"].get<double>(), 0.53, 1e-9);
-  EXPECT_NEAR(json["positioning"]["table_to_workpiece"]["x_mm"].get<double>(), -73.896, 1e-9);
-  const nlohmann::json& contour = json["contour"];
+  expect_common_layout(folder.path() / "results", json);
+  EXPECT_NEAR(json["details"]["linkage"]["U"]["corrected"]["L_tA_mm"].get<double>(), -0.265, 1e-9);
+  EXPECT_NEAR(json["details"]["linkage"]["U"]["printed"]["L_tA_mm"].get<double>(), 0.53, 1e-9);
+  EXPECT_NEAR(json["details"]["positioning"]["table_to_workpiece"]["x_mm"].get<double>(), -73.896, 1e-9);
+  const nlohmann::json& contour = json["details"]["contour"];
   // An independent program predicted 14.0, 24.2, 5.2 um; the causes are put together in another way there.
   EXPECT_NEAR(contour["across_the_curve"]["mean_um"].get<double>(), 14.0, 1.5);
   EXPECT_NEAR(contour["across_the_curve"]["max_um"].get<double>(), 24.2, 2.5);

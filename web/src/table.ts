@@ -5,8 +5,9 @@ import {field, html, section} from './dom';
 import {alike, count, number, withUncertainty} from './format';
 
 export function dataTable(caption: string, columns: string[], rows: (string | number | boolean | null)[][]): HTMLElement {
-  const isNumeric = (cell: unknown) => typeof cell === 'number' || (typeof cell === 'string' && /^-?\d[\d.]*$/.test(cell));
-  const isNumber = columns.map((_, i) => rows.some((row) => typeof row[i] === 'number') || (rows.length > 0 && rows.every((row) => isNumeric(row[i]))));
+  const isNumeric = (cell: unknown) => typeof cell === 'number' || (typeof cell === 'string' && /^-?\d[\d.]*(e[-+]?\d+)?$/.test(cell));
+  const isMissing = (cell: unknown) => cell === null || cell === '';
+  const isNumber = columns.map((_, i) => rows.some((row) => typeof row[i] === 'number') || (rows.some((row) => isNumeric(row[i])) && rows.every((row) => isNumeric(row[i]) || isMissing(row[i]))));
   return html(
     'div',
     {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption},

@@ -1,15 +1,15 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "reproduce/reproduce_output.h"
 #include "reproduce/wang_dials.h"
 
 namespace abbe {
 
-/// The parts of `abbe reproduce wang` about dials and ball bar, for people and for programs.
+/// The parts of `abbe reproduce wang` about dials and ball bar, as tables, plots and JSON.
 struct WangDialFigures {
   WangDialStudy study;
   WangDialMap map;
@@ -17,12 +17,12 @@ struct WangDialFigures {
 };
 
 WangDialFigures wang_dial_figures();
-void print_wang_dials(const WangDialFigures& figures);
-void print_wang_ball_bar(const WangDialStudy& study, double displacements_only_mm);
+/// One dial over two faces, what is found of the 36 errors, and what a ball bar would read.
+std::vector<ReproducedTable> wang_dial_tables(const WangDialFigures& figures);
 nlohmann::ordered_json wang_dials_json(const WangDialFigures& figures);
 nlohmann::ordered_json wang_ball_bar_json(const WangDialStudy& study);
-/// Traces of the ball bar from the decoupled errors, as table and picture: {"XY.csv", text}, {"XY.svg", text}, ...
-std::vector<std::pair<std::string, std::string>> wang_ball_bar_files(const WangDialStudy& study);
+/// Traces of the ball bar from the decoupled errors.
+std::vector<EvaluationPlot> wang_ball_bar_plots(const WangDialStudy& study);
 
 /// Simulated indications of all six axes as files that --grids reads: {"X.csv", text}, ...
 std::vector<std::pair<std::string, std::string>> wang_indication_files(const WangDialStudy& study);
