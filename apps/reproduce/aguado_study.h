@@ -43,6 +43,7 @@ ErrorSet aguado_model(const AguadoOrders& orders);
 
 struct AguadoFit {
   Identification identification;
+  std::size_t rank = 0;            ///< of the readings at the nominal machine, of all parameters
   TrackerSetup setup;              ///< station and reflectors as identified
   SampleStatistics initial;        ///< nominal machine at the true station pose, at the readings, mm
   SampleStatistics residual;       ///< after the fit, at the readings, mm
