@@ -134,12 +134,9 @@ void add_check_command(CommandLine& line) {
   const Option* unit =
       command->add_option("--unit", options->geometry.unit,
                           "Unit of a mesh or point cloud whose file states none: mm (assumed if not given), m or inch");
-  const Option* chord = command
-                            ->add_option("--chord-mm", options->geometry.chord_mm,
-                                         "STEP: largest distance of the triangles from the exact faces")
-                            ->capture_default_str();
-  command->callback([&line, options, errors_option, unit, chord] {
-    line.run = [options, errors_option, unit, chord]() -> int {
+  options->geometry.step.add_to(command);
+  command->callback([&line, options, errors_option, unit] {
+    line.run = [options, errors_option, unit]() -> int {
       if (is_geometry_file(options->file)) {
         refuse_if_given(errors_option, "a mesh or a point cloud has no error parameters");
         options->geometry.file = options->file;
@@ -147,13 +144,13 @@ void add_check_command(CommandLine& line) {
         return check_geometry(options->geometry);
       }
       if (is_frozen_file(options->file)) {
-        for (const Option* const option : {errors_option, unit, chord}) {
-          refuse_if_given(option, "a frozen compensation has all of it in it");
-        }
+        const char* const why = "a frozen compensation has all of it in it";
+        for (const Option* const option : {errors_option, unit}) refuse_if_given(option, why);
+        options->geometry.step.refuse(why);
         return check_frozen(options->file, options->json);
       }
       refuse_if_given(unit, "a machine file states its units");
-      refuse_if_given(chord, "a machine file has no faces");
+      options->geometry.step.refuse("a machine file has no faces");
       const Machine machine = read_machine(options->file);
       nlohmann::ordered_json json = machine_json(machine);
       std::size_t coefficients = 0, terms = 0;

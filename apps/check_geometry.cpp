@@ -197,16 +197,14 @@ bool is_geometry_file(const std::string& file) { return has_mesh_extension(file)
 
 int check_geometry(const GeometryCheckOptions& options) {
   const std::optional<FileLength> unit = unit_of(options);
+  options.step.require_step_among({options.file});
   if (has_point_cloud_extension(options.file) || has_points_only(options.file)) {
     PointCloudOptions reading;
     reading.unit = unit;
     return check_cloud(read_point_cloud(options.file, reading), options.json);
   }
-  MeshFileOptions reading;
-  reading.unit = unit;
-  reading.step.chord_mm = options.chord_mm;
   CheckedMesh mesh;
-  mesh.file = read_mesh(options.file, reading);
+  mesh.file = options.step.read(options.file, unit);
   mesh.check = check_mesh(mesh.file.mesh);
   mesh.repeated = repeated_points(mesh.file.mesh.vertices);
   if (options.json) {

@@ -2,14 +2,14 @@
 
 #include <string>
 
-#include "abbe/formats/mesh_file.h"
+#include "step_reading.h"
 
 namespace abbe {
 
 struct GeometryCheckOptions {
   std::string file;
   std::string unit;  ///< "mm", "m", "inch", or empty where the file states it or mm is assumed
-  double chord_mm = StepOptions{}.chord_mm;
+  StepReading step;
   bool json = false;
 };
 

@@ -29,6 +29,7 @@
 #include "options.h"
 #include "path/path_page.h"
 #include "scan/surface_picture.h"
+#include "step_reading.h"
 
 namespace abbe {
 namespace {
@@ -39,6 +40,7 @@ struct PathCommand {
   double feed_mm_per_min = 0, retract_mm = 0, tolerance_um = 0;
   int decimals = 6;
   bool feed_per_minute = false, json = false, accept_misfit = false;
+  StepReading step;
 };
 
 PathProgramOptions program_options(const PathCommand& command, const Machine& machine) {
@@ -122,7 +124,7 @@ nlohmann::ordered_json path_json(const Machine& machine, const ToolPath& path, c
 void write_page(const PathCommand& command, const Machine& machine, const ToolPath& path,
                 const std::vector<std::vector<double>>& commands) {
   std::optional<SurfacePicture> part;
-  if (!command.part.empty()) part = part_picture(read_mesh(command.part).mesh, 0, 0);
+  if (!command.part.empty()) part = part_picture(command.step.read(command.part).mesh, 0, 0);
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   std::vector<std::pair<std::string, std::string>> facts{
       {"curve", name(command.curve)},
@@ -135,6 +137,8 @@ void write_page(const PathCommand& command, const Machine& machine, const ToolPa
 }
 
 int run_path(const PathCommand& command) {
+  command.step.require_step_among(command.part.empty() ? std::vector<std::filesystem::path>{}
+                                                       : std::vector<std::filesystem::path>{command.part});
   const Machine nominal = read_machine(command.machine);
   CalibratedMachine calibrated{nominal, std::vector<double>(nominal.axes.size(), 0.0), {}};
   if (!command.errors.empty()) {
@@ -260,6 +264,7 @@ void add_path_command(CommandLine& line) {
                            "Page to write (.html): the tool on its path, played, on the part");
   command->add_option("--part", options->part, "Mesh of the workpiece for that page (.stl .ply .obj .step), mm")
       ->needs("--report");
+  options->step.add_to(command);
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options]() -> int { return run_path(*options); }; });

@@ -18,6 +18,7 @@
 #include "options.h"
 #include "position/position_json.h"
 #include "progress.h"
+#include "step_reading.h"
 #include "vector_json.h"
 
 namespace abbe {
@@ -26,6 +27,7 @@ namespace {
 struct PositionCommand {
   std::string file, output, maps;  ///< maps: "table-to-workpiece" if empty
   bool json = false;
+  StepReading step;
 };
 
 /// The scan laid on the workpiece, and why not.
@@ -35,7 +37,7 @@ struct OnWorkpiece {
   std::string status;
 };
 
-OnWorkpiece lay_on_workpiece(const WorkpieceScan& workpiece) {
+OnWorkpiece lay_on_workpiece(const WorkpieceScan& workpiece, const StepReading& step) {
   OnWorkpiece result;
   if (workpiece.part.empty()) {
     FeatureRegistrationOptions options;
@@ -48,7 +50,7 @@ OnWorkpiece lay_on_workpiece(const WorkpieceScan& workpiece) {
   }
   RegistrationOptions options;
   options.noise_mm = workpiece.noise;
-  const MeshFile part = read_mesh(workpiece.part);
+  const MeshFile part = step.read(workpiece.part);
   const PointCloudFile scan = read_point_cloud(workpiece.scan);
   Progress progress("registering");
   const Registration found = RegistrationTarget(part.mesh, options).register_scan(scan.cloud, progress.callback());
@@ -122,6 +124,8 @@ int run_position(const PositionCommand& command) {
   if (command.output.empty() && !command.maps.empty()) {
     throw InputError({.field = "--maps"}, "there is no placement whose matrix maps that way", "with --output");
   }
+  const bool has_part = file.workpiece && !file.workpiece->part.empty();
+  command.step.require_step_among(has_part ? std::vector{file.workpiece->part} : std::vector<std::filesystem::path>{});
   const ScannerPosition scanner = locate_scanner(file.scans);
   nlohmann::ordered_json json;
   json["file"] = command.file;
@@ -136,7 +140,7 @@ int run_position(const PositionCommand& command) {
   Placement placement;
   OnWorkpiece laid;
   if (file.workpiece) {
-    laid = lay_on_workpiece(*file.workpiece);
+    laid = lay_on_workpiece(*file.workpiece, command.step);
     json["workpiece"]["status"] = laid.status;
     if (!laid.ok) {
       json["status"] = "no_position";
@@ -199,6 +203,7 @@ void add_position_command(CommandLine& line) {
                   "Which way the matrix of the placement that is written maps: table-to-workpiece (default) or "
                   "workpiece-to-table")
       ->check(one_of({"table-to-workpiece", "workpiece-to-table"}));
+  command->step.add_to(app);
   app->add_flag("--json", command->json, "Print JSON for programs");
   app->callback([&line, command] { line.run = [command] { return run_position(*command); }; });
 }

@@ -27,6 +27,7 @@
 #include "scan/plan_page.h"
 #include "scan/plan_words.h"
 #include "scan/scan.h"
+#include "step_reading.h"
 
 namespace abbe {
 namespace {
@@ -38,6 +39,7 @@ struct PlanOptions {
   std::vector<std::string> words;
   double crease_deg = 30, angle_deg = 28, range_um = 400, rotary_speed_deg = 30, turn_between_deg = 10;
   ScanPlanOptions scan;
+  StepReading step;
   bool json = false;
 };
 
@@ -52,8 +54,8 @@ TriangleMesh welded(const TriangleMesh& mesh) {
   return result;
 }
 
-TriangleMesh read_part(const std::string& file) {
-  TriangleMesh mesh = welded(read_mesh(file).mesh);
+TriangleMesh read_part(const std::string& file, const StepReading& step) {
+  TriangleMesh mesh = welded(step.read(file).mesh);
   const MeshCheck check = check_mesh(mesh);
   if (!check.encloses_volume()) {
     throw InputError({file, 0, 0, ""},
@@ -69,7 +71,7 @@ TriangleMesh read_part(const std::string& file) {
 
 ScanPlanOptions scan_options(const PlanOptions& options) {
   ScanPlanOptions scan = options.scan;
-  if (!options.stage.empty()) scan.stage = read_mesh(options.stage).mesh;
+  if (!options.stage.empty()) scan.stage = options.step.read(options.stage).mesh;
   scan.workpiece_from_part = {
       rotation_from_error_angles(Eigen::Vector3d(options.turn[0], options.turn[1], options.turn[2]) * kDegree),
       {options.position[0], options.position[1], options.position[2]}};
@@ -109,10 +111,13 @@ Check within(double low, double high, const std::string& unit) {
 }
 
 int run_plan(const PlanOptions& options) {
+  std::vector<std::filesystem::path> meshes{options.part};
+  if (!options.stage.empty()) meshes.emplace_back(options.stage);
+  options.step.require_step_among(meshes);
   const Machine machine = read_machine(options.machine);
   PathProgramOptions program;
   program.words = axis_words(machine, options.words, "--word");
-  const TriangleMesh part = read_part(options.part);
+  const TriangleMesh part = read_part(options.part, options.step);
   ScanPlanOptions scan = scan_options(options);
   const double most = wanted_area(part, scan.wanted) / (scan.along * scan.between);
   if (most > 5e6) {
@@ -179,6 +184,7 @@ void add_scan_plan(Subcommand& scan, CommandLine& line) {
   command->add_option("--position-mm", options->position, "Where the part stands in the workpiece frame")->expected(3);
   command->add_option("--turn-deg", options->turn, "How it is turned: about x, then y, then z")->expected(3);
   command->add_option("--stage", options->stage, "Mesh of what turns with the part, workpiece frame");
+  options->step.add_to(command);
   const auto ranged = [&](const std::string& name, double& value, double low, double high, const char* words) {
     command->add_option(name, value, words)->check(within(low, high, unit_in(name)))->capture_default_str();
   };

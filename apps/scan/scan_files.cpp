@@ -24,10 +24,8 @@ PointCloudFile ScanFiles::read_scan() const {
 }
 
 MeshFile ScanFiles::read_part() const {
-  MeshFileOptions options;
-  options.unit = unit_of(part_unit);
-  options.threads = threads;
-  MeshFile read = read_mesh(part, options);
+  step.require_step_among({part});
+  MeshFile read = step.read(part, unit_of(part_unit), threads);
   if (read.mesh.size() == 0) throw InputError({.file = part}, "there is no triangle", "the surface of a part");
   return read;
 }
@@ -39,6 +37,7 @@ void add_scan_files(Subcommand* command, ScanFiles& files) {
   const Check units = one_of({"mm", "m", "inch"});
   command->add_option("--scan-unit", files.scan_unit, "Unit of a scan file that states none (mm)")->check(units);
   command->add_option("--part-unit", files.part_unit, "Unit of a part file that states none (mm)")->check(units);
+  files.step.add_to(command);
   command->add_option("--threads", files.threads, "Threads; the result does not depend on them (default: all)")
       ->check(in_range(0, 1024));
 }

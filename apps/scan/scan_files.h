@@ -7,6 +7,7 @@
 
 #include "abbe/formats/mesh_file.h"
 #include "abbe/formats/point_cloud_file.h"
+#include "step_reading.h"
 
 namespace abbe {
 
@@ -17,6 +18,7 @@ struct ScanFiles {
   std::string scan, part;
   std::string scan_unit, part_unit;  ///< "mm", "m", "inch", or empty
   int threads = 0;
+  StepReading step;
 
   PointCloudFile read_scan() const;
   MeshFile read_part() const;

@@ -78,6 +78,8 @@ bool is_step(std::string_view contents) {
   return contents.starts_with("ISO-10303-21");
 }
 
+bool is_step_file(const std::filesystem::path& path) { return is_step(MappedFile(path).text()); }
+
 std::filesystem::path step_program() {
   if (const char* named = std::getenv("ABBE_STEP_PROGRAM"); named != nullptr && *named != '\0') return named;
   std::error_code error;

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "abbe/formats/mesh_file.h"
+
+namespace abbe {
+
+class Option;
+class Subcommand;
+
+/// How a command reads the STEP files among its meshes: the options for that, the same for all commands.
+class StepReading {
+ public:
+  /// Adds the options; this object has to live on.
+  void add_to(Subcommand* command);
+
+  /// read_mesh() by these options.
+  MeshFile read(const std::filesystem::path& mesh, std::optional<FileLength> unit = {}, int threads = 0) const;
+
+  /// For options that were given in vain: those of no STEP file would have no effect.
+  /// @param meshes  that the command reads; their contents count
+  /// @throws InputError, also if one of them cannot be read
+  void require_step_among(const std::vector<std::filesystem::path>& meshes) const;
+
+  /// @throws InputError if one of the options was given
+  void refuse(const std::string& why) const;
+
+ private:
+  StepOptions options_;
+  const Option* given() const;
+
+  std::vector<const Option*> added_;
+};
+
+}  // namespace abbe

@@ -1,0 +1,82 @@
+// The options that say how a STEP file is read, in every command that reads a mesh.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+using testing::HasSubstr;
+
+class StepOptionsCommand : public CommandTest {
+ protected:
+  /// The commands that read a mesh, each with this one.
+  static std::vector<std::vector<std::string>> commands_with(const std::string& mesh) {
+    const std::string examples = ABBE_SOURCE_DIR "/examples/";
+    return {{"check", mesh},
+            {"register", "scan.csv", mesh},
+            {"deviate", "scan.csv", mesh},
+            {"position", "mesh.positioning.toml"},
+            {"path", examples + "machines/yin-engraver-u.machine.toml", examples + "laser_engraver/table-a4.csv",
+             "--report", "page.html", "--part", mesh},
+            {"scan", "plan", mesh, "--machine", examples + "machines/liu-scanner.machine.toml"}};
+  }
+
+  CommandResult abbe_with(std::vector<std::string> command, const std::vector<std::string>& options) const {
+    command.insert(command.end(), options.begin(), options.end());
+    return abbe(command);
+  }
+
+  /// mesh.positioning.toml: the scans of the example, the workpiece by this mesh.
+  void write_positioning(const std::string& mesh) const {
+    const std::string folder_of_example = ABBE_SOURCE_DIR "/examples/laser_engraver/";
+    std::ifstream file(folder_of_example + "scanner.positioning.toml");
+    std::string text{std::istreambuf_iterator<char>(file), {}};
+    text.resize(text.find("[workpiece]"));
+    std::ifstream scans(folder_of_example + "scans.csv");
+    std::string targets;
+    for (std::string line; std::getline(scans, line);) {
+      const std::string target = line.substr(0, line.find(','));
+      if (target != "cylinder" && target != "top" && target != "side") targets += line + "\n";
+    }
+    folder.write("scans.csv", targets);
+    folder.write("mesh.positioning.toml", text + "[workpiece]\npart = \"" + mesh + "\"\nscan = \"scan.csv\"\n");
+  }
+};
+
+TEST_F(StepOptionsCommand, AreRefusedWithAMeshThatIsNoStepFile) {
+  folder.write("part.stl",
+               "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+               "endfacet\nendsolid\n");
+  folder.write("scan.csv", "x_mm,y_mm,z_mm\n0.1,0.1,0\n");
+  write_positioning("part.stl");
+  for (const std::vector<std::string>& command : commands_with("part.stl")) {
+    const CommandResult result = abbe_with(command, {"--chord-mm", "0.1"});
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input) << command[0];
+    EXPECT_THAT(result.err, HasSubstr("--chord-mm: part.stl is no STEP file and has no exact faces")) << command[0];
+  }
+}
+
+TEST_F(StepOptionsCommand, ReachTheReaderInEveryCommand) {
+  const std::string part = ABBE_SOURCE_DIR "/tests/golden/step/cylinder.step";
+  folder.write("scan.csv", "x_mm,y_mm,z_mm\n0.1,0.1,0\n");
+  write_positioning(part);
+  // In place of abbe-step a program that says how it was called.
+  const std::string said = folder.write("said.sh", "#!/bin/sh\necho \"called with $*\" >&2\nexit 2\n");
+  std::filesystem::permissions(said, std::filesystem::perms::owner_all);
+  for (std::vector<std::string> command : commands_with(part)) {
+    command.insert(command.end(), {"--chord-mm", "0.125"});
+    const CommandResult result = abbe(command, {"ABBE_STEP_PROGRAM=" + said});
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input) << command[0];
+    EXPECT_THAT(result.err, HasSubstr("called with " + part + " 0.125 ")) << command[0];
+  }
+}
+
+}  // namespace
+}  // namespace abbe
