@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
+#include <system_error>
 
 #include "abbe/formats/existing_output.h"
 #include "abbe/formats/input_error.h"
@@ -179,19 +180,28 @@ Option* Subcommand::add_output_file_or_folder(const std::string& name, std::stri
   return add_output(name, value, description, OutputKind::file_or_folder, not_written);
 }
 
+bool names_folder(const std::string& name) {
+  std::error_code ignored;
+  return name.ends_with('/') || std::filesystem::is_directory(name, ignored) ||
+         !std::filesystem::path(name).has_extension();
+}
+
 void Subcommand::check_outputs() const {
   if (force_) replace_existing_outputs();
-  std::vector<std::filesystem::path> all;
+  std::vector<std::filesystem::path> all, folders;
   for (const Output& output : outputs_) {
     if (output.not_written != nullptr && *output.not_written) continue;
     for (const std::string& name : output.names()) {
       if (name.empty()) continue;
-      if (output.kind == OutputKind::folder) {
+      const std::filesystem::path place = std::filesystem::weakly_canonical(std::filesystem::absolute(name));
+      if (output.kind == OutputKind::folder || (output.kind == OutputKind::file_or_folder && names_folder(name))) {
         check_results_folder(name);
-      } else if (output.kind == OutputKind::file || !std::filesystem::is_directory(name)) {
+        folders.push_back(place.filename().empty() ? place.parent_path() : place);
+      } else if (std::find(folders.begin(), folders.end(), place.parent_path()) != folders.end()) {
+        refuse_existing_output(name);  // its folder is made by this command
+      } else {
         check_output_file(name);
       }
-      const std::filesystem::path place = std::filesystem::weakly_canonical(std::filesystem::absolute(name));
       if (std::find(all.begin(), all.end(), place) != all.end()) {
         throw InputError({.file = name}, "is the name of two outputs", "another name for one of them");
       }

@@ -99,7 +99,7 @@ class Subcommand {
   /// The name of a folder of results, which may replace older results (abbe/formats/results_folder.h); that is checked
   /// when the command line was parsed.
   Option* add_output_folder(const std::string& name, std::string& value, const std::string& description);
-  /// add_output_file(), or the name of a folder, which the command checks.
+  /// add_output_file() or add_output_folder(), by names_folder().
   Option* add_output_file_or_folder(const std::string& name, std::string& value, const std::string& description,
                                     const bool* not_written = nullptr);
 
@@ -145,6 +145,10 @@ class Subcommand {
   std::vector<Output> outputs_;
   bool has_force_ = false, force_ = false;
 };
+
+/// Whether the name of an output that may be a file or a folder is that of a folder: it ends in a slash, is a folder or
+/// has no ending.
+bool names_folder(const std::string& name);
 
 /// How parsing a command line ended.
 enum class ParseResult {

@@ -122,18 +122,11 @@ void look_at_limits(const TableCommand& command, const ControllerTables& tables,
   refuse(report.largest_rad, true, report.largest_rad_at);
 }
 
-bool is_folder_name(const std::string& name) {
-  return name.back() == '/' || std::filesystem::is_directory(name) || !std::filesystem::path(name).has_extension();
-}
-
 void check_outputs(const TableCommand& command) {
   if (command.output.empty() && !command.dry_run) {
     throw InputError({.field = "-o"}, "no output", "a file, a folder, or --dry-run");
   }
-  if (!command.output.empty()) {
-    refuse_input_as_output(command.output);
-    if (is_folder_name(command.output)) check_results_folder(command.output);
-  }
+  if (!command.output.empty()) refuse_input_as_output(command.output);
   if (command.map.empty()) return;
   refuse_input_as_output(command.map);
   const std::string extension = std::filesystem::path(command.map).extension().string();
@@ -144,7 +137,7 @@ void check_outputs(const TableCommand& command) {
 
 void write_tables(const TableCommand& command, const ControllerTables& tables, TableReport& report) {
   if (tables.files.empty()) return;
-  if (is_folder_name(command.output)) {
+  if (names_folder(command.output)) {
     ResultsFolder folder(command.output);
     for (const auto& [name, text] : tables.files) {
       folder.write(name, text);

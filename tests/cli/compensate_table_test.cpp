@@ -404,7 +404,9 @@ TEST_F(CompensateTable, AFolderOfResultsWithAnInputInItIsNotReplaced) {
   const std::filesystem::path results = folder.path() / "results";
   std::filesystem::create_directory(results);
   std::filesystem::copy(errors, results / "errors.toml");
-  std::ofstream(results / ".abbe-results") << "as abbe run leaves it";
+  std::ofstream(results / ".abbe-results")
+      << "Results of abbe: the next ones written here replace the files below and leave "
+         "others alone.\nerrors.toml\n";
   const CommandResult over =
       abbe({"compensate", "table", mill, "results/errors.toml", "--for", "linuxcnc", "-o", "results"});
   EXPECT_EQ(over.exit_code, ExitCode::bad_input);

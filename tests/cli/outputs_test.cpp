@@ -1,5 +1,6 @@
 // What outputs may take the place of.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <string>
@@ -57,46 +58,103 @@ TEST_F(Outputs, NotesInAFolderOfResultsStay) {
   EXPECT_EQ(folder.read("results/notes.txt"), "mine");
 }
 
+/// A command and its option that names a file to write; the kind of file is right for it.
+struct FileOutput {
+  std::vector<std::string> command;
+  std::string option;
+
+  std::string ending() const { return command[0] == "verify" ? ".html" : ".csv"; }
+};
+
+/// All of them. What they read does not exist: outputs are looked at first.
+std::vector<FileOutput> file_outputs() {
+  const std::vector<std::string> path{"path", "machine", "table"},
+      table{"compensate", "table", "machine", "errors", "--for", "siemens-eec"};
+  const std::vector<std::string> scan{"scan", "plan", "part.stl", "--machine", "machine"};
+  return {{{"new", "w X b Z t"}, "-o"},
+          {{"test-piece", "s-shape"}, "-o"},
+          {{"map", "machine", "errors"}, "-o"},
+          {{"identify", "study"}, "-o"},
+          {{"plan", "study"}, "-o"},
+          {{"plan", "study"}, "--svg"},
+          {path, "-o"},
+          {path, "--report"},
+          {{"position", "marks"}, "-o"},
+          {{"fit", "points.csv", "--shape", "cylinder"}, "--residuals"},
+          {scan, "-o"},
+          {scan, "--program"},
+          {scan, "--coverage"},
+          {scan, "--report"},
+          {{"scan", "points", "machine", "readings"}, "-o"},
+          {{"verify", "results"}, "-o"},
+          {{"compensate", "gcode", "program", "--machine", "machine", "--errors", "errors"}, "-o"},
+          {{"compensate", "freeze", "machine", "errors"}, "-o"},
+          {{"compensate", "poses", "machine", "errors", "poses"}, "-o"},
+          {table, "-o"},
+          {table, "--map"}};
+}
+
+/// Commands that write a folder of results, without its name.
+std::vector<std::vector<std::string>> folder_outputs() {
+  return {{"run", "study", "-o"},
+          {"simulate", "study", "-o"},
+          {"reproduce", "aguado", "-o"},
+          {"fit", "points.csv", "--shape", "cylinder", "-o"},
+          {"evaluate", "positioning", "readings", "-o"},
+          {"register", "scan.csv", "part.stl", "-o"},
+          {"deviate", "scan.csv", "part.stl", "-o"},
+          {"compensate", "table", "machine", "errors", "--for", "siemens-cec", "-o"}};
+}
+
 TEST_F(Outputs, NoCommandReplacesAFileUnasked) {
-  const std::string examples = ABBE_SOURCE_DIR "/examples/", machines = examples + "machines/";
-  const std::string mill = machines + "trunnion-mill.machine.toml", scanner = machines + "liu-scanner.machine.toml";
-  const std::string errors = examples + "compensate/trunnion.errors.toml", engraver = examples + "laser_engraver/";
-  const std::string study = examples + "trunnion/trunnion.study.toml";
-  const std::vector<std::string> path{"path", machines + "yin-engraver-u.machine.toml", engraver + "table-a4.csv"};
-  const std::vector<std::string> scan{"scan", "plan", examples + "cradle_scanner/pyramid.stl", "--machine", scanner};
-  const std::vector<std::string> table{"compensate", "table", mill, errors, "--for", "siemens-eec"};
-  const std::vector<std::pair<std::vector<std::string>, std::string>> commands{
-      {{"new", "w X b Z t"}, "-o"},
-      {{"test-piece", "s-shape"}, "-o"},
-      {{"map", mill, errors}, "-o"},
-      {{"identify", study}, "-o"},
-      {{"plan", study}, "-o"},
-      {{"plan", study}, "--svg"},
-      {path, "-o"},
-      {path, "--report"},
-      {{"position", engraver + "scanner.positioning.toml"}, "-o"},
-      {{"fit", examples + "fit/bore.csv", "--shape", "cylinder"}, "--residuals"},
-      {scan, "-o"},
-      {scan, "--program"},
-      {scan, "--coverage"},
-      {scan, "--report"},
-      {{"scan", "points", scanner, examples + "cradle_scanner/readings.csv"}, "-o"},
-      {{"verify", "--machine", mill, "--errors", errors, "--truth", errors}, "-o"},
-      {{"compensate", "gcode", examples + "compensate/cone.ngc", "--machine", mill, "--errors", errors}, "-o"},
-      {{"compensate", "freeze", mill, errors}, "-o"},
-      {{"compensate", "poses", mill, errors, examples + "compensate/poses.csv"}, "-o"},
-      {table, "-o"},
-      {table, "--map"}};
   for (const std::string name : {"mine.csv", "mine.html"}) folder.write(name, "mine");
-  for (auto [command, option] : commands) {
-    const std::string name = command[0] == "verify" ? "mine.html" : "mine.csv";
-    command.insert(command.end(), {option, name});
+  for (const FileOutput& output : file_outputs()) {
+    const std::string name = "mine" + output.ending();
+    std::vector<std::string> command = output.command;
+    command.insert(command.end(), {output.option, name});
     const CommandResult result = abbe(command);
     EXPECT_EQ(result.exit_code, ExitCode::bad_input) << testing::PrintToString(command);
     EXPECT_THAT(result.err, HasSubstr(name + ": the file exists; expected another name, or --force to replace it"))
         << testing::PrintToString(command);
     EXPECT_EQ(folder.read(name), "mine") << testing::PrintToString(command);
   }
+}
+
+TEST_F(Outputs, APlaceThatCannotBeWrittenToIsFoundBeforeAnythingIsRead) {
+  const auto expect_refused_for = [&](std::vector<std::string> command, const std::string& name, const char* reason) {
+    command.push_back(name);
+    const CommandResult result = abbe(command);
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input) << testing::PrintToString(command);
+    EXPECT_EQ(result.err,
+              "abbe: " + name + ": cannot be written: " + reason + "; expected a writable folder with enough space\n")
+        << testing::PrintToString(command);
+  };
+  for (FileOutput output : file_outputs()) {
+    output.command.push_back(output.option);
+    expect_refused_for(output.command, "none/out" + output.ending(), "No such file or directory");
+  }
+  // Folders on the way of one for results are made; what is in the way is not removed.
+  for (const std::vector<std::string>& command : folder_outputs()) {
+    expect_refused_for(command, "mine/keep.txt/results", "Not a directory");
+  }
+  // Tables and a map in the folder that is made for them.
+  EXPECT_THAT(abbe({"compensate", "table", "machine", "errors", "--for", "siemens-cec", "-o", "tables", "--map",
+                    "tables/map.csv"})
+                  .err,
+              HasSubstr("machine: "));
+}
+
+TEST_F(Outputs, AFolderWithoutPermissionIsFoundBeforeAnythingIsRead) {
+  if (::geteuid() == 0) GTEST_SKIP() << "everything is permitted to root";
+  fs::permissions(folder.path() / "mine", fs::perms::owner_read | fs::perms::owner_exec);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"map", "machine", "errors", "-o", "mine/x.csv"},
+        std::vector<std::string>{"run", "study", "-o", "mine/a/b"}}) {
+    const CommandResult result = abbe(command);
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+    EXPECT_THAT(result.err, HasSubstr("cannot be written: Permission denied"));
+  }
+  fs::permissions(folder.path() / "mine", fs::perms::owner_all);
 }
 
 TEST_F(Outputs, AFileThatExistsIsReplacedWhereThatIsAskedFor) {
@@ -133,12 +191,16 @@ TEST_F(Outputs, WhereSomethingFailsTheMessageSaysWhatIsComplete) {
             "abbe: standard output: cannot be written: No space left on device; expected a place with enough space\n"
             "abbe: complete before that: cone.csv\n");
   EXPECT_THAT(folder.read("cone.csv"), HasSubstr("# cone frustum"));
-  const CommandResult second = abbe({"map", ABBE_SOURCE_DIR "/examples/machines/trunnion-mill.machine.toml",
-                                     ABBE_SOURCE_DIR "/examples/compensate/trunnion.errors.toml", "--grid", "X_mm=0",
-                                     "-o", "map.csv", "-o", "none/map.csv"});
+  // There is room for the first file, not for the second, which is larger.
+  const CommandResult second =
+      run_program("/bin/sh",
+                  {"-c", "ulimit -f 245; exec " ABBE_COMMAND " map " ABBE_SOURCE_DIR
+                         "/examples/machines/trunnion-mill.machine.toml " ABBE_SOURCE_DIR
+                         "/examples/compensate/trunnion.errors.toml --grid X_mm=0 -o map.vtu -o map.csv"},
+                  folder.path());
   EXPECT_EQ(second.exit_code, ExitCode::bad_input);
-  EXPECT_THAT(second.err, HasSubstr("none/map.csv: cannot be written: No such file or directory"));
-  EXPECT_THAT(second.err, HasSubstr("\nabbe: complete before that: map.csv\n"));
+  EXPECT_THAT(second.err, HasSubstr("map.csv: cannot be written: File too large"));
+  EXPECT_THAT(second.err, HasSubstr("\nabbe: complete before that: map.vtu\n"));
   EXPECT_THAT(shell("check nothing.machine.toml").err, testing::Not(HasSubstr("complete")));
 }
 

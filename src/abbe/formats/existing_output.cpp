@@ -57,8 +57,9 @@ std::vector<std::string> complete_outputs() {
 }
 
 void check_output_file(const std::filesystem::path& name) {
-  file_to_write(name);
+  const std::filesystem::path path = file_to_write(name);
   refuse_existing_output(name);
+  check_folder_to_write_in(path.parent_path(), name);
 }
 
 }  // namespace abbe

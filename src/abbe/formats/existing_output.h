@@ -34,7 +34,8 @@ void note_complete_output(const std::filesystem::path& name);
 /// Outputs that were noted, as they were called, in their order: what stands where something fails later.
 std::vector<std::string> complete_outputs();
 
-/// refuse_existing_output(), and what else is wrong with the name of a file to write: that of a folder or a device.
+/// For commands before they begin to compute: refuse_existing_output(), and what else is wrong with the name of a file
+/// to write: that of a folder or a device, or one in a folder that does not exist or may not be written to.
 /// @throws InputError
 void check_output_file(const std::filesystem::path& name);
 

@@ -84,7 +84,17 @@ void check_folder(const fs::path& name, const fs::path& path) {
 
 }  // namespace
 
-void check_results_folder(const fs::path& name) { check_folder(name, resolved_output(name)); }
+void check_results_folder(const fs::path& name) {
+  const fs::path path = resolved_output(name);
+  check_folder(name, path);
+  // The folders on its way are made with it.
+  fs::path made_in = path.parent_path();
+  std::error_code ignored;
+  while (made_in.has_relative_path() && !fs::exists(fs::symlink_status(made_in, ignored))) {
+    made_in = made_in.parent_path();
+  }
+  check_folder_to_write_in(made_in, name);
+}
 
 ResultsFolder::ResultsFolder(fs::path name) : name_(std::move(name)), path_(resolved_output(name_)) {
   if (name_.filename().empty()) name_ = name_.parent_path();

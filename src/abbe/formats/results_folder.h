@@ -11,9 +11,9 @@ namespace abbe {
 class UnfinishedOutput;
 
 /// Whether results may be written under a name: a new or an empty folder, or one that holds results already, as the
-/// file
-/// ".abbe-results" in it says. For commands that compute for long before they write.
-/// @throws InputError for a file, or a folder with other files
+/// file ".abbe-results" in it says, and a place where it and the folders on its way can be made. For commands before
+/// they begin to compute.
+/// @throws InputError for a file, a folder with other files, or a place that may not be written to
 void check_results_folder(const std::filesystem::path& name);
 
 /// A folder of results that appears whole or not at all.

@@ -70,6 +70,13 @@ fs::path file_to_write(const fs::path& name) {
   return resolved_output(name);
 }
 
+void check_folder_to_write_in(const fs::path& folder, const fs::path& called) {
+  struct stat status {};
+  if (::stat(folder.c_str(), &status) != 0) fail_to_write(called, errno);
+  if (!S_ISDIR(status.st_mode)) fail_to_write(called, ENOTDIR);
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) fail_to_write(called, errno);
+}
+
 Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
   if (this != &other) {
     close();

@@ -18,6 +18,13 @@ std::filesystem::path resolved_output(const std::filesystem::path& name);
 /// instead of being written to it
 std::filesystem::path file_to_write(const std::filesystem::path& name);
 
+/// For commands before they begin to compute: whether a new file or folder can be made in a folder. What only shows
+/// when it is made, such as a full disk, is left to the writer, whose message this is.
+/// @param folder  resolved
+/// @param called  what messages call the output
+/// @throws InputError if the folder does not exist, is none or may not be written to
+void check_folder_to_write_in(const std::filesystem::path& folder, const std::filesystem::path& called);
+
 /// File descriptor that is closed on every path.
 class Descriptor {
  public:
