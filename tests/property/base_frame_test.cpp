@@ -114,22 +114,25 @@ TEST(BaseFrame, AnArmOfSevenAxesIsFoundHoweverItsBaseIsTurned) {
       }
 }
 
-class AnyChain : public testing::TestWithParam<int> {};
-
-TEST_P(AnyChain, HasTheSameChiSquareInEveryBaseFrame) {
-  const std::uint64_t seed = static_cast<std::uint64_t>(GetParam());
+/// A fit that does not converge must not do so in any base frame.
+void expect_the_same_in_every_base_frame(std::uint64_t seed, bool offsets_unknown) {
   RandomStream random(seed, 5);
   const Eigen::Vector3d turn(random.normal(), random.normal(), random.normal());
   const Eigen::Vector3d shift(random.normal(), random.normal(), random.normal());
   const RigidTransform anywhere{rotation_from_vector(2 * turn), 1000 * shift};
   Campaign campaign;
   campaign.truth = test::random_chain(seed);
+  campaign.offsets_unknown = offsets_unknown;
 
   for (const bool far : {false, true})
     for (const bool pose_unknown : {false, true})
       for (const double noise : {0.0, 1.0}) {
         // Without noise a start that is the truth asks for nothing.
         if (!far && noise == 0) continue;
+        // Where the whole set-up is known, parallel axes may leave a direction open at the truth that is seen at the
+        // start. A fit from there meets it only at second order of the noise.
+        const bool may_refuse = far && !offsets_unknown && !pose_unknown;
+        if (may_refuse && noise == 0) continue;
         campaign.start = test::misjudged(campaign.truth, far ? 50 : 0, far ? 5 * kDegree : 0, seed);
         campaign.pose_unknown = pose_unknown;
         campaign.noise = noise;
@@ -144,16 +147,28 @@ TEST_P(AnyChain, HasTheSameChiSquareInEveryBaseFrame) {
           EXPECT_EQ(fit.degrees_of_freedom, first->degrees_of_freedom);
           if (noise == 0) {
             EXPECT_LT(fit.chi_square, 1e-9);
-          } else {
+          } else if (fit.status == IdentifyStatus::converged) {
             EXPECT_NEAR(fit.chi_square, first->chi_square, 1e-9 * first->chi_square);
           }
           expect_stationary(fit);
         }
-        EXPECT_EQ(first->status, IdentifyStatus::converged);
+        if (!may_refuse) {
+          EXPECT_EQ(first->status, IdentifyStatus::converged);
+        }
       }
 }
 
+class AnyChain : public testing::TestWithParam<int> {};
+TEST_P(AnyChain, HasTheSameChiSquareInEveryBaseFrame) {
+  expect_the_same_in_every_base_frame(static_cast<std::uint64_t>(GetParam()), true);
+}
 INSTANTIATE_TEST_SUITE_P(Seed, AnyChain, testing::Range(1, 51));
+
+class AnyChainWithKnownReflectors : public testing::TestWithParam<int> {};
+TEST_P(AnyChainWithKnownReflectors, HasTheSameChiSquareOrRefusalInEveryBaseFrame) {
+  expect_the_same_in_every_base_frame(static_cast<std::uint64_t>(GetParam()), false);
+}
+INSTANTIATE_TEST_SUITE_P(Seed, AnyChainWithKnownReflectors, testing::Values(2, 5, 10, 18, 23, 44));
 
 }  // namespace
 }  // namespace abbe
