@@ -18,10 +18,11 @@ constexpr Eigen::Index kPartSamples = 600, kTripleSamples = 300;
 constexpr Eigen::Index kEnoughNormals = 256;  ///< of the thinned scan, for the search by pairs alone
 constexpr Eigen::Index kRoughPoints = 400, kComparedPoints = 2500, kFirstFinePoints = 50000;
 constexpr std::size_t kCompared = 12;
-constexpr double kSamePose = 0.02;  ///< of the diameter: nearer poses count as one
-constexpr double kWorse = 4;        ///< times the best deviation: such poses are no alternatives
-constexpr double kSettled = 0.02;   ///< of the uncertainty of a mean over all points
-constexpr double kHopeless = 0.65;  ///< of the best score: rougher starts are not refined
+constexpr double kSamePose = 0.02;     ///< of the diameter: nearer poses count as one
+constexpr double kWorse = 4;           ///< times the best deviation: such poses are no alternatives
+constexpr double kRoughScale = 0.001;  ///< of the diameter: rough poses are no nearer than that
+constexpr double kSettled = 0.02;      ///< of the uncertainty of a mean over all points
+constexpr double kHopeless = 0.65;     ///< of the best score: rougher starts are not refined
 
 /// Every n-th point, so that about `count` are left.
 Matrix3Xd some_of(const Matrix3Xd& points, Eigen::Index count) {
@@ -169,10 +170,21 @@ Registration RegistrationTarget::register_scan(const PointCloud& scan,
     refined.push_back(register_finely(rough, in.surface, in.smooth, start, options));
   }
   const auto rank = [](const FineRegistration& a, const FineRegistration& b) { return a.scale_mm < b.scale_mm; };
-  std::stable_sort(refined.begin(), refined.end(), rank);
+  // By the loss of all points at one scale: half of them may fit exactly in many poses, as on a cylinder with flats.
+  // Then the best pose has to come first, because those after it that differ by its undetermined motions are dropped.
+  const double least = std::min_element(refined.begin(), refined.end(), rank)->scale_mm;
+  const double worst = kWorse * least + 0.002 * in.diameter;
+  std::vector<Compared> ranked;
+  for (FineRegistration& fine : refined) {
+    if (fine.scale_mm <= worst) {
+      ranked.push_back(in.compare(rough, std::move(fine), std::max(least, kRoughScale * in.diameter)));
+    }
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const Compared& a, const Compared& b) { return a.mean < b.mean; });
+  refined.clear();
+  for (Compared& one : ranked) refined.push_back(std::move(one.fine));
   drop_repeated(&refined);
-  const double worst = kWorse * refined.front().scale_mm + 0.002 * in.diameter;
-  while (refined.size() > kCompared || refined.back().scale_mm > worst) refined.pop_back();
+  if (refined.size() > kCompared) refined.resize(kCompared);
   for (FineRegistration& fine : refined) {
     FineRegistrationOptions options = in.fine_options();
     options.largest_scale_mm = std::max(fine.scale_mm, 1e-9 * in.diameter);

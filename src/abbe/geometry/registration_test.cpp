@@ -79,6 +79,15 @@ TEST(Registration, PointsTooFarApartForNormalsAreEnough) {
   EXPECT_LT(error_mm(among.fine.mesh_from_scan, stray.mesh_from_scan, blade), 0.05);
 }
 
+/// Turned about its axis the part still takes most of the points exactly, and such poses leave that turn undetermined.
+TEST(Registration, ACylinderWithFlatsIsFoundByItsFlats) {
+  const TriangleMesh part = parts::cylinder_with_flats(8, 40, 90, 10, {{6, 0.3}, {7, 2}});
+  const PosedScan scan = posed_scan_of(part, 100, 1050, 0, 0, Vector3d::Zero());
+  const Registration found = RegistrationTarget(part).register_scan(scan.cloud);
+  EXPECT_EQ(found.status, RegistrationStatus::ok) << registration_status_name(found.status);
+  EXPECT_LT(error_mm(found.fine.mesh_from_scan, scan.mesh_from_scan, part), 1e-6);
+}
+
 TEST(Registration, PosesOfASymmetricPartAreAllReported) {
   // A square bar: four turns about z, each also upside down.
   const TriangleMesh bar = parts::subdivided(parts::prism({{-5, -5}, {5, -5}, {5, 5}, {-5, 5}}, 40));
