@@ -65,7 +65,9 @@ nlohmann::json page_table(const ReproducedTable& table) {
     nlohmann::json cells = nlohmann::json::array();
     for (std::size_t i = 0; i < row.size(); ++i) {
       const bool missing = std::holds_alternative<std::monostate>(row[i].value);
-      cells.push_back(missing ? nlohmann::json() : nlohmann::json(cell_text(row[i], table.columns[i])));
+      std::string text = cell_text(row[i], table.columns[i]);
+      if (table.columns[i].name == "unit") text = unit_symbol(text);
+      cells.push_back(missing ? nlohmann::json() : nlohmann::json(text));
     }
     rows.push_back(std::move(cells));
   }

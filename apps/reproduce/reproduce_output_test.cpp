@@ -96,6 +96,11 @@ TEST(ReproduceOutput, ThePageHoldsFiguresAndTables) {
   }
 }
 
+TEST(ReproduceOutput, ThePageWritesUnitsAsPeopleDoAndLeavesMissingNumbersEmpty) {
+  const std::string page = reproduction_page(sample_reproduction());
+  EXPECT_NE(page.find("\"Table 1, maximum final error\",\"\xC2\xB5m\",\"186.06\",null,null,"), std::string::npos);
+}
+
 TEST(ReproduceOutput, ThePageNamesTheFileOfALongTable) {
   Reproduction made = sample_reproduction();
   made.tables = {{"places", "Many places", {{"place", "", 3}}, {}, {}}};

@@ -3,7 +3,7 @@
 import {Evaluation, EvaluationFigure, findQuantity} from './data';
 import {html, section} from './dom';
 import {drawing} from './drawings';
-import {fixed} from './format';
+import {fixed, micro} from './format';
 
 /// As evaluation_report.cpp names them; "not proven": the tolerance lies within the uncertainty.
 const kVerdicts: Record<string, string> = {
@@ -46,7 +46,7 @@ export function evaluationSection(evaluation: Evaluation): HTMLElement {
       html('tbody', {}, ...rows))));
   }
   for (const made of evaluation.drawings ?? []) {
-    const shown = drawing(made.svg, made.caption);
+    const shown = drawing(made.svg, made.caption && micro(made.caption));
     if (shown) part.append(shown);
   }
   return part;

@@ -2,7 +2,7 @@
 
 import {DataTable, Parameters, unitText} from './data';
 import {field, html, section} from './dom';
-import {alike, count, number, withUncertainty} from './format';
+import {alike, count, micro, number, withUncertainty} from './format';
 
 export function dataTable(caption: string, columns: string[], rows: (string | number | boolean | null)[][]): HTMLElement {
   const isNumeric = (cell: unknown) => typeof cell === 'number' || (typeof cell === 'string' && /^-?\d[\d.]*(e[-+]?\d+)?$/.test(cell));
@@ -32,7 +32,7 @@ export function tablesSection(tables: DataTable[], title: string): HTMLElement {
   const part = section('tables', title);
   for (const table of tables) {
     part.append(dataTable(table.title, table.columns, table.rows));
-    if (table.note) part.append(html('p', {class: 'note'}, table.note));
+    if (table.note) part.append(html('p', {class: 'note'}, micro(table.note)));
   }
   return part;
 }

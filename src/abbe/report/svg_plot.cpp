@@ -123,6 +123,11 @@ XyPlot::Frame XyPlot::frame() const {
   }
   frame.x = nice_ticks(x.low, x.high, same_scale_ ? 8 : 10, x_degrees_);
   frame.y = nice_ticks(y.low, y.high, 8);
+  // Long numbers keep clear of the name of the axis.
+  if (!same_scale_) {
+    for (const std::string& label : frame.y.labels)
+      frame.left = std::max(frame.left, 34 + 1.15 * text_width(label, 12));
+  }
   if (same_scale_) {
     // The ticks may have widened one axis more than the other.
     const double wider = std::max(frame.x.to() - frame.x.from(), frame.y.to() - frame.y.from());

@@ -99,6 +99,19 @@ TEST(XyPlot, DrawsAPointWhereItsValueIs) {
   EXPECT_THAT(plot.svg(), HasSubstr("M74.00 432.00L836.00 432.00L836.00 52.00\" fill=\"none\" stroke=\"var(--s3)\""));
 }
 
+TEST(XyPlot, LongNumbersKeepClearOfTheNameOfTheAxis) {
+  const auto left = [](double reach) {
+    XyPlot plot("title", "x", "y");
+    plot.line({{0, -reach}, {1, reach}}, {PlotColour::first}, "");
+    const std::string svg = plot.svg();
+    const std::string zero = ">0</text>";  // the first number of the x axis stands at the left end
+    const std::size_t end = svg.find(zero), at = svg.rfind("x=\"", end) + 3;
+    return std::stod(svg.substr(at, svg.find('"', at) - at));
+  };
+  EXPECT_EQ(left(10), left(100));
+  EXPECT_GT(left(12345678), left(100) + 10);
+}
+
 TEST(XyPlot, TheNameOfADimensionBesideThePlotIsNotCutOff) {
   for (const std::string label : {"A", "1.44 um", "12345.67 arcsec"}) {
     XyPlot plot("t", "x", "y");
