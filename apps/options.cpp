@@ -264,7 +264,7 @@ ParseResult Program::parse(int argc, const char* const* argv) {
     std::ostringstream shown, problem;
     const int code = app_->exit(error, shown, problem);
     fmt::print("{}", shown.str());
-    tell_text(problem.str());
+    tell_text(problem.str().empty() ? "" : "abbe: " + problem.str());
     return code == 0 ? ParseResult::shown : ParseResult::refused;
   }
   for (const std::unique_ptr<Subcommand>& subcommand : subcommands_) {

@@ -137,10 +137,10 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
                                            const Machine& machine, const ProgramReport& report) {
   std::vector<std::string> reasons;
   const auto add = [&](const StatusCount& count, bool is_allowed, const std::string& text, const char* allow,
-                       const ProgramPlace& first = {}) {
+                       const ProgramPlace& first = {}, const char* counted = "pose") {
     if (count.count == 0 || is_allowed) return;
     std::string reason =
-        fmt::format("{}: {} pose{}, {}", text, count.count, count.count == 1 ? "" : "s", lines_text(count));
+        fmt::format("{}: {} {}{}, {}", text, count.count, counted, count.count == 1 ? "" : "s", lines_text(count));
     if (first.line != 0)
       reason +=
           fmt::format(", first at {}", position_words(machine, first.position, "{:.3f}") + travel_text(machine, first));
@@ -177,13 +177,13 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
           "threads or taps, which are not split, not proven to stay within the tolerance, at most {:.3f} um from "
           "their path",
           1e3 * report.largest_bend.value),
-      "not-proven");
+      "not-proven", {}, "move");
   add(report.play_with_spindle, false,
       "threads or taps in which axes with reversal values turn round, which cannot be taken up there (where they "
       "turn round for a correction only, a larger --reversal-dead-band-um)",
-      nullptr);
+      nullptr, {}, "move");
   add(report.not_proven, allowed.not_proven, "path between corrected poses not proven to stay within the tolerance",
-      "not-proven");
+      "not-proven", {}, "move");
   return reasons;
 }
 

@@ -8,6 +8,12 @@
 #include "study/job.h"
 
 namespace abbe {
+namespace {
+
+/// Of each remedy; where nothing is determined there are as many directions as unknowns.
+constexpr std::size_t kDirectionsShown = 4;
+
+}  // namespace
 
 nlohmann::ordered_json advice_json(const StudyResult& result) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -37,7 +43,7 @@ void tell_datum_apart(StudyResult& result, const UnseenPoses& unseen) {
   }
 }
 
-void print_advice(const StudyResult& result) {
+void print_advice(const StudyResult& result, bool all) {
   std::vector<std::string> remedies;
   std::size_t conventions = 0, set_up = 0, datum = 0;
   for (const Advice& advice : result.advice) {
@@ -51,11 +57,16 @@ void print_advice(const StudyResult& result) {
   if (!remedies.empty()) fmt::print("\nnot measured, and what would show more (tried with simulated readings)\n");
   for (const std::string& remedy : remedies) {
     fmt::print("  {}:\n", remedy);
+    std::size_t found = 0;
     for (const Advice& advice : result.advice) {
       if (advice.remedy != remedy) continue;
+      if (++found > kDirectionsShown && !all) continue;
       fmt::print("    {}{}\n", advice.text,
                  advice.factor > 0 ? fmt::format(" (would fall {:.1f} times)", advice.factor) : "");
       if (!advice.words.empty()) fmt::print("      ({})\n", advice.words);
+    }
+    if (found > kDirectionsShown && !all) {
+      fmt::print("    and {} more such directions: abbe run --all-values\n", found - kDirectionsShown);
     }
   }
   if (conventions > 0)

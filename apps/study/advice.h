@@ -12,7 +12,8 @@ nlohmann::ordered_json advice_json(const StudyResult& result);
 
 /// The same for people; directions with the same remedy stand together. Conventions and matters of the datum are
 /// counted only.
-void print_advice(const StudyResult& result);
+/// @param all  every direction; else the first few of each remedy
+void print_advice(const StudyResult& result, bool all);
 
 /// Directions that the readings leave open, but on which the volumetric error does not depend, become a matter of the
 /// datum.

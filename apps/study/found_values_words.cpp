@@ -37,6 +37,9 @@ void print_number(const FoundNumber& number, bool is_machine) {
              uncertainty, number.words);
 }
 
+/// What nothing was estimated of has no uncertainty; that is not an uncertainty of zero.
+bool is_estimated(const Eigen::Vector3d& expanded) { return expanded.cwiseAbs().maxCoeff() > 0; }
+
 void print_place(const FoundPlace& place) {
   const auto three = [](const Eigen::Vector3d& v, double unit, const Eigen::Vector3d& u, double u_unit) {
     std::string text;
@@ -49,8 +52,9 @@ void print_place(const FoundPlace& place) {
     return fmt::format("{:.3g}, {:.3g}, {:.3g}", unit * v[0], unit * v[1], unit * v[2]);
   };
   fmt::print("    {} in the frame of the {}\n", place.name, body_name(place.body));
-  fmt::print("      position x, y, z      ({}) mm, U ({}) um\n", three(place.position, 1, place.position_expanded, 1),
-             sizes(place.position_expanded, 1e3));
+  fmt::print("      position x, y, z      ({}) mm, {}\n", three(place.position, 1, place.position_expanded, 1),
+             is_estimated(place.position_expanded) ? fmt::format("U ({}) um", sizes(place.position_expanded, 1e3))
+                                                   : std::string("not estimated: as stated or by convention"));
   if (place.rotation) {
     fmt::print("      angles a, b, c        ({}) deg, U of a turn about x, y, z ({}) urad\n",
                three(place.angles(), 1 / kDegree, place.turn_expanded, 1 / kDegree), sizes(place.turn_expanded, 1e6));
@@ -85,7 +89,9 @@ nlohmann::ordered_json place_json(const FoundPlace& place) {
   json["name"] = place.name;
   json["frame"] = body_name(place.body);
   json["position_mm"] = three_json(place.position, 1);
-  json["position_expanded_uncertainty_um"] = three_json(place.position_expanded, 1e3);
+  if (is_estimated(place.position_expanded)) {
+    json["position_expanded_uncertainty_um"] = three_json(place.position_expanded, 1e3);
+  }
   if (place.rotation) {
     json["angles_deg"] = three_json(place.angles(), 1 / kDegree);
     json["rotation"] = nlohmann::ordered_json::array();

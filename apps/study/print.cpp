@@ -76,7 +76,7 @@ void print_study(const Study& study, const StudyResult& result, bool all_values)
   const Identification& identified = result.identification;
   fmt::print("\n{}\n", study_verdict(study, result));
   if (!result.usable()) {
-    print_advice(result);
+    print_advice(result, all_values);
     return;
   }
   const FitStatistics& fit = identified.statistics;
@@ -122,7 +122,7 @@ void print_study(const Study& study, const StudyResult& result, bool all_values)
       fmt::print("  none of these changes the volumetric error other than by the choice of the workpiece datum\n");
     }
   }
-  print_advice(result);
+  print_advice(result, all_values);
   print_not_identified(result);
 }
 

@@ -103,7 +103,18 @@ TEST_F(BadInput, EmptyAndMissingFiles) {
   folder.write("empty.toml", "");
   expect_refused({"check", "empty.toml"}, "empty.toml: the file is empty");
   expect_refused({"check", "none.toml"}, "none.toml: there is no such file");
-  expect_refused({"check", "."}, ".: is not a regular file");
+  expect_refused({"check", "."}, ".: is a folder; expected a file");
+}
+
+TEST_F(BadInput, FilesOfAnotherKindAreToldByTheirNames) {
+  const std::string examples = ABBE_SOURCE_DIR "/examples/";
+  const std::string machine = examples + "machines/three-axis-mill.machine.toml";
+  const std::string errors = examples + "compensate/mill.errors.toml", study = examples + "aguado/aguado.study.toml";
+  const std::string problem = ": has the name of another kind of file; expected a file named *";
+  expect_refused({"map", errors, machine}, errors + problem + ".machine.toml");
+  expect_refused({"map", machine, study}, study + problem + ".errors.toml");
+  expect_refused({"run", machine}, machine + problem + ".study.toml");
+  expect_refused({"run"}, "study is required\nRun with --help or --help-all for more information.");
 }
 
 TEST_F(BadInput, ErrorsOfAnotherMachine) {

@@ -173,6 +173,9 @@ for (let i = 0; i < 40; ++i) {
 
 const count = parameters.name.length, nullSpace = 18, rank = count - nullSpace;
 const singular = Array.from({length: count}, (_, i) => i < rank ? digits(9.4 * Math.exp(-5.2 * (i / rank) ** 1.4) * (1 + 0.04 * uniform()), 4) : digits(2e-15 * (1 + uniform()), 3)).sort((a, b) => b - a);
+// The summary has every key that the page shows and those of docs/report-data.md that a program would look for.
+const stated = {poses: map.poses, description: '8 x 11 x 7 poses over C 0 to 315 deg, X 0 to 1400 mm, Z 0 to 600 mm, after the best fit of the workpiece datum'};
+const mapRanges = [{axis: 'C', range_deg: [0, 315], positions: 8}, {axis: 'X', range_mm: [0, 1400], positions: 11}, {axis: 'Z', range_mm: [0, 600], positions: 7}];
 const data = {
   format: 'abbe-report/1',
   title: 'Volumetric accuracy of a table-and-column machine',
@@ -181,15 +184,20 @@ const data = {
   study: {name: 'sample', file: 'sample.study.toml', seed: 20210517},
   machine: {name: 'Table-and-column machine', chain: "w C' X' b Z t", description: 'Rotary table on a slide, vertical column. Reflectors on the spindle, tracker on the table.', axes, tool_reference_mm: [0, 0, 250], tool_offset_mm: [180, 250, -120], tool_direction: [0, 0, 1]},
   summary: {
-    format: 'abbe-summary/1', study: 'sample', machine: 'Table-and-column machine', chain: "w C' X' b Z t", status: 'converged', converged: true, iterations: 6,
+    format: 'abbe-summary/1', study: 'sample', machine: 'Table-and-column machine', chain: "w C' X' b Z t", status: 'converged', converged: true, trusted: true, iterations: 6,
     readings, outliers: outliers.size, residuals: readings * 3, parameters: count, machine_parameters: count - 6, setup_parameters: 6, rank, null_space: nullSpace,
     degrees_of_freedom: (readings - outliers.size) * 3 - rank, chi_square: squares, chi_square_probability: 0.83, observability_index: 0.0213, observability_index_kind: 'O1',
     condition_number: singular[0] / singular[rank - 1], normalised_residual_rms: Math.sqrt(squares / ((readings - outliers.size) * 3 - rank)), seed: 20210517,
-    held_out: {poses: held.length, description: 'random poses over the full travel, none of them used in the fit', reference: 'truth',
+    predicted_volumetric_error: {...stated, before_um: statistics(mapped.before.map((p) => 0.99 * length(p.e))), after_expanded_um: statistics(map.expanded_uncertainty_um)},
+    true_volumetric_error: {...stated, before_um: statistics(mapped.before.map((p) => length(p.e))), after_um: statistics(mapped.after.map((p) => length(p.e)))},
+    residual: {residuals: readings * 3, outliers: outliers.size, times_stated_uncertainty: 1.21, times_stated_uncertainty_without_outliers: 1.004,
+      length_um: {mean: 25.9, rms: 34.2, median: 25.1, p95: 46.0, max: 912}, length_without_outliers_um: {mean: 25.7, rms: 28.4, median: 25.1, p95: 45.6, max: 61.3}},
+    ranges: [{axis: 'X', wanted_mm: [0, 1400], measured_mm: [0.4, 1399.2], stated_mm: [0, 1400], margin_percent: 2, expanded_uncertainty_at_end_um: 9.8, expanded_uncertainty_at_end_urad: 14.2}],
+    held_out: {poses: held.length, description: 'random poses over the full travel, none of them used in the fit', reference: 'truth', quantity: 'true volumetric error',
       position_before_um: statistics(before.map((p) => length(p.e))), position_after_um: statistics(after.map((p) => length(p.e))),
       orientation_before_urad: statistics(before.map((p) => length(p.w))), orientation_after_urad: statistics(after.map((p) => length(p.w))),
       predicted_expanded_uncertainty_um: {mean: 12.4, max: 21.9}, coverage_percent: 95.2},
-    map: {poses: map.poses, description: map.description, reference: 'truth', outside_range: 12,
+    map: {poses: map.poses, description: map.description, reference: 'truth', outside_range: 12, ranges: mapRanges,
       position_before_um: statistics(mapped.before.map((p) => length(p.e))), position_after_um: statistics(mapped.after.map((p) => length(p.e))),
       orientation_before_urad: statistics(mapped.before.map((p) => length(p.w))), orientation_after_urad: statistics(mapped.after.map((p) => length(p.w))),
       predicted_expanded_uncertainty_um: statistics(map.expanded_uncertainty_um)},

@@ -241,7 +241,7 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
 }
 
 ErrorsFile read_errors(const std::filesystem::path& path, const Machine& machine) {
-  return parse_errors(read_text_file(path), path, machine);
+  return parse_errors(read_file_of_kind(path, ".errors.toml"), path, machine);
 }
 
 std::string errors_text(const Machine& machine, const ErrorsFile& contents, const std::string& covariance_file) {

@@ -112,7 +112,9 @@ Machine parse_machine(const std::string& text, const std::string& file) {
   return machine;
 }
 
-Machine read_machine(const std::filesystem::path& path) { return parse_machine(read_text_file(path), path.string()); }
+Machine read_machine(const std::filesystem::path& path) {
+  return parse_machine(read_file_of_kind(path, ".machine.toml"), path.string());
+}
 
 std::string machine_text(const Machine& machine) {
   std::string text = fmt::format("name = {}\n", toml_string(machine.name));

@@ -22,7 +22,7 @@ Placement parse_placement(const std::string& text, const std::string& file) {
 }
 
 Placement read_placement(const std::filesystem::path& path) {
-  return parse_placement(read_text_file(path), path.string());
+  return parse_placement(read_file_of_kind(path, ".placement.toml"), path.string());
 }
 
 std::string placement_text(const Placement& placement, bool table_to_workpiece) {

@@ -153,7 +153,7 @@ std::string triple_text(const Eigen::Vector3d& v) {
 }  // namespace
 
 ScannerPositioningFile read_scanner_positioning(const std::filesystem::path& path) {
-  TomlTable root = TomlTable::parse(read_text_file(path), path.string());
+  TomlTable root = TomlTable::parse(read_file_of_kind(path, ".positioning.toml"), path.string());
   const std::filesystem::path points = root.file("points", path.parent_path(), "a CSV file of points");
   const MappedFile file(points);
   ScannerPositioningFile result = positioning_of(root, Targets(file.text(), points.string()));

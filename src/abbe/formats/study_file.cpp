@@ -182,7 +182,7 @@ void require_files(TomlTable& root, const std::filesystem::path& folder) {
 }  // namespace
 
 Study read_study(const std::filesystem::path& path) {
-  const std::string text = read_text_file(path);
+  const std::string text = read_file_of_kind(path, ".study.toml");
   TomlTable root = TomlTable::parse(text, path.string());
   const std::filesystem::path folder = path.parent_path();
   Study study = parse_study(text, path, read_machine(root.file("machine", folder, "a machine file beside the study")));

@@ -38,6 +38,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
   }
   ::close(file);
   if (problem != 0) fail(problem);
+  if (S_ISDIR(status.st_mode)) throw InputError(place, "is a folder", "a file");
   throw InputError(place, S_ISREG(status.st_mode) ? "the file is empty" : "is not a regular file");
 }
 
@@ -55,5 +56,18 @@ void MappedFile::forget(std::size_t end) {
 }
 
 std::string read_text_file(const std::filesystem::path& path) { return std::string(MappedFile(path).text()); }
+
+std::string read_file_of_kind(const std::filesystem::path& path, std::string_view ending) {
+  constexpr std::string_view kEndings[] = {".machine.toml", ".errors.toml", ".study.toml", ".placement.toml",
+                                           ".positioning.toml"};
+  const std::string name = path.filename().string();
+  const std::string text = read_text_file(path);
+  for (const std::string_view other : kEndings) {
+    if (other == ending || !name.ends_with(other)) continue;
+    throw InputError({.file = path.string()}, "has the name of another kind of file",
+                     "a file named *" + std::string(ending));
+  }
+  return text;
+}
 
 }  // namespace abbe

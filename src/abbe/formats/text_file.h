@@ -14,6 +14,10 @@ namespace abbe {
 /// empty
 std::string read_text_file(const std::filesystem::path& path);
 
+/// The same of one of our own kinds of files. @param ending  of its names: ".machine.toml"
+/// @throws InputError also if the name says that the file is of another kind
+std::string read_file_of_kind(const std::filesystem::path& path, std::string_view ending);
+
 /// A regular file in memory for reading once, without a copy. A file that is cut short meanwhile ends the process
 /// (mapped_inputs.h). @throws InputError as read_text_file()
 class MappedFile {
