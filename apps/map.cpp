@@ -92,7 +92,7 @@ void print_text(const MapReport& report) {
   const ErrorMap& before = *report.before;
   const PartialErrors& partial = *report.partial;
   fmt::print("{} poses of {}{}\n", before.statistics.count, report.machine->name,
-             partial.is_partial() ? ", " + partial.short_words() : "");
+             partial.is_partial() ? "; known are " + partial.short_words() + " that it can have" : "");
   if (before.statistics.count == 0) return;
   const auto print = [](const char* name, const SampleStatistics& s) {
     fmt::print("  {:<46} mean {:>9.3f}   95 % {:>9.3f}   max {:>9.3f} urad\n", name, 1e6 * s.mean, 1e6 * s.p95,
@@ -199,7 +199,7 @@ int run_map(const MapOptions& options) {
     print_text(report);
     for (const std::string& output : options.outputs) fmt::print("{} written\n", output);
   }
-  return tell_uncovered(before.statistics.excluded, poses.count(), options.accept_uncovered);
+  return tell_left_out({.all = poses.count(), .not_covered = before.statistics.excluded}, options.accept_uncovered);
 }
 
 }  // namespace

@@ -20,9 +20,7 @@ constexpr std::size_t kNamesShown = 6;
 
 }  // namespace
 
-std::string PartialErrors::short_words() const {
-  return fmt::format("of the {} error{} known, of {}", known, known == 1 ? "" : "s", all());
-}
+std::string PartialErrors::short_words() const { return fmt::format("{} of the {} errors", known, all()); }
 
 std::string PartialErrors::missing_names() const {
   std::string names;

@@ -19,7 +19,7 @@ struct PartialErrors {
 
   bool is_partial() const { return !missing.empty(); }
   std::size_t all() const { return known + missing.size(); }
-  /// "of the 3 errors known, of 36"
+  /// "3 of the 36 errors"
   std::string short_words() const;
   /// The first few of what is missing, and how many more.
   std::string missing_names() const;

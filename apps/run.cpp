@@ -32,7 +32,8 @@ void add_run_command(CommandLine& line) {
   command->add_option("study", options->study, "Study file (*.study.toml)")->required();
   command->add_output_folder("-o,--output", options->output, "Results folder (default: as in the study)");
   command->add_flag("--accept-uncovered", options->accept_uncovered, kAcceptUncoveredWords);
-  command->add_flag("--all-values", options->all_values, "Print every identified value and every outlier");
+  command->add_flag("--all-values", options->all_values,
+                    "Print every identified value, outlier and direction that the readings do not determine");
   command->add_flag("--json", options->json, "Print the summary as JSON for programs");
   command->add_flag("--accept-misfit", options->accept_misfit,
                     "End with exit code 0 and usable errors although the result is not to be trusted");
@@ -72,8 +73,7 @@ void add_run_command(CommandLine& line) {
       tell_distrust(study, result);
       int code = study_exit_code(study, result);
       if (result.map) {
-        const int uncovered = tell_uncovered(result.map->before.statistics.excluded, result.map->poses.count(),
-                                             options->accept_uncovered);
+        const int uncovered = tell_left_out(result.map->left_out(), options->accept_uncovered);
         if (code == kDone) code = uncovered;
       }
       return code;

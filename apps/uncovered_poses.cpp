@@ -2,19 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+#include <vector>
+
 #include "exit_code.h"
 #include "messages.h"
 
 namespace abbe {
 
-std::string uncovered_words(std::size_t left_out, std::size_t all) {
-  return fmt::format("{} of {} poses of the map lie outside the range in which the errors are known; they are left out",
-                     left_out, all);
+std::string left_out_words(const LeftOutPoses& left_out) {
+  std::vector<std::pair<std::size_t, const char*>> reasons;
+  const auto add = [&](std::size_t count, const char* words) {
+    if (count > 0) reasons.emplace_back(count, words);
+  };
+  add(left_out.not_covered, "lie outside the range in which the errors are known");
+  add(left_out.outside_travel, "need corrected commands outside the travel");
+  add(left_out.not_reached, "are not reached by the axes that are corrected");
+  const std::string of_all = fmt::format("{} of {} {}", left_out.count(), left_out.all, left_out.what);
+  if (reasons.size() == 1) return fmt::format("{} {}; they are left out", of_all, reasons.front().second);
+  std::string words = of_all + " are left out";
+  for (std::size_t i = 0; i < reasons.size(); ++i) {
+    words += fmt::format("{} {} {}", i == 0 ? ":" : ",", reasons[i].first, reasons[i].second);
+  }
+  return words;
 }
 
-int tell_uncovered(std::size_t left_out, std::size_t all, bool accepted) {
-  if (left_out == 0) return kDone;
-  tell("abbe: {}{}\n", uncovered_words(left_out, all), accepted ? "" : " (--accept-uncovered: exit code 0)");
+int tell_left_out(const LeftOutPoses& left_out, bool accepted) {
+  if (left_out.count() == 0) return kDone;
+  tell("abbe: {}{}\n", left_out_words(left_out), accepted ? "" : " (--accept-uncovered: exit code 0)");
   return accepted ? kDone : kNegative;
 }
 

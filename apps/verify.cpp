@@ -30,21 +30,23 @@ int run_verify(const VerifyOptions& options) {
   check_condition("--least-reduction", options.least_reduction);
   check_condition("--largest-ratio", options.largest_ratio);
   if (!options.output.empty()) {
-    if (!std::filesystem::path(options.output).extension().string().starts_with(".htm")) {
+    const std::string extension = std::filesystem::path(options.output).extension().string();
+    if (extension != ".html" && extension != ".htm") {
       throw InputError({.file = options.output}, "unknown kind of page", "a name ending in .html");
     }
   }
   const VerifyResult result = verify(options);
   if (!options.output.empty()) write_file_atomically(options.output, verify_page(options, result));
   if (options.json) {
-    fmt::print("{}", json_text(verify_json(options, result)));
+    fmt::print("{}", json_text(verify_json(result)));
   } else {
     print_verify(result);
     if (!options.output.empty()) fmt::print("\npage: {}\n", options.output);
   }
   const bool met = std::all_of(result.verdicts.begin(), result.verdicts.end(),
                                [](const VerifyVerdict& verdict) { return verdict.met; });
-  return met ? kDone : kNegative;
+  const int left_out = tell_left_out(result.left_out(), options.accept_uncovered);
+  return met ? left_out : kNegative;
 }
 
 Subcommand* add_piece(Subcommand& command, const char* name, const char* description, const char* example,
@@ -88,7 +90,7 @@ void add_verify_command(CommandLine& line) {
   command->add_option("--poses", options.poses, "Number of random poses")
       ->check(in_range(10, 10000))
       ->capture_default_str();
-  command->add_option("--seed", options.seed, "Of the random poses")->capture_default_str();
+  command->add_option("--seed", options.seed, "Of the random poses (default: that of the results, else 1)");
   command
       ->add_option("--range", options.ranges,
                    "AXIS_unit=from:to or AXIS_unit=position; repeatable (default: where the errors are known)")
@@ -103,6 +105,7 @@ void add_verify_command(CommandLine& line) {
   command->add_option("--reach-mm", options.reach, "A sample farther from the test piece's tool path does not cut it")
       ->check(in_range(0.01, 10.0))
       ->capture_default_str();
+  command->add_flag("--accept-uncovered", options.accept_uncovered, kAcceptUncoveredWords);
   command->add_output_file("-o,--output", options.output, "Page to write (*.html)");
   command->add_flag("--json", options.json, "Print JSON for programs");
   command->require_subcommand(0, 2);

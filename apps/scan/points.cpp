@@ -18,6 +18,7 @@
 #include "options.h"
 #include "progress.h"
 #include "scan/scan.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 namespace {
@@ -27,7 +28,7 @@ struct PointsOptions {
   std::vector<double> zero, beam, range;
   std::vector<std::string> columns, ignore;
   ScanOptions scan;
-  bool any_travel = false, json = false, accept_misfit = false;
+  bool any_travel = false, json = false, accept_misfit = false, accept_uncovered = false;
 };
 
 /// "indication_um=h": our name with its unit = name in the file.
@@ -103,11 +104,10 @@ int run_points(PointsOptions options) {
       fmt::print("  {} readings outside the probe's range are left out\n", summary.out_of_range);
     }
   }
-  if (summary.not_covered > 0) {
-    tell("abbe: {} of {} positions lie outside the range in which the errors are known; they are left out\n",
-         summary.not_covered, summary.readings);
-    return kNegative;
-  }
+  const int code = tell_left_out({.all = summary.readings, .not_covered = summary.not_covered, .what = "readings"},
+                                 options.accept_uncovered);
+  if (code != kDone) return code;
+  if (summary.points == 0 && summary.not_covered > 0) return kNegative;
   if (summary.points == 0) {
     tell("abbe: no reading lies within the probe's range\n");
     return kNegative;
@@ -157,6 +157,7 @@ void add_scan_points(Subcommand& scan, CommandLine& line) {
   command->add_flag("--any-travel", options->any_travel, "Accept positions outside the travel of an axis");
   command->add_option("--threads", options->scan.threads, "Threads (0: all)")->check(in_range(0, 64));
   add_accept_misfit(*command, options->accept_misfit);
+  command->add_flag("--accept-uncovered", options->accept_uncovered, kAcceptUncoveredWords);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options] { return run_points(*options); }; });
 }

@@ -17,10 +17,6 @@ namespace {
 /// Mm and rad: less is rounding.
 constexpr double kNoUncertainty = 1e-9;
 
-double position_unit(const Axis& axis) { return axis.kind == AxisKind::rotary ? kDegree : 1; }
-
-const char* position_suffix(const Axis& axis) { return axis.kind == AxisKind::rotary ? "deg" : "mm"; }
-
 std::string range_words(const Axis& axis, const PositionRange& range) {
   const double unit = position_unit(axis);
   return fmt::format("{:.8g} to {:.8g} {}", range.from / unit, range.to / unit, position_suffix(axis));
@@ -100,6 +96,10 @@ std::vector<std::string> coverage_sentences(const Study& study, const StudyResul
   }
   return sentences;
 }
+
+double position_unit(const Axis& axis) { return axis.kind == AxisKind::rotary ? kDegree : 1; }
+
+const char* position_suffix(const Axis& axis) { return axis.kind == AxisKind::rotary ? "deg" : "mm"; }
 
 std::string moved_range_sentence(const Axis& axis, const AxisRange& wanted, const AxisRange& known) {
   return fmt::format("The map was asked for {} from {} and runs from {}, where the errors are known.", axis.name,

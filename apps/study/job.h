@@ -17,6 +17,7 @@
 #include "study/not_identified.h"
 #include "study/unseen.h"
 #include "study/volumetric_figures.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 
@@ -30,6 +31,8 @@ struct StudyMap {
   ErrorMap before;
   std::optional<ErrorMap> after;
   ErrorMap predicted;  ///< of the identified errors, with their uncertainty
+
+  LeftOutPoses left_out() const { return {.all = poses.count(), .not_covered = before.statistics.excluded}; }
 };
 
 /// Everything that a study has computed.

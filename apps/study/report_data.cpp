@@ -137,9 +137,7 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
   for (const std::string& warning : study_warnings(study, result))
     json["warnings"].push_back({{"level", "warning"}, {"text", warning}});
   if (result.map && result.map->before.statistics.excluded > 0) {
-    json["warnings"].push_back(
-        {{"level", "warning"},
-         {"text", uncovered_words(result.map->before.statistics.excluded, result.map->poses.count())}});
+    json["warnings"].push_back({{"level", "warning"}, {"text", left_out_words(result.map->left_out())}});
   }
   json["assumptions"] = report_assumptions(study, result);
   if (result.map && result.map->before.statistics.count > 0) {

@@ -34,6 +34,23 @@ void add_map_statistics(const StudyMap& map, nlohmann::ordered_json& entry) {
   }
 }
 
+/// Over which positions of each axis the map is made, in chain order.
+nlohmann::ordered_json map_ranges_json(const Machine& machine, const StudyMap& map) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const std::vector<double>& positions = map.poses.axis[i];
+    if (positions.empty()) continue;
+    const auto [first, last] = std::minmax_element(positions.begin(), positions.end());
+    const Axis& axis = machine.axes[i];
+    const double unit = position_unit(axis);
+    nlohmann::ordered_json entry = {{"axis", axis.name}};
+    entry[std::string("range_") + position_suffix(axis)] = {*first / unit, *last / unit};
+    if (!map.grid.empty()) entry["positions"] = map.grid[i];
+    list.push_back(entry);
+  }
+  return list;
+}
+
 }  // namespace
 
 SampleStatistics orientation_statistics(const ErrorMap& map) {
@@ -249,6 +266,7 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
     entry["reference"] = map.against_truth ? "truth" : "model";
     if (map.before.statistics.count > 0) add_map_statistics(map, entry);
     if (conditional) entry["uncertainty_covers"] = kIdentifiedErrorsOnly;
+    entry["ranges"] = map_ranges_json(study.machine, map);
     if (!map.moved.empty()) entry["moved"] = map.moved;
     if (map.before.statistics.excluded > 0) entry["outside_range"] = map.before.statistics.excluded;
     json["map"] = entry;

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/errors/random_stream.h"
 #include "abbe/identify/identify.h"
 #include "abbe/identify/prediction.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/tracker_start.h"
+#include "abbe/verify/compensated_poses.h"
 #include "abbe/verify/determined_part.h"
 #include "abbe/verify/error_map.h"
 #include "study/instrument_campaign.h"
@@ -88,14 +90,10 @@ std::vector<double> nominal_errors(const Machine& machine, TrackerSetup setup, c
 }
 
 std::vector<AxisRange> known_ranges(const Study& study, const StudyResult& result) {
-  std::vector<AxisRange> ranges;
-  for (std::size_t i = 0; i < study.machine.axes.size(); ++i) {
-    ranges.push_back(known_range(study.machine, result.identification.errors, i, 2));
-  }
-  return ranges;
+  std::vector<const ErrorSet*> errors = {&result.identification.errors};
+  if (result.campaign.truth) errors.push_back(&*result.campaign.truth);
+  return unseen_ranges(study.machine, errors);
 }
-
-std::uint64_t unseen_seed(const Study& study, std::size_t setup) { return study.seed * 7919 + setup; }
 
 /// @param readings  of a tracker that took no part in the fit
 void add_tracker(const Study& study, const StudyResult& result, std::size_t s, const TrackerCampaign& setup,
@@ -130,7 +128,7 @@ TrackerReadings unseen_tracker_readings(const Study& study, const StudyResult& r
   options.line_of_sight = false;
   options.choice = SightChoice::cycle;
   options.threads = study.threads;
-  const PoseList list = random_plan(study.machine, known_ranges(study, result), poses, unseen_seed(study, s));
+  const PoseList list = random_plan(study.machine, known_ranges(study, result), poses, unseen_seed(study.seed) + s);
   return simulate_tracker(study.machine, *result.campaign.truth, setup.truth, list, options).readings;
 }
 
@@ -210,14 +208,18 @@ Eigen::MatrixXd unseen_directions(const Identification& identification) {
 void add_volumetric(const Study& study, const StudyResult& result, std::size_t poses, bool statistics, Tally& tally) {
   UnseenPoses& unseen = tally.unseen;
   const ErrorSet& identified = result.identification.errors;
-  const PoseList list = random_plan(study.machine, known_ranges(study, result), poses, unseen_seed(study, 0));
-  const PoseSource source = pose_source(list);
+  const bool simulated = unseen.against_truth;
+  const ErrorSet& actual = simulated ? *result.campaign.truth : identified;
+  const bool both_directions = !identified.reversals.empty() || !actual.reversals.empty();
+  const PoseList list =
+      random_unseen_poses(study.machine, known_ranges(study, result), poses, unseen_seed(study.seed), both_directions);
+  PoseList mean_of_directions;
+  mean_of_directions.axis = list.axis;
+  const PoseSource source = pose_source(mean_of_directions);
   ErrorMapOptions options;
   options.orientation = false;
   options.remove_rigid_motion = true;
   options.threads = study.threads;
-  const bool simulated = unseen.against_truth;
-  const ErrorSet& actual = simulated ? *result.campaign.truth : identified;
   const ErrorMap before = error_map(study.machine, actual, nullptr, source, options);
   ErrorMap after = error_map(study.machine, actual, &identified, source, options);
   for (std::size_t k = 0; k < after.count(); ++k) after.covered[k] = after.covered[k] & before.covered[k];
@@ -231,6 +233,16 @@ void add_volumetric(const Study& study, const StudyResult& result, std::size_t p
   unseen.open_known = true;
   unseen.open_rank = part.open_rank;
   if (!simulated) return;
+  if (statistics) {
+    unseen.after = errors_at_commands(study.machine, actual, identified, list, after.covered);
+    unseen.before = errors_at_commands(study.machine, actual, ErrorSet{}, list, after.covered);
+  }
+  // Poses that do not say how the workpiece is turned, such as those of a rotary table alone: to first order.
+  const bool first_order = unseen.before.empty() || unseen.after.empty();
+  if (first_order) {
+    unseen.before.clear();
+    unseen.after.clear();
+  }
   double open_square = 0;
   std::size_t covered = 0;
   for (std::size_t k = 0; k < after.count(); ++k) {
@@ -245,14 +257,51 @@ void add_volumetric(const Study& study, const StudyResult& result, std::size_t p
       tally.within += std::abs(part.displacement[d][k]) <= 2 * u ? 1U : 0U;
       ++tally.coordinates;
     }
-    unseen.before.push_back(before.norm[k]);
-    unseen.after.push_back(after.norm[k]);
+    if (first_order) {
+      unseen.before.push_back(before.norm[k]);
+      unseen.after.push_back(after.norm[k]);
+    }
     unseen.expanded_uncertainty.push_back(2 * std::sqrt(variance));
   }
   if (covered > 0) unseen.open_rms = std::sqrt(open_square / static_cast<double>(covered));
 }
 
+/// Stream of the sides from which axes come, beside the seed of the poses.
+constexpr std::uint64_t kApproachStream = 77;
+
 }  // namespace
+
+std::vector<AxisRange> unseen_ranges(const Machine& machine, const std::vector<const ErrorSet*>& errors) {
+  std::vector<AxisRange> ranges;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    AxisRange range = known_range(machine, *errors.front(), i, 2);
+    for (const ErrorSet* set : errors) {
+      const AxisRange other = known_range(machine, *set, i, 2);
+      // Ranges without a position in common stay: their poses have no result, and that is said.
+      if (std::max(range.from, other.from) > std::min(range.to, other.to)) continue;
+      range.from = std::max(range.from, other.from);
+      range.to = std::min(range.to, other.to);
+    }
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+PoseList random_unseen_poses(const Machine& machine, const std::vector<AxisRange>& ranges, std::size_t count,
+                             std::uint64_t seed, bool both_directions) {
+  PoseList poses = random_plan(machine, ranges, count, seed);
+  if (!both_directions) return poses;
+  poses.approach.resize(machine.axes.size());
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    RandomStream random(seed, kApproachStream + i);
+    for (std::size_t k = 0; k < poses.count(); ++k) {
+      poses.approach[i].push_back(random.uniform() < 0.5 ? std::int8_t{-1} : std::int8_t{1});
+    }
+  }
+  return poses;
+}
+
+std::uint64_t unseen_seed(std::uint64_t study_seed) { return study_seed * 7919; }
 
 UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::size_t poses) {
   UnseenPoses unseen;
@@ -292,7 +341,7 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
   unseen.description =
       unseen.against_truth
           ? fmt::format("{} random poses that were not measured (seed {}), against the simulated truth",
-                        unseen.after.size(), unseen_seed(study, 0))
+                        unseen.after.size(), unseen_seed(study.seed))
           : fmt::format("{} readings held out of the fit", unseen.after.size());
   return unseen;
 }

@@ -4,16 +4,18 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "abbe/compensate/correction_uncertainty.h"
-#include "abbe/errors/random_stream.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/machine_file.h"
+#include "abbe/formats/text_file.h"
 #include "abbe/formats/trace_file.h"
 #include "axis_option.h"
 #include "errors_for_use.h"
 #include "study/job.h"
+#include "study/unseen.h"
 
 namespace abbe {
 namespace {
@@ -22,8 +24,6 @@ namespace fs = std::filesystem;
 
 /// So fine that the lines between the points of a piece are not seen in the figures, mm.
 constexpr double kPieceTolerance = 1e-5;
-/// Stream of the sides from which axes come, beside the seed of the poses.
-constexpr std::uint64_t kApproachStream = 77;
 
 /// A file that was named, or the one that results hold under this name.
 std::string found(const std::string& named, const std::string& results, const char* in_results, const char* option) {
@@ -60,33 +60,21 @@ void apply_range(const Machine& machine, const std::string& text, std::vector<Ax
 
 PoseList unseen_poses(const VerifyOptions& options, VerifyResult& result) {
   const Machine& machine = result.machine;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    AxisRange range = known_range(machine, result.identified.errors, i, 2);
-    const AxisRange true_range = known_range(machine, result.truth.errors, i, 2);
-    if (std::max(range.from, true_range.from) <= std::min(range.to, true_range.to)) {
-      range.from = std::max(range.from, true_range.from);
-      range.to = std::min(range.to, true_range.to);
-    }
-    result.ranges.push_back(range);
-  }
+  result.ranges = unseen_ranges(machine, {&result.identified.errors, &result.truth.errors});
   for (const std::string& text : options.ranges) apply_range(machine, text, result.ranges);
-  PoseList poses;
+  result.both_directions = !result.truth.errors.reversals.empty() || !result.identified.errors.reversals.empty();
   try {
-    poses = random_plan(machine, result.ranges, options.poses, options.seed);
+    return random_unseen_poses(machine, result.ranges, options.poses, result.seed, result.both_directions);
   } catch (const std::invalid_argument& error) {
     throw InputError({.field = "--range"}, error.what(), "ranges within the travel of their axes");
   }
-  result.both_directions = !result.truth.errors.reversals.empty() || !result.identified.errors.reversals.empty();
-  if (result.both_directions) {
-    poses.approach.resize(machine.axes.size());
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-      RandomStream random(options.seed, kApproachStream + i);
-      for (std::size_t k = 0; k < poses.count(); ++k) {
-        poses.approach[i].push_back(random.uniform() < 0.5 ? std::int8_t{-1} : std::int8_t{1});
-      }
-    }
-  }
-  return poses;
+}
+
+/// The seed of the random poses at which these results were validated, so that both commands take the same ones.
+std::optional<std::uint64_t> seed_of_results(const std::string& results) {
+  const nlohmann::json summary = results_summary(results);
+  if (!summary.contains("seed") || !summary["seed"].is_number_unsigned()) return {};
+  return unseen_seed(summary["seed"].get<std::uint64_t>());
 }
 
 [[noreturn]] void refuse(const PieceRun& run, const std::string& piece, const PieceDeviation& deviation, double reach) {
@@ -182,13 +170,31 @@ std::vector<VerifyVerdict> verdicts_on(const VerifyOptions& options, const Compe
 
 }  // namespace
 
+nlohmann::json results_summary(const std::string& results) {
+  if (results.empty()) return nullptr;
+  const fs::path path = fs::path(results) / "summary.json";
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return nullptr;
+  nlohmann::json json = nlohmann::json::parse(read_text_file(path), nullptr, false);
+  return json.is_object() ? json : nlohmann::json(nullptr);
+}
+
+LeftOutPoses VerifyResult::left_out() const {
+  return {.all = poses_asked,
+          .not_covered = poses.not_covered,
+          .outside_travel = poses.outside_travel,
+          .not_reached = poses.not_reached,
+          .what = "random poses"};
+}
+
 VerifyResult verify(const VerifyOptions& options) {
   VerifyResult result;
-  result.seed = options.seed;
+  result.poses_asked = options.poses;
   std::error_code ignored;
   if (!options.results.empty() && !fs::is_directory(options.results, ignored)) {
     throw InputError({.file = options.results}, "is no folder", "results of abbe run");
   }
+  result.seed = options.seed ? *options.seed : seed_of_results(options.results).value_or(1);
   const std::string machine_file = found(options.machine, options.results, "machine.toml", "--machine");
   result.errors_file = found(options.errors, options.results, "errors.toml", "--errors");
   result.truth_file = found(options.truth, options.results, "truth.errors.toml", "--truth");
@@ -213,13 +219,11 @@ VerifyResult verify(const VerifyOptions& options) {
     throw InputError({.file = result.errors_file}, error.what(), "errors that can be compensated on this machine");
   }
   // The best fit of the workpiece datum has six freedoms.
-  const std::size_t reached = poses.count() - result.poses.outside_travel - result.poses.not_covered;
-  if (reached < 10) {
-    throw InputError({.field = "--range"},
-                     fmt::format("{} of {} poses have a result: {} outside the travel once corrected, {} where errors "
-                                 "are not known",
-                                 reached, poses.count(), result.poses.outside_travel, result.poses.not_covered),
-                     "ranges within travel and measured range, and at least 10 poses");
+  const LeftOutPoses left_out = result.left_out();
+  if (left_out.all - left_out.count() < 10) {
+    throw InputError({.field = "--range"}, left_out_words(left_out),
+                     left_out.not_reached > 0 ? "a machine whose axes can correct the position of the tool"
+                                              : "ranges in which at least 10 poses have a result");
   }
   if (result.poses.datum != BestFitStatus::ok) {
     throw InputError({.field = "--range"},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "partial_errors.h"
 #include "study/volumetric_figures.h"
 #include "test_piece/sizes.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 
@@ -29,10 +31,10 @@ struct VerifyOptions {
   std::vector<std::string> ranges;
   std::vector<VerifyPiece> pieces;
   std::size_t poses = 1000;
-  std::uint64_t seed = 1;
-  double reach = 1;  ///< mm
+  std::optional<std::size_t> seed;  ///< none: that of the results, else 1
+  double reach = 1;                 ///< mm
   std::optional<double> least_reduction, largest_ratio;
-  bool json = false;
+  bool json = false, accept_uncovered = false;
 };
 
 /// One run of a test piece.
@@ -64,6 +66,7 @@ struct VerifyResult {
   std::string errors_file, truth_file;
   std::vector<AxisRange> ranges;
   std::uint64_t seed = 1;          ///< of the random poses
+  std::size_t poses_asked = 0;     ///< with those that are left out
   bool correlations_known = true;  ///< false: the errors file states standard uncertainties only
   PartialErrors partial;           ///< what the identified errors do not state
   bool both_directions = false;    ///< there are reversal values: axes come from either side
@@ -71,7 +74,12 @@ struct VerifyResult {
   VolumetricFigures volumetric;    ///< over the grid that all commands state
   std::vector<PieceResult> pieces;
   std::vector<VerifyVerdict> verdicts;
+
+  LeftOutPoses left_out() const;
 };
+
+/// The summary.json of results, or null where there is none. @param results  folder; empty: none
+nlohmann::json results_summary(const std::string& results);
 
 /// @throws InputError
 VerifyResult verify(const VerifyOptions& options);

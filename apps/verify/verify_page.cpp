@@ -176,16 +176,6 @@ nlohmann::json piece_data(const PieceResult& piece) {
   return json;
 }
 
-/// The summary that the results hold, or null.
-nlohmann::json results_summary(const VerifyOptions& options) {
-  if (options.results.empty()) return nullptr;
-  const std::filesystem::path path = std::filesystem::path(options.results) / "summary.json";
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return nullptr;
-  nlohmann::json json = nlohmann::json::parse(read_text_file(path), nullptr, false);
-  return json.is_object() ? json : nlohmann::json(nullptr);
-}
-
 std::string measured_with(const nlohmann::json& summary) {
   std::string text;
   if (!summary.is_object() || !summary.contains("setups") || !summary["setups"].is_array()) return text;
@@ -202,7 +192,7 @@ std::string measured_with(const nlohmann::json& summary) {
   return text;
 }
 
-nlohmann::json facts(const VerifyOptions& options, const VerifyResult& result, const nlohmann::json& summary) {
+nlohmann::json facts(const VerifyResult& result, const nlohmann::json& summary) {
   nlohmann::json list = nlohmann::json::array();
   const auto add = [&list](const char* name, const std::string& text) {
     if (!text.empty()) list.push_back({{"name", name}, {"text", text}});
@@ -219,7 +209,7 @@ nlohmann::json facts(const VerifyOptions& options, const VerifyResult& result, c
   add("Unseen poses",
       ranges_text(result.machine, result.ranges) + (result.both_directions ? "; axes coming from either side" : ""));
   add("Data", "simulated, truth known");
-  add("Seed of the poses", fmt::format("{}", options.seed));
+  add("Seed of the poses", fmt::format("{}", result.seed));
   return list;
 }
 
@@ -240,14 +230,11 @@ nlohmann::json notes(const VerifyResult& result) {
                          "they were independent.");
   }
   if (result.partial.is_partial()) {
-    list.push_back(fmt::format("The prediction is {}; the others are not in it: {}.", result.partial.short_words(),
-                               result.partial.missing_names()));
+    list.push_back(
+        fmt::format("The prediction covers {} of the machine, which are known; the others are not in it: {}.",
+                    result.partial.short_words(), result.partial.missing_names()));
   }
-  if (result.poses.outside_travel > 0 || result.poses.not_covered > 0) {
-    list.push_back(fmt::format(
-        "{} random poses are left out: {} whose corrected commands leave the travel, {} where errors are not known.",
-        result.poses.outside_travel + result.poses.not_covered, result.poses.outside_travel, result.poses.not_covered));
-  }
+  if (result.left_out().count() > 0) list.push_back(left_out_words(result.left_out()) + ".");
   if (!result.pieces.empty()) {
     list.push_back(
         "Test pieces: what the axes were commanded, sample by sample, is carried out by the machine with its true "
@@ -263,7 +250,7 @@ nlohmann::json notes(const VerifyResult& result) {
 
 std::string verify_page(const VerifyOptions& options, const VerifyResult& result) {
   const CompensatedPoses& poses = result.poses;
-  const nlohmann::json summary = results_summary(options);
+  const nlohmann::json summary = results_summary(options.results);
   nlohmann::json data;
   data["format"] = "abbe-report/1";
   data["title"] = "Compensation of the " + result.machine.name + ", verified";
@@ -272,7 +259,7 @@ std::string verify_page(const VerifyOptions& options, const VerifyResult& result
           "A simulated machine, whose errors are therefore known, carries out the same commands without and "
           "with the compensation: what is left at poses that nobody measured") +
       (result.pieces.empty() ? "" : ", and on test pieces");
-  data["evaluation"] = {{"kind", "verify"}, {"facts", facts(options, result, summary)}};
+  data["evaluation"] = {{"kind", "verify"}, {"facts", facts(result, summary)}};
   data["summary"] = {{"verdict", verify_sentence(result)}, {"held_out", nlohmann::json(unseen_poses_json(poses))}};
   nlohmann::ordered_json volumetric;
   add_volumetric_figures(result.volumetric, volumetric);

@@ -133,13 +133,10 @@ void print_verify(const VerifyResult& result) {
   row("direction of the tool, before", poses.direction_before_statistics, 1e6, "urad");
   row("direction of the tool, after", poses.direction_after_statistics, 1e6, "urad");
   if (result.partial.is_partial()) {
-    fmt::print("  caution: the prediction is {}; the others are not in it: {}\n", result.partial.short_words(),
-               result.partial.missing_names());
+    fmt::print("  caution: the prediction covers {} of the machine, which are known; the others are not in it: {}\n",
+               result.partial.short_words(), result.partial.missing_names());
   }
-  if (poses.outside_travel > 0 || poses.not_covered > 0) {
-    fmt::print("  left out: {} poses whose corrected commands leave the travel, {} where errors are not known\n",
-               poses.outside_travel, poses.not_covered);
-  }
+  if (result.left_out().count() > 0) fmt::print("  {}\n", left_out_words(result.left_out()));
   fmt::print("\n");
   print_volumetric_figures(result.volumetric);
   for (const PieceResult& piece : result.pieces) print_piece(piece);
@@ -147,7 +144,7 @@ void print_verify(const VerifyResult& result) {
   for (const VerifyVerdict& verdict : result.verdicts) fmt::print("{}\n", verdict.text);
 }
 
-nlohmann::ordered_json verify_json(const VerifyOptions& options, const VerifyResult& result) {
+nlohmann::ordered_json verify_json(const VerifyResult& result) {
   const CompensatedPoses& poses = result.poses;
   nlohmann::ordered_json json;
   json["format"] = "abbe-verify/1";
@@ -155,11 +152,12 @@ nlohmann::ordered_json verify_json(const VerifyOptions& options, const VerifyRes
   json["verdict"] = verify_sentence(result);
   nlohmann::ordered_json unseen = unseen_poses_json(poses);
   if (result.partial.is_partial()) unseen["uncertainty_covers"] = kIdentifiedErrorsOnly;
-  unseen["seed"] = options.seed;
+  unseen["seed"] = result.seed;
   unseen["ranges"] = ranges_text(result.machine, result.ranges);
   unseen["both_directions"] = result.both_directions;
   unseen["outside_travel"] = poses.outside_travel;
   unseen["outside_range"] = poses.not_covered;
+  unseen["not_reached"] = poses.not_reached;
   json["unseen_poses"] = unseen;
   add_volumetric_figures(result.volumetric, json);
   if (result.partial.is_partial()) {

@@ -17,6 +17,6 @@ nlohmann::ordered_json unseen_poses_json(const CompensatedPoses& poses);
 void print_verify(const VerifyResult& result);
 
 /// For programs; units in the keys.
-nlohmann::ordered_json verify_json(const VerifyOptions& options, const VerifyResult& result);
+nlohmann::ordered_json verify_json(const VerifyResult& result);
 
 }  // namespace abbe

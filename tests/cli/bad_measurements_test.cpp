@@ -11,22 +11,13 @@ namespace {
 
 using testing::HasSubstr;
 
-const char* const kMeasuredStudy = R"(machine = "m.toml"
+const std::string kMeasuredStudy = std::string(R"(machine = "m.toml"
 output = "out"
 [[setup]]
 name = "tracker"
 instrument = "tracker"
 noise = { xyz_um = 10 }
-[[setup.reflector]]
-name = "R1"
-offset_mm = [60, 0, -150]
-[[setup.reflector]]
-name = "R2"
-offset_mm = [0, 80, -250]
-[[setup.reflector]]
-name = "R3"
-offset_mm = [-70, -30, -100]
-[[setup.data]]
+)") + kThreeReflectors + R"([[setup.data]]
 file = "r.csv"
 [identify]
 [[identify.motion]]

@@ -20,16 +20,6 @@ name = "tracker"
 instrument = "tracker"
 noise = { xyz_um = 5 }
 )";
-const char* const kReflectors = R"([[setup.reflector]]
-name = "R1"
-offset_mm = [60, 0, -150]
-[[setup.reflector]]
-name = "R2"
-offset_mm = [0, 80, -250]
-[[setup.reflector]]
-name = "R3"
-offset_mm = [-70, -30, -100]
-)";
 const char* const kIdentify = R"([[identify.motion]]
 errors = "E?X"
 basis = "legendre"
@@ -51,7 +41,7 @@ class ReadingVariances : public CommandTest {
                     "{}[[setup.station]]\nname = \"S\"\n"
                     "true_pose = {{ position_mm = [300, -900, 150], angles_deg = [5, -3, 130] }}\n"
                     "{}[[setup.plan]]\nkind = \"grid\"\naxis.X = {{ count = 16 }}\naxis.Z = {{ count = 12 }}\n",
-                    kSetup, kReflectors));
+                    kSetup, kThreeReflectors));
   }
 
   /// Simulated readings, with a displacement of every pose added; of all three reflectors, or of one, another at each
@@ -94,7 +84,7 @@ class ReadingVariances : public CommandTest {
         fmt::format("machine = \"m.toml\"\noutput = \"out\"\n{}[[setup.station]]\nname = \"S\"\npose = "
                     "\"find\"\n{}[[setup.data]]\nfile = \"measured.csv\"\n[identify]\nheld_out_fraction = 0.3\n"
                     "{}\n{}",
-                    kSetup, kReflectors, options, kIdentify));
+                    kSetup, kThreeReflectors, options, kIdentify));
   }
 };
 

@@ -30,7 +30,7 @@ at_mm = [0, 300, 600]
 coefficients_um = [0, 80, -40]
 )";
 
-const char* const kSplineStudy = R"(machine = "m.toml"
+const std::string kSplineStudy = std::string(R"(machine = "m.toml"
 output = "out"
 [simulate]
 errors = "truth.errors.toml"
@@ -41,16 +41,7 @@ noise = { xyz_um = 5 }
 [[setup.station]]
 name = "S"
 true_pose = { position_mm = [300, -900, 150], angles_deg = [5, -3, 130] }
-[[setup.reflector]]
-name = "R1"
-offset_mm = [60, 0, -150]
-[[setup.reflector]]
-name = "R2"
-offset_mm = [0, 80, -250]
-[[setup.reflector]]
-name = "R3"
-offset_mm = [-70, -30, -100]
-[[setup.plan]]
+)") + kThreeReflectors + R"([[setup.plan]]
 kind = "grid"
 axis.X = { count = 15 }
 axis.Z = { count = 7 }

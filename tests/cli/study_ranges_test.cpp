@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const char* const kRandomStudy = R"(name = "random"
+const std::string kRandomStudy = std::string(R"(name = "random"
 machine = "m.toml"
 seed = 7
 output = "out"
@@ -28,16 +28,7 @@ noise = { xyz_um = 5 }
 [[setup.station]]
 name = "S"
 true_pose = { position_mm = [300, -900, 150], angles_deg = [5, -3, 130] }
-[[setup.reflector]]
-name = "R1"
-offset_mm = [60, 0, -150]
-[[setup.reflector]]
-name = "R2"
-offset_mm = [0, 80, -250]
-[[setup.reflector]]
-name = "R3"
-offset_mm = [-70, -30, -100]
-[[setup.plan]]
+)") + kThreeReflectors + R"([[setup.plan]]
 kind = "random"
 points = 400
 axis.X = {}
@@ -104,6 +95,8 @@ TEST_F(StudyRanges, WithoutAMarginPosesAtTheEndsAreLeftOutAndTheExitCodeSaysSo) 
   const nlohmann::json summary = nlohmann::json::parse(result.out);
   EXPECT_EQ(summary["ranges"][0]["stated_mm"], summary["ranges"][0]["measured_mm"]);
   EXPECT_EQ(summary["map"]["outside_range"], 2);
+  EXPECT_EQ(summary["map"]["ranges"][0]["axis"], "X");
+  EXPECT_FALSE(summary["map"]["ranges"][0].contains("positions")) << "a list of poses";
   EXPECT_EQ(abbe({"run", "s.study.toml", "--accept-uncovered"}).exit_code, ExitCode::done);
   const std::vector<std::string> map = {"map", "m.toml", "out/errors.toml", "--poses", "poses.csv"};
   EXPECT_EQ(abbe(map).exit_code, ExitCode::computation_says_no);

@@ -6,8 +6,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 
 #include "cli/command_test.h"
+#include "cli/machine_for_test.h"
 
 namespace abbe {
 namespace {
@@ -31,7 +33,7 @@ origin_mm = [700, 0, -100]
 reference_mm = [0, 0, 300]
 )";
 
-const char* const kSmallStudy = R"(name = "small"
+const std::string kSmallStudy = std::string(R"(name = "small"
 machine = "m.machine.toml"
 seed = 3
 output = "out"
@@ -48,16 +50,7 @@ noise = { xyz_um = 10, xyz_um_per_m = 5 }
 [[setup.station]]
 name = "S"
 true_pose = { position_mm = [300, -200, 150], angles_deg = [5, -3, 130] }
-[[setup.reflector]]
-name = "R1"
-offset_mm = [60, 0, -150]
-[[setup.reflector]]
-name = "R2"
-offset_mm = [0, 80, -250]
-[[setup.reflector]]
-name = "R3"
-offset_mm = [-70, -30, -100]
-[[setup.plan]]
+)") + kThreeReflectors + R"([[setup.plan]]
 kind = "random"
 points = 150
 axis.C = {}
@@ -211,6 +204,11 @@ TEST_F(Studies, AMapKeepsToTheMeasuredRangeAndItsStatisticsToTheSamePoses) {
   EXPECT_THAT(summary["map"]["description"].get<std::string>(), HasSubstr("in which the errors are known"));
   ASSERT_EQ(summary["map"]["moved"].size(), 1U);
   EXPECT_THAT(summary["map"]["moved"][0].get<std::string>(), HasSubstr("asked for X from 0 to 1400 mm"));
+  const nlohmann::json& range = summary["map"]["ranges"][1];
+  EXPECT_EQ(range["axis"], "X");
+  EXPECT_NEAR(range["range_mm"][0].get<double>(), *std::min_element(x.begin(), x.end()), 0.1);
+  EXPECT_NEAR(range["range_mm"][1].get<double>(), *std::max_element(x.begin(), x.end()), 0.1);
+  EXPECT_EQ(range["positions"], std::set<double>(x.begin(), x.end()).size());
   ASSERT_EQ(summary["map"]["poses"], x.size());
   const auto mean_length = [&](const char* key) {
     double sum = 0;

@@ -84,6 +84,32 @@ TEST_F(VerifyCommand, WhatIsWantedAndNotReachedIsExitCodeOne) {
   EXPECT_EQ(verify({"--poses", "100", "--largest-ratio", "0.01"}).exit_code, ExitCode::computation_says_no);
 }
 
+TEST_F(VerifyCommand, PosesThatAreLeftOutAreExitCodeOne) {
+  // At the end of the travel half of the corrected commands leave it.
+  std::vector<std::string> asked = {"--poses", "60", "--range", "X_mm=-300:-299.999"};
+  const CommandResult result = verify(asked);
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  const std::string words = "12 of 60 random poses need corrected commands outside the travel; they are left out";
+  EXPECT_EQ(result.err, "abbe: " + words + " (--accept-uncovered: exit code 0)\n");
+  EXPECT_THAT(result.out, HasSubstr("  " + words + "\n"));
+  asked.emplace_back("--accept-uncovered");
+  const CommandResult accepted = verify(asked);
+  EXPECT_EQ(accepted.exit_code, ExitCode::done);
+  EXPECT_EQ(accepted.err, "abbe: " + words + "\n");
+  // What is wanted and not met is not accepted with it.
+  asked.insert(asked.end(), {"--least-reduction", "1000"});
+  EXPECT_EQ(verify(asked).exit_code, ExitCode::computation_says_no);
+}
+
+TEST_F(VerifyCommand, AMachineThatCannotCorrectThePositionIsToldSo) {
+  const CommandResult result =
+      abbe({"verify", "--machine", example("machines/rotary-table.machine.toml"), "--errors",
+            example("rotary_table/table.errors.toml"), "--truth", example("rotary_table/table.errors.toml")});
+  EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(result.err, HasSubstr("1000 of 1000 random poses are not reached by the axes that are corrected"));
+  EXPECT_THAT(result.err, HasSubstr("a machine whose axes can correct the position of the tool"));
+}
+
 TEST_F(VerifyCommand, ThePageHoldsPosesAndPiecesAndReplacesNothingUnasked) {
   const std::string page = (folder.path() / "page.html").string(), trace = example("verify/cone-before.csv");
   const std::vector<std::string> asked = {

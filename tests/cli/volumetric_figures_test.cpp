@@ -62,10 +62,15 @@ TEST_F(VolumetricFigures, HaveTheSameNumbersUnderTheSameNamesInEveryCommand) {
             0.1 * run[predicted]["after_expanded_um"]["mean"].get<double>());
   EXPECT_NEAR(run[known]["before_um"]["mean"].get<double>(), run[predicted]["before_um"]["mean"].get<double>(),
               run[predicted]["after_expanded_um"]["mean"].get<double>());
-  // The random poses of both commands are the same ones if the seed that the name states is.
-  const nlohmann::json again = json_of({"verify", "results", "--seed", "79190"});
-  EXPECT_THAT(run["held_out"]["description"].get<std::string>(), HasSubstr("(seed 79190)"));
-  EXPECT_EQ(run["held_out"]["quantity"], again["unseen_poses"]["quantity"]);
+  // The random poses of both commands are the same ones, and so is what they say of them.
+  const nlohmann::json &held_out = run["held_out"], &unseen = verify["unseen_poses"];
+  EXPECT_THAT(held_out["description"].get<std::string>(), HasSubstr("(seed 79190)"));
+  EXPECT_EQ(unseen["seed"], 79190);
+  EXPECT_EQ(held_out["quantity"], unseen["quantity"]);
+  EXPECT_EQ(held_out["poses"], unseen["poses"]);
+  EXPECT_EQ(held_out["position_before_um"], unseen["position_before_um"]);
+  EXPECT_NEAR(held_out["position_after_um"]["mean"], unseen["position_after_um"]["mean"],
+              1e-3 * unseen["position_after_um"]["mean"].get<double>());
 }
 
 TEST_F(VolumetricFigures, OfMeasuredReadingsAreThosePredictedAndResidualsAreCalledResiduals) {

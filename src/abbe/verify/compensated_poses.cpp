@@ -24,7 +24,7 @@ using Eigen::Index;
 constexpr double kLine = 1;
 
 /// What becomes of a command that is corrected.
-enum class Reach { reached, outside_travel, not_covered };
+enum class Reach { reached, outside_travel, not_covered, not_reached };
 
 /// Commands for identified errors, with their reversal values where the list knows the approach.
 /// @param reach  becomes [poses]
@@ -48,12 +48,14 @@ PoseList corrected_commands(const Machine& machine, const ErrorSet& identified, 
   arrays.axis = to;
   arrays.status = status.data();
   inverse.correct({from, count}, arrays);
-  reach.assign(count, Reach::outside_travel);
+  reach.assign(count, Reach::not_reached);
   for (std::size_t k = 0; k < count; ++k) {
     if (reaches_point(status[k])) {
       reach[k] = Reach::reached;
     } else if (status[k] == CorrectionStatus::not_covered) {
       reach[k] = Reach::not_covered;
+    } else if (status[k] == CorrectionStatus::outside_travel) {
+      reach[k] = Reach::outside_travel;
     }
   }
   const ReversalShift reversal(identified);
@@ -169,8 +171,10 @@ CompensatedPoses check_compensated_poses(const Machine& machine, const ErrorSet&
   for (std::size_t k = 0; k < commands.count(); ++k) {
     if (reach[k] == Reach::not_covered || before.covered[k] == 0 || after.covered[k] == 0) {
       ++result.not_covered;
-    } else if (reach[k] != Reach::reached) {
+    } else if (reach[k] == Reach::outside_travel) {
       ++result.outside_travel;
+    } else if (reach[k] == Reach::not_reached) {
+      ++result.not_reached;
     } else {
       used.push_back(k);
     }
@@ -189,6 +193,17 @@ CompensatedPoses check_compensated_poses(const Machine& machine, const ErrorSet&
   result.direction_after_statistics = sample_statistics(result.direction_after);
   result.uncertainty_statistics = sample_statistics(result.uncertainty);
   return result;
+}
+
+std::vector<double> errors_at_commands(const Machine& machine, const ErrorSet& actual, const ErrorSet& wanted,
+                                       const PoseList& commands, std::vector<std::uint8_t>& used) {
+  const ToolPlaces at = actual_tool(machine, actual, commands), should = actual_tool(machine, wanted, commands);
+  std::vector<std::size_t> both;
+  for (std::size_t k = 0; k < commands.count(); ++k) {
+    if (at.covered[k] == 0 || should.covered[k] == 0) used[k] = 0;
+    if (used[k] != 0) both.push_back(k);
+  }
+  return left_after_datum(at, should, both).norm;
 }
 
 }  // namespace abbe

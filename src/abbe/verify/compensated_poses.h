@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "abbe/errors/error_set.h"
@@ -14,7 +15,8 @@ namespace abbe {
 
 /// What a compensation leaves of the errors of a machine at poses, each pose one value.
 struct CompensatedPoses {
-  std::size_t outside_travel = 0;  ///< the corrected commands leave the travel or do not reach the point
+  std::size_t outside_travel = 0;  ///< the corrected commands leave the travel
+  std::size_t not_reached = 0;     ///< no command of the axes that are corrected reaches the point
   std::size_t not_covered = 0;     ///< outside the range in which one of the errors is known
   /// Of the workpiece datum. Where it is not ok, the turn of the workpiece is not determined by the poses, and the
   /// lists and figures below are empty.
@@ -51,5 +53,13 @@ struct CompensatedPoses {
 ///         covariance_root()
 CompensatedPoses check_compensated_poses(const Machine& machine, const ErrorSet& truth, const ErrorSet& identified,
                                          const Eigen::MatrixXd& covariance, const PoseList& commands);
+
+/// Volumetric error at commands as they are: where a machine with `actual` errors has the tool, against where one with
+/// `wanted` errors has it, each coming from the sides that the list knows, after the best fit of the workpiece datum.
+/// With no errors wanted it is `before` of check_compensated_poses() at the same poses.
+/// @param used  [poses] 0: the pose takes no part; becomes 0 where the errors of either machine are not known
+/// @return [used poses], mm; empty if these do not determine the turn of the workpiece
+std::vector<double> errors_at_commands(const Machine& machine, const ErrorSet& actual, const ErrorSet& wanted,
+                                       const PoseList& commands, std::vector<std::uint8_t>& used);
 
 }  // namespace abbe

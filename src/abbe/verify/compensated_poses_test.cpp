@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
 
 #include "abbe/compensate/errors_for_test.h"
 #include "abbe/errors/random_stream.h"
@@ -60,6 +63,22 @@ TEST_F(PosesOfACompensatedMachine, NothingIsLeftOfErrorsThatAreKnownExactly) {
   EXPECT_GT(check.direction_before_statistics.mean, 3e-5);
   EXPECT_EQ(check.uncertainty_ratio(), 0);
   EXPECT_TRUE(check.uncertainty.empty());
+}
+
+TEST_F(PosesOfACompensatedMachine, TheErrorAtTheCommandsAsTheyAreIsTheOneBefore) {
+  const PoseList list = poses(100);
+  const CompensatedPoses check = check_compensated_poses(machine, identified, identified, nothing, list);
+  std::vector<std::uint8_t> used(100, 1);
+  EXPECT_EQ(errors_at_commands(machine, identified, ErrorSet{}, list, used), check.before);
+  // Against themselves nothing is left; of a machine without the reversal values these are, whatever is not used.
+  used[3] = 0;
+  const std::vector<double> same = errors_at_commands(machine, identified, identified, list, used);
+  EXPECT_EQ(same.size(), 99U);
+  EXPECT_LT(*std::max_element(same.begin(), same.end()), 1e-9);
+  ErrorSet mean = identified;
+  mean.reversals.clear();
+  const std::vector<double> reversal = errors_at_commands(machine, identified, mean, list, used);
+  EXPECT_GT(*std::min_element(reversal.begin(), reversal.end()), 1e-3);
 }
 
 TEST_F(PosesOfACompensatedMachine, ReversalValuesThatAreNotKnownStay) {
