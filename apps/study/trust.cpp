@@ -28,6 +28,19 @@ std::string warning_of_poor_fit(const FitStatistics& fit) {
       std::sqrt(fit.variance_factor), fit.p_value);
 }
 
+/// The covariance scaled to the residuals of the fit: noise stated too large or too small hides nothing, and refuses
+/// nothing.
+HeldOutErrors held_out_errors(const UnseenPoses& unseen, const FitStatistics& fit) {
+  HeldOutErrors errors{.before = unseen.before,
+                       .after = unseen.after,
+                       .readings = !unseen.against_truth,
+                       .numbers = 3 * static_cast<double>(unseen.before.size()),
+                       .fitted_before = static_cast<double>(unseen.fitted_before)};
+  for (const double expanded : unseen.expanded_uncertainty) errors.predicted_square += 0.25 * expanded * expanded;
+  if (fit.variance_factor > 0) errors.predicted_square *= fit.variance_factor;
+  return errors;
+}
+
 std::vector<ReadingFacts> facts_of(const Campaign& campaign) {
   std::vector<ReadingFacts> facts;
   for (const std::unique_ptr<CampaignSetup>& setup : campaign.setups) facts.push_back(setup->facts());
@@ -80,10 +93,9 @@ void judge_trust(const Study& study, StudyResult& result) {
   doubt(std::move(misfit));
   if (result.unseen && !result.unseen->after.empty()) {
     const UnseenPoses& unseen = *result.unseen;
-    doubt(distrust_of_held_out({.mean_before = unseen.before_statistics.mean,
-                                .mean_after = unseen.after_statistics.mean,
-                                .count = 3 * static_cast<double>(unseen.before_statistics.count),
-                                .fitted_before = static_cast<double>(unseen.fitted_before)}));
+    const HeldOutErrors errors = held_out_errors(unseen, identified.statistics);
+    doubt(distrust_of_held_out(errors));
+    warn(warning_of_held_out(errors));
   }
   const std::vector<ReadingFacts> facts = facts_of(result.campaign);
   judge_outliers(facts, study.identification->loss != LossKind::none, result);

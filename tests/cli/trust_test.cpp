@@ -36,7 +36,7 @@ order = 2
 coefficients_um = [0, -20, 15]
 )";
 
-constexpr const char* kTrustSetup = R"([[setup]]
+const std::string kTrustSetup = std::string(R"([[setup]]
 name = "tracker"
 instrument = "tracker"
 noise = { xyz_um = 5 }
@@ -44,16 +44,7 @@ noise = { xyz_um = 5 }
 name = "S"
 pose = "find"
 true_pose = { position_mm = [300, -900, 150], angles_deg = [5, -3, 130] }
-[[setup.reflector]]
-name = "R1"
-offset_mm = [60, 0, -150]
-[[setup.reflector]]
-name = "R2"
-offset_mm = [0, 80, -250]
-[[setup.reflector]]
-name = "R3"
-offset_mm = [-70, -30, -100]
-)";
+)") + kThreeReflectors;
 
 constexpr const char* kTrustPlan = "[[setup.plan]]\nkind = \"grid\"\naxis.X = { count = 12 }\naxis.Z = { count = 6 }\n";
 
@@ -167,17 +158,41 @@ TEST_F(TrustOfResults, AcceptedItIsUsedButStaysMarked) {
 }
 
 TEST_F(TrustOfResults, ErrorsThatMakeHeldOutPosesWorseAreRefused) {
-  // The stated noise hides the misfit; what is identified is another axis's error.
+  // The stated noise hides the misfit; the readings held out are of a machine with the opposite errors.
   measure();
-  write_study(replaced(kTrustSetup, "xyz_um = 5", "xyz_um = 1000"),
-              replaced(kTrustIdentify, "errors = [\"E?X\", \"E?Z\"]", "errors = [\"EAX\", \"EBZ\"]"));
+  std::filesystem::rename(folder.path() / "simulated", folder.path() / "measured");
+  std::string mirrored = kTrustTruth;
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"[0, 30, 20]", "[0, -30, -20]"}, {"[0, 0, -25]", "[0, 0, 25]"}, {"[0, -20, 15]", "[0, 20, -15]"}}) {
+    mirrored = replaced(mirrored, from, to);
+  }
+  folder.write("truth.errors.toml", mirrored);
+  measure();
+  write_study(
+      replaced(kTrustSetup, "xyz_um = 5", "xyz_um = 1000"),
+      replaced(kTrustIdentify, "held_out_fraction = 0.2", "held_out_file = \"simulated/readings/tracker.csv\""));
+  folder.write("s.study.toml", replaced(folder.read("s.study.toml"), "[[setup.data]]\nfile = \"simulated",
+                                        "[[setup.data]]\nfile = \"measured"));
   const CommandResult run = abbe({"run", "s.study.toml", "--json"});
-  const nlohmann::json figures = nlohmann::json::parse(run.out);
+  const nlohmann::json figures = nlohmann::json::parse(run.out, nullptr, false);
+  ASSERT_TRUE(figures.is_object()) << run.err;
   const double before = figures["held_out"]["position_before_um"]["mean"];
   const double after = figures["held_out"]["position_after_um"]["mean"];
   ASSERT_GT(after, before);
   EXPECT_EQ(run.exit_code, computation_says_no) << run.err;
   EXPECT_EQ(figures["distrusted"][0]["kind"], "worse held out");
+}
+
+TEST_F(TrustOfResults, AMachineWithoutErrorsIsNotRefused) {
+  folder.write("truth.errors.toml", "chain = \"w X' b Z t\"\n");
+  measure();
+  write_study();
+  const CommandResult run = abbe({"run", "s.study.toml", "--json"});
+  EXPECT_EQ(run.exit_code, done) << run.err;
+  const nlohmann::json figures = nlohmann::json::parse(run.out);
+  ASSERT_GT(figures["held_out"]["position_after_um"]["mean"], figures["held_out"]["position_before_um"]["mean"]);
+  EXPECT_EQ(figures["trusted"], true);
+  EXPECT_THAT(figures["warnings"], Contains(HasSubstr("the correction shows no improvement there")));
 }
 
 TEST_F(TrustOfResults, WarningsStandInEveryFile) {

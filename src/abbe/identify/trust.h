@@ -12,7 +12,7 @@ namespace abbe {
 
 enum class DistrustKind {
   misfit,            ///< chi-square too large for chance
-  worse_held_out,    ///< the error at poses not used is larger after the correction than before
+  worse_held_out,    ///< the error at poses not used is larger after the correction than before, and not by chance
   implausible_size,  ///< an error larger than any machine in use has
   region_left_out    ///< a robust loss throws out most readings of a region, a station, a reflector or a time
 };
@@ -39,14 +39,22 @@ std::string warning_of_overstated_noise(const FitStatistics& fit);
 
 /// Errors at poses that took no part in the fit, before and after the correction with the identified errors.
 struct HeldOutErrors {
-  double mean_before = 0, mean_after = 0;  ///< mm
-  double count = 0;                        ///< numbers compared, such as three per point
+  std::vector<double> before, after;  ///< length at each pose or reading, the same ones in the same order, mm
+  /// Sum over them of the variance that the covariance of the estimates gives a prediction, scaled to the residuals of
+  /// the fit, mm^2.
+  double predicted_square = 0;
+  bool readings = true;      ///< the lengths are residuals and have the noise of readings in them; else true errors
+  double numbers = 0;        ///< numbers compared, such as three per point
   double fitted_before = 0;  ///< numbers of the set-up that were fitted to these very readings before, not after
 };
 
-/// The mean error is larger after than before. A set-up fitted to the compared readings makes the error before smaller
-/// than that of other readings; that is allowed for.
+/// The errors after are larger than before, in the sum of squares, by more than the noise and the uncertainty of the
+/// identified errors explain: if model and noise are right, an error-free machine is distrusted with a probability of
+/// kNoChance at most, and one with errors more rarely. Derivation in docs/identification.md.
 std::optional<Distrust> distrust_of_held_out(const HeldOutErrors& errors);
+
+/// A warning where the errors after are larger on average, but within what chance explains. Empty: none.
+std::string warning_of_held_out(const HeldOutErrors& errors);
 
 /// Sizes beyond which an error is taken for a fault of the input: a wrong axis, unit, reflector or sign.
 ///

@@ -3,8 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
+#include "abbe/errors/random_stream.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/identify/distributions.h"
 #include "abbe/machine/machines_for_test.h"
@@ -43,16 +48,105 @@ TEST(Trust, OverstatedNoiseIsTold) {
   EXPECT_EQ(warning_of_overstated_noise(FitStatistics{}), "");
 }
 
-TEST(Trust, ALargerErrorAtHeldOutPosesIsDistrusted) {
-  EXPECT_FALSE(distrust_of_held_out({.mean_before = 0.1, .mean_after = 0.02, .count = 300}));
-  const auto found = distrust_of_held_out({.mean_before = 0.1, .mean_after = 0.11, .count = 300});
+TEST(Trust, ATrueErrorThatTheCorrectionMakesLargerIsDistrusted) {
+  HeldOutErrors errors{.before = std::vector<double>(100, 0.1),
+                       .after = std::vector<double>(100, 0.02),
+                       .predicted_square = 100 * 0.005 * 0.005,
+                       .readings = false,
+                       .numbers = 300};
+  EXPECT_FALSE(distrust_of_held_out(errors));
+  errors.after.assign(100, 0.11);
+  const auto found = distrust_of_held_out(errors);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->kind, DistrustKind::worse_held_out);
   EXPECT_THAT(found->text, HasSubstr("110 um after the correction and 100 um before"));
+  EXPECT_EQ(warning_of_held_out(errors), "");
+  // Not if the identified errors are said to be known no better.
+  errors.predicted_square = 100 * 0.05 * 0.05;
+  EXPECT_FALSE(distrust_of_held_out(errors));
+  EXPECT_THAT(warning_of_held_out(errors), HasSubstr("shows no improvement"));
   // Four points to which a station was fitted before: half of the error went into the station.
-  EXPECT_FALSE(distrust_of_held_out({.mean_before = 0.1, .mean_after = 0.13, .count = 12, .fitted_before = 6}));
-  EXPECT_TRUE(distrust_of_held_out({.mean_before = 0.1, .mean_after = 0.15, .count = 12, .fitted_before = 6}));
-  EXPECT_FALSE(distrust_of_held_out({.mean_before = 0, .mean_after = 0.1, .count = 6, .fitted_before = 6}));
+  HeldOutErrors few{.before = std::vector<double>(4, 0.1),
+                    .after = std::vector<double>(4, 0.13),
+                    .readings = false,
+                    .numbers = 12,
+                    .fitted_before = 6};
+  EXPECT_FALSE(distrust_of_held_out(few));
+  few.after.assign(4, 0.15);
+  EXPECT_TRUE(distrust_of_held_out(few));
+  few.numbers = 6;
+  EXPECT_FALSE(distrust_of_held_out(few));
+}
+
+/// A linear machine: parameters from readings with noise, then residuals of other readings of it.
+class HeldOutCampaigns {
+ public:
+  static constexpr Eigen::Index kParameters = 12, kUsed = 150, kHeldOut = 50, kFitted = 6;
+
+  /// @param errors   true parameters in units of what noise makes of them
+  /// @param changed  the machine that is held out has its errors so many times
+  HeldOutErrors errors(std::uint64_t seed, double size, double changed, bool readings, bool station) const {
+    RandomStream random(seed, 3);
+    const auto matrix = [&](Eigen::Index rows, Eigen::Index columns) {
+      Eigen::MatrixXd result(rows, columns);
+      for (Eigen::Index i = 0; i < result.size(); ++i) result.data()[i] = random.normal();
+      return result;
+    };
+    const Eigen::MatrixXd used = matrix(3 * kUsed, kParameters), other = matrix(3 * kHeldOut, kParameters);
+    const Eigen::VectorXd truth = size * matrix(kParameters, 1);
+    const Eigen::MatrixXd normal = used.transpose() * used;
+    const Eigen::VectorXd found = normal.ldlt().solve(used.transpose() * (used * truth + matrix(3 * kUsed, 1)));
+    Eigen::VectorXd before = changed * other * truth;
+    if (readings) before += matrix(3 * kHeldOut, 1);
+    const Eigen::VectorXd after = before - other * found;
+    if (station) {
+      const Eigen::MatrixXd moved = matrix(3 * kHeldOut, kFitted);
+      before -= moved * (moved.transpose() * moved).ldlt().solve(moved.transpose() * before);
+    }
+    HeldOutErrors result;
+    result.readings = readings;
+    result.numbers = 3.0 * kHeldOut;
+    result.fitted_before = station ? static_cast<double>(kFitted) : 0.0;
+    for (Eigen::Index k = 0; k < kHeldOut; ++k) {
+      result.before.push_back(before.segment<3>(3 * k).norm());
+      result.after.push_back(after.segment<3>(3 * k).norm());
+    }
+    result.predicted_square = (other * normal.ldlt().solve(other.transpose())).trace();
+    return result;
+  }
+
+  /// How many of 200 campaigns are distrusted, and how many are worse on average.
+  std::pair<int, int> distrusted(double size, double changed, bool readings, bool station) const {
+    std::pair<int, int> counts{0, 0};
+    for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+      const HeldOutErrors campaign = errors(seed, size, changed, readings, station);
+      counts.first += distrust_of_held_out(campaign) ? 1 : 0;
+      counts.second += distrust_of_held_out(campaign) || !warning_of_held_out(campaign).empty() ? 1 : 0;
+    }
+    return counts;
+  }
+};
+
+TEST(Trust, AnExactMachineIsNotDistrustedForItsNoise) {
+  const HeldOutCampaigns campaigns;
+  for (const bool station : {false, true}) {
+    const auto [refused, worse] = campaigns.distrusted(0, 1, true, station);
+    EXPECT_EQ(refused, 0);
+    EXPECT_GT(worse, 150) << "most are worse on average";
+  }
+  EXPECT_EQ(campaigns.distrusted(0, 1, false, false), std::pair(0, 200));
+  // Errors as large as what noise makes of them: a correction may help or not.
+  EXPECT_EQ(campaigns.distrusted(0.05, 1, true, true).first, 0);
+}
+
+TEST(Trust, AMachineThatIsNotTheOneMeasuredIsDistrusted) {
+  const HeldOutCampaigns campaigns;
+  for (const bool station : {false, true}) {
+    // Sign of an axis the other way, errors as large as the noise each; a machine that has none any more.
+    EXPECT_GE(campaigns.distrusted(1, -1, true, station).first, 190);
+    EXPECT_GE(campaigns.distrusted(4, 0, true, station).first, 190);
+  }
+  EXPECT_EQ(campaigns.distrusted(0.5, -1, false, false).first, 200);
 }
 
 TEST(Trust, ImplausibleSizesAreDistrusted) {
