@@ -204,14 +204,6 @@ void judge_extreme(ExtremeKind extreme, const SimulatedSet& set, const ShapeFit&
   }
 }
 
-/// Robust: an answer; stationary with its weights.
-void judge_robust(const SimulatedSet& set, const ShapeFit& fit) {
-  ASSERT_EQ(fit.status, FitStatus::ok) << words(set, fit);
-  const double n = static_cast<double>(set.count()), rounding = 10 * rounding_of(set) * std::sqrt(n);
-  const Eigen::VectorXd d = distances_from(fit.shape, set.points);
-  EXPECT_LE(step_left(fit.shape, set, fit.weights), 1e-5 * d.norm() + rounding) << words(set, fit);
-}
-
 /// The sets of a shape that determine it to `uncertainty`. @param closed  all around
 template <class Judge>
 void for_each_set(ShapeKind kind, int count, std::uint64_t seed, double uncertainty, bool closed, const Judge& judge) {
@@ -227,6 +219,13 @@ void for_each_set(ShapeKind kind, int count, std::uint64_t seed, double uncertai
 }
 
 }  // namespace
+
+void judge_robust(const SimulatedSet& set, const ShapeFit& fit) {
+  ASSERT_EQ(fit.status, FitStatus::ok) << words(set, fit);
+  const double n = static_cast<double>(set.count()), rounding = 10 * rounding_of(set) * std::sqrt(n);
+  const Eigen::VectorXd d = distances_from(fit.shape, set.points);
+  EXPECT_LE(step_left(fit.shape, set, fit.weights), 1e-5 * d.norm() + rounding) << words(set, fit);
+}
 
 void simulate_least_squares(int count, std::uint64_t seed) {
   for (const ShapeKind kind : all_kinds()) {

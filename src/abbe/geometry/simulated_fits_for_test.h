@@ -24,6 +24,9 @@ double rounding_of(const SimulatedSet& set);
 /// [points] mm
 Eigen::VectorXd distances_from(const Shape& shape, const Eigen::Matrix3Xd& points);
 
+/// Of a robust fit: there is an answer, and it is stationary with its weights.
+void judge_robust(const SimulatedSet& set, const ShapeFit& fit);
+
 /// Fits `count` sets of each shape and judges every answer.
 void simulate_least_squares(int count, std::uint64_t seed);
 void simulate_extreme(ExtremeKind extreme, int count, std::uint64_t seed);

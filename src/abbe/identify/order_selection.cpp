@@ -13,6 +13,9 @@
 namespace abbe {
 namespace {
 
+// Mean square of the residuals, variances: exact readings, whose residuals are rounding.
+constexpr double kNothingLeft = 1e-6;
+
 bool is_nested(const Basis& basis) {
   return basis.kind == BasisKind::monomial || basis.kind == BasisKind::legendre || basis.kind == BasisKind::chebyshev ||
          basis.kind == BasisKind::fourier;
@@ -177,6 +180,8 @@ class OrderSearch {
   }
 
   /// Raises a nested group by one; or by two, because an even error may need the fourth and not the third degree.
+  /// Taken is what predicts held-out readings better at all: with a test of significance, terms stay out that are
+  /// there, and the covariance, which knows nothing of them, is too small.
   bool raise(std::size_t g) {
     for (const int more : {1, 2}) {
       std::vector<int> orders = result.orders;
@@ -185,7 +190,8 @@ class OrderSearch {
       std::vector<double> squares = tried(orders, groups_[g].name);
       if (squares.empty()) continue;
       result.trials.back().exceedance = paired_exceedance(best_, squares);
-      if (!is_better(best_, squares)) continue;
+      // Residuals far below the noise have nothing left to tell.
+      if (!(mean(squares) < mean(best_)) || mean(best_) < kNothingLeft) continue;
       accept(result.trials.size() - 1, std::move(squares));
       return true;
     }

@@ -35,7 +35,7 @@ Problem at_nested_orders(Problem problem, const std::vector<OrderGroup>& groups,
 
 struct OrderSelectionOptions {
   int folds = 5;                ///< held-out parts; poses with the same axis positions stay together
-  double significance = 0.05;   ///< a higher order stays if the held-out error falls with this significance
+  double significance = 0.05;   ///< more intervals are taken if the held-out error falls with this significance
   double minimum_gain = 0.001;  ///< ... and by at least this relative amount
   std::uint64_t seed = 1;       ///< of the partition
   IdentifyOptions identify;
