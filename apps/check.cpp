@@ -122,7 +122,7 @@ void add_check_command(CommandLine& line) {
       "  abbe check examples/parts/wedge.stl --unit mm\n"
       "A frozen compensation (abbe compensate freeze) is refused here as a controller would refuse it.\n"
       "Exit code 1: a mesh in which inside and outside are not told apart everywhere (turned or branching edges,\n"
-      "duplicate triangles, inside out). Holes are counted and are no error.");
+      "duplicate triangles, inside out), or of which faces were left out. Holes are counted and are no error.");
   command
       ->add_option("file", options->file,
                    "Machine file (*.machine.toml), frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or "

@@ -61,15 +61,17 @@ struct CheckedMesh {
   std::size_t repeated = 0;
 
   bool is_inside_out() const { return check.encloses_volume() && check.volume < 0; }
-  /// Inside and outside are told apart wherever there is a surface.
+  /// Nothing is left out, and inside and outside are told apart wherever there is a surface.
   bool is_sound() const {
-    return check.is_oriented() && check.branching_edges == 0 && check.duplicate_triangles == 0 && !is_inside_out();
+    return file.left_out.empty() && check.is_oriented() && check.branching_edges == 0 &&
+           check.duplicate_triangles == 0 && !is_inside_out();
   }
 };
 
 std::string verdict(const CheckedMesh& mesh) {
   const MeshCheck& check = mesh.check;
   std::vector<std::string> words;
+  if (!mesh.file.left_out.empty()) words.push_back("incomplete: " + left_out_words(mesh.file));
   if (check.encloses_volume()) {
     words.push_back(mesh.is_inside_out() ? "closed, but inside out: every triangle is turned over"
                                          : "closed, turned outwards");
@@ -147,6 +149,8 @@ Json mesh_json(const CheckedMesh& mesh) {
     json["faces"] = mesh.file.faces;
     if (mesh.file.has_exact_faces()) {
       json["deviation_mm"] = mesh.file.deviation_mm;
+      json["left_out"] = mesh.file.left_out;
+      json["left_out_share"] = mesh.file.left_out_share ? Json(*mesh.file.left_out_share) : Json();
     } else {
       json["face_names"] = mesh.file.face_names;
     }

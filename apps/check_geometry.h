@@ -17,7 +17,7 @@ struct GeometryCheckOptions {
 bool is_geometry_file(const std::string& file);
 
 /// Reads a point cloud or a mesh and says what it is. @returns kNegative for a mesh in which inside and outside are not
-/// told apart everywhere. @throws InputError
+/// told apart everywhere or of which faces were left out. @throws InputError
 int check_geometry(const GeometryCheckOptions& options);
 
 }  // namespace abbe

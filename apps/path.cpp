@@ -124,14 +124,21 @@ nlohmann::ordered_json path_json(const Machine& machine, const ToolPath& path, c
 void write_page(const PathCommand& command, const Machine& machine, const ToolPath& path,
                 const std::vector<std::vector<double>>& commands) {
   std::optional<SurfacePicture> part;
-  if (!command.part.empty()) part = part_picture(command.step.read(command.part).mesh, 0, 0);
+  std::string incomplete;
+  if (!command.part.empty()) {
+    const MeshFile mesh = command.step.read(command.part);
+    part = part_picture(mesh.mesh, 0, 0);
+    if (!mesh.left_out.empty()) incomplete = "; incomplete: " + left_out_words(mesh);
+  }
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   std::vector<std::pair<std::string, std::string>> facts{
       {"curve", name(command.curve)},
       {"moves", fmt::format("{} in {} region{}", path.steps.size(), path.regions, path.regions == 1 ? "" : "s")},
       {"at work", fmt::format("{:.3f} mm, {:.2f} s at the feeds", path.working_length, path.working_time)},
       {"off the straight lines", fmt::format("at most {:.3f} \xC2\xB5m", 1e3 * path.largest_deviation)}};
-  if (part) facts.emplace_back("part", fmt::format("{}, {} triangles", name(command.part), part->triangles_of_part));
+  if (part)
+    facts.emplace_back("part",
+                       fmt::format("{}, {} triangles{}", name(command.part), part->triangles_of_part, incomplete));
   write_file_atomically(command.report, path_page("Tool path of " + name(command.curve), machine, facts,
                                                   path_picture(machine, path, commands), part));
 }

@@ -3,23 +3,54 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/step_file.h"
+#include "messages.h"
 #include "options.h"
+#include "progress.h"
 
 namespace abbe {
 
 void StepReading::add_to(Subcommand* command) {
-  added_.push_back(
+  added_ = {
       command
-          ->add_option("--chord-mm", options_.chord_mm, "STEP: largest distance of the triangles from the exact faces")
+          ->add_option("--chord-mm", options_.chord_mm,
+                       "STEP: largest distance of the triangles from the exact faces (default: 0.01; for parts "
+                       "under 10 mm a thousandth of the size, over 100 mm a ten-thousandth, at most 0.1)")
+          ->check(positive_number()),
+      command
+          ->add_option("--step-seconds", options_.most_seconds,
+                       "STEP: longest time for the file, a third of it for one face")
           ->check(positive_number())
-          ->capture_default_str());
+          ->capture_default_str(),
+      command->add_flag("--leave-out-faces", options_.leave_out_faces,
+                        "STEP: go on without faces that cannot be read, and name them (default: refuse the file)")};
 }
 
 MeshFile StepReading::read(const std::filesystem::path& mesh, std::optional<FileLength> unit, int threads) const {
-  return read_mesh(mesh, {unit, threads, options_});
+  MeshFileOptions options{unit, threads, options_};
+  Progress progress("reading " + mesh.filename().string());
+  options.step.progress = [&](const std::string& /*what*/, std::size_t done, std::size_t total) {
+    progress(done, total);
+  };
+  MeshFile read = read_mesh(mesh, options);
+  if (!read.left_out.empty()) tell("abbe: warning: {}: {}\n", mesh.string(), left_out_words(read));
+  return read;
+}
+
+std::string left_out_words(const MeshFile& mesh) {
+  if (mesh.left_out.empty()) return "";
+  constexpr std::size_t kShown = 5;
+  const std::size_t count = mesh.left_out.size(), shown = std::min(count, kShown);
+  const std::string share =
+      mesh.left_out_share ? fmt::format("{:.2g} % of the area", 100 * *mesh.left_out_share) : "of unknown area";
+  std::string words =
+      fmt::format("{} {} left out ({}): {}", count, count == 1 ? "face is" : "faces are", share,
+                  fmt::join(mesh.left_out.begin(), mesh.left_out.begin() + static_cast<std::ptrdiff_t>(shown), "; "));
+  if (count > shown) words += fmt::format("; and {} more", count - shown);
+  return words;
 }
 
 const Option* StepReading::given() const {

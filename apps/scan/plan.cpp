@@ -71,7 +71,14 @@ TriangleMesh read_part(const std::string& file, const StepReading& step) {
 
 ScanPlanOptions scan_options(const PlanOptions& options) {
   ScanPlanOptions scan = options.scan;
-  if (!options.stage.empty()) scan.stage = options.step.read(options.stage).mesh;
+  if (!options.stage.empty()) {
+    MeshFile stage = options.step.read(options.stage);
+    if (!stage.left_out.empty()) {
+      throw InputError({options.stage, 0, 0, ""}, left_out_words(stage),
+                       "all of the stage, as the probe has to keep clear of it");
+    }
+    scan.stage = std::move(stage.mesh);
+  }
   scan.workpiece_from_part = {
       rotation_from_error_angles(Eigen::Vector3d(options.turn[0], options.turn[1], options.turn[2]) * kDegree),
       {options.position[0], options.position[1], options.position[2]}};

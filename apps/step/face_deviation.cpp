@@ -75,39 +75,8 @@ double distance_by_steps(const BRepAdaptor_Surface& surface, const gp_Pnt& point
 
 /// The larger one. A distance that is no number would otherwise be lost in comparisons.
 double larger(double distance, double largest) {
-  if (!std::isfinite(distance)) throw std::runtime_error("a point of a face is not finite");
+  if (!std::isfinite(distance)) throw std::runtime_error("a point of it is not finite");
   return std::max(distance, largest);
-}
-
-double triangles_deviation(const TopoDS_Face& face, const Poly_Triangulation& triangulation,
-                           const gp_Trsf& part_from_face, double largest) {
-  const BRepAdaptor_Surface surface(face, Standard_False);
-  constexpr int kParts = 6;
-  for (int i = 1; i <= triangulation.NbTriangles(); ++i) {
-    std::array<int, 3> nodes{};
-    triangulation.Triangle(i).Get(nodes[0], nodes[1], nodes[2]);
-    std::array<gp_XYZ, 3> corners;
-    std::array<gp_XY, 3> parameters;
-    for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = triangulation.Node(nodes[k]).Transformed(part_from_face).XYZ();
-      if (triangulation.HasUVNodes()) parameters[k] = triangulation.UVNode(nodes[k]).XY();
-    }
-    for (int a = 0; a <= kParts; ++a) {
-      for (int b = 0; a + b <= kParts; ++b) {
-        const double wa = a / double{kParts}, wb = b / double{kParts}, wc = 1 - wa - wb;
-        const gp_Pnt point(corners[0] * wa + corners[1] * wb + corners[2] * wc);
-        if (const std::optional<double> distance = distance_in_closed_form(surface, point)) {
-          largest = larger(*distance, largest);
-          continue;
-        }
-        if (!triangulation.HasUVNodes()) throw std::runtime_error("triangles of a face have no parameters");
-        const gp_XY uv = parameters[0] * wa + parameters[1] * wb + parameters[2] * wc;
-        if (point.Distance(surface.Value(uv.X(), uv.Y())) <= largest) continue;
-        largest = larger(distance_by_steps(surface, point, uv.X(), uv.Y()), largest);
-      }
-    }
-  }
-  return largest;
 }
 
 double distance_to_piece(const gp_XYZ& point, const gp_XYZ& begin, const gp_XYZ& end) {
@@ -122,31 +91,66 @@ double edge_deviation(const TopoDS_Edge& edge, const Handle(Poly_Triangulation) 
   // The pole of a sphere and the apex of a cone are edges without length.
   if (BRep_Tool::Degenerated(edge)) return largest;
   const Handle(Poly_PolygonOnTriangulation) polygon = BRep_Tool::PolygonOnTriangulation(edge, triangulation, location);
-  if (polygon.IsNull() || !polygon->HasParameters()) throw std::runtime_error("an edge of a face was not divided");
+  if (polygon.IsNull() || !polygon->HasParameters()) throw std::runtime_error("one of its edges was not divided");
   const BRepAdaptor_Curve curve(edge);
   const gp_Trsf part_from_face = location.Transformation();
-  constexpr int kParts = 8;
   for (int i = 1; i < polygon->NbNodes(); ++i) {
     const gp_XYZ begin = triangulation->Node(polygon->Node(i)).Transformed(part_from_face).XYZ();
     const gp_XYZ end = triangulation->Node(polygon->Node(i + 1)).Transformed(part_from_face).XYZ();
-    const double from = polygon->Parameter(i), to = polygon->Parameter(i + 1);
-    for (int k = 1; k < kParts; ++k) {
-      const gp_Pnt point = curve.Value(from + (to - from) * k / kParts);
-      largest = larger(distance_to_piece(point.XYZ(), begin, end), largest);
-    }
+    largest = larger(curve_deviation(curve, polygon->Parameter(i), polygon->Parameter(i + 1), begin, end), largest);
   }
   return largest;
 }
 
+Handle(Poly_Triangulation) triangles_of(const TopoDS_Face& face, TopLoc_Location& location) {
+  const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
+  if (triangulation.IsNull() || triangulation->NbTriangles() == 0) throw std::runtime_error("it has no triangles");
+  return triangulation;
+}
+
 }  // namespace
 
-double face_deviation(const TopoDS_Face& face, double at_least) {
-  TopLoc_Location location;
-  const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
-  if (triangulation.IsNull() || triangulation->NbTriangles() == 0) {
-    throw std::runtime_error("a face could not be divided into triangles");
+double curve_deviation(const BRepAdaptor_Curve& curve, double from, double to, const gp_XYZ& begin, const gp_XYZ& end) {
+  constexpr int kParts = 8;
+  double largest = 0;
+  for (int k = 1; k < kParts; ++k) {
+    const gp_Pnt point = curve.Value(from + (to - from) * k / kParts);
+    largest = larger(distance_to_piece(point.XYZ(), begin, end), largest);
   }
-  double largest = triangles_deviation(face, *triangulation, location.Transformation(), at_least);
+  return largest;
+}
+
+FaceDeviation triangle_deviation(const BRepAdaptor_Surface& surface, const std::array<gp_XYZ, 3>& corners,
+                                 const std::array<gp_XY, 3>* parameters, double small_mm) {
+  FaceDeviation found;
+  constexpr int kParts = 6;
+  for (int a = 0; a <= kParts; ++a) {
+    for (int b = 0; a + b <= kParts; ++b) {
+      const double wa = a / double{kParts}, wb = b / double{kParts}, wc = 1 - wa - wb;
+      const gp_Pnt point(corners[0] * wa + corners[1] * wb + corners[2] * wc);
+      const bool is_corner = a == kParts || b == kParts || a + b == 0;
+      double distance = 0;
+      if (const std::optional<double> closed = distance_in_closed_form(surface, point)) {
+        distance = *closed;
+      } else {
+        if (parameters == nullptr) throw std::runtime_error("its triangles have no parameters");
+        const gp_XY uv = (*parameters)[0] * wa + (*parameters)[1] * wb + (*parameters)[2] * wc;
+        distance = point.Distance(surface.Value(uv.X(), uv.Y()));
+        const double known = is_corner ? std::min(found.corners_mm, found.triangles_mm) : found.triangles_mm;
+        // The nearest point is not farther, and only the largest distance counts.
+        if (distance > std::max(known, small_mm)) distance = distance_by_steps(surface, point, uv.X(), uv.Y());
+      }
+      found.triangles_mm = larger(distance, found.triangles_mm);
+      if (is_corner) found.corners_mm = larger(distance, found.corners_mm);
+    }
+  }
+  return found;
+}
+
+double edges_deviation(const TopoDS_Face& face) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) triangulation = triangles_of(face, location);
+  double largest = 0;
   for (TopExp_Explorer edge(face, TopAbs_EDGE); edge.More(); edge.Next()) {
     largest = edge_deviation(TopoDS::Edge(edge.Current()), triangulation, location, largest);
   }

@@ -1,67 +1,26 @@
 #include "shape_triangles.h"
 
-#include <BRepMesh_IncrementalMesh.hxx>
-#include <BRepTools.hxx>
+#include <fmt/format.h>
+
+#include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
 #include <Eigen/Core>
-#include <IMeshTools_Parameters.hxx>
+#include <GProp_GProps.hxx>
 #include <Poly_Triangulation.hxx>
-#include <ShapeAnalysis_ShapeTolerance.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopLoc_Location.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
-#include <algorithm>
+#include <cmath>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "abbe/geometry/mesh_check.h"
 #include "abbe/geometry/vertex_welder.h"
-#include "face_deviation.h"
 
 namespace abbe {
 namespace {
-
-void divide(const TopoDS_Shape& shape, double deflection_mm, double angle_rad) {
-  BRepTools::Clean(shape);
-  IMeshTools_Parameters parameters;
-  parameters.Deflection = deflection_mm;
-  parameters.DeflectionInterior = deflection_mm;
-  parameters.Angle = angle_rad;
-  parameters.AngleInterior = angle_rad;
-  parameters.Relative = Standard_False;
-#ifndef ABBE_SANITIZED
-  // Faces one by one give the same triangles; the thread sanitizer does not see OpenCASCADE's locks.
-  parameters.InParallel = Standard_True;
-#endif
-  const BRepMesh_IncrementalMesh mesher(shape, parameters);
-}
-
-double shape_deviation(const TopoDS_Shape& shape) {
-  double largest = 0;
-  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
-    largest = face_deviation(TopoDS::Face(face.Current()), largest);
-  }
-  return largest;
-}
-
-/// The farthest point of a triangle may be between those that face_deviation() looks at.
-constexpr double kBetweenPoints = 1.03;
-
-/// Divides until the deviation is small enough. @returns deviation, deflection
-std::pair<double, double> divide_within(const TopoDS_Shape& shape, double chord_mm, double angle_rad) {
-  double deflection = chord_mm, best = 0;
-  // The deviation follows the deflection where that decides; three rounds are the rule. Below a fiftieth it does not:
-  // then the file's edges do not lie on its faces.
-  for (int round = 0; round < 12 && deflection > chord_mm / 50; ++round) {
-    divide(shape, deflection, angle_rad);
-    const double deviation = kBetweenPoints * shape_deviation(shape);
-    if (deviation <= chord_mm) return {deviation, deflection};
-    best = round == 0 ? deviation : std::min(best, deviation);
-    deflection *= std::clamp(0.95 * chord_mm / deviation, 0.3, 0.9);
-  }
-  throw ToleranceNotReached{best, ShapeAnalysis_ShapeTolerance().Tolerance(shape, 1)};
-}
 
 /// Triangles of the faces of one solid or shell, with their own vertices.
 struct Piece {
@@ -72,6 +31,8 @@ struct Piece {
 void add_face(const TopoDS_Face& face, std::uint32_t number, Piece& piece) {
   TopLoc_Location location;
   const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
+  // A face without area has none.
+  if (triangulation.IsNull()) return;
   const gp_Trsf part_from_face = location.Transformation();
   for (int i = 1; i <= triangulation->NbTriangles(); ++i) {
     int nodes[3] = {0, 0, 0};
@@ -120,33 +81,81 @@ struct Growing {
   }
 };
 
+double area_of(const TopoDS_Face& face) {
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(face, properties);
+  return std::abs(properties.Mass());
+}
+
+/// Says which faces are missing, or refuses them.
+void account_for_lost(const StepShape& read, const std::vector<LostFace>& lost, bool leave_out, StepMesh& result) {
+  result.left_out = read.left_out;
+  for (const LostFace& one : lost) result.left_out.push_back(read.face_name(one.face) + " " + one.problem);
+  if (!result.left_out.empty() && !leave_out) refuse_faces(result.left_out);
+}
+
+std::string deviation_note(const StepShape& read, const ShapeDivision& division, double chord_mm) {
+  return fmt::format("face {} is up to {:.3g} mm off its triangles instead of {:.3g} mm{}",
+                     read.face_name(division.worst), division.deviation_mm, chord_mm,
+                     division.gap_mm > 0.1 * chord_mm
+                         ? fmt::format(": the file's own edges lie up to {:.3g} mm beside it", division.gap_mm)
+                         : "");
+}
+
 }  // namespace
 
-StepMesh shape_triangles(const TopoDS_Shape& shape, double chord_mm, double angle_rad) {
+StepMesh shape_triangles(const StepShape& read, const ShapeTrianglesOptions& options) {
+  const double chord = options.division.chord_mm;
+  const ShapeDivision division = divide_shape(read.shape, options.division);
   StepMesh result;
-  std::tie(result.deviation_mm, result.deflection_mm) = divide_within(shape, chord_mm, angle_rad);
+  account_for_lost(read, division.lost, options.leave_out_faces, result);
+  if (division.deviation_mm > options.most_mm) {
+    throw StepRefused(
+        deviation_note(read, division, chord),
+        fmt::format("a chord tolerance of at least {:.3g} mm (--chord-mm)", 1.01 * division.deviation_mm));
+  }
+  if (division.deviation_mm > chord) result.notes.push_back(deviation_note(read, division, chord));
+  if (division.without_area > 0) {
+    result.notes.push_back(division.without_area == 1 ? "1 face has no area"
+                                                      : fmt::format("{} faces have no area", division.without_area));
+  }
+  result.deviation_mm = division.deviation_mm;
+  result.deflection_mm = division.deflection_mm;
+  std::set<const void*> lost;
+  for (const LostFace& face : division.lost) lost.insert(face.face.TShape().get());
   Growing growing;
   std::uint32_t faces = 0;
+  double lost_area = 0;
   const auto add_faces_of = [&](const TopoDS_Shape& whole, TopAbs_ShapeEnum but_not_in) {
     Piece piece;
     for (TopExp_Explorer face(whole, TopAbs_FACE, but_not_in); face.More(); face.Next()) {
-      add_face(TopoDS::Face(face.Current()), faces++, piece);
+      const TopoDS_Face& one = TopoDS::Face(face.Current());
+      if (lost.count(one.TShape().get()) > 0) {
+        lost_area += area_of(one);
+      } else {
+        add_face(one, faces, piece);
+      }
+      ++faces;
     }
     growing.add(piece);
   };
-  for (TopExp_Explorer solid(shape, TopAbs_SOLID); solid.More(); solid.Next(), ++result.solids) {
+  for (TopExp_Explorer solid(read.shape, TopAbs_SOLID); solid.More(); solid.Next(), ++result.solids) {
     add_faces_of(solid.Current(), TopAbs_SHAPE);
   }
-  for (TopExp_Explorer shell(shape, TopAbs_SHELL, TopAbs_SOLID); shell.More(); shell.Next()) {
+  for (TopExp_Explorer shell(read.shape, TopAbs_SHELL, TopAbs_SOLID); shell.More(); shell.Next()) {
     add_faces_of(shell.Current(), TopAbs_SHAPE);
   }
-  add_faces_of(shape, TopAbs_SHELL);
+  add_faces_of(read.shape, TopAbs_SHELL);
   if (growing.triangles.empty()) throw std::runtime_error("there are no faces in the file");
   result.faces = faces;
   result.mesh.vertices = growing.welder.vertices();
   result.mesh.triangles = Eigen::Map<const Eigen::Matrix<std::uint32_t, 3, Eigen::Dynamic>>(
       growing.triangles.data(), 3, static_cast<Eigen::Index>(growing.triangles.size() / 3));
   result.face_of_triangle = std::move(growing.faces);
+  // Nothing is known about the area of a face that OpenCASCADE could not make.
+  if (!result.left_out.empty() && read.left_out.empty() && std::isfinite(lost_area)) {
+    result.left_out_share = lost_area / (lost_area + check_mesh(result.mesh).area);
+  }
   return result;
 }
 

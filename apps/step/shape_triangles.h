@@ -1,23 +1,23 @@
 #pragma once
 
-#include <TopoDS_Shape.hxx>
-
 #include "abbe/formats/step_mesh.h"
+#include "shape_division.h"
+#include "step_shape.h"
 
 namespace abbe {
 
-/// The faces of a shape as triangles: of its solids, then of shells and faces that are in no solid.
-///
-/// The mesher is asked for a smaller deflection until the distance measured by face_deviation() is at most chord_mm,
-/// which it does not keep by itself. Sides that faces share are shared by their triangles; those of a closed solid
-/// count anticlockwise from outside.
-/// @throws std::runtime_error with a sentence for the user, ToleranceNotReached, Standard_Failure
-StepMesh shape_triangles(const TopoDS_Shape& shape, double chord_mm, double angle_rad);
-
-/// No triangles were found that come near enough to the faces.
-struct ToleranceNotReached {
-  double nearest_mm = 0;   ///< smallest deviation that was reached
-  double file_gap_mm = 0;  ///< how far the file's own edges and vertices may be from its faces, as it says
+struct ShapeTrianglesOptions {
+  DivisionOptions division;
+  /// Where the file's own edges lie beside its faces the chord cannot be kept: a face up to this far from its triangles
+  /// is taken, with a note.
+  double most_mm = 0;
+  bool leave_out_faces = false;  ///< those without triangles and those farther away; else they refuse the file
 };
+
+/// The faces of a shape as triangles (divide_shape()): of its solids, then of shells and faces that are in no solid.
+///
+/// Sides that faces share are shared by their triangles; those of a closed solid count anticlockwise from outside.
+/// @throws std::runtime_error with a sentence for the user, StepRefused, TimeIsUp, Standard_Failure
+StepMesh shape_triangles(const StepShape& read, const ShapeTrianglesOptions& options);
 
 }  // namespace abbe

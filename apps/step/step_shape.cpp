@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
+#include <BRepTools_ReShape.hxx>
 #include <Bnd_Box.hxx>
-#include <Interface_Check.hxx>
 #include <Interface_CheckIterator.hxx>
 #include <Interface_EntityIterator.hxx>
 #include <Interface_Graph.hxx>
@@ -17,17 +18,19 @@
 #include <StepShape_FaceSurface.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_HAsciiString.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TransferBRep.hxx>
 #include <Transfer_TransientProcess.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
-#include <string_view>
 
 #include "abbe/formats/number_text.h"
+#include "step_entities.h"
 
 namespace abbe {
 namespace {
@@ -57,45 +60,54 @@ std::string place_of_syntax_error(const std::string& messages) {
   return text;
 }
 
-/// True for what shape, place and size come from.
-bool makes_the_shape(const Handle(Standard_Transient) & entity) {
-  const std::string_view type = entity->DynamicType()->Name();
-  return type.starts_with("StepGeom_") || type.starts_with("StepShape_") || type.starts_with("StepRepr_") ||
-         type.starts_with("StepBasic_");
-}
-
-/// OpenCASCADE goes on with zeros where it could not read a parameter. @throws std::runtime_error
-void require_sound_entities(const StepData_StepModel& model, std::vector<std::string>& notes) {
-  int others = 0;
-  for (int i = 1; i <= model.NbEntities(); ++i) {
-    const Handle(Interface_Check)& check = model.Check(i, Standard_True);
-    if (!model.IsErrorEntity(i) && (check.IsNull() || check->NbFails() == 0)) continue;
-    const Handle(Standard_Transient)& entity = model.Value(i);
-    if (!makes_the_shape(entity)) {
-      ++others;
-      continue;
-    }
-    std::string type = entity->DynamicType()->Name();
-    type.erase(0, type.find('_') + 1);
-    throw std::runtime_error(fmt::format("{} ({}): {}", model.StringLabel(entity)->ToCString(), type,
-                                         check.IsNull() || check->NbFails() == 0 ? "not understood" : check->CFail(1)));
-  }
-  if (others > 0) notes.push_back(fmt::format("{} entities that are no geometry were not understood", others));
-}
-
-/// Faces that something in the file refers to, but that did not become a face.
-int lost_faces(STEPControl_Reader& reader) {
+/// Labels the faces of the shape by their entities, and finds those that something in the file refers to, but that did
+/// not become a face or contain what was not understood. @returns the latter, to be left out of the shape
+std::vector<TopoDS_Shape> label_faces(STEPControl_Reader& reader, const Interface_Graph& graph, const BadEntities& bad,
+                                      StepShape& result) {
   const Handle(Interface_InterfaceModel) model = reader.Model();
   const Handle(Transfer_TransientProcess) process = reader.WS()->TransferReader()->TransientProcess();
-  const Interface_Graph graph(model);
-  int lost = 0;
+  std::vector<TopoDS_Shape> unsound;
   for (int i = 1; i <= model->NbEntities(); ++i) {
-    const Handle(Standard_Transient) entity = model->Value(i);
-    if (!entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface))) continue;
-    if (graph.Sharings(entity).NbEntities() == 0) continue;
-    if (TransferBRep::ShapeResult(process, entity).IsNull()) ++lost;
+    const auto face = Handle(StepShape_FaceSurface)::DownCast(model->Value(i));
+    if (face.IsNull() || graph.Sharings(face).NbEntities() == 0) continue;
+    const std::string label = entity_label(*model, face), type = surface_type(*face);
+    const std::string name = type.empty() ? label : fmt::format("{} ({})", label, type);
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process, face);
+    for (TopExp_Explorer part(shape, TopAbs_FACE); !shape.IsNull() && part.More(); part.Next()) {
+      result.face_labels[part.Current().TShape().get()] = label;
+    }
+    if (const std::string* problem = problem_below(graph, face, bad)) {
+      result.left_out.push_back(name + " refers to " + *problem);
+      if (!shape.IsNull()) unsound.push_back(shape);
+    } else if (shape.IsNull()) {
+      result.left_out.push_back(name + " could not be converted");
+    }
   }
-  return lost;
+  return unsound;
+}
+
+TopoDS_Shape without(const TopoDS_Shape& shape, const std::vector<TopoDS_Shape>& parts) {
+  const Handle(BRepTools_ReShape) edit = new BRepTools_ReShape;
+  for (const TopoDS_Shape& part : parts) {
+    for (TopExp_Explorer face(part, TopAbs_FACE); face.More(); face.Next()) edit->Remove(face.Current());
+  }
+  return edit->Apply(shape);
+}
+
+/// The first few.
+std::string joined(const std::vector<std::string>& texts, const char* between) {
+  constexpr std::size_t kShown = 5;
+  std::string all;
+  for (std::size_t i = 0; i < std::min(texts.size(), kShown); ++i) all += (i > 0 ? between : "") + texts[i];
+  if (texts.size() > kShown) all += fmt::format("{}{} more", between, texts.size() - kShown);
+  return all;
+}
+
+[[noreturn]] void refuse_without_shape(const Interface_InterfaceModel& model) {
+  const std::vector<std::string> files = files_referred_to(model);
+  if (files.empty()) throw std::runtime_error("there is no shape in the file");
+  throw StepRefused("there is no shape in the file; it refers to the files " + joined(files, ", "),
+                    "these files one by one, or the assembly exported as one file");
 }
 
 std::string unit_name(STEPControl_Reader& reader) {
@@ -129,7 +141,39 @@ double shape_size(const TopoDS_Shape& shape) {
 
 }  // namespace
 
-StepShape read_step_shape(const std::string& path) {
+std::string StepShape::face_name(const TopoDS_Face& face) const {
+  static constexpr const char* kKinds[] = {"plane",
+                                           "cylinder",
+                                           "cone",
+                                           "sphere",
+                                           "torus",
+                                           "Bezier surface",
+                                           "B-spline surface",
+                                           "surface of revolution",
+                                           "surface of extrusion",
+                                           "offset surface"};
+  const auto kind = static_cast<std::size_t>(BRepAdaptor_Surface(face, Standard_False).GetType());
+  Bnd_Box box;
+  BRepBndLib::Add(face, box, Standard_False);
+  std::string place;
+  if (!box.IsVoid() && !box.IsOpen()) {
+    const gp_XYZ middle = 0.5 * (box.CornerMin().XYZ() + box.CornerMax().XYZ());
+    // No minus zero.
+    const auto text = [](double x) { return fmt::format("{:.4g}", std::abs(x) < 1e-9 ? 0 : x); };
+    place = fmt::format(" about ({}, {}, {}) mm", text(middle.X()), text(middle.Y()), text(middle.Z()));
+  }
+  const auto at = face_labels.find(face.TShape().get());
+  return fmt::format("{} ({}{})", at != face_labels.end() ? at->second : "without a number",
+                     kind < std::size(kKinds) ? kKinds[kind] : "surface", place);
+}
+
+void refuse_faces(const std::vector<std::string>& faces) {
+  throw StepRefused(
+      (faces.size() == 1 ? "face " : fmt::format("{} faces cannot be read: ", faces.size())) + joined(faces, "; "),
+      "faces that can be read, or --leave-out-faces to go on without them");
+}
+
+StepShape read_step_shape(const std::string& path, bool leave_out_faces, const Handle(TimeLimit) & limit) {
   std::ostringstream messages;
   Message::DefaultMessenger()->ChangePrinters().Clear();
   Message::DefaultMessenger()->AddPrinter(new KeepingPrinter(messages));
@@ -141,23 +185,32 @@ StepShape read_step_shape(const std::string& path) {
     throw std::runtime_error(place_of_syntax_error(messages.str()));
   }
   StepShape result;
-  require_sound_entities(*model, result.notes);
-  const int roots = reader.NbRootsForTransfer();
-  if (roots == 0) throw std::runtime_error("there is no shape in the file");
-  const int done = reader.TransferRoots();
-  if (done < roots) {
-    throw std::runtime_error(fmt::format("{} of {} shapes of the file could not be converted", roots - done, roots));
+  const Interface_Graph graph(model);
+  const BadEntities bad = bad_entities(*model);
+  require_sound_entities(*model, graph, bad, leave_out_faces);
+  if (bad.others > 0) {
+    result.notes.push_back(fmt::format("{} entities that are no geometry were not understood", bad.others));
   }
-  if (const int lost = lost_faces(reader); lost > 0) {
-    throw std::runtime_error(fmt::format("{} of the file's faces could not be converted", lost));
+  const int roots = reader.NbRootsForTransfer();
+  const int done = reader.TransferRoots(limit->Start());
+  if (limit->is_over()) throw TimeIsUp{};
+  const std::vector<TopoDS_Shape> unsound = label_faces(reader, graph, bad, result);
+  if (!result.left_out.empty() && !leave_out_faces) refuse_faces(result.left_out);
+  result.shape = reader.OneShape();
+  if (result.shape.IsNull()) refuse_without_shape(*model);
+  if (!unsound.empty()) result.shape = without(result.shape, unsound);
+  if (result.shape.IsNull()) throw std::runtime_error("no face of the file can be read");
+  // All faces are there, so that these are products without a shape.
+  if (done < roots)
+    result.notes.push_back(fmt::format("{} of {} products of the file have no shape", roots - done, roots));
+  if (const std::vector<std::string> files = files_referred_to(*model); !files.empty()) {
+    result.notes.push_back("what stands in other files is missing: " + joined(files, ", "));
   }
   Interface_CheckIterator checks = reader.WS()->TransferReader()->TransientProcess()->CheckList(Standard_False);
   int failed = 0;
   for (checks.Start(); checks.More(); checks.Next()) failed += checks.Value()->HasFailed() ? 1 : 0;
   if (failed > 0) result.notes.push_back(fmt::format("{} entities of the file could not be converted", failed));
   result.unit = unit_name(reader);
-  result.shape = reader.OneShape();
-  if (result.shape.IsNull()) throw std::runtime_error("there is no shape in the file");
   result.size_mm = shape_size(result.shape);
   return result;
 }

@@ -78,5 +78,25 @@ TEST_F(StepOptionsCommand, ReachTheReaderInEveryCommand) {
   }
 }
 
+TEST_F(StepOptionsCommand, AnIncompletePartIsSaidEverywhere) {
+  if (!std::filesystem::exists(std::filesystem::path(ABBE_COMMAND).parent_path() / "abbe-step")) {
+    GTEST_SKIP() << "built without OpenCASCADE";
+  }
+  std::ifstream file(ABBE_SOURCE_DIR "/tests/golden/step/block.step");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  text.replace(text.find("#32 = PLANE("), 12, "#32 = PLONE(");
+  folder.write("part.step", text);
+  folder.write("scan.csv", "x_mm,y_mm,z_mm\n0.1,0.1,10.01\n3,4,10.02\n");
+  EXPECT_EQ(abbe({"check", "part.step"}).exit_code, ExitCode::bad_input);
+  const CommandResult check = abbe({"check", "part.step", "--leave-out-faces"});
+  EXPECT_EQ(check.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(check.err, HasSubstr("abbe: warning: part.step: 1 face is left out (of unknown area): #17 refers to"));
+  EXPECT_THAT(check.out, HasSubstr("incomplete: 1 face is"));
+  const CommandResult deviate = abbe({"deviate", "scan.csv", "part.step", "--leave-out-faces"});
+  EXPECT_EQ(deviate.exit_code, ExitCode::done) << deviate.err;
+  EXPECT_THAT(deviate.err, HasSubstr("1 face is"));
+  EXPECT_THAT(deviate.out, HasSubstr("incomplete: 1 face is"));
+}
+
 }  // namespace
 }  // namespace abbe

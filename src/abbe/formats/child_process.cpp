@@ -46,6 +46,30 @@ pid_t start(const std::vector<std::string>& words, int output, int messages) {
   return child;
 }
 
+/// Lines of a file that another process writes.
+class GrowingLines {
+ public:
+  explicit GrowingLines(int descriptor) : descriptor_(descriptor) {}
+
+  void pass_on(const std::function<void(std::string_view line)>& listen) {
+    char bytes[4096];
+    for (ssize_t count = 0; (count = ::pread(descriptor_, bytes, sizeof bytes, read_)) > 0;) {
+      read_ += count;
+      rest_.append(bytes, static_cast<std::size_t>(count));
+    }
+    std::size_t begin = 0;
+    for (std::size_t end = 0; (end = rest_.find('\n', begin)) != std::string::npos; begin = end + 1) {
+      listen(std::string_view(rest_).substr(begin, end - begin));
+    }
+    rest_.erase(0, begin);
+  }
+
+ private:
+  int descriptor_;
+  off_t read_ = 0;
+  std::string rest_;
+};
+
 }  // namespace
 
 MemoryFile::MemoryFile(const char* name) : descriptor_(::memfd_create(name, MFD_CLOEXEC)) {
@@ -66,10 +90,13 @@ void MemoryFile::map() {
   size_ = static_cast<std::size_t>(size);
 }
 
-ChildProcess::ChildProcess(const std::vector<std::string>& words, double most_seconds) {
+ChildProcess::ChildProcess(const std::vector<std::string>& words, double most_seconds,
+                           const std::function<void(std::string_view line)>& listen) {
   using Clock = std::chrono::steady_clock;
   const pid_t child = start(words, output_.descriptor(), messages_.descriptor());
   const Clock::time_point begin = Clock::now();
+  GrowingLines lines(messages_.descriptor());
+  Clock::time_point next = begin;
   // Looking every 2 ms costs nothing against what the program does, and needs no signal handler of the whole process.
   while (true) {
     const pid_t ended = ::waitpid(child, &status_, timed_out_ ? 0 : WNOHANG);
@@ -79,6 +106,10 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, double most_se
       timed_out_ = true;
       ::kill(child, SIGKILL);
       continue;
+    }
+    if (listen && Clock::now() > next) {
+      lines.pass_on(listen);
+      next = Clock::now() + std::chrono::milliseconds(100);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }

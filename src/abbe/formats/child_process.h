@@ -2,6 +2,7 @@
 
 // Internal to formats: a program that is run to its end.
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,9 +35,11 @@ class ChildProcess {
  public:
   /// @param words         path of the program, arguments
   /// @param most_seconds  of the clock on the wall
+  /// @param listen        called with each whole line on standard error, some time after it was written
   /// @throws InputError if the program cannot be started, std::runtime_error if the system gives no memory for its
   /// output
-  ChildProcess(const std::vector<std::string>& words, double most_seconds);
+  ChildProcess(const std::vector<std::string>& words, double most_seconds,
+               const std::function<void(std::string_view line)>& listen = {});
 
   bool timed_out() const { return timed_out_; }
   int signal() const;                                                 ///< that ended it, or 0

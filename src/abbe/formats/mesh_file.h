@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,11 +14,16 @@
 
 namespace abbe {
 
-/// How finely the faces of a STEP file become triangles.
+/// How the faces of a STEP file become triangles.
 struct StepOptions {
-  double chord_mm = 0.01;               ///< largest distance between triangles and faces: measured, not only asked for
+  /// Largest distance between triangles and faces: measured, not only asked for. Without one 0.01 mm; under 10 mm a
+  /// thousandth of the size of the part, over 100 mm a ten-thousandth, at most 0.1 mm.
+  std::optional<double> chord_mm{};
   double angle_rad = 0.17453292519943;  ///< between neighbouring pieces of a curve or of a face, about
-  double most_seconds = 3600;  ///< after which OpenCASCADE is stopped; it stops itself after 600 s of processor time
+  double most_seconds = 60;             ///< for a file, a third of it for one face
+  bool leave_out_faces = false;         ///< go on without faces that cannot be read; else they refuse the file
+  /// Called while it takes long, such as with "dividing faces", 20, 375.
+  std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress{};
 };
 
 struct MeshFileOptions {
@@ -37,7 +43,10 @@ struct MeshFile {
   std::size_t faces = 0;
   std::vector<std::uint32_t> face_of_triangle{};  ///< [triangles] from 0, in the order of the file
   std::vector<std::string> face_names{};          ///< [faces] of OBJ: "object / group / material"; else empty
-  double deviation_mm = 0;  ///< STEP: largest distance measured between triangles and faces, at most chord_mm
+  double deviation_mm = 0;                        ///< STEP: largest distance measured between triangles and faces
+  /// STEP: faces that are missing with the reason, such as "#78 (cone about (0, 0, 5) mm) could not be converted".
+  std::vector<std::string> left_out{};
+  std::optional<double> left_out_share{};  ///< their part of the area, where that is known
   bool has_exact_faces() const { return faces > 0 && face_names.empty(); }
 };
 

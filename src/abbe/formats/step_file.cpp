@@ -20,16 +20,30 @@
 namespace abbe {
 namespace {
 
+constexpr const char* kFaster = "a coarser tolerance (--chord-mm) or more time (--step-seconds)";
 constexpr const char* kValid = "a valid STEP file (AP203, AP214 or AP242) with faces";
 
-std::vector<std::string> lines_of(std::string_view text) {
+/// What abbe-step said, without its progress.
+struct Said {
   std::vector<std::string> lines;
+  std::string doing;  ///< at last
+};
+
+Said said_in(std::string_view text) {
+  Said said;
   const std::string name;
   TextCursor cursor(text, name);
   while (!cursor.at_end()) {
-    if (const std::string_view line = cursor.line(); !line.empty()) lines.emplace_back(line);
+    const std::string_view line = cursor.line();
+    if (const auto progress = parse_step_progress(line)) {
+      said.doing = progress->total > 1
+                       ? fmt::format("{}, {} of {} done", progress->what, progress->done, progress->total)
+                       : progress->what;
+    } else if (!line.empty()) {
+      said.lines.emplace_back(line);
+    }
   }
-  return lines;
+  return said;
 }
 
 void require_positive(double value, const char* field, const char* expected) {
@@ -53,18 +67,17 @@ std::filesystem::path require_program(const InputError::Place& place) {
 }
 
 [[noreturn]] void refuse(const InputError::Place& place, const ChildProcess& child, double seconds) {
-  if (child.timed_out()) {
-    throw InputError(place, fmt::format("OpenCASCADE was not done with the file after {:g} s", seconds), kValid);
-  }
-  if (child.signal() == SIGXCPU) {
-    throw InputError(place, "OpenCASCADE was not done with the file after 600 s of processor time", kValid);
+  const Said said = said_in(child.messages());
+  const std::string at = said.doing.empty() ? "" : fmt::format(" (it was {})", said.doing);
+  if (child.timed_out() || child.signal() == SIGXCPU) {
+    throw InputError(place, fmt::format("OpenCASCADE was not done with the file after {:g} s{}", seconds, at), kFaster);
   }
   if (child.signal() != 0) {
-    throw InputError(place, fmt::format("OpenCASCADE stopped at the file ({})", ::strsignal(child.signal())), kValid);
+    throw InputError(place, fmt::format("OpenCASCADE stopped at the file ({}){}", ::strsignal(child.signal()), at),
+                     kValid);
   }
-  const std::vector<std::string> lines = lines_of(child.messages());
-  throw InputError(place, lines.empty() ? "OpenCASCADE could not read the file" : lines[0],
-                   lines.size() == 2 ? lines[1] : kValid);
+  throw InputError(place, said.lines.empty() ? "OpenCASCADE could not read the file" : said.lines[0],
+                   said.lines.size() == 2 ? said.lines[1] : kValid);
 }
 
 FileLength length_of(const std::string& unit) {
@@ -93,29 +106,38 @@ MeshFile read_step(const std::filesystem::path& path, const MeshFileOptions& opt
   if (options.unit) {
     throw InputError({path.string(), 0, 0, "unit"}, "a STEP file states its unit itself", "no unit");
   }
-  require_positive(options.step.chord_mm, "chord_mm", "a length above zero in mm");
+  if (options.step.chord_mm) require_positive(*options.step.chord_mm, "chord_mm", "a length above zero in mm");
   require_positive(options.step.angle_rad, "angle_rad", "an angle above zero in rad");
+  require_positive(options.step.most_seconds, "most_seconds", "a time above zero in s");
   const std::filesystem::path program = require_program(place);
   // Cheaper and plainer than where the parser stumbles.
   if (MappedFile(path).text().rfind("END-ISO-10303-21") == std::string_view::npos) {
     throw InputError(place, "the file ends early", "a last line 'END-ISO-10303-21;'");
   }
-  const ChildProcess child(
-      {program.string(), path.string(), shortest_text(options.step.chord_mm), shortest_text(options.step.angle_rad)},
-      options.step.most_seconds);
-  if (child.timed_out() || child.signal() != 0 || child.exit_code() != 0) {
-    refuse(place, child, options.step.most_seconds);
-  }
+  const double seconds = options.step.most_seconds;
+  const auto listen = [&](std::string_view line) {
+    const auto progress = parse_step_progress(line);
+    if (progress && options.step.progress) options.step.progress(progress->what, progress->done, progress->total);
+  };
+  // It gives up by itself and names what it was at, but not inside of some functions of OpenCASCADE.
+  const ChildProcess child({program.string(), path.string(), shortest_text(options.step.chord_mm.value_or(0)),
+                            shortest_text(options.step.angle_rad), shortest_text(seconds),
+                            options.step.leave_out_faces ? "leave-out" : "all"},
+                           1.1 * seconds + 1, listen);
+  if (child.timed_out() || child.signal() != 0 || child.exit_code() != 0) refuse(place, child, seconds);
   StepMesh read = parse_step_mesh(child.output(), path.string());
   MeshFile result;
   result.mesh = std::move(read.mesh);
   result.format = "STEP";
   result.unit = {length_of(read.unit), read.unit.empty() ? UnitSource::assumed : UnitSource::stated};
   result.notes = std::move(read.notes);
-  result.notes.push_back(fmt::format("{} of {}, divided within {:.3g} mm of them (tolerance {:g} mm)",
-                                     read.faces == 1 ? "1 face" : fmt::format("{} faces", read.faces),
-                                     read.solids == 1 ? "1 solid" : fmt::format("{} solids", read.solids),
-                                     read.deviation_mm, options.step.chord_mm));
+  result.left_out = std::move(read.left_out);
+  result.left_out_share = read.left_out_share;
+  result.notes.push_back(
+      fmt::format("{} of {}, divided within {:.3g} mm of them (tolerance {:.3g} mm{})",
+                  read.faces == 1 ? "1 face" : fmt::format("{} faces", read.faces),
+                  read.solids == 1 ? "1 solid" : fmt::format("{} solids", read.solids), read.deviation_mm,
+                  read.chord_mm, options.step.chord_mm ? "" : fmt::format(", for {:.3g} mm of size", read.size_mm)));
   result.faces = read.faces;
   result.face_of_triangle = std::move(read.face_of_triangle);
   result.deviation_mm = read.deviation_mm;

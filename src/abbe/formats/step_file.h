@@ -19,8 +19,9 @@ std::filesystem::path step_program();
 
 /// Reads the faces of a STEP file as triangles; see read_mesh() and docs/geometry-files.md.
 ///
-/// OpenCASCADE does it, in a process of its own (abbe-step): a damaged file that makes it stop, run too long or take
-/// more than 8 GiB is an InputError here. Nothing is left on the disk, and the process ends with this one.
+/// OpenCASCADE does it, in a process of its own (abbe-step): a damaged file that makes it stop, run longer than
+/// StepOptions::most_seconds (by a tenth and a second at most) or take more than 8 GiB is an InputError here. Nothing
+/// is left on the disk, and the process ends with this one.
 /// @throws InputError, also where abbe-step is missing
 MeshFile read_step(const std::filesystem::path& path, const MeshFileOptions& options = {});
 

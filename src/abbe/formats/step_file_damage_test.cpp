@@ -6,8 +6,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "abbe/formats/message_of.h"
 #include "abbe/formats/replaced_text_for_test.h"
@@ -73,14 +75,63 @@ TEST_F(DamagedStepFile, NumbersThatAreNoneAreNotTakenAsZero) {
   EXPECT_THAT(message_of_step(replaced(sphere_, "12.703", "nan")), HasSubstr("#22 (SphericalSurface): Parameter"));
   EXPECT_THAT(message_of_step(replaced(sphere_, "12.703", "1.E+300")), HasSubstr("the shape reaches beyond 1e+09 mm"));
   EXPECT_THAT(message_of_step(replaced(sphere_, "12.703", "-5.")),
-              HasSubstr("of the file's faces could not be converted"));
-  EXPECT_THAT(message_of_step(replaced(sphere_, "12.703", "1.E+8")),
+              HasSubstr("(SphericalSurface) could not be converted; expected faces that can be read, or --leave-out"));
+  const TemporaryFile large(replaced(sphere_, "12.703", "1.E+8"), ".large.step");
+  MeshFileOptions options;
+  options.step.chord_mm = 0.01;
+  EXPECT_THAT(message_of([&] { read_mesh(large.path(), options); }),
               HasSubstr("too much for a chord tolerance of 0.01 mm; expected a chord tolerance of at least"));
 }
 
 TEST_F(DamagedStepFile, AFaceIsNotLostInSilence) {
   EXPECT_THAT(message_of_step(replaced(read_text_file(golden_step_file("block.step")), "PLANE(", "PLONE(")),
               HasSubstr("#17 (AdvancedFace)"));
+}
+
+TEST_F(DamagedStepFile, AFaceThatCannotBeReadIsLeftOutOnRequest) {
+  const TemporaryFile file(replaced(read_text_file(golden_step_file("block.step")), "#32 = PLANE(", "#32 = PLONE("),
+                           ".step");
+  MeshFileOptions options;
+  options.step.leave_out_faces = true;
+  const MeshFile read = read_mesh(file.path(), options);
+  ASSERT_EQ(read.left_out.size(), 1U);
+  EXPECT_THAT(read.left_out[0], testing::StartsWith("#17 refers to #17 (AdvancedFace)"));
+  EXPECT_FALSE(read.left_out_share);
+  EXPECT_EQ(read.mesh.size(), 10);
+}
+
+TEST_F(DamagedStepFile, AFaceWithoutAreaIsNoneThatIsMissed) {
+  test::StepShell shell;
+  shell.add_polygon({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0);
+  shell.add_polygon({{0, 0}, {10, 0}}, 0);
+  const TemporaryFile file(shell.text(), ".step");
+  const MeshFile read = read_mesh(file.path());
+  EXPECT_EQ(read.mesh.size(), 2);
+  EXPECT_TRUE(read.left_out.empty());
+  EXPECT_THAT(read.notes, testing::Contains(HasSubstr("1 face has no area")));
+}
+
+TEST_F(DamagedStepFile, EdgesBesideAFaceAreSaidAndRefusedOnlyWhereAToleranceIsGiven) {
+  const TemporaryFile file(replaced(read_text_file(golden_step_file("cylinder.step")),
+                                    "CYLINDRICAL_SURFACE('',#32,12.)", "CYLINDRICAL_SURFACE('',#32,12.05)"),
+                           ".step");
+  MeshFileOptions options;
+  const MeshFile read = read_mesh(file.path(), options);
+  EXPECT_THAT(read.notes, testing::Contains(HasSubstr("the file's own edges lie up to 0.05 mm beside it")));
+  EXPECT_GE(read.deviation_mm, 0.05);
+  EXPECT_LE(read.deviation_mm, 0.07);
+  options.step.chord_mm = 0.01;
+  EXPECT_THAT(message_of([&] { read_mesh(file.path(), options); }),
+              testing::ContainsRegex("face #[0-9]+ \\(cylinder about \\(0, 0, 5\\) mm\\) is up to 0.05.* mm off"));
+}
+
+TEST_F(DamagedStepFile, AFaceThatTakesTooLongIsNamed) {
+  MeshFileOptions options;
+  options.step.chord_mm = 1e-5;
+  options.step.most_seconds = 0.5;
+  EXPECT_THAT(message_of([&] { read_mesh(golden_step_file("torus.step"), options); }),
+              testing::AnyOf(HasSubstr("(torus about (0, 0, 0) mm) was not divided into triangles within 0.167 s"),
+                             HasSubstr("was not done with the file after 0.5 s")));
 }
 
 TEST_F(DamagedStepFile, IsRefusedOrReadButNeverStopsUs) {
@@ -115,12 +166,14 @@ class StepProgram : public testing::Test {
  protected:
   void TearDown() override { ::unsetenv("ABBE_STEP_PROGRAM"); }
 
-  static std::string message_with(const std::string& script, double most_seconds = 3600) {
+  static std::string message_with(const std::string& script, double most_seconds = 3600,
+                                  std::function<void(const std::string&, std::size_t, std::size_t)> progress = {}) {
     const TemporaryFile program("#!/bin/sh\n" + script, ".sh");
     std::filesystem::permissions(program.path(), std::filesystem::perms::owner_all);
     ::setenv("ABBE_STEP_PROGRAM", program.path().c_str(), 1);
     MeshFileOptions options;
     options.step.most_seconds = most_seconds;
+    options.step.progress = std::move(progress);
     return message_of([&] { read_mesh(golden_step_file("block.step"), options); });
   }
 };
@@ -142,6 +195,19 @@ TEST_F(StepProgram, ThatDoesNotEndIsKilled) {
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_THAT(message_with("exec sleep 600\n", 0.2), HasSubstr("OpenCASCADE was not done with the file after 0.2 s"));
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+}
+
+TEST_F(StepProgram, SaysHowFarItIsAndWhatItWasAtWhenItEnded) {
+  std::string heard;
+  const std::string message =
+      message_with("echo 'progress 2 7 dividing faces' >&2; exec sleep 600\n", 0.2,
+                   [&](const std::string& what, std::size_t done, std::size_t total) {
+                     heard += what + " " + std::to_string(done) + " of " + std::to_string(total) + ";";
+                   });
+  EXPECT_EQ(heard, "dividing faces 2 of 7;");
+  EXPECT_THAT(message,
+              HasSubstr("was not done with the file after 0.2 s (it was dividing faces, 2 of 7 done); expected "
+                        "a coarser tolerance (--chord-mm) or more time (--step-seconds)"));
 }
 
 TEST_F(StepProgram, ThatSaysNothingOrTooMuchIsRefused) {

@@ -159,6 +159,17 @@ TEST_F(StepFile, BoresAreClosedAndFacesOfAnAssemblyStandInTheirPlaces) {
   EXPECT_NEAR((check.upper - Eigen::Vector3d(44, 20, 15)).norm(), 0, 0.01);
 }
 
+TEST_F(StepFile, ACountersinkWhoseSeamIsTakenForItsOtherSideIsDivided) {
+  test::StepShell shell;
+  shell.add_countersink(5, 12);
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "abbe_countersink.step";
+  std::ofstream(path) << shell.text();
+  const MeshFile file = read_mesh(path);
+  std::filesystem::remove(path);
+  EXPECT_LE(file.deviation_mm, 0.01);
+  EXPECT_NEAR(check_mesh(file.mesh).area, kPi * (12 + 5) * 7 * std::sqrt(2), 0.5);
+}
+
 TEST_F(StepFile, TheSameFileGivesTheSameTriangles) {
   const MeshFile one = read_within("torus.step", 0.1), other = read_within("torus.step", 0.1);
   EXPECT_EQ(one.mesh.vertices, other.mesh.vertices);

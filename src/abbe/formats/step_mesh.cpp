@@ -1,5 +1,9 @@
 #include "abbe/formats/step_mesh.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -11,7 +15,9 @@ namespace abbe {
 namespace {
 
 // Two programs of different builds may meet.
-constexpr const char* kKind = "abbe-step mesh 1";
+constexpr const char* kKind = "abbe-step mesh 2";
+
+constexpr const char* kProgress = "progress ";
 
 template <typename T>
 void append(std::string& bytes, const T* values, std::size_t count) {
@@ -35,6 +41,27 @@ std::size_t count_of(const nlohmann::json& head, const char* name) {
 
 }  // namespace
 
+double default_step_chord(double size_mm) {
+  return std::clamp(1e-4 * size_mm, std::min(0.01, 1e-3 * size_mm), std::max(0.1, 1e-7 * size_mm));
+}
+
+std::string step_progress_line(const StepProgress& progress) {
+  return fmt::format("{}{} {} {}", kProgress, progress.done, progress.total, progress.what);
+}
+
+std::optional<StepProgress> parse_step_progress(std::string_view line) {
+  if (!line.starts_with(kProgress)) return std::nullopt;
+  line.remove_prefix(std::strlen(kProgress));
+  StepProgress result;
+  const char* const end = line.data() + line.size();
+  const auto done = std::from_chars(line.data(), end, result.done);
+  if (done.ec != std::errc() || done.ptr == end) return std::nullopt;
+  const auto total = std::from_chars(done.ptr + 1, end, result.total);
+  if (total.ec != std::errc() || total.ptr == end) return std::nullopt;
+  result.what = std::string(total.ptr + 1, end);
+  return result;
+}
+
 std::string step_mesh_bytes(const StepMesh& mesh) {
   const auto vertices = static_cast<std::size_t>(mesh.mesh.vertices.cols());
   const auto triangles = static_cast<std::size_t>(mesh.mesh.size());
@@ -46,6 +73,10 @@ std::string step_mesh_bytes(const StepMesh& mesh) {
                                        {"unit", mesh.unit},
                                        {"deviation_mm", mesh.deviation_mm},
                                        {"deflection_mm", mesh.deflection_mm},
+                                       {"chord_mm", mesh.chord_mm},
+                                       {"size_mm", mesh.size_mm},
+                                       {"left_out", mesh.left_out},
+                                       {"left_out_share", mesh.left_out_share.value_or(-1)},
                                        {"notes", mesh.notes}};
   // A name in a STEP file may have any bytes.
   std::string bytes = head.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -74,6 +105,10 @@ StepMesh parse_step_mesh(std::string_view bytes, const std::string& file) {
     head.at("unit").get_to(result.unit);
     head.at("deviation_mm").get_to(result.deviation_mm);
     head.at("deflection_mm").get_to(result.deflection_mm);
+    head.at("chord_mm").get_to(result.chord_mm);
+    head.at("size_mm").get_to(result.size_mm);
+    head.at("left_out").get_to(result.left_out);
+    if (const double share = head.at("left_out_share").get<double>(); share >= 0) result.left_out_share = share;
     head.at("notes").get_to(result.notes);
   } catch (const nlohmann::json::exception&) {
     refuse("the first line is not understood");

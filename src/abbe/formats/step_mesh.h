@@ -3,6 +3,7 @@
 // Internal to formats and to the program abbe-step: how the one hands its triangles to the other.
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,8 +21,26 @@ struct StepMesh {
   std::string unit;          ///< of length, as the file names it; empty if it states none
   double deviation_mm = 0;   ///< largest distance of triangles and faces, edges included: 1.03 times what was measured
   double deflection_mm = 0;  ///< what the mesher was asked for to get there
-  std::vector<std::string> notes;  ///< sentences for the user
+  double chord_mm = 0;       ///< deviation that was aimed at
+  double size_mm = 0;        ///< largest extent of the shape
+  std::vector<std::string> left_out;     ///< faces: "#78 (cone about (0, 0, 5) mm) could not be divided ..."
+  std::optional<double> left_out_share;  ///< of the area, where that is known
+  std::vector<std::string> notes;        ///< sentences for the user
 };
+
+/// The deviation aimed at where the user states none: 0.01 mm; under 10 mm a thousandth of the size, over 100 mm a
+/// ten-thousandth, at most 0.1 mm.
+double default_step_chord(double size_mm);
+
+/// What abbe-step is doing.
+struct StepProgress {
+  std::string what;  ///< "dividing faces"
+  std::size_t done = 0, total = 0;
+};
+
+/// As a line on the standard error of abbe-step, without its end, and back; nothing for any other line.
+std::string step_progress_line(const StepProgress& progress);
+std::optional<StepProgress> parse_step_progress(std::string_view line);
 
 /// A line of JSON with what can be counted, then the arrays as this processor keeps them: for another program on the
 /// same computer, in memory, not for a disk.

@@ -23,6 +23,10 @@ StepMesh step_block() {
   mesh.unit = "inch";
   mesh.deviation_mm = 0.1;
   mesh.deflection_mm = 0.2;
+  mesh.chord_mm = 0.3;
+  mesh.size_mm = 40;
+  mesh.left_out = {"#78 (cone) could not be converted"};
+  mesh.left_out_share = 0.25;
   mesh.notes = {"a note", "bytes that are no text: \xff"};
   return mesh;
 }
@@ -38,6 +42,10 @@ TEST(StepMesh, ComesThroughWithTheSameBits) {
   EXPECT_EQ(read.unit, "inch");
   EXPECT_EQ(read.deviation_mm, 0.1);
   EXPECT_EQ(read.deflection_mm, 0.2);
+  EXPECT_EQ(read.chord_mm, 0.3);
+  EXPECT_EQ(read.size_mm, 40);
+  EXPECT_EQ(read.left_out, given.left_out);
+  EXPECT_EQ(read.left_out_share, 0.25);
   EXPECT_EQ(read.notes[0], "a note");
 }
 
@@ -74,16 +82,35 @@ TEST(StepMesh, WhatCannotBeAMeshIsRefused) {
   mesh.mesh.vertices.resize(3, 0);
   EXPECT_THAT(message(mesh), testing::HasSubstr("no vertices"));
   std::string other = step_mesh_bytes(step_block());
-  other.replace(other.find("mesh 1"), 6, "mesh 2");
+  other.replace(other.find("mesh 2"), 6, "mesh 1");
   EXPECT_THAT(message_of([&] { parse_step_mesh(other, "part.step"); }), testing::HasSubstr("another version"));
 }
 
 TEST(StepMesh, CountsBeyondAllMemoryAreRefused) {
   const std::string head =
-      R"({"kind":"abbe-step mesh 1","vertices":768614336404564651,"triangles":1,"faces":1,"solids":1,"unit":"",)"
-      R"("deviation_mm":0,"deflection_mm":1,"notes":[]})";
+      R"({"kind":"abbe-step mesh 2","vertices":768614336404564651,"triangles":1,"faces":1,"solids":1,"unit":"",)"
+      R"("deviation_mm":0,"deflection_mm":1,"chord_mm":1,"size_mm":1,"left_out":[],"left_out_share":-1,"notes":[]})";
   EXPECT_THAT(message_of([&] { parse_step_mesh(head + "\n" + std::string(40, '\0'), "part.step"); }),
               testing::HasSubstr("the length does not fit"));
+}
+
+TEST(StepMesh, TheChordFollowsTheSizeOfThePart) {
+  EXPECT_DOUBLE_EQ(default_step_chord(0.5), 0.0005);
+  EXPECT_DOUBLE_EQ(default_step_chord(10), 0.01);
+  EXPECT_DOUBLE_EQ(default_step_chord(100), 0.01);
+  EXPECT_DOUBLE_EQ(default_step_chord(400), 0.04);
+  EXPECT_DOUBLE_EQ(default_step_chord(5000), 0.1);
+}
+
+TEST(StepMesh, ProgressComesThroughAsALine) {
+  const auto read = parse_step_progress(step_progress_line({"dividing faces", 3, 7}));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->what, "dividing faces");
+  EXPECT_EQ(read->done, 3U);
+  EXPECT_EQ(read->total, 7U);
+  EXPECT_FALSE(parse_step_progress("progress"));
+  EXPECT_FALSE(parse_step_progress("progress 3"));
+  EXPECT_FALSE(parse_step_progress("a file that is no STEP file"));
 }
 
 TEST(StepMesh, CountsAreWholeNumbers) {

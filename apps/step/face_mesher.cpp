@@ -1,0 +1,135 @@
+#include "face_mesher.h"
+
+#include <fmt/format.h>
+
+#include <BRepMesh_DelabellaMeshAlgoFactory.hxx>
+#include <BRepMesh_MeshAlgoFactory.hxx>
+#include <BRep_Tool.hxx>
+#include <IMeshData_Face.hxx>
+#include <IMeshTools_MeshAlgo.hxx>
+#include <IMeshTools_Parameters.hxx>
+#include <Poly_Triangulation.hxx>
+#include <Precision.hxx>
+#include <TopLoc_Location.hxx>
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "face_refinement.h"
+
+namespace abbe {
+namespace {
+
+/// The algorithms, in the order in which they are tried: OpenCASCADE's for the surface, the same by its other
+/// triangulation, and those for surfaces of any kind, which do not rely on the parameters of a cone, say.
+enum Method : std::size_t { kOwn, kOwnDelabella, kAny, kAnyDelabella, kMethods };
+
+Handle(IMeshTools_MeshAlgo)
+    algorithm(std::size_t method, GeomAbs_SurfaceType type, const IMeshTools_Parameters& parameters) {
+  const GeomAbs_SurfaceType as = method == kAny || method == kAnyDelabella ? GeomAbs_BSplineSurface : type;
+  if (method == kOwnDelabella || method == kAnyDelabella)
+    return BRepMesh_DelabellaMeshAlgoFactory().GetAlgo(as, parameters);
+  return BRepMesh_MeshAlgoFactory().GetAlgo(as, parameters);
+}
+
+bool has_triangles(const TopoDS_Face& face) {
+  TopLoc_Location location;
+  const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
+  return !triangulation.IsNull() && triangulation->NbTriangles() > 0;
+}
+
+/// What BRepMesh_FaceDiscret calls.
+class MeasuredDivision : public IMeshTools_MeshAlgo {
+ public:
+  explicit MeasuredDivision(FaceMesher& mesher) : mesher_(mesher) {}
+  void Perform(const IMeshData::IFaceHandle& face, const IMeshTools_Parameters& parameters,
+               const Message_ProgressRange& /*range*/) override {
+    mesher_.divide(face, parameters);
+  }
+
+ private:
+  FaceMesher& mesher_;
+};
+
+class MeasuredDivisions : public IMeshTools_MeshAlgoFactory {
+ public:
+  explicit MeasuredDivisions(FaceMesher& mesher) : mesher_(mesher) {}
+  Handle(IMeshTools_MeshAlgo)
+      GetAlgo(GeomAbs_SurfaceType /*type*/, const IMeshTools_Parameters& /*parameters*/) const override {
+    return new MeasuredDivision(mesher_);
+  }
+
+ private:
+  FaceMesher& mesher_;
+};
+
+}  // namespace
+
+struct FaceMesher::OneFace {
+  const IMeshData::IFaceHandle& face;
+  const IMeshTools_Parameters& parameters;
+  Handle(TimeLimit) limit;
+  DividedFace result;
+
+  /// @returns false if there are no triangles then. @throws TimeIsUp
+  bool divide(double deflection_mm) {
+    IMeshTools_Parameters finer = parameters;
+    finer.DeflectionInterior = deflection_mm;
+    finer.MinSize = std::max(IMeshTools_Parameters::RelMinSize() * std::min(deflection_mm, parameters.Deflection),
+                             Precision::Confusion());
+    face->SetDeflection(deflection_mm);
+    face->UnsetStatus(IMeshData_Failure);
+    algorithm(result.method, face->GetSurface()->GetType(), finer)->Perform(face, finer, limit->Start());
+    if (limit->is_over()) throw TimeIsUp{};
+    if (face->IsSet(IMeshData_Failure) || !has_triangles(face->GetFace())) return false;
+    result.deflection_mm = deflection_mm;
+    return true;
+  }
+};
+
+FaceMesher::FaceMesher(double chord_mm, double face_seconds, Handle(TimeLimit) limit,
+                       std::function<void()> face_is_done)
+    : chord_mm_(chord_mm),
+      face_seconds_(face_seconds),
+      limit_(std::move(limit)),
+      face_is_done_(std::move(face_is_done)) {}
+
+Handle(IMeshTools_MeshAlgoFactory) FaceMesher::factory() { return new MeasuredDivisions(*this); }
+
+DividedFace FaceMesher::result(const TopoDS_Face& face) const {
+  const std::lock_guard lock(mutex_);
+  const auto at = results_.find(face.TShape().get());
+  return at != results_.end() ? at->second : DividedFace{};
+}
+
+void FaceMesher::keep(const TopoDS_Face& face, const DividedFace& result) {
+  const std::lock_guard lock(mutex_);
+  results_[face.TShape().get()] = result;
+}
+
+void FaceMesher::divide(const IMeshData::IFaceHandle& face, const IMeshTools_Parameters& parameters) {
+  OneFace one{face, parameters, new TimeLimit(std::min(TimeLimit::after(face_seconds_), limit_->end())),
+              result(face->GetFace())};
+  one.result.problem.clear();
+  one.result.timed_out = false;
+  if (one.result.deflection_mm == 0) one.result.deflection_mm = chord_mm_;
+  try {
+    divide_finely_enough(one);
+  } catch (const TimeIsUp&) {
+    one.result.problem = fmt::format("was not divided into triangles within {:.3g} s", face_seconds_);
+    one.result.timed_out = true;
+  } catch (const std::runtime_error& error) {
+    one.result.problem = fmt::format("could not be divided into triangles: {}", error.what());
+  }
+  keep(face->GetFace(), one.result);
+  face_is_done_();
+}
+
+void FaceMesher::divide_finely_enough(OneFace& one) const {
+  while (!one.divide(one.result.deflection_mm)) {
+    if (++one.result.method == kMethods) throw std::runtime_error("OpenCASCADE finds none");
+  }
+  one.result.deviation = refine_face(one.face->GetFace(), chord_mm_, *one.limit);
+}
+
+}  // namespace abbe

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <IMeshData_Face.hxx>
+#include <IMeshTools_MeshAlgoFactory.hxx>
+#include <TopoDS_Face.hxx>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "face_deviation.h"
+#include "time_limit.h"
+
+namespace abbe {
+
+/// What became of one face.
+struct DividedFace {
+  double deflection_mm = 0;  ///< that OpenCASCADE was asked for; 0: it did not come to that
+  std::size_t method = 0;    ///< algorithm, of those in face_mesher.cpp
+  FaceDeviation deviation;
+  std::string problem;     ///< why it has no triangles; empty if it has
+  bool timed_out = false;  ///< is the problem
+};
+
+/// Divides faces one by one, each as finely as it needs, where OpenCASCADE's mesher has one deflection for all
+/// (refine_face()). A face that one of OpenCASCADE's algorithms gives no triangles is tried with others.
+class FaceMesher {
+ public:
+  /// @param chord_mm      largest deviation wanted
+  /// @param face_seconds  for one face, after which it has a problem
+  /// @param limit         for all; faces after it have a problem
+  /// @param face_is_done  called for every face, by several threads
+  FaceMesher(double chord_mm, double face_seconds, Handle(TimeLimit) limit, std::function<void()> face_is_done);
+
+  /// For BRepMesh_FaceDiscret, which calls what it makes for several faces at a time. This object has to live on.
+  Handle(IMeshTools_MeshAlgoFactory) factory();
+
+  /// Of a face; the next division begins with it. As it begins if the face was never divided.
+  DividedFace result(const TopoDS_Face& face) const;
+  void keep(const TopoDS_Face& face, const DividedFace& result);
+
+  void divide(const IMeshData::IFaceHandle& face, const IMeshTools_Parameters& parameters);
+
+ private:
+  struct OneFace;
+  void divide_finely_enough(OneFace& one) const;
+
+  double chord_mm_, face_seconds_;
+  Handle(TimeLimit) limit_;
+  std::function<void()> face_is_done_;
+  mutable std::mutex mutex_;
+  std::map<const void*, DividedFace> results_;  ///< by TShape
+};
+
+}  // namespace abbe

@@ -1,0 +1,236 @@
+#include "shape_division.h"
+
+#include <fmt/format.h>
+
+#include <BRepAdaptor_Curve.hxx>
+#include <BRepGProp.hxx>
+#include <BRepMesh_Context.hxx>
+#include <BRepMesh_FaceDiscret.hxx>
+#include <BRepTools.hxx>
+#include <GProp_GProps.hxx>
+#include <IMeshData_Edge.hxx>
+#include <IMeshData_Face.hxx>
+#include <IMeshData_Model.hxx>
+#include <IMeshData_PCurve.hxx>
+#include <IMeshTools_Parameters.hxx>
+#include <Precision.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "face_deviation.h"
+#include "face_mesher.h"
+
+namespace abbe {
+namespace {
+
+constexpr int kMostRounds = 8, kMostEdgeRounds = 12;
+/// Where so many rounds bring less than this, finer edges do not decide either.
+constexpr double kRoundGain = 0.95;
+constexpr int kRoundsWithoutGain = 2;
+/// A face narrower than this part of the chord has no area to be covered.
+constexpr double kNoWidth = 0.1;
+
+/// Faces of the shape, each once.
+std::vector<TopoDS_Face> faces_of(const TopoDS_Shape& shape) {
+  std::vector<TopoDS_Face> faces;
+  std::set<const void*> seen;
+  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
+    if (seen.insert(face.Current().TShape().get()).second) faces.push_back(TopoDS::Face(face.Current()));
+  }
+  return faces;
+}
+
+double edge_deviation(const IMeshData_Edge& edge) {
+  const IMeshData::ICurveHandle& points = edge.GetCurve();
+  if (edge.GetDegenerated() || points.IsNull()) return 0;
+  const BRepAdaptor_Curve curve(edge.GetEdge());
+  double largest = 0;
+  for (int i = 1; i < points->ParametersNb(); ++i) {
+    const double from = points->GetParameter(i - 1), to = points->GetParameter(i);
+    largest =
+        std::max(largest, curve_deviation(curve, from, to, points->GetPoint(i - 1).XYZ(), points->GetPoint(i).XYZ()));
+  }
+  return largest;
+}
+
+IMeshTools_Parameters parameters_for(double edge_deflection_mm, const DivisionOptions& options) {
+  IMeshTools_Parameters parameters;
+  parameters.Deflection = std::max(edge_deflection_mm, Precision::Confusion());
+  parameters.DeflectionInterior = parameters.Deflection;
+  parameters.MinSize = std::max(IMeshTools_Parameters::RelMinSize() * parameters.Deflection, Precision::Confusion());
+  parameters.Angle = options.angle_rad;
+  parameters.AngleInterior = options.angle_rad;
+  parameters.Relative = Standard_False;
+  parameters.CleanModel = Standard_False;
+#ifndef ABBE_SANITIZED
+  // Faces one by one give the same triangles; the thread sanitizer does not see OpenCASCADE's locks.
+  parameters.InParallel = Standard_True;
+#endif
+  return parameters;
+}
+
+/// Divides the edges until they keep to the chord, if they do. @returns with the deflection that was needed
+Handle(IMeshTools_Context)
+    divided_edges(const TopoDS_Shape& shape, const DivisionOptions& options, double& deflection_mm) {
+  Handle(IMeshTools_Context) context;
+  for (int round = 0; round < kMostEdgeRounds; ++round) {
+    BRepTools::Clean(shape);
+    context = new BRepMesh_Context(IMeshTools_MeshAlgoType_Watson);
+    context->SetShape(shape);
+    context->ChangeParameters() = parameters_for(deflection_mm, options);
+    if (!context->BuildModel() || !context->DiscretizeEdges())
+      throw std::runtime_error("the edges could not be divided");
+    double deviation = 0;
+    for (int i = 0; i < context->GetModel()->EdgesNb(); ++i) {
+      deviation = std::max(deviation, edge_deviation(*context->GetModel()->GetEdge(i)));
+    }
+    if (options.limit->is_over()) throw TimeIsUp{};
+    deviation *= kBetweenPoints;
+    if (!(deviation > options.chord_mm)) break;
+    deflection_mm *= std::clamp(0.95 * options.chord_mm / deviation, 0.3, 0.9);
+  }
+  return context;
+}
+
+/// OpenCASCADE's reader may take the two curves of a seam in the parameters of its face for one another. Its mesher
+/// corrects their ends only, and later inserts points between them where the face is a cone: the curves then cross to
+/// the other side and back, and the face is not divided (https://github.com/Open-Cascade-SAS/OCCT/issues/572).
+void exchange_curves_of_seams(const IMeshData_Model& model) {
+  for (int i = 0; i < model.EdgesNb(); ++i) {
+    const IMeshData::IEdgeHandle& edge = model.GetEdge(i);
+    if (edge->PCurvesNb() != 2 || edge->GetPCurve(0)->GetFace() != edge->GetPCurve(1)->GetFace()) continue;
+    const IMeshData::IPCurveHandle &one = edge->GetPCurve(0), &other = edge->GetPCurve(1);
+    const int last = one->ParametersNb() - 1;
+    if (last < 2 || other->ParametersNb() != last + 1) continue;
+    const auto is_nearer_to_other = [&](int at, int end) {
+      const gp_Pnt2d of_one = one->GetPoint(at), of_other = other->GetPoint(at);
+      return of_one.Distance(other->GetPoint(end)) < of_one.Distance(one->GetPoint(end)) &&
+             of_other.Distance(one->GetPoint(end)) < of_other.Distance(other->GetPoint(end));
+    };
+    if (!is_nearer_to_other(1, 0) || !is_nearer_to_other(last - 1, last)) continue;
+    for (int k = 1; k < last; ++k) std::swap(one->GetPoint(k), other->GetPoint(k));
+  }
+}
+
+/// Half of the area over half of the circumference, in mm.
+double mean_width(const TopoDS_Face& face) {
+  GProp_GProps area, length;
+  BRepGProp::SurfaceProperties(face, area);
+  BRepGProp::LinearProperties(face, length);
+  return length.Mass() > 0 ? 2 * area.Mass() / length.Mass() : 0;
+}
+
+/// What the statuses of a face without triangles say.
+std::string words_for_status(const IMeshData_Face& face) {
+  if (face.IsSet(IMeshData_SelfIntersectingWire)) return "its edges cross one another";
+  if (face.IsSet(IMeshData_OpenWire)) return "its edges do not close";
+  if (face.IsSet(IMeshData_TooFewPoints)) return "its edges enclose nothing";
+  return "OpenCASCADE finds none";
+}
+
+class Division {
+ public:
+  Division(const TopoDS_Shape& shape, const DivisionOptions& options)
+      : shape_(shape),
+        options_(options),
+        faces_(faces_of(shape)),
+        mesher_(options.chord_mm, options.face_seconds, options.limit, [this] { face_is_done(); }) {}
+
+  ShapeDivision run() {
+    double edge_deflection = options_.chord_mm, last = 0;
+    int without_gain = 0;
+    bool tried_finer = false;
+    ShapeDivision result;
+    for (int round = 0; round < kMostRounds; ++round) {
+      result = divided_along(edge_deflection);
+      if (options_.limit->is_over()) throw TimeIsUp{};
+      const bool may_help =
+          std::any_of(result.lost.begin(), result.lost.end(), [](const LostFace& face) { return !face.timed_out; });
+      if (may_help && !tried_finer) {
+        // Coarse pieces of edges may cross one another where the edges do not.
+        tried_finer = true;
+        edge_deflection *= 0.3;
+        continue;
+      }
+      if (result.excess_mm <= options_.chord_mm) break;
+      without_gain = round > 0 && result.excess_mm > kRoundGain * last ? without_gain + 1 : 0;
+      if (without_gain == kRoundsWithoutGain) break;
+      last = result.excess_mm;
+      edge_deflection *= std::clamp(0.95 * options_.chord_mm / result.excess_mm, 0.3, 0.9);
+    }
+    return result;
+  }
+
+ private:
+  void face_is_done() {
+    if (options_.progress) options_.progress(std::min(++done_, faces_.size()), faces_.size());
+  }
+
+  ShapeDivision divided_along(double& edge_deflection_mm) {
+    done_ = 0;
+    const Handle(IMeshTools_Context) context = divided_edges(shape_, options_, edge_deflection_mm);
+    context->SetFaceDiscret(new BRepMesh_FaceDiscret(mesher_.factory()));
+    context->HealModel();
+    context->PreProcessModel();
+    exchange_curves_of_seams(*context->GetModel());
+    context->DiscretizeFaces(options_.limit->Start());
+    context->PostProcessModel();
+    std::map<const void*, std::string> statuses;
+    for (int i = 0; i < context->GetModel()->FacesNb(); ++i) {
+      const IMeshData::IFaceHandle& face = context->GetModel()->GetFace(i);
+      statuses[face->GetFace().TShape().get()] = words_for_status(*face);
+    }
+    ShapeDivision result;
+    result.deflection_mm = edge_deflection_mm;
+    for (const TopoDS_Face& face : faces_) add(face, statuses[face.TShape().get()], result);
+    return result;
+  }
+
+  void add(const TopoDS_Face& face, const std::string& status, ShapeDivision& result) const {
+    DividedFace divided = mesher_.result(face);
+    double deviation = 0;
+    try {
+      deviation = kBetweenPoints * std::max(edges_deviation(face), divided.deviation.triangles_mm);
+    } catch (const std::runtime_error& error) {
+      if (mean_width(face) < kNoWidth * options_.chord_mm) {
+        ++result.without_area;
+        return;
+      }
+      if (divided.problem.empty()) {
+        divided.problem = fmt::format("could not be divided into triangles: {}", error.what());
+      }
+    }
+    if (divided.deflection_mm == 0) divided.problem = "could not be divided into triangles: " + status;
+    if (!divided.problem.empty()) {
+      result.lost.push_back({face, divided.problem, divided.timed_out});
+      return;
+    }
+    result.deflection_mm = std::min(result.deflection_mm, divided.deflection_mm);
+    result.excess_mm = std::max(result.excess_mm, deviation - unavoidable_mm(divided.deviation, options_.chord_mm));
+    if (result.worst.IsNull() || deviation > result.deviation_mm) {
+      result.deviation_mm = deviation;
+      result.worst = face;
+      result.gap_mm = divided.deviation.corners_mm;
+    }
+  }
+
+  const TopoDS_Shape& shape_;
+  const DivisionOptions& options_;
+  std::vector<TopoDS_Face> faces_;
+  FaceMesher mesher_;
+  std::atomic<std::size_t> done_{0};
+};
+
+}  // namespace
+
+ShapeDivision divide_shape(const TopoDS_Shape& shape, const DivisionOptions& options) {
+  return Division(shape, options).run();
+}
+
+}  // namespace abbe

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shape.hxx>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "time_limit.h"
+
+namespace abbe {
+
+struct DivisionOptions {
+  double chord_mm = 0;  ///< largest deviation wanted
+  double angle_rad = 0;
+  double face_seconds = 0;    ///< for one face
+  Handle(TimeLimit) limit{};  ///< for all
+  /// How many faces are divided, of how many.
+  std::function<void(std::size_t done, std::size_t total)> progress{};
+};
+
+/// A face without triangles, and why.
+struct LostFace {
+  TopoDS_Face face;
+  std::string problem;     ///< "could not be divided into triangles: ..."
+  bool timed_out = false;  ///< is the problem
+};
+
+struct ShapeDivision {
+  double deviation_mm = 0;   ///< of triangles and faces, edges included: kBetweenPoints times what was measured
+  double deflection_mm = 0;  ///< least that OpenCASCADE was asked for
+  double excess_mm = 0;      ///< the same without what no division can avoid (unavoidable_mm())
+  TopoDS_Face worst;         ///< where the deviation is
+  double gap_mm = 0;         ///< how far the file's own edges lie beside that face
+  std::vector<LostFace> lost;
+  std::size_t without_area = 0;  ///< faces without triangles that have no area, such as those bounded by one edge twice
+};
+
+/// Gives the faces of a shape their triangles, which OpenCASCADE keeps in the shape, each face once however often it
+/// occurs. The edges are divided until they keep to the chord, then each face along them (FaceMesher); where the edges
+/// turn out to decide about the faces, both again.
+///
+/// Whether the chord was kept is for the caller to see: where the file's own edges lie beside its faces it cannot be.
+/// @throws TimeIsUp, Standard_Failure
+ShapeDivision divide_shape(const TopoDS_Shape& shape, const DivisionOptions& options);
+
+}  // namespace abbe
