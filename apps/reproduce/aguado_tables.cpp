@@ -141,7 +141,8 @@ ReproducedTable aguado_rank_table(const std::vector<AguadoRow>& rows) {
       "Rank deficient: the fit has converged, and the open combinations are zero by convention or by choice. Its "
       "residual holds for these two reflectors and says nothing of others.",
       "Models without enough terms misfit by 100 um and more. Then the open combinations lower the residual at second "
-      "order, and the least-squares solution goes to angles far beyond the errors of the machine (at most 0.1 mrad): it "
+      "order, and the least-squares solution goes to angles far beyond the errors of the machine (at most 0.1 mrad): "
+      "it "
       "is a minimum of the formula and no property of the machine."};
   return table;
 }
