@@ -73,8 +73,12 @@ std::size_t find_name(const Things& things, const std::string& name) {
   return things.size();
 }
 
+// mm; files state offsets with fewer digits than the study may have.
+constexpr double kSameOffset = 1e-3;
+
+/// @param contradictions  in words, where file and study differ; added to
 TrackerReadings readings_from_table(const MeasurementTable& table, const Setup& setup, const std::string& file,
-                                    TrackerSetup& tracker) {
+                                    TrackerSetup& tracker, std::vector<std::string>& contradictions) {
   std::vector<std::uint16_t> station_index, reflector_index;
   for (const std::string& name : table.stations) {
     std::size_t index = name.empty() && tracker.stations.size() == 1 ? 0 : find_name(tracker.stations, name);
@@ -99,7 +103,15 @@ TrackerReadings readings_from_table(const MeasurementTable& table, const Setup& 
       tracker.reflectors.push_back(reflector);
     }
     const bool from_data = index >= setup.reflectors.size() || setup.reflectors[index].offset_from_data;
-    if (has_offset && from_data) tracker.reflectors[index].offset = table.reflector_offset[i];
+    Reflector& reflector = tracker.reflectors[index];
+    if (has_offset && from_data) reflector.offset = table.reflector_offset[i];
+    if (has_offset && !from_data && !reflector.estimate_offset &&
+        (table.reflector_offset[i] - reflector.offset).norm() > kSameOffset) {
+      contradictions.push_back(fmt::format(
+          "the offset of reflector {} is ({}) mm in {} and ({}) mm in the study, which counts (offset = \"from-data\": "
+          "that of the file)",
+          reflector.name, fmt::join(table.reflector_offset[i], ", "), file, fmt::join(reflector.offset, ", ")));
+    }
     reflector_index.push_back(static_cast<std::uint16_t>(index));
   }
 
@@ -184,7 +196,8 @@ void read_setup(const Study& study, const Setup& setup, TrackerCampaign& result)
     options.mapping = data.mapping;
     options.threads = study.threads;
     const MeasurementTable table = read_measurements(data.file, study.machine, options);
-    const TrackerReadings readings = readings_from_table(table, setup, data.file.string(), result.start);
+    const TrackerReadings readings =
+        readings_from_table(table, setup, data.file.string(), result.start, result.contradictions);
     if (result.readings.count() > 0 &&
         (readings.measure != result.readings.measure || readings.stated != result.readings.stated)) {
       throw InputError({.file = data.file.string()}, "the files of one set-up differ in their columns",
@@ -226,13 +239,9 @@ ReadingFacts TrackerCampaign::facts() const {
 
 void TrackerCampaign::find_start(const Machine& machine, std::vector<std::string>& warnings,
                                  std::vector<std::string>&) {
+  for (const std::string& message : contradictions) warnings.push_back(name + ": " + message);
   const TrackerStart found = find_station_poses(machine, ErrorSet{}, start, readings);
   apply(found, start);
-  for (std::size_t s = 0; s < found.stations.size(); ++s) {
-    if (!found.stations[s].note.empty()) {
-      warnings.push_back(fmt::format("{}: {}", start.stations[s].name, found.stations[s].note));
-    }
-  }
   for (const std::string& message : found.messages) warnings.push_back(name + ": " + message);
 }
 
@@ -287,9 +296,10 @@ TrackerReadings read_held_out(const Study& study, const TrackerCampaign& campaig
   if (!setup.data.empty()) options.mapping = setup.data.front().mapping;
   options.threads = study.threads;
   TrackerSetup tracker = campaign.start;
+  std::vector<std::string> contradictions;  // told of the readings that are fitted
   const std::size_t reflectors = tracker.reflectors.size();
-  TrackerReadings readings =
-      readings_from_table(read_measurements(file, study.machine, options), setup, file.string(), tracker);
+  TrackerReadings readings = readings_from_table(read_measurements(file, study.machine, options), setup, file.string(),
+                                                 tracker, contradictions);
   if (tracker.reflectors.size() != reflectors) {
     throw InputError({.file = file.string(), .field = "reflector"},
                      fmt::format("reflector '{}' was not measured", tracker.reflectors.back().name),

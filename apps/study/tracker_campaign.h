@@ -14,6 +14,7 @@ class TrackerCampaign : public CampaignSetup {
   TrackerReadings readings;
   TrackerReadings exact;                            ///< simulation: the same readings without noise and outliers
   std::vector<Eigen::Vector3d> offset_uncertainty;  ///< [reflectors] of the study; 0: not known beforehand
+  std::vector<std::string> contradictions;          ///< in words, where a file of readings and the study differ
 
   const PoseList& poses() const override { return readings.poses; }
   const std::vector<double>& time_s() const override { return readings.time_s; }

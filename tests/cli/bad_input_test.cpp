@@ -114,6 +114,8 @@ TEST_F(BadInput, FilesOfAnotherKindAreToldByTheirNames) {
   expect_refused({"map", errors, machine}, errors + problem + ".machine.toml");
   expect_refused({"map", machine, study}, study + problem + ".errors.toml");
   expect_refused({"run", machine}, machine + problem + ".study.toml");
+  folder.write("errors.toml", "chain = \"w b X Y Z t\"\n");
+  expect_refused({"run", "errors.toml"}, "errors.toml" + problem + ".study.toml");
   expect_refused({"run"}, "study is required\nRun with --help or --help-all for more information.");
 }
 

@@ -111,6 +111,8 @@ TEST_F(TrustOfResults, AReflectorOneMillimetreOffIsRefusedEverywhere) {
   EXPECT_EQ(run.exit_code, computation_says_no) << run.out;
   EXPECT_THAT(run.err, AllOf(HasSubstr("abbe: not to be trusted: the residuals are"), HasSubstr("--accept-misfit")));
   EXPECT_THAT(run.out, HasSubstr("\nNot to be trusted (misfit"));
+  // The readings say what is wrong, in their columns of offsets.
+  EXPECT_THAT(run.out, HasSubstr("tracker: the offset of reflector R1 is (61, 0, -150) mm in "));
   EXPECT_EQ(summary()["trusted"], false);
   EXPECT_EQ(summary()["misfit_accepted"], false);
   EXPECT_EQ(summary()["distrusted"][0]["kind"], "misfit");
