@@ -203,6 +203,23 @@ Eigen::MatrixXd unseen_directions(const Identification& identification) {
   return directions;
 }
 
+/// Whether the truth is compared with the identified errors at the given sides of approach.
+/// @param deviation  of the mean of both directions; its displacement becomes that of the sides where that is found
+bool compare_with_truth(const Study& study, const StudyResult& result, const PoseList& commands, ErrorMap& deviation,
+                        Eigen::Matrix3Xd& before) {
+  const ErrorSet &truth = *result.campaign.truth, &identified = result.identification.errors;
+  std::vector<std::uint8_t> covered = deviation.covered;
+  const Eigen::Matrix3Xd after = errors_at_commands(study.machine, truth, identified, commands, covered);
+  before = errors_at_commands(study.machine, truth, ErrorSet{}, commands, covered);
+  if (after.cols() == 0 || before.cols() == 0) return false;
+  deviation.covered = covered;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const auto row = after.row(static_cast<Eigen::Index>(d));
+    deviation.displacement[d].assign(row.begin(), row.end());
+  }
+  return true;
+}
+
 /// The volumetric error at random poses against the truth, and which of the unseen directions it depends on.
 /// @param statistics  false: the directions alone
 void add_volumetric(const Study& study, const StudyResult& result, std::size_t poses, bool statistics, Tally& tally) {
@@ -211,20 +228,23 @@ void add_volumetric(const Study& study, const StudyResult& result, std::size_t p
   const bool simulated = unseen.against_truth;
   const ErrorSet& actual = simulated ? *result.campaign.truth : identified;
   const bool both_directions = !identified.reversals.empty() || !actual.reversals.empty();
-  const PoseList list =
+  PoseList list =
       random_unseen_poses(study.machine, known_ranges(study, result), poses, unseen_seed(study.seed), both_directions);
-  PoseList mean_of_directions;
-  mean_of_directions.axis = list.axis;
-  const PoseSource source = pose_source(mean_of_directions);
   ErrorMapOptions options;
   options.orientation = false;
   options.remove_rigid_motion = true;
   options.threads = study.threads;
-  const ErrorMap before = error_map(study.machine, actual, nullptr, source, options);
-  ErrorMap after = error_map(study.machine, actual, &identified, source, options);
-  for (std::size_t k = 0; k < after.count(); ++k) after.covered[k] = after.covered[k] & before.covered[k];
+  const PoseSource source = pose_source(list);
+  const ErrorMap mean_before = error_map(study.machine, actual, nullptr, source, options);
+  ErrorMap deviation = error_map(study.machine, actual, &identified, source, options);
+  for (std::size_t k = 0; k < deviation.count(); ++k) deviation.covered[k] &= mean_before.covered[k];
+  Eigen::Matrix3Xd before;
+  const bool at_commands = simulated && compare_with_truth(study, result, list, deviation, before);
+  // Poses that do not say how the workpiece is turned, such as those of a rotary table alone: to first order, for the
+  // mean of both directions, and so is what is predicted.
+  if (simulated && !at_commands) list.approach.clear();
   const DeterminedPart part = determined_part(study.machine, identified, covariance_of_errors(result),
-                                              unseen_directions(result.identification), source, after);
+                                              unseen_directions(result.identification), list, deviation);
   for (const std::size_t direction : part.open_directions) {
     const GaugeConstraint& constraint = result.identification.gauge.constraints[direction];
     unseen.open.push_back(constraint.words);
@@ -233,20 +253,10 @@ void add_volumetric(const Study& study, const StudyResult& result, std::size_t p
   unseen.open_known = true;
   unseen.open_rank = part.open_rank;
   if (!simulated) return;
-  if (statistics) {
-    unseen.after = errors_at_commands(study.machine, actual, identified, list, after.covered);
-    unseen.before = errors_at_commands(study.machine, actual, ErrorSet{}, list, after.covered);
-  }
-  // Poses that do not say how the workpiece is turned, such as those of a rotary table alone: to first order.
-  const bool first_order = unseen.before.empty() || unseen.after.empty();
-  if (first_order) {
-    unseen.before.clear();
-    unseen.after.clear();
-  }
   double open_square = 0;
   std::size_t covered = 0;
-  for (std::size_t k = 0; k < after.count(); ++k) {
-    if (after.covered[k] == 0) continue;
+  for (std::size_t k = 0; k < deviation.count(); ++k) {
+    if (deviation.covered[k] == 0) continue;
     ++covered;
     for (std::size_t d = 0; d < 3; ++d) open_square += part.open[d][k] * part.open[d][k];
     if (!statistics) continue;
@@ -257,10 +267,9 @@ void add_volumetric(const Study& study, const StudyResult& result, std::size_t p
       tally.within += std::abs(part.displacement[d][k]) <= 2 * u ? 1U : 0U;
       ++tally.coordinates;
     }
-    if (first_order) {
-      unseen.before.push_back(before.norm[k]);
-      unseen.after.push_back(after.norm[k]);
-    }
+    unseen.before.push_back(at_commands ? before.col(static_cast<Eigen::Index>(k)).norm() : mean_before.norm[k]);
+    unseen.after.push_back(
+        std::hypot(deviation.displacement[0][k], deviation.displacement[1][k], deviation.displacement[2][k]));
     unseen.expanded_uncertainty.push_back(2 * std::sqrt(variance));
   }
   if (covered > 0) unseen.open_rms = std::sqrt(open_square / static_cast<double>(covered));

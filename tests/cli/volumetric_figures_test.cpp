@@ -1,6 +1,11 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/instrument_study_test.h"
 
@@ -71,6 +76,30 @@ TEST_F(VolumetricFigures, HaveTheSameNumbersUnderTheSameNamesInEveryCommand) {
   EXPECT_EQ(held_out["position_before_um"], unseen["position_before_um"]);
   EXPECT_NEAR(held_out["position_after_um"]["mean"], unseen["position_after_um"]["mean"],
               1e-3 * unseen["position_after_um"]["mean"].get<double>());
+}
+
+TEST_F(VolumetricFigures, AtRandomPosesHoldTheUncertaintyOfReversalValuesInBothCommands) {
+  std::ifstream example(ABBE_SOURCE_DIR "/examples/three_axis/six-component-laser.study.toml");
+  std::stringstream text;
+  text << example.rdbuf();
+  std::string study = text.str();
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"\"../machines", "\"" ABBE_SOURCE_DIR "/examples/machines"},
+           {"mean_volumetric_um = 25", "mean_volumetric_um = 25\nreversal_um = 6"},
+           {"held_out_fraction = 0.1", "reversals = [\"*\"]"}}) {
+    const std::size_t at = study.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    study.replace(at, from.size(), to);
+  }
+  folder.write("reversal.study.toml", study);
+  const nlohmann::json run = json_of({"run", "reversal.study.toml", "-o", "results"});
+  const nlohmann::json verify = json_of({"verify", "results"});
+  const nlohmann::json &held_out = run["held_out"], &unseen = verify["unseen_poses"];
+  ASSERT_EQ(held_out["poses"], unseen["poses"]);
+  const std::string predicted = "predicted_expanded_uncertainty_um";
+  const double rms = unseen[predicted]["rms"];
+  EXPECT_NEAR(held_out[predicted]["rms"].get<double>(), rms, 1e-4 * rms);
+  EXPECT_NEAR(held_out["coverage_percent"].get<double>(), unseen["coverage_percent"].get<double>(), 0.5);
 }
 
 TEST_F(VolumetricFigures, OfMeasuredReadingsAreThosePredictedAndResidualsAreCalledResiduals) {

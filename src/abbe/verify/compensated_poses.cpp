@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "abbe/compensate/compensated_inverse.h"
-#include "abbe/errors/actual_pose.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/angle.h"
 #include "abbe/verify/actual_tool.h"
@@ -97,36 +96,14 @@ Left left_after_datum(const ToolPlaces& actual, const ToolPlaces& wanted, const 
   return left;
 }
 
-/// Adds what reversal values do to the columns of their parameters: half the approach times the derivative by the
-/// axis's command.
-void add_reversal_columns(const Machine& machine, const ErrorSet& errors, const PoseList& commands,
-                          const std::vector<std::size_t>& used, Eigen::MatrixXd& by_parameter) {
-  const ReversalShift reversal(errors);
-  if (!reversal.acts_on(commands)) return;
-  Deviation deviation;
-  Eigen::MatrixXd by_positions;
-  for (std::size_t n = 0; n < used.size(); ++n) {
-    tool_deviation(machine, errors, commands.pose(used[n]), deviation, nullptr, &by_positions);
-    for (std::size_t p = 0; p < errors.parameter_count(); ++p) {
-      const std::size_t axis = reversal.axis_of(p);
-      if (axis == ReversalShift::npos) continue;
-      by_parameter.block<3, 1>(3 * static_cast<Index>(n), static_cast<Index>(p)) =
-          0.5 * commands.approach[axis][used[n]] * by_positions.col(static_cast<Index>(axis)).head<3>();
-    }
-  }
-}
-
 void predict(const Machine& machine, const ErrorSet& identified, const Eigen::MatrixXd& covariance,
              const PoseList& commands, const std::vector<std::size_t>& used, const Left& after,
              CompensatedPoses& result) {
   std::vector<std::size_t> parameters(identified.parameter_count());
   for (std::size_t p = 0; p < parameters.size(); ++p) parameters[p] = p;
-  PoseList plain;
-  plain.axis = commands.axis;
   std::vector<std::uint8_t> wanted(commands.count(), 0);
   for (const std::size_t k : used) wanted[k] = 1;
-  DisplacementFields at = displacement_fields(machine, identified, parameters, pose_source(plain), wanted);
-  add_reversal_columns(machine, identified, commands, used, at.by_parameter);
+  const DisplacementFields at = displacement_fields(machine, identified, parameters, commands, wanted);
   Eigen::MatrixXd spread = at.by_parameter * covariance_root(covariance);
   remove_span(orthonormal_columns(at.by_motion, 1e-10), spread);
   std::size_t within = 0;
@@ -195,15 +172,21 @@ CompensatedPoses check_compensated_poses(const Machine& machine, const ErrorSet&
   return result;
 }
 
-std::vector<double> errors_at_commands(const Machine& machine, const ErrorSet& actual, const ErrorSet& wanted,
-                                       const PoseList& commands, std::vector<std::uint8_t>& used) {
+Eigen::Matrix3Xd errors_at_commands(const Machine& machine, const ErrorSet& actual, const ErrorSet& wanted,
+                                    const PoseList& commands, std::vector<std::uint8_t>& used) {
   const ToolPlaces at = actual_tool(machine, actual, commands), should = actual_tool(machine, wanted, commands);
   std::vector<std::size_t> both;
   for (std::size_t k = 0; k < commands.count(); ++k) {
     if (at.covered[k] == 0 || should.covered[k] == 0) used[k] = 0;
     if (used[k] != 0) both.push_back(k);
   }
-  return left_after_datum(at, should, both).norm;
+  const Left left = left_after_datum(at, should, both);
+  if (left.status != BestFitStatus::ok) return {};
+  Eigen::Matrix3Xd displacement = Eigen::Matrix3Xd::Zero(3, static_cast<Index>(commands.count()));
+  for (std::size_t n = 0; n < both.size(); ++n) {
+    displacement.col(static_cast<Index>(both[n])) = left.displacement.col(static_cast<Index>(n));
+  }
+  return displacement;
 }
 
 }  // namespace abbe

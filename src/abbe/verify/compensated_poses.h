@@ -54,12 +54,13 @@ struct CompensatedPoses {
 CompensatedPoses check_compensated_poses(const Machine& machine, const ErrorSet& truth, const ErrorSet& identified,
                                          const Eigen::MatrixXd& covariance, const PoseList& commands);
 
-/// Volumetric error at commands as they are: where a machine with `actual` errors has the tool, against where one with
-/// `wanted` errors has it, each coming from the sides that the list knows, after the best fit of the workpiece datum.
-/// With no errors wanted it is `before` of check_compensated_poses() at the same poses.
+/// Displacement of the functional point at commands as they are: where a machine with `actual` errors has the tool,
+/// minus where one with `wanted` errors has it, each coming from the sides that the list knows, after the best fit of
+/// the workpiece datum. With no errors wanted its length is `before` of check_compensated_poses() at the same poses.
 /// @param used  [poses] 0: the pose takes no part; becomes 0 where the errors of either machine are not known
-/// @return [used poses], mm; empty if these do not determine the turn of the workpiece
-std::vector<double> errors_at_commands(const Machine& machine, const ErrorSet& actual, const ErrorSet& wanted,
-                                       const PoseList& commands, std::vector<std::uint8_t>& used);
+/// @return [3, poses] in the workpiece frame, mm, 0 where a pose takes no part; [3, 0] if the poses that do leave the
+///         turn of the workpiece open
+Eigen::Matrix3Xd errors_at_commands(const Machine& machine, const ErrorSet& actual, const ErrorSet& wanted,
+                                    const PoseList& commands, std::vector<std::uint8_t>& used);
 
 }  // namespace abbe

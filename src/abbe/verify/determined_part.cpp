@@ -19,10 +19,10 @@ constexpr double kOpenPart = 1e-3;
 }  // namespace
 
 DeterminedPart determined_part(const Machine& machine, const ErrorSet& errors, const ParameterCovariance& covariance,
-                               const Eigen::MatrixXd& unseen, const PoseSource& poses, const ErrorMap& deviation) {
+                               const Eigen::MatrixXd& unseen, const PoseList& poses, const ErrorMap& deviation) {
   const Index n = static_cast<Index>(covariance.parameters.size());
   if (covariance.covariance.rows() != n || covariance.covariance.cols() != n || unseen.rows() != n ||
-      deviation.count() != poses.count || poses.axes != machine.axes.size()) {
+      deviation.count() != poses.count() || poses.axis.size() != machine.axes.size()) {
     throw std::invalid_argument("determined part: covariance, directions, poses and deviations do not fit");
   }
   const DisplacementFields at = displacement_fields(machine, errors, covariance.parameters, poses, deviation.covered);
@@ -64,7 +64,7 @@ DeterminedPart determined_part(const Machine& machine, const ErrorSet& errors, c
   remove_span(open, spread);
   for (std::size_t c = 0; c < 3; ++c) {
     for (auto* values : {&part.displacement[c], &part.uncertainty[c], &part.open[c]}) {
-      values->assign(poses.count, 0.0);
+      values->assign(poses.count(), 0.0);
     }
     for (std::size_t k = 0; k < at.pose.size(); ++k) {
       const Index row = static_cast<Index>(3 * k + c);

@@ -35,11 +35,12 @@ struct DeterminedPart {
 /// @param errors      at which the derivatives are taken
 /// @param covariance  of some of their parameters, [n]
 /// @param unseen      [n, q] directions of the same parameters, mm and rad; their part in other unknowns does not count
+/// @param poses       of which the approach may be known: reversal values then displace by it
 /// @param deviation   at the poses; not covered ones stay 0. Some thousand poses: 3 poses * n numbers are kept
 /// @throws std::invalid_argument if sizes do not fit, as error_map()
 /// Source: W. Baarda, S-transformations and criterion matrices (1973); P. Teunissen, Zero order design: generalized
 /// inverses, adjustment, the datum problem and S-transformations (1985).
 DeterminedPart determined_part(const Machine& machine, const ErrorSet& errors, const ParameterCovariance& covariance,
-                               const Eigen::MatrixXd& unseen, const PoseSource& poses, const ErrorMap& deviation);
+                               const Eigen::MatrixXd& unseen, const PoseList& poses, const ErrorMap& deviation);
 
 }  // namespace abbe

@@ -97,7 +97,7 @@ TEST_F(DeterminedParts, NothingIsLeftOfErrorsThatDifferByUnseenDirectionsOnly) {
   const Eigen::VectorXd change = unseen * Eigen::Vector3d(20e-6, 0.01, 30e-6);
   const ErrorMap map = deviation_of(change);
   EXPECT_GT(map.statistics.mean, 2e-3);  // the roll, after the best fit of the workpiece datum
-  const DeterminedPart part = determined_part(machine, identified, covariance_of(count, 1), unseen, source, map);
+  const DeterminedPart part = determined_part(machine, identified, covariance_of(count, 1), unseen, poses, map);
   EXPECT_EQ(part.open_directions, std::vector<std::size_t>{0});
   EXPECT_EQ(part.open_rank, 1u);
   for (std::size_t k = 0; k < poses.count(); ++k) {
@@ -112,8 +112,8 @@ TEST_F(DeterminedParts, WhatIsSeenStaysButForItsPartAlongTheOpenDirection) {
   Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Index>(count));
   change[static_cast<Index>(parameter(1, Component::X, 1))] = 0.01;  // squareness of Y
   const DeterminedPart alone =
-      determined_part(machine, identified, covariance_of(count, 1), unseen, source, deviation_of(change));
-  const DeterminedPart both = determined_part(machine, identified, covariance_of(count, 1), unseen, source,
+      determined_part(machine, identified, covariance_of(count, 1), unseen, poses, deviation_of(change));
+  const DeterminedPart both = determined_part(machine, identified, covariance_of(count, 1), unseen, poses,
                                               deviation_of(change + unseen.col(0) * 50e-6));
   double size = 0;
   for (std::size_t k = 0; k < poses.count(); ++k) {
@@ -138,9 +138,9 @@ TEST_F(DeterminedParts, TheUncertaintyIsTheSameInEveryConvention) {
   }
   const Eigen::MatrixXd moved = Eigen::MatrixXd::Identity(amount.cols(), amount.cols()) + unseen * amount;
   other.covariance = moved * one.covariance * moved.transpose();
-  const DeterminedPart a = determined_part(machine, identified, one, unseen, source, map);
-  const DeterminedPart b = determined_part(machine, identified, other, unseen, source, map);
-  const DeterminedPart all = determined_part(machine, identified, one, Eigen::MatrixXd(amount.cols(), 0), source, map);
+  const DeterminedPart a = determined_part(machine, identified, one, unseen, poses, map);
+  const DeterminedPart b = determined_part(machine, identified, other, unseen, poses, map);
+  const DeterminedPart all = determined_part(machine, identified, one, Eigen::MatrixXd(amount.cols(), 0), poses, map);
   double difference = 0;
   for (std::size_t k = 0; k < poses.count(); ++k) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -160,7 +160,7 @@ TEST_F(DeterminedParts, WithoutUnseenDirectionsItIsTheMapAndItsUncertainty) {
   const ErrorMap map = deviation_of(change);
   const ParameterCovariance covariance = covariance_of(count, 1);
   const DeterminedPart part =
-      determined_part(machine, identified, covariance, Eigen::MatrixXd(change.size(), 0), source, map);
+      determined_part(machine, identified, covariance, Eigen::MatrixXd(change.size(), 0), poses, map);
   ErrorMapOptions options;
   options.orientation = false;
   options.remove_rigid_motion = true;
@@ -182,7 +182,7 @@ TEST_F(DeterminedParts, AnErrorThatCannotReachTheFunctionalPointIsNotOpen) {
   roll(static_cast<Index>(parameter(2, Component::C, 1)), 0) = 1;
   const ErrorMap map = deviation_of(Eigen::VectorXd::Zero(static_cast<Index>(count)));
   const auto open = [&] {
-    return determined_part(machine, identified, covariance_of(count, 1), roll, source, map).open_rank;
+    return determined_part(machine, identified, covariance_of(count, 1), roll, poses, map).open_rank;
   };
   EXPECT_EQ(open(), 0u);
   machine.tool_offset = {100, 0, -120};
@@ -193,11 +193,11 @@ TEST_F(DeterminedParts, PosesOutsideTheKnownRangeTakeNoPart) {
   ErrorMap map = deviation_of(unseen.col(0) * 20e-6);
   map.covered[7] = 0;
   map.displacement[0][7] = 1e6;
-  const DeterminedPart part = determined_part(machine, identified, covariance_of(count, 1), unseen, source, map);
+  const DeterminedPart part = determined_part(machine, identified, covariance_of(count, 1), unseen, poses, map);
   EXPECT_EQ(part.displacement[0][7], 0);
   EXPECT_EQ(part.uncertainty[0][7], 0);
   EXPECT_NEAR(part.displacement[0][8], 0, 2e-6);
-  EXPECT_THROW(determined_part(machine, identified, covariance_of(count, 1), Eigen::MatrixXd::Zero(3, 1), source, map),
+  EXPECT_THROW(determined_part(machine, identified, covariance_of(count, 1), Eigen::MatrixXd::Zero(3, 1), poses, map),
                std::invalid_argument);
 }
 

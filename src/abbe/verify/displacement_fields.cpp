@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/errors/actual_pose.h"
+#include "abbe/errors/reversal.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/verify/deviation_block.h"
 #include "abbe/verify/deviation_jacobian.h"
@@ -63,6 +65,26 @@ DisplacementFields displacement_fields(const Machine& machine, const ErrorSet& e
   const double largest = points.empty() ? 1 : result.by_motion.rightCols(3).colwise().norm().maxCoeff();
   if (largest > 0) result.by_motion.rightCols(3) /= largest;
   result.by_motion.leftCols(3) /= std::sqrt(std::max(1.0, static_cast<double>(points.size())));
+  return result;
+}
+
+DisplacementFields displacement_fields(const Machine& machine, const ErrorSet& errors,
+                                       const std::vector<std::size_t>& parameters, const PoseList& poses,
+                                       const std::vector<std::uint8_t>& covered) {
+  DisplacementFields result = displacement_fields(machine, errors, parameters, pose_source(poses), covered);
+  const ReversalShift reversal(errors);
+  if (!reversal.acts_on(poses)) return result;
+  Deviation deviation;
+  Eigen::MatrixXd by_positions;
+  for (std::size_t k = 0; k < result.pose.size(); ++k) {
+    tool_deviation(machine, errors, poses.pose(result.pose[k]), deviation, nullptr, &by_positions);
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      const std::size_t axis = reversal.axis_of(parameters[p]);
+      if (axis == ReversalShift::npos) continue;
+      result.by_parameter.block<3, 1>(3 * static_cast<Index>(k), static_cast<Index>(p)) =
+          0.5 * poses.approach[axis][result.pose[k]] * by_positions.col(static_cast<Index>(axis)).head<3>();
+    }
+  }
   return result;
 }
 

@@ -26,6 +26,12 @@ DisplacementFields displacement_fields(const Machine& machine, const ErrorSet& e
                                        const std::vector<std::size_t>& parameters, const PoseSource& poses,
                                        const std::vector<std::uint8_t>& covered);
 
+/// The same at poses of which it may be known from which side the axes came: there a reversal value displaces by half
+/// the approach times the derivative by its axis's command (ReversalShift). Without an approach its column is 0.
+DisplacementFields displacement_fields(const Machine& machine, const ErrorSet& errors,
+                                       const std::vector<std::size_t>& parameters, const PoseList& poses,
+                                       const std::vector<std::uint8_t>& covered);
+
 /// Orthonormal columns that span those of `columns`, which have comparable lengths.
 /// @param threshold  a column that is left with less than this part of the longest one's pivot adds nothing
 Eigen::MatrixXd orthonormal_columns(const Eigen::MatrixXd& columns, double threshold);
