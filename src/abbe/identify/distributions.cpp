@@ -82,6 +82,19 @@ double chi_square_quantile(double exceedance, double degrees_of_freedom) {
   return (low + high) / 2;
 }
 
+double fisher_quantile(double exceedance, double upper, double lower) {
+  const auto exceeded = [&](double x) {
+    return incomplete_beta(lower / 2, upper / 2, lower / (lower + upper * x)) > exceedance;
+  };
+  double low = 0, high = 10;
+  while (exceeded(high)) high *= 2;
+  for (int i = 0; i < 200 && high - low > 1e-13 * high; ++i) {
+    const double middle = (low + high) / 2;
+    (exceeded(middle) ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
 double student_exceedance(double t, double degrees_of_freedom) {
   const double tail =
       incomplete_beta(degrees_of_freedom / 2, 0.5, degrees_of_freedom / (degrees_of_freedom + t * t)) / 2;

@@ -16,6 +16,11 @@ double chi_square_exceedance(double value, double degrees_of_freedom);
 /// Value that a chi-square variable exceeds with this probability, 0 < exceedance < 1.
 double chi_square_quantile(double exceedance, double degrees_of_freedom);
 
+/// Value that a ratio of two independent mean squares of normal variables of one variance exceeds with this
+/// probability (Fisher's F), 0 < exceedance < 1.
+/// @param upper, lower  degrees of freedom of the numerator and of the denominator, both > 0
+double fisher_quantile(double exceedance, double upper, double lower);
+
 /// Probability that Student's t with `degrees_of_freedom` exceeds `t` (one-sided).
 double student_exceedance(double t, double degrees_of_freedom);
 

@@ -24,6 +24,20 @@ TEST(Distributions, quantiles_agree_with_the_printed_table) {
   EXPECT_NEAR(chi_square_quantile(0.95, 30), 18.4927, 5e-5);
 }
 
+TEST(Distributions, fisher_agrees_with_the_printed_table_and_with_its_limits) {
+  // Abramowitz and Stegun, Table 26.9.
+  EXPECT_NEAR(fisher_quantile(0.05, 3, 10), 3.71, 5e-3);
+  EXPECT_NEAR(fisher_quantile(0.01, 6, 6), 8.47, 5e-3);
+  EXPECT_NEAR(fisher_quantile(0.001, 10, 30), 4.24, 5e-3);
+  // One degree above: the square of Student's t on both sides. Many below: chi-square over its degrees of freedom.
+  for (const double t : {0.5, 2.0, 40.0}) {
+    EXPECT_NEAR(fisher_quantile(2 * student_exceedance(t, 7), 1, 7) / (t * t), 1, 1e-10);
+  }
+  EXPECT_NEAR(6 * fisher_quantile(1e-6 / 3, 6, 1e8) / chi_square_quantile(1e-6 / 3, 6), 1, 1e-6);
+  // Two and two: exceeded with 1 / (1 + x).
+  EXPECT_NEAR(fisher_quantile(1e-9, 2, 2) / (1e9 - 1), 1, 1e-9);
+}
+
 TEST(Distributions, large_degrees_of_freedom_approach_the_normal_distribution) {
   const double n = 3e5;
   // Wilson and Hilferty.

@@ -30,7 +30,10 @@ bool is_worse_by_no_chance(const HeldOutErrors& errors) {
   const double by_estimates = errors.predicted_square * chi_square_quantile(kShare, 1);
   const double variance = before / independent;
   if (!errors.readings) return after > by_estimates && after > errors.numbers * variance;
-  const double by_fit = errors.fitted_before > 0 ? variance * chi_square_quantile(kShare, errors.fitted_before) : 0.0;
+  // The variance comes from the same readings, of what the fit left: Fisher's F and not chi-square.
+  const double by_fit = errors.fitted_before > 0 ? errors.fitted_before * variance *
+                                                       fisher_quantile(kShare, errors.fitted_before, independent)
+                                                 : 0.0;
   // What is left has to be more than the product of noise and estimates comes to, whose spread the readings show.
   const double excess = after - before - by_estimates - by_fit;
   if (!(excess > 0) || count < 2) return false;

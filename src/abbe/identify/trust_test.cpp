@@ -139,6 +139,24 @@ TEST(Trust, AnExactMachineIsNotDistrustedForItsNoise) {
   EXPECT_EQ(campaigns.distrusted(0.05, 1, true, true).first, 0);
 }
 
+TEST(Trust, AStationFittedToFewReadingsHidesMoreThanOneFittedToMany) {
+  // Per point what the station took up, and nothing else: the limits are f F(f, n - f), 1855 for 4 points and 46.3 for
+  // 50, times the variance.
+  for (const auto& [points, limit] : {std::pair(4.0, 1855.0), std::pair(50.0, 46.3)}) {
+    const auto count = static_cast<std::size_t>(points);
+    const double numbers = 3 * points, variance = 1e-4;
+    HeldOutErrors errors{.before = std::vector<double>(count, std::sqrt(variance * (numbers - 6) / points)),
+                         .numbers = numbers,
+                         .fitted_before = 6};
+    const auto with_excess = [&](double excess) {
+      errors.after.assign(count, std::sqrt((variance * (numbers - 6 + excess)) / points));
+      return distrust_of_held_out(errors).has_value();
+    };
+    EXPECT_FALSE(with_excess(0.999 * limit)) << points;
+    EXPECT_TRUE(with_excess(1.001 * limit)) << points;
+  }
+}
+
 TEST(Trust, AMachineThatIsNotTheOneMeasuredIsDistrusted) {
   const HeldOutCampaigns campaigns;
   for (const bool station : {false, true}) {
