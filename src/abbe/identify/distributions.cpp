@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace abbe {
 namespace {
@@ -99,6 +100,17 @@ double student_exceedance(double t, double degrees_of_freedom) {
   const double tail =
       incomplete_beta(degrees_of_freedom / 2, 0.5, degrees_of_freedom / (degrees_of_freedom + t * t)) / 2;
   return t > 0 ? tail : 1 - tail;
+}
+
+double sum_exceedance(std::span<const double> values, double expected) {
+  const auto n = static_cast<double>(values.size());
+  if (values.size() < 3) return 1;
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+  double square = 0;
+  for (const double value : values) square += (value - sum / n) * (value - sum / n);
+  const double deviation = std::sqrt(square / (n - 1) * n);
+  if (!(deviation > 0)) return sum > expected ? 0 : 1;
+  return student_exceedance((sum - expected) / deviation, n - 1);
 }
 
 }  // namespace abbe

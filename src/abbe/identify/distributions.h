@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 namespace abbe {
 
 /// Regularised incomplete gamma function Q(a, x) = Gamma(a, x) / Gamma(a); a > 0, x >= 0.
@@ -23,5 +25,9 @@ double fisher_quantile(double exceedance, double upper, double lower);
 
 /// Probability that Student's t with `degrees_of_freedom` exceeds `t` (one-sided).
 double student_exceedance(double t, double degrees_of_freedom);
+
+/// Probability that independent values have so large a sum by chance if their expected sum is `expected` or less:
+/// Student's t of their mean, one-sided, with the scatter that they show. 1 for fewer than three values.
+double sum_exceedance(std::span<const double> values, double expected);
 
 }  // namespace abbe

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 namespace abbe {
 namespace {
@@ -51,6 +52,16 @@ TEST(Distributions, student_agrees_with_closed_forms) {
     EXPECT_NEAR(student_exceedance(t, 2), 0.5 - t / (2 * std::sqrt(2 + t * t)), 1e-13);
   }
   EXPECT_NEAR(student_exceedance(2.228, 10), 0.025, 1e-5);
+}
+
+TEST(Distributions, a_sum_is_judged_by_the_scatter_of_its_values) {
+  // t = 6 / sqrt(3) with two degrees of freedom.
+  EXPECT_NEAR(sum_exceedance(std::vector<double>{1, 2, 3}, 0), 0.5 - std::sqrt(12.0 / 14) / 2, 1e-13);
+  EXPECT_NEAR(sum_exceedance(std::vector<double>{1, 2, 3}, 6), 0.5, 1e-13);
+  EXPECT_GT(sum_exceedance(std::vector<double>{1, 2, 3}, 7), 0.5);
+  EXPECT_EQ(sum_exceedance(std::vector<double>{2, 2, 2}, 5), 0);
+  EXPECT_EQ(sum_exceedance(std::vector<double>{2, 2, 2}, 6), 1);
+  EXPECT_EQ(sum_exceedance(std::vector<double>{1, 2}, 0), 1) << "too few to show a scatter";
 }
 
 TEST(Distributions, incomplete_beta_is_symmetric_and_matches_powers) {

@@ -150,16 +150,10 @@ double mean(const std::vector<double>& values) {
 
 // One-sided paired test that `lower` is lower than `higher` in the mean.
 double paired_exceedance(const std::vector<double>& higher, const std::vector<double>& lower) {
-  const double n = static_cast<double>(higher.size());
-  if (higher.size() != lower.size() || higher.size() < 3) return 1;
+  if (higher.size() != lower.size()) return 1;
   std::vector<double> gains(higher.size());
   for (std::size_t i = 0; i < higher.size(); ++i) gains[i] = higher[i] - lower[i];
-  const double average = mean(gains);
-  double square = 0;
-  for (const double gain : gains) square += (gain - average) * (gain - average);
-  const double deviation = std::sqrt(square / (n - 1) / n);
-  if (!(deviation > 0)) return average > 0 ? 0 : 1;
-  return student_exceedance(average / deviation, n - 1);
+  return sum_exceedance(gains, 0);
 }
 
 /// The best model so far and the ways to a better one.

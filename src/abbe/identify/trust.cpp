@@ -23,7 +23,6 @@ double sum_of_squares(const std::vector<double>& values) {
 /// docs/identification.md, "Worse held out": the three allowances share the probability.
 bool is_worse_by_no_chance(const HeldOutErrors& errors) {
   constexpr double kShare = kNoChance / 3;
-  const auto count = static_cast<double>(errors.after.size());
   const double independent = errors.numbers - errors.fitted_before;
   if (errors.before.size() != errors.after.size() || !(independent > 0)) return false;
   const double before = sum_of_squares(errors.before), after = sum_of_squares(errors.after);
@@ -35,16 +34,11 @@ bool is_worse_by_no_chance(const HeldOutErrors& errors) {
                                                        fisher_quantile(kShare, errors.fitted_before, independent)
                                                  : 0.0;
   // What is left has to be more than the product of noise and estimates comes to, whose spread the readings show.
-  const double excess = after - before - by_estimates - by_fit;
-  if (!(excess > 0) || count < 2) return false;
-  const double mean = (after - before) / count;
-  double square = 0;
-  for (std::size_t k = 0; k < errors.after.size(); ++k) {
-    const double difference = errors.after[k] * errors.after[k] - errors.before[k] * errors.before[k] - mean;
-    square += difference * difference;
+  std::vector<double> growth(errors.after.size());
+  for (std::size_t k = 0; k < growth.size(); ++k) {
+    growth[k] = errors.after[k] * errors.after[k] - errors.before[k] * errors.before[k];
   }
-  const double spread = std::sqrt(square / (count - 1) * count);
-  return spread > 0 ? student_exceedance(excess / spread, count - 1) < kShare : true;
+  return sum_exceedance(growth, by_estimates + by_fit) < kShare;
 }
 
 }  // namespace
