@@ -178,11 +178,13 @@ TEST_F(TrustOfResults, ErrorsThatMakeHeldOutPosesWorseAreRefused) {
   const CommandResult run = abbe({"run", "s.study.toml", "--json"});
   const nlohmann::json figures = nlohmann::json::parse(run.out, nullptr, false);
   ASSERT_TRUE(figures.is_object()) << run.err;
-  const double before = figures["held_out"]["position_before_um"]["mean"];
-  const double after = figures["held_out"]["position_after_um"]["mean"];
+  const double before = figures["held_out"]["position_before_um"]["rms"];
+  const double after = figures["held_out"]["position_after_um"]["rms"];
   ASSERT_GT(after, before);
   EXPECT_EQ(run.exit_code, computation_says_no) << run.err;
   EXPECT_EQ(figures["distrusted"][0]["kind"], "worse held out");
+  EXPECT_NEAR(figures["distrusted"][0]["rms_before_um"].get<double>(), before, 1e-6 * before);
+  EXPECT_NEAR(figures["distrusted"][0]["rms_after_um"].get<double>(), after, 1e-6 * after);
 }
 
 TEST_F(TrustOfResults, AMachineWithoutErrorsIsNotRefused) {
@@ -192,7 +194,7 @@ TEST_F(TrustOfResults, AMachineWithoutErrorsIsNotRefused) {
   const CommandResult run = abbe({"run", "s.study.toml", "--json"});
   EXPECT_EQ(run.exit_code, done) << run.err;
   const nlohmann::json figures = nlohmann::json::parse(run.out);
-  ASSERT_GT(figures["held_out"]["position_after_um"]["mean"], figures["held_out"]["position_before_um"]["mean"]);
+  ASSERT_GT(figures["held_out"]["position_after_um"]["rms"], figures["held_out"]["position_before_um"]["rms"]);
   EXPECT_EQ(figures["trusted"], true);
   EXPECT_THAT(figures["warnings"], Contains(HasSubstr("the correction shows no improvement there")));
 }

@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kWorthTelling = 0.95;  // residuals / stated uncertainties
 
-double mean_of(const std::vector<double>& values) {
-  return values.empty() ? 0 : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 double sum_of_squares(const std::vector<double>& values) {
   return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  return values.empty() ? 0 : std::sqrt(sum_of_squares(values) / static_cast<double>(values.size()));
 }
 
 /// docs/identification.md, "Worse held out": the three allowances share the probability.
@@ -79,26 +79,27 @@ std::string warning_of_overstated_noise(const FitStatistics& fit) {
 
 std::optional<Distrust> distrust_of_held_out(const HeldOutErrors& errors) {
   if (!is_worse_by_no_chance(errors)) return {};
-  const double before = mean_of(errors.before), after = mean_of(errors.after);
+  const double before = 1e3 * root_mean_square(errors.before), after = 1e3 * root_mean_square(errors.after);
   return Distrust{
       DistrustKind::worse_held_out,
-      fmt::format("at poses that took no part in the fit the mean error is {:.4g} um after the correction "
+      fmt::format("at poses that took no part in the fit the root mean square error is {:.4g} um after the correction "
                   "and {:.4g} um before, which neither noise nor the uncertainty of the identified errors "
                   "explains (probability below {:.0e}): the identified errors make the machine worse",
-                  1e3 * after, 1e3 * before, kNoChance),
-      {{"mean_before_um", 1e3 * before},
-       {"mean_after_um", 1e3 * after},
+                  after, before, kNoChance),
+      {{"rms_before_um", before},
+       {"rms_after_um", after},
        {"predicted_rms_um", 1e3 * std::sqrt(errors.predicted_square / static_cast<double>(errors.after.size()))}}};
 }
 
 std::string warning_of_held_out(const HeldOutErrors& errors) {
-  const double before = mean_of(errors.before), after = mean_of(errors.after);
+  const double before = 1e3 * root_mean_square(errors.before), after = 1e3 * root_mean_square(errors.after);
   if (!(after > before) || is_worse_by_no_chance(errors)) return {};
   return fmt::format(
-      "at poses that took no part in the fit the mean error is {:.4g} um after the correction and {:.4g} um before. "
-      "Noise and the uncertainty of the identified errors may explain that, but the correction shows no improvement "
-      "there.",
-      1e3 * after, 1e3 * before);
+      "at poses that took no part in the fit the root mean square error is {:.4g} um after the correction and {:.4g} "
+      "um "
+      "before. Noise and the uncertainty of the identified errors may explain that, but the correction shows no "
+      "improvement there.",
+      after, before);
 }
 
 }  // namespace abbe

@@ -53,7 +53,7 @@ struct HeldOutErrors {
 /// kNoChance at most, and one with errors more rarely. Derivation in docs/identification.md.
 std::optional<Distrust> distrust_of_held_out(const HeldOutErrors& errors);
 
-/// A warning where the errors after are larger on average, but within what chance explains. Empty: none.
+/// A warning where the errors after are larger in root mean square, but within what chance explains. Empty: none.
 std::string warning_of_held_out(const HeldOutErrors& errors);
 
 /// Sizes beyond which an error is taken for a fault of the input: a wrong axis, unit, reflector or sign.

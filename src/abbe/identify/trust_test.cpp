@@ -59,7 +59,7 @@ TEST(Trust, ATrueErrorThatTheCorrectionMakesLargerIsDistrusted) {
   const auto found = distrust_of_held_out(errors);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->kind, DistrustKind::worse_held_out);
-  EXPECT_THAT(found->text, HasSubstr("110 um after the correction and 100 um before"));
+  EXPECT_THAT(found->text, HasSubstr("the root mean square error is 110 um after the correction and 100 um before"));
   EXPECT_EQ(warning_of_held_out(errors), "");
   // Not if the identified errors are said to be known no better.
   errors.predicted_square = 100 * 0.05 * 0.05;
@@ -115,7 +115,7 @@ class HeldOutCampaigns {
     return result;
   }
 
-  /// How many of 200 campaigns are distrusted, and how many are worse on average.
+  /// How many of 200 campaigns are distrusted, and how many are worse.
   std::pair<int, int> distrusted(double size, double changed, bool readings, bool station) const {
     std::pair<int, int> counts{0, 0};
     for (std::uint64_t seed = 1; seed <= 200; ++seed) {
@@ -132,11 +132,29 @@ TEST(Trust, AnExactMachineIsNotDistrustedForItsNoise) {
   for (const bool station : {false, true}) {
     const auto [refused, worse] = campaigns.distrusted(0, 1, true, station);
     EXPECT_EQ(refused, 0);
-    EXPECT_GT(worse, 150) << "most are worse on average";
+    EXPECT_GT(worse, 150) << "most are worse";
   }
   EXPECT_EQ(campaigns.distrusted(0, 1, false, false), std::pair(0, 200));
   // Errors as large as what noise makes of them: a correction may help or not.
   EXPECT_EQ(campaigns.distrusted(0.05, 1, true, true).first, 0);
+}
+
+TEST(Trust, HeldOutErrorsAreStatedAsTheRootMeanSquareThatIsJudged) {
+  // Smaller on average, but not in the sum of squares: one pose has become far worse.
+  HeldOutErrors errors{.before = std::vector<double>(100, 0.01),
+                       .after = std::vector<double>(100, 0.005),
+                       .readings = false,
+                       .numbers = 300};
+  errors.after[7] = 0.3;
+  const auto found = distrust_of_held_out(errors);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->numbers[0].first, "rms_before_um");
+  EXPECT_NEAR(found->numbers[0].second, 10, 1e-9);
+  EXPECT_EQ(found->numbers[1].first, "rms_after_um");
+  EXPECT_NEAR(found->numbers[1].second, 1e3 * std::sqrt((99 * 0.005 * 0.005 + 0.3 * 0.3) / 100), 1e-9);
+  errors.predicted_square = 0.1;
+  EXPECT_FALSE(distrust_of_held_out(errors));
+  EXPECT_THAT(warning_of_held_out(errors), HasSubstr("the root mean square error is 30.41 um after"));
 }
 
 TEST(Trust, AStationFittedToFewReadingsHidesMoreThanOneFittedToMany) {
