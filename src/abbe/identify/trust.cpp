@@ -11,6 +11,8 @@ namespace abbe {
 namespace {
 
 constexpr double kWorthTelling = 0.95;  // residuals / stated uncertainties
+// Readings without noise of a machine without errors leave rounding, which is neither better nor worse: mm.
+constexpr double kNoError = 1e-6;
 
 double sum_of_squares(const std::vector<double>& values) {
   return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
@@ -20,11 +22,13 @@ double root_mean_square(const std::vector<double>& values) {
   return values.empty() ? 0 : std::sqrt(sum_of_squares(values) / static_cast<double>(values.size()));
 }
 
+bool is_rounding(const HeldOutErrors& errors) { return !(root_mean_square(errors.after) > kNoError); }
+
 /// docs/identification.md, "Worse held out": the three allowances share the probability.
 bool is_worse_by_no_chance(const HeldOutErrors& errors) {
   constexpr double kShare = kNoChance / 3;
   const double independent = errors.numbers - errors.fitted_before;
-  if (errors.before.size() != errors.after.size() || !(independent > 0)) return false;
+  if (errors.before.size() != errors.after.size() || !(independent > 0) || is_rounding(errors)) return false;
   const double before = sum_of_squares(errors.before), after = sum_of_squares(errors.after);
   const double by_estimates = errors.predicted_square * chi_square_quantile(kShare, 1);
   const double variance = before / independent;
@@ -93,7 +97,7 @@ std::optional<Distrust> distrust_of_held_out(const HeldOutErrors& errors) {
 
 std::string warning_of_held_out(const HeldOutErrors& errors) {
   const double before = 1e3 * root_mean_square(errors.before), after = 1e3 * root_mean_square(errors.after);
-  if (!(after > before) || is_worse_by_no_chance(errors)) return {};
+  if (!(after > before) || is_rounding(errors) || is_worse_by_no_chance(errors)) return {};
   return fmt::format(
       "at poses that took no part in the fit the root mean square error is {:.4g} um after the correction and {:.4g} "
       "um "

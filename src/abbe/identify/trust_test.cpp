@@ -157,6 +157,18 @@ TEST(Trust, HeldOutErrorsAreStatedAsTheRootMeanSquareThatIsJudged) {
   EXPECT_THAT(warning_of_held_out(errors), HasSubstr("the root mean square error is 30.41 um after"));
 }
 
+TEST(Trust, RoundingIsNoError) {
+  HeldOutErrors errors{
+      .before = std::vector<double>(50, 1e-11), .after = std::vector<double>(50, 1e-7), .numbers = 150};
+  for (const bool readings : {false, true}) {
+    errors.readings = readings;
+    EXPECT_FALSE(distrust_of_held_out(errors));
+    EXPECT_EQ(warning_of_held_out(errors), "");
+  }
+  errors.after.assign(50, 2e-6);
+  EXPECT_TRUE(distrust_of_held_out(errors));
+}
+
 TEST(Trust, AStationFittedToFewReadingsHidesMoreThanOneFittedToMany) {
   // Per point what the station took up, and nothing else: the limits are f F(f, n - f), 1855 for 4 points and 46.3 for
   // 50, times the variance.
@@ -164,6 +176,7 @@ TEST(Trust, AStationFittedToFewReadingsHidesMoreThanOneFittedToMany) {
     const auto count = static_cast<std::size_t>(points);
     const double numbers = 3 * points, variance = 1e-4;
     HeldOutErrors errors{.before = std::vector<double>(count, std::sqrt(variance * (numbers - 6) / points)),
+                         .after = {},
                          .numbers = numbers,
                          .fitted_before = 6};
     const auto with_excess = [&](double excess) {
