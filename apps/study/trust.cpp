@@ -34,7 +34,7 @@ HeldOutErrors held_out_errors(const UnseenPoses& unseen, const FitStatistics& fi
   HeldOutErrors errors{.before = unseen.before,
                        .after = unseen.after,
                        .readings = !unseen.against_truth,
-                       .numbers = 3 * static_cast<double>(unseen.before.size()),
+                       .numbers = static_cast<double>(unseen.numbers),
                        .fitted_before = static_cast<double>(unseen.fitted_before)};
   for (const double expanded : unseen.expanded_uncertainty) errors.predicted_square += 0.25 * expanded * expanded;
   if (fit.variance_factor > 0) errors.predicted_square *= fit.variance_factor;

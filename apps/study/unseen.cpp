@@ -336,6 +336,7 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
       add_instrument(study, result, s, dynamic_cast<const InstrumentCampaign&>(*setups[s]), tally);
     }
   }
+  unseen.numbers = tally.coordinates;
   unseen.coverage =
       tally.coordinates > 0 ? static_cast<double>(tally.within) / static_cast<double>(tally.coordinates) : 0;
   if (tally.noise_count > 0) {

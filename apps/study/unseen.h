@@ -35,6 +35,7 @@ struct UnseenPoses {
   std::vector<double> after;                 ///< identified machine; mm
   std::vector<double> expanded_uncertainty;  ///< k = 2 of the prediction, root of the trace of its covariance; mm
   double times_noise = 0;         ///< held-out readings: root mean square of residuals over stated uncertainties
+  std::size_t numbers = 0;        ///< lengths compared: three per pose or tracker reading, those of an instrument
   std::size_t fitted_before = 0;  ///< numbers of the set-up fitted to these readings for `before`, not for `after`
   double coverage = 0;            ///< share of the coordinates within 2 u of the prediction; 0..1
   /// Held-out readings, where the variances of the readings were estimated: how many lie within the uncertainty of the
