@@ -13,7 +13,7 @@
 namespace abbe {
 namespace {
 
-// Mean square of the residuals, variances: exact readings, whose residuals are rounding.
+// Mean squared residual, in variances of the readings. Less is rounding: the readings are exact.
 constexpr double kNothingLeft = 1e-6;
 
 bool is_nested(const Basis& basis) {
@@ -177,15 +177,14 @@ class OrderSearch {
   /// Taken is what predicts held-out readings better at all: with a test of significance, terms stay out that are
   /// there, and the covariance, which knows nothing of them, is too small.
   bool raise(std::size_t g) {
+    if (mean(best_) < kNothingLeft) return false;
     for (const int more : {1, 2}) {
       std::vector<int> orders = result.orders;
       orders[g] += more;
       if (orders[g] > groups_[g].largest_order) return false;
       std::vector<double> squares = tried(orders, groups_[g].name);
       if (squares.empty()) continue;
-      result.trials.back().exceedance = paired_exceedance(best_, squares);
-      // Residuals far below the noise have nothing left to tell.
-      if (!(mean(squares) < mean(best_)) || mean(best_) < kNothingLeft) continue;
+      if (!(mean(squares) < mean(best_))) continue;
       accept(result.trials.size() - 1, std::move(squares));
       return true;
     }
@@ -204,7 +203,6 @@ class OrderSearch {
       orders[g] = count;
       std::vector<double> one = tried(orders, groups_[g].name);
       if (one.empty()) continue;
-      result.trials.back().exceedance = paired_exceedance(best_, one);
       trial.push_back(result.trials.size() - 1);
       squares.push_back(std::move(one));
       if (mean(squares.back()) < mean(squares[least])) least = squares.size() - 1;
@@ -242,7 +240,7 @@ class OrderSearch {
   }
 
   bool is_better(const std::vector<double>& than, const std::vector<double>& squares) const {
-    return paired_exceedance(than, squares) < options_.significance &&
+    return mean(than) >= kNothingLeft && paired_exceedance(than, squares) < options_.significance &&
            std::sqrt(mean(squares)) < (1 - options_.minimum_gain) * std::sqrt(mean(than));
   }
 

@@ -35,7 +35,8 @@ Problem at_nested_orders(Problem problem, const std::vector<OrderGroup>& groups,
 
 struct OrderSelectionOptions {
   int folds = 5;                ///< held-out parts; poses with the same axis positions stay together
-  double significance = 0.05;   ///< more intervals are taken if the held-out error falls with this significance
+  double significance = 0.05;   ///< more intervals are taken if the held-out error falls with this significance,
+                                ///< paired over poses
   double minimum_gain = 0.001;  ///< ... and by at least this relative amount
   std::uint64_t seed = 1;       ///< of the partition
   IdentifyOptions identify;
@@ -46,7 +47,6 @@ struct OrderTrial {
   std::vector<int> orders;  ///< per group
   std::string raised;       ///< group whose order was raised against the best so far; empty for the first
   double held_out_rms = 0;  ///< of the residuals at held-out poses, standard uncertainties
-  double exceedance = 1;    ///< one-sided, paired over poses: probability of such a gain by chance
   bool accepted = false;
   IdentifyStatus status = IdentifyStatus::not_run;
 };
@@ -58,7 +58,8 @@ struct OrderSelection {
   std::vector<OrderTrial> trials;               ///< in the order tried
 };
 
-/// Raises the orders group by group as long as the error at held-out poses falls significantly.
+/// Raises the orders of nested groups as long as the held-out error falls at all; takes more intervals only if it falls
+/// significantly (OrderSelectionOptions).
 ///
 /// Nested groups are raised by one and by two; of splines and tables every number of intervals is tried.
 OrderSelection select_orders(const ProblemAtOrders& at, const std::vector<OrderGroup>& groups,

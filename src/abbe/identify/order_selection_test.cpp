@@ -90,6 +90,50 @@ TEST(OrderSelection, finds_the_number_of_intervals_of_splines_and_tables) {
   EXPECT_GE(found, tried - 1);
 }
 
+TEST(OrderSelection, a_term_too_small_for_a_test_of_significance_is_taken_on_average) {
+  constexpr int kSeeds = 30;
+  // A curvature of 2.5 times its standard uncertainty, or none.
+  const auto taken = [](double curvature, bool nested) {
+    int count = 0;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      RandomStream random(seed);
+      const Basis basis{.kind = BasisKind::legendre, .order = 2, .from = 0, .to = 1};
+      const std::vector<double> coefficients{1, -0.8, curvature * kValueNoise * std::sqrt(5.0 / kReadings)};
+      std::vector<double> data;
+      for (std::size_t i = 0; i < kReadings; ++i)
+        data.push_back(basis.evaluate(position(i), coefficients) + kValueNoise * random.normal());
+      Splines polynomials(BasisKind::legendre, data);
+      const OrderGroup group{.name = "X", .motions = {0}, .start_order = 1, .largest_order = 2, .nested = nested};
+      const ProblemAtOrders at = [&](const std::vector<int>& orders) { return polynomials.at(orders); };
+      count += select_orders(at, {group}).orders[0] == 2;
+    }
+    return count;
+  };
+  EXPECT_GE(taken(2.5, true), 2 * kSeeds / 3);
+  EXPECT_LE(taken(0, true), kSeeds / 3);
+  // Groups that are not nested are raised by the test.
+  EXPECT_LE(taken(2.5, false), kSeeds / 2);
+}
+
+TEST(OrderSelection, exact_readings_raise_no_order_beyond_the_truth) {
+  constexpr int kPolynomialDegree = 3;
+  const Basis basis{.kind = BasisKind::legendre, .order = kPolynomialDegree, .from = 0, .to = 1};
+  std::vector<double> data;
+  for (std::size_t i = 0; i < kReadings; ++i)
+    data.push_back(basis.evaluate(position(i), std::vector<double>{1, -0.8, 0.3, 0.1}));
+  for (const bool nested : {true, false}) {
+    Splines polynomials(BasisKind::legendre, data);
+    const OrderGroup group{.name = "X", .motions = {0}, .start_order = 1, .largest_order = 7, .nested = nested};
+    const OrderSelection selection =
+        select_orders([&](const std::vector<int>& orders) { return polynomials.at(orders); }, {group});
+    EXPECT_EQ(selection.orders[0], kPolynomialDegree);
+    // Nothing above it is even tried, where one order follows the other.
+    if (nested) {
+      EXPECT_EQ(selection.trials.back().orders[0], kPolynomialDegree);
+    }
+  }
+}
+
 TEST(OrderSelection, gross_errors_and_a_start_far_too_low_do_not_hide_the_order) {
   constexpr int kPolynomialDegree = 4;
   const auto legendre = [](int degree) {
