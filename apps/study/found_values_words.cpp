@@ -51,16 +51,21 @@ void print_place(const FoundPlace& place) {
   const auto sizes = [](const Eigen::Vector3d& v, double unit) {
     return fmt::format("{:.3g}, {:.3g}, {:.3g}", unit * v[0], unit * v[1], unit * v[2]);
   };
+  const std::string not_estimated = "not estimated: as stated or by convention";
+  const auto turn = [&] {
+    return is_estimated(place.turn_expanded)
+               ? fmt::format("U of a turn about x, y, z ({}) urad", sizes(place.turn_expanded, 1e6))
+               : not_estimated;
+  };
   fmt::print("    {} in the frame of the {}\n", place.name, body_name(place.body));
   fmt::print("      position x, y, z      ({}) mm, {}\n", three(place.position, 1, place.position_expanded, 1),
              is_estimated(place.position_expanded) ? fmt::format("U ({}) um", sizes(place.position_expanded, 1e3))
-                                                   : std::string("not estimated: as stated or by convention"));
+                                                   : not_estimated);
   if (place.rotation) {
-    fmt::print("      angles a, b, c        ({}) deg, U of a turn about x, y, z ({}) urad\n",
-               three(place.angles(), 1 / kDegree, place.turn_expanded, 1 / kDegree), sizes(place.turn_expanded, 1e6));
+    fmt::print("      angles a, b, c        ({}) deg, {}\n",
+               three(place.angles(), 1 / kDegree, place.turn_expanded, 1 / kDegree), turn());
   } else if (place.direction) {
-    fmt::print("      direction x, y, z     ({}), U of a turn about x, y, z ({}) urad\n",
-               three(*place.direction, 1, place.turn_expanded, 1), sizes(place.turn_expanded, 1e6));
+    fmt::print("      direction x, y, z     ({}), {}\n", three(*place.direction, 1, place.turn_expanded, 1), turn());
   }
 }
 
@@ -98,7 +103,7 @@ nlohmann::ordered_json place_json(const FoundPlace& place) {
     for (int row = 0; row < 3; ++row) json["rotation"].push_back(three_json(place.rotation->row(row), 1));
   }
   if (place.direction) json["direction"] = three_json(*place.direction, 1);
-  if (place.rotation || place.direction) {
+  if ((place.rotation || place.direction) && is_estimated(place.turn_expanded)) {
     json["turn_expanded_uncertainty_urad"] = three_json(place.turn_expanded, 1e6);
   }
   return json;
