@@ -190,8 +190,7 @@ class PlanSearch {
       order[i] = i;
       losses[i] = design_.loss(i);
     }
-    const auto before = [&](std::size_t a, std::size_t b) { return std::tie(losses[a], a) < std::tie(losses[b], b); };
-    std::sort(order.begin(), order.end(), before);
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return losses[a] < losses[b]; });
     const auto by_candidate = [&](std::size_t a, std::size_t b) {
       return std::tie(chosen[a], a) < std::tie(chosen[b], b);
     };

@@ -59,7 +59,7 @@ class PlanDesign {
     std::size_t candidate = static_cast<std::size_t>(-1);
     double change = kImpossible;  ///< of the objective
     double score = kImpossible;   ///< change, divided by the cost where `per_cost`
-    double tie = 0;               ///< another one has to have a score below this one's by more
+    double tie = 0;               ///< this one takes the place of another if its score is lower by more
   };
   /// Which candidates are allowed: not more than `repeats` times, of a cost up to `most_cost`, eligible.
   struct Allowed {

@@ -419,9 +419,9 @@ TEST(PlanningTest, RefusesWhatDoesNotAgree) {
   EXPECT_THROW(plan_readings(space, options), std::invalid_argument);
 }
 
-/// Rounding differs between processors (vectors of other lengths, fused products); so must not the plan. Readings of a
+/// Rounding differs between processors (vectors of other lengths, fused products); the plan must not. Readings of a
 /// symmetric machine are worth the same in groups of eight and more.
-TEST(Plan, ReadingsThatAreWorthTheSameAreChosenAlikeWhateverTheRounding) {
+TEST(PlanningTest, ReadingsThatAreWorthTheSameAreChosenAlikeWhateverTheRounding) {
   PlanningCandidates candidates;
   candidates.rows.resize(11 * 11 * 2, 7);
   for (Index i = 0; i < candidates.rows.rows(); ++i) {
