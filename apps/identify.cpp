@@ -68,7 +68,7 @@ void add_identify_command(CommandLine& line) {
         tell_distrust(study, result);
         return study_exit_code(study, result);
       }
-      print_study(study, result, options->parameters);
+      print_study(study, result, options->parameters ? nullptr : "--parameters");
       if (options->parameters && result.usable()) {
         const Identification& identified = result.identification;
         fmt::print("\n{:<24} {:>16} {:>16}\n", "parameter", "value", "u");

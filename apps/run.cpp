@@ -66,7 +66,7 @@ void add_run_command(CommandLine& line) {
       if (options->json) {
         fmt::print("{}", json_text(summary));
       } else {
-        print_study(study, result, options->all_values);
+        print_study(study, result, options->all_values ? nullptr : "--all-values, or summary.json");
         fmt::print("\nresults in {}\n", study.output.string());
         if (study.report.page) fmt::print("report:    {}\n", (study.output / "report.html").string());
       }

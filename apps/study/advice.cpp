@@ -43,7 +43,7 @@ void tell_datum_apart(StudyResult& result, const UnseenPoses& unseen) {
   }
 }
 
-void print_advice(const StudyResult& result, bool all) {
+void print_advice(const StudyResult& result, const char* shows_all) {
   std::vector<std::string> remedies;
   std::size_t conventions = 0, set_up = 0, datum = 0;
   for (const Advice& advice : result.advice) {
@@ -60,13 +60,14 @@ void print_advice(const StudyResult& result, bool all) {
     std::size_t found = 0;
     for (const Advice& advice : result.advice) {
       if (advice.remedy != remedy) continue;
-      if (++found > kDirectionsShown && !all) continue;
+      if (++found > kDirectionsShown && shows_all != nullptr) continue;
       fmt::print("    {}{}\n", advice.text,
                  advice.factor > 0 ? fmt::format(" (would fall {:.1f} times)", advice.factor) : "");
       if (!advice.words.empty()) fmt::print("      ({})\n", advice.words);
     }
-    if (found > kDirectionsShown && !all) {
-      fmt::print("    and {} more such directions: abbe run --all-values\n", found - kDirectionsShown);
+    if (found > kDirectionsShown && shows_all != nullptr) {
+      const std::size_t more = found - kDirectionsShown;
+      fmt::print("    and {} more such direction{}: {}\n", more, more == 1 ? "" : "s", shows_all);
     }
   }
   if (conventions > 0)

@@ -12,8 +12,8 @@ nlohmann::ordered_json advice_json(const StudyResult& result);
 
 /// The same for people; directions with the same remedy stand together. Conventions and matters of the datum are
 /// counted only.
-/// @param all  every direction; else the first few of each remedy
-void print_advice(const StudyResult& result, bool all);
+/// @param shows_all  option to be named where only the first few of a remedy are printed; null: every direction
+void print_advice(const StudyResult& result, const char* shows_all);
 
 /// Directions that the readings leave open, but on which the volumetric error does not depend, become a matter of the
 /// datum.

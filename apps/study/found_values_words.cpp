@@ -126,7 +126,7 @@ std::string names_of(const Identification& identified, const GaugeConstraint& co
 
 }  // namespace
 
-void print_found_values(const FoundValues& found, bool all) {
+void print_found_values(const FoundValues& found, const char* shows_all) {
   const bool of_machine = !found.locations.empty() || !found.reversals.empty() || !found.tool.empty();
   if (!of_machine && found.setups.empty()) return;
   fmt::print("\nidentified values, U: expanded uncertainty (k = 2)\n");
@@ -143,10 +143,10 @@ void print_found_values(const FoundValues& found, bool all) {
   for (const FoundSetup& setup : found.setups) {
     fmt::print("  set-up {} ({})\n", setup.name, setup.instrument);
     for (const FoundPlace& place : setup.places) print_place(place);
-    const std::size_t shown = all ? setup.numbers.size() : std::min(setup.numbers.size(), kNumbersShown);
+    const std::size_t shown =
+        shows_all == nullptr ? setup.numbers.size() : std::min(setup.numbers.size(), kNumbersShown);
     for (std::size_t i = 0; i < shown; ++i) print_number(setup.numbers[i], false);
-    if (shown < setup.numbers.size())
-      fmt::print("    {} more: --all-values, or summary.json\n", setup.numbers.size() - shown);
+    if (shown < setup.numbers.size()) fmt::print("    {} more: {}\n", setup.numbers.size() - shown, shows_all);
   }
 }
 

@@ -9,8 +9,8 @@ namespace abbe {
 struct Identification;
 
 /// Prints the identified values with their expanded uncertainties.
-/// @param all  every number of every set-up; else the first dozen of each
-void print_found_values(const FoundValues& found, bool all);
+/// @param shows_all  option to be named where only the first dozen of a set-up are printed; null: every number
+void print_found_values(const FoundValues& found, const char* shows_all);
 
 /// The same for programs: `identified` of summary.json, see docs/report-data.md.
 nlohmann::ordered_json found_values_json(const FoundValues& found);

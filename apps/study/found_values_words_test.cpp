@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace abbe {
 namespace {
@@ -14,7 +15,7 @@ using testing::Not;
 
 std::string printed(const FoundValues& found) {
   testing::internal::CaptureStdout();
-  print_found_values(found, false);
+  print_found_values(found, "--every-value");
   return testing::internal::GetCapturedStdout();
 }
 
@@ -28,7 +29,7 @@ TEST(FoundValuesWords, WhatWasNotEstimatedHasNoUncertainty) {
     FoundValues found;
     found.setups.push_back({"one", "instrument", {one}, {}});
     EXPECT_THAT(printed(found), HasSubstr("U (1, 2, 3) um"));
-    EXPECT_THAT(printed(found), HasSubstr("), not estimated: as stated or by convention\n"));
+    EXPECT_THAT(printed(found), HasSubstr(", not estimated: as stated or by convention\n"));
     EXPECT_FALSE(found_values_json(found)["setups"][0]["places"][0].contains("turn_expanded_uncertainty_urad"));
     one.turn_expanded = {0, 2e-6, 3e-6};
     found.setups[0].places = {one};
@@ -36,6 +37,13 @@ TEST(FoundValuesWords, WhatWasNotEstimatedHasNoUncertainty) {
     EXPECT_THAT(printed(found), Not(HasSubstr("not estimated")));
     EXPECT_EQ(found_values_json(found)["setups"][0]["places"][0]["turn_expanded_uncertainty_urad"].size(), 3u);
   }
+}
+
+TEST(FoundValuesWords, WhereNumbersAreCutTheOptionOfTheCommandIsNamed) {
+  FoundValues found;
+  found.setups.push_back(
+      {"one", "instrument", {}, std::vector<FoundNumber>(14, FoundNumber{.name = "length", .words = {}})});
+  EXPECT_THAT(printed(found), HasSubstr("\n    2 more: --every-value\n"));
 }
 
 }  // namespace

@@ -22,11 +22,11 @@ std::string point_of(const StudyResult& result, const Outlier& outlier) {
 
 }  // namespace
 
-void print_outliers(const Study& study, const StudyResult& result, bool all) {
+void print_outliers(const Study& study, const StudyResult& result, const char* shows_all) {
   const std::vector<Outlier>& outliers = result.identification.outliers;
   if (outliers.empty()) return;
   fmt::print("\noutliers, by the length of their residual in standard uncertainties\n");
-  const std::size_t shown = all ? outliers.size() : std::min(outliers.size(), kOutliersShown);
+  const std::size_t shown = shows_all == nullptr ? outliers.size() : std::min(outliers.size(), kOutliersShown);
   for (std::size_t i = 0; i < shown; ++i) {
     const Outlier& outlier = outliers[i];
     const std::string point = point_of(result, outlier);
@@ -41,7 +41,7 @@ void print_outliers(const Study& study, const StudyResult& result, bool all) {
     fmt::print("  {} reading {}{}{}: {:.1f} at {}\n", result.campaign.setups[outlier.observations]->name,
                outlier.reading, point.empty() ? "" : ", point ", point, outlier.norm, pose);
   }
-  if (shown < outliers.size()) fmt::print("  {} more: --all-values, or summary.json\n", outliers.size() - shown);
+  if (shown < outliers.size()) fmt::print("  {} more: {}\n", outliers.size() - shown, shows_all);
 }
 
 nlohmann::ordered_json outliers_json(const Study& study, const StudyResult& result) {

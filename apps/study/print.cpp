@@ -66,7 +66,7 @@ void print_variances(const VarianceComponents& components) {
 
 }  // namespace
 
-void print_study(const Study& study, const StudyResult& result, bool all_values) {
+void print_study(const Study& study, const StudyResult& result, const char* shows_all) {
   fmt::print("{}: {}   ({})\n", study.name, study.machine.name, study.machine.chain());
   if (result.campaign.truth) fmt::print("simulated: the true errors are known\n");
   fmt::print("{} readings\n", result.campaign.reading_count());
@@ -76,7 +76,7 @@ void print_study(const Study& study, const StudyResult& result, bool all_values)
   const Identification& identified = result.identification;
   fmt::print("\n{}\n", study_verdict(study, result));
   if (!result.usable()) {
-    print_advice(result, all_values);
+    print_advice(result, shows_all);
     return;
   }
   const FitStatistics& fit = identified.statistics;
@@ -114,15 +114,15 @@ void print_study(const Study& study, const StudyResult& result, bool all_values)
   if (conditional) fmt::print("\nwarning: {}\n", not_identified_text(study, result));
   if (result.unseen && !result.unseen->open.empty())
     fmt::print("\nwarning: {}\n", open_directions_text(*result.unseen));
-  print_found_values(found_values(study, result), all_values);
-  print_outliers(study, result, all_values);
+  print_found_values(found_values(study, result), shows_all);
+  print_outliers(study, result, shows_all);
   if (!identified.gauge.constraints.empty()) {
     print_gauge_table(identified);
     if (result.unseen && result.unseen->open_known && result.unseen->open.empty()) {
       fmt::print("  none of these changes the volumetric error other than by the choice of the workpiece datum\n");
     }
   }
-  print_advice(result, all_values);
+  print_advice(result, shows_all);
   print_not_identified(result);
 }
 

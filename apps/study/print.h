@@ -5,7 +5,8 @@
 namespace abbe {
 
 /// The result of a study for people, on stdout: verdict, key figures, identified values, gauge, warnings.
-/// @param all_values  every identified value and every outlier; else the first of them
-void print_study(const Study& study, const StudyResult& result, bool all_values = false);
+/// @param shows_all  option that shows every identified value, outlier and direction not seen, to be named where only
+///                   the first of them are printed; null: print all
+void print_study(const Study& study, const StudyResult& result, const char* shows_all);
 
 }  // namespace abbe
