@@ -106,13 +106,10 @@ int run_points(PointsOptions options) {
   }
   const int code = tell_left_out({.all = summary.readings, .not_covered = summary.not_covered, .what = "readings"},
                                  options.accept_uncovered);
-  if (code != kDone) return code;
-  if (summary.points == 0 && summary.not_covered > 0) return kNegative;
-  if (summary.points == 0) {
-    tell("abbe: no reading lies within the probe's range\n");
-    return kNegative;
-  }
-  return kDone;
+  if (summary.points > 0) return code;
+  // All that are left out by the errors have been told of.
+  if (summary.not_covered == 0) tell("abbe: no reading lies within the probe's range\n");
+  return kNegative;
 }
 
 }  // namespace

@@ -222,8 +222,9 @@ VerifyResult verify(const VerifyOptions& options) {
   const LeftOutPoses left_out = result.left_out();
   if (left_out.all - left_out.count() < 10) {
     throw InputError({.field = "--range"}, left_out_words(left_out),
-                     left_out.not_reached > 0 ? "a machine whose axes can correct the position of the tool"
-                                              : "ranges in which at least 10 poses have a result");
+                     2 * left_out.not_reached > left_out.count()
+                         ? "a machine whose axes can correct the position of the tool"
+                         : "ranges in which at least 10 poses have a result");
   }
   if (result.poses.datum != BestFitStatus::ok) {
     throw InputError({.field = "--range"},

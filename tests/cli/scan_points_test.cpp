@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "cli/command_test.h"
 
@@ -72,6 +73,35 @@ TEST_F(ScanPoints, WhatIsWrongIsNamedAndNothingIsWritten) {
                   "1", "2"})
                 .exit_code,
             ExitCode::computation_says_no);
+}
+
+TEST_F(ScanPoints, ReadingsWhereTheErrorsAreNotKnownAreLeftOutAndTold) {
+  folder.write("e.errors.toml", R"(chain = "w C A X' Y' b Z t"
+[[motion]]
+name = "EXX"
+basis = "monomial"
+order = 1
+from_mm = -10
+to_mm = 10
+coefficients_um = [0, 1]
+)");
+  folder.write("r.csv", "C_deg,A_deg,X_mm,Y_mm,Z_mm,indication_mm\n0,0,0,0,0,0\n0,0,5,0,0,0\n0,0,15,0,0,0\n");
+  const std::vector<std::string> points = {"scan",          "points",  machine, "r.csv", "--errors",
+                                           "e.errors.toml", "--force", "-o",    "p.csv"};
+  const CommandResult told = abbe(points);
+  EXPECT_EQ(told.exit_code, ExitCode::computation_says_no) << told.err;
+  EXPECT_NE(told.err.find("abbe: 1 of 3 readings lies outside the range in which the errors are known; it is left out "
+                          "(--accept-uncovered: exit code 0)\n"),
+            std::string::npos)
+      << told.err;
+  std::vector<std::string> accepted = points;
+  accepted.emplace_back("--accept-uncovered");
+  EXPECT_EQ(abbe(accepted).exit_code, ExitCode::done);
+  // No points at all are no result, whatever is accepted.
+  folder.write("r.csv", "C_deg,A_deg,X_mm,Y_mm,Z_mm,indication_mm\n0,0,15,0,0,0\n");
+  const CommandResult none = abbe(accepted);
+  EXPECT_EQ(none.exit_code, ExitCode::computation_says_no);
+  EXPECT_EQ(none.err.find("probe's range"), std::string::npos) << none.err;
 }
 
 }  // namespace
