@@ -19,8 +19,8 @@ std::string left_out_words(const LeftOutPoses& left_out) {
       "lie outside the range in which the errors are known");
   add(left_out.outside_travel, "needs corrected commands outside the travel",
       "need corrected commands outside the travel");
-  add(left_out.not_reached, "is not reached by the axes that are corrected",
-      "are not reached by the axes that are corrected");
+  add(left_out.not_reached, "cannot be reached with the axes that are corrected",
+      "cannot be reached with the axes that are corrected");
   const std::string of_all = fmt::format("{} of {} {}", left_out.count(), left_out.all, left_out.what);
   if (reasons.size() == 1) {
     const char* const end = left_out.count() == 1 ? "it is left out" : "they are left out";

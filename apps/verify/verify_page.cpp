@@ -230,9 +230,9 @@ nlohmann::json notes(const VerifyResult& result) {
                          "they were independent.");
   }
   if (result.partial.is_partial()) {
-    list.push_back(
-        fmt::format("The prediction covers {} of the machine, which are known; the others are not in it: {}.",
-                    result.partial.short_words(), result.partial.missing_names()));
+    list.push_back(fmt::format(
+        "The prediction covers the {} of {} errors of the machine that are known; the others are not in it: {}.",
+        result.partial.known, result.partial.all(), result.partial.missing_names()));
   }
   if (result.left_out().count() > 0) list.push_back(left_out_words(result.left_out()) + ".");
   if (!result.pieces.empty()) {

@@ -133,8 +133,10 @@ void print_verify(const VerifyResult& result) {
   row("direction of the tool, before", poses.direction_before_statistics, 1e6, "urad");
   row("direction of the tool, after", poses.direction_after_statistics, 1e6, "urad");
   if (result.partial.is_partial()) {
-    fmt::print("  caution: the prediction covers {} of the machine, which are known; the others are not in it: {}\n",
-               result.partial.short_words(), result.partial.missing_names());
+    fmt::print(
+        "  caution: the prediction covers the {} of {} errors of the machine that are known; the others are not in it: "
+        "{}\n",
+        result.partial.known, result.partial.all(), result.partial.missing_names());
   }
   if (result.left_out().count() > 0) fmt::print("  {}\n", left_out_words(result.left_out()));
   fmt::print("\n");

@@ -106,7 +106,7 @@ TEST_F(VerifyCommand, AMachineThatCannotCorrectThePositionIsToldSo) {
       abbe({"verify", "--machine", example("machines/rotary-table.machine.toml"), "--errors",
             example("rotary_table/table.errors.toml"), "--truth", example("rotary_table/table.errors.toml")});
   EXPECT_EQ(result.exit_code, ExitCode::bad_input);
-  EXPECT_THAT(result.err, HasSubstr("1000 of 1000 random poses are not reached by the axes that are corrected"));
+  EXPECT_THAT(result.err, HasSubstr("1000 of 1000 random poses cannot be reached with the axes that are corrected"));
   EXPECT_THAT(result.err, HasSubstr("a machine whose axes can correct the position of the tool"));
 }
 

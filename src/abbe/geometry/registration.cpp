@@ -20,7 +20,7 @@ constexpr Eigen::Index kRoughPoints = 400, kComparedPoints = 2500, kFirstFinePoi
 constexpr std::size_t kCompared = 12;
 constexpr double kSamePose = 0.02;     ///< of the diameter: nearer poses count as one
 constexpr double kWorse = 4;           ///< times the best deviation: such poses are no alternatives
-constexpr double kRoughScale = 0.001;  ///< of the diameter: rough poses are no nearer than that
+constexpr double kRoughScale = 0.001;  ///< of the diameter: the least scale at which rough poses are compared
 constexpr double kSettled = 0.02;      ///< of the uncertainty of a mean over all points
 constexpr double kHopeless = 0.65;     ///< of the best score: rougher starts are not refined
 
@@ -180,7 +180,8 @@ Registration RegistrationTarget::register_scan(const PointCloud& scan,
       ranked.push_back(in.compare(rough, std::move(fine), std::max(least, kRoughScale * in.diameter)));
     }
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const Compared& a, const Compared& b) { return a.mean < b.mean; });
+  const auto by_loss = [](const Compared& a, const Compared& b) { return a.mean < b.mean; };
+  std::stable_sort(ranked.begin(), ranked.end(), by_loss);
   refined.clear();
   for (Compared& one : ranked) refined.push_back(std::move(one.fine));
   drop_repeated(&refined);
@@ -199,7 +200,7 @@ Registration RegistrationTarget::register_scan(const PointCloud& scan,
   const double scale = std::max(refined.front().scale_mm, 1e-8 * in.diameter);
   std::vector<Compared> poses;
   for (const FineRegistration& fine : refined) poses.push_back(in.compare(compared, fine, scale));
-  std::stable_sort(poses.begin(), poses.end(), [](const Compared& a, const Compared& b) { return a.mean < b.mean; });
+  std::stable_sort(poses.begin(), poses.end(), by_loss);
 
   // The rest of the way in two steps: few points are quick, and from there all need two or three passes.
   RigidTransform pose = poses.front().fine.mesh_from_scan;

@@ -81,7 +81,7 @@ Reweighted reweigh(const ShapeFrame& start, const FitPoints& points, const Setti
     Refined refined = refine(result.frame, points, weights, setting.free, setting.size, 2, threads);
     double moved_by = change(refined.frame, result.frame, setting.size);
     if (moved_by == 0 && !refined.converged) {
-      // The one step led higher and was not taken: that is no rest. With damping it becomes short enough.
+      // The one step led higher and was not taken: that is not rest. With damping it becomes short enough.
       refined = refine(result.frame, points, weights, setting.free, setting.size, 40, threads);
       moved_by = change(refined.frame, result.frame, setting.size);
     }
