@@ -1,12 +1,11 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "abbe/identify/prediction.h"
-#include "abbe/instruments/measurement_plan.h"
 #include "abbe/verify/statistics.h"
 
 namespace abbe {
@@ -60,16 +59,6 @@ struct UnseenPoses {
 /// held out of the fit (their lengths; angles take no part).
 /// @param poses  number of random poses compared with the truth
 UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::size_t poses = 1000);
-
-/// The random poses of a validation, which `run` and `verify` share: the same results have the same ones in both.
-/// Ranges over which all of the given errors are known, two positions each. @param errors  at least one set
-std::vector<AxisRange> unseen_ranges(const Machine& machine, const std::vector<const ErrorSet*>& errors);
-/// @param both_directions  every axis comes from either side at random
-/// @throws std::invalid_argument as random_plan()
-PoseList random_unseen_poses(const Machine& machine, const std::vector<AxisRange>& ranges, std::size_t count,
-                             std::uint64_t seed, bool both_directions);
-/// Their seed, apart from that of the readings.
-std::uint64_t unseen_seed(std::uint64_t study_seed);
 
 /// What to say about the open directions, one sentence; there are some.
 std::string open_directions_text(const UnseenPoses& unseen);

@@ -15,7 +15,7 @@
 #include "axis_option.h"
 #include "errors_for_use.h"
 #include "study/job.h"
-#include "study/unseen.h"
+#include "study/random_poses.h"
 
 namespace abbe {
 namespace {
