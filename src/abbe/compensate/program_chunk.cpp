@@ -17,8 +17,8 @@ bool is_arc(const ProgramMove& move) {
 
 }  // namespace
 
-ProgramChunks::ProgramChunks(const Machine& machine, const ErrorSet& errors, const WordAxes& words,
-                             const ProgramCorrectionOptions& options)
+ChunkCorrection::ChunkCorrection(const Machine& machine, const ErrorSet& errors, const WordAxes& words,
+                                 const ProgramCorrectionOptions& options)
     : machine_(machine),
       words_(words),
       options_(options),
@@ -41,7 +41,7 @@ ProgramChunks::ProgramChunks(const Machine& machine, const ErrorSet& errors, con
   bounder_->set_play(reversals_.play(part));
 }
 
-bool ProgramChunks::can_be_made(const ProgramMove& move) const {
+bool ChunkCorrection::can_be_made(const ProgramMove& move) const {
   for (std::size_t i = 0; i < kAxisWords; ++i) {
     if (words_.axis[i] == Machine::npos && (move.start[i] != 0 || move.end[i] != 0) &&
         !(i < 3 && move.coordinates == ProgramCoordinates::tool_centre)) {
@@ -51,13 +51,13 @@ bool ProgramChunks::can_be_made(const ProgramMove& move) const {
   return move.coordinates == ProgramCoordinates::axes || correction_.kinematics().has_tool_centre();
 }
 
-PathTolerance ProgramChunks::tolerance_of(const ProgramMove& move) const {
+PathTolerance ChunkCorrection::tolerance_of(const ProgramMove& move) const {
   if (move.kind != MoveKind::rapid) return options_.tolerance;
   return {options_.rapid_tolerance, std::numeric_limits<double>::infinity()};
 }
 
-void ProgramChunks::place_nodes(std::span<const ProgramMove> moves, const ProgramMove* before,
-                                ProgramChunk& chunk) const {
+void ChunkCorrection::place_nodes(std::span<const ProgramMove> moves, const ProgramMove* before,
+                                  ProgramChunk& chunk) const {
   chunk.nodes.clear();
   const std::size_t n = moves.size();
   chunk.start.resize(n);
@@ -81,7 +81,7 @@ void ProgramChunks::place_nodes(std::span<const ProgramMove> moves, const Progra
   }
 }
 
-void ProgramChunks::correct_nodes(std::span<const ProgramMove> moves, ProgramChunk& chunk) const {
+void ChunkCorrection::correct_nodes(std::span<const ProgramMove> moves, ProgramChunk& chunk) const {
   std::size_t i = 0;
   while (i < moves.size()) {
     std::size_t last = i;
@@ -98,7 +98,7 @@ void ProgramChunks::correct_nodes(std::span<const ProgramMove> moves, ProgramChu
   }
 }
 
-void ProgramChunks::prove_groups(std::span<const ProgramMove> moves, ProgramChunk& chunk) const {
+void ChunkCorrection::prove_groups(std::span<const ProgramMove> moves, ProgramChunk& chunk) const {
   std::array<MovePiece, kGroup> pieces;
   std::size_t i = 0;
   while (i < moves.size()) {
@@ -128,7 +128,7 @@ void ProgramChunks::prove_groups(std::span<const ProgramMove> moves, ProgramChun
   }
 }
 
-bool ProgramChunks::is_held(const CorrectedNode& node) const {
+bool ChunkCorrection::is_held(const CorrectedNode& node) const {
   if (node.status != CorrectionStatus::outside_travel) return false;
   constexpr double kSpare = 1e-9;
   for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
@@ -139,13 +139,13 @@ bool ProgramChunks::is_held(const CorrectedNode& node) const {
   return node.point_known();
 }
 
-ProgramPlace ProgramChunks::place_of(double value, const ProgramMove& move, const CorrectedNode& node,
-                                     const AxisApproach& approach) {
+ProgramPlace ChunkCorrection::place_of(double value, const ProgramMove& move, const CorrectedNode& node,
+                                       const AxisApproach& approach) {
   return {value, move.line, node.position, node.corrected_position, move.tool_length, node.status, approach};
 }
 
-void ProgramChunks::state(const ProgramMove& move, const CorrectedNode& node, ProgramReport& report,
-                          const AxisApproach& approach) const {
+void ChunkCorrection::state(const ProgramMove& move, const CorrectedNode& node, ProgramReport& report,
+                            const AxisApproach& approach) const {
   const auto place = [&](double value) { return place_of(value, move, node, approach); };
   // A rapid move does not cut.
   if (move.kind == MoveKind::rapid && is_held(node)) {
@@ -171,8 +171,8 @@ void ProgramChunks::state(const ProgramMove& move, const CorrectedNode& node, Pr
   if (options_.limit > 0 && shift > options_.limit) report.above_limit.add(move.line);
 }
 
-void ProgramChunks::give_piece(const ProgramMove& move, double duration, double share, const WordValues& from,
-                               const CorrectedNode& to, ProgramChunk& chunk, const AxisApproach& approach) const {
+void ChunkCorrection::give_piece(const ProgramMove& move, double duration, double share, const WordValues& from,
+                                 const CorrectedNode& to, ProgramChunk& chunk, const AxisApproach& approach) const {
   CorrectedPiece piece{to.corrected, move.feed, move.feed_mode};
   set_piece_feed(move, duration, share, from, piece);
   if (move.spindle == SpindleMove::thread || move.spindle == SpindleMove::rigid_tapping) {
@@ -185,8 +185,8 @@ void ProgramChunks::give_piece(const ProgramMove& move, double duration, double 
   state(move, to, chunk.report, approach);
 }
 
-void ProgramChunks::give_nodes(const ProgramMove& move, std::span<const CorrectedNode> nodes,
-                               std::span<const double> shares, ProgramChunk& chunk) const {
+void ChunkCorrection::give_nodes(const ProgramMove& move, std::span<const CorrectedNode> nodes,
+                                 std::span<const double> shares, ProgramChunk& chunk) const {
   if (reversals_.act()) {
     chunk.way.nodes.insert(chunk.way.nodes.end(), nodes.begin(), nodes.end());
     chunk.way.shares.insert(chunk.way.shares.end(), shares.begin(), shares.end());
@@ -197,8 +197,8 @@ void ProgramChunks::give_nodes(const ProgramMove& move, std::span<const Correcte
     give_piece(move, duration, shares[k] - shares[k - 1], nodes[k - 1].corrected, nodes[k], chunk);
 }
 
-void ProgramChunks::bound_single(const ProgramMove& move, std::size_t i, const CorrectedNode& start,
-                                 const CorrectedNode& end, ProgramChunk& chunk) const {
+void ChunkCorrection::bound_single(const ProgramMove& move, std::size_t i, const CorrectedNode& start,
+                                   const CorrectedNode& end, ProgramChunk& chunk) const {
   const MovePiece piece{&start, &end, nullptr, 1};
   const PieceBound bound = bound_pieces(*bounder_, machine_.axes.size(), move.coordinates,
                                         correction_.tool_point(chunk.tool[i]), {&piece, 1});
@@ -207,9 +207,9 @@ void ProgramChunks::bound_single(const ProgramMove& move, std::size_t i, const C
   chunk.report.largest_bend.take(place_of(bound.position, move, end));
 }
 
-bool ProgramChunks::goes_from_or_to_held(const ProgramMove& move, const ProgramMove* earlier,
-                                         const CorrectedNode& start, const CorrectedNode& end,
-                                         ProgramChunk& chunk) const {
+bool ChunkCorrection::goes_from_or_to_held(const ProgramMove& move, const ProgramMove* earlier,
+                                           const CorrectedNode& start, const CorrectedNode& end,
+                                           ProgramChunk& chunk) const {
   if (move.kind == MoveKind::rapid || move.spindle != SpindleMove::none) return false;
   if ((!start.point_reached() && !is_held(start)) || (!end.point_reached() && !is_held(end))) return false;
   // What work leaves at its end is counted there.
@@ -221,12 +221,12 @@ bool ProgramChunks::goes_from_or_to_held(const ProgramMove& move, const ProgramM
   return true;
 }
 
-bool ProgramChunks::is_spent() const {
+bool ChunkCorrection::is_spent() const {
   return options_.budget != nullptr && options_.budget->spent(pieces_of_batch_) != ProgramBudget::Spent::nothing;
 }
 
-void ProgramChunks::give_move(const ProgramMove& move, const ProgramMove* earlier, std::size_t i,
-                              ProgramChunk& chunk) const {
+void ChunkCorrection::give_move(const ProgramMove& move, const ProgramMove* earlier, std::size_t i,
+                                ProgramChunk& chunk) const {
   if (chunk.tool[i] == kNoTool) {
     chunk.report.impossible.add(move.line);
     if (!reversals_.act()) chunk.pieces.pieces.push_back({move.end, move.feed, move.feed_mode});
@@ -259,60 +259,7 @@ void ProgramChunks::give_move(const ProgramMove& move, const ProgramMove* earlie
   give_nodes(move, splitter.nodes(), splitter.shares(), chunk);
 }
 
-bool ProgramChunks::turns_with_spindle(const ProgramMove& move, std::size_t i, const ProgramWay& way) const {
-  if (move.spindle == SpindleMove::none) return false;
-  const std::size_t first = way.first[i], last = way.first[i + 1] - 1;
-  return std::any_of(reversals_.axes().begin(), reversals_.axes().end(), [&](const ReversalAxis& axis) {
-    const std::size_t a = axis.axis;
-    const double moved = std::abs(way.nodes[last].corrected_position[a] - way.nodes[first].corrected_position[a]);
-    return way.approach[last][a] != way.approach[first][a] ||
-           (move.spindle == SpindleMove::rigid_tapping && moved > axis.dead_band);
-  });
-}
-
-void ProgramChunks::give_steps(const ProgramMove& move, std::size_t i, ProgramChunk& chunk) const {
-  const ProgramWay& way = chunk.way;
-  if (way.first[i] == way.first[i + 1]) {
-    chunk.pieces.pieces.push_back({move.end, move.feed, move.feed_mode});
-    return;
-  }
-  if (turns_with_spindle(move, i, way)) chunk.report.play_with_spindle.add(move.line);
-  const double duration = move_duration(move);
-  reversals_.steps(correction_, move, chunk.tool[i], way, i, chunk.steps);
-  WordValues at =
-      reversals_.commanded(correction_, move, chunk.tool[i], way.nodes[way.first[i]], way.approach[way.first[i]])
-          .corrected;
-  for (const ProgramStep& step : chunk.steps) {
-    const double share = way.shares[step.to] - way.shares[step.to - 1];
-    if (step.taken_up == ProgramStep::npos) {
-      give_piece(move, duration, share, at, step.node, chunk, step.approach);
-      for (const ReversalAxis& axis : reversals_.axes()) {
-        if (step.approach[axis.axis] == 0) chunk.report.direction_unknown[axis.axis].add(move.line);
-      }
-    } else {
-      const bool rotary = machine_.axes[step.taken_up].kind == AxisKind::rotary;
-      CorrectedPiece piece{step.node.corrected, move.feed, move.feed_mode};
-      set_take_up_feed(move, rotary, step.way, duration * share,
-                       reversals_.moved(way.nodes[step.to - 1], way.nodes[step.to]), piece);
-      if (piece.feed_mode != move.feed_mode) chunk.report.inverse_time.add(move.line);
-      // Between moves of a cycle or two, LinuxCNC 2.9 loses its way where it may round corners (docs/programs.md).
-      piece.exact = move.kind == MoveKind::rapid;
-      chunk.pieces.pieces.push_back(piece);
-      chunk.report.take_ups[step.taken_up].add(move.line);
-    }
-    at = step.node.corrected;
-  }
-}
-
-void ProgramChunks::give_all_steps(std::span<const ProgramMove> moves, ProgramChunk& chunk) const {
-  for (std::size_t i = 0; i < moves.size(); ++i) {
-    chunk.pieces.first.push_back(chunk.pieces.pieces.size());
-    give_steps(moves[i], i, chunk);
-  }
-  chunk.report.pieces = chunk.pieces.pieces.size();
-}
-
-void ProgramChunks::work(std::span<const ProgramMove> moves, const ProgramMove* before, ProgramChunk& chunk) const {
+void ChunkCorrection::work(std::span<const ProgramMove> moves, const ProgramMove* before, ProgramChunk& chunk) const {
   chunk.report = ProgramReport{};
   chunk.pieces.pieces.clear();
   chunk.pieces.first.clear();
@@ -334,7 +281,7 @@ void ProgramChunks::work(std::span<const ProgramMove> moves, const ProgramMove* 
   chunk.report.pieces = chunk.pieces.pieces.size();
 }
 
-void ProgramChunks::find_tools(std::span<const ProgramMove> moves, ProgramChunk& chunk) {
+void ChunkCorrection::find_tools(std::span<const ProgramMove> moves, ProgramChunk& chunk) {
   chunk.tool.resize(moves.size());
   for (std::size_t i = 0; i < moves.size(); ++i) {
     // Programs keep a tool for long: the search is for new ones.

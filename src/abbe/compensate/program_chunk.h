@@ -17,7 +17,7 @@ namespace abbe {
 struct ProgramChunk {
   std::vector<CorrectedNode> nodes;
   std::vector<std::size_t> start, end;  ///< nodes of each move
-  std::vector<std::size_t> tool;        ///< of each move; ProgramChunks::kNoTool: it cannot be made
+  std::vector<std::size_t> tool;        ///< of each move; ChunkCorrection::kNoTool: it cannot be made
   std::vector<char> from_before;        ///< the start is where the move before ended
   std::vector<char> proven;             ///< one piece will do
   CorrectedPieces pieces;
@@ -29,19 +29,19 @@ struct ProgramChunk {
 
 /// What ProgramCorrection does with some moves of a program: their ends corrected, pieces proven or split, and what is
 /// to be said of them. Different chunks may be worked on at the same time.
-class ProgramChunks {
+class ChunkCorrection {
  public:
   static constexpr std::size_t kNoTool = static_cast<std::size_t>(-1);
 
   /// @param options  its budget, if there is one, has to live on
-  ProgramChunks(const Machine& machine, const ErrorSet& errors, const WordAxes& words,
-                const ProgramCorrectionOptions& options);
+  ChunkCorrection(const Machine& machine, const ErrorSet& errors, const WordAxes& words,
+                  const ProgramCorrectionOptions& options);
 
   const std::string& problem() const { return problem_; }  ///< why nothing can be corrected; empty: none
   const ProgramReversals& reversals() const { return reversals_; }
 
   /// Pieces are counted against the budget from here on.
-  void begin_batch() const { pieces_of_batch_ = 0; }
+  void begin_batch() { pieces_of_batch_ = 0; }
   /// Looks up the tool of each move, one chunk after the other.
   void find_tools(std::span<const ProgramMove> moves, ProgramChunk& chunk);
   /// Pieces of each move, or with reversal values the way from which they follow when the directions are known.
@@ -74,7 +74,7 @@ class ProgramChunks {
   /// A move that is not split: how far its path may be from the commanded one.
   void bound_single(const ProgramMove& move, std::size_t i, const CorrectedNode& start, const CorrectedNode& end,
                     ProgramChunk& chunk) const;
-  /// Whether what of a move can be proven is: one at work with ends within the travel.
+  /// Whether a move at work begins and ends within the travel, so that what can be proven of it is proven.
   /// @param earlier  the move before; null: none
   bool goes_from_or_to_held(const ProgramMove& move, const ProgramMove* earlier, const CorrectedNode& start,
                             const CorrectedNode& end, ProgramChunk& chunk) const;

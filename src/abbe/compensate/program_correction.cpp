@@ -47,7 +47,7 @@ struct ProgramCorrection::Implementation {
     last_move = moves.back();
   }
 
-  ProgramChunks worker;
+  ChunkCorrection worker;
   int threads;
   std::vector<std::unique_ptr<ProgramChunk>> chunks;
   std::optional<ProgramMove> last_move;
