@@ -7,9 +7,9 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/machine_file.h"
-#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/drawing.h"
 #include "abbe/machine/machine_check.h"
+#include "axis_unit.h"
 #include "check_frozen.h"
 #include "check_geometry.h"
 #include "command.h"
@@ -47,9 +47,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::string travel_text(const Axis& axis) {
   if (axis.endless) return "endless";
-  const bool rotary = axis.kind == AxisKind::rotary;
-  const double unit = rotary ? kDegree : 1;
-  return fmt::format("{:g} .. {:g} {}", axis.travel_min / unit, axis.travel_max / unit, rotary ? "deg" : "mm");
+  const double unit = position_unit(axis);
+  return fmt::format("{:g} .. {:g} {}", axis.travel_min / unit, axis.travel_max / unit, position_suffix(axis));
 }
 
 nlohmann::ordered_json machine_json(const Machine& machine) {
@@ -68,8 +67,8 @@ nlohmann::ordered_json machine_json(const Machine& machine) {
     entry["point_mm"] = {axis.point.x(), axis.point.y(), axis.point.z()};
     entry["endless"] = axis.endless;
     if (!axis.endless) {
-      const double unit = rotary ? kDegree : 1;
-      entry[rotary ? "travel_deg" : "travel_mm"] = {axis.travel_min / unit, axis.travel_max / unit};
+      const double unit = position_unit(axis);
+      entry[std::string("travel_") + position_suffix(axis)] = {axis.travel_min / unit, axis.travel_max / unit};
     }
     entry["error_motions"] = motion_names(machine, i);
     entry["location_errors"] = location_names(machine, i);

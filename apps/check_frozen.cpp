@@ -10,8 +10,8 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/text_file.h"
-#include "abbe/geometry/angle_units.h"
 #include "abbe/runtime/abbe_runtime.h"
+#include "axis_unit.h"
 #include "exit_code.h"
 
 namespace abbe {
@@ -42,8 +42,9 @@ bool is_narrower(const abbe_runtime_axis& axis) {
 }
 
 void print_range(const char* what, double from, double to, bool rotary) {
-  const double unit = rotary ? kDegree : 1;
-  fmt::print("{} {:g} to {:g} {}", what, from / unit, to / unit, rotary ? "deg" : "mm");
+  const AxisKind kind = rotary ? AxisKind::rotary : AxisKind::linear;
+  const double unit = position_unit(kind);
+  fmt::print("{} {:g} to {:g} {}", what, from / unit, to / unit, position_suffix(kind));
 }
 
 void print_frozen(const std::string& file, const abbe_runtime* runtime, const abbe_runtime_information& about) {

@@ -22,6 +22,7 @@
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/tool_path.h"
 #include "axis_option.h"
+#include "axis_unit.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
@@ -81,15 +82,14 @@ void print_path(const Machine& machine, const ToolPath& path, const Miss& miss, 
       "rad\n",
       1e3 * path.largest_deviation, miss.distance, miss.angle);
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
     double low = path.steps[0].command[i], high = low;
     for (const ToolPathStep& step : path.steps) {
       low = std::min(low, step.command[i]);
       high = std::max(high, step.command[i]);
     }
-    const double unit = rotary ? 1 / kDegree : 1;
-    fmt::print("  {:<3} {:>12.4f} to {:>12.4f} {}\n", machine.axes[i].name, unit * low, unit * high,
-               rotary ? "deg" : "mm");
+    const double unit = position_unit(machine.axes[i]);
+    fmt::print("  {:<3} {:>12.4f} to {:>12.4f} {}\n", machine.axes[i].name, low / unit, high / unit,
+               position_suffix(machine.axes[i]));
   }
   for (const PathJump& jump : path.jumps) {
     fmt::print("  move {}: {} turns {:.1f} deg, linear axes {:.1f} mm{}\n", jump.pose + 1, machine.axes[jump.axis].name,

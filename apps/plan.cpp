@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/study_file.h"
 #include "abbe/report/svg_plot.h"
+#include "axis_unit.h"
 #include "command.h"
 #include "exit_code.h"
 #include "messages.h"
@@ -20,13 +20,11 @@ namespace {
 
 std::string plan_csv(const Study& study, const StudyPlan& result) {
   std::string text = "# " + study.name + ": readings in the order in which they are to be taken\n";
-  for (const Axis& axis : study.machine.axes)
-    text += fmt::format("{}_{},", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
+  for (const Axis& axis : study.machine.axes) text += fmt::format("{}_{},", axis.name, position_suffix(axis));
   text += study.setups.size() > 1 ? "setup,station,reflector\n" : "station,reflector\n";
   for (const SightReading& reading : result.readings) {
     for (std::size_t i = 0; i < reading.pose.size(); ++i)
-      text += fmt::format(
-          "{:.6f},", reading.pose[i] * (study.machine.axes[i].kind == AxisKind::rotary ? 180 / std::numbers::pi : 1));
+      text += fmt::format("{:.6f},", reading.pose[i] / position_unit(study.machine.axes[i]));
     const Setup& setup = study.setups[reading.setup];
     if (study.setups.size() > 1) text += setup.name + ",";
     text += fmt::format("{},{}\n", setup.stations[reading.station].name, setup.reflectors[reading.reflector].name);

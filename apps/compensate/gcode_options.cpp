@@ -9,6 +9,7 @@
 #include "abbe/formats/path_program.h"
 #include "abbe/geometry/angle_units.h"
 #include "axis_option.h"
+#include "axis_unit.h"
 #include "compensate/safety.h"
 
 namespace abbe {
@@ -28,10 +29,10 @@ void read_start(const std::string& text, const Machine& machine, const WordAxes&
     const double position = axis_option(machine, "--start", of_axis).position;
     const Axis& axis = machine.axes[words.axis[i]];
     if ((on_axes || is_rotary(i)) && !axis.endless && !(position >= axis.travel_min && position <= axis.travel_max)) {
-      const double unit = is_rotary(i) ? kDegree : 1;
+      const double unit = position_unit(axis);
       throw InputError(
           {.field = "--start " + text}, "outside the axis's travel",
-          fmt::format("{:g} to {:g} {}", axis.travel_min / unit, axis.travel_max / unit, is_rotary(i) ? "deg" : "mm"));
+          fmt::format("{:g} to {:g} {}", axis.travel_min / unit, axis.travel_max / unit, position_suffix(axis)));
     }
     options.start[i] = position;
     return;

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "abbe/geometry/angle_units.h"
+#include "axis_unit.h"
 #include "compensate/position_words.h"
 #include "compensate/reversal_words.h"
 #include "compensate/safety.h"
@@ -44,9 +44,9 @@ std::string travel_text(const Machine& machine, const ProgramPlace& place) {
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const Axis& axis = machine.axes[i];
     if (axis.endless || (place.position[i] >= axis.travel_min && place.position[i] <= axis.travel_max)) continue;
-    const double unit = axis.kind == AxisKind::rotary ? kDegree : 1;
+    const double unit = position_unit(axis);
     text += fmt::format("; the travel of {} is {:g} to {:g} {}", axis.name, axis.travel_min / unit,
-                        axis.travel_max / unit, axis.kind == AxisKind::rotary ? "deg" : "mm");
+                        axis.travel_max / unit, position_suffix(axis));
   }
   return text;
 }

@@ -20,7 +20,7 @@
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/geometry/angle.h"
-#include "abbe/geometry/angle_units.h"
+#include "axis_unit.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/position_words.h"
@@ -145,7 +145,7 @@ CorrectedPoses corrected_poses(const PosesCommand& command, const Machine& machi
 
 std::string poses_csv(const Machine& machine, const CorrectedPoses& result) {
   std::string text;
-  for (const Axis& axis : machine.axes) text += axis.name + (axis.kind == AxisKind::rotary ? "_deg," : "_mm,");
+  for (const Axis& axis : machine.axes) text += axis.name + "_" + position_suffix(axis) + ",";
   text += "status,correction_um,";
   if (!result.uncertainty.empty()) text += "u_correction_um,";
   text += "position_left_um,orientation_left_urad\n";
@@ -153,8 +153,7 @@ std::string poses_csv(const Machine& machine, const CorrectedPoses& result) {
   const auto number = [](double value) { return std::isfinite(value) ? shortest_text(value) : std::string(); };
   for (std::size_t k = 0; k < result.status.size(); ++k) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-      const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-      text += number(result.commands.axis[i][k] / (rotary ? kDegree : 1)) + ",";
+      text += number(result.commands.axis[i][k] / position_unit(machine.axes[i])) + ",";
     }
     text += fmt::format("{},{},", correction_status_text(result.status[k]), number(1e3 * result.shift[k]));
     if (!result.uncertainty.empty()) text += number(1e3 * result.uncertainty[k]) + ",";

@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "abbe/geometry/angle_units.h"
+#include "axis_unit.h"
 
 namespace abbe {
 std::string position_words(const Machine& machine, std::span<const double> commands, const char* number) {
   std::string words;
   for (std::size_t i = 0; i < std::min(machine.axes.size(), commands.size()); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    words +=
-        fmt::format("{}{} {} {}", i == 0 ? "" : ", ", machine.axes[i].name,
-                    fmt::format(fmt::runtime(number), commands[i] / (rotary ? kDegree : 1)), rotary ? "deg" : "mm");
+    const Axis& axis = machine.axes[i];
+    words += fmt::format("{}{} {} {}", i == 0 ? "" : ", ", axis.name,
+                         fmt::format(fmt::runtime(number), commands[i] / position_unit(axis)), position_suffix(axis));
   }
   return words;
 }
@@ -22,8 +21,8 @@ std::string position_words(const Machine& machine, std::span<const double> comma
 nlohmann::ordered_json position_json(const Machine& machine, std::span<const double> commands) {
   nlohmann::ordered_json json;
   for (std::size_t i = 0; i < std::min(machine.axes.size(), commands.size()); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    json[machine.axes[i].name + (rotary ? "_deg" : "_mm")] = commands[i] / (rotary ? kDegree : 1);
+    const Axis& axis = machine.axes[i];
+    json[axis.name + "_" + position_suffix(axis)] = commands[i] / position_unit(axis);
   }
   return json;
 }

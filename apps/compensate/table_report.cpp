@@ -8,6 +8,7 @@
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/map_file.h"
 #include "abbe/geometry/angle_units.h"
+#include "axis_unit.h"
 #include "study/summary.h"
 
 namespace abbe {
@@ -200,10 +201,10 @@ MapData map_of(const TableReport& report) {
     for (std::size_t c = 0; c < 3; ++c) data.points[c][k] = point[static_cast<Eigen::Index>(c)];
   }
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    data.fields.push_back({machine.axes[i].name,
-                           rotary ? Quantity::angle : Quantity::length,
-                           rotary ? "deg" : "mm",
+    const Axis& axis = machine.axes[i];
+    data.fields.push_back({axis.name,
+                           axis.kind == AxisKind::rotary ? Quantity::angle : Quantity::length,
+                           position_suffix(axis),
                            {report.poses.axis[i]}});
   }
   const auto add = [&](const std::string& name, const PoseDeviations& deviations) {

@@ -11,7 +11,7 @@
 #include "abbe/formats/ply_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/scan_plan_file.h"
-#include "abbe/geometry/angle_units.h"
+#include "axis_unit.h"
 #include "reproduce/liu_machine.h"
 #include "scan/plan_page.h"
 
@@ -47,12 +47,11 @@ std::string mesh_ply(const TriangleMesh& mesh) {
 /// Axis positions and indications.
 std::string readings_csv(const Machine& machine, const LiuScan& scan) {
   std::string text;
-  for (const Axis& axis : machine.axes) text += axis.name + (axis.kind == AxisKind::rotary ? "_deg," : "_mm,");
+  for (const Axis& axis : machine.axes) text += axis.name + "_" + position_suffix(axis) + ",";
   text += "indication_um\n";
   for (std::size_t k = 0; k < scan.indication.size(); ++k) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-      const double unit = machine.axes[i].kind == AxisKind::rotary ? kDegree : 1;
-      text += shortest_text(scan.positions.axis[i][k] / unit) + ',';
+      text += shortest_text(scan.positions.axis[i][k] / position_unit(machine.axes[i])) + ',';
     }
     text += shortest_text(1e3 * scan.indication[k]) + '\n';
   }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <system_error>
 
 #include "abbe/formats/errors_file.h"
@@ -15,6 +14,7 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/identify/decoupled_errors.h"
 #include "abbe/identify/distributions.h"
+#include "axis_unit.h"
 #include "exit_code.h"
 #include "reproduce/wang_dials.h"
 #include "reproduce/wang_study.h"
@@ -65,8 +65,7 @@ const char* unit_name(std::size_t component) { return component < 3 ? "um" : "ur
 /// Position, error motions and their uncertainties.
 std::string decoupling_csv(const Machine& machine, const GridFile& file) {
   const Axis& axis = machine.axes[file.table.axis];
-  const bool linear = axis.kind == AxisKind::linear;
-  std::string text = axis.name + (linear ? "_mm" : "_deg");
+  std::string text = axis.name + "_" + position_suffix(axis);
   for (std::size_t c = 0; c < 6; ++c) {
     if (!file.found.seen[c]) continue;
     const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
@@ -74,7 +73,7 @@ std::string decoupling_csv(const Machine& machine, const GridFile& file) {
   }
   text += '\n';
   for (std::size_t i = 0; i < file.found.positions.size(); ++i) {
-    text += fmt::format("{:.9g}", file.found.positions[i] * (linear ? 1 : 180 / std::numbers::pi));
+    text += fmt::format("{:.9g}", file.found.positions[i] / position_unit(axis));
     for (std::size_t c = 0; c < 6; ++c) {
       if (!file.found.seen[c]) continue;
       text +=
@@ -97,7 +96,7 @@ void print(const Machine& machine, const GridFile& file) {
     fmt::print("  not decoupled: {}\n\n", found.message);
     return;
   }
-  fmt::print("  {:>10}", fmt::format("{} / {}", axis.name, linear ? "mm" : "deg"));
+  fmt::print("  {:>10}", fmt::format("{} / {}", axis.name, position_suffix(axis)));
   for (std::size_t c = 0; c < 6; ++c) {
     if (!found.seen[c]) continue;
     const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
@@ -105,7 +104,7 @@ void print(const Machine& machine, const GridFile& file) {
   }
   fmt::print("\n");
   for (std::size_t i = 0; i < found.positions.size(); ++i) {
-    fmt::print("  {:>10.3f}", found.positions[i] * (linear ? 1 : 180 / std::numbers::pi));
+    fmt::print("  {:>10.3f}", found.positions[i] / position_unit(axis));
     for (std::size_t c = 0; c < 6; ++c) {
       if (!found.seen[c]) continue;
       fmt::print(" {:>12.3f} {:>8.3f}",

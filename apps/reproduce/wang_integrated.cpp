@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "abbe/verify/error_map.h"
+#include "axis_unit.h"
 #include "study/report_data.h"
 
 namespace abbe {
@@ -146,10 +147,10 @@ MapData wang_map_data(const WangMap& map) {
   MapData data;
   data.points = map.machining_point;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    data.fields.push_back({machine.axes[i].name,
-                           rotary ? Quantity::angle : Quantity::length,
-                           rotary ? "deg" : "mm",
+    const Axis& axis = machine.axes[i];
+    data.fields.push_back({axis.name,
+                           axis.kind == AxisKind::rotary ? Quantity::angle : Quantity::length,
+                           position_suffix(axis),
                            {map.poses.axis[i]}});
   }
   const auto three = [](const std::array<std::vector<double>, 3>& v) {

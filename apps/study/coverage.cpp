@@ -7,8 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "abbe/geometry/angle_units.h"
 #include "abbe/identify/prediction.h"
+#include "axis_unit.h"
 #include "study/job.h"
 
 namespace abbe {
@@ -96,10 +96,6 @@ std::vector<std::string> coverage_sentences(const Study& study, const StudyResul
   }
   return sentences;
 }
-
-double position_unit(const Axis& axis) { return axis.kind == AxisKind::rotary ? kDegree : 1; }
-
-const char* position_suffix(const Axis& axis) { return axis.kind == AxisKind::rotary ? "deg" : "mm"; }
 
 std::string moved_range_sentence(const Axis& axis, const AxisRange& wanted, const AxisRange& known) {
   return fmt::format("The map was asked for {} from {} and runs from {}, where the errors are known.", axis.name,

@@ -51,10 +51,6 @@ std::vector<std::string> coverage_sentences(const Study& study, const StudyResul
 /// That a map's positions of one axis were moved to where the errors are known.
 std::string moved_range_sentence(const Axis& axis, const AxisRange& wanted, const AxisRange& known);
 
-/// The unit in which people and files state positions of an axis, in mm or rad, and its name: "mm" or "deg".
-double position_unit(const Axis& axis);
-const char* position_suffix(const Axis& axis);
-
 /// Ranges of all axes for programs: see docs/report-data.md, `ranges`.
 nlohmann::ordered_json coverage_json(const Study& study, const StudyResult& result);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "abbe/errors/random_stream.h"
@@ -13,6 +12,7 @@
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/instruments/path_plan.h"
+#include "axis_unit.h"
 
 namespace abbe {
 namespace {
@@ -92,9 +92,9 @@ void refuse_unreadable(const Machine& machine, const Instrument& device, const I
       if (std::isfinite(readings.measured[c][k])) continue;
       std::string pose;
       for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-        pose += fmt::format("{}{} = {:.6g} {}", i > 0 ? ", " : "", machine.axes[i].name,
-                            readings.poses.axis[i][k] * (rotary ? 180 / std::numbers::pi : 1), rotary ? "deg" : "mm");
+        const Axis& axis = machine.axes[i];
+        pose += fmt::format("{}{} = {:.6g} {}", i > 0 ? ", " : "", axis.name,
+                            readings.poses.axis[i][k] / position_unit(axis), position_suffix(axis));
       }
       throw InputError({.file = place, .field = device.components()[c].name},
                        fmt::format("reads nothing at {} ({}){}", pose, device.items()[readings.item[k]].name, with),

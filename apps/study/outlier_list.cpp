@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "abbe/geometry/angle_units.h"
+#include "axis_unit.h"
 #include "study/job.h"
 
 namespace abbe {
@@ -34,9 +34,8 @@ void print_outliers(const Study& study, const StudyResult& result, const char* s
     const std::vector<double> positions = result.model.observations[outlier.observations]->positions(outlier.reading);
     for (std::size_t a = 0; a < positions.size(); ++a) {
       const Axis& axis = study.machine.axes[a];
-      const bool rotary = axis.kind == AxisKind::rotary;
-      pose += fmt::format("{}{} {:.6g} {}", a > 0 ? ", " : "", axis.name, positions[a] / (rotary ? kDegree : 1),
-                          rotary ? "deg" : "mm");
+      pose += fmt::format("{}{} {:.6g} {}", a > 0 ? ", " : "", axis.name, positions[a] / position_unit(axis),
+                          position_suffix(axis));
     }
     fmt::print("  {} reading {}{}{}: {:.1f} at {}\n", result.campaign.setups[outlier.observations]->name,
                outlier.reading, point.empty() ? "" : ", point ", point, outlier.norm, pose);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "abbe/geometry/angle_units.h"
+#include "axis_unit.h"
 #include "study/advice.h"
 #include "study/report_identification.h"
 #include "study/report_parameters.h"
@@ -26,10 +26,10 @@ nlohmann::ordered_json position_columns(const Machine& machine, const PoseList& 
                                         const std::vector<std::size_t>& entries) {
   nlohmann::ordered_json columns;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+    const Axis& axis = machine.axes[i];
     std::vector<double> values;
-    for (std::size_t k : entries) values.push_back(for_drawing(poses.axis[i][k] / (rotary ? kDegree : 1)));
-    columns[machine.axes[i].name + (rotary ? "_deg" : "_mm")] = values;
+    for (std::size_t k : entries) values.push_back(for_drawing(poses.axis[i][k] / position_unit(axis)));
+    columns[axis.name + "_" + position_suffix(axis)] = values;
   }
   return columns;
 }
@@ -84,9 +84,9 @@ nlohmann::ordered_json report_machine(const Machine& machine) {
     entry["primed"] = axis.primed;
     entry["direction"] = vector_json(axis.direction);
     entry["point_mm"] = vector_json(axis.point);
-    const double unit = rotary ? kDegree : 1;
-    entry[rotary ? "travel_min_deg" : "travel_min_mm"] = axis.travel_min / unit;
-    entry[rotary ? "travel_max_deg" : "travel_max_mm"] = axis.travel_max / unit;
+    const double unit = position_unit(axis);
+    entry[std::string("travel_min_") + position_suffix(axis)] = axis.travel_min / unit;
+    entry[std::string("travel_max_") + position_suffix(axis)] = axis.travel_max / unit;
     if (rotary) entry["endless"] = axis.endless;
     json["axes"].push_back(entry);
   }

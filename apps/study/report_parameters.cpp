@@ -5,10 +5,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "abbe/geometry/angle_units.h"
 #include "abbe/identify/covariance.h"
 #include "abbe/identify/monte_carlo_comparison.h"
 #include "abbe/identify/prediction.h"
+#include "axis_unit.h"
 #include "study/report_data.h"
 
 namespace abbe {
@@ -82,7 +82,7 @@ nlohmann::ordered_json report_error_motions(const Machine& machine, const Identi
       const double q = basis.from + (basis.to - basis.from) * static_cast<double>(i) / (kPoints - 1);
       basis.values(q, motion.coefficients, {functions.data(), basis.size()});
       const double variance = functions.dot(covariance.block(first, first, size, size) * functions);
-      position.push_back(for_drawing(q / (rotary ? kDegree : 1)));
+      position.push_back(for_drawing(q / position_unit(axis)));
       value.push_back(for_drawing(unit_of(angle) * basis.evaluate(q, motion.coefficients)));
       band.push_back(for_drawing(2 * unit_of(angle) * std::sqrt(std::max(variance, 0.0))));
       if (truth != nullptr) {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <set>
 
 #include "abbe/identify/distributions.h"
+#include "axis_unit.h"
 #include "study/report_data.h"
 
 namespace abbe {
@@ -37,13 +37,12 @@ nlohmann::ordered_json position_columns(const Machine& machine, const Observatio
   for (std::size_t k : entries) {
     const std::vector<double> positions = observations.positions(k);
     for (std::size_t i = 0; i < positions.size(); ++i) {
-      const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-      values[i].push_back(for_drawing(positions[i] * (rotary ? 180 / std::numbers::pi : 1)));
+      values[i].push_back(for_drawing(positions[i] / position_unit(machine.axes[i])));
     }
   }
   nlohmann::ordered_json columns;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    columns[machine.axes[i].name + (machine.axes[i].kind == AxisKind::rotary ? "_deg" : "_mm")] = values[i];
+    columns[machine.axes[i].name + "_" + position_suffix(machine.axes[i])] = values[i];
   }
   return columns;
 }

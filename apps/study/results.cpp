@@ -14,6 +14,7 @@
 #include "abbe/formats/map_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/report/report.h"
+#include "axis_unit.h"
 #include "study/report_data.h"
 #include "study/report_residuals.h"
 #include "study/summary.h"
@@ -34,9 +35,11 @@ MapData map_data(const Machine& machine, const PoseList& poses, const std::vecto
   MapData data;
   data.points = before.point;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    data.fields.push_back(
-        {machine.axes[i].name, rotary ? Quantity::angle : Quantity::length, rotary ? "deg" : "mm", {poses.axis[i]}});
+    const Axis& axis = machine.axes[i];
+    data.fields.push_back({axis.name,
+                           axis.kind == AxisKind::rotary ? Quantity::angle : Quantity::length,
+                           position_suffix(axis),
+                           {poses.axis[i]}});
   }
   data.fields.push_back(field("before", before.displacement, Quantity::length, "um"));
   if (!before.rotation[0].empty())
@@ -72,8 +75,7 @@ MapData map_data(const Machine& machine, const PoseList& poses, const std::vecto
 std::string residuals_csv(const Study& study, const StudyResult& result) {
   const Machine& machine = study.machine;
   std::string text = "setup,reading,point";
-  for (const Axis& axis : machine.axes)
-    text += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
+  for (const Axis& axis : machine.axes) text += fmt::format(",{}_{}", axis.name, position_suffix(axis));
   text += ",used,weight,component,normalised,residual,unit\n";
   for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
     const Observations& observations = *result.model.observations[s];

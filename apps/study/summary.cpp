@@ -8,6 +8,7 @@
 
 #include "abbe/geometry/rotation.h"
 #include "abbe/identify/monte_carlo_comparison.h"
+#include "axis_unit.h"
 #include "partial_errors.h"
 #include "study/advice.h"
 #include "study/coverage.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/compensate/correction_uncertainty.h"
-#include "abbe/geometry/angle_units.h"
+#include "axis_unit.h"
 #include "study/job.h"
 #include "study/summary.h"
 
@@ -32,14 +32,13 @@ double mean_in_um(const SampleStatistics& statistics) { return 1e3 * statistics.
 std::string ranges_text(const Machine& machine, const std::vector<AxisRange>& ranges) {
   std::string text;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    const double unit = rotary ? 1 / kDegree : 1;
-    const char* const name = rotary ? "deg" : "mm";
+    const double unit = position_unit(machine.axes[i]);
+    const char* const name = position_suffix(machine.axes[i]);
     text += fmt::format("{}{} ", i > 0 ? ", " : "", machine.axes[i].name);
     if (ranges[i].is_fixed()) {
-      text += fmt::format("{:.6g} {}", unit * ranges[i].from, name);
+      text += fmt::format("{:.6g} {}", ranges[i].from / unit, name);
     } else {
-      text += fmt::format("{:.6g} to {:.6g} {}", unit * ranges[i].from, unit * ranges[i].to, name);
+      text += fmt::format("{:.6g} to {:.6g} {}", ranges[i].from / unit, ranges[i].to / unit, name);
     }
   }
   return text;

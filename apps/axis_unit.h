@@ -1,0 +1,16 @@
+#pragma once
+
+#include "abbe/geometry/angle_units.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+/// The unit in which people and files state positions of an axis, in mm or rad: mm or degrees.
+inline double position_unit(AxisKind kind) { return kind == AxisKind::rotary ? kDegree : 1; }
+inline double position_unit(const Axis& axis) { return position_unit(axis.kind); }
+
+/// Its name: "mm" or "deg".
+inline const char* position_suffix(AxisKind kind) { return kind == AxisKind::rotary ? "deg" : "mm"; }
+inline const char* position_suffix(const Axis& axis) { return position_suffix(axis.kind); }
+
+}  // namespace abbe
