@@ -99,10 +99,9 @@ std::string warning_of_held_out(const HeldOutErrors& errors) {
   const double before = 1e3 * root_mean_square(errors.before), after = 1e3 * root_mean_square(errors.after);
   if (!(after > before) || is_rounding(errors) || is_worse_by_no_chance(errors)) return {};
   return fmt::format(
-      "at poses that took no part in the fit the root mean square error is {:.4g} um after the correction and {:.4g} "
-      "um "
-      "before. Noise and the uncertainty of the identified errors may explain that, but the correction shows no "
-      "improvement there.",
+      "at poses that took no part in the fit the root mean square error is {:.4g} um after the correction and "
+      "{:.4g} um before. Noise and the uncertainty of the identified errors may explain that, but the correction shows "
+      "no improvement there.",
       after, before);
 }
 
