@@ -65,7 +65,8 @@ Eigen::MatrixXd nearest_to_parameters(Eigen::MatrixXd space) {
 }  // namespace
 
 std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& null_space,
-                                       const Eigen::VectorXd& start, GaugeChoice choice, GaugeOrder order) {
+                                       const Eigen::VectorXd& start, GaugeChoice choice, GaugeOrder order,
+                                       const Eigen::VectorXd* found) {
   std::vector<GaugeConstraint> constraints;
   std::vector<std::string> quantities;
   const Index p = start.size(), q = null_space.basis.cols();
@@ -82,6 +83,10 @@ std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& 
       constraint.words = candidates[i].words;
       constraint.functional = candidates[i].functional;
       constraint.value = candidates[i].value;
+      if (found != nullptr && candidates[i].exchangeable) {
+        constraint.words = candidates[i].quantity + " stays as the fit found it";
+        constraint.value = constraint.functional.dot(*found);
+      }
       constraints.push_back(std::move(constraint));
       quantities.push_back(candidates[i].quantity);
     }

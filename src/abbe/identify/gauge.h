@@ -66,9 +66,12 @@ NullSpace find_null_space(const ReadingStream& stream, const Eigen::VectorXd& es
 /// Each is taken if it fixes a direction that the ones before it leave open; what no convention reaches is fixed by the
 /// smallest change from the start and marked (by_convention = false).
 /// @param start  [p], set-up unknowns that have to be fixed keep this value
+/// @param found  [p], null for none: location errors, tool offset and set-up unknowns that have to be fixed keep this
+///               value instead of zero and the start's
 std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& null_space,
                                        const Eigen::VectorXd& start, GaugeChoice choice,
-                                       GaugeOrder order = GaugeOrder::convention);
+                                       GaugeOrder order = GaugeOrder::convention,
+                                       const Eigen::VectorXd* found = nullptr);
 
 /// Solutions of all equations, as near to `start` as a move along the unseen directions allows.
 ConstrainedSpace constrained_space(const std::vector<GaugeConstraint>& constraints, const Eigen::VectorXd& start,

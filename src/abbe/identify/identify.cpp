@@ -33,6 +33,15 @@ constexpr double kSlipped = 0.01;
 constexpr double kOpenDamping = 1e-9;  // keeps steps along unseen directions short
 constexpr double kSameCost = 1e-6;
 
+struct GaugeAttempt {
+  GaugeOrder order = GaugeOrder::convention;
+  bool as_found = false;  // location errors and set-up at the values of the fit without a gauge
+};
+// At a solution without a gauge. The zeros of the first two can lie where the machine's axes are parallel and the
+// readings see less than they do nearby: there no choice of equations is firm. The values found are where they see.
+constexpr GaugeAttempt kGaugeAttempts[] = {
+    {GaugeOrder::convention, false}, {GaugeOrder::firmest, false}, {GaugeOrder::firmest, true}};
+
 std::vector<double> scaled_norms(const Problem& problem, const std::vector<std::vector<double>>& norms) {
   std::vector<double> result;
   for (std::size_t o = 0; o < norms.size(); ++o)
@@ -152,13 +161,17 @@ class Run {
     solver_.least_damping = kOpenDamping;
     const SolverResult open = solve_now(nullptr);
     solver_.least_damping = 0;
-    for (const GaugeOrder order : {GaugeOrder::convention, GaugeOrder::firmest}) {
+    for (const GaugeAttempt& attempt : kGaugeAttempts) {
       if (open.status != IdentifyStatus::converged) break;
       start_from(open.estimates);
-      order_ = order;
-      take_gauge(find_null_space(stream_, start_, at_start_), given);
+      attempt_ = attempt;
+      const NullSpace null_space = find_null_space(stream_, start_, at_start_);
+      // A direction that is seen a little has its own minimum, which may be elsewhere.
+      if (attempt.as_found && null_space.weak > 0) break;
+      take_gauge(null_space, given);
       const SolverResult again = solve_in_gauge(given);
-      if (again.status == IdentifyStatus::converged && again.cost <= (1 + kSameCost) * open.cost + kSameCost) {
+      if (again.status == IdentifyStatus::converged && again.cost <= (1 + kSameCost) * open.cost + kSameCost &&
+          !gauge_has_slipped(again)) {
         solved = again;
         return;
       }
@@ -179,7 +192,8 @@ class Run {
     result_.gauge.rank_at_start = null_space.rank;
     result_.gauge.weak_at_start = null_space.weak;
     result_.gauge.singular_values = null_space.singular_values;
-    result_.gauge.constraints = fix_gauge(problem_, null_space, given, options_.gauge, order_);
+    result_.gauge.constraints =
+        fix_gauge(problem_, null_space, given, options_.gauge, attempt_.order, attempt_.as_found ? &start_ : nullptr);
     result_.space = constrained_space(result_.gauge.constraints, start_, null_space.column_norms);
     for (const GaugeConstraint& constraint : result_.gauge.constraints) {
       lack_of_data_ = lack_of_data_ || !constraint.by_convention;
@@ -353,7 +367,7 @@ class Run {
   Problem& problem_;
   const IdentifyOptions& options_;
   SolverOptions solver_;
-  GaugeOrder order_ = GaugeOrder::convention;
+  GaugeAttempt attempt_;
   ReadingStream stream_;
   Eigen::VectorXd start_;
   NormalEquations at_start_;
