@@ -119,7 +119,7 @@ Reproduction aguado_reproduction(int threads) {
   made.agrees = true;
   for (const AguadoReference& reference : references) made.agrees = *made.agrees && reference.agrees();
   made.tables = {reference_table(references)};
-  for (ReproducedTable& table : aguado_tables(rows)) made.tables.push_back(std::move(table));
+  for (ReproducedTable& table : aguado_tables(rows, truth.errors)) made.tables.push_back(std::move(table));
   made.tables.push_back(workspace_table(figures));
   made.published = aguado_published(rows);
   made.figures = figures.plots;
@@ -127,8 +127,8 @@ Reproduction aguado_reproduction(int threads) {
   made.corrections = {
       "(3) holds with passive rotations only, that is with the transposes of (5); exact rotations are used.",
       "(7) ECX means EYX; (8) is (EXC, EYC, EZC); (9) lacks the squareness of C.",
-      "(11) needs +R_LTx in row 2, column 3, and a full rotation: one degree in small-angle form costs 213 um at 1.4 "
-      "m.",
+      "(11) needs +R_LTx in row 2, column 3, and a full rotation: one degree in small-angle form costs 213 um at "
+      "1.4 m.",
       "(15) with one shared period is a single sinusoid without a constant; a constant and harmonics are used.",
       "Table 2: 122.38/598.48 = 20.45 %, printed as 21.01. Table 3: the unit of the residual error is %, not um."};
   made.details = reference_json(references);

@@ -102,8 +102,7 @@ std::vector<std::string> aguado_conclusions(const std::vector<AguadoRow>& rows) 
   }
   words.emplace_back(
       "The paper's synthetic machine and the orders of its polynomials are not published. Its numbers are compared "
-      "with "
-      "those of the reference machine, whose errors are known, not reproduced digit by digit.");
+      "with those of the reference machine, whose errors are known, not reproduced digit by digit.");
   return words;
 }
 

@@ -1,6 +1,6 @@
 #include "reproduce/aguado_study.h"
 
-#include <chrono>
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -149,9 +149,13 @@ ErrorSet aguado_model(const AguadoOrders& orders) {
   return errors;
 }
 
+bool reached_minimum(const Identification& identification) {
+  return identification.status == IdentifyStatus::converged ||
+         (identification.status == IdentifyStatus::rank_deficient && identification.covariance.size() > 0);
+}
+
 AguadoFit fit_aguado(const AguadoTruth& truth, const TrackerReadings& readings, const TrackerNoise& noise,
                      const AguadoOrders& orders, Strategy strategy, int threads) {
-  const auto start_time = std::chrono::steady_clock::now();
   const Machine machine = aguado_machine();
   const ErrorSet errors = aguado_model(orders);
   AguadoFit fit;
@@ -180,7 +184,12 @@ AguadoFit fit_aguado(const AguadoTruth& truth, const TrackerReadings& readings, 
   // (15) with the pose of the tracker misfits by 200 um in directions that the readings hardly see: a long valley.
   options.solver.max_iterations = 1000;
   fit.rank = find_null_space(problem, present_values(problem), threads).rank;
-  fit.identification = identify_in_stages(problem, strategy, options).total;
+  Problem alone = problem;
+  alone.observations[0].unknowns.clear();
+  fit.open_alone = estimated.size() - find_null_space(alone, present_values(alone), threads).rank;
+  StagedIdentification staged = identify_in_stages(problem, strategy, options);
+  fit.converged = std::all_of(staged.stages.begin(), staged.stages.end(), reached_minimum);
+  fit.identification = std::move(staged.total);
   fit.residual = lengths(observations);
 
   fit.setup = observations.setup();
@@ -197,7 +206,6 @@ AguadoFit fit_aguado(const AguadoTruth& truth, const TrackerReadings& readings, 
                                    {&fit.identification.errors, &identified_setup}, poses, sights, threads);
   fit.unseen_before =
       compare_predictions(machine, {&truth.errors, &true_setup}, {&none, &true_setup}, poses, sights, threads);
-  fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time).count();
   return fit;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -46,7 +47,6 @@ class AguadoRunner {
     row.experiment = experiment_;
     row.model = std::move(model);
     row.constant = orders.constant_of_c;
-    row.pose = orders.estimate_pose;
     row.fit = fit_aguado(truth_, readings_, aguado_noise(), orders, strategy, threads_);
     rows.push_back(std::move(row));
     return rows.back();
@@ -103,11 +103,44 @@ const AguadoPublished* published_of(AguadoExperiment experiment) {
 }
 
 std::vector<ReproducedCell> paper_row(const AguadoPublished& paper) {
-  return {"paper", paper.initial_mean, paper.initial_largest, paper.final_mean, paper.final_largest, paper.percent, {},
-          {}};
+  return {
+      "paper", paper.initial_mean, paper.initial_largest, paper.final_mean, paper.final_largest, paper.percent, {}, {},
+      {}};
 }
 
-ReproducedTable aguado_rank_table(const std::vector<AguadoRow>& rows) {
+/// Largest coefficient of the angular error motions of C, rad.
+double largest_angle(const ErrorSet& errors) {
+  const std::size_t c = aguado_machine().find_axis("C");
+  double angle = 0;
+  for (const ErrorMotion& motion : errors.motions) {
+    if (motion.axis != c || static_cast<std::size_t>(motion.component) < 3) continue;
+    for (const double coefficient : motion.coefficients) angle = std::max(angle, std::abs(coefficient));
+  }
+  return angle;
+}
+
+/// What fits with angles far beyond those of the machine are worth; empty if there are none.
+std::string far_angle_words(const std::vector<AguadoRow>& rows, const ErrorSet& truth) {
+  constexpr double kFarBeyond = 50;
+  const double of_machine = largest_angle(truth);
+  double least_misfit = std::numeric_limits<double>::infinity();
+  std::size_t fits = 0;
+  for (const AguadoRow& row : rows) {
+    if (row.experiment != AguadoExperiment::table_1) continue;
+    if (largest_angle(row.fit.identification.errors) <= kFarBeyond * of_machine) continue;
+    ++fits;
+    least_misfit = std::min(least_misfit, row.fit.residual.mean);
+  }
+  if (fits == 0) return "";
+  return fmt::format(
+      "{} of these models find{} angles of more than {:.0f} times the largest of the machine's C ({:.3f} mrad) and "
+      "misfit{} by {:.0f} um or more on average. Such a model lacks terms: the open combinations lower the residual at "
+      "second order, and the least-squares solution goes to large angles. It minimises the formula but is not a "
+      "property of the machine.",
+      fits, fits == 1 ? "s" : "", kFarBeyond, 1e3 * of_machine, fits == 1 ? "s" : "", 1e3 * least_misfit);
+}
+
+ReproducedTable aguado_rank_table(const std::vector<AguadoRow>& rows, const ErrorSet& truth) {
   ReproducedTable table{"table-1-rank",
                         "What the readings of Table 1 determine",
                         {{"model"},
@@ -121,29 +154,19 @@ ReproducedTable aguado_rank_table(const std::vector<AguadoRow>& rows) {
   for (const AguadoRow& row : rows) {
     if (row.experiment != AguadoExperiment::table_1) continue;
     const Identification& found = row.fit.identification;
-    // Without those of the pose, a sixth of the parameters belongs to each component: one per function of C.
-    constexpr std::size_t kPose = 6;
-    const std::size_t parameters = found.parameters.size(), functions = (parameters - (row.pose ? kPose : 0)) / 6;
-    double angle = 0;
-    for (const ErrorMotion& motion : found.errors.motions) {
-      if (static_cast<std::size_t>(motion.component) < 3) continue;
-      for (const double coefficient : motion.coefficients) angle = std::max(angle, std::abs(coefficient));
-    }
-    table.rows.push_back(
-        {row.model, parameters, row.fit.rank, functions, parameters - row.fit.rank - functions, 1e3 * angle});
+    table.rows.push_back({row.model, found.parameters.size(), row.fit.rank, row.fit.open_alone,
+                          row.fit.shared_with_pose(), 1e3 * largest_angle(found.errors)});
   }
   table.notes = {
-      "Determined: rank of the readings at the nominal machine. A rotation of C about the line through the two "
-      "reflectors moves neither of them, so one combination of EXC, EYC, EZC, EAC, EBC and ECC is open for each "
-      "function "
-      "of C (constant, cosine, sine). The other five are determined: they are the displacements of the two reflectors. "
-      "With the pose of the tracker found, the constants and the once-per-turn parts of C are shared with it.",
-      "Rank deficient: the fit has converged, and the open combinations are zero by convention or by choice. Its "
-      "residual holds for these two reflectors and says nothing of others.",
-      "Models without enough terms misfit by 100 um and more. Then the open combinations lower the residual at second "
-      "order, and the least-squares solution goes to angles far beyond the errors of the machine (at most 0.1 mrad): "
-      "it "
-      "is a minimum of the formula and no property of the machine."};
+      "Determined: rank of the readings at the nominal machine. Rotations about the line: combinations that "
+      "they leave open if the pose of the tracker is known. A rotation of C about the line through the two reflectors "
+      "moves neither of them, so one combination of EXC, EYC, EZC, EAC, EBC and ECC is open for each function of C "
+      "(constant, cosine, sine). The other five are determined: they are the displacements of the two reflectors. With "
+      "the pose of the tracker found, the constants and the once-per-turn parts of C are shared with it.",
+      "A fit that is rank deficient and has converged has reached a minimum; the open combinations are fixed by "
+      "convention or keep their start value of zero. Its residual holds for these two reflectors and says nothing "
+      "about others."};
+  if (const std::string words = far_angle_words(rows, truth); !words.empty()) table.notes.push_back(words);
   return table;
 }
 
@@ -166,7 +189,7 @@ std::vector<AguadoRow> aguado_rows(const AguadoTruth& truth, int threads) {
   return std::move(run.rows);
 }
 
-std::vector<ReproducedTable> aguado_tables(const std::vector<AguadoRow>& rows) {
+std::vector<ReproducedTable> aguado_tables(const std::vector<AguadoRow>& rows, const ErrorSet& truth) {
   const std::vector<ReproducedColumn> columns = {{"model"},
                                                  {"average initial", "um"},
                                                  {"maximum initial", "um"},
@@ -174,6 +197,7 @@ std::vector<ReproducedTable> aguado_tables(const std::vector<AguadoRow>& rows) {
                                                  {"maximum final", "um"},
                                                  {"residual", "%"},
                                                  {"at unseen poses", "%"},
+                                                 {"converged"},
                                                  {"status"}};
   std::vector<ReproducedTable> tables = {
       {"table-1",
@@ -195,9 +219,9 @@ std::vector<ReproducedTable> aguado_tables(const std::vector<AguadoRow>& rows) {
     const AguadoFit& fit = row.fit;
     table.rows.push_back({row.model, 1e3 * fit.initial.mean, 1e3 * fit.initial.maximum, 1e3 * fit.residual.mean,
                           1e3 * fit.residual.maximum, row.percent_left(), row.percent_left_unseen(),
-                          status_text(fit.identification.status)});
+                          fit.converged ? "yes" : "NO", status_text(fit.identification.status)});
   }
-  tables.insert(tables.begin() + 1, aguado_rank_table(rows));
+  tables.insert(tables.begin() + 1, aguado_rank_table(rows, truth));
   tables.back().notes = {
       "Initial: nominal machine and the tracker's true pose against the readings (tracker 10 um + 5 um/m). At unseen "
       "poses: what is left of the mean error at 2,000 random poses with reflector offsets that were not measured."};

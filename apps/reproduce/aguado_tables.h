@@ -18,7 +18,6 @@ struct AguadoRow {
   int order = 0;          ///< of the polynomials of X and Z; 0: they are no part of the comparison of orders
   bool as_paper = false;  ///< the model as far as the paper states it
   bool constant = true;   ///< C has constant terms
-  bool pose = true;       ///< the pose of the tracker was found too
   AguadoFit fit;
 
   double percent_left() const { return 100 * fit.residual.mean / fit.initial.mean; }
@@ -41,7 +40,8 @@ TrackerNoise aguado_noise();
 std::vector<AguadoRow> aguado_rows(const AguadoTruth& truth, int threads);
 
 /// Tables 1 to 3 in um, what Table 1 determines, and the strategies.
-std::vector<ReproducedTable> aguado_tables(const std::vector<AguadoRow>& rows);
+/// @param truth  errors of the reference machine
+std::vector<ReproducedTable> aguado_tables(const std::vector<AguadoRow>& rows, const ErrorSet& truth);
 std::vector<PublishedNumber> aguado_published(const std::vector<AguadoRow>& rows);
 
 /// Sentences that follow from the rows, whatever they are.
