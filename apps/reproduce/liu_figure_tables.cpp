@@ -9,8 +9,6 @@
 namespace abbe {
 namespace {
 
-const char* unit_words(LiuUnit unit) { return unit == LiuUnit::millimetre ? "mm" : "um"; }
-
 ReproducedTable clamped_profiles(const LiuFigureStudy& study) {
   ReproducedTable table{"figure-4b",
                         fmt::format("Figure 4b: section of the standard cylinder {:.0f} mm above the middle, clamped "
@@ -72,9 +70,9 @@ ReproducedTable left_over(const LiuFigureStudy& study) {
                         {{"shifts"}, {"calibration of"}, {"readings"}, {"axis"}},
                         {},
                         {}};
-  for (const char* angle : {"0 deg", "90 deg", "180 deg", "270 deg"}) table.columns.push_back({angle, "um", 2});
+  add_columns(table, {"0 deg", "90 deg", "180 deg", "270 deg"}, "um");
   const auto add = [&](const LiuClampingStudy& s, const NamedPlaces& p, bool nominal) {
-    std::vector<ReproducedCell> row = {unit_words(s.unit), p.step, p.readings, nominal ? "nominal" : "found"};
+    std::vector<ReproducedCell> row = {liu_unit_name(s.unit), p.step, p.readings, nominal ? "nominal" : "found"};
     for (std::size_t q = 0; q < kLiuQuarters; ++q) {
       row.emplace_back(1e3 * largest_magnitude(nominal ? p.places->nominal_difference(q) : p.places->remaining(q)));
     }
@@ -145,8 +143,8 @@ ReproducedTable clamping_table(const LiuFigureStudy& study) {
     for (std::size_t i = 0; i < 4; ++i) {
       const double unit = i < 2 ? kArcsec : 1e-3;
       const auto error = [&](const LiuCampaign& c) { return (c.clamping.found[i] - s.truth[i]) / unit; };
-      table.rows.push_back({unit_words(s.unit), kNames[i], i < 2 ? "arcsec" : "um", s.truth[i] / unit, error(s.exact),
-                            error(s.noisy), error(s.tapered), s.noisy.clamping.uncertainty[i] / unit,
+      table.rows.push_back({liu_unit_name(s.unit), kNames[i], i < 2 ? "arcsec" : "um", s.truth[i] / unit,
+                            error(s.exact), error(s.noisy), error(s.tapered), s.noisy.clamping.uncertainty[i] / unit,
                             s.spread.steps.deviation[i] / unit, s.spread.steps.mean[i] / unit,
                             s.joint.uncertainty[i] / unit, s.spread.joint.deviation[i] / unit});
     }
@@ -202,8 +200,7 @@ ReproducedTable repeat_table(const LiuFigureStudy& study) {
                         {{"standard"}},
                         {},
                         {}};
-  for (const char* run : {"run 1", "run 2", "run 3", "run 4"}) table.columns.push_back({run, "um", 2});
-  table.columns.push_back({"repeatability", "um", 2});
+  add_columns(table, {"run 1", "run 2", "run 3", "run 4", "repeatability"}, "um");
   table.columns.push_back({"correlation of runs", "", 3});
   for (const LiuRepeats& r : study.repeats) {
     std::vector<ReproducedCell> row = {r.words};
@@ -225,7 +222,7 @@ ReproducedTable repeat_values(const LiuFigureStudy& study) {
                         {{"standard"}, {"height", "mm", 0}, {"position of C", "deg", 0}},
                         {},
                         {}};
-  for (const char* run : {"run 1", "run 2", "run 3", "run 4"}) table.columns.push_back({run, "um", 3});
+  add_columns(table, {"run 1", "run 2", "run 3", "run 4"}, "um", 3);
   for (const LiuRepeats& r : study.repeats) {
     for (std::size_t k = 0; k < r.deviations[0].size(); ++k) {
       std::vector<ReproducedCell> row = {r.words, r.heights[k / LiuRepeats::kSteps],

@@ -59,7 +59,7 @@ nlohmann::ordered_json liu_details(const LiuResults& r) {
         {{"term", term.name}, {"across_" + unit, term.across}, {"registered_" + unit, term.remaining}});
   }
   for (const LiuUnitResults& results : r.units) {
-    nlohmann::ordered_json& unit = json[results.unit == LiuUnit::millimetre ? "table_3_in_mm" : "table_3_in_um"];
+    nlohmann::ordered_json& unit = json[std::string("table_3_in_") + liu_unit_name(results.unit)];
     unit["calibration"] = calibration_json(results.calibration);
     for (const LiuMeasuredPart& measured : results.parts) {
       nlohmann::ordered_json part = measurement_json(measured.measurement);

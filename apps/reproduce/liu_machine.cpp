@@ -42,6 +42,8 @@ Line axis_line(const Machine& machine, const ErrorSet& errors, std::size_t axis)
 
 }  // namespace
 
+const char* liu_unit_name(LiuUnit unit) { return unit == LiuUnit::millimetre ? "mm" : "um"; }
+
 Machine liu_machine() { return read_machine(shared_file("examples/machines/liu-scanner.machine.toml")); }
 
 ErrorSet liu_errors(const Machine& machine, LiuUnit unit, double angles, double shifts) {

@@ -16,6 +16,7 @@ Machine liu_machine();
 
 /// Reading of Table 3, whose unit of the shifts is doubtful.
 enum class LiuUnit { millimetre, micrometre };
+const char* liu_unit_name(LiuUnit unit);  ///< "mm" or "um"
 
 /// Location errors of the stages, Table 3: A through (dx, dy, dz) along (1, tan d1, tan d2), C along (tan d1, 1, tan
 /// d2). The shift along the axis itself brings the tilted line to where it crosses the plane through the origin.

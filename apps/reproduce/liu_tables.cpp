@@ -120,9 +120,8 @@ ReproducedTable measured_table(const LiuResults& r) {
   for (const LiuUnitResults& results : r.units) {
     for (const LiuMeasuredPart& p : results.parts) {
       const LiuMeasurement& m = p.measurement;
-      table.rows.push_back({results.unit == LiuUnit::millimetre ? "mm" : "um", m.part, m.planned, m.after.points,
-                            stated(p.paper_before), 1e3 * m.before.rms, stated(p.paper_after), 1e3 * m.after.rms,
-                            1e3 * m.after.largest});
+      table.rows.push_back({liu_unit_name(results.unit), m.part, m.planned, m.after.points, stated(p.paper_before),
+                            1e3 * m.before.rms, stated(p.paper_after), 1e3 * m.after.rms, 1e3 * m.after.largest});
     }
   }
   table.notes = {

@@ -19,6 +19,11 @@ std::vector<ReproducedCell> motion_row(std::vector<ReproducedCell> cells, const 
   return cells;
 }
 
+/// Adds rows of one text and six motions in their units.
+auto motion_adder(ReproducedTable& table) {
+  return [&table](const char* words, const SixMotions& in_unit) { table.rows.push_back(motion_row({words}, in_unit)); };
+}
+
 ReproducedTable reference_readings(const MaResults& r) {
   ReproducedTable table{"reference",
                         "Ray-traced readings against the reference (independent program), 13 positions x 7 readings",
@@ -88,9 +93,7 @@ ReproducedTable section_33(const MaResults& r) {
                         with_motions({{"evaluation"}}, 4),
                         {},
                         {}};
-  const auto add = [&](const char* words, const SixMotions& in_unit) {
-    table.rows.push_back(motion_row({words}, in_unit));
-  };
+  const auto add = motion_adder(table);
   const MaInversions &paper = r.inversions[0], &face = r.inversions[1];
   add("paper", kMaPaper33);
   add("formulas as printed, paper order", in_ma_units(paper.printed));
@@ -129,9 +132,7 @@ ReproducedTable motion_table_3(const MaTable& t) {
                         with_motions({{"evaluation"}}, 2),
                         {},
                         {}};
-  const auto add = [&](const char* words, const SixMotions& in_unit) {
-    table.rows.push_back(motion_row({words}, in_unit));
-  };
+  const auto add = motion_adder(table);
   add("paper, before compensation", kMaPaperBefore);
   add("simulated, before", in_ma_units(t.before));
   add("paper, after compensation", kMaPaperAfter);
@@ -148,9 +149,7 @@ ReproducedTable repeatability_table(const MaTable& t) {
                         with_motions({{"evaluation"}}, 2),
                         {},
                         {}};
-  const auto add = [&](const char* words, const SixMotions& in_unit) {
-    table.rows.push_back(motion_row({words}, in_unit));
-  };
+  const auto add = motion_adder(table);
   add("paper, before compensation", kMaPaperRepeatabilityBefore);
   add("simulated, before", in_ma_units(t.repeatability_before));
   add("paper, after compensation", kMaPaperRepeatability);
@@ -169,7 +168,7 @@ SixMotions reduction_percent(const SixMotions& before, const SixMotions& after) 
 
 ReproducedTable reductions(const MaTable& t) {
   ReproducedTable table{"reductions", "Reduction by the compensation", {{"of"}, {"evaluation"}}, {}, {}};
-  for (const char* name : kMaMotionNames) table.columns.push_back({name, "%", 2});
+  add_columns(table, {kMaMotionNames.begin(), kMaMotionNames.end()}, "%");
   const auto add = [&](const char* of, const char* words, const SixMotions& before, const SixMotions& after) {
     table.rows.push_back(motion_row({of, words}, reduction_percent(before, after)));
   };
@@ -226,13 +225,11 @@ ReproducedTable separation_table(const MaResults& r) {
                         with_motions({{"case"}}, 4),
                         {},
                         {}};
-  const auto add = [&](const char* words, const SixMotions& motions) {
-    table.rows.push_back(motion_row({words}, in_ma_units(motions)));
-  };
-  add("noise 0.05 arcsec and 0.03 um", r.separation.error);
-  add("without noise (second order of the gauge)", r.noise_free.error);
-  add("stated standard uncertainty, largest", r.separation.uncertainty);
-  add("one mount alone, prism taken as perfect", r.separation.confused);
+  const auto add = motion_adder(table);
+  add("noise 0.05 arcsec and 0.03 um", in_ma_units(r.separation.error));
+  add("without noise (second order of the gauge)", in_ma_units(r.noise_free.error));
+  add("stated standard uncertainty, largest", in_ma_units(r.separation.uncertainty));
+  add("one mount alone, prism taken as perfect", in_ma_units(r.separation.confused));
   table.notes = {fmt::format(
       "Faces: azimuth {:.4f} arcsec, tilt {:.4f} arcsec, distance {:.4f} um; chi-square {:.1f} with {} degrees of "
       "freedom.",

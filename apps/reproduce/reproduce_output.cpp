@@ -32,9 +32,9 @@ std::string csv_text(const std::string& text) {
 }
 
 nlohmann::ordered_json cell_json(const ReproducedCell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell.value)) return *text;
-  const auto* number = std::get_if<double>(&cell.value);
-  if (number == nullptr || !std::isfinite(*number)) return nullptr;
+  if (!cell.has_value()) return nullptr;
+  if (const std::string* text = cell.text()) return *text;
+  const double* number = cell.number();
   if (cell.decimals == 0 && *number == std::rint(*number)) return static_cast<std::int64_t>(*number);
   return *number;
 }
@@ -64,10 +64,9 @@ nlohmann::json page_table(const ReproducedTable& table) {
   for (const std::vector<ReproducedCell>& row : table.rows) {
     nlohmann::json cells = nlohmann::json::array();
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const bool missing = std::holds_alternative<std::monostate>(row[i].value);
       std::string text = cell_text(row[i], table.columns[i]);
       if (table.columns[i].name == "unit") text = unit_symbol(text);
-      cells.push_back(missing ? nlohmann::json() : nlohmann::json(text));
+      cells.push_back(row[i].has_value() ? nlohmann::json(text) : nlohmann::json());
     }
     rows.push_back(std::move(cells));
   }
@@ -86,6 +85,15 @@ std::vector<const ReproducedTable*> with_published(const Reproduction& made, con
 }
 
 }  // namespace
+
+const double* ReproducedCell::number() const {
+  const double* number = std::get_if<double>(&value);
+  return number != nullptr && std::isfinite(*number) ? number : nullptr;
+}
+
+void add_columns(ReproducedTable& table, const std::vector<std::string>& names, const std::string& unit, int decimals) {
+  for (const std::string& name : names) table.columns.push_back({name, unit, decimals});
+}
 
 std::string column_key(const ReproducedColumn& column) {
   std::string key;
@@ -149,9 +157,8 @@ std::string reproduction_csv(const ReproducedTable& table) {
     assert(row.size() == table.columns.size());
     for (std::size_t i = 0; i < row.size(); ++i) {
       if (i != 0) text += ',';
-      if (const auto* word = std::get_if<std::string>(&row[i].value)) text += csv_text(*word);
-      const auto* number = std::get_if<double>(&row[i].value);
-      if (number != nullptr && std::isfinite(*number)) text += shortest_text(*number);
+      if (const std::string* words = row[i].text()) text += csv_text(*words);
+      if (const double* number = row[i].number()) text += shortest_text(*number);
     }
     text += '\n';
   }

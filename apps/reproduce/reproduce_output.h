@@ -30,7 +30,7 @@ struct ReproducedColumn {
   int decimals = 2;  ///< of its numbers in text; files have all digits
 };
 
-/// A text, a number in the unit of its column, or nothing.
+/// A text, a number in the unit of its column, or nothing. A number that is not finite is nothing too.
 struct ReproducedCell {
   std::variant<std::monostate, std::string, double> value;
   std::optional<int> decimals;  ///< other than those of the column
@@ -47,6 +47,13 @@ struct ReproducedCell {
     if (number) value = *number;
   }
   // NOLINTEND(google-explicit-constructor)
+
+  /// Null if this is not a text.
+  const std::string* text() const { return std::get_if<std::string>(&value); }
+  /// Null if this is not a finite number.
+  const double* number() const;
+  /// Null in JSON, empty in CSV and on the page, "-" in text.
+  bool has_value() const { return text() != nullptr || number() != nullptr; }
 };
 
 struct ReproducedTable {
@@ -57,6 +64,10 @@ struct ReproducedTable {
   std::vector<std::string> notes = {};  ///< paragraphs below it
   bool in_text = true;  ///< false: a long one, for files and the page, which names the file beyond 200 rows
 };
+
+/// Appends columns with one unit and the same number of decimals.
+void add_columns(ReproducedTable& table, const std::vector<std::string>& names, const std::string& unit,
+                 int decimals = 2);
 
 /// A number that the paper states, beside ours. Without ours the note says what is missing to compute it.
 struct PublishedNumber {

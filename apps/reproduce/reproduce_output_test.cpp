@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <sstream>
 
 #include "reproduce/reproduce_text.h"
@@ -50,6 +51,34 @@ TEST(ReproduceOutput, PublishedNumbersHaveTheirDifferenceOrTheReasonWhyThereIsNo
   EXPECT_EQ(json["published"][1]["note"], "the paper gives no readings");
   EXPECT_EQ(json["details"]["rank"], 72);
   EXPECT_EQ(json["tables"]["table-1"]["rows"][0]["left_percent"], 20.45);
+}
+
+TEST(ReproduceOutput, WhatOnlyRoundingLeavesIsNoDifference) {
+  Reproduction made;
+  made.published = {{"sum", "mm", 0.3, 0.1 + 0.2}, {"large", "um", 1e6, 1e6 + 1e-7}, {"zero", "um", 0.0, -2e-12}};
+  ASSERT_NE(0.1 + 0.2, 0.3);
+  const nlohmann::ordered_json rows = reproduction_json(made)["published"];
+  EXPECT_EQ(rows[0]["difference"].get<double>(), 0);
+  EXPECT_EQ(rows[1]["difference"].get<double>(), 0);
+  EXPECT_EQ(rows[2]["difference"].get<double>(), -2e-12);
+}
+
+TEST(ReproduceOutput, ANumberThatIsNotFiniteIsAMissingOneEverywhere) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  Reproduction made;
+  made.tables = {{"gaps",
+                  "Gaps",
+                  {{"case"}, {"found", "um"}, {"words"}},
+                  {{"a", nan, ""}, {"b", {}, nan}, {"c", -infinity, "d"}}}};
+  for (const auto& row : made.tables[0].rows) EXPECT_FALSE(row[1].has_value());
+  for (const auto& row : reproduction_json(made)["tables"]["gaps"]["rows"]) EXPECT_TRUE(row["found_um"].is_null());
+  EXPECT_EQ(reproduction_csv(made.tables[0]), "case,found_um,words\na,,\nb,,\nc,,d\n");
+  EXPECT_NE(reproduction_page(made).find(R"("rows":[["a",null,""],["b",null,null],["c",null,"d"]])"),
+            std::string::npos);
+  EXPECT_EQ(table_text(made.tables[0]), "Gaps\n  case  words\n  a\n  b\n  c     d\n");
+  made.tables[0].rows[0][1] = 2.5;
+  EXPECT_EQ(table_text(made.tables[0]),
+            "Gaps\n  case  found  words\n           um\n  a      2.50\n  b         -\n  c         -  d\n");
 }
 
 TEST(ReproduceOutput, WhatAPaperDoesNotHaveIsEmptyOrNullInJson) {

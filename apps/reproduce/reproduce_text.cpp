@@ -49,15 +49,14 @@ std::string paragraph(const std::string& text, const std::string& first) {
 }
 
 bool has_numbers(const ReproducedTable& table, std::size_t column) {
-  return std::any_of(table.rows.begin(), table.rows.end(), [&](const std::vector<ReproducedCell>& row) {
-    return std::holds_alternative<double>(row[column].value);
-  });
+  return std::any_of(table.rows.begin(), table.rows.end(),
+                     [&](const std::vector<ReproducedCell>& row) { return row[column].number() != nullptr; });
 }
 
 bool is_empty_column(const ReproducedTable& table, std::size_t column) {
   return std::all_of(table.rows.begin(), table.rows.end(), [&](const std::vector<ReproducedCell>& row) {
-    const auto* text = std::get_if<std::string>(&row[column].value);
-    return std::holds_alternative<std::monostate>(row[column].value) || (text != nullptr && text->empty());
+    const std::string* text = row[column].text();
+    return !row[column].has_value() || (text != nullptr && text->empty());
   });
 }
 
@@ -71,9 +70,9 @@ std::string bullet_list(const std::string& heading, const std::vector<std::strin
 }  // namespace
 
 std::string cell_text(const ReproducedCell& cell, const ReproducedColumn& column) {
-  if (const auto* text = std::get_if<std::string>(&cell.value)) return *text;
-  const auto* number = std::get_if<double>(&cell.value);
-  if (number == nullptr || !std::isfinite(*number)) return "-";
+  if (!cell.has_value()) return "-";
+  if (const std::string* text = cell.text()) return *text;
+  const double* number = cell.number();
   const int decimals = cell.decimals.value_or(column.decimals);
   if (*number != 0 && std::abs(*number) < 0.5 * std::pow(10.0, -decimals)) return fmt::format("{:.0e}", *number);
   return fmt::format("{:.{}f}", *number, decimals);
@@ -125,8 +124,7 @@ std::string table_text(const ReproducedTable& table) {
   if (units) add_line([&](std::size_t i) { return table.columns[i].unit; });
   for (const auto& row : table.rows) {
     add_line([&](std::size_t i) {
-      const std::string content = cell_text(row[i], table.columns[i]);
-      return content == "-" && !has_numbers(table, i) ? std::string() : content;
+      return row[i].has_value() || has_numbers(table, i) ? cell_text(row[i], table.columns[i]) : std::string();
     });
   }
   for (const std::string& note : table.notes) text += paragraph(note, "  ");

@@ -87,8 +87,8 @@ ReproducedTable decoupled_table(const WangDialFigures& figures) {
                         {{"axis"}, {"row"}},
                         {},
                         {}};
-  for (const char* name : {"EX", "EY", "EZ"}) table.columns.push_back({name, "um", 4});
-  for (const char* name : {"EA", "EB", "EC"}) table.columns.push_back({name, "urad", 4});
+  add_columns(table, {"EX", "EY", "EZ"}, "um", 4);
+  add_columns(table, {"EA", "EB", "EC"}, "urad", 4);
   const WangDialStudy& study = figures.study;
   for (const WangDialAxis& axis : study.axes) {
     std::vector<ReproducedCell> uncertainty = {kWangAxisNames[axis.table], "largest standard uncertainty"},

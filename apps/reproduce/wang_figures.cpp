@@ -179,11 +179,12 @@ ReproducedTable wang_point_table(const std::vector<WangPoints>& points) {
       {},
       {},
       false};
-  for (const char* axis : {"X", "Y", "Z"}) table.columns.push_back({axis, "mm", 3});
-  for (const char* axis : {"A", "B", "C"}) table.columns.push_back({axis, "deg", 3});
-  for (const char* axis : {"x", "y", "z"}) table.columns.push_back({axis, "mm", 3});
+  add_columns(table, {"X", "Y", "Z"}, "mm", 3);
+  add_columns(table, {"A", "B", "C"}, "deg", 3);
+  add_columns(table, {"x", "y", "z"}, "mm", 3);
   for (const char* angles : {"degrees", "millidegrees", "displacements"}) {
-    for (const char axis : {'x', 'y', 'z'}) table.columns.push_back({fmt::format("E {} {}", axis, angles), "um"});
+    const std::string words = angles;
+    add_columns(table, {"E x " + words, "E y " + words, "E z " + words}, "um");
   }
   for (const WangPoints& set : points) {
     for (std::size_t i = 0; i < set.degrees.norm.size(); ++i) {

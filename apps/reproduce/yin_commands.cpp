@@ -16,8 +16,8 @@ namespace abbe {
 namespace {
 
 void add_axis_columns(ReproducedTable& table, const std::string& which) {
-  for (const char* axis : {"X", "Y", "Z"}) table.columns.push_back({axis + which, "mm", 4});
-  for (const char* axis : {"A", "C1"}) table.columns.push_back({axis + which, "deg", 4});
+  add_columns(table, {"X" + which, "Y" + which, "Z" + which}, "mm", 4);
+  add_columns(table, {"A" + which, "C1" + which}, "deg", 4);
 }
 
 void add_axis_cells(std::vector<ReproducedCell>& row, const SwingHeadCommand& c) {

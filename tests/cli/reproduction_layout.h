@@ -34,6 +34,7 @@ inline void expect_common_layout(const std::filesystem::path& results, const nlo
   EXPECT_TRUE(summary["agrees_with_reference"].is_boolean());
   EXPECT_FALSE(summary["facts"].empty());
   // The published numbers with their unit, and a file for every table.
+  EXPECT_FALSE(summary["published"].empty());
   for (const char* key : {"where", "unit", "paper", "here", "difference", "note"}) {
     for (const nlohmann::json& row : summary["published"]) EXPECT_TRUE(row.contains(key)) << key;
   }
