@@ -236,15 +236,17 @@ std::vector<PublishedNumber> aguado_published(const std::vector<AguadoRow>& rows
     const auto add = [&](const char* what, const char* unit, double printed, double here, const std::string& note) {
       numbers.push_back({fmt::format("{}, {}", paper->name, what), unit, printed, here, note});
     };
-    add("average initial error", "um", paper->initial_mean, 1e3 * row.fit.initial.mean, "");
-    add("maximum initial error", "um", paper->initial_largest, 1e3 * row.fit.initial.maximum, "");
-    add("average final error", "um", paper->final_mean, 1e3 * row.fit.residual.mean, "here: " + row.model);
-    add("maximum final error", "um", paper->final_largest, 1e3 * row.fit.residual.maximum, "");
+    const std::string before = "here: simulated machine", after = "here: " + row.model;
+    add("average initial error", "um", paper->initial_mean, 1e3 * row.fit.initial.mean, before);
+    add("maximum initial error", "um", paper->initial_largest, 1e3 * row.fit.initial.maximum, before);
+    add("average final error", "um", paper->final_mean, 1e3 * row.fit.residual.mean, after);
+    add("maximum final error", "um", paper->final_largest, 1e3 * row.fit.residual.maximum, after);
     const double from_rows = 100 * paper->final_mean / paper->initial_mean;
     const bool slip = std::abs(from_rows - paper->percent) > 0.01;
     add("residual error", "%", paper->percent, row.percent_left(),
-        slip ? fmt::format("its own rows give {}/{} = {:.2f} %", paper->final_mean, paper->initial_mean, from_rows)
-             : "");
+        slip ? fmt::format("{}; the paper's own rows give {}/{} = {:.2f} %", after, paper->final_mean,
+                           paper->initial_mean, from_rows)
+             : after);
   }
   return numbers;
 }

@@ -33,9 +33,9 @@ std::vector<std::string> yin_corrections(const std::vector<YinEquation>& equatio
   for (const char* line :
        {"(9) has + h, right: R_A = |z2 - z1| + d - h. Step 3 takes 2 L_tA for L_tA.",
         "(10) and (11) lose the signs of the distances. (12) holds in convention U and not with (5) as printed.",
-        "(13), (14): the cross product of two directions that are not orthogonal is no unit vector, and the transpose "
-        "is "
-        "not the inverse. (15) takes its direction from the heights of two targets and fails where they are equal.",
+        "(13), (14): the cross product of two directions that are not orthogonal is not a unit vector, and the "
+        "transpose is not the inverse. (15) takes its direction from the heights of two targets and fails where they "
+        "are equal.",
         "(17): t_z = z_p - z_sR. (18): t_x = x0 - x1 - x_sR, and t_y likewise. (19) is [R T; 0 1].",
         "Step 5: D_B^W = D_M^W (D_M^B)^-1."}) {
     lines.emplace_back(line);
@@ -54,9 +54,9 @@ std::vector<std::string> yin_conclusions(const YinResults& r) {
   if (!r.positioning.failure.empty()) return lines;
   const YinContour& c = r.contour;
   lines.push_back(
-      fmt::format("The contour error of the paper (mean {:.1f} um, largest {:.1f} um) is what Table 1 and the "
-                  "instruments let expect: "
-                  "{:.1f} and {:.1f} um. The largest share, {:.0f} %, is the {}.",
+      fmt::format("The contour error of the paper (mean {:.1f} um, largest {:.1f} um) is about what Table 1 and the "
+                  "instruments lead one to expect: {:.1f} and {:.1f} um. The largest contribution, {:.0f} % of the "
+                  "variance, is the {}.",
                   kYinMeasured.mean, kYinMeasured.largest, c.across.mean, c.across.largest,
                   100 * c.budget.lines.front().share, c.budget.lines.front().cause));
   lines.push_back(fmt::format(
@@ -66,8 +66,7 @@ std::vector<std::string> yin_conclusions(const YinResults& r) {
       "edge is; the contour error is the distance of P2 from the commanded curve.");
   lines.push_back(
       fmt::format("The budgets by sensitivity coefficients and by Monte Carlo differ by at most {:.1f} standard "
-                  "uncertainties of the "
-                  "latter.",
+                  "uncertainties of the latter.",
                   c.budget.largest_disagreement()));
   return lines;
 }

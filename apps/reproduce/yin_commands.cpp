@@ -73,11 +73,10 @@ std::vector<ReproducedTable> yin_command_tables(const std::vector<YinAxisCommand
     others.rows.push_back(std::move(other));
     largest = std::max(largest, c.printed_beam_off);
   }
-  table.notes = {
-      fmt::format("The paper prints the points and no commands. tables/axis-commands-other.csv and --json hold the "
-                  "commands with A < "
-                  "0 and by (6) as printed, which turns the beam {:.2f} degrees away: it comes out of the part.",
-                  largest / kDegree)};
+  table.notes = {fmt::format(
+      "The paper prints the points and no commands. tables/axis-commands-other.csv and --json hold the "
+      "commands with A < 0 and by (6) as printed, which turns the beam {:.2f} degrees away: it comes out of the part.",
+      largest / kDegree)};
   return {std::move(table), std::move(others)};
 }
 

@@ -1,17 +1,13 @@
 #include "reproduce/yin_equations.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "abbe/geometry/angle.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
-#include "reproduce/yin_commands.h"
 #include "reproduce/yin_constants.h"
 #include "reproduce/yin_printed.h"
 #include "reproduce/yin_reference.h"

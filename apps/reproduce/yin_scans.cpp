@@ -240,8 +240,8 @@ YinScanFiles yin_scan_files(const YinScans& scans, const std::string& points_fil
   workpiece.noise = yin::kSurfaceNoise;
   const std::vector<std::string> names = {"cylinder", "top", "side"};
   return {
-      "# A structured-light scanner beside Yin's engraver: targets while X and Y carry the table and while it turns, "
-      "a\n"
+      "# A structured-light scanner beside Yin's engraver: targets while X and Y carry the table and while it "
+      "turns, a\n"
       "# standard sphere, and the clamped part. Simulated: what is hidden from projector or camera is not there.\n"
       "#\n#   abbe position examples/laser_engraver/scanner.positioning.toml -o part.placement.toml\n" +
           scanner_positioning_text(file, points_file, names),

@@ -232,6 +232,26 @@ YinResults whole_results() {
   return r;
 }
 
+TEST(YinResults, EveryPublishedNumberSaysWhatTheOneHereIs) {
+  YinResults r;
+  r.table_moves = yin_steps(LinkageConvention::table_moves);
+  r.positioning = yin_positioning();
+  std::size_t set = 0;
+  for (const PublishedNumber& row : yin_published(r)) {
+    EXPECT_FALSE(row.note.empty()) << row.where;
+    // Numbers that come out as they went in agree by construction.
+    const bool is_input = row.where.starts_with("Table 2") || row.where.starts_with("Table 3");
+    EXPECT_EQ(row.note.starts_with("set in the simulation"), is_input) << row.where;
+    set += is_input ? 1U : 0U;
+  }
+  EXPECT_EQ(set, SwingHeadLinkage::kCount + 6);
+  r.positioning.failure = "the scan does not determine the pose";
+  for (const PublishedNumber& row : yin_published(r)) {
+    if (row.where.starts_with("Table 2")) continue;
+    EXPECT_EQ(row.note, r.positioning.failure) << row.where;
+  }
+}
+
 TEST(YinResults, WhatIsNotFoundIsSaidAndDoesNotAgree) {
   const YinResults whole = whole_results();
   ASSERT_TRUE(whole.agrees) << whole.failures.at(0);

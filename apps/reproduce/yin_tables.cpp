@@ -212,28 +212,35 @@ std::vector<ReproducedTable> yin_tables(const YinResults& r) {
 
 std::vector<PublishedNumber> yin_published(const YinResults& r) {
   std::vector<PublishedNumber> rows;
+  // Every note says what the number here is: those of Tables 2 and 3 go in and come out again.
   const auto paper = yin_linkage().values(), found = r.table_moves.found.linkage.values();
   for (std::size_t i = 0; i < SwingHeadLinkage::kCount; ++i) {
-    rows.push_back({fmt::format("Table 2, {}", linkage_name(i)), "mm", paper[i], found[i], "", 3});
+    rows.push_back({fmt::format("Table 2, {}", linkage_name(i)), "mm", paper[i], found[i],
+                    "set in the simulation, found again by the corrected steps from exact readings", 3});
   }
-  rows.front().note = "here: the corrected steps, from exact readings of a machine with the paper's parameters";
+  const bool located = r.positioning.failure.empty();
   constexpr const char* kNames[] = {"x", "y", "z", "alpha", "beta", "gamma"};
   for (std::size_t i = 0; i < 6; ++i) {
-    PublishedNumber row{fmt::format("Table 3, {}", kNames[i]), i < 3 ? "mm" : "deg", yin::kTable3[i], {}, "", 3};
+    PublishedNumber row{fmt::format("Table 3, {}", kNames[i]),
+                        i < 3 ? "mm" : "deg",
+                        yin::kTable3[i],
+                        {},
+                        located ? "set in the simulation, found again from exact scans; first reading of the table"
+                                : r.positioning.failure,
+                        3};
     const PositioningParameters& p = r.positioning.table_to_workpiece;
     const auto k = static_cast<Eigen::Index>(i % 3);
-    if (r.positioning.failure.empty()) row.here = i < 3 ? p.translation[k] : p.angles[k] / kDegree;
-    if (i == 0) row.note = "here: from exact scans of a workpiece in that place; first reading of the table";
+    if (located) row.here = i < 3 ? p.translation[k] : p.angles[k] / kDegree;
     rows.push_back(std::move(row));
   }
-  const bool contour = r.positioning.failure.empty();
-  const auto add = [&](const char* words, double measured, double predicted, const char* note) {
+  const auto add = [&](const char* words, double measured, double predicted) {
     rows.push_back({fmt::format("contour error, {}", words), "um", measured,
-                    contour ? std::optional<double>(predicted) : std::nullopt, note, 1});
+                    located ? std::optional<double>(predicted) : std::nullopt,
+                    located ? "paper: one engraved part; here: predicted across the curve" : r.positioning.failure, 1});
   };
-  add("mean", kYinMeasured.mean, r.contour.across.mean, "paper: one engraved part; here: predicted across the curve");
-  add("largest", kYinMeasured.largest, r.contour.across.largest, "");
-  add("standard deviation", kYinMeasured.deviation, r.contour.across.deviation, "");
+  add("mean", kYinMeasured.mean, r.contour.across.mean);
+  add("largest", kYinMeasured.largest, r.contour.across.largest);
+  add("standard deviation", kYinMeasured.deviation, r.contour.across.deviation);
   return rows;
 }
 

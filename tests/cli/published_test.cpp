@@ -31,7 +31,7 @@ TEST_F(Published, StudiesAgreeWithTheReference) {
   }
   for (const char* name : {"table-1", "table-2", "table-3", "strategies"}) {
     for (const nlohmann::json& row : json["tables"][name]["rows"]) {
-      if (row["model"] != "paper") EXPECT_EQ(row["converged"], "yes") << row;
+      EXPECT_TRUE(row["model"] == "paper" || row["converged"] == "yes") << row;
     }
   }
   const CommandResult wang = abbe({"reproduce", "wang", "--json", "-o", "wang"});
