@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string>
+
 #include "abbe/geometry/angle_units.h"
 #include "abbe/report/svg_plot.h"
 #include "reproduce/ma_results.h"
@@ -8,6 +11,21 @@ namespace abbe {
 namespace {
 
 constexpr PlotColour kMaColours[3] = {PlotColour::first, PlotColour::second, PlotColour::third};
+
+/// What the caption of Figure 3 says of the formulas as printed: the angle and the displacement that they miss most.
+std::string printed_words(const MaInversions& paper) {
+  const SixMotions printed = in_ma_units(paper.printed), exact = in_ma_units(paper.simultaneous);
+  const auto largest = [](const SixMotions& motions, std::size_t first) {
+    const auto begin = motions.begin() + static_cast<std::ptrdiff_t>(first);
+    return static_cast<std::size_t>(std::max_element(begin, begin + 3) - motions.begin());
+  };
+  const std::size_t angle = largest(printed, 0), length = largest(printed, 3);
+  return fmt::format(
+      "The formulas as printed miss {} by up to {:.0f} arcsec and {} by up to {:.0f} um, the exact inversion all "
+      "motions by about {:.0e} arcsec or um",
+      kMaMotionNames[angle], printed[angle], kMaMotionNames[length], printed[length],
+      *std::max_element(exact.begin(), exact.end()));
+}
 
 /// Angles (first = 0) or displacements (first = 3) over the positions.
 EvaluationPlot draw_figure_3(const MaResults& r, std::size_t first) {
@@ -24,9 +42,7 @@ EvaluationPlot draw_figure_3(const MaResults& r, std::size_t first) {
     plot.line(points, {kMaColours[i]}, kMaMotionNames[first + i]);
   }
   return {first == 0 ? "figure-3a" : "figure-3b",
-          "Corrected formulas, paper order. The formulas as printed miss eps_x by 100 arcsec and delta_y by 20 um, the "
-          "exact inversion misses nothing: tables/figure-3.csv.",
-          plot.svg()};
+          "Corrected formulas, paper order. " + printed_words(r.inversions[0]) + ": tables/figure-3.csv.", plot.svg()};
 }
 
 EvaluationPlot draw_figure_5(const MaTable& t, std::size_t motion) {
@@ -58,7 +74,8 @@ EvaluationPlot draw_figure_5(const MaTable& t, std::size_t motion) {
 std::vector<EvaluationPlot> ma_figures(const MaResults& r) {
   std::vector<EvaluationPlot> plots = {draw_figure_3(r, 0), draw_figure_3(r, 3)};
   for (std::size_t motion = 0; motion < 6; ++motion) plots.push_back(draw_figure_5(r.table, motion));
-  plots[2].caption = "Ten runs of a simulated table: the measurements of the paper are not published.";
+  plots[2].caption =
+      fmt::format("{} runs of a simulated table: the measurements of the paper are not published.", kMaRuns);
   return plots;
 }
 

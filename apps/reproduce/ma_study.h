@@ -65,7 +65,7 @@ struct MaCourses {
   std::vector<SixMotions> mean, half_range;  ///< [positions]; half of the peak-to-peak value
 };
 
-/// Ten runs of a table like the SKQ-12200 of section 4, measured stepwise with one autocollimator and one sensor.
+/// Runs of a table like the SKQ-12200 of section 4, measured stepwise with one autocollimator and one sensor.
 struct MaTable {
   /// Table 3: largest motion over the positions, mean of the runs.
   SixMotions before{};    ///< readings minus the first one, nothing else taken into account

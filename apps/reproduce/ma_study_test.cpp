@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "abbe/geometry/angle_units.h"
+#include "reproduce/ma_results.h"
 
 namespace abbe {
 namespace {
@@ -44,6 +45,25 @@ TEST(MaStudy, SectionThreePointThreeByAllThreeWays) {
     for (const SixMotions& exact : {found.stepwise, found.simultaneous})
       for (std::size_t i = 0; i < 6; ++i) EXPECT_LT(exact[i], i < 3 ? 1e-11 * kArcsec : 1e-10 * kMicrometre) << i;
   }
+}
+
+TEST(MaFigures, CaptionsSayWhatTheFormulasAsPrintedMiss) {
+  MaResults r;
+  r.positions.resize(2);
+  r.table.angles = {0, 1};
+  for (MaCourses* courses : {&r.table.courses_fitted, &r.table.courses_truth}) {
+    courses->mean = courses->half_range = {{1, 1, 1, 1, 1, 1}, {2, 2, 2, 2, 2, 2}};
+  }
+  MaInversions& paper = r.inversions[0];
+  paper.corrected_at = {{0, 0, 0, 0, 0, 0}, {1, 1, 1, 1, 1, 1}};
+  paper.printed = {1 * kArcsec, 42 * kArcsec, 2 * kArcsec, 1 * kMicrometre, 2 * kMicrometre, 7 * kMicrometre};
+  paper.simultaneous = {0, 0, 0, 3e-12 * kMicrometre, 0, 0};
+  const std::vector<EvaluationPlot> plots = ma_figures(r);
+  EXPECT_EQ(
+      plots[0].caption,
+      "Corrected formulas, paper order. The formulas as printed miss eps_y by up to 42 arcsec and delta_z by up to "
+      "7 um, the exact inversion all motions by about 3e-12 arcsec or um: tables/figure-3.csv.");
+  EXPECT_TRUE(plots[2].caption.starts_with("10 runs of a simulated table")) << plots[2].caption;
 }
 
 TEST(MaStudy, ExactInversionOfTheReferenceReadingsGivesWhatTheirDecimalsAllow) {

@@ -239,7 +239,7 @@ ReproducedTable separation_table(const MaResults& r) {
   return table;
 }
 
-/// Largest of the four motions that the compensation is for.
+/// Largest of the six motions.
 double largest_reduction(const SixMotions& before, const SixMotions& after) {
   const SixMotions percent = reduction_percent(before, after);
   return *std::max_element(percent.begin(), percent.end());
@@ -282,7 +282,8 @@ std::vector<PublishedNumber> ma_published(const MaResults& r) {
           {fmt::format("{}, {}", where, kMaMotionNames[i]), ma_unit(i), paper[i], here[i], note, decimals});
     }
   };
-  numbers.push_back({"Section 5, errors of the model", "", 46.0, static_cast<double>(r.effects.size()), "", 0});
+  numbers.push_back({"Section 5, errors of the model", "", 46.0, static_cast<double>(r.effects.size()),
+                     "they are listed in tables/errors-46.csv", 0});
   add("Section 3.3", kMaPaper33, corrected, "corrected formulas; which face errors were drawn is not published", 4);
   add("Table 3, before", kMaPaperBefore, before, "simulated", 2);
   add("Table 3, after", kMaPaperAfter, fitted, "simulated, trigonometric fit", 2);
