@@ -78,7 +78,7 @@ std::string validation_words(const std::vector<AguadoRow>& rows) {
   }
   return fmt::format(
       "{} of {} fits of one kind of axis alone, and {} of {} fits of all axes, leave more than twice the share at "
-      "unseen poses that they leave at their readings: a residual is no validation.",
+      "unseen poses that they leave at their readings: a residual is not a validation.",
       wrong, partial, other, joint);
 }
 

@@ -60,9 +60,8 @@ std::string repeat_words(const LiuFigureStudy& study) {
       "Figure 11b: the paper calls its four distributions basically the same. The random deviations of Table 2 alone "
       "do not make them so: repeatability {:.2f} um, correlation of the runs {:.2f}, with a taper {:.2f}. With three "
       "lobes of 14 um peak to valley it is {:.2f}. Something that repeats is needed; which form or motion it was "
-      "cannot be "
-      "told from the paper. A form within 14 um alone cannot reach its 12.42 um about the best cylinder, as no root "
-      "mean square exceeds half of the peak-to-valley value.",
+      "cannot be told from the paper. A form within 14 um alone cannot reach its 12.42 um about the best cylinder, as "
+      "no root mean square exceeds half of the peak-to-valley value.",
       1e3 * study.repeats[0].repeatability, study.repeats[0].correlation, taper.correlation, lobes.correlation);
 }
 
