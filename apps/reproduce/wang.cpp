@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cctype>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,13 +15,14 @@ namespace {
 std::vector<std::string> wang_conclusions(const WangResults& r) {
   std::vector<std::string> lines;
   for (const auto& row : wang_conclusion_rows(r.conclusions)) {
-    lines.push_back(fmt::format("{}. Paper: {}. Here: {}. Holds: {}.", row[0], row[1], row[2], row[3]));
+    std::string answer = row[3];
+    answer[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(answer[0])));
+    lines.push_back(fmt::format("{}: the paper says {}; here {}. Does it hold? {}.", row[0], row[1], row[2], answer));
   }
   const double displacements = r.displacements.machine.norm();
   lines.push_back(
       fmt::format("With z = +0.0030 mm in (45), |E| by displacements only is {:.2f} um at the zero pose. The agreement "
-                  "with the ball "
-                  "bar that is claimed at 0.1 mm fails by a factor of {:.0f}.",
+                  "with the ball bar that is claimed at 0.1 mm fails by a factor of {:.0f}.",
                   1e3 * displacements, 0.1 / displacements));
   return lines;
 }
@@ -29,9 +31,10 @@ std::vector<std::string> wang_corrections(const WangMeanColumn& mean) {
   return {
       "(36) to (39) mix displacements of i = 1 with angles of column 12; (40), (41), (43) have wrong signs or digits.",
       "(42) prints T_X T_Z only, and 193.93746 is a slip for 199.93746; (44) adds up wrongly; (45): z is +0.0030 mm.",
-      fmt::format("Column 12 of Tables A1 to A6 is no measurement: it is the cut-off mean of columns 1 to 11 in {} of "
-                  "the {} rows that vary.",
-                  mean.equal, mean.rows),
+      fmt::format(
+          "Column 12 of Tables A1 to A6 is not a measurement: it is the cut-off mean of columns 1 to 11 in {} of "
+          "the {} rows that vary.",
+          mean.equal, mean.rows),
       "The angles are probably a factor of 1000 too large: arctan of um/mm read as degrees. This is inferred, not "
       "proven, so both readings are shown.",
       "The strokes of A and B are swapped against Tables A4 and A5.",
@@ -56,7 +59,7 @@ Reproduction wang_reproduction(int threads) {
   made.tables = wang_tables(r);
   made.published = wang_published(r);
   made.figures = wang_point_plots(r.points);
-  for (EvaluationPlot& plot : wang_ball_bar_plots(r.dials.study)) made.figures.push_back(std::move(plot));
+  for (EvaluationPlot& plot : wang_ball_bar_plots(r.dials.ball_bar)) made.figures.push_back(std::move(plot));
   made.conclusions = wang_conclusions(r);
   made.corrections = wang_corrections(r.mean_column);
   made.agrees = r.agrees;

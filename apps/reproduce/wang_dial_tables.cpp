@@ -3,15 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "abbe/formats/indication_file.h"
 #include "abbe/verify/statistics.h"
-#include "reproduce/wang_ball_bar.h"
-#include "reproduce/wang_study.h"
 #include "reproduce/wang_tables.h"
 
 namespace abbe {
@@ -19,37 +14,17 @@ namespace {
 
 constexpr std::uint64_t kDialSeed = 2020;
 
-struct BallBarModel {
-  const char* name;
-  WangReading reading;
-};
-std::array<BallBarModel, 4> ball_bar_models() {
-  return {{{"displacements only", {.angles = WangAngleUnit::none, .composition = {}}},
-           {"angles only, millidegrees",
-            {.angles = WangAngleUnit::millidegrees, .composition = {}, .rows = 11, .displacements = false}},
-           {"complete, millidegrees", {.angles = WangAngleUnit::millidegrees, .composition = {}}},
-           {"complete, degrees as printed", {.angles = WangAngleUnit::degrees, .composition = {}}}}};
-}
-
-/// What a ball bar would read with the errors found by dials and laser.
-struct DecoupledBallBar {
-  std::vector<WangCircle> with_noise, without_noise;
-  explicit DecoupledBallBar(const WangDialStudy& study)
-      : with_noise(wang_ball_bar(study.with_noise.errors, &study.with_noise.covariance)),
-        without_noise(wang_ball_bar(study.without_noise.errors)) {}
-};
-
-/// Largest standard uncertainty over the positions; um or urad.
-double largest_uncertainty(const Decoupling& found, std::size_t component) {
-  double largest = 0;
-  for (std::size_t i = 0; i < found.positions.size(); ++i) {
-    largest = std::max(largest, found.standard_uncertainty(static_cast<Component>(component), i));
-  }
-  return largest * (component < 3 ? 1e3 : 1e6);
-}
-
-std::string component_name(const WangDialAxis& axis, std::size_t component) {
-  return fmt::format("E{}{}", component_letter(static_cast<Component>(component)), kWangAxisNames[axis.table]);
+/// The readings of the tables whose circles are shown beside that of the errors found.
+std::vector<WangBallBarModel> ball_bar_models() {
+  std::vector<WangBallBarModel> models = {
+      {"displacements only", {.angles = WangAngleUnit::none, .composition = {}}, {}},
+      {"angles only, millidegrees",
+       {.angles = WangAngleUnit::millidegrees, .composition = {}, .rows = 11, .displacements = false},
+       {}},
+      {"complete, millidegrees", {.angles = WangAngleUnit::millidegrees, .composition = {}}, {}},
+      {"complete, degrees as printed", {.angles = WangAngleUnit::degrees, .composition = {}}, {}}};
+  for (WangBallBarModel& model : models) model.circles = wang_ball_bar(wang_errors(model.reading));
+  return models;
 }
 
 ReproducedTable one_dial_table(const WangDialFigures& figures) {
@@ -72,7 +47,7 @@ ReproducedTable one_dial_table(const WangDialFigures& figures) {
   const WangGridComparison& x = figures.grids[0];
   table.notes = {
       "Dial zeros 50 and -20 um, faces set 30 and -20 urad off; angles read as millidegrees. (5) and (8) keep the "
-      "dial's zero and setting; (6) and (9) have opposite signs, so (11) is no roll.",
+      "dial's zero and setting; (6) and (9) have opposite signs, so (11) is not a roll.",
       fmt::format(
           "(7) and (10) give {:.1f} and {:.1f} urad for X, which are slopes of the setting: one dial cannot see "
           "pitch and yaw (Table A1 has {:.1f} and {:.1f} urad, constant). With the angles in degrees as printed "
@@ -101,8 +76,8 @@ ReproducedTable decoupled_table(const WangDialFigures& figures) {
       }
       const auto column = static_cast<Eigen::Index>(c);
       const double off = (axis.without_noise.errors.col(column) - axis.truth.col(column)).cwiseAbs().maxCoeff();
-      uncertainty.emplace_back(largest_uncertainty(axis.with_noise, c));
-      bias.emplace_back(off * (c < 3 ? 1e3 : 1e6));
+      uncertainty.emplace_back(axis.largest_standard_uncertainty(c) * micro_per_unit(c));
+      bias.emplace_back(off * micro_per_unit(c));
     }
     table.rows.push_back(std::move(uncertainty));
     table.rows.push_back(std::move(bias));
@@ -128,14 +103,14 @@ ReproducedTable decoupled_table(const WangDialFigures& figures) {
   return table;
 }
 
-ReproducedTable ball_bar_table(const DecoupledBallBar& bar) {
+ReproducedTable ball_bar_table(const WangBallBarStudy& bar) {
   ReproducedTable table{"ball-bar",
                         "Ball bar of 100 mm in three planes, simulated (ISO 230-4, least-squares centre)",
                         {{"errors"}, {"quantity"}, {"XY", "", 2}, {"YZ", "", 2}, {"ZX", "", 2}, {"unit"}},
                         {},
                         {}};
-  const auto add = [&](const char* errors, const char* quantity, const char* unit, const std::vector<WangCircle>& at,
-                       const std::function<double(std::size_t plane)>& value) {
+  const auto add = [&](const std::string& errors, const char* quantity, const char* unit,
+                       const std::vector<WangCircle>& at, const std::function<double(std::size_t plane)>& value) {
     std::vector<ReproducedCell> row = {errors, quantity};
     for (std::size_t i = 0; i < at.size(); ++i) {
       row.push_back(at[i].converged ? ReproducedCell(value(i)) : ReproducedCell());
@@ -145,11 +120,11 @@ ReproducedTable ball_bar_table(const DecoupledBallBar& bar) {
   };
   double largest_displacement = 0;
   constexpr const char* kCircular = "circular deviation G";
-  for (const BallBarModel& model : ball_bar_models()) {
-    const std::vector<WangCircle> circles = wang_ball_bar(wang_errors(model.reading));
-    add(model.name, kCircular, "um", circles, [&](std::size_t i) { return 1e3 * circles[i].circular; });
+  for (const WangBallBarModel& model : bar.models) {
+    add(model.name, kCircular, "um", model.circles, [&](std::size_t i) { return 1e3 * model.circles[i].circular; });
     if (model.reading.angles != WangAngleUnit::none) continue;
-    for (const WangCircle& circle : circles) largest_displacement = std::max(largest_displacement, circle.circular);
+    for (const WangCircle& circle : model.circles)
+      largest_displacement = std::max(largest_displacement, circle.circular);
   }
   constexpr const char* kFound = "36 decoupled errors";
   const std::vector<WangCircle>& found = bar.with_noise;
@@ -169,7 +144,7 @@ ReproducedTable ball_bar_table(const DecoupledBallBar& bar) {
 }
 
 /// The traces, for files only.
-ReproducedTable trace_table(const DecoupledBallBar& bar) {
+ReproducedTable trace_table(const WangBallBarStudy& bar) {
   ReproducedTable table{
       "ball-bar-traces",
       "Ball bar from the 36 decoupled errors: deviation of the length from 100 mm",
@@ -195,74 +170,18 @@ WangDialFigures wang_dial_figures() {
   figures.study = wang_dial_study(kDialSeed);
   figures.map = wang_dial_map(figures.study);
   figures.grids = wang_grid_comparison();
+  const DecoupledErrors &with_noise = figures.study.with_noise, &without_noise = figures.study.without_noise;
+  figures.ball_bar = {ball_bar_models(), wang_ball_bar(with_noise.errors, &with_noise.covariance),
+                      wang_ball_bar(without_noise.errors)};
   return figures;
 }
 
 std::vector<ReproducedTable> wang_dial_tables(const WangDialFigures& figures) {
-  const DecoupledBallBar bar(figures.study);
-  return {ball_bar_table(bar), trace_table(bar), one_dial_table(figures), decoupled_table(figures)};
+  return {ball_bar_table(figures.ball_bar), trace_table(figures.ball_bar), one_dial_table(figures),
+          decoupled_table(figures)};
 }
 
-nlohmann::ordered_json wang_dials_json(const WangDialFigures& figures) {
-  nlohmann::ordered_json json;
-  for (const WangGridComparison& grid : figures.grids) {
-    json["one_dial_grids"][grid.axis] = {{"printed_rms_bias_um", {1e3 * grid.printed_second, 1e3 * grid.printed_first}},
-                                         {"printed_roll_rms_bias_urad", 1e6 * grid.printed_roll},
-                                         {"printed_pitch_yaw_urad", {1e6 * grid.printed_pitch, 1e6 * grid.printed_yaw}},
-                                         {"correct_rms_bias_um", {1e3 * grid.correct_second, 1e3 * grid.correct_first}},
-                                         {"correct_roll_rms_bias_urad", 1e6 * grid.correct_roll},
-                                         {"dial_travel_if_degrees_mm", grid.dial_range_mm}};
-  }
-  for (const WangDialAxis& axis : figures.study.axes) {
-    nlohmann::ordered_json uncertainty;
-    for (std::size_t c = 0; c < 6; ++c) {
-      if (!axis.with_noise.seen[c]) continue;
-      uncertainty[component_name(axis, c) + (c < 3 ? "_um" : "_urad")] = largest_uncertainty(axis.with_noise, c);
-    }
-    json["axes"][kWangAxisNames[axis.table]] = {{"bias_um", 1e3 * axis.bias_mm},
-                                                {"bias_urad", 1e6 * axis.bias_rad},
-                                                {"largest_standard_uncertainty", uncertainty}};
-  }
-  json["seen_by_the_papers_instruments"] = figures.study.seen_by_dials;
-  json["values"] = figures.study.values;
-  json["values_within_k2"] = figures.study.inside;
-  const WangDialMap& map = figures.map;
-  json["map"] = {{"poses", map.poses},
-                 {"mean_um", 1e3 * map.norm.mean},
-                 {"mean_standard_uncertainty_um", 1e3 * map.uncertainty.mean},
-                 {"largest_standard_uncertainty_um", 1e3 * map.uncertainty.maximum},
-                 {"components_within_k2", map.inside}};
-  const auto list = [](const Eigen::Vector3d& v) {
-    return nlohmann::ordered_json{1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z()};
-  };
-  json["zero_pose_um"] = list(map.zero_pose);
-  json["zero_pose_standard_uncertainty_um"] = list(map.zero_pose_uncertainty);
-  return json;
-}
-
-nlohmann::ordered_json wang_ball_bar_json(const WangDialStudy& study) {
-  nlohmann::ordered_json json;
-  for (const BallBarModel& model : ball_bar_models()) {
-    for (const WangCircle& circle : wang_ball_bar(wang_errors(model.reading))) {
-      if (circle.converged) json[model.name][circle.plane] = 1e3 * circle.circular;
-    }
-  }
-  const DecoupledBallBar bar(study);
-  for (std::size_t i = 0; i < bar.with_noise.size(); ++i) {
-    const WangCircle& circle = bar.with_noise[i];
-    const SampleStatistics band = sample_statistics(circle.uncertainty);
-    json["from decoupled errors"][circle.plane] = {
-        {"circular_deviation_um", circle.converged ? nlohmann::ordered_json(1e3 * circle.circular) : nullptr},
-        {"circular_deviation_U_k2_um", 2e3 * circle.circular_uncertainty},
-        {"deviation_U_k2_mean_um", 2e3 * band.mean},
-        {"deviation_U_k2_largest_um", 2e3 * band.maximum},
-        {"share_within_k2", wang_share_within(circle, bar.without_noise[i])}};
-  }
-  return json;
-}
-
-std::vector<EvaluationPlot> wang_ball_bar_plots(const WangDialStudy& study) {
-  const DecoupledBallBar bar(study);
+std::vector<EvaluationPlot> wang_ball_bar_plots(const WangBallBarStudy& bar) {
   std::vector<EvaluationPlot> plots;
   for (std::size_t i = 0; i < bar.with_noise.size(); ++i) {
     const WangCircle& circle = bar.with_noise[i];
@@ -270,16 +189,6 @@ std::vector<EvaluationPlot> wang_ball_bar_plots(const WangDialStudy& study) {
   }
   plots.front().caption = "What the readings of dials and laser predict for a ball bar of 100 mm.";
   return plots;
-}
-
-std::vector<std::pair<std::string, std::string>> wang_indication_files(const WangDialStudy& study) {
-  const Machine machine = wang_machine();
-  std::vector<std::pair<std::string, std::string>> files;
-  for (const WangDialAxis& axis : study.axes) {
-    const IndicationTable table{machine.find_axis(kWangAxisNames[axis.table]), axis.readings};
-    files.emplace_back(std::string(kWangAxisNames[axis.table]) + ".csv", indications_text(machine, table));
-  }
-  return files;
 }
 
 }  // namespace abbe

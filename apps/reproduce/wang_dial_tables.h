@@ -1,30 +1,44 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "reproduce/reproduce_output.h"
+#include "reproduce/wang_ball_bar.h"
 #include "reproduce/wang_dials.h"
+#include "reproduce/wang_study.h"
 
 namespace abbe {
 
-/// The parts of `abbe reproduce wang` about dials and ball bar, as tables, plots and JSON.
+/// What a ball bar would read with one reading of the paper's tables.
+struct WangBallBarModel {
+  std::string name;  ///< "displacements only"
+  WangReading reading;
+  std::vector<WangCircle> circles;
+};
+
+/// The same with the tables, and with the errors found by dials and laser.
+struct WangBallBarStudy {
+  std::vector<WangBallBarModel> models;
+  std::vector<WangCircle> with_noise, without_noise;
+};
+
+/// The parts of `abbe reproduce wang` about dials and ball bar, computed once for tables, plots and JSON.
 struct WangDialFigures {
   WangDialStudy study;
   WangDialMap map;
   std::vector<WangGridComparison> grids;
+  WangBallBarStudy ball_bar;
 };
 
 WangDialFigures wang_dial_figures();
 /// One dial over two faces, what is found of the 36 errors, and what a ball bar would read.
 std::vector<ReproducedTable> wang_dial_tables(const WangDialFigures& figures);
-nlohmann::ordered_json wang_dials_json(const WangDialFigures& figures);
-nlohmann::ordered_json wang_ball_bar_json(const WangDialStudy& study);
 /// Traces of the ball bar from the decoupled errors.
-std::vector<EvaluationPlot> wang_ball_bar_plots(const WangDialStudy& study);
+std::vector<EvaluationPlot> wang_ball_bar_plots(const WangBallBarStudy& bar);
 
-/// Simulated indications of all six axes as files that --grids reads: {"X.csv", text}, ...
-std::vector<std::pair<std::string, std::string>> wang_indication_files(const WangDialStudy& study);
+/// For programs, beside the tables.
+nlohmann::ordered_json wang_dials_json(const WangDialFigures& figures);
+nlohmann::ordered_json wang_ball_bar_json(const WangBallBarStudy& bar);
 
 }  // namespace abbe

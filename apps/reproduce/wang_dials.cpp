@@ -155,6 +155,14 @@ double root_mean_square(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNo
 
 }  // namespace
 
+double WangDialAxis::largest_standard_uncertainty(std::size_t component) const {
+  double largest = 0;
+  for (std::size_t i = 0; i < with_noise.positions.size(); ++i) {
+    largest = std::max(largest, with_noise.standard_uncertainty(static_cast<Component>(component), i));
+  }
+  return largest;
+}
+
 WangDialStudy wang_dial_study(std::uint64_t seed) {
   const Machine machine = wang_machine();
   WangDialStudy study;
@@ -228,7 +236,7 @@ WangDialMap wang_dial_map(const WangDialStudy& study) {
   result.inside = static_cast<double>(inside) / static_cast<double>(3 * map.norm.size());
 
   PoseList zero;
-  zero.append(wang_positions({0, 0, 0, 0, 6, 0}));
+  zero.append(wang_zero_pose());
   const WangMap at_zero = wang_map(study.with_noise.errors, zero, &covariance);
   for (std::size_t d = 0; d < 3; ++d) {
     result.zero_pose[static_cast<Eigen::Index>(d)] = at_zero.error[d][0];

@@ -15,6 +15,10 @@ namespace abbe {
 inline constexpr double kWangLaserUncertainty = 0.011e-3;
 inline constexpr double kWangDialUncertainty = 0.6e-3;
 
+/// From mm or rad to um or urad, of the errors x y z, rotations about x y z.
+inline double micro_per_unit(std::size_t component) { return component < 3 ? 1e3 : 1e6; }
+inline const char* micro_unit_name(std::size_t component) { return component < 3 ? "um" : "urad"; }
+
 /// One axis of the simulated campaign.
 struct WangDialAxis {
   std::size_t table = 0;     ///< 0 to 5: X Y Z A B C
@@ -23,6 +27,9 @@ struct WangDialAxis {
   Eigen::MatrixXd truth;  ///< [11, 6] mm, rad, with the same datum, computed without the decoupling
   /// Largest magnitude over the positions of without_noise less truth, mm, then rad.
   double bias_mm = 0, bias_rad = 0;
+
+  /// With noise, over the positions; mm or rad.
+  double largest_standard_uncertainty(std::size_t component) const;
 };
 
 /// The grinder of Tables A1 to A6 (angles in millidegrees, measured rows 1 to 11), measured axis by axis.

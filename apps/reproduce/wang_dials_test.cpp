@@ -45,7 +45,7 @@ TEST(WangDials, MapUncertaintyIsThatOfItsScatterOverCampaigns) {
   EXPECT_GT(map.inside, 0.8);
   // E at the zero pose over 150 campaigns against the propagated uncertainty.
   const Machine machine = wang_machine();
-  const std::vector<double> zero = wang_positions({0, 0, 0, 0, 6, 0});
+  const std::vector<double> zero = wang_zero_pose();
   const Eigen::Vector3d centre = wang_integrated_error(machine, wang_dial_study(1).without_noise.errors, zero).machine;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   constexpr int kCampaigns = 150;

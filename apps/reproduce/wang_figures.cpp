@@ -14,17 +14,13 @@ namespace abbe {
 namespace {
 
 constexpr std::size_t kFigurePoints = 36;
-// Row of the zero position in every table: X Y Z A B C.
-constexpr std::size_t kZeroRow[] = {0, 0, 0, 0, 6, 0};
-
-std::vector<std::size_t> zero_rows() { return {std::begin(kZeroRow), std::end(kZeroRow)}; }
 
 PoseList circle_poses() {
   constexpr double kFigureRadius = 100;  // mm, that of the ball bar
   PoseList poses;
   for (std::size_t i = 0; i < kFigurePoints; ++i) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(i) / kFigurePoints;
-    std::vector<double> pose = wang_positions(zero_rows());  // chain order C X Z A Y B
+    std::vector<double> pose = wang_zero_pose();  // chain order C X Z A Y B
     pose[1] = 200 + kFigureRadius * std::cos(angle);
     pose[4] = 100 + kFigureRadius * std::sin(angle);
     poses.append(pose);
@@ -36,7 +32,7 @@ PoseList line_poses() {
   PoseList poses;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < 12; ++i) {
-      std::vector<std::size_t> rows = zero_rows();
+      std::vector<std::size_t> rows = wang_zero_rows();
       rows[axis] = i;
       poses.append(wang_positions(rows));
     }
@@ -48,7 +44,7 @@ PoseList square_poses() {
   PoseList poses;
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t k = 0; k < 6; ++k) {
-      std::vector<std::size_t> rows = zero_rows();
+      std::vector<std::size_t> rows = wang_zero_rows();
       rows[0] = 2 * i;
       rows[1] = 2 * k;
       poses.append(wang_positions(rows));
@@ -88,7 +84,25 @@ nlohmann::ordered_json size_json(const SampleStatistics& s) {
 
 /// Rounded, and no minus zero.
 double to_a_nanometre(double mm) { return std::round(1e6 * mm) / 1e6 + 0.0; }
-double to_a_picometre(double mm) { return std::round(1e9 * mm) / 1e9 + 0.0; }
+/// The same in um; rounded last, so that a file has six decimals at most.
+double um_to_a_picometre(double mm) { return std::round(1e9 * mm) / 1e6 + 0.0; }
+
+/// Within a factor of the square root of 10.
+bool is_of_the_order(double value, double order) { return std::abs(std::log10(value / order)) <= 0.5; }
+
+/// What half and twice the size change beyond rounding.
+constexpr double kSameMean = 1e-6;
+bool grows(double half, double twice) { return twice > (1 + kSameMean) * half; }
+const char* size_words(double half, double twice) {
+  if (grows(half, twice)) return "grows too";
+  return grows(twice, half) ? "becomes smaller" : "does not depend on the size";
+}
+
+const char* in_which_unit(bool degrees, bool millidegrees) {
+  if (degrees && millidegrees) return "yes, in both units";
+  if (degrees) return "only with the angles in degrees as printed";
+  return millidegrees ? "only with the angles in millidegrees" : "no, in neither unit";
+}
 
 std::vector<PlotPoint> numbered(const std::vector<double>& norm) {
   std::vector<PlotPoint> points;
@@ -116,26 +130,33 @@ std::vector<WangSize> wang_sizes() {
 
 std::vector<std::array<std::string, 4>> wang_conclusion_rows(const WangConclusions& c) {
   const WangSize &half = c.sizes.at(0), &twice = c.sizes.at(2);
+  const double ratio_degrees = c.complete_degrees / c.displacements,
+               ratio_millidegrees = c.complete_millidegrees / c.displacements;
   return {
-      {"(1) complete error", "of the order of 1 mm",
-       fmt::format("mean {:.0f} um, least {:.0f} um of all poses (degrees); mean {:.1f} um (millidegrees)",
+      {"(1) complete error", "it is of the order of 1 mm",
+       fmt::format("its mean is {:.0f} um and its least value {:.0f} um of all poses with the angles in degrees; in "
+                   "millidegrees its mean is {:.1f} um",
                    1e3 * c.complete_degrees, 1e3 * c.smallest_degrees, 1e3 * c.complete_millidegrees),
-       fmt::format("no: {:.2g} % of the poses are below 3.2 mm in degrees, none reaches 0.1 mm in millidegrees",
-                   100 * c.share_of_order_1_mm)},
-      {"(1) complete / displacements only", "about 10",
-       fmt::format("{:.0f} (degrees), {:.2f} (millidegrees)", c.complete_degrees / c.displacements,
-                   c.complete_millidegrees / c.displacements),
-       "no, in neither unit"},
-      {"(2) angles against displacements", "angles count more",
-       fmt::format("angles only / displacements only: {:.0f} (degrees), {:.2f} (millidegrees)",
+       fmt::format("{}: {:.2g} % of the poses lie between 0.32 and 3.2 mm in degrees, and the largest error in "
+                   "millidegrees is {:.3g} mm",
+                   in_which_unit(is_of_the_order(c.complete_degrees, 1), is_of_the_order(c.complete_millidegrees, 1)),
+                   100 * c.share_of_order_1_mm, c.largest_millidegrees)},
+      {"(1) complete / displacements only", "it is about 10",
+       fmt::format("it is {:.0f} in degrees and {:.2f} in millidegrees", ratio_degrees, ratio_millidegrees),
+       in_which_unit(is_of_the_order(ratio_degrees, 10), is_of_the_order(ratio_millidegrees, 10))},
+      {"(2) angles against displacements", "the angles count more",
+       fmt::format("the error by the angles only is {:.0f} times that by the displacements only in degrees and {:.2f} "
+                   "times in millidegrees",
                    c.angles_degrees / c.displacements, c.angles_millidegrees / c.displacements),
-       c.angles_millidegrees > c.displacements ? "yes, in both units" : "only with the angles in degrees as printed"},
-      {"(3) larger structure, larger error", "yes",
-       fmt::format("points twice and half as far from their axes: {:.0f} and {:.0f} um (degrees), {:.1f} and {:.1f} um "
-                   "(millidegrees), {:.1f} and {:.1f} um (displacements only)",
+       in_which_unit(c.angles_degrees > c.displacements, c.angles_millidegrees > c.displacements)},
+      {"(3) larger structure, larger error", "a larger structure makes a larger error",
+       fmt::format("with points twice and half as far from their axes the mean is {:.0f} and {:.0f} um in degrees, "
+                   "{:.1f} and {:.1f} um in millidegrees, {:.1f} and {:.1f} um by the displacements only",
                    1e3 * twice.degrees, 1e3 * half.degrees, 1e3 * twice.millidegrees, 1e3 * half.millidegrees,
                    1e3 * twice.no_angles, 1e3 * half.no_angles),
-       "for what the angles do; displacement errors do not depend on size"}};
+       fmt::format("{}; the error by the displacements only {}",
+                   in_which_unit(grows(half.degrees, twice.degrees), grows(half.millidegrees, twice.millidegrees)),
+                   size_words(half.no_angles, twice.no_angles))}};
 }
 
 nlohmann::ordered_json wang_points_json(const std::vector<WangPoints>& points) {
@@ -199,7 +220,7 @@ ReproducedTable wang_point_table(const std::vector<WangPoints>& points) {
                                          pose[0] / kDegree};
       for (const std::vector<double>& place : set.degrees.machining_point) row.emplace_back(to_a_nanometre(place[i]));
       for (const WangMap* map : {&set.degrees, &set.millidegrees, &set.no_angles}) {
-        for (const std::vector<double>& error : map->error) row.emplace_back(1e3 * to_a_picometre(error[i]));
+        for (const std::vector<double>& error : map->error) row.emplace_back(um_to_a_picometre(error[i]));
       }
       table.rows.push_back(std::move(row));
     }

@@ -36,15 +36,16 @@ struct WangConclusions {
   /// Mean |E| over all poses: complete, by the angles only, by the displacements only, mm.
   double complete_degrees = 0, complete_millidegrees = 0, angles_degrees = 0, angles_millidegrees = 0,
          displacements = 0;
-  double smallest_degrees = 0;     ///< least |E| of all poses, degrees as printed, mm
-  double share_of_order_1_mm = 0;  ///< of the poses, degrees as printed: |E| from 0.32 to 3.2 mm
+  double largest_millidegrees = 0;  ///< |E| of all poses, mm
+  double smallest_degrees = 0;      ///< least |E| of all poses, degrees as printed, mm
+  double share_of_order_1_mm = 0;   ///< of the poses, degrees as printed: |E| from 0.32 to 3.2 mm
   std::vector<WangSize> sizes;
 };
 
 nlohmann::ordered_json wang_points_json(const std::vector<WangPoints>& points);
 nlohmann::ordered_json wang_conclusions_json(const WangConclusions& conclusions);
 
-/// The claim, what the paper says, what the tables give, in how far it holds.
+/// The claim; three parts of a sentence: what the paper says, what the tables give, in which unit it holds.
 std::vector<std::array<std::string, 4>> wang_conclusion_rows(const WangConclusions& conclusions);
 
 /// The machining points with their commands and E, which only files and the page show.

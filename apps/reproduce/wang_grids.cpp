@@ -59,9 +59,6 @@ std::vector<GridFile> read_all(const std::filesystem::path& folder, const Machin
   return files;
 }
 
-double micro_per_unit(std::size_t component) { return component < 3 ? 1e3 : 1e6; }
-const char* unit_name(std::size_t component) { return component < 3 ? "um" : "urad"; }
-
 /// Position, error motions and their uncertainties.
 std::string decoupling_csv(const Machine& machine, const GridFile& file) {
   const Axis& axis = machine.axes[file.table.axis];
@@ -69,7 +66,7 @@ std::string decoupling_csv(const Machine& machine, const GridFile& file) {
   for (std::size_t c = 0; c < 6; ++c) {
     if (!file.found.seen[c]) continue;
     const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
-    text += fmt::format(",{}_{},u_{}_{}", name, unit_name(c), name, unit_name(c));
+    text += fmt::format(",{}_{},u_{}_{}", name, micro_unit_name(c), name, micro_unit_name(c));
   }
   text += '\n';
   for (std::size_t i = 0; i < file.found.positions.size(); ++i) {
@@ -100,7 +97,7 @@ void print(const Machine& machine, const GridFile& file) {
   for (std::size_t c = 0; c < 6; ++c) {
     if (!found.seen[c]) continue;
     const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
-    fmt::print(" {:>12} {:>8}", fmt::format("{} / {}", name, unit_name(c)), "u");
+    fmt::print(" {:>12} {:>8}", fmt::format("{} / {}", name, micro_unit_name(c)), "u");
   }
   fmt::print("\n");
   for (std::size_t i = 0; i < found.positions.size(); ++i) {
@@ -147,8 +144,8 @@ nlohmann::ordered_json json_of(const Machine& machine, const GridFile& file) {
       uncertainties.push_back(file.found.standard_uncertainty(static_cast<Component>(c), i) * micro_per_unit(c));
     }
     const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
-    json[name + "_" + unit_name(c)] = values;
-    json["u_" + name + "_" + unit_name(c)] = uncertainties;
+    json[name + "_" + micro_unit_name(c)] = values;
+    json["u_" + name + "_" + micro_unit_name(c)] = uncertainties;
   }
   json["notes"] = file.found.notes;
   json["chi_square"] = file.found.chi_square;

@@ -178,8 +178,7 @@ nlohmann::ordered_json wang_report_map(const WangMap& map, const std::string& de
   json["frame"] = "machine";
   json["note"] =
       "The vectors are E of equation (18): what the point of the workpiece is displaced against the point of the tool, "
-      "in "
-      "the machine frame, not the volumetric error of the tool in the workpiece frame. The arrows stand at the "
+      "in the machine frame, not the volumetric error of the tool in the workpiece frame. The arrows stand at the "
       "machining points, nominal tool less nominal workpiece point.";
   return json;
 }

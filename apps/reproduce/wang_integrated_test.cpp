@@ -133,6 +133,38 @@ TEST(WangFigures, EveryReadingOfFigure13Has36PointsWithinTheTravels) {
   const std::string csv = reproduction_csv(wang_point_table(sets));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 36);
   EXPECT_EQ(csv.find(",-0,"), std::string::npos);
+  // E is rounded to a picometre after it is in um: 1.2, not 1.2000000000000002.
+  std::size_t decimals = 0;
+  for (std::size_t at = csv.find('.'); at != std::string::npos; at = csv.find('.', at + 1)) {
+    decimals = std::max(decimals, csv.find_first_not_of("0123456789", at + 1) - at - 1);
+  }
+  EXPECT_EQ(decimals, 6U);
+}
+
+TEST(WangFigures, WhetherAConclusionHoldsFollowsFromTheFigures) {
+  WangConclusions c;
+  c.complete_degrees = c.angles_degrees = 10;
+  c.complete_millidegrees = c.displacements = 0.015;
+  c.angles_millidegrees = 0.011;
+  c.largest_millidegrees = 0.05;
+  c.sizes = {{0.5, 7, 0.013, 0.012}, {1, 11, 0.016, 0.012}, {2, 20, 0.022, 0.012}};
+  const auto holds = [](const WangConclusions& conclusions, std::size_t row) {
+    return wang_conclusion_rows(conclusions)[row][3];
+  };
+  EXPECT_EQ(holds(c, 0),
+            "no, in neither unit: 0 % of the poses lie between 0.32 and 3.2 mm in degrees, and the largest error in "
+            "millidegrees is 0.05 mm");
+  EXPECT_EQ(holds(c, 1), "no, in neither unit");
+  EXPECT_EQ(holds(c, 2), "only with the angles in degrees as printed");
+  EXPECT_EQ(holds(c, 3), "yes, in both units; the error by the displacements only does not depend on the size");
+  c.complete_degrees = 2;
+  c.complete_millidegrees = 0.12;
+  c.angles_millidegrees = 0.02;
+  c.sizes[0] = {0.5, 21, 0.013, 0.013};
+  EXPECT_TRUE(holds(c, 0).starts_with("only with the angles in degrees as printed: "));
+  EXPECT_EQ(holds(c, 1), "only with the angles in millidegrees");
+  EXPECT_EQ(holds(c, 2), "yes, in both units");
+  EXPECT_EQ(holds(c, 3), "only with the angles in millidegrees; the error by the displacements only becomes smaller");
 }
 
 TEST(WangFigures, SizeOfTheStructureCountsForTheAnglesAlone) {

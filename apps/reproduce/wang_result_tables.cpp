@@ -22,10 +22,6 @@ constexpr WangOrder kWangOrders[] = {
     {"T E, first order", {ErrorOrder::after_motion, true}},
 };
 
-// What the paper prints, mm: (42), (43), (44), (45).
-const Eigen::Vector3d kPrintedTool(193.93746, 1.72736, -4.4856), kPrintedWorkpiece(-5.5402, -1.8824, 399.9592),
-    kPrintedComplete(0.52234, -3.60976, -4.5264), kPrintedDisplacements(0.001, 0.0027, -0.0002);
-
 ReproducedTable zero_pose_table(const WangResults& r) {
   ReproducedTable table{"zero-pose",
                         "Zero pose (all axes at zero): E = (W_actual - T_actual) - (W_nominal - T_nominal)",
@@ -36,7 +32,8 @@ ReproducedTable zero_pose_table(const WangResults& r) {
   const auto add = [&](const std::string& words, const Eigen::Vector3d& v) {
     table.rows.push_back({words, v.x(), v.y(), v.z()});
   };
-  add("E, paper, equation (44)", kPrintedComplete);
+  const WangPrinted printed;
+  add("E, paper, equation (44)", printed.complete);
   const Machine machine = wang_machine();
   for (const WangOrder& order : kWangOrders) {
     const ErrorSet errors =
@@ -44,11 +41,11 @@ ReproducedTable zero_pose_table(const WangResults& r) {
     add(fmt::format("E, {}", order.name), wang_integrated_error(machine, errors, wang_zero_pose()).machine);
   }
   add("E, angles read as millidegrees", r.millidegrees.machine);
-  add("E, paper, equation (45), displacements only", kPrintedDisplacements);
+  add("E, paper, equation (45), displacements only", printed.displacements);
   add("E, displacements only", r.displacements.machine);
-  add("T_actual, paper, equation (42)", kPrintedTool);
+  add("T_actual, paper, equation (42)", printed.tool);
   add("T_actual", r.degrees.tool_actual);
-  add("W_actual, paper, equation (43)", kPrintedWorkpiece);
+  add("W_actual, paper, equation (43)", printed.workpiece);
   add("W_actual", r.degrees.workpiece_actual);
   return table;
 }
@@ -162,13 +159,15 @@ std::vector<PublishedNumber> wang_published(const WangResults& r) {
   std::vector<PublishedNumber> rows;
   const auto add = [&](const char* where, const Eigen::Vector3d& paper, const Eigen::Vector3d& here, const char* note) {
     for (Eigen::Index i = 0; i < 3; ++i) {
-      rows.push_back({fmt::format("{}, {}", where, "xyz"[i]), "mm", paper[i], here[i], i == 0 ? note : "", 5});
+      rows.push_back({fmt::format("{}, {}", where, "xyz"[i]), "mm", paper[i], here[i], note, 5});
     }
   };
-  add("(42), T_actual", kPrintedTool, r.degrees.tool_actual, "zero pose, angles in degrees as printed");
-  add("(43), W_actual", kPrintedWorkpiece, r.degrees.workpiece_actual, "");
-  add("(44), E", kPrintedComplete, r.degrees.machine, "");
-  add("(45), E by displacements only", kPrintedDisplacements, r.displacements.machine, "");
+  const WangPrinted printed;
+  constexpr const char* kDegrees = "zero pose, angles in degrees as printed";
+  add("(42), T_actual", printed.tool, r.degrees.tool_actual, kDegrees);
+  add("(43), W_actual", printed.workpiece, r.degrees.workpiece_actual, kDegrees);
+  add("(44), E", printed.complete, r.degrees.machine, kDegrees);
+  add("(45), E by displacements only", printed.displacements, r.displacements.machine, "zero pose");
   const WangPoints& circle = r.points.front();
   rows.push_back({"Figure 14, |E| at 36 points", "um", 1000.0, 1e3 * circle.degrees.statistics.mean,
                   fmt::format("here: mean on the circle, degrees as printed; in millidegrees {:.1f} um",

@@ -45,22 +45,21 @@ WangMeanColumn check_mean_column() {
 
 std::vector<WangPopulationRow> all_populations(int threads) {
   std::vector<WangPopulationRow> rows;
+  for (const std::size_t count : {std::size_t{11}, std::size_t{12}}) {
+    const auto add = [&](const char* words, WangAngleUnit unit, bool displacements) {
+      const WangReading reading{.angles = unit, .composition = {}, .rows = count, .displacements = displacements};
+      rows.push_back({fmt::format("{}^6, {}", count, words), reading, {}});
+    };
+    add("degrees as printed", WangAngleUnit::degrees, true);
+    add("degrees as printed, angles only", WangAngleUnit::degrees, false);
+    add("millidegrees", WangAngleUnit::millidegrees, true);
+    add("millidegrees, angles only", WangAngleUnit::millidegrees, false);
+    add("displacements only", WangAngleUnit::none, true);
+  }
   Progress progress("evaluating all poses");
-  for (std::size_t count : {std::size_t{11}, std::size_t{12}}) {
-    for (WangAngleUnit unit : {WangAngleUnit::degrees, WangAngleUnit::millidegrees}) {
-      const std::string label =
-          fmt::format("{}^6, {}", count, unit == WangAngleUnit::degrees ? "degrees as printed" : "millidegrees");
-      WangReading reading{.angles = unit, .composition = {}, .rows = count, .displacements = true};
-      rows.push_back({label, reading, wang_all_poses(reading, threads)});
-      progress(rows.size(), 8);
-      WangReading angles = reading;
-      angles.displacements = false;
-      rows.push_back({label + ", angles only", angles, wang_all_poses(angles, threads)});
-      progress(rows.size(), 8);
-    }
-    WangReading displacements{.angles = WangAngleUnit::none, .composition = {}, .rows = count, .displacements = true};
-    rows.push_back(
-        {fmt::format("{}^6, displacements only", count), displacements, wang_all_poses(displacements, threads)});
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].population = wang_all_poses(rows[i].reading, threads);
+    progress(i + 1, rows.size());
   }
   return rows;
 }
@@ -82,6 +81,7 @@ WangConclusions conclusions_of(const std::vector<WangPopulationRow>& populations
   c.complete_millidegrees = mean(2);
   c.angles_millidegrees = mean(3);
   c.displacements = mean(4);
+  c.largest_millidegrees = populations[2].population.norm.maximum;
   c.smallest_degrees = populations[0].population.norm.minimum;
   c.share_of_order_1_mm = populations[0].population.share_of_order_1_mm;
   c.sizes = wang_sizes();
@@ -98,8 +98,6 @@ bool zero_pose_agrees(const WangResults& r) {
 }
 
 }  // namespace
-
-std::vector<double> wang_zero_pose() { return wang_positions({0, 0, 0, 0, 6, 0}); }
 
 WangResults wang_results(int threads) {
   const Machine machine = wang_machine();
@@ -124,7 +122,7 @@ WangResults wang_results(int threads) {
 nlohmann::ordered_json wang_details(const WangResults& r) {
   nlohmann::ordered_json json;
   const auto list = [](const Eigen::Vector3d& v) { return nlohmann::ordered_json{v.x(), v.y(), v.z()}; };
-  json["zero_pose_error_mm"] = {{"paper", {0.52234, -3.60976, -4.5264}},
+  json["zero_pose_error_mm"] = {{"paper", list(WangPrinted().complete)},
                                 {"degrees", list(r.degrees.machine)},
                                 {"millidegrees", list(r.millidegrees.machine)},
                                 {"displacements", list(r.displacements.machine)}};
@@ -132,7 +130,7 @@ nlohmann::ordered_json wang_details(const WangResults& r) {
   json["machining_points"] = wang_points_json(r.points);
   json["conclusions"] = wang_conclusions_json(r.conclusions);
   json["dials"] = wang_dials_json(r.dials);
-  json["ball_bar_circular_deviation_um"] = wang_ball_bar_json(r.dials.study);
+  json["ball_bar_circular_deviation_um"] = wang_ball_bar_json(r.dials.ball_bar);
   for (const WangPopulationRow& row : r.populations) json["populations_um"][row.name] = population_json(row.population);
   return json;
 }

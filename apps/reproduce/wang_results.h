@@ -35,8 +35,11 @@ struct WangResults {
 };
 WangResults wang_results(int threads);
 
-/// The paper's zero pose: first column of every table, B at 0 degrees (its seventh).
-std::vector<double> wang_zero_pose();
+/// What the paper prints at its zero pose, mm: (42) to (45).
+struct WangPrinted {
+  Eigen::Vector3d tool{193.93746, 1.72736, -4.4856}, workpiece{-5.5402, -1.8824, 399.9592},
+      complete{0.52234, -3.60976, -4.5264}, displacements{0.001, 0.0027, -0.0002};
+};
 
 std::vector<ReproducedTable> wang_tables(const WangResults& results);
 std::vector<PublishedNumber> wang_published(const WangResults& results);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 
 #include "abbe/errors/actual_pose.h"
@@ -86,8 +85,11 @@ std::vector<double> wang_positions(const std::vector<std::size_t>& rows_xyzabc) 
   return positions;
 }
 
+std::vector<std::size_t> wang_zero_rows() { return {0, 0, 0, 0, 6, 0}; }
+
+std::vector<double> wang_zero_pose() { return wang_positions(wang_zero_rows()); }
+
 WangPopulation wang_all_poses(const WangReading& reading, int threads) {
-  const auto start_time = std::chrono::steady_clock::now();
   const Machine machine = wang_machine();
   const ErrorSet errors = wang_errors(reading);
   const WangIntegratedPlan plan(machine, errors);
@@ -102,7 +104,7 @@ WangPopulation wang_all_poses(const WangReading& reading, int threads) {
   std::vector<double> norm(poses.count);
   constexpr std::size_t kBlock = 4096;
   const std::size_t blocks = (poses.count + kBlock - 1) / kBlock;
-  std::vector<Eigen::Vector3d> sums(blocks, Eigen::Vector3d::Zero()), largest(blocks, Eigen::Vector3d::Zero());
+  std::vector<Eigen::Vector3d> sums(blocks, Eigen::Vector3d::Zero());
 
   for_each_block(blocks, threads, [&](std::size_t block) {
     const std::size_t first = block * kBlock;
@@ -122,7 +124,6 @@ WangPopulation wang_all_poses(const WangReading& reading, int threads) {
       const Eigen::Vector3d error(e[0][k], e[1][k], e[2][k]);
       norm[first + k] = error.norm();
       sums[block] += error;
-      largest[block] = largest[block].cwiseMax(error.cwiseAbs());
     }
   });
 
@@ -130,7 +131,6 @@ WangPopulation wang_all_poses(const WangReading& reading, int threads) {
   population.norm = sample_statistics(norm);
   for (std::size_t block = 0; block < blocks; ++block) {
     population.mean_components += sums[block] / static_cast<double>(poses.count);
-    population.largest_components = population.largest_components.cwiseMax(largest[block]);
   }
   const double low = std::sqrt(0.1), high = std::sqrt(10.0);
   const auto near = std::count_if(norm.begin(), norm.end(), [&](double e) { return e >= low && e <= high; });
@@ -140,7 +140,6 @@ WangPopulation wang_all_poses(const WangReading& reading, int threads) {
   std::array<double*, kWangAxes> worst;
   for (std::size_t i = 0; i < kWangAxes; ++i) worst[i] = &population.worst_pose[i];
   poses.fill(population.norm.maximum_at, 1, worst.data());
-  population.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time).count();
   return population;
 }
 

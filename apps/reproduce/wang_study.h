@@ -43,15 +43,17 @@ WangError wang_integrated_error(const Machine& machine, const ErrorSet& errors, 
 /// Positions in chain order for printed rows i of X Y Z A B C (0-based), mm or rad.
 std::vector<double> wang_positions(const std::vector<std::size_t>& rows_xyzabc);
 
+/// The paper's zero pose: the first position of every table, of B the seventh, which is 0 degrees.
+std::vector<std::size_t> wang_zero_rows();  ///< tables X Y Z A B C
+std::vector<double> wang_zero_pose();       ///< chain order, mm or rad
+
 /// Integrated error over all combinations of the rows, as printed in machine coordinates.
 struct WangPopulation {
-  SampleStatistics norm;                                         ///< mm
-  Eigen::Vector3d mean_components = Eigen::Vector3d::Zero();     ///< mm
-  Eigen::Vector3d largest_components = Eigen::Vector3d::Zero();  ///< largest magnitude of each, mm
-  double share_of_order_1_mm = 0;                                ///< |E| from 0.316 to 3.16 mm, 0 to 1
-  std::vector<double> worst_pose;                                ///< chain order
-  Histogram histogram;                                           ///< of norm, mm
-  double seconds = 0;                                            ///< time the evaluation took, for people only
+  SampleStatistics norm;                                      ///< mm
+  Eigen::Vector3d mean_components = Eigen::Vector3d::Zero();  ///< mm
+  double share_of_order_1_mm = 0;                             ///< |E| from 0.316 to 3.16 mm, 0 to 1
+  std::vector<double> worst_pose;                             ///< chain order
+  Histogram histogram;                                        ///< of norm, mm
 };
 
 /// All rows^6 poses: 1,771,561 for 11, 2,985,984 for 12.

@@ -1,13 +1,18 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "abbe/formats/errors_file.h"
+#include "abbe/formats/indication_file.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/map_file.h"
 #include "abbe/formats/results_folder.h"
 #include "reproduce/wang_integrated.h"
 #include "reproduce/wang_results.h"
+#include "reproduce/wang_tables.h"
 #include "study/report_data.h"
 
 namespace abbe {
@@ -40,6 +45,17 @@ nlohmann::ordered_json histograms_of(const std::vector<WangPopulationRow>& popul
                           {"before_percentiles_um", {{"median", 1e3 * p.norm.median}, {"p95", 1e3 * p.norm.p95}}}});
   }
   return histograms;
+}
+
+/// Simulated indications of all six axes as files that --grids reads: {"X.csv", text}, ...
+std::vector<std::pair<std::string, std::string>> indication_files(const WangDialStudy& study) {
+  const Machine machine = wang_machine();
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const WangDialAxis& axis : study.axes) {
+    const IndicationTable table{machine.find_axis(kWangAxisNames[axis.table]), axis.readings};
+    files.emplace_back(std::string(kWangAxisNames[axis.table]) + ".csv", indications_text(machine, table));
+  }
+  return files;
 }
 
 }  // namespace
@@ -81,7 +97,7 @@ void write_wang_study(const WangResults& r, ResultsFolder& folder) {
   folder.write(maps / "integrated-error-millidegrees.csv", map_csv(wang_map_data(wang_grid_map(small))));
   folder.write(maps / "integrated-error-decoupled.csv",
                map_csv(wang_map_data(wang_grid_map(decoupled.errors, &decoupled.covariance))));
-  for (const auto& [name, text] : wang_indication_files(r.dials.study)) folder.write(grids / name, text);
+  for (const auto& [name, text] : indication_files(r.dials.study)) folder.write(grids / name, text);
 }
 
 }  // namespace abbe

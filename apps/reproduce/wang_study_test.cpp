@@ -13,7 +13,7 @@ namespace {
 TEST(WangStudy, ZeroPoseGivesTheCorrectedFigures) {
   // Column i = 1 of every table, B at its seventh position. Figures of an independent program (docs/reproduce.md).
   const Machine machine = wang_machine();
-  const std::vector<double> zero = wang_positions({0, 0, 0, 0, 6, 0});
+  const std::vector<double> zero = wang_zero_pose();
   const WangError degrees = wang_integrated_error(machine, wang_errors({}), zero);
   EXPECT_LE((degrees.machine - Eigen::Vector3d(-5.400842140, -5.349159759, 6.435605205)).norm(), 2e-9);
   const WangError millidegrees =

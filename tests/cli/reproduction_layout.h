@@ -35,6 +35,7 @@ inline void expect_common_layout(const std::filesystem::path& results, const nlo
   EXPECT_FALSE(summary["facts"].empty());
   // The published numbers with their unit, and a file for every table.
   EXPECT_FALSE(summary["published"].empty());
+  for (const nlohmann::json& row : summary["published"]) EXPECT_NE(row["note"], "") << row;
   for (const char* key : {"where", "unit", "paper", "here", "difference", "note"}) {
     for (const nlohmann::json& row : summary["published"]) EXPECT_TRUE(row.contains(key)) << key;
   }
