@@ -176,10 +176,11 @@ nlohmann::ordered_json wang_report_map(const WangMap& map, const std::string& de
   nlohmann::ordered_json json = report_map(wang_machine(), map.poses, drawn, nullptr,
                                            map.norm_uncertainty.empty() ? nullptr : &drawn, description);
   json["frame"] = "machine";
+  json["quantity"] = "integrated error E of equation (18)";
   json["note"] =
-      "The vectors are E of equation (18): what the point of the workpiece is displaced against the point of the tool, "
-      "in the machine frame, not the volumetric error of the tool in the workpiece frame. The arrows stand at the "
-      "machining points, nominal tool less nominal workpiece point.";
+      "E is the displacement of the workpiece point relative to the tool point, in the machine frame. It is not the "
+      "volumetric error of the tool in the workpiece frame. The nominal points are the machining points: nominal tool "
+      "point minus nominal workpiece point.";
   return json;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "reproduce/wang_figures.h"
@@ -78,6 +79,8 @@ TEST(WangIntegrated, PosesOfTheMapAreMeasuredPositionsSoItsLargestIsNotAboveThat
   EXPECT_EQ(data.fields.back().components[2], map.error[2]);
   const std::string csv = map_csv(data);
   EXPECT_NE(csv.find("E_x_um,E_y_um,E_z_um"), std::string::npos) << csv.substr(0, 200);
+  // The page must not call it the volumetric error.
+  EXPECT_EQ(wang_report_map(map, "grid")["quantity"], "integrated error E of equation (18)");
 }
 
 TEST(WangIntegrated, CovarianceIsThatOfCentralDifferences) {

@@ -18,8 +18,7 @@
 namespace abbe {
 namespace {
 
-constexpr const char* kWangGridWords =
-    "|E| of equation (18), grid of 4 of the measured positions per axis, angles in degrees as printed";
+constexpr const char* kWangGridWords = "grid of 4 of the measured positions per axis, angles in degrees as printed";
 
 std::string verdict_of(const std::vector<WangPopulationRow>& populations) {
   const SampleStatistics &degrees = populations[0].population.norm, &small = populations[2].population.norm;

@@ -99,6 +99,10 @@ async function listsOf(page, data, expect) {
 
 /// Rotations and uncertainty on the map: own legend, own statistics, one colour scale for both views.
 export async function mapChoicesOf(page, data, expect, shot, compareFigures) {
+  const heading = await page.textContent('#map-title'), wanted = `Map of the ${data.map.quantity ?? 'volumetric error'}`;
+  expect(heading === wanted, `the map is called ${heading}, not ${wanted}`);
+  const lead = await page.textContent('#map .lead');
+  expect(lead.includes(data.map.quantity ?? 'where the tool really is'), `the map does not say what its arrows show: ${lead}`);
   const legend = () => page.textContent('.colour-bar .axis-label');
   const bars = await page.locator('.colour-bar svg').count();
   expect(bars === 1, `${bars} colour scales`);

@@ -144,6 +144,8 @@ export interface Rotations {
 }
 
 export interface ErrorMap {
+  /// What the vectors are, if not the volumetric error of the tool.
+  quantity?: string;
   frame?: string;
   poses?: number;
   description?: string;

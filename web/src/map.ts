@@ -72,8 +72,9 @@ export function mapSection(map: ErrorMap, summary: PoseErrors | undefined): HTML
   const shown = map.point_mm.x.length;
   const total = map.poses ?? shown;
   const frame = map.frame ? `${map.frame} frame` : 'workpiece frame';
-  const part = section('map', 'Map of the volumetric error',
-    `Each arrow stands at its nominal point (${frame}) and shows where the tool really is, exaggerated. ` +
+  const shows = map.quantity ? `the ${map.quantity}` : 'where the tool really is';
+  const part = section('map', `Map of the ${map.quantity ?? 'volumetric error'}`,
+    `Each arrow stands at its nominal point (${frame}) and shows ${shows}, exaggerated. ` +
     `${shown < total ? `${count(shown)} of ${count(total)} poses drawn` : `${count(total)} ${total === 1 ? 'pose' : 'poses'}`}${map.description ? `: ${map.description}` : ''}.`);
   if (map.note) part.append(html('p', {class: 'note under'}, micro(map.note)));
   const kinds = quantities(map);

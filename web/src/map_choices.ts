@@ -35,7 +35,8 @@ export function quantities(map: ErrorMap): Quantity[] {
   const list: Quantity[] = [];
   const of = (vectors: (Vectors | undefined)[]) =>
     vectors.filter((v): v is Vectors => v !== undefined).map((v) => ({vectors: v, length: lengths(v)}));
-  list.push({id: 'displacement', label: 'displacement of the tool', unit: 'µm', key: 'um', millimetres: 1e-3, what: 'displacement vectors',
+  list.push({id: 'displacement', label: map.quantity ?? 'displacement of the tool', unit: 'µm', key: 'um', millimetres: 1e-3,
+    what: map.quantity ? `vectors of the ${map.quantity}` : 'displacement vectors',
     views: of([map.before_um, map.after_um])});
   if (map.before_urad)
     list.push({id: 'rotation', label: 'rotation of the tool', unit: 'µrad', key: 'urad', millimetres: 1e-3, what: 'rotation vectors',
