@@ -77,9 +77,10 @@ std::string validation_words(const std::vector<AguadoRow>& rows) {
     if (elsewhere) (one_kind ? wrong : other) += 1;
   }
   return fmt::format(
-      "{} of {} fits of one kind of axis alone, and {} of {} fits of all axes, leave more than twice the share at "
-      "unseen poses that they leave at their readings: a residual is not a validation.",
-      wrong, partial, other, joint);
+      "In {} of {} fits of one kind of axis alone, and in {} of {} fits of all axes, the share of the error that is "
+      "left "
+      "at unseen poses is more than twice the share at the readings{}.",
+      wrong, partial, other, joint, wrong + other > 0 ? ": a residual is not a validation" : "");
 }
 
 }  // namespace

@@ -99,5 +99,16 @@ TEST(AguadoTables, SayWhatIsOpenAndWhetherTheFitHasConverged) {
       << note;
 }
 
+TEST(AguadoConclusions, SayThatAResidualIsNotAValidationWhereUnseenPosesShowIt) {
+  std::vector<AguadoRow> rows = {row_with(24, 15, 3, 0.5e-4)};
+  const auto validation = [&] { return aguado_conclusions(rows)[3]; };
+  rows[0].fit.unseen.mean = 0.4;  // of 1, at the readings 0.25
+  EXPECT_TRUE(validation().starts_with("In 0 of 1 fits of one kind of axis alone, and in 0 of 0 fits")) << validation();
+  EXPECT_TRUE(validation().ends_with("twice the share at the readings.")) << validation();
+  rows[0].fit.unseen.mean = 0.6;
+  EXPECT_TRUE(validation().starts_with("In 1 of 1 fits")) << validation();
+  EXPECT_TRUE(validation().ends_with("at the readings: a residual is not a validation.")) << validation();
+}
+
 }  // namespace
 }  // namespace abbe

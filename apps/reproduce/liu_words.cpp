@@ -173,16 +173,18 @@ std::vector<std::string> liu_conclusions(const LiuResults& r) {
       "The sphere of the scanner is 21 um short, which a standard cylinder 21 um larger than taken for would give: "
       "fitted radius {:.4f} mm, deviations that grow with the share of the sphere.",
       r.variants.back().spheres.back().after.fitted_radius));
+  constexpr double kLeast = 9.6;  // um, of what remains of the paper's parts
   double largest = 0;
   for (const LiuMeasuredPart& p : r.units.back().parts) largest = std::max(largest, p.measurement.after.rms);
   words.push_back(
       fmt::format("With the stages and the probe of Table 2 alone at most {:.1f} um remain of a part, in the "
-                  "paper 9.6 to 86.25 um: Tables 2 and 3 do not explain them.",
-                  1e3 * largest));
+                  "paper {} to 86.25 um{}.",
+                  1e3 * largest, kLeast, 1e3 * largest < kLeast ? ": Tables 2 and 3 do not explain them" : ""));
   words.emplace_back(
-      "The paper publishes no data, and its text no numbers with Figures 4b, 6, 9 and 11b: they are compared with its "
-      "words, the curves were not read off the pictures. "
-      "Figures 7 and 8 are compared with the limits that it states.");
+      "The paper publishes no data, and its text gives no numbers with Figures 4b, 6, 9 and 11b. They are compared "
+      "with "
+      "its words; the curves were not read off the pictures. Figures 7 and 8 are compared with the limits that it "
+      "states.");
   return words;
 }
 

@@ -21,8 +21,8 @@ std::vector<std::string> wang_conclusions(const WangResults& r) {
   }
   const double displacements = r.displacements.machine.norm();
   lines.push_back(
-      fmt::format("With z = +0.0030 mm in (45), |E| by displacements only is {:.2f} um at the zero pose. The agreement "
-                  "with the ball bar that is claimed at 0.1 mm fails by a factor of {:.0f}.",
+      fmt::format("With z = +0.0030 mm in (45), |E| by the displacements only is {:.2f} um at the zero pose. The paper "
+                  "says that the ball bar agrees with it at 0.1 mm, which is {:.0f} times as much.",
                   1e3 * displacements, 0.1 / displacements));
   return lines;
 }
@@ -30,18 +30,19 @@ std::vector<std::string> wang_conclusions(const WangResults& r) {
 std::vector<std::string> wang_corrections(const WangMeanColumn& mean) {
   return {
       "(36) to (39) mix displacements of i = 1 with angles of column 12; (40), (41), (43) have wrong signs or digits.",
-      "(42) prints T_X T_Z only, and 193.93746 is a slip for 199.93746; (44) adds up wrongly; (45): z is +0.0030 mm.",
+      "(42) has the product T_X T_Z only, and 193.93746 is a slip for 199.93746; (44) does not add up; z in (45) is "
+      "+0.0030 mm.",
       fmt::format(
-          "Column 12 of Tables A1 to A6 is not a measurement: it is the cut-off mean of columns 1 to 11 in {} of "
-          "the {} rows that vary.",
+          "Column 12 of Tables A1 to A6 is not a measurement: in {} of the {} rows that vary it is the mean of columns "
+          "1 to 11 with the further digits cut off.",
           mean.equal, mean.rows),
-      "The angles are probably a factor of 1000 too large: arctan of um/mm read as degrees. This is inferred, not "
-      "proven, so both readings are shown.",
-      "The strokes of A and B are swapped against Tables A4 and A5.",
+      "The angles are probably 1000 times too large, as if the arctangent had been taken of um over mm. This is "
+      "inferred, not proven, so both readings are shown.",
+      "The strokes stated for A and B are interchanged, as Tables A4 and A5 show.",
       "(13) lacks T_B. (32) does not follow from the chain X Z A Y B; the term -200 cos(gamma) in (33) and (35) is "
       "spurious.",
-      "(5) and (8) keep the zero and the setting of the dial. (7) and (10) are constants of the guideway's alignment, "
-      "not pitch and yaw. (6) and (9) have opposite signs, so that (11) cancels the roll."};
+      "(5) and (8) keep the zero of the dial and the misalignment of the face. (7) and (10) are constants of the "
+      "misalignment, not pitch and yaw. (6) and (9) have opposite signs, so that (11) cancels the roll."};
 }
 
 Reproduction wang_reproduction(int threads) {

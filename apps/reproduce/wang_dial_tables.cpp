@@ -46,10 +46,10 @@ ReproducedTable one_dial_table(const WangDialFigures& figures) {
   }
   const WangGridComparison& x = figures.grids[0];
   table.notes = {
-      "Dial zeros 50 and -20 um, faces set 30 and -20 urad off; angles read as millidegrees. (5) and (8) keep the "
-      "dial's zero and setting; (6) and (9) have opposite signs, so (11) is not a roll.",
+      "Dial zeros are 50 and -20 um, the faces are misaligned by 30 and -20 urad; angles are read as millidegrees. (5) "
+      "and (8) keep the zero of the dial and the misalignment; (6) and (9) have opposite signs, so (11) is not a roll.",
       fmt::format(
-          "(7) and (10) give {:.1f} and {:.1f} urad for X, which are slopes of the setting: one dial cannot see "
+          "(7) and (10) give {:.1f} and {:.1f} urad for X, which are slopes of the misalignment: one dial cannot see "
           "pitch and yaw (Table A1 has {:.1f} and {:.1f} urad, constant). With the angles in degrees as printed "
           "the dial would have to travel {:.1f} mm across 120 mm of face.",
           1e6 * x.printed_pitch, 1e6 * x.printed_yaw, 1e6 * x.true_pitch, 1e6 * x.true_yaw, x.dial_range_mm)};
@@ -87,7 +87,7 @@ ReproducedTable decoupled_table(const WangDialFigures& figures) {
       fmt::format(
           "Seven dials on a carriage (u = 0.6 um) and a laser (u = 0.011 um) per linear axis, four dials on a "
           "mandrel and one probe on its end per rotary axis; datum in docs/dial-grids.md. The paper's "
-          "instruments see {} of the 36 errors; EAA, EBB and ECC take an angle standard, which is added (U95 = 1 "
+          "instruments see {} of the 36 errors; EAA, EBB and ECC need an angle standard, which is added (U95 = 1 "
           "arcsec). {} of {} error values ({:.1f} %) lie within k = 2 of those without noise.",
           study.seen_by_dials, study.inside, study.values,
           100.0 * static_cast<double>(study.inside) / static_cast<double>(study.values)),
@@ -136,9 +136,10 @@ ReproducedTable ball_bar_table(const WangBallBarStudy& bar) {
   add(kFound, "within U of the trace without noise", "%", found,
       [&](std::size_t i) { return 100 * wang_share_within(found[i], bar.without_noise[i]); });
   table.notes = {fmt::format(
-      "Figure 15 claims that ball bar and displacement errors alone agree at 0.1 mm. Displacements alone make at most "
-      "{:.1f} um on these circles, {:.1f} times less. The decoupled errors carry the uncertainties of 0.022 and 1.2 um "
-      "of the readings and no location errors.",
+      "According to Figure 15 the ball bar agrees with the displacement errors alone at 0.1 mm. Displacements alone "
+      "make at most {:.1f} um on these circles; 0.1 mm is {:.1f} times as much. The decoupled errors carry the "
+      "expanded "
+      "uncertainties of the readings, 0.022 and 1.2 um, and have no location errors.",
       1e3 * largest_displacement, 0.1 / largest_displacement)};
   return table;
 }

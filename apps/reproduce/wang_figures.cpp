@@ -134,7 +134,7 @@ std::vector<std::array<std::string, 4>> wang_conclusion_rows(const WangConclusio
                ratio_millidegrees = c.complete_millidegrees / c.displacements;
   return {
       {"(1) complete error", "it is of the order of 1 mm",
-       fmt::format("its mean is {:.0f} um and its least value {:.0f} um of all poses with the angles in degrees; in "
+       fmt::format("over all poses its mean is {:.0f} um and its least value {:.0f} um with the angles in degrees; in "
                    "millidegrees its mean is {:.1f} um",
                    1e3 * c.complete_degrees, 1e3 * c.smallest_degrees, 1e3 * c.complete_millidegrees),
        fmt::format("{}: {:.2g} % of the poses lie between 0.32 and 3.2 mm in degrees, and the largest error in "
@@ -231,7 +231,7 @@ ReproducedTable wang_point_table(const std::vector<WangPoints>& points) {
 std::vector<EvaluationPlot> wang_point_plots(const std::vector<WangPoints>& points) {
   XyPlot places("Figure 13: machining points, top view", "x in mm", "y in mm"),
       degrees("Figure 14: angles in degrees as printed", "point", "|E| in \xC2\xB5m"),
-      small("Figure 14: angles in millidegrees, and left out", "point", "|E| in \xC2\xB5m");
+      small("Figure 14: angles in millidegrees, or left out", "point", "|E| in \xC2\xB5m");
   places.keep_the_same_scale();
   degrees.include_y(0);
   small.include_y(0);
@@ -249,7 +249,7 @@ std::vector<EvaluationPlot> wang_point_plots(const std::vector<WangPoints>& poin
   }
   degrees.level(1000, "1 mm, the paper's level", {PlotColour::limit, 1, true, 1});
   return {
-      {"figure-13", "The paper shows a picture without coordinates; three readings of it.", places.svg()},
+      {"figure-13", "The picture in the paper has no coordinates; these are three readings of it.", places.svg()},
       {"figure-14-degrees", "Integrated error of equation (18) at the 36 points of each reading.", degrees.svg()},
       {"figure-14-millidegrees", "Lines: angles read as millidegrees. Marks: displacement errors only.", small.svg()}};
 }

@@ -27,8 +27,8 @@ ReproducedTable zero_pose_table(const WangResults& r) {
                         "Zero pose (all axes at zero): E = (W_actual - T_actual) - (W_nominal - T_nominal)",
                         {{"quantity"}, {"x", "mm", 6}, {"y", "mm", 6}, {"z", "mm", 6}},
                         {},
-                        {"The order of errors against the motion cannot be read off the example: at zero it makes no "
-                         "difference. Without another word: angles in degrees as printed."}};
+                        {"The example does not show in which order errors and motion are composed: at zero it makes "
+                         "no difference. Unless a row says otherwise, the angles are in degrees as printed."}};
   const auto add = [&](const std::string& words, const Eigen::Vector3d& v) {
     table.rows.push_back({words, v.x(), v.y(), v.z()});
   };

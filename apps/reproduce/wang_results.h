@@ -10,7 +10,7 @@
 
 namespace abbe {
 
-/// How many of the tables' columns 12 are the cut-off mean of columns 1 to 11.
+/// How many of the tables' columns 12 are the mean of columns 1 to 11 with further digits cut off.
 struct WangMeanColumn {
   int rows = 0, equal = 0;
 };

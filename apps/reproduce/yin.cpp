@@ -43,22 +43,30 @@ std::vector<std::string> yin_corrections(const std::vector<YinEquation>& equatio
   return lines;
 }
 
+/// How a measured error compares with the expected one; within a quarter they are about the same.
+const char* yin_size_words(double measured, double expected) {
+  constexpr double kAbout = 1.25;
+  if (measured > kAbout * expected) return "larger than";
+  return measured * kAbout < expected ? "smaller than" : "about";
+}
+
 std::vector<std::string> yin_conclusions(const YinResults& r) {
   std::vector<std::string> lines;
   if (r.joint.converged) {
     lines.push_back(fmt::format(
-        "One fit of marks at many poses determines the linkage better than the five steps: the focus is uncertain by "
-        "{:.1f} instead of {:.1f} um.",
-        1e3 * r.joint.focus, 1e3 * r.joint.focus_by_steps));
+        "One fit of marks at many poses determines the linkage {} than the five steps: the standard uncertainty of the "
+        "focus is {:.1f} instead of {:.1f} um.",
+        r.joint.focus < r.joint.focus_by_steps ? "better" : "no better", 1e3 * r.joint.focus,
+        1e3 * r.joint.focus_by_steps));
   }
   if (!r.positioning.failure.empty()) return lines;
   const YinContour& c = r.contour;
   lines.push_back(
-      fmt::format("The contour error of the paper (mean {:.1f} um, largest {:.1f} um) is about what Table 1 and the "
+      fmt::format("The contour error of the paper (mean {:.1f} um, largest {:.1f} um) is {} what Table 1 and the "
                   "instruments lead one to expect: {:.1f} and {:.1f} um. The largest contribution, {:.0f} % of the "
                   "variance, is the {}.",
-                  kYinMeasured.mean, kYinMeasured.largest, c.across.mean, c.across.largest,
-                  100 * c.budget.lines.front().share, c.budget.lines.front().cause));
+                  kYinMeasured.mean, kYinMeasured.largest, yin_size_words(kYinMeasured.mean, c.across.mean),
+                  c.across.mean, c.across.largest, 100 * c.budget.lines.front().share, c.budget.lines.front().cause));
   lines.push_back(fmt::format(
       "L_tA taken as printed, with everything else exact, makes a contour error of up to {:.0f} um.", c.printed_l_ta));
   lines.emplace_back(

@@ -300,6 +300,17 @@ TEST(YinResults, WhatIsNotFoundIsSaidAndDoesNotAgree) {
   r.head_moves.found.status = LinkageStatus::not_run;
   expect_failure(r, "five steps, P");
 
+  r = whole;
+  const auto conclusion = [&](std::size_t i) { return yin_reproduction(r).conclusions[i]; };
+  r.joint.focus = 0.5 * (r.joint.focus_by_steps = 0.01);
+  r.contour.across.mean = 14;
+  EXPECT_NE(conclusion(0).find("the linkage better than"), std::string::npos) << conclusion(0);
+  EXPECT_NE(conclusion(1).find(" is about what "), std::string::npos) << conclusion(1);
+  r.joint.focus = 2 * r.joint.focus_by_steps;
+  r.contour.across.mean = 5;
+  EXPECT_NE(conclusion(0).find("the linkage no better than"), std::string::npos) << conclusion(0);
+  EXPECT_NE(conclusion(1).find(" is larger than what "), std::string::npos) << conclusion(1);
+
   // A difference that is no number is no agreement.
   r = whole;
   r.positioning.largest_difference = std::nan("");
