@@ -105,10 +105,10 @@ LiuResults liu_results() {
   reversed.reversed = true;
   wrong_radius.radius_error = 0.021;
   const std::array<std::pair<const char*, LiuScanner>, 4> scanners = {
-      {{"cylinder as it is taken for", exact_cylinder},
+      {{"cylinder as assumed", exact_cylinder},
        {"cylinder with 14 um of taper", tapered},
        {"the same, second clamping end for end", reversed},
-       {"cylinder 21 um larger than taken for", wrong_radius}}};
+       {"cylinder 21 um larger than assumed", wrong_radius}}};
   for (const auto& [words, scanner] : scanners) {
     progress(2 + r.variants.size(), 6);
     r.variants.push_back(variant(machine, words, scanner, r.units[1].parts));

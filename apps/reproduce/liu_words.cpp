@@ -58,10 +58,10 @@ std::string repeat_words(const LiuFigureStudy& study) {
   const LiuRepeats &taper = study.repeats[1], &lobes = study.repeats[2];
   return fmt::format(
       "Figure 11b: the paper calls its four distributions basically the same. The random deviations of Table 2 alone "
-      "do not make them so: repeatability {:.2f} um, correlation of the runs {:.2f}, with a taper {:.2f}. With three "
-      "lobes of 14 um peak to valley it is {:.2f}. Something that repeats is needed; which form or motion it was "
-      "cannot be told from the paper. A form within 14 um alone cannot reach its 12.42 um about the best cylinder, as "
-      "no root mean square exceeds half of the peak-to-valley value.",
+      "do not make them so: the repeatability is {:.2f} um, and the correlation of the runs is {:.2f}, or {:.2f} with "
+      "a taper. With three lobes of 14 um peak to valley it is {:.2f}. Something that repeats is needed; which form or "
+      "motion it was cannot be told from the paper. A form within 14 um alone cannot reach its 12.42 um about the best "
+      "cylinder, as no root mean square exceeds half of the peak-to-valley value.",
       1e3 * study.repeats[0].repeatability, study.repeats[0].correlation, taper.correlation, lobes.correlation);
 }
 
@@ -120,7 +120,7 @@ std::vector<PublishedNumber> liu_published(const LiuResults& r) {
   numbers.push_back({"5.2, sphere 50 % by a CMM", "um", 26.51, {}, "nothing is known of the CMM"});
   numbers.push_back({"5.2, fitted radius of the sphere", "mm", 12.682,
                      r.variants.back().spheres.back().after.fitted_radius,
-                     "standard cylinder 21 um larger than taken for", 4});
+                     "standard cylinder 21 um larger than assumed", 4});
   if (study.complete()) {
     numbers.push_back({"Figure 11b, correlation of four runs",
                        "",
@@ -157,21 +157,20 @@ std::vector<std::string> liu_conclusions(const LiuResults& r) {
   std::vector<std::string> words;
   const LiuFigureStudy& study = r.figures;
   if (study.complete()) {
-    words = {fmt::format("Figure 4b: small clamping errors make large deviations, as the paper says: {:.0f} um from a "
-                         "shift of 0.1 mm. They are the place of the part more than its form: the section stays round "
-                         "after a shift, and with the tilts of Table 3 it is an ellipse, {:.1f} um out of round of "
-                         "{:.0f} um.",
-                         1e3 * study.clamped[0].deviation, 1e3 * study.clamped[4].out_of_round,
-                         1e3 * study.clamped[4].deviation),
-             clamping_words(study.micrometres()), taper_words(study.micrometres()), shape_words(study),
-             repeat_words(study)};
+    words = {
+        fmt::format(
+            "Figure 4b: small clamping errors make large deviations, as the paper says: {:.0f} um from a shift of 0.1 "
+            "mm. They come from the place of the part more than from its form: the section stays round after a shift, "
+            "and with the tilts of Table 3 it is an ellipse, {:.1f} um out of round of {:.0f} um.",
+            1e3 * study.clamped[0].deviation, 1e3 * study.clamped[4].out_of_round, 1e3 * study.clamped[4].deviation),
+        clamping_words(study.micrometres()), taper_words(study.micrometres()), shape_words(study), repeat_words(study)};
   }
   words.emplace_back(
       "Table 1's ratios do not follow from the stated ranges: a tilt of up to 5 degrees outweighs everything. After "
       "registration clamping errors are gone, and what matters are the axis average lines of the stages.");
   words.push_back(fmt::format(
-      "The sphere of the scanner is 21 um short, which a standard cylinder 21 um larger than taken for would give: "
-      "fitted radius {:.4f} mm, deviations that grow with the share of the sphere.",
+      "The paper's fitted radius of the sphere is 21 um short, as it would be with a standard cylinder 21 um larger "
+      "than assumed: the fitted radius is then {:.4f} mm here, and the deviations grow with the share of the sphere.",
       r.variants.back().spheres.back().after.fitted_radius));
   constexpr double kLeast = 9.6;  // um, of what remains of the paper's parts
   double largest = 0;
@@ -191,7 +190,8 @@ std::vector<std::string> liu_conclusions(const LiuResults& r) {
 std::vector<std::string> liu_corrections() {
   return {
       "(6) the sign of h m; (7) O is 3 x 1, the increment's weight 0; (10) the middle entry of row 3 is z_y'.",
-      "(8), (9) as worded are centimetres off; right are R_C R_A with negative increments, A where C has brought it.",
+      "(8), (9) as worded are centimetres off; the right form is R_C R_A with negative increments and A where C has "
+      "brought it.",
       "(13) is a plane; the distance in (14) is |(M - N1) x (N2 - N1)| / |N2 - N1|.",
       "(15) is a sum of magnitudes, not least squares; (16) is a root mean square about zero.",
       "Table 3: the unit of the shifts is doubtful; the deviation before compensation agrees with micrometres."};

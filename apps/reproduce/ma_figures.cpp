@@ -21,10 +21,10 @@ std::string printed_words(const MaInversions& paper) {
   };
   const std::size_t angle = largest(printed, 0), length = largest(printed, 3);
   return fmt::format(
-      "The formulas as printed miss {} by up to {:.0f} arcsec and {} by up to {:.0f} um, the exact inversion all "
-      "motions by about {:.0e} arcsec or um",
-      kMaMotionNames[angle], printed[angle], kMaMotionNames[length], printed[length],
-      *std::max_element(exact.begin(), exact.end()));
+      "The formulas as printed miss {} by up to {:.0f} arcsec and {} by up to {:.0f} um; the exact inversion is right "
+      "to {:.0e} arcsec and {:.0e} um",
+      kMaMotionNames[angle], printed[angle], kMaMotionNames[length], printed[length], exact[largest(exact, 0)],
+      exact[largest(exact, 3)]);
 }
 
 /// Angles (first = 0) or displacements (first = 3) over the positions.

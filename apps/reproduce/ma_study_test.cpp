@@ -57,12 +57,12 @@ TEST(MaFigures, CaptionsSayWhatTheFormulasAsPrintedMiss) {
   MaInversions& paper = r.inversions[0];
   paper.corrected_at = {{0, 0, 0, 0, 0, 0}, {1, 1, 1, 1, 1, 1}};
   paper.printed = {1 * kArcsec, 42 * kArcsec, 2 * kArcsec, 1 * kMicrometre, 2 * kMicrometre, 7 * kMicrometre};
-  paper.simultaneous = {0, 0, 0, 3e-12 * kMicrometre, 0, 0};
+  paper.simultaneous = {0, 4e-14 * kArcsec, 0, 3e-12 * kMicrometre, 0, 0};
   const std::vector<EvaluationPlot> plots = ma_figures(r);
   EXPECT_EQ(
       plots[0].caption,
       "Corrected formulas, paper order. The formulas as printed miss eps_y by up to 42 arcsec and delta_z by up to "
-      "7 um, the exact inversion all motions by about 3e-12 arcsec or um: tables/figure-3.csv.");
+      "7 um; the exact inversion is right to 4e-14 arcsec and 3e-12 um: tables/figure-3.csv.");
   EXPECT_TRUE(plots[2].caption.starts_with("10 runs of a simulated table")) << plots[2].caption;
 }
 

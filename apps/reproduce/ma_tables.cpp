@@ -306,14 +306,14 @@ std::vector<std::string> ma_conclusions(const MaResults& r) {
                exact = largest_reduction(r.table.before, r.table.inverted);
   return {
       fmt::format("Table 1: {} of {} lines have the marks of the paper.", same, r.prism.size()),
-      "A fit of constant, cosine and sine removes real once-per-turn motion with the installation: it is a choice of "
-      "gauge (the axis average line), not a compensation. A constant offset of the prism cannot change the "
+      "A fit of constant, cosine and sine removes real once-per-turn motion together with the installation: it is a "
+      "choice of gauge (the axis average line), not a compensation. A constant offset of the prism cannot change the "
       "repeatability; what the fit changes there is motion of the table.",
       fmt::format("The largest reduction of a motion is {:.1f} % by the fit and {:.1f} % by exact inversion with the "
                   "installation known: only the second is due to the installation.",
                   fit, exact),
-      "One mount: any error of a face is also a motion of its position. Two mounts turned by one face separate them; "
-      "what stays open are constants and the once-per-turn parts that are the installation.",
+      "With one mount any error of a face looks like a motion at its position. Two mounts turned by one face separate "
+      "them; only the constants and the once-per-turn parts, which the installation has too, stay open.",
       "Table 3 and Figure 5 are measurements of one table, available from the authors on request only. Here a table "
       "with motions as large as those of Table 3 is simulated: its numbers can be compared in size, not one by one."};
 }
