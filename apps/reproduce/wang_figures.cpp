@@ -92,10 +92,10 @@ bool is_of_the_order(double value, double order) { return std::abs(std::log10(va
 
 /// What half and twice the size change beyond rounding.
 constexpr double kSameMean = 1e-6;
-bool grows(double half, double twice) { return twice > (1 + kSameMean) * half; }
-const char* size_words(double half, double twice) {
-  if (grows(half, twice)) return "grows too";
-  return grows(twice, half) ? "becomes smaller" : "does not depend on the size";
+bool wang_size_grows(double half, double twice) { return twice > (1 + kSameMean) * half; }
+const char* wang_size_words(double half, double twice) {
+  if (wang_size_grows(half, twice)) return "grows too";
+  return wang_size_grows(twice, half) ? "becomes smaller" : "does not depend on the size";
 }
 
 const char* in_which_unit(bool degrees, bool millidegrees) {
@@ -155,8 +155,9 @@ std::vector<std::array<std::string, 4>> wang_conclusion_rows(const WangConclusio
                    1e3 * twice.degrees, 1e3 * half.degrees, 1e3 * twice.millidegrees, 1e3 * half.millidegrees,
                    1e3 * twice.no_angles, 1e3 * half.no_angles),
        fmt::format("{}; the error by the displacements only {}",
-                   in_which_unit(grows(half.degrees, twice.degrees), grows(half.millidegrees, twice.millidegrees)),
-                   size_words(half.no_angles, twice.no_angles))}};
+                   in_which_unit(wang_size_grows(half.degrees, twice.degrees),
+                                 wang_size_grows(half.millidegrees, twice.millidegrees)),
+                   wang_size_words(half.no_angles, twice.no_angles))}};
 }
 
 nlohmann::ordered_json wang_points_json(const std::vector<WangPoints>& points) {
