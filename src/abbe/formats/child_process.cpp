@@ -46,6 +46,12 @@ pid_t start(const std::vector<std::string>& words, int output, int messages) {
   return child;
 }
 
+void end(pid_t child) {
+  ::kill(child, SIGKILL);
+  while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
 /// Lines of a file that another process writes.
 class GrowingLines {
  public:
@@ -108,11 +114,17 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, double most_se
       continue;
     }
     if (listen && Clock::now() > next) {
-      lines.pass_on(listen);
+      try {
+        lines.pass_on(listen);
+      } catch (...) {
+        end(child);
+        throw;
+      }
       next = Clock::now() + std::chrono::milliseconds(100);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
+  if (listen) lines.pass_on(listen);
   output_.map();
   messages_.map();
 }

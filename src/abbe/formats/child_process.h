@@ -35,9 +35,10 @@ class ChildProcess {
  public:
   /// @param words         path of the program, arguments
   /// @param most_seconds  of the clock on the wall
-  /// @param listen        called with each whole line on standard error, some time after it was written
+  /// @param listen        called with each whole line on standard error, some time after it was written, by this
+  ///                      thread; if it throws, the program is killed
   /// @throws InputError if the program cannot be started, std::runtime_error if the system gives no memory for its
-  /// output
+  /// output, what listen() throws
   ChildProcess(const std::vector<std::string>& words, double most_seconds,
                const std::function<void(std::string_view line)>& listen = {});
 

@@ -1,6 +1,7 @@
 // Damaged STEP files, and what can go wrong with the program that reads them: an InputError, never a crash.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -8,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -164,17 +166,22 @@ TEST_F(DamagedStepFile, UnitsAndTolerancesThatMakeNoSenseAreRefused) {
 /// Another program in the place of abbe-step.
 class StepProgram : public testing::Test {
  protected:
+  using Heard = std::function<void(const std::string& what, std::size_t done, std::size_t total)>;
+
   void TearDown() override { ::unsetenv("ABBE_STEP_PROGRAM"); }
 
-  static std::string message_with(const std::string& script, double most_seconds = 3600,
-                                  std::function<void(const std::string&, std::size_t, std::size_t)> progress = {}) {
+  static void read_with(const std::string& script, double most_seconds = 3600, Heard progress = {}) {
     const TemporaryFile program("#!/bin/sh\n" + script, ".sh");
     std::filesystem::permissions(program.path(), std::filesystem::perms::owner_all);
     ::setenv("ABBE_STEP_PROGRAM", program.path().c_str(), 1);
     MeshFileOptions options;
     options.step.most_seconds = most_seconds;
     options.step.progress = std::move(progress);
-    return message_of([&] { read_mesh(golden_step_file("block.step"), options); });
+    read_mesh(golden_step_file("block.step"), options);
+  }
+
+  static std::string message_with(const std::string& script, double most_seconds = 3600, Heard progress = {}) {
+    return message_of([&] { read_with(script, most_seconds, std::move(progress)); });
   }
 };
 
@@ -208,6 +215,12 @@ TEST_F(StepProgram, SaysHowFarItIsAndWhatItWasAtWhenItEnded) {
   EXPECT_THAT(message,
               HasSubstr("was not done with the file after 0.2 s (it was dividing faces, 2 of 7 done); expected "
                         "a coarser tolerance (--chord-mm) or more time (--step-seconds)"));
+}
+
+TEST_F(StepProgram, IsEndedIfItsProgressCannotBePassedOn) {
+  const auto fails = [](const std::string&, std::size_t, std::size_t) { throw std::runtime_error("no terminal"); };
+  EXPECT_THROW(read_with("echo 'progress 2 7 dividing faces' >&2; exec sleep 600\n", 3600, fails), std::runtime_error);
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
 }
 
 TEST_F(StepProgram, ThatSaysNothingOrTooMuchIsRefused) {
