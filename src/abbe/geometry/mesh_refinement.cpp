@@ -2,36 +2,31 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
+
+#include "abbe/geometry/halved_triangle.h"
 
 namespace abbe {
 namespace {
 
 using Eigen::Index;
 using Eigen::Vector3d;
-using Corners = std::array<std::uint32_t, 3>;
-
-std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
-  return (static_cast<std::uint64_t>(std::min(a, b)) << 32U) | std::max(a, b);
-}
 
 /// Vertices and triangles that grow.
 struct Growing {
   std::vector<Vector3d> vertices;
-  std::vector<Corners> triangles;
+  std::vector<TriangleCorners> triangles;
 };
 
 /// Halves every edge longer than that once. @returns whether there was one
 bool halve(Growing& mesh, double longest_mm) {
   std::unordered_map<std::uint64_t, std::uint32_t> middles;
   const auto middle_of = [&](std::uint32_t a, std::uint32_t b) -> std::uint32_t {
-    constexpr std::uint32_t kNone = 0xffffffffU;
-    if ((mesh.vertices[a] - mesh.vertices[b]).squaredNorm() <= longest_mm * longest_mm) return kNone;
-    const auto [found, is_new] = middles.try_emplace(key_of(a, b), static_cast<std::uint32_t>(mesh.vertices.size()));
+    if ((mesh.vertices[a] - mesh.vertices[b]).squaredNorm() <= longest_mm * longest_mm) return kNoMiddle;
+    const auto [found, is_new] = middles.try_emplace(side_key(a, b), static_cast<std::uint32_t>(mesh.vertices.size()));
     if (is_new) {
       // Computed before the vector grows.
       const Vector3d middle = (mesh.vertices[a] + mesh.vertices[b]) / 2;
@@ -39,46 +34,14 @@ bool halve(Growing& mesh, double longest_mm) {
     }
     return found->second;
   };
-  std::vector<Corners> result;
+  const auto squared_distance = [&](std::uint32_t a, std::uint32_t b) {
+    return (mesh.vertices[a] - mesh.vertices[b]).squaredNorm();
+  };
+  std::vector<TriangleCorners> result;
   result.reserve(2 * mesh.triangles.size());
-  for (const Corners& t : mesh.triangles) {
-    std::array<std::uint32_t, 3> middle{};
-    int count = 0, first = 0;
-    for (int k = 0; k < 3; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      middle[i] = middle_of(t[i], t[(i + 1) % 3]);
-      if (middle[i] != 0xffffffffU) ++count;
-    }
-    // Turned so that the first edge is the halved one, or the last edge the whole one.
-    for (int k = 0; k < 3; ++k) {
-      const bool is_first = count == 1 ? middle[static_cast<std::size_t>(k)] != 0xffffffffU
-                                       : middle[static_cast<std::size_t>((k + 2) % 3)] == 0xffffffffU;
-      if (is_first) first = k;
-    }
-    const auto at = [&](int k) { return t[static_cast<std::size_t>((first + k) % 3)]; };
-    const auto half = [&](int k) { return middle[static_cast<std::size_t>((first + k) % 3)]; };
-    if (count == 0) {
-      result.push_back(t);
-    } else if (count == 1) {
-      result.push_back({at(0), half(0), at(2)});
-      result.push_back({half(0), at(1), at(2)});
-    } else if (count == 2) {
-      result.push_back({half(0), at(1), half(1)});
-      const double from_first = (mesh.vertices[at(0)] - mesh.vertices[half(1)]).squaredNorm();
-      const double from_last = (mesh.vertices[at(2)] - mesh.vertices[half(0)]).squaredNorm();
-      if (from_first <= from_last) {
-        result.push_back({at(0), half(0), half(1)});
-        result.push_back({at(0), half(1), at(2)});
-      } else {
-        result.push_back({at(0), half(0), at(2)});
-        result.push_back({half(0), half(1), at(2)});
-      }
-    } else {
-      result.push_back({t[0], middle[0], middle[2]});
-      result.push_back({middle[0], t[1], middle[1]});
-      result.push_back({middle[2], middle[1], t[2]});
-      result.push_back({middle[0], middle[1], middle[2]});
-    }
+  for (const TriangleCorners& t : mesh.triangles) {
+    add_halved(t, {middle_of(t[0], t[1]), middle_of(t[1], t[2]), middle_of(t[2], t[0])}, squared_distance,
+               [&](const TriangleCorners& part) { result.push_back(part); });
   }
   mesh.triangles = std::move(result);
   return !middles.empty();
