@@ -2,8 +2,10 @@
 
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepAdaptor_Surface.hxx>
+#include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
 #include <ElSLib.hxx>
+#include <GProp_GProps.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
 #include <TopExp_Explorer.hxx>
@@ -102,13 +104,28 @@ double edge_deviation(const TopoDS_Edge& edge, const Handle(Poly_Triangulation) 
   return largest;
 }
 
-Handle(Poly_Triangulation) triangles_of(const TopoDS_Face& face, TopLoc_Location& location) {
-  const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
-  if (triangulation.IsNull() || triangulation->NbTriangles() == 0) throw std::runtime_error("it has no triangles");
-  return triangulation;
+bool is_empty(const Handle(Poly_Triangulation) & triangulation) {
+  return triangulation.IsNull() || triangulation->NbTriangles() == 0;
 }
 
 }  // namespace
+
+bool has_triangles(const TopoDS_Face& face) {
+  TopLoc_Location location;
+  return !is_empty(BRep_Tool::Triangulation(face, location));
+}
+
+Handle(Poly_Triangulation) triangles_of(const TopoDS_Face& face, TopLoc_Location& location) {
+  const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
+  if (is_empty(triangulation)) throw std::runtime_error("it has no triangles");
+  return triangulation;
+}
+
+double face_area_mm2(const TopoDS_Face& face) {
+  GProp_GProps properties;
+  BRepGProp::SurfaceProperties(face, properties);
+  return std::abs(properties.Mass());
+}
 
 double curve_deviation(const BRepAdaptor_Curve& curve, double from, double to, const gp_XYZ& begin, const gp_XYZ& end) {
   constexpr int kParts = 8;
@@ -136,7 +153,7 @@ FaceDeviation triangle_deviation(const BRepAdaptor_Surface& surface, const std::
         if (parameters == nullptr) throw std::runtime_error("its triangles have no parameters");
         const gp_XY uv = (*parameters)[0] * wa + (*parameters)[1] * wb + (*parameters)[2] * wc;
         distance = point.Distance(surface.Value(uv.X(), uv.Y()));
-        const double known = is_corner ? std::min(found.corners_mm, found.triangles_mm) : found.triangles_mm;
+        const double known = is_corner ? found.corners_mm : found.triangles_mm;
         // The nearest point is not farther, and only the largest distance counts.
         if (distance > std::max(known, small_mm)) distance = distance_by_steps(surface, point, uv.X(), uv.Y());
       }

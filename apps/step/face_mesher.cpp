@@ -4,18 +4,17 @@
 
 #include <BRepMesh_DelabellaMeshAlgoFactory.hxx>
 #include <BRepMesh_MeshAlgoFactory.hxx>
-#include <BRep_Tool.hxx>
 #include <IMeshData_Face.hxx>
 #include <IMeshTools_MeshAlgo.hxx>
 #include <IMeshTools_Parameters.hxx>
-#include <Poly_Triangulation.hxx>
 #include <Precision.hxx>
-#include <TopLoc_Location.hxx>
+#include <Standard_Failure.hxx>
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
 
 #include "face_refinement.h"
+#include "failure_words.h"
 
 namespace abbe {
 namespace {
@@ -30,12 +29,6 @@ Handle(IMeshTools_MeshAlgo)
   if (method == kOwnDelabella || method == kAnyDelabella)
     return BRepMesh_DelabellaMeshAlgoFactory().GetAlgo(as, parameters);
   return BRepMesh_MeshAlgoFactory().GetAlgo(as, parameters);
-}
-
-bool has_triangles(const TopoDS_Face& face) {
-  TopLoc_Location location;
-  const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location);
-  return !triangulation.IsNull() && triangulation->NbTriangles() > 0;
 }
 
 /// What BRepMesh_FaceDiscret calls.
@@ -72,18 +65,16 @@ struct FaceMesher::OneFace {
   DividedFace result;
 
   /// @returns false if there are no triangles then. @throws TimeIsUp
-  bool divide(double deflection_mm) {
+  bool divide(double chord_mm) {
     IMeshTools_Parameters finer = parameters;
-    finer.DeflectionInterior = deflection_mm;
-    finer.MinSize = std::max(IMeshTools_Parameters::RelMinSize() * std::min(deflection_mm, parameters.Deflection),
+    finer.DeflectionInterior = chord_mm;
+    finer.MinSize = std::max(IMeshTools_Parameters::RelMinSize() * std::min(chord_mm, parameters.Deflection),
                              Precision::Confusion());
-    face->SetDeflection(deflection_mm);
+    face->SetDeflection(chord_mm);
     face->UnsetStatus(IMeshData_Failure);
     algorithm(result.method, face->GetSurface()->GetType(), finer)->Perform(face, finer, limit->Start());
     if (limit->is_over()) throw TimeIsUp{};
-    if (face->IsSet(IMeshData_Failure) || !has_triangles(face->GetFace())) return false;
-    result.deflection_mm = deflection_mm;
-    return true;
+    return !face->IsSet(IMeshData_Failure) && has_triangles(face->GetFace());
   }
 };
 
@@ -110,24 +101,30 @@ void FaceMesher::keep(const TopoDS_Face& face, const DividedFace& result) {
 void FaceMesher::divide(const IMeshData::IFaceHandle& face, const IMeshTools_Parameters& parameters) {
   OneFace one{face, parameters, new TimeLimit(std::min(TimeLimit::after(face_seconds_), limit_->end())),
               result(face->GetFace())};
-  one.result.problem.clear();
-  one.result.timed_out = false;
-  if (one.result.deflection_mm == 0) one.result.deflection_mm = chord_mm_;
-  try {
-    divide_finely_enough(one);
-  } catch (const TimeIsUp&) {
-    one.result.problem = fmt::format("was not divided into triangles within {:.3g} s", face_seconds_);
-    one.result.timed_out = true;
-  } catch (const std::runtime_error& error) {
-    one.result.problem = fmt::format("could not be divided into triangles: {}", error.what());
+  if (!one.result.timed_out) {
+    one.result.problem.clear();
+    one.result.was_tried = true;
+    try {
+      divide_finely_enough(one);
+    } catch (const TimeIsUp&) {
+      one.result.problem = fmt::format("was not divided into triangles within {:.3g} s", face_seconds_);
+      one.result.timed_out = true;
+    } catch (const Standard_Failure& failure) {
+      one.result.problem = "could not be divided into triangles: " + failure_words(failure);
+    } catch (const std::runtime_error& error) {
+      one.result.problem = fmt::format("could not be divided into triangles: {}", error.what());
+    }
+    keep(face->GetFace(), one.result);
   }
-  keep(face->GetFace(), one.result);
   face_is_done_();
 }
 
 void FaceMesher::divide_finely_enough(OneFace& one) const {
-  while (!one.divide(one.result.deflection_mm)) {
-    if (++one.result.method == kMethods) throw std::runtime_error("OpenCASCADE finds none");
+  while (!one.divide(chord_mm_)) {
+    if (++one.result.method < kMethods) continue;
+    // With other edges the first one may do.
+    one.result.method = kOwn;
+    throw std::runtime_error("OpenCASCADE finds none");
   }
   one.result.deviation = refine_face(one.face->GetFace(), chord_mm_, *one.limit);
 }

@@ -16,8 +16,8 @@ namespace abbe {
 
 /// What became of one face.
 struct DividedFace {
-  double deflection_mm = 0;  ///< that OpenCASCADE was asked for; 0: it did not come to that
-  std::size_t method = 0;    ///< algorithm, of those in face_mesher.cpp
+  bool was_tried = false;  ///< whether OpenCASCADE came to the face
+  std::size_t method = 0;  ///< algorithm to begin with, of those in face_mesher.cpp
   FaceDeviation deviation;
   std::string problem;     ///< why it has no triangles; empty if it has
   bool timed_out = false;  ///< is the problem
@@ -36,15 +36,16 @@ class FaceMesher {
   /// For BRepMesh_FaceDiscret, which calls what it makes for several faces at a time. This object has to live on.
   Handle(IMeshTools_MeshAlgoFactory) factory();
 
-  /// Of a face; the next division begins with it. As it begins if the face was never divided.
+  /// Of the last division of a face, with which the next one begins.
   DividedFace result(const TopoDS_Face& face) const;
-  void keep(const TopoDS_Face& face, const DividedFace& result);
 
+  /// A face that once took too long is not tried again: each trial takes as long.
   void divide(const IMeshData::IFaceHandle& face, const IMeshTools_Parameters& parameters);
 
  private:
   struct OneFace;
   void divide_finely_enough(OneFace& one) const;
+  void keep(const TopoDS_Face& face, const DividedFace& result);
 
   double chord_mm_, face_seconds_;
   Handle(TimeLimit) limit_;

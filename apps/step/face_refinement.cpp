@@ -2,17 +2,17 @@
 
 #include <BRepAdaptor_Surface.hxx>
 #include <BRep_Builder.hxx>
-#include <BRep_Tool.hxx>
 #include <Poly_Triangulation.hxx>
 #include <TopLoc_Location.hxx>
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <stdexcept>
 #include <unordered_map>
 #include <utility>
 #include <vector>
+
+#include "abbe/geometry/halved_triangle.h"
 
 namespace abbe {
 namespace {
@@ -25,29 +25,20 @@ constexpr int kPassesWithoutGain = 3;
 /// Of the chord: how near a triangle is matters no more below it.
 constexpr double kSmall = 0.5;
 
-using Corners = std::array<int, 3>;
-
-/// A side, whichever way it runs.
-std::uint64_t side_of(int a, int b) {
-  return (static_cast<std::uint64_t>(std::min(a, b)) << 32U) | static_cast<std::uint64_t>(std::max(a, b));
-}
-
 class Refinement {
  public:
   Refinement(const TopoDS_Face& face, double chord_mm, const TimeLimit& limit)
       : face_(face), surface_(face, Standard_False), chord_mm_(chord_mm), limit_(limit) {
-    const Handle(Poly_Triangulation) triangulation = BRep_Tool::Triangulation(face, location_);
-    if (triangulation.IsNull() || triangulation->NbTriangles() == 0) throw std::runtime_error("it has no triangles");
+    const Handle(Poly_Triangulation) triangulation = triangles_of(face, location_);
     has_parameters_ = triangulation->HasUVNodes();
     for (int i = 1; i <= triangulation->NbNodes(); ++i) {
       points_.push_back(triangulation->Node(i).Transformed(location_.Transformation()).XYZ());
       if (has_parameters_) parameters_.push_back(triangulation->UVNode(i).XY());
     }
     for (int i = 1; i <= triangulation->NbTriangles(); ++i) {
-      Corners corners{};
-      triangulation->Triangle(i).Get(corners[0], corners[1], corners[2]);
-      for (int& corner : corners) --corner;
-      triangles_.push_back(corners);
+      int a = 0, b = 0, c = 0;
+      triangulation->Triangle(i).Get(a, b, c);
+      triangles_.push_back({index(a), index(b), index(c)});
     }
     measured_.resize(triangles_.size());
   }
@@ -73,6 +64,11 @@ class Refinement {
     bool is = false;
     FaceDeviation deviation;
   };
+  using Middles = std::unordered_map<std::uint64_t, std::uint32_t>;  ///< by side_key()
+
+  /// OpenCASCADE counts nodes from 1.
+  static std::uint32_t index(int node) { return static_cast<std::uint32_t>(node - 1); }
+  static int node(std::uint32_t index) { return static_cast<int>(index) + 1; }
 
   bool is_near_enough(const FaceDeviation& deviation, const FaceDeviation& whole) const {
     return kBetweenPoints * deviation.triangles_mm <= chord_mm_ + unavoidable_mm(whole, chord_mm_);
@@ -87,7 +83,7 @@ class Refinement {
         std::array<gp_XYZ, 3> corners;
         std::array<gp_XY, 3> parameters;
         for (std::size_t k = 0; k < 3; ++k) {
-          const auto node = static_cast<std::size_t>(triangles_[i][k]);
+          const std::uint32_t node = triangles_[i][k];
           corners[k] = points_[node];
           if (has_parameters_) parameters[k] = parameters_[node];
         }
@@ -101,28 +97,27 @@ class Refinement {
   }
 
   /// Distance of the middle of a side from what becomes its middle.
-  double bulge(int a, int b) const {
-    const auto i = static_cast<std::size_t>(a), k = static_cast<std::size_t>(b);
-    const gp_XY middle = 0.5 * (parameters_[i] + parameters_[k]);
-    return (surface_.Value(middle.X(), middle.Y()).XYZ() - 0.5 * (points_[i] + points_[k])).Modulus();
+  double bulge(std::uint32_t a, std::uint32_t b) const {
+    const gp_XY middle = 0.5 * (parameters_[a] + parameters_[b]);
+    return (surface_.Value(middle.X(), middle.Y()).XYZ() - 0.5 * (points_[a] + points_[b])).Modulus();
   }
 
   /// The sides to be halved. @returns false if there are none
   bool halve(const FaceDeviation& whole) {
     std::unordered_map<std::uint64_t, int> triangles_at;
     triangles_at.reserve(2 * triangles_.size());
-    for (const Corners& t : triangles_) {
-      for (std::size_t k = 0; k < 3; ++k) ++triangles_at[side_of(t[k], t[(k + 1) % 3])];
+    for (const TriangleCorners& t : triangles_) {
+      for (std::size_t k = 0; k < 3; ++k) ++triangles_at[side_key(t[k], t[(k + 1) % 3])];
     }
-    std::unordered_map<std::uint64_t, int> middles;
+    Middles middles;
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
       if (is_near_enough(measured_[i].deviation, whole)) continue;
-      const Corners& t = triangles_[i];
+      const TriangleCorners& t = triangles_[i];
       double largest = -1;
-      std::pair<int, int> worst;
+      std::pair<std::uint32_t, std::uint32_t> worst;
       for (std::size_t k = 0; k < 3; ++k) {
-        const int a = t[k], b = t[(k + 1) % 3];
-        if (triangles_at[side_of(a, b)] != 2) continue;
+        const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+        if (triangles_at[side_key(a, b)] != 2) continue;
         const double distance = bulge(a, b);
         if (distance > largest) {
           largest = distance;
@@ -137,60 +132,30 @@ class Refinement {
     return true;
   }
 
-  void add_middle(int a, int b, std::unordered_map<std::uint64_t, int>& middles) {
-    const auto [at, is_new] = middles.try_emplace(side_of(a, b), static_cast<int>(points_.size()));
-    if (!is_new) return;
-    const gp_XY middle = 0.5 * (parameters_[static_cast<std::size_t>(a)] + parameters_[static_cast<std::size_t>(b)]);
+  void add_middle(std::uint32_t a, std::uint32_t b, Middles& middles) {
+    if (!middles.try_emplace(side_key(a, b), static_cast<std::uint32_t>(points_.size())).second) return;
+    const gp_XY middle = 0.5 * (parameters_[a] + parameters_[b]);
     parameters_.push_back(middle);
     points_.push_back(surface_.Value(middle.X(), middle.Y()).XYZ());
   }
 
-  void divide_at(const std::unordered_map<std::uint64_t, int>& middles) {
-    std::vector<Corners> divided;
-    std::vector<Measured> measured;
-    const auto add = [&](int a, int b, int c) {
-      divided.push_back({a, b, c});
-      measured.emplace_back();
+  void divide_at(const Middles& middles) {
+    const auto middle_of = [&](std::uint32_t a, std::uint32_t b) {
+      const auto at = middles.find(side_key(a, b));
+      return at != middles.end() ? at->second : kNoMiddle;
     };
+    const auto squared_distance = [&](std::uint32_t a, std::uint32_t b) {
+      return (points_[a] - points_[b]).SquareModulus();
+    };
+    std::vector<TriangleCorners> divided;
+    std::vector<Measured> measured;
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      Corners t = triangles_[i];
-      std::array<int, 3> middle{-1, -1, -1};
-      int count = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto at = middles.find(side_of(t[k], t[(k + 1) % 3]));
-        if (at != middles.end()) {
-          middle[k] = at->second;
-          ++count;
-        }
-      }
-      if (count == 0) {
-        divided.push_back(t);
-        measured.push_back(measured_[i]);
-        continue;
-      }
-      // Turned until the first side is one with a middle, and the third is without one if any is.
-      while (middle[0] < 0 || (count == 2 && middle[2] >= 0)) {
-        std::rotate(t.begin(), t.begin() + 1, t.end());
-        std::rotate(middle.begin(), middle.begin() + 1, middle.end());
-      }
-      const int a = t[0], b = t[1], c = t[2], ab = middle[0], bc = middle[1], ca = middle[2];
-      if (count == 1) {
-        add(a, ab, c);
-        add(ab, b, c);
-      } else if (count == 2) {
-        add(ab, b, bc);
-        const auto apart = [&](int p, int q) {
-          return (points_[static_cast<std::size_t>(p)] - points_[static_cast<std::size_t>(q)]).SquareModulus();
-        };
-        const bool from_a = apart(a, bc) < apart(ab, c);
-        add(a, ab, from_a ? bc : c);
-        add(from_a ? a : ab, bc, c);
-      } else {
-        add(a, ab, ca);
-        add(ab, b, bc);
-        add(ca, bc, c);
-        add(ab, bc, ca);
-      }
+      const TriangleCorners& t = triangles_[i];
+      add_halved(t, {middle_of(t[0], t[1]), middle_of(t[1], t[2]), middle_of(t[2], t[0])}, squared_distance,
+                 [&](const TriangleCorners& part) {
+                   divided.push_back(part);
+                   measured.push_back(part == t ? measured_[i] : Measured{});
+                 });
     }
     triangles_ = std::move(divided);
     measured_ = std::move(measured);
@@ -206,8 +171,8 @@ class Refinement {
       triangulation->SetUVNode(static_cast<int>(i) + 1, parameters_[i]);
     }
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
-      const Corners& t = triangles_[i];
-      triangulation->SetTriangle(static_cast<int>(i) + 1, Poly_Triangle(t[0] + 1, t[1] + 1, t[2] + 1));
+      const TriangleCorners& t = triangles_[i];
+      triangulation->SetTriangle(static_cast<int>(i) + 1, Poly_Triangle(node(t[0]), node(t[1]), node(t[2])));
     }
     triangulation->Deflection(chord_mm_);
     BRep_Builder().UpdateFace(face_, triangulation);
@@ -221,7 +186,7 @@ class Refinement {
   bool has_parameters_ = false, changed_ = false;
   std::vector<gp_XYZ> points_;  ///< in the part
   std::vector<gp_XY> parameters_;
-  std::vector<Corners> triangles_;
+  std::vector<TriangleCorners> triangles_;
   std::vector<Measured> measured_;
 };
 

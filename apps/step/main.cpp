@@ -3,7 +3,7 @@
 //
 // A process of its own, because OpenCASCADE may stop at a damaged file, and because linking it costs every start of
 // `abbe` 28 ms. What went wrong on standard error: a line with the problem, perhaps one with what was expected, after
-// lines of progress (formats/step_mesh.h); exit code 0, 2 for a bad file or tolerance.
+// lines of progress (formats/step_mesh.h); exit code 0, 2 for a bad file or tolerance, kStepTimeIsUp.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/prctl.h>
@@ -25,6 +25,7 @@
 
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/step_mesh.h"
+#include "failure_words.h"
 #include "shape_triangles.h"
 #include "step_shape.h"
 
@@ -53,9 +54,16 @@ void limit_resources(double seconds) {
 #endif
 }
 
+/// Messages may hold names and words of the file or of OpenCASCADE.
+std::string on_one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
 int fail(int code, const std::string& problem, const std::string& expected = "") {
-  std::fprintf(stderr, "%s\n", problem.c_str());
-  if (!expected.empty()) std::fprintf(stderr, "%s\n", expected.c_str());
+  std::fprintf(stderr, "%s\n", on_one_line(problem).c_str());
+  if (!expected.empty()) std::fprintf(stderr, "%s\n", on_one_line(expected).c_str());
   std::fflush(stderr);
   return code;
 }
@@ -100,12 +108,10 @@ int convert(const char* file, const Arguments& arguments, int output) {
   ProgressLines("reading")(0, 1);
   abbe::StepShape read = abbe::read_step_shape(file, arguments.leave_out_faces, end);
   const double chord = arguments.chord_mm > 0 ? arguments.chord_mm : abbe::default_step_chord(read.size_mm);
-  // Thousands of millions of triangles: only a damaged file or a slip of the tolerance asks for that.
-  constexpr double kFinest = 1e-7;
-  if (chord < kFinest * read.size_mm) {
+  if (chord < abbe::kFinestStepChord * read.size_mm) {
     return fail(
         2, fmt::format("the shape is {:.3g} mm large, too much for a chord tolerance of {:g} mm", read.size_mm, chord),
-        fmt::format("a chord tolerance of at least {:.3g} mm (--chord-mm)", kFinest * read.size_mm));
+        fmt::format("a chord tolerance of at least {:.3g} mm (--chord-mm)", abbe::kFinestStepChord * read.size_mm));
   }
   ProgressLines progress("dividing faces");
   progress(0, 1);
@@ -149,12 +155,9 @@ int main(int count, char** arguments) {
   } catch (const abbe::StepRefused& refused) {
     code = fail(code, refused.what(), refused.expected);
   } catch (const abbe::TimeIsUp&) {
-    code = fail(code, fmt::format("OpenCASCADE was not done with the file after {:g} s", parsed.seconds),
-                "a coarser tolerance (--chord-mm) or more time (--step-seconds)");
+    code = abbe::kStepTimeIsUp;
   } catch (const Standard_Failure& failure) {
-    const char* const words = failure.GetMessageString();
-    fail(code,
-         std::string("OpenCASCADE: ") + (words != nullptr && *words != '\0' ? words : failure.DynamicType()->Name()));
+    fail(code, "OpenCASCADE: " + abbe::failure_words(failure));
   } catch (const std::bad_alloc&) {
     fail(code, "OpenCASCADE needed more than 8 GiB of memory");
   } catch (const std::exception& error) {

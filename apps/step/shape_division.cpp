@@ -7,17 +7,23 @@
 #include <BRepMesh_Context.hxx>
 #include <BRepMesh_FaceDiscret.hxx>
 #include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
 #include <IMeshData_Edge.hxx>
 #include <IMeshData_Face.hxx>
 #include <IMeshData_Model.hxx>
 #include <IMeshData_PCurve.hxx>
 #include <IMeshTools_Parameters.hxx>
+#include <Poly_Triangulation.hxx>
 #include <Precision.hxx>
+#include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
 #include <TopoDS.hxx>
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -25,6 +31,7 @@
 
 #include "face_deviation.h"
 #include "face_mesher.h"
+#include "failure_words.h"
 
 namespace abbe {
 namespace {
@@ -46,7 +53,9 @@ std::vector<TopoDS_Face> faces_of(const TopoDS_Shape& shape) {
   return faces;
 }
 
-double edge_deviation(const IMeshData_Edge& edge) {
+/// Nothing for an edge that cannot be measured, such as one with a point that is not finite: its faces cannot be
+/// measured either, and are named for that.
+double edge_deviation(const IMeshData_Edge& edge) try {
   const IMeshData::ICurveHandle& points = edge.GetCurve();
   if (edge.GetDegenerated() || points.IsNull()) return 0;
   const BRepAdaptor_Curve curve(edge.GetEdge());
@@ -57,6 +66,10 @@ double edge_deviation(const IMeshData_Edge& edge) {
         std::max(largest, curve_deviation(curve, from, to, points->GetPoint(i - 1).XYZ(), points->GetPoint(i).XYZ()));
   }
   return largest;
+} catch (const std::runtime_error&) {
+  return 0;
+} catch (const Standard_Failure&) {
+  return 0;
 }
 
 IMeshTools_Parameters parameters_for(double edge_deflection_mm, const DivisionOptions& options) {
@@ -118,12 +131,11 @@ void exchange_curves_of_seams(const IMeshData_Model& model) {
   }
 }
 
-/// Half of the area over half of the circumference, in mm.
+/// Area over half of the circumference, in mm.
 double mean_width(const TopoDS_Face& face) {
-  GProp_GProps area, length;
-  BRepGProp::SurfaceProperties(face, area);
+  GProp_GProps length;
   BRepGProp::LinearProperties(face, length);
-  return length.Mass() > 0 ? 2 * area.Mass() / length.Mass() : 0;
+  return length.Mass() > 0 ? 2 * face_area_mm2(face) / length.Mass() : 0;
 }
 
 /// What the statuses of a face without triangles say.
@@ -143,13 +155,12 @@ class Division {
         mesher_(options.chord_mm, options.face_seconds, options.limit, [this] { face_is_done(); }) {}
 
   ShapeDivision run() {
-    double edge_deflection = options_.chord_mm, last = 0;
+    double edge_deflection = options_.chord_mm, last = std::numeric_limits<double>::infinity();
     int without_gain = 0;
     bool tried_finer = false;
-    ShapeDivision result;
     for (int round = 0; round < kMostRounds; ++round) {
-      result = divided_along(edge_deflection);
-      if (options_.limit->is_over()) throw TimeIsUp{};
+      const ShapeDivision result = divided_along(edge_deflection);
+      if (round == 0 || is_better(result, best_)) keep(result);
       const bool may_help =
           std::any_of(result.lost.begin(), result.lost.end(), [](const LostFace& face) { return !face.timed_out; });
       if (may_help && !tried_finer) {
@@ -159,15 +170,31 @@ class Division {
         continue;
       }
       if (result.excess_mm <= options_.chord_mm) break;
-      without_gain = round > 0 && result.excess_mm > kRoundGain * last ? without_gain + 1 : 0;
+      without_gain = result.excess_mm > kRoundGain * last ? without_gain + 1 : 0;
       if (without_gain == kRoundsWithoutGain) break;
       last = result.excess_mm;
       edge_deflection *= std::clamp(0.95 * options_.chord_mm / result.excess_mm, 0.3, 0.9);
     }
-    return result;
+    for (std::size_t i = 0; i < faces_.size(); ++i) BRep_Builder().UpdateFace(faces_[i], best_triangles_[i]);
+    return best_;
   }
 
  private:
+  /// Of divisions that keep to the chord the earlier one is as good.
+  bool is_better(const ShapeDivision& one, const ShapeDivision& other) const {
+    if (one.lost.size() != other.lost.size()) return one.lost.size() < other.lost.size();
+    return one.excess_mm < other.excess_mm && other.excess_mm > options_.chord_mm;
+  }
+
+  void keep(const ShapeDivision& division) {
+    best_ = division;
+    best_triangles_.clear();
+    for (const TopoDS_Face& face : faces_) {
+      TopLoc_Location location;
+      best_triangles_.push_back(BRep_Tool::Triangulation(face, location));
+    }
+  }
+
   void face_is_done() {
     if (options_.progress) options_.progress(std::min(++done_, faces_.size()), faces_.size());
   }
@@ -180,6 +207,7 @@ class Division {
     context->PreProcessModel();
     exchange_curves_of_seams(*context->GetModel());
     context->DiscretizeFaces(options_.limit->Start());
+    if (options_.limit->is_over()) throw TimeIsUp{};
     context->PostProcessModel();
     std::map<const void*, std::string> statuses;
     for (int i = 0; i < context->GetModel()->FacesNb(); ++i) {
@@ -187,7 +215,6 @@ class Division {
       statuses[face->GetFace().TShape().get()] = words_for_status(*face);
     }
     ShapeDivision result;
-    result.deflection_mm = edge_deflection_mm;
     for (const TopoDS_Face& face : faces_) add(face, statuses[face.TShape().get()], result);
     return result;
   }
@@ -195,23 +222,26 @@ class Division {
   void add(const TopoDS_Face& face, const std::string& status, ShapeDivision& result) const {
     DividedFace divided = mesher_.result(face);
     double deviation = 0;
+    std::string problem;
     try {
       deviation = kBetweenPoints * std::max(edges_deviation(face), divided.deviation.triangles_mm);
     } catch (const std::runtime_error& error) {
+      problem = error.what();
+    } catch (const Standard_Failure& failure) {
+      problem = failure_words(failure);
+    }
+    if (!problem.empty()) {
       if (mean_width(face) < kNoWidth * options_.chord_mm) {
         ++result.without_area;
         return;
       }
-      if (divided.problem.empty()) {
-        divided.problem = fmt::format("could not be divided into triangles: {}", error.what());
-      }
+      if (divided.problem.empty()) divided.problem = "could not be divided into triangles: " + problem;
     }
-    if (divided.deflection_mm == 0) divided.problem = "could not be divided into triangles: " + status;
+    if (!divided.was_tried) divided.problem = "could not be divided into triangles: " + status;
     if (!divided.problem.empty()) {
       result.lost.push_back({face, divided.problem, divided.timed_out});
       return;
     }
-    result.deflection_mm = std::min(result.deflection_mm, divided.deflection_mm);
     result.excess_mm = std::max(result.excess_mm, deviation - unavoidable_mm(divided.deviation, options_.chord_mm));
     if (result.worst.IsNull() || deviation > result.deviation_mm) {
       result.deviation_mm = deviation;
@@ -224,6 +254,8 @@ class Division {
   const DivisionOptions& options_;
   std::vector<TopoDS_Face> faces_;
   FaceMesher mesher_;
+  ShapeDivision best_;
+  std::vector<Handle(Poly_Triangulation)> best_triangles_;  ///< [faces]
   std::atomic<std::size_t> done_{0};
 };
 

@@ -28,18 +28,19 @@ struct LostFace {
 };
 
 struct ShapeDivision {
-  double deviation_mm = 0;   ///< of triangles and faces, edges included: kBetweenPoints times what was measured
-  double deflection_mm = 0;  ///< least that OpenCASCADE was asked for
-  double excess_mm = 0;      ///< the same without what no division can avoid (unavoidable_mm())
-  TopoDS_Face worst;         ///< where the deviation is
-  double gap_mm = 0;         ///< how far the file's own edges lie beside that face
+  double deviation_mm = 0;  ///< of triangles and faces, edges included: kBetweenPoints times what was measured
+  double excess_mm = 0;     ///< largest of a face without what no division of it can avoid (unavoidable_mm())
+  TopoDS_Face worst;        ///< where the deviation is
+  double gap_mm = 0;        ///< how far the file's own edges lie beside that face
   std::vector<LostFace> lost;
-  std::size_t without_area = 0;  ///< faces without triangles that have no area, such as those bounded by one edge twice
+  /// Faces without triangles that have no area, such as those bounded by one edge twice.
+  std::size_t without_area = 0;
 };
 
 /// Gives the faces of a shape their triangles, which OpenCASCADE keeps in the shape, each face once however often it
 /// occurs. The edges are divided until they keep to the chord, then each face along them (FaceMesher); where the edges
-/// turn out to decide about the faces, both again.
+/// turn out to decide about the faces, or a face finds no triangles along them, both again. The best division counts:
+/// the one that loses the fewest faces, and of these the one with the least deviation that can be avoided.
 ///
 /// Whether the chord was kept is for the caller to see: where the file's own edges lie beside its faces it cannot be.
 /// @throws TimeIsUp, Standard_Failure

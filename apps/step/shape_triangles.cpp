@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <BRepGProp.hxx>
 #include <BRep_Tool.hxx>
 #include <Eigen/Core>
-#include <GProp_GProps.hxx>
 #include <Poly_Triangulation.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopLoc_Location.hxx>
@@ -18,6 +16,7 @@
 
 #include "abbe/geometry/mesh_check.h"
 #include "abbe/geometry/vertex_welder.h"
+#include "face_deviation.h"
 
 namespace abbe {
 namespace {
@@ -81,12 +80,6 @@ struct Growing {
   }
 };
 
-double area_of(const TopoDS_Face& face) {
-  GProp_GProps properties;
-  BRepGProp::SurfaceProperties(face, properties);
-  return std::abs(properties.Mass());
-}
-
 /// Says which faces are missing, or refuses them.
 void account_for_lost(const StepShape& read, const std::vector<LostFace>& lost, bool leave_out, StepMesh& result) {
   result.left_out = read.left_out;
@@ -109,7 +102,9 @@ StepMesh shape_triangles(const StepShape& read, const ShapeTrianglesOptions& opt
   const ShapeDivision division = divide_shape(read.shape, options.division);
   StepMesh result;
   account_for_lost(read, division.lost, options.leave_out_faces, result);
-  if (division.deviation_mm > options.most_mm) {
+  // Anything else than edges beside faces is a failure to divide.
+  const bool edges_decide = division.excess_mm <= chord;
+  if (division.deviation_mm > (edges_decide ? options.most_mm : chord)) {
     throw StepRefused(
         deviation_note(read, division, chord),
         fmt::format("a chord tolerance of at least {:.3g} mm (--chord-mm)", 1.01 * division.deviation_mm));
@@ -120,7 +115,6 @@ StepMesh shape_triangles(const StepShape& read, const ShapeTrianglesOptions& opt
                                                       : fmt::format("{} faces have no area", division.without_area));
   }
   result.deviation_mm = division.deviation_mm;
-  result.deflection_mm = division.deflection_mm;
   std::set<const void*> lost;
   for (const LostFace& face : division.lost) lost.insert(face.face.TShape().get());
   Growing growing;
@@ -131,7 +125,7 @@ StepMesh shape_triangles(const StepShape& read, const ShapeTrianglesOptions& opt
     for (TopExp_Explorer face(whole, TopAbs_FACE, but_not_in); face.More(); face.Next()) {
       const TopoDS_Face& one = TopoDS::Face(face.Current());
       if (lost.count(one.TShape().get()) > 0) {
-        lost_area += area_of(one);
+        lost_area += face_area_mm2(one);
       } else {
         add_face(one, faces, piece);
       }
@@ -146,7 +140,10 @@ StepMesh shape_triangles(const StepShape& read, const ShapeTrianglesOptions& opt
     add_faces_of(shell.Current(), TopAbs_SHAPE);
   }
   add_faces_of(read.shape, TopAbs_SHELL);
-  if (growing.triangles.empty()) throw std::runtime_error("there are no faces in the file");
+  if (growing.triangles.empty()) {
+    throw std::runtime_error(result.left_out.empty() ? "there are no faces in the file"
+                                                     : "no face of the file could be divided: " + result.left_out[0]);
+  }
   result.faces = faces;
   result.mesh.vertices = growing.welder.vertices();
   result.mesh.triangles = Eigen::Map<const Eigen::Matrix<std::uint32_t, 3, Eigen::Dynamic>>(

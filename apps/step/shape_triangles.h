@@ -9,9 +9,9 @@ namespace abbe {
 struct ShapeTrianglesOptions {
   DivisionOptions division;
   /// Where the file's own edges lie beside its faces the chord cannot be kept: a face up to this far from its triangles
-  /// is taken, with a note.
+  /// is taken, with a note; one farther away refuses the file.
   double most_mm = 0;
-  bool leave_out_faces = false;  ///< those without triangles and those farther away; else they refuse the file
+  bool leave_out_faces = false;  ///< those without triangles; else they refuse the file
 };
 
 /// The faces of a shape as triangles (divide_shape()): of its solids, then of shells and faces that are in no solid.

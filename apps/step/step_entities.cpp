@@ -16,6 +16,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "abbe/formats/file_extension.h"
+
 namespace abbe {
 namespace {
 
@@ -54,23 +56,20 @@ bool has_foreign_items_only(const Handle(Standard_Transient) & entity, const Int
   return check.NbFails() > 0;
 }
 
-/// Adds an entity and all that it refers to, down to faces, which are left out.
-void add_above_faces(const Interface_Graph& graph, const Handle(Standard_Transient) & entity, Entities& found) {
-  if (entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface)) || !found.insert(entity.get()).second) return;
-  Interface_EntityIterator parts = graph.Shareds(entity);
-  for (parts.Start(); parts.More(); parts.Next()) add_above_faces(graph, parts.Value(), found);
+bool is_face(const Handle(Standard_Transient) & entity) { return entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface)); }
+
+bool is_curve_in_parameters(const Handle(Standard_Transient) & entity) {
+  return entity->IsKind(STANDARD_TYPE(StepGeom_Pcurve));
 }
 
-const std::string* problem_below(const Interface_Graph& graph, const Handle(Standard_Transient) & entity,
-                                 const BadEntities& bad, Entities& seen) {
-  // A curve in the parameters of a face is given besides the one in space, and for both faces along an edge.
-  if (entity->IsKind(STANDARD_TYPE(StepGeom_Pcurve)) || !seen.insert(entity.get()).second) return nullptr;
-  if (const auto at = bad.problems.find(entity.get()); at != bad.problems.end()) return &at->second;
+bool is_nothing(const Handle(Standard_Transient) & /*entity*/) { return false; }
+
+/// Adds an entity and all that it refers to, but not what is left out or below that.
+void add_with_parts(const Interface_Graph& graph, const Handle(Standard_Transient) & entity,
+                    bool (*is_left_out)(const Handle(Standard_Transient) &), Entities& found) {
+  if (is_left_out(entity) || !found.insert(entity.get()).second) return;
   Interface_EntityIterator parts = graph.Shareds(entity);
-  for (parts.Start(); parts.More(); parts.Next()) {
-    if (const std::string* problem = problem_below(graph, parts.Value(), bad, seen)) return problem;
-  }
-  return nullptr;
+  for (parts.Start(); parts.More(); parts.Next()) add_with_parts(graph, parts.Value(), is_left_out, found);
 }
 
 }  // namespace
@@ -79,9 +78,20 @@ std::string entity_label(const Interface_InterfaceModel& model, const Handle(Sta
   return model.StringLabel(entity)->ToCString();
 }
 
-std::string surface_type(const StepShape_FaceSurface& face) {
-  const Handle(StepGeom_Surface) surface = face.FaceGeometry();
-  return surface.IsNull() ? "" : type_name(surface);
+std::string face_label(const Interface_InterfaceModel& model, const Handle(StepShape_FaceSurface) & face) {
+  const std::string label = entity_label(model, face);
+  const Handle(StepGeom_Surface) surface = face->FaceGeometry();
+  return surface.IsNull() ? label : fmt::format("{} ({})", label, type_name(surface));
+}
+
+std::map<int, Handle(StepShape_FaceSurface)> faces_in_use(const Interface_InterfaceModel& model,
+                                                          const Interface_Graph& graph) {
+  std::map<int, Handle(StepShape_FaceSurface)> faces;
+  for (int i = 1; i <= model.NbEntities(); ++i) {
+    const auto face = Handle(StepShape_FaceSurface)::DownCast(model.Value(i));
+    if (!face.IsNull() && graph.Sharings(face).NbEntities() > 0) faces[i] = face;
+  }
+  return faces;
 }
 
 BadEntities bad_entities(const StepData_StepModel& model) {
@@ -95,38 +105,41 @@ BadEntities bad_entities(const StepData_StepModel& model) {
       ++bad.others;
       continue;
     }
-    bad.problems[entity.get()] = fmt::format("{} ({}): {}", entity_label(model, entity), type_name(entity),
-                                             has_fails ? check->CFail(1) : "not understood");
+    bad.of_shape.push_back({entity.get(), fmt::format("{} ({}): {}", entity_label(model, entity), type_name(entity),
+                                                      has_fails ? check->CFail(1) : "not understood")});
   }
   return bad;
 }
 
-const std::string* problem_below(const Interface_Graph& graph, const Handle(Standard_Transient) & entity,
-                                 const BadEntities& bad) {
-  if (bad.problems.empty()) return nullptr;
-  Entities seen;
-  return problem_below(graph, entity, bad, seen);
-}
-
-void require_sound_entities(const StepData_StepModel& model, const Interface_Graph& graph, const BadEntities& bad,
-                            bool leave_out_faces) {
-  if (bad.problems.empty()) return;
-  if (leave_out_faces) {
-    Entities needed;
-    for (int i = 1; i <= model.NbEntities(); ++i) {
-      const Handle(Standard_Transient)& entity = model.Value(i);
-      if (graph.Sharings(entity).NbEntities() == 0) add_above_faces(graph, entity, needed);
-    }
-    const bool faces_only = std::none_of(bad.problems.begin(), bad.problems.end(),
-                                         [&](const auto& entry) { return needed.count(entry.first) > 0; });
-    if (faces_only) return;
-  }
-  // In the order of the file.
+BadFaces bad_faces(const StepData_StepModel& model, const Interface_Graph& graph, const BadEntities& bad) {
+  BadFaces result;
+  if (bad.of_shape.empty()) return result;
+  Entities above_faces, in_faces, in_faces_or_their_parameters;
   for (int i = 1; i <= model.NbEntities(); ++i) {
-    if (const auto at = bad.problems.find(model.Value(i).get()); at != bad.problems.end()) {
-      throw std::runtime_error(at->second);
-    }
+    const Handle(Standard_Transient)& entity = model.Value(i);
+    if (graph.Sharings(entity).NbEntities() == 0) add_with_parts(graph, entity, is_face, above_faces);
   }
+  for (const auto& [number, face] : faces_in_use(model, graph)) {
+    Entities in_face;
+    add_with_parts(graph, face, is_curve_in_parameters, in_face);
+    for (const BadEntity& one : bad.of_shape) {
+      if (in_face.count(one.entity) == 0) continue;
+      const bool is_itself = one.entity == face.get();
+      // Its own problem says more than that of a part of it.
+      if (is_itself || result.problems.count(number) == 0) {
+        result.problems[number] = is_itself ? one.problem : face_label(model, face) + " refers to " + one.problem;
+      }
+    }
+    in_faces.insert(in_face.begin(), in_face.end());
+    add_with_parts(graph, face, is_nothing, in_faces_or_their_parameters);
+  }
+  for (const auto& [entity, problem] : bad.of_shape) {
+    if (above_faces.count(entity) > 0 || in_faces_or_their_parameters.count(entity) == 0) {
+      throw std::runtime_error(problem);
+    }
+    if (in_faces.count(entity) == 0) ++result.in_parameters;
+  }
+  return result;
 }
 
 std::vector<std::string> files_referred_to(const Interface_InterfaceModel& model) {
@@ -137,8 +150,9 @@ std::vector<std::string> files_referred_to(const Interface_InterfaceModel& model
       continue;
     const std::string name = file->Id()->ToCString();
     // Not drawings and other documents.
-    if (std::string_view(file->Kind()->ProductDataType()->ToCString()) != "geometry" && !name.ends_with(".stp") &&
-        !name.ends_with(".step")) {
+    const std::string extension = file_extension(name);
+    if (std::string_view(file->Kind()->ProductDataType()->ToCString()) != "geometry" && extension != ".stp" &&
+        extension != ".step") {
       continue;
     }
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Interface_Graph.hxx>
-#include <STEPControl_Reader.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepShape_FaceSurface.hxx>
 #include <map>
@@ -10,29 +9,40 @@
 
 namespace abbe {
 
-/// Entities of shape, place or size that OpenCASCADE could not read; it goes on with zeros there.
+/// An entity that OpenCASCADE could not read; it goes on with zeros there.
+struct BadEntity {
+  const Standard_Transient* entity = nullptr;
+  std::string problem;  ///< "#22 (SphericalSurface): Count of Parameters is not 3"
+};
+
 struct BadEntities {
-  std::map<const Standard_Transient*, std::string>
-      problems;    ///< "#22 (SphericalSurface): Count of Parameters is not 3"
-  int others = 0;  ///< that make no shape
+  std::vector<BadEntity> of_shape;  ///< of shape, place or size, in the order of the file
+  int others = 0;                   ///< that make no shape
 };
 
 BadEntities bad_entities(const StepData_StepModel& model);
 
-/// @throws std::runtime_error for the first of the bad entities, unless faces may be left out and it is faces alone
-/// that refer to them
-void require_sound_entities(const StepData_StepModel& model, const Interface_Graph& graph, const BadEntities& bad,
-                            bool leave_out_faces);
+/// Where bad entities belong to faces that something in the file refers to.
+struct BadFaces {
+  /// By the number of the face in the model: "#21 (SphericalSurface) refers to #22 (SphericalSurface): Count of ...".
+  std::map<int, std::string> problems;
+  /// Bad entities of curves in the parameters of faces only. A face is sound without them: such a curve is given
+  /// besides the one in space, and for both faces along an edge.
+  int in_parameters = 0;
+};
 
-/// The problem of a bad entity that this one refers to, directly or not, or null.
-const std::string* problem_below(const Interface_Graph& graph, const Handle(Standard_Transient) & entity,
-                                 const BadEntities& bad);
+/// @throws std::runtime_error for the first bad entity in the file that not faces alone refer to
+BadFaces bad_faces(const StepData_StepModel& model, const Interface_Graph& graph, const BadEntities& bad);
 
 /// "#78": what the file calls an entity.
 std::string entity_label(const Interface_InterfaceModel& model, const Handle(Standard_Transient) & entity);
 
-/// "ConicalSurface" of a face, as the schema names it; empty if there is none.
-std::string surface_type(const StepShape_FaceSurface& face);
+/// "#78 (ConicalSurface)": a face with its surface as the schema names it; without that if there is none.
+std::string face_label(const Interface_InterfaceModel& model, const Handle(StepShape_FaceSurface) & face);
+
+/// The faces that something in the file refers to, by their numbers in the model.
+std::map<int, Handle(StepShape_FaceSurface)> faces_in_use(const Interface_InterfaceModel& model,
+                                                          const Interface_Graph& graph);
 
 /// Names of the files that hold geometry of this one.
 std::vector<std::string> files_referred_to(const Interface_InterfaceModel& model);

@@ -15,7 +15,6 @@
 #include <Message_Printer.hxx>
 #include <STEPControl_Reader.hxx>
 #include <StepData_StepModel.hxx>
-#include <StepShape_FaceSurface.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TCollection_HAsciiString.hxx>
 #include <TopExp_Explorer.hxx>
@@ -29,6 +28,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "abbe/formats/ascii_letters.h"
 #include "abbe/formats/number_text.h"
 #include "step_entities.h"
 
@@ -60,27 +60,26 @@ std::string place_of_syntax_error(const std::string& messages) {
   return text;
 }
 
+bool has_faces(const TopoDS_Shape& shape) { return !shape.IsNull() && TopExp_Explorer(shape, TopAbs_FACE).More(); }
+
 /// Labels the faces of the shape by their entities, and finds those that something in the file refers to, but that did
 /// not become a face or contain what was not understood. @returns the latter, to be left out of the shape
-std::vector<TopoDS_Shape> label_faces(STEPControl_Reader& reader, const Interface_Graph& graph, const BadEntities& bad,
+std::vector<TopoDS_Shape> label_faces(STEPControl_Reader& reader, const Interface_Graph& graph, const BadFaces& bad,
                                       StepShape& result) {
   const Handle(Interface_InterfaceModel) model = reader.Model();
   const Handle(Transfer_TransientProcess) process = reader.WS()->TransferReader()->TransientProcess();
   std::vector<TopoDS_Shape> unsound;
-  for (int i = 1; i <= model->NbEntities(); ++i) {
-    const auto face = Handle(StepShape_FaceSurface)::DownCast(model->Value(i));
-    if (face.IsNull() || graph.Sharings(face).NbEntities() == 0) continue;
-    const std::string label = entity_label(*model, face), type = surface_type(*face);
-    const std::string name = type.empty() ? label : fmt::format("{} ({})", label, type);
+  for (const auto& [number, face] : faces_in_use(*model, graph)) {
+    const std::string label = entity_label(*model, face);
     const TopoDS_Shape shape = TransferBRep::ShapeResult(process, face);
     for (TopExp_Explorer part(shape, TopAbs_FACE); !shape.IsNull() && part.More(); part.Next()) {
       result.face_labels[part.Current().TShape().get()] = label;
     }
-    if (const std::string* problem = problem_below(graph, face, bad)) {
-      result.left_out.push_back(name + " refers to " + *problem);
+    if (const auto problem = bad.problems.find(number); problem != bad.problems.end()) {
+      result.left_out.push_back(problem->second);
       if (!shape.IsNull()) unsound.push_back(shape);
-    } else if (shape.IsNull()) {
-      result.left_out.push_back(name + " could not be converted");
+    } else if (!has_faces(shape)) {
+      result.left_out.push_back(face_label(*model, face) + " could not be converted");
     }
   }
   return unsound;
@@ -116,11 +115,15 @@ std::string unit_name(STEPControl_Reader& reader) {
   std::string names;
   for (const TCollection_AsciiString& length : lengths) {
     std::string name = length.ToCString();
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    std::transform(name.begin(), name.end(), name.begin(), lower_case);
     if (names.find(name) == std::string::npos) names += (names.empty() ? "" : ", ") + name;
   }
   return names;
+}
+
+/// "1 face has ...", "3 faces have ...".
+std::string counted(int count, const char* one, const char* more) {
+  return fmt::format("{} {}", count, count == 1 ? one : more);
 }
 
 /// Largest extent. @throws std::runtime_error if there is none or it is beyond all measure
@@ -187,29 +190,48 @@ StepShape read_step_shape(const std::string& path, bool leave_out_faces, const H
   StepShape result;
   const Interface_Graph graph(model);
   const BadEntities bad = bad_entities(*model);
-  require_sound_entities(*model, graph, bad, leave_out_faces);
+  const BadFaces in_faces = bad_faces(*model, graph, bad);
+  // Before OpenCASCADE makes a shape of zeros.
+  if (!in_faces.problems.empty() && !leave_out_faces) {
+    std::vector<std::string> faces;
+    for (const auto& [number, problem] : in_faces.problems) faces.push_back(problem);
+    refuse_faces(faces);
+  }
   if (bad.others > 0) {
-    result.notes.push_back(fmt::format("{} entities that are no geometry were not understood", bad.others));
+    result.notes.push_back(counted(bad.others, "entity that is no geometry was not understood",
+                                   "entities that are no geometry were not understood"));
+  }
+  if (in_faces.in_parameters > 0) {
+    result.notes.push_back(counted(in_faces.in_parameters,
+                                   "entity of the curves in the parameters of faces was not understood",
+                                   "entities of the curves in the parameters of faces were not understood"));
   }
   const int roots = reader.NbRootsForTransfer();
   const int done = reader.TransferRoots(limit->Start());
   if (limit->is_over()) throw TimeIsUp{};
-  const std::vector<TopoDS_Shape> unsound = label_faces(reader, graph, bad, result);
+  const std::vector<TopoDS_Shape> unsound = label_faces(reader, graph, in_faces, result);
   if (!result.left_out.empty() && !leave_out_faces) refuse_faces(result.left_out);
   result.shape = reader.OneShape();
+  if (!result.shape.IsNull() && !unsound.empty()) result.shape = without(result.shape, unsound);
+  if (!result.left_out.empty() && !has_faces(result.shape)) {
+    throw std::runtime_error("no face of the file can be read: " + joined(result.left_out, "; "));
+  }
   if (result.shape.IsNull()) refuse_without_shape(*model);
-  if (!unsound.empty()) result.shape = without(result.shape, unsound);
-  if (result.shape.IsNull()) throw std::runtime_error("no face of the file can be read");
   // All faces are there, so that these are products without a shape.
-  if (done < roots)
-    result.notes.push_back(fmt::format("{} of {} products of the file have no shape", roots - done, roots));
+  if (done < roots) {
+    result.notes.push_back(fmt::format("{} of {} products of the file {} no shape", roots - done, roots,
+                                       roots - done == 1 ? "has" : "have"));
+  }
   if (const std::vector<std::string> files = files_referred_to(*model); !files.empty()) {
     result.notes.push_back("what stands in other files is missing: " + joined(files, ", "));
   }
   Interface_CheckIterator checks = reader.WS()->TransferReader()->TransientProcess()->CheckList(Standard_False);
   int failed = 0;
   for (checks.Start(); checks.More(); checks.Next()) failed += checks.Value()->HasFailed() ? 1 : 0;
-  if (failed > 0) result.notes.push_back(fmt::format("{} entities of the file could not be converted", failed));
+  if (failed > 0) {
+    result.notes.push_back(
+        counted(failed, "entity of the file could not be converted", "entities of the file could not be converted"));
+  }
   result.unit = unit_name(reader);
   result.size_mm = shape_size(result.shape);
   return result;

@@ -34,8 +34,9 @@ struct StepRefused : std::runtime_error {
 /// Refuses faces that cannot be read, with their names. @throws StepRefused
 [[noreturn]] void refuse_faces(const std::vector<std::string>& faces);
 
-/// Reads a STEP file whole: a file with errors of syntax, a shape or a face that cannot be converted, or a coordinate
-/// beyond kLargestInput is refused.
+/// Reads a STEP file whole: one with errors of syntax, without a shape, with a face that cannot be converted, with an
+/// entity of shape, place or size that cannot be understood or with a coordinate beyond kLargestInput is refused.
+/// Products without a shape, curves in the parameters of faces and entities that are no geometry are noted only.
 /// @param leave_out_faces  faces that cannot be converted or understood are left out instead
 /// @throws std::runtime_error with a sentence for the user, StepRefused, TimeIsUp, Standard_Failure
 StepShape read_step_shape(const std::string& path, bool leave_out_faces, const Handle(TimeLimit) & limit);

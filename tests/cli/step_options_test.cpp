@@ -90,7 +90,7 @@ TEST_F(StepOptionsCommand, AnIncompletePartIsSaidEverywhere) {
   EXPECT_EQ(abbe({"check", "part.step"}).exit_code, ExitCode::bad_input);
   const CommandResult check = abbe({"check", "part.step", "--leave-out-faces"});
   EXPECT_EQ(check.exit_code, ExitCode::computation_says_no);
-  EXPECT_THAT(check.err, HasSubstr("abbe: warning: part.step: 1 face is left out (of unknown area): #17 refers to"));
+  EXPECT_THAT(check.err, HasSubstr("abbe: warning: part.step: 1 face is left out (of unknown area): #17 (AdvancedFace): "));
   EXPECT_THAT(check.out, HasSubstr("incomplete: 1 face is"));
   const CommandResult deviate = abbe({"deviate", "scan.csv", "part.step", "--leave-out-faces"});
   EXPECT_EQ(deviate.exit_code, ExitCode::done) << deviate.err;

@@ -1,17 +1,17 @@
 #pragma once
 
-// Internal to formats.
+// Internal to formats and to the program abbe-step.
 #include <filesystem>
 #include <string>
+
+#include "abbe/formats/ascii_letters.h"
 
 namespace abbe {
 
 /// Extension with its point in small letters: ".stl" of "PART.STL".
 inline std::string file_extension(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  for (char& c : extension) c = lower_case(c);
   return extension;
 }
 

@@ -17,12 +17,12 @@ namespace abbe {
 /// How the faces of a STEP file become triangles.
 struct StepOptions {
   /// Largest distance between triangles and faces: measured, not only asked for. Without one 0.01 mm; under 10 mm a
-  /// thousandth of the size of the part, over 100 mm a ten-thousandth, at most 0.1 mm.
+  /// thousandth of the size of the part, over 100 mm a ten-thousandth, at most 0.1 mm (for parts up to 1 km).
   std::optional<double> chord_mm{};
   double angle_rad = 0.17453292519943;  ///< between neighbouring pieces of a curve or of a face, about
   double most_seconds = 60;             ///< for a file, a third of it for one face
   bool leave_out_faces = false;         ///< go on without faces that cannot be read; else they refuse the file
-  /// Called while it takes long, such as with "dividing faces", 20, 375.
+  /// Called while it takes long, by the calling thread, such as with "dividing faces", 20, 375.
   std::function<void(const std::string& what, std::size_t done, std::size_t total)> progress{};
 };
 

@@ -20,7 +20,6 @@
 namespace abbe {
 namespace {
 
-constexpr const char* kFaster = "a coarser tolerance (--chord-mm) or more time (--step-seconds)";
 constexpr const char* kValid = "a valid STEP file (AP203, AP214 or AP242) with faces";
 
 /// What abbe-step said, without its progress.
@@ -69,8 +68,9 @@ std::filesystem::path require_program(const InputError::Place& place) {
 [[noreturn]] void refuse(const InputError::Place& place, const ChildProcess& child, double seconds) {
   const Said said = said_in(child.messages());
   const std::string at = said.doing.empty() ? "" : fmt::format(" (it was {})", said.doing);
-  if (child.timed_out() || child.signal() == SIGXCPU) {
-    throw InputError(place, fmt::format("OpenCASCADE was not done with the file after {:g} s{}", seconds, at), kFaster);
+  if (child.timed_out() || child.signal() == SIGXCPU || child.exit_code() == kStepTimeIsUp) {
+    throw InputError(place, fmt::format("OpenCASCADE was not done with the file after {:g} s{}", seconds, at),
+                     "a coarser tolerance (--chord-mm) or more time (--step-seconds)");
   }
   if (child.signal() != 0) {
     throw InputError(place, fmt::format("OpenCASCADE stopped at the file ({}){}", ::strsignal(child.signal()), at),
@@ -119,7 +119,7 @@ MeshFile read_step(const std::filesystem::path& path, const MeshFileOptions& opt
     const auto progress = parse_step_progress(line);
     if (progress && options.step.progress) options.step.progress(progress->what, progress->done, progress->total);
   };
-  // It gives up by itself and names what it was at, but not inside of some functions of OpenCASCADE.
+  // It gives up by itself (kStepTimeIsUp), but not inside of some functions of OpenCASCADE.
   const ChildProcess child({program.string(), path.string(), shortest_text(options.step.chord_mm.value_or(0)),
                             shortest_text(options.step.angle_rad), shortest_text(seconds),
                             options.step.leave_out_faces ? "leave-out" : "all"},

@@ -8,8 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -18,6 +16,7 @@
 
 #include "abbe/formats/message_of.h"
 #include "abbe/formats/step_files_for_test.h"
+#include "abbe/formats/temporary_file_for_test.h"
 #include "abbe/formats/text_file.h"
 #include "abbe/geometry/mesh_check.h"
 
@@ -162,10 +161,7 @@ TEST_F(StepFile, BoresAreClosedAndFacesOfAnAssemblyStandInTheirPlaces) {
 TEST_F(StepFile, ACountersinkWhoseSeamIsTakenForItsOtherSideIsDivided) {
   test::StepShell shell;
   shell.add_countersink(5, 12);
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "abbe_countersink.step";
-  std::ofstream(path) << shell.text();
-  const MeshFile file = read_mesh(path);
-  std::filesystem::remove(path);
+  const MeshFile file = read_mesh(test::TemporaryFile(shell.text(), ".step").path());
   EXPECT_LE(file.deviation_mm, 0.01);
   EXPECT_NEAR(check_mesh(file.mesh).area, kPi * (12 + 5) * 7 * std::sqrt(2), 0.5);
 }

@@ -18,23 +18,26 @@ inline std::filesystem::path golden_step_file(const char* name) {
 /// Text of a STEP file (mm) of one open shell, whose faces are added one by one.
 class StepShell {
  public:
-  /// A face in the plane z = height, with straight edges between these corners. @returns its number
-  int add_polygon(const std::vector<std::array<double, 2>>& corners, double height) {
-    std::vector<int> vertices;
-    std::string loop;
-    for (const auto& [x, y] : corners) vertices.push_back(vertex(x, y, height));
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      const std::size_t next = (i + 1) % corners.size();
-      const double dx = corners[next][0] - corners[i][0], dy = corners[next][1] - corners[i][1];
-      const int line = straight(corners[i][0], corners[i][1], height, dx, dy, 0);
-      loop += (i > 0 ? "," : "") + oriented(edge(vertices[i], vertices[next], line), true);
-    }
-    return face(loop, add(fmt::format("PLANE('',#{})", placement(height))), true);
+  using Corners = std::vector<std::array<double, 2>>;  // in the plane z = height
+
+  /// A face in the plane z = height, with straight edges between these corners.
+  void add_polygon(const Corners& corners, double height) {
+    face(polygon(corners, height, corners.size()), plane(height, direction(0, 0, 1), direction(1, 0, 0)), true);
+  }
+
+  /// The same without the last edge.
+  void add_open_polygon(const Corners& corners, double height) {
+    face(polygon(corners, height, corners.size() - 1), plane(height, direction(0, 0, 1), direction(1, 0, 0)), true);
+  }
+
+  /// The edges of a polygon about a face in a plane across theirs, where they enclose no area.
+  void add_polygon_across(const Corners& corners, double height) {
+    face(polygon(corners, height, corners.size()), plane(height, direction(1, 0, 0), direction(0, 1, 0)), true);
   }
 
   /// The countersink of a hole along the x axis: from this radius at x = 0 at 45 degrees to the larger one at negative
   /// x. It is turned as a rotation leaves it, and OpenCASCADE 7.6 takes one side of its seam for the other.
-  int add_countersink(double radius, double larger) {
+  void add_countersink(double radius, double larger) {
     const double depth = larger - radius;
     const auto place = [&](double x) {
       const int at = point(x, 0, 0), axis = direction(-1, 0, 0);
@@ -48,8 +51,7 @@ class StepShell {
     const int seam = edge(small, large, line);
     const std::string loop = oriented(small_circle, false) + "," + oriented(seam, true) + "," +
                              oriented(large_circle, true) + "," + oriented(seam, false);
-    return face(loop, add(fmt::format("CONICAL_SURFACE('',#{},{:.6f},0.785398163397448)", place(-depth), larger)),
-                false);
+    face(loop, add(fmt::format("CONICAL_SURFACE('',#{},{:.6f},0.785398163397448)", place(-depth), larger)), false);
   }
 
   std::string text() const {
@@ -82,9 +84,9 @@ class StepShell {
   int direction(double x, double y, double z) {
     return add(fmt::format("DIRECTION('',({:.6f},{:.6f},{:.6f}))", x, y, z));
   }
-  int placement(double z) {
-    const int at = point(0, 0, z), axis = direction(0, 0, 1), reference = direction(1, 0, 0);
-    return add(fmt::format("AXIS2_PLACEMENT_3D('',#{},#{},#{})", at, axis, reference));
+  int plane(double z, int normal, int reference) {
+    const int placement = add(fmt::format("AXIS2_PLACEMENT_3D('',#{},#{},#{})", point(0, 0, z), normal, reference));
+    return add(fmt::format("PLANE('',#{})", placement));
   }
   int vertex(double x, double y, double z) { return add(fmt::format("VERTEX_POINT('',#{})", point(x, y, z))); }
   int straight(double x, double y, double z, double dx, double dy, double dz) {
@@ -95,11 +97,23 @@ class StepShell {
   std::string oriented(int edge, bool forward) {
     return fmt::format("#{}", add(fmt::format("ORIENTED_EDGE('',*,*,#{},.{}.)", edge, forward ? 'T' : 'F')));
   }
-  int face(const std::string& edges, int surface, bool same_sense) {
+  /// @returns the edges, as a loop has them
+  std::string polygon(const Corners& corners, double height, std::size_t edges) {
+    std::vector<int> vertices;
+    std::string loop;
+    for (const auto& [x, y] : corners) vertices.push_back(vertex(x, y, height));
+    for (std::size_t i = 0; i < edges; ++i) {
+      const std::size_t next = (i + 1) % corners.size();
+      const double dx = corners[next][0] - corners[i][0], dy = corners[next][1] - corners[i][1];
+      const int line = straight(corners[i][0], corners[i][1], height, dx, dy, 0);
+      loop += (i > 0 ? "," : "") + oriented(edge(vertices[i], vertices[next], line), true);
+    }
+    return loop;
+  }
+  void face(const std::string& edges, int surface, bool same_sense) {
     const int bound = add(fmt::format("FACE_OUTER_BOUND('',#{},.T.)", add(fmt::format("EDGE_LOOP('',({}))", edges))));
     const int number = add(fmt::format("ADVANCED_FACE('',(#{}),#{},.{}.)", bound, surface, same_sense ? 'T' : 'F'));
     faces_ += fmt::format("{}#{}", faces_.empty() ? "" : ",", number);
-    return number;
   }
 
   int next_ = 20;

@@ -15,7 +15,7 @@ namespace abbe {
 namespace {
 
 // Two programs of different builds may meet.
-constexpr const char* kKind = "abbe-step mesh 2";
+constexpr const char* kKind = "abbe-step mesh 3";
 
 constexpr const char* kProgress = "progress ";
 
@@ -42,7 +42,7 @@ std::size_t count_of(const nlohmann::json& head, const char* name) {
 }  // namespace
 
 double default_step_chord(double size_mm) {
-  return std::clamp(1e-4 * size_mm, std::min(0.01, 1e-3 * size_mm), std::max(0.1, 1e-7 * size_mm));
+  return std::clamp(1e-4 * size_mm, std::min(0.01, 1e-3 * size_mm), std::max(0.1, kFinestStepChord * size_mm));
 }
 
 std::string step_progress_line(const StepProgress& progress) {
@@ -72,7 +72,6 @@ std::string step_mesh_bytes(const StepMesh& mesh) {
                                        {"solids", mesh.solids},
                                        {"unit", mesh.unit},
                                        {"deviation_mm", mesh.deviation_mm},
-                                       {"deflection_mm", mesh.deflection_mm},
                                        {"chord_mm", mesh.chord_mm},
                                        {"size_mm", mesh.size_mm},
                                        {"left_out", mesh.left_out},
@@ -104,7 +103,6 @@ StepMesh parse_step_mesh(std::string_view bytes, const std::string& file) {
     result.solids = count_of(head, "solids");
     head.at("unit").get_to(result.unit);
     head.at("deviation_mm").get_to(result.deviation_mm);
-    head.at("deflection_mm").get_to(result.deflection_mm);
     head.at("chord_mm").get_to(result.chord_mm);
     head.at("size_mm").get_to(result.size_mm);
     head.at("left_out").get_to(result.left_out);
@@ -120,7 +118,7 @@ StepMesh parse_step_mesh(std::string_view bytes, const std::string& file) {
   }
   if (triangles == 0) refuse("no triangles");
   if (vertices == 0) refuse("no vertices");
-  if (!(result.deviation_mm >= 0) || !(result.deflection_mm > 0)) refuse("no tolerance");
+  if (!(result.deviation_mm >= 0) || !(result.chord_mm > 0)) refuse("no tolerance");
   result.mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices));
   result.mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles));
   result.face_of_triangle.resize(triangles);

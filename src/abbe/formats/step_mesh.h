@@ -12,24 +12,30 @@
 
 namespace abbe {
 
+/// Exit code of abbe-step when its time is up; with it no message, as after any other end without one.
+constexpr int kStepTimeIsUp = 3;
+
 /// Faces of a STEP file as triangles.
 struct StepMesh {
   TriangleMesh mesh;                            ///< mm
   std::vector<std::uint32_t> face_of_triangle;  ///< [triangles] number of the face, from 0 in the order of the file
   std::size_t faces = 0;
   std::size_t solids = 0;
-  std::string unit;          ///< of length, as the file names it; empty if it states none
-  double deviation_mm = 0;   ///< largest distance of triangles and faces, edges included: 1.03 times what was measured
-  double deflection_mm = 0;  ///< what the mesher was asked for to get there
-  double chord_mm = 0;       ///< deviation that was aimed at
-  double size_mm = 0;        ///< largest extent of the shape
+  std::string unit;         ///< of length, as the file names it; empty if it states none
+  double deviation_mm = 0;  ///< largest distance of triangles and faces, edges included: 1.03 times what was measured
+  double chord_mm = 0;      ///< deviation that was aimed at
+  double size_mm = 0;       ///< largest extent of the shape
   std::vector<std::string> left_out;     ///< faces: "#78 (cone about (0, 0, 5) mm) could not be divided ..."
   std::optional<double> left_out_share;  ///< of the area, where that is known
   std::vector<std::string> notes;        ///< sentences for the user
 };
 
+/// Least deviation that may be aimed at, in parts of the size: a finer one makes thousands of millions of triangles,
+/// and only a damaged file or a slip asks for that.
+constexpr double kFinestStepChord = 1e-7;
+
 /// The deviation aimed at where the user states none: 0.01 mm; under 10 mm a thousandth of the size, over 100 mm a
-/// ten-thousandth, at most 0.1 mm.
+/// ten-thousandth, at most 0.1 mm or, above 1 km, kFinestStepChord.
 double default_step_chord(double size_mm);
 
 /// What abbe-step is doing.

@@ -22,7 +22,6 @@ StepMesh step_block() {
   }
   mesh.unit = "inch";
   mesh.deviation_mm = 0.1;
-  mesh.deflection_mm = 0.2;
   mesh.chord_mm = 0.3;
   mesh.size_mm = 40;
   mesh.left_out = {"#78 (cone) could not be converted"};
@@ -41,7 +40,6 @@ TEST(StepMesh, ComesThroughWithTheSameBits) {
   EXPECT_EQ(read.solids, 1U);
   EXPECT_EQ(read.unit, "inch");
   EXPECT_EQ(read.deviation_mm, 0.1);
-  EXPECT_EQ(read.deflection_mm, 0.2);
   EXPECT_EQ(read.chord_mm, 0.3);
   EXPECT_EQ(read.size_mm, 40);
   EXPECT_EQ(read.left_out, given.left_out);
@@ -82,14 +80,14 @@ TEST(StepMesh, WhatCannotBeAMeshIsRefused) {
   mesh.mesh.vertices.resize(3, 0);
   EXPECT_THAT(message(mesh), testing::HasSubstr("no vertices"));
   std::string other = step_mesh_bytes(step_block());
-  other.replace(other.find("mesh 2"), 6, "mesh 1");
+  other.replace(other.find("mesh 3"), 6, "mesh 2");
   EXPECT_THAT(message_of([&] { parse_step_mesh(other, "part.step"); }), testing::HasSubstr("another version"));
 }
 
 TEST(StepMesh, CountsBeyondAllMemoryAreRefused) {
   const std::string head =
-      R"({"kind":"abbe-step mesh 2","vertices":768614336404564651,"triangles":1,"faces":1,"solids":1,"unit":"",)"
-      R"("deviation_mm":0,"deflection_mm":1,"chord_mm":1,"size_mm":1,"left_out":[],"left_out_share":-1,"notes":[]})";
+      R"({"kind":"abbe-step mesh 3","vertices":768614336404564651,"triangles":1,"faces":1,"solids":1,"unit":"",)"
+      R"("deviation_mm":0,"chord_mm":1,"size_mm":1,"left_out":[],"left_out_share":-1,"notes":[]})";
   EXPECT_THAT(message_of([&] { parse_step_mesh(head + "\n" + std::string(40, '\0'), "part.step"); }),
               testing::HasSubstr("the length does not fit"));
 }
