@@ -128,7 +128,7 @@ void write_page(const PathCommand& command, const Machine& machine, const ToolPa
   if (!command.part.empty()) {
     const MeshFile mesh = command.step.read(command.part);
     part = part_picture(mesh.mesh, 0, 0);
-    if (!mesh.left_out.empty()) incomplete = "; incomplete: " + left_out_words(mesh);
+    if (!mesh.left_out.empty()) incomplete = "; incomplete: " + left_out_faces_words(mesh);
   }
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   std::vector<std::pair<std::string, std::string>> facts{
@@ -144,8 +144,7 @@ void write_page(const PathCommand& command, const Machine& machine, const ToolPa
 }
 
 int run_path(const PathCommand& command) {
-  command.step.require_step_among(command.part.empty() ? std::vector<std::filesystem::path>{}
-                                                       : std::vector<std::filesystem::path>{command.part});
+  command.step.require_step_among({command.part});
   const Machine nominal = read_machine(command.machine);
   CalibratedMachine calibrated{nominal, std::vector<double>(nominal.axes.size(), 0.0), {}};
   if (!command.errors.empty()) {

@@ -52,7 +52,7 @@ OnWorkpiece lay_on_workpiece(const WorkpieceScan& workpiece, const StepReading& 
   RegistrationOptions options;
   options.noise_mm = workpiece.noise;
   const MeshFile part = step.read(workpiece.part);
-  result.incomplete = left_out_words(part);
+  result.incomplete = left_out_faces_words(part);
   const PointCloudFile scan = read_point_cloud(workpiece.scan);
   Progress progress("registering");
   const Registration found = RegistrationTarget(part.mesh, options).register_scan(scan.cloud, progress.callback());
@@ -126,8 +126,7 @@ int run_position(const PositionCommand& command) {
   if (command.output.empty() && !command.maps.empty()) {
     throw InputError({.field = "--maps"}, "there is no placement whose matrix maps that way", "with --output");
   }
-  const bool has_part = file.workpiece && !file.workpiece->part.empty();
-  command.step.require_step_among(has_part ? std::vector{file.workpiece->part} : std::vector<std::filesystem::path>{});
+  command.step.require_step_among({file.workpiece ? file.workpiece->part : std::filesystem::path()});
   const ScannerPosition scanner = locate_scanner(file.scans);
   nlohmann::ordered_json json;
   json["file"] = command.file;

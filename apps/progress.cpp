@@ -29,8 +29,9 @@ void Progress::operator()(std::size_t done, std::size_t total) {
   last_ = time;
   drawn_ = true;
   const double share = static_cast<double>(done) / static_cast<double>(total);
-  const double left = share > 0 ? (time - start_) * (1 - share) / share : 0;
-  draw(fmt::format("\r\x1b[K{}  {:3.0f} %  {:.0f} s left", what_, 100 * share, left));
+  // Before anything is done nobody knows how long it takes.
+  const std::string left = share > 0 ? fmt::format("  {:.0f} s left", (time - start_) * (1 - share) / share) : "";
+  draw(fmt::format("\r\x1b[K{}  {:3.0f} %{}", what_, 100 * share, left));
 }
 
 }  // namespace abbe

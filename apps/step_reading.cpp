@@ -22,25 +22,36 @@ void StepReading::add_to(Subcommand* command) {
           ->check(positive_number()),
       command
           ->add_option("--step-seconds", options_.most_seconds,
-                       "STEP: longest time for the file, a third of it for one face")
+                       "STEP: time limit for the file in s; one face may take a third of it")
           ->check(positive_number())
           ->capture_default_str(),
       command->add_flag("--leave-out-faces", options_.leave_out_faces,
                         "STEP: go on without faces that cannot be read, and name them (default: refuse the file)")};
 }
 
-MeshFile StepReading::read(const std::filesystem::path& mesh, std::optional<FileLength> unit, int threads) const {
-  MeshFileOptions options{unit, threads, options_};
+MeshFile StepReading::read_with_progress(const std::filesystem::path& mesh, const MeshFileOptions& options) const {
   Progress progress("reading " + mesh.filename().string());
-  options.step.progress = [&](const std::string& /*what*/, std::size_t done, std::size_t total) {
+  MeshFileOptions heard = options;
+  heard.step.progress = [&](const std::string& /*what*/, std::size_t done, std::size_t total) {
     progress(done, total);
   };
-  MeshFile read = read_mesh(mesh, options);
-  if (!read.left_out.empty()) tell("abbe: warning: {}: {}\n", mesh.string(), left_out_words(read));
+  return read_mesh(mesh, heard);
+}
+
+MeshFile StepReading::read(const std::filesystem::path& mesh, std::optional<FileLength> unit, int threads) const {
+  MeshFile read = read_with_progress(mesh, {unit, threads, options_});
+  // Only now, when the line of progress is wiped off.
+  if (!read.left_out.empty()) tell("abbe: warning: {}: {}\n", mesh.string(), left_out_faces_words(read));
   return read;
 }
 
-std::string left_out_words(const MeshFile& mesh) {
+MeshFile StepReading::read_whole(const std::filesystem::path& mesh, const std::string& expected) const {
+  MeshFile read = read_with_progress(mesh, {{}, 0, options_});
+  if (!read.left_out.empty()) throw InputError({.file = mesh.string()}, left_out_faces_words(read), expected);
+  return read;
+}
+
+std::string left_out_faces_words(const MeshFile& mesh) {
   if (mesh.left_out.empty()) return "";
   constexpr std::size_t kShown = 5;
   const std::size_t count = mesh.left_out.size(), shown = std::min(count, kShown);
@@ -60,9 +71,14 @@ const Option* StepReading::given() const {
 
 void StepReading::require_step_among(const std::vector<std::filesystem::path>& meshes) const {
   if (given() == nullptr) return;
-  if (std::any_of(meshes.begin(), meshes.end(), [](const auto& file) { return is_step_file(file); })) return;
-  refuse(meshes.empty() ? "no mesh is read"
-                        : fmt::format("{} is no STEP file and has no exact faces", meshes[0].string()));
+  const auto is_read = [](const std::filesystem::path& file) { return !file.empty(); };
+  const auto is_step_that_is_read = [&](const std::filesystem::path& file) {
+    return is_read(file) && is_step_file(file);
+  };
+  if (std::any_of(meshes.begin(), meshes.end(), is_step_that_is_read)) return;
+  const auto first = std::find_if(meshes.begin(), meshes.end(), is_read);
+  refuse(first == meshes.end() ? "no mesh is read"
+                               : fmt::format("{} is no STEP file and has no exact faces", first->string()));
 }
 
 void StepReading::refuse(const std::string& why) const {

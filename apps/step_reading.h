@@ -21,8 +21,12 @@ class StepReading {
   /// read_mesh() by these options, with progress on a terminal. Faces that are left out are told.
   MeshFile read(const std::filesystem::path& mesh, std::optional<FileLength> unit = {}, int threads = 0) const;
 
+  /// The same where nothing may be missing. @throws InputError also if faces are left out
+  /// @param expected  for the message: all of what
+  MeshFile read_whole(const std::filesystem::path& mesh, const std::string& expected) const;
+
   /// For options that were given in vain: those of no STEP file would have no effect.
-  /// @param meshes  that the command reads; their contents count
+  /// @param meshes  that the command reads, of which their contents count; an empty name is none
   /// @throws InputError, also if one of them cannot be read
   void require_step_among(const std::vector<std::filesystem::path>& meshes) const;
 
@@ -30,13 +34,14 @@ class StepReading {
   void refuse(const std::string& why) const;
 
  private:
-  StepOptions options_;
+  MeshFile read_with_progress(const std::filesystem::path& mesh, const MeshFileOptions& options) const;
   const Option* given() const;
 
+  StepOptions options_;
   std::vector<const Option*> added_;
 };
 
 /// "2 faces are left out (1.3 % of the area): #78 ...; #91 ..."; empty if none is.
-std::string left_out_words(const MeshFile& mesh);
+std::string left_out_faces_words(const MeshFile& mesh);
 
 }  // namespace abbe

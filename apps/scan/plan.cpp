@@ -54,8 +54,13 @@ TriangleMesh welded(const TriangleMesh& mesh) {
   return result;
 }
 
+/// Of a part or a stage.
+MeshFile read_whole(const std::string& file, const StepReading& step) {
+  return step.read_whole(file, "all faces of the part and of the stage, of which the probe has to keep clear");
+}
+
 TriangleMesh read_part(const std::string& file, const StepReading& step) {
-  TriangleMesh mesh = welded(step.read(file).mesh);
+  TriangleMesh mesh = welded(read_whole(file, step).mesh);
   const MeshCheck check = check_mesh(mesh);
   if (!check.encloses_volume()) {
     throw InputError({file, 0, 0, ""},
@@ -71,14 +76,7 @@ TriangleMesh read_part(const std::string& file, const StepReading& step) {
 
 ScanPlanOptions scan_options(const PlanOptions& options) {
   ScanPlanOptions scan = options.scan;
-  if (!options.stage.empty()) {
-    MeshFile stage = options.step.read(options.stage);
-    if (!stage.left_out.empty()) {
-      throw InputError({options.stage, 0, 0, ""}, left_out_words(stage),
-                       "all of the stage, as the probe has to keep clear of it");
-    }
-    scan.stage = std::move(stage.mesh);
-  }
+  if (!options.stage.empty()) scan.stage = read_whole(options.stage, options.step).mesh;
   scan.workpiece_from_part = {
       rotation_from_error_angles(Eigen::Vector3d(options.turn[0], options.turn[1], options.turn[2]) * kDegree),
       {options.position[0], options.position[1], options.position[2]}};
@@ -118,9 +116,7 @@ Check within(double low, double high, const std::string& unit) {
 }
 
 int run_plan(const PlanOptions& options) {
-  std::vector<std::filesystem::path> meshes{options.part};
-  if (!options.stage.empty()) meshes.emplace_back(options.stage);
-  options.step.require_step_among(meshes);
+  options.step.require_step_among({options.part, options.stage});
   const Machine machine = read_machine(options.machine);
   PathProgramOptions program;
   program.words = axis_words(machine, options.words, "--word");

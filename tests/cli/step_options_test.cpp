@@ -63,6 +63,17 @@ TEST_F(StepOptionsCommand, AreRefusedWithAMeshThatIsNoStepFile) {
   }
 }
 
+TEST_F(StepOptionsCommand, AreRefusedWhereNoMeshIsRead) {
+  const std::string examples = ABBE_SOURCE_DIR "/examples/";
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"position", examples + "laser_engraver/scanner.positioning.toml"},
+           {"path", examples + "machines/yin-engraver-u.machine.toml", examples + "laser_engraver/table-a4.csv"}}) {
+    const CommandResult result = abbe_with(command, {"--chord-mm", "0.1"});
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input) << command[0];
+    EXPECT_THAT(result.err, HasSubstr("--chord-mm: no mesh is read")) << command[0];
+  }
+}
+
 TEST_F(StepOptionsCommand, ReachTheReaderInEveryCommand) {
   const std::string part = ABBE_SOURCE_DIR "/tests/golden/step/cylinder.step";
   folder.write("scan.csv", "x_mm,y_mm,z_mm\n0.1,0.1,0\n");
@@ -90,12 +101,18 @@ TEST_F(StepOptionsCommand, AnIncompletePartIsSaidEverywhere) {
   EXPECT_EQ(abbe({"check", "part.step"}).exit_code, ExitCode::bad_input);
   const CommandResult check = abbe({"check", "part.step", "--leave-out-faces"});
   EXPECT_EQ(check.exit_code, ExitCode::computation_says_no);
-  EXPECT_THAT(check.err, HasSubstr("abbe: warning: part.step: 1 face is left out (of unknown area): #17 (AdvancedFace): "));
+  EXPECT_THAT(check.err,
+              HasSubstr("abbe: warning: part.step: 1 face is left out (of unknown area): #17 (AdvancedFace): "));
   EXPECT_THAT(check.out, HasSubstr("incomplete: 1 face is"));
   const CommandResult deviate = abbe({"deviate", "scan.csv", "part.step", "--leave-out-faces"});
   EXPECT_EQ(deviate.exit_code, ExitCode::done) << deviate.err;
   EXPECT_THAT(deviate.err, HasSubstr("1 face is"));
   EXPECT_THAT(deviate.out, HasSubstr("incomplete: 1 face is"));
+  const CommandResult plan = abbe({"scan", "plan", "part.step", "--machine",
+                                   ABBE_SOURCE_DIR "/examples/machines/liu-scanner.machine.toml", "--leave-out-faces"});
+  EXPECT_EQ(plan.exit_code, ExitCode::bad_input);
+  EXPECT_THAT(plan.err, HasSubstr("part.step: 1 face is left out (of unknown area): #17 (AdvancedFace): "));
+  EXPECT_THAT(plan.err, HasSubstr("expected all faces of the part and of the stage"));
 }
 
 }  // namespace
