@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "abbe/errors/calibrated_machine.h"
 #include "abbe/formats/curve_file.h"
@@ -121,8 +122,9 @@ nlohmann::ordered_json path_json(const Machine& machine, const ToolPath& path, c
   return json;
 }
 
+/// @param warnings  of the placement
 void write_page(const PathCommand& command, const Machine& machine, const ToolPath& path,
-                const std::vector<std::vector<double>>& commands) {
+                const std::vector<std::vector<double>>& commands, const std::vector<std::string>& warnings) {
   std::optional<SurfacePicture> part;
   std::string incomplete;
   if (!command.part.empty()) {
@@ -136,9 +138,13 @@ void write_page(const PathCommand& command, const Machine& machine, const ToolPa
       {"moves", fmt::format("{} in {} region{}", path.steps.size(), path.regions, path.regions == 1 ? "" : "s")},
       {"at work", fmt::format("{:.3f} mm, {:.2f} s at the feeds", path.working_length, path.working_time)},
       {"off the straight lines", fmt::format("at most {:.3f} \xC2\xB5m", 1e3 * path.largest_deviation)}};
-  if (part)
+  if (!warnings.empty()) {
+    facts.emplace_back("placement", fmt::format("{}; {}", name(command.placement), fmt::join(warnings, "; ")));
+  }
+  if (part) {
     facts.emplace_back("part",
                        fmt::format("{}, {} triangles{}", name(command.part), part->triangles_of_part, incomplete));
+  }
   write_file_atomically(command.report, path_page("Tool path of " + name(command.curve), machine, facts,
                                                   path_picture(machine, path, commands), part));
 }
@@ -157,7 +163,13 @@ int run_path(const PathCommand& command) {
     }
   }
   Machine machine = calibrated.machine;
-  if (!command.placement.empty()) machine = with_workpiece(machine, read_placement(command.placement));
+  std::vector<std::string> warnings;
+  if (!command.placement.empty()) {
+    PlacementFile file = read_placement(command.placement);
+    machine = with_workpiece(machine, file.placement);
+    warnings = std::move(file.warnings);
+    for (const std::string& warning : warnings) tell("abbe: warning: {}: {}\n", command.placement, warning);
+  }
   Curve curve = read_curve(command.curve, machine);
   for (CurvePoint& point : curve.points) {
     if (!(point.feed > 0)) point.feed = command.feed_mm_per_min / 60;
@@ -214,10 +226,12 @@ int run_path(const PathCommand& command) {
                        "a name ending in .ngc, .nc, .tap, .mpf or .csv");
     }
   }
-  if (!command.report.empty()) write_page(command, machine, path, commands);
+  if (!command.report.empty()) write_page(command, machine, path, commands, warnings);
   const Miss miss = largest_miss(machine, curve, path);
   if (command.json) {
-    fmt::print("{}", json_text(path_json(machine, path, miss)));
+    nlohmann::ordered_json json = path_json(machine, path, miss);
+    if (!warnings.empty()) json["warnings"] = warnings;
+    fmt::print("{}", json_text(json));
   } else {
     print_path(machine, path, miss, command);
   }

@@ -32,7 +32,7 @@ struct PositionCommand {
 
 /// The scan laid on the workpiece, and why not.
 struct OnWorkpiece {
-  std::string incomplete;  ///< which faces the part lacks, if it does
+  std::vector<std::string> warnings;
   FineRegistration fine;
   bool ok = false;
   std::string status;
@@ -52,7 +52,7 @@ OnWorkpiece lay_on_workpiece(const WorkpieceScan& workpiece, const StepReading& 
   RegistrationOptions options;
   options.noise_mm = workpiece.noise;
   const MeshFile part = step.read(workpiece.part);
-  result.incomplete = left_out_faces_words(part);
+  if (!part.left_out.empty()) result.warnings.push_back("the part is incomplete: " + left_out_faces_words(part));
   const PointCloudFile scan = read_point_cloud(workpiece.scan);
   Progress progress("registering");
   const Registration found = RegistrationTarget(part.mesh, options).register_scan(scan.cloud, progress.callback());
@@ -143,7 +143,7 @@ int run_position(const PositionCommand& command) {
   if (file.workpiece) {
     laid = lay_on_workpiece(*file.workpiece, command.step);
     json["workpiece"]["status"] = laid.status;
-    if (!laid.incomplete.empty()) json["workpiece"]["warnings"] = {"the part is incomplete: " + laid.incomplete};
+    if (!laid.warnings.empty()) json["workpiece"]["warnings"] = laid.warnings;
     if (!laid.ok) {
       json["status"] = "no_position";
       if (command.json) fmt::print("{}", json_text(json));
@@ -158,7 +158,8 @@ int run_position(const PositionCommand& command) {
     json["workpiece"]["workpiece_to_table"] = reading_json(placement, false);
   }
   if (!command.output.empty()) {
-    write_file_atomically(command.output, placement_text(placement, command.maps != "workpiece-to-table"));
+    write_file_atomically(command.output,
+                          placement_text({placement, laid.warnings}, command.maps != "workpiece-to-table"));
   }
   if (command.json) {
     fmt::print("{}", json_text(json));
@@ -182,7 +183,7 @@ int run_position(const PositionCommand& command) {
     fmt::print("  scan on the workpiece: {} points used, scatter {:.1f} um\n", laid.fine.used,
                1e3 * laid.fine.scale_mm);
   }
-  if (!laid.incomplete.empty()) fmt::print("  warning: the part is incomplete: {}\n", laid.incomplete);
+  for (const std::string& warning : laid.warnings) fmt::print("  warning: {}\n", warning);
   fmt::print(
       "  angle from X to Y {:+.1f} urad off 90 degrees; table's axis tilted by {:+.1f}, {:+.1f} urad about X, Y\n",
       1e6 * scanner.squareness, 1e6 * scanner.axis_tilt.x(), 1e6 * scanner.axis_tilt.y());

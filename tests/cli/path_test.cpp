@@ -124,6 +124,18 @@ TEST_F(Path, TableA4EqualsTheReferenceInBothConventionsReadingsBranchesAndTableA
   EXPECT_EQ(compared, 240);
 }
 
+TEST_F(Path, WarningsOfThePlacementAreRepeated) {
+  std::ifstream file(placement);
+  write("part.placement.toml", std::string(std::istreambuf_iterator<char>(file), {}) +
+                                   "warnings = [\"the part is incomplete: 1 face is left out\"]\n");
+  const CommandResult result =
+      abbe({"path", u_machine, a4, "--placement", "part.placement.toml", "--report", "page.html", "--json"});
+  EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
+  EXPECT_EQ(result.err, "abbe: warning: part.placement.toml: the part is incomplete: 1 face is left out\n");
+  EXPECT_EQ(nlohmann::json::parse(result.out).at("warnings").at(0), "the part is incomplete: 1 face is left out");
+  EXPECT_THAT(text_of("page.html"), HasSubstr("part.placement.toml; the part is incomplete"));
+}
+
 TEST_F(Path, ProgramBringsTheToolAlongTheCurveWithItsFeedAndPierce) {
   const CommandResult result =
       abbe({"path", u_machine, a4, "--placement", placement, "--tolerance-um", "1", "--decimals", "9", "--word", "C1=C",

@@ -1,12 +1,17 @@
 // The options that say how a STEP file is read, in every command that reads a mesh.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
+#include "abbe/formats/mesh_file.h"
+#include "abbe/formats/placement_file.h"
+#include "abbe/geometry/surface_samples.h"
 #include "cli/command_test.h"
 
 namespace abbe {
@@ -113,6 +118,34 @@ TEST_F(StepOptionsCommand, AnIncompletePartIsSaidEverywhere) {
   EXPECT_EQ(plan.exit_code, ExitCode::bad_input);
   EXPECT_THAT(plan.err, HasSubstr("part.step: 1 face is left out (of unknown area): #17 (AdvancedFace): "));
   EXPECT_THAT(plan.err, HasSubstr("expected all faces of the part and of the stage"));
+}
+
+TEST_F(StepOptionsCommand, AnIncompletePartIsSaidInThePlacement) {
+  if (!std::filesystem::exists(std::filesystem::path(ABBE_COMMAND).parent_path() / "abbe-step")) {
+    GTEST_SKIP() << "built without OpenCASCADE";
+  }
+  const std::string whole = ABBE_SOURCE_DIR "/tests/golden/step/assembly.step";
+  std::ifstream file(whole);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  text.replace(text.find("= PLANE("), 8, "= PLONE(");
+  folder.write("part.step", text);
+  const RigidTransform scanner_from_part{rotation_xyz({0.1, -0.2, 0.3}), {20, -10, 500}};
+  const Eigen::Matrix3Xd points = sample_surface(read_mesh(whole).mesh, 300, 7).points;
+  std::string scan = "x_mm,y_mm,z_mm\n";
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d seen = scanner_from_part * Eigen::Vector3d(points.col(i));
+    scan += fmt::format("{:.4f},{:.4f},{:.4f}\n", seen.x(), seen.y(), seen.z());
+  }
+  folder.write("scan.csv", scan);
+  write_positioning("part.step");
+  const CommandResult found =
+      abbe({"position", "mesh.positioning.toml", "--leave-out-faces", "-o", "part.placement.toml"});
+  ASSERT_EQ(found.exit_code, ExitCode::done) << found.err;
+  EXPECT_THAT(found.err, HasSubstr("part.step: 1 face is left out"));
+  EXPECT_THAT(found.out, HasSubstr("warning: the part is incomplete: 1 face is left out"));
+  const std::vector<std::string> warnings = read_placement(folder.path() / "part.placement.toml").warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0], testing::StartsWith("the part is incomplete: 1 face is left out (of unknown area): #"));
 }
 
 }  // namespace

@@ -87,13 +87,15 @@ TEST(CurveFile, ProgramsThatWouldBeMisreadAreRefused) {
 
 TEST(CurveFile, PlacementsMapBothWaysAndComeBack) {
   const std::string text = "translation_mm = [1, 2, 3]\nangles_deg = [10, 20, 30]\n";
-  const Placement to_table = parse_placement("maps = \"workpiece-to-table\"\n" + text, "p");
-  const Placement to_workpiece = parse_placement("maps = \"table-to-workpiece\"\n" + text, "p");
+  const Placement to_table = parse_placement("maps = \"workpiece-to-table\"\n" + text, "p").placement;
+  const Placement to_workpiece = parse_placement("maps = \"table-to-workpiece\"\n" + text, "p").placement;
   EXPECT_EQ(to_table.table_from_workpiece.translation, Eigen::Vector3d(1, 2, 3));
   const RigidTransform both = to_table.table_from_workpiece * to_workpiece.table_from_workpiece;
   EXPECT_LT(both.translation.norm() + (both.rotation - Eigen::Matrix3d::Identity()).norm(), 1e-14);
   for (const bool reading : {true, false}) {
-    const Placement back = parse_placement(placement_text(to_table, reading), "p");
+    const PlacementFile file = parse_placement(placement_text({to_table, {"a \"word\"", "more"}}, reading), "p");
+    EXPECT_THAT(file.warnings, testing::ElementsAre("a \"word\"", "more"));
+    const Placement& back = file.placement;
     EXPECT_LT((back.table_from_workpiece.translation - Eigen::Vector3d(1, 2, 3)).norm(), 1e-14);
     EXPECT_LT((back.table_from_workpiece.rotation - to_table.table_from_workpiece.rotation).norm(), 1e-14);
   }

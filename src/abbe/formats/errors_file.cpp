@@ -135,14 +135,6 @@ const Unit& error_unit(Component component) {
   return unit_named(error_quantity(component), is_rotation(component) ? "urad" : "um");
 }
 
-/// A list of sentences, one a line; nothing if there are none.
-std::string sentences_text(const char* key, const std::vector<std::string>& sentences) {
-  if (sentences.empty()) return "";
-  std::string text = fmt::format("{} = [\n", key);
-  for (const std::string& sentence : sentences) text += fmt::format("  {},\n", toml_string(sentence));
-  return text + "]\n";
-}
-
 std::string motion_text(const Machine& machine, const ErrorMotion& motion) {
   const Axis& axis = machine.axes[motion.axis];
   const Unit& unit = error_unit(motion.component);
@@ -249,9 +241,9 @@ std::string errors_text(const Machine& machine, const ErrorsFile& contents, cons
   std::string text = "# Geometric errors, actual minus nominal: docs/formats.md, docs/conventions.md.\n";
   text += fmt::format("chain = {}\n", toml_string(machine.chain()));
   if (!covariance_file.empty()) text += fmt::format("covariance = {}\n", toml_string(covariance_file));
-  text += sentences_text("distrusted", contents.distrusted);
+  text += toml_texts("distrusted", contents.distrusted);
   if (contents.misfit_accepted) text += "misfit_accepted = true\n";
-  text += sentences_text("warnings", contents.warnings);
+  text += toml_texts("warnings", contents.warnings);
   if (!contents.provenance.empty()) text += "\n[provenance]\n";
   for (const auto& [key, value] : contents.provenance) {
     text += fmt::format("{} = {}\n", toml_string(key), toml_string(value));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/text_file.h"
@@ -11,21 +12,23 @@
 
 namespace abbe {
 
-Placement parse_placement(const std::string& text, const std::string& file) {
+PlacementFile parse_placement(const std::string& text, const std::string& file) {
   TomlTable root = TomlTable::parse(text, file);
   const std::size_t maps = root.word("maps", {"table-to-workpiece", "workpiece-to-table"});
   const std::vector<double> t = root.numbers("translation", Quantity::length, 3);
   const std::vector<double> a = root.numbers("angles", Quantity::angle, 3);
+  std::vector<std::string> warnings = root.texts_or_none("warnings");
   root.finish();
   const RigidTransform given = {rotation_xyz({a[0], a[1], a[2]}), {t[0], t[1], t[2]}};
-  return {maps == 0 ? given.inverse() : given};
+  return {{maps == 0 ? given.inverse() : given}, std::move(warnings)};
 }
 
-Placement read_placement(const std::filesystem::path& path) {
+PlacementFile read_placement(const std::filesystem::path& path) {
   return parse_placement(read_file_of_kind(path, ".placement.toml"), path.string());
 }
 
-std::string placement_text(const Placement& placement, bool table_to_workpiece) {
+std::string placement_text(const PlacementFile& file, bool table_to_workpiece) {
+  const Placement& placement = file.placement;
   const RigidTransform given =
       table_to_workpiece ? placement.table_from_workpiece.inverse() : placement.table_from_workpiece;
   const Eigen::Vector3d angles = angles_xyz(given.rotation);
@@ -43,7 +46,7 @@ std::string placement_text(const Placement& placement, bool table_to_workpiece) 
         "{:.1f}, {:.1f}, {:.1f} urad\n",
         1e3 * u(0), 1e3 * u(1), 1e3 * u(2), 1e6 * u(3), 1e6 * u(4), 1e6 * u(5));
   }
-  return text;
+  return text + toml_texts("warnings", file.warnings);
 }
 
 }  // namespace abbe

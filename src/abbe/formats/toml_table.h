@@ -93,6 +93,9 @@ class TomlTable {
 /// Text in quotes with the escapes of TOML.
 std::string toml_string(std::string_view text);
 
+/// "key = [...]" with one text a line; nothing if there are none.
+std::string toml_texts(std::string_view key, const std::vector<std::string>& texts);
+
 /// "key_deg = [...]" if degrees read back to the same bits, else in rad. One value: without brackets if `scalar`.
 std::string toml_angles(std::string_view base, const std::vector<double>& values, bool scalar = false);
 

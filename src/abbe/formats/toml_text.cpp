@@ -40,6 +40,13 @@ std::string toml_string(std::string_view text) {
   return quoted + "\"";
 }
 
+std::string toml_texts(std::string_view key, const std::vector<std::string>& texts) {
+  if (texts.empty()) return "";
+  std::string lines = fmt::format("{} = [\n", key);
+  for (const std::string& text : texts) lines += fmt::format("  {},\n", toml_string(text));
+  return lines + "]\n";
+}
+
 std::string toml_angles(std::string_view base, const std::vector<double>& values, bool scalar) {
   std::string line;
   for (const char* suffix : {"deg", "rad"}) {
