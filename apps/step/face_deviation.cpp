@@ -8,6 +8,7 @@
 #include <GProp_GProps.hxx>
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <Poly_Triangulation.hxx>
+#include <Standard_Failure.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopLoc_Location.hxx>
 #include <TopoDS.hxx>
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -121,10 +123,12 @@ Handle(Poly_Triangulation) triangles_of(const TopoDS_Face& face, TopLoc_Location
   return triangulation;
 }
 
-double face_area_mm2(const TopoDS_Face& face) {
+double face_area_mm2(const TopoDS_Face& face) try {
   GProp_GProps properties;
   BRepGProp::SurfaceProperties(face, properties);
   return std::abs(properties.Mass());
+} catch (const Standard_Failure&) {
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 double curve_deviation(const BRepAdaptor_Curve& curve, double from, double to, const gp_XYZ& begin, const gp_XYZ& end) {

@@ -20,7 +20,8 @@ bool has_triangles(const TopoDS_Face& face);
 /// @throws std::runtime_error if there are none
 Handle(Poly_Triangulation) triangles_of(const TopoDS_Face& face, TopLoc_Location& location);
 
-/// In mm^2, of the exact surface within the edges; above zero whichever way they run.
+/// In mm^2, of the exact surface within the edges; above zero whichever way they run; not a number
+/// where OpenCASCADE finds none.
 double face_area_mm2(const TopoDS_Face& face);
 
 /// How far the triangles of a face are from its exact surface, in mm.

@@ -131,11 +131,13 @@ void exchange_curves_of_seams(const IMeshData_Model& model) {
   }
 }
 
-/// Area over half of the circumference, in mm.
-double mean_width(const TopoDS_Face& face) {
+/// Area over half of the circumference, in mm; not a number where OpenCASCADE does not find them.
+double mean_width(const TopoDS_Face& face) try {
   GProp_GProps length;
   BRepGProp::LinearProperties(face, length);
   return length.Mass() > 0 ? 2 * face_area_mm2(face) / length.Mass() : 0;
+} catch (const Standard_Failure&) {
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
 /// What the statuses of a face without triangles say.
