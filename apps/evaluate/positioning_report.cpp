@@ -117,8 +117,7 @@ std::vector<std::string> positioning_notes(const PositioningEvaluation& evaluati
   if (equally_spaced(evaluation.targets)) {
     notes.push_back(
         "the targets are equally spaced: deviations that repeat with their distance or a whole fraction of it (pitch "
-        "of "
-        "a screw, of a scale) do not show");
+        "of a screw, of a scale) do not show");
   }
   return notes;
 }

@@ -78,8 +78,7 @@ std::string validation_words(const std::vector<AguadoRow>& rows) {
   }
   return fmt::format(
       "In {} of {} fits of one kind of axis alone, and in {} of {} fits of all axes, the share of the error that is "
-      "left "
-      "at unseen poses is more than twice the share at the readings{}.",
+      "left at unseen poses is more than twice the share at the readings{}.",
       wrong, partial, other, joint, wrong + other > 0 ? ": a residual is not a validation" : "");
 }
 

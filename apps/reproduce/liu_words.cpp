@@ -181,9 +181,8 @@ std::vector<std::string> liu_conclusions(const LiuResults& r) {
                   1e3 * largest, kLeast, 1e3 * largest < kLeast ? ": Tables 2 and 3 do not explain them" : ""));
   words.emplace_back(
       "The paper publishes no data, and its text gives no numbers with Figures 4b, 6, 9 and 11b. They are compared "
-      "with "
-      "its words; the curves were not read off the pictures. Figures 7 and 8 are compared with the limits that it "
-      "states.");
+      "with its words; the curves were not read off the pictures. Figures 7 and 8 are compared with the limits that "
+      "it states.");
   return words;
 }
 

@@ -138,8 +138,7 @@ ReproducedTable ball_bar_table(const WangBallBarStudy& bar) {
   table.notes = {fmt::format(
       "According to Figure 15 the ball bar agrees with the displacement errors alone at 0.1 mm. Displacements alone "
       "make at most {:.1f} um on these circles; 0.1 mm is {:.1f} times as much. The decoupled errors carry the "
-      "expanded "
-      "uncertainties of the readings, 0.022 and 1.2 um, and have no location errors.",
+      "expanded uncertainties of the readings, 0.022 and 1.2 um, and have no location errors.",
       1e3 * largest_displacement, 0.1 / largest_displacement)};
   return table;
 }

@@ -299,8 +299,7 @@ class Run {
       result_.status = IdentifyStatus::rank_deficient;
       result_.message =
           "the readings leave combinations of parameters open that no convention fixes; they keep their start values "
-          "and "
-          "predictions at other poses may be wrong";
+          "and predictions at other poses may be wrong";
       result_.gauge.warnings.push_back(result_.message);
     }
   }
