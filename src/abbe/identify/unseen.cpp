@@ -141,21 +141,37 @@ class Adviser {
     return (together.enough ? together.words : "only several of the measurements tried, together,") + " would show it";
   }
 
+  /// A direction that is seen, but hardly, and what the measurements tried do to its variance.
+  struct Weak {
+    Eigen::VectorXd direction;
+    double variance = 0;
+    double least = 0;  // of the measurements tried
+    bool by_prior = false;
+    Advice advice;
+  };
+
   void weak() {
     const Eigen::MatrixXd covariance =
         typical_.cwiseInverse().asDiagonal() * identification_.covariance * typical_.cwiseInverse().asDiagonal();
     const Eigen::MatrixXd prior = prior_information(problem_, typical_);
     const SymmetricEigen<> eigen(covariance);
+    std::vector<Weak> found;
     for (Index k = typical_.size(); k-- > 0;) {
       const double variance = eigen.eigenvalues()[k];
       if (!(variance > options_.weak * options_.weak)) break;
-      weak(covariance, prior, eigen.eigenvectors().col(k), variance);
+      describe_weak(prior, eigen.eigenvectors().col(k), variance, found);
+    }
+    try_measurements(covariance, found);
+    for (Weak& one : found) {
+      say_remedy(one);
+      result_.push_back(std::move(one.advice));
     }
   }
 
-  void weak(const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& prior, const Eigen::VectorXd& direction,
-            double variance) {
-    Advice advice;
+  void describe_weak(const Eigen::MatrixXd& prior, const Eigen::VectorXd& direction, double variance,
+                     std::vector<Weak>& found) const {
+    Weak weak{direction, variance, variance, false, {}};
+    Advice& advice = weak.advice;
     advice.unseen = false;
     advice.kind = AdviceKind::weak;
     advice.parameters = largest_entries(direction, kNamedEntry);
@@ -165,36 +181,49 @@ class Adviser {
     const Index at = static_cast<Index>(advice.parameters.front());
     const double size = std::sqrt(variance) * std::abs(direction[at]) * typical_[at];
     // Share of the information along the direction that the priors give.
-    const bool by_prior = direction.dot(prior * direction) * variance > kPriorShare;
-    if (by_prior) advice.kind = AdviceKind::not_measured;
-    advice.text =
-        fmt::format("{}{} {}: standard uncertainty of {} {:.3g} {}",
-                    advice.parameters.size() > 1 ? "a combination of " : "", names(parameters_, advice.parameters),
-                    by_prior ? "is not seen by the readings and rests on prior knowledge alone" : "is seen only weakly",
-                    first.name, (first.is_angle ? 1e6 : 1e3) * size, first.is_angle ? "urad" : "um");
-    double least = variance;
-    for (std::size_t m = 0; m < possible_.size() && !advice.shown; ++m) {
+    weak.by_prior = direction.dot(prior * direction) * variance > kPriorShare;
+    if (weak.by_prior) advice.kind = AdviceKind::not_measured;
+    advice.text = fmt::format(
+        "{}{} {}: standard uncertainty of {} {:.3g} {}", advice.parameters.size() > 1 ? "a combination of " : "",
+        names(parameters_, advice.parameters),
+        weak.by_prior ? "is not seen by the readings and rests on prior knowledge alone" : "is seen only weakly",
+        first.name, (first.is_angle ? 1e6 : 1e3) * size, first.is_angle ? "urad" : "um");
+    found.push_back(std::move(weak));
+  }
+
+  /// Each measurement is decomposed once for all directions that none before it has shown.
+  void try_measurements(const Eigen::MatrixXd& covariance, std::vector<Weak>& found) const {
+    for (std::size_t m = 0; m < possible_.size(); ++m) {
+      if (std::all_of(found.begin(), found.end(), [](const Weak& one) { return one.advice.shown; })) return;
       // Variance after adding rows A: d'(C - C A'(I + A C A')^-1 A C) d.
       const Eigen::MatrixXd spread = rows_[m] * covariance;
       Eigen::MatrixXd inner = spread * rows_[m].transpose();
       inner.diagonal().array() += 1;
-      const Eigen::VectorXd seen = spread * direction;
-      const double after = variance - seen.dot(Cholesky(inner).solve(seen));
-      least = std::min(least, after);
-      if (!(after < kQuarter * variance)) continue;
-      advice.shown = true;
-      advice.factor = std::sqrt(variance / std::max(after, 1e-12 * variance));
-      advice.remedy = possible_[m].words + " would lower its uncertainty";
+      const Cholesky factor(inner);
+      for (Weak& one : found) {
+        if (one.advice.shown) continue;
+        const Eigen::VectorXd seen = spread * one.direction;
+        const double after = one.variance - seen.dot(factor.solve(seen));
+        one.least = std::min(one.least, after);
+        if (!(after < kQuarter * one.variance)) continue;
+        one.advice.shown = true;
+        one.advice.factor = std::sqrt(one.variance / std::max(after, 1e-12 * one.variance));
+        one.advice.remedy = possible_[m].words + " would lower its uncertainty";
+      }
     }
-    if (!advice.shown && by_prior && !possible_.empty() && least > kHardlyLess * variance) {
+  }
+
+  void say_remedy(Weak& weak) const {
+    Advice& advice = weak.advice;
+    if (advice.shown) return;
+    if (!weak.by_prior || possible_.empty()) {
+      advice.remedy = "more readings of the same kind, or a more accurate instrument";
+    } else if (weak.least > kHardlyLess * weak.variance) {
       advice.kind = AdviceKind::convention;
       advice.remedy = "none is needed: no measurement tried tells it apart, the prior takes the place of a convention";
-    } else if (!advice.shown && by_prior && !possible_.empty()) {
+    } else {
       advice.remedy = "none of the measurements tried lowers its uncertainty to a half";
-    } else if (!advice.shown) {
-      advice.remedy = "more readings of the same kind, or a more accurate instrument";
     }
-    result_.push_back(std::move(advice));
   }
 
   const Problem& problem_;
