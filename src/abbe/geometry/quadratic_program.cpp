@@ -2,10 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "abbe/geometry/decompositions.h"
 
 namespace abbe::fits {
+namespace {
+
+// Of the complementarity and the constraints: reached.
+constexpr double kComplementary = 1e-15;
+constexpr double kReached = 1e-12;
+// Slopes of badly scaled problems do not come to kReached. Where they are below this and do not fall any more, rounding
+// has been reached; further steps would only divide by slacks that are rounding themselves, and lead away again.
+constexpr double kNearlyReached = 1e-6;
+constexpr double kStillFalls = 0.9;
+
+}  // namespace
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -16,11 +28,16 @@ VectorXd quadratic_program(const MatrixXd& rows, const VectorXd& bound, const Ve
   const Index m = rows.rows();
   VectorXd s = (bound - rows * x).cwiseMax(1e-3);
   VectorXd lambda = VectorXd::Constant(m, 1.0 / static_cast<double>(m));
+  double last_slope = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < 80; ++iteration) {
     const VectorXd dual = cost + quadratic * x + rows.transpose() * lambda;
     const VectorXd primal = rows * x + s - bound;
     const double mu = s.dot(lambda) / static_cast<double>(m);
-    if (mu < 1e-15 && dual.cwiseAbs().maxCoeff() < 1e-12 && primal.cwiseAbs().maxCoeff() < 1e-12) return lambda;
+    const double slope = dual.cwiseAbs().maxCoeff();
+    const bool at_rounding = slope < kNearlyReached && slope > kStillFalls * last_slope;
+    if (mu < kComplementary && primal.cwiseAbs().maxCoeff() < kReached && (slope < kReached || at_rounding))
+      return lambda;
+    last_slope = slope;
     const VectorXd ratio = lambda.cwiseQuotient(s);
     MatrixXd normal = quadratic + rows.transpose() * ratio.asDiagonal() * rows;
     normal.diagonal().array() += 1e-14 * normal.diagonal().maxCoeff();
