@@ -60,6 +60,16 @@ TEST_F(Plans, ListReadingsAndCompareThemWithGrids) {
   }
 }
 
+TEST_F(Plans, SayInWordsHowManyReadingsAreEnoughAndWhatGridsReach) {
+  std::string study = trunnion_study();
+  study.replace(study.find("poses = 400"), 11, "poses = 200");
+  folder.write("small.study.toml", study.replace(study.find("readings = 100"), 14, "readings = 60"));
+  const CommandResult planned = abbe({"plan", "small.study.toml"});
+  ASSERT_EQ(planned.exit_code, done) << planned.err;
+  EXPECT_THAT(planned.out, HasSubstr("how many are enough"));
+  EXPECT_THAT(planned.out, HasSubstr("against grids"));
+}
+
 TEST_F(Plans, AreReadAgainAsPosesOfASimulation) {
   const std::string loop = std::string(ABBE_SOURCE_DIR "/examples/closed_loop/");
   const CommandResult simulated = abbe({"simulate", loop + "closed_loop.study.toml", "-o", "readings"});
