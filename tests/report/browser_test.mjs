@@ -1,5 +1,6 @@
 // Opens reports in headless Chromium from file:// and checks what a reader sees.
-//   node browser_test.mjs --web WEB_DIR --out FOLDER REPORT.html ...
+//   node browser_test.mjs --web WEB_DIR --out FOLDER [--shots] REPORT.html ...
+// --shots leaves pictures of the steps in FOLDER, to be looked at: they cost more than all checks together.
 // Exit code 77: Chromium is not installed, nothing was tested.
 import {existsSync, mkdirSync, readFileSync, statSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
@@ -8,15 +9,16 @@ import {pathToFileURL} from 'node:url';
 
 import {contentOf, mapChoicesOf} from './content_checks.mjs';
 import {motionOf} from './path_checks.mjs';
-import {scanOf} from './scan_checks.mjs';
-import {until} from './until.mjs';
+import {inksOf, scanOf} from './scan_checks.mjs';
+import {settled, until, watchDrawing} from './until.mjs';
 import {keyboardOf, paperOf} from './use_checks.mjs';
 
 const reports = [];
-const options = {web: '', out: ''};
+const options = {web: '', out: '', shots: false};
 for (let i = 2; i < process.argv.length; ++i) {
   const name = process.argv[i];
-  if (name.startsWith('--')) options[name.slice(2)] = process.argv[++i];
+  if (name === '--shots') options.shots = true;
+  else if (name.startsWith('--')) options[name.slice(2)] = process.argv[++i];
   else reports.push(resolve(name));
 }
 const chromiumPath = process.env.ABBE_CHROMIUM ?? '/usr/bin/chromium';
@@ -45,13 +47,18 @@ async function inspect(browser, file) {
   const name = basename(file, '.html');
   const problems = (text) => `${name}: ${text}`;
   const expect = (good, text) => check(good, problems(text));
-  const shot = (locator, part) => locator.screenshot({path: join(options.out, `${name}-${part}.png`)});
+  const picture = (part) => join(options.out, `${name}-${part}.png`);
+  // Without a picture what is shown is scrolled to all the same: the pointer acts only on what is in the window.
+  const shot = (locator, part) => (options.shots ? locator.screenshot({path: picture(part)}) : locator.scrollIntoViewIfNeeded());
+  const shotOfAll = (part) => options.shots && page.screenshot({path: picture(part), fullPage: true});
   const size = statSync(file).size;
   check(size < 3e6, problems(`${size} bytes, 3 MB allowed`));
   const data = JSON.parse(readFileSync(file, 'utf8').match(/id="abbe-data">([\s\S]*?)<\/script>/)[1]);
 
-  const context = await browser.newContext({viewport: {width: 1280, height: 900}, colorScheme: 'light', offline: true});
+  // Smooth scrolling is drawn frame by frame; `keyboardOf` checks it by itself.
+  const context = await browser.newContext({viewport: kTinyWindow, colorScheme: 'dark', reducedMotion: 'reduce', offline: true});
   const page = await context.newPage();
+  await page.addInitScript(watchDrawing);
   const url = pathToFileURL(file).href;
   page.on('console', (message) => {
     // The software renderer comments on its own speed; that is not the page's doing.
@@ -62,8 +69,21 @@ async function inspect(browser, file) {
   page.on('request', (request) => {
     if (request.url() !== url && !/^(data|blob):/.test(request.url())) check(false, problems(`request of ${request.url()}`));
   });
-  await page.goto(url, { timeout: 120_000 });
-  await page.waitForTimeout(600);
+  // The system's preference is followed when nothing was chosen. The window has no room for drawings, which this does not need.
+  await page.goto(url, {timeout: 120_000});
+  check((await page.evaluate(() => document.documentElement.dataset.theme)) === 'dark', problems('does not follow the system to dark'));
+  await page.emulateMedia({colorScheme: 'light'});
+  await page.setViewportSize({width: 1280, height: 900});
+  await page.goto(url, {timeout: 120_000});
+  await settled(page, 5);
+  // What is drawn stays: for half a second, and for an image on paper, which is in the light theme too.
+  if (await page.locator('.stage canvas').count()) {
+    const drawings = () => page.evaluate(() => window.drawings);
+    const drawn = await drawings();
+    await page.evaluate(() => ['beforeprint', 'afterprint'].forEach((name) => window.dispatchEvent(new Event(name))));
+    await settled(page, 30);
+    check(drawn > 0 && (await drawings()) === drawn, problems(`the views are drawn ${await drawings()} times, ${drawn} before, although nothing changes`));
+  }
 
   check((await page.textContent('h1')) === data.title, problems('the heading is not the title'));
   check((await page.evaluate(() => window.broken)) === undefined, problems('data were executed as a script'));
@@ -112,18 +132,7 @@ async function inspect(browser, file) {
 
   // The three-dimensional views: coloured pixels, different between before and after unless the data are equal.
   if (data.map) {
-    const ink = () => page.$$eval('.stage canvas', (all) => all.map((canvas) => {
-      const flat = document.createElement('canvas');
-      flat.width = canvas.width;
-      flat.height = canvas.height;
-      const context2d = flat.getContext('2d');
-      context2d.drawImage(canvas, 0, 0);
-      const pixels = context2d.getImageData(0, 0, flat.width, flat.height).data;
-      let coloured = 0;
-      for (let i = 0; i < pixels.length; i += 4)
-        if (pixels[i + 3] > 40 && Math.max(pixels[i], pixels[i + 1], pixels[i + 2]) - Math.min(pixels[i], pixels[i + 1], pixels[i + 2]) > 40) ++coloured;
-      return coloured;
-    }));
+    const ink = () => inksOf(page, '.stage canvas', 40).then((all) => all.map((one) => one.coloured));
     const moved = ['x', 'y', 'z'].some((k) => data.map.before_um[k].some((v) => v !== 0));
     if (moved) await until(async () => (await ink())[0] > 500);
     const first = await ink();
@@ -146,11 +155,12 @@ async function inspect(browser, file) {
       const own = page.getByLabel('arrows after at their own length');
       await own.check();
       check(await until(async () => (await ink())[1] > same), problems('arrows after do not grow at their own length'));
-      await page.locator('.views').screenshot({path: join(options.out, `${name}-own-length.png`)});
+      await shot(page.locator('.views'), 'own-length');
       await own.uncheck();
     }
     await page.getByRole('button', {name: 'Reset view'}).click();
-    await page.waitForTimeout(700);
+    // Until the image for paper shows this view: later ones are compared with it.
+    await settled(page, 30);
     const stills = () => page.$$eval('.still', (all) => all.map((e) => e.src.length));
     check(await until(async () => (await stills()).every((n) => n > 2000)), problems('no still image of the map for printing'));
   }
@@ -162,15 +172,15 @@ async function inspect(browser, file) {
 
   const overflow = async (width) => {
     await page.setViewportSize({width, height: 900});
-    await page.waitForTimeout(400);
+    await settled(page);
     const [inner, outer] = await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.clientWidth]);
     check(inner <= outer, problems(`${inner} px wide in a window of ${outer} px`));
   };
   await overflow(320);
   await overflow(390);
-  await page.screenshot({path: join(options.out, `${name}-narrow.png`), fullPage: true});
+  await shotOfAll('narrow');
   await overflow(1280);
-  await page.screenshot({path: join(options.out, `${name}-light.png`), fullPage: true});
+  await shotOfAll('light');
 
   // Contrast of running text against what lies behind it, WCAG 2.1: 4.5.
   const contrast = () => page.evaluate(() => {
@@ -198,11 +208,11 @@ async function inspect(browser, file) {
   const paper = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   const lightPaper = await paper();
   await page.click('button.theme');
-  await page.waitForTimeout(700);
+  await settled(page);
   const darkPaper = await paper();
   check(lightPaper !== darkPaper && numbersOf(darkPaper).every((v) => v < 60), problems(`dark theme: background ${darkPaper}`));
   for (const text of await contrast()) check(false, problems(`low contrast in the dark theme: ${text}`));
-  await page.screenshot({path: join(options.out, `${name}-dark.png`), fullPage: true});
+  await shotOfAll('dark');
   await page.pdf({path: join(options.out, `${name}-print.pdf`), format: 'A4', printBackground: true});
 
   await paperOf(page, data, expect);
@@ -213,21 +223,18 @@ async function inspect(browser, file) {
       !(e.labels?.length || e.getAttribute('aria-label') || e.textContent.trim())).map((e) => e.outerHTML.slice(0, 80)));
   check(unlabelled.length === 0, problems(`without a label: ${unlabelled[0]}`));
 
-  // The system's preference is followed when nothing was chosen.
-  const second = await browser.newContext({colorScheme: 'dark', offline: true});
-  const other = await second.newPage();
-  await other.goto(url, { timeout: 120_000 });
-  check((await other.evaluate(() => document.documentElement.dataset.theme)) === 'dark', problems('does not follow the system to dark'));
-  await second.close();
   await context.close();
   return {name, size, figures: compared, sections: sections.length};
 }
 
+const kTinyWindow = {width: 20, height: 20};
 const numbersOf = (colour) => colour.match(/[\d.]+/g).slice(0, 3).map(Number);
+// There is no graphics processor: the three-dimensional views are drawn in software, and Chromium would draw the whole page through the
+// same slow emulation of one unless told that there is none. Smooth edges take half of the time of a view; they are for looking only.
 const browser = await chromium.launch({
   executablePath: chromiumPath,
-  args: ['--headless', '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking',
-    '--no-first-run', '--disable-component-update', '--disable-sync'],
+  args: ['--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking',
+    '--no-first-run', '--disable-component-update', '--disable-sync', ...(options.shots ? [] : ['--webgl-antialiasing-mode=none'])],
 });
 const results = [];
 try {

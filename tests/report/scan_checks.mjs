@@ -1,6 +1,6 @@
 // Pages of scans: figures of the evaluation, deviations on the part, sections. What the page shows is compared with the data, unpacked
 // and cut here once more.
-import {until} from './until.mjs';
+import {settled, until} from './until.mjs';
 
 const bytes = (text) => Buffer.from(text, 'base64');
 export const unpackedBytes = (text) => [...bytes(text)];
@@ -17,21 +17,27 @@ export function unpacked(block) {
     feet: block.points && places(block.points.foot), readings: block.points && values(block.points.values)};
 }
 
-/// How many pixels of a canvas are coloured, and a sum that changes with what is drawn.
-export const inkOf = (page, selector) => page.$eval(selector, (canvas) => {
-  const flat = document.createElement('canvas');
-  [flat.width, flat.height] = [canvas.width, canvas.height];
-  const context = flat.getContext('2d');
-  context.drawImage(canvas, 0, 0);
-  const pixels = context.getImageData(0, 0, flat.width, flat.height).data;
-  let [coloured, drawn, sum] = [0, 0, 0];
-  for (let i = 0; i < pixels.length; i += 4) {
-    if (pixels[i + 3] > 40) ++drawn;
-    if (pixels[i + 3] > 40 && Math.max(pixels[i], pixels[i + 1], pixels[i + 2]) - Math.min(pixels[i], pixels[i + 1], pixels[i + 2]) > 30) ++coloured;
-    sum = (sum + (i + 1) * (pixels[i] + 2 * pixels[i + 1] + 3 * pixels[i + 2])) % 1000000007;
-  }
-  return {coloured, drawn, sum};
-});
+/// For each canvas, after its next frame: how many pixels are drawn and coloured, and a sum that changes with what is drawn.
+/// @param least  difference between the channels of what counts as coloured
+export const inksOf = (page, selector, least = 30) => page.evaluate(async ([selector, least]) => {
+  await window.settled();
+  return [...document.querySelectorAll(selector)].map((canvas) => {
+    const flat = document.createElement('canvas');
+    [flat.width, flat.height] = [canvas.width, canvas.height];
+    // Read at once, so that it is kept where it is read.
+    const context = flat.getContext('2d', {willReadFrequently: true});
+    context.drawImage(canvas, 0, 0);
+    const pixels = context.getImageData(0, 0, flat.width, flat.height).data;
+    let [coloured, drawn, sum] = [0, 0, 0];
+    for (let i = 0; i < pixels.length; i += 4) {
+      if (pixels[i + 3] > 40) ++drawn;
+      if (pixels[i + 3] > 40 && Math.max(pixels[i], pixels[i + 1], pixels[i + 2]) - Math.min(pixels[i], pixels[i + 1], pixels[i + 2]) > least) ++coloured;
+      sum = (sum + (i + 1) * (pixels[i] + 2 * pixels[i + 1] + 3 * pixels[i + 2])) % 1000000007;
+    }
+    return {coloured, drawn, sum};
+  });
+}, [selector, least]);
+export const inkOf = async (page, selector) => (await inksOf(page, selector))[0];
 
 async function figuresOf(page, evaluation, expect, parse) {
   const shown = new Map(await page.$$eval('#figures [data-figure]', (all) => all.map((e) => [e.dataset.figure, e.textContent])));
@@ -75,7 +81,7 @@ async function sweep(page, selector, output, parse) {
   const box = await page.locator(selector).first().boundingBox();
   for (const [u, v] of [[0.5, 0.5], [0.45, 0.55], [0.55, 0.5], [0.4, 0.5], [0.5, 0.4], [0.6, 0.6], [0.35, 0.6], [0.5, 0.62], [0.3, 0.5], [0.65, 0.45]]) {
     await page.mouse.move(box.x + u * box.width, box.y + v * box.height);
-    await page.waitForTimeout(60);
+    await settled(page);
     const reading = readingOf(await page.textContent(output), parse);
     if (reading) return reading;
   }
@@ -154,7 +160,7 @@ async function sectionReading(page, data, axis, expect, parse, step) {
   const old = await page.inputValue('#section-factor');
   const at = async (value) => {
     await page.fill('#section-factor', String(value));
-    await page.waitForTimeout(100);
+    await settled(page);
     const words = await page.textContent('label:has(#section-factor) output, output[for=section-factor]');
     return {factor: words === 'none' ? 0 : parse(words.replace('×', '')), ...await dotsOf(page)};
   };
@@ -165,13 +171,13 @@ async function sectionReading(page, data, axis, expect, parse, step) {
   const most = Math.max(...moved);
   expect(most <= largest * 1.01 + 0.02 / some.scale / some.factor * 1e3, `section across ${axis}: moved by ${most} um, the largest deviation is ${largest}`);
   await page.fill('#section-factor', old);
-  await page.waitForTimeout(100);
+  await settled(page);
   const now = await dotsOf(page);
   const box = await page.locator('.section-drawing').boundingBox();
   const shownWidth = await page.$eval('.section-drawing', (e) => e.viewBox.baseVal.width);
   const [x, y] = now.dots[Math.floor(now.dots.length / 2)];
   await page.mouse.move(box.x + (x * box.width) / shownWidth, box.y + (y * box.width) / shownWidth);
-  await page.waitForTimeout(60);
+  await settled(page);
   const read = readingOf(await page.textContent('#section-reading'), parse);
   expect(read !== null, `section across ${axis}: nothing is read at a point`);
   if (!read) return;
@@ -185,7 +191,7 @@ async function sectionOf(page, block, expect, shot, parse) {
   await page.locator('#section').scrollIntoViewIfNeeded();
   for (const [k, axis] of ['x', 'y', 'z'].entries()) {
     await page.selectOption('#section-direction', axis);
-    await page.waitForTimeout(150);
+    await settled(page);
     const words = await page.textContent('#section figcaption');
     const offset = parse(words.match(/ at ([^ ]*?)\u2009mm/)[1]);
     const drawn = await page.$eval('.section-drawing', (e) => ({scale: Number(e.dataset.scale), path: e.querySelector('.outline').getAttribute('d'),

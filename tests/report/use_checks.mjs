@@ -1,4 +1,5 @@
 // The page on paper, with a keyboard and for a screen reader.
+import {settled} from './until.mjs';
 
 const kSheetWidth = 680;
 
@@ -7,7 +8,9 @@ export async function paperOf(page, data, expect) {
   await page.setViewportSize({width: kSheetWidth, height: 1000});
   await page.emulateMedia({media: 'print'});
   await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
-  await page.waitForTimeout(500);
+  await settled(page);
+  // An image that cannot be read is seen below.
+  await page.evaluate(() => Promise.allSettled([...document.querySelectorAll('.still')].map((e) => e.decode())));
   const sheet = await page.evaluate(() => {
     const shown = (e) => getComputedStyle(e).display !== 'none';
     return {
@@ -37,7 +40,7 @@ export async function paperOf(page, data, expect) {
   await page.evaluate(() => window.dispatchEvent(new Event('afterprint')));
   await page.emulateMedia({media: null});
   await page.setViewportSize({width: 1280, height: 900});
-  await page.waitForTimeout(300);
+  await settled(page);
   expect((await page.locator(':root.printing').count()) === 0, 'the layout of the sheet stays after printing');
 }
 
@@ -52,22 +55,18 @@ export async function keyboardOf(page, expect) {
   const wanted = await page.evaluate(() => {
     const all = [...document.querySelectorAll('a[href],button,input,select,[tabindex="0"]')].filter((e) => e.getClientRects().length && !e.disabled);
     all.forEach((e, i) => (e.dataset.stop = String(i)));
+    window.stops = [];
+    document.addEventListener('focusin', ({target: e}) => {
+      const style = getComputedStyle(e);
+      window.stops.push({stop: e.dataset.stop, name: e.outerHTML.slice(0, 60), visible: style.outlineStyle !== 'none' && parseFloat(style.outlineWidth) >= 1.5});
+    });
     return all.length;
   });
-  const reached = new Set();
-  const dark = [];
-  for (let i = 0; i < wanted + 8; ++i) {
-    await page.keyboard.press('Tab');
-    const at = await page.evaluate(() => {
-      const e = document.activeElement;
-      const style = e && getComputedStyle(e);
-      return {stop: e?.dataset?.stop, name: e?.outerHTML.slice(0, 60), visible: Boolean(style) && style.outlineStyle !== 'none' && parseFloat(style.outlineWidth) >= 1.5};
-    });
-    if (at.stop === undefined) continue;
-    if (reached.size === 0) expect(at.name.includes('skip'), `the first stop of the Tab key is ${at.name}`);
-    reached.add(at.stop);
-    if (!at.visible) dark.push(at.name);
-  }
+  for (let i = 0; i < wanted + 8; ++i) await page.keyboard.press('Tab');
+  const stops = (await page.evaluate(() => window.stops)).filter((at) => at.stop !== undefined);
+  const reached = new Set(stops.map((at) => at.stop));
+  const dark = stops.filter((at) => !at.visible).map((at) => at.name);
+  expect(stops[0]?.name.includes('skip'), `the first stop of the Tab key is ${stops[0]?.name}`);
   expect(reached.size === wanted, `the Tab key reaches ${reached.size} of ${wanted} elements`);
   expect(dark.length === 0, `focus not visible: ${dark[0]}`);
 

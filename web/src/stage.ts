@@ -18,6 +18,7 @@ export abstract class Stage {
   private frame: {dark: boolean; parts: FramePart[]} | undefined;
   private timer = 0;
   private pending = false;
+  private sized = false;
 
   constructor(
     protected readonly title: string,
@@ -42,7 +43,6 @@ export abstract class Stage {
     this.canvas.addEventListener('keydown', (event) => this.key(event));
     new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement!);
     window.addEventListener('beforeprint', () => this.photograph());
-    window.addEventListener('afterprint', () => this.render());
   }
 
   /// Gives everything drawn the colours of a theme.
@@ -84,6 +84,7 @@ export abstract class Stage {
     const height = stage.clientHeight;
     if (!this.renderer || width < 10 || height < 10) return;
     this.renderer.setSize(width, height, false);
+    this.sized = true;
     this.render();
   }
 
@@ -101,7 +102,8 @@ export abstract class Stage {
 
   private draw(dark: boolean): void {
     const stage = this.canvas.parentElement!;
-    if (!this.renderer || stage.clientWidth < 10) return;
+    // Before the first size is known the drawing would be thrown away.
+    if (!this.renderer || !this.sized || stage.clientWidth < 10) return;
     this.drawFrame(dark);
     const camera = this.shared.camera;
     camera.aspect = stage.clientWidth / stage.clientHeight;
@@ -117,10 +119,11 @@ export abstract class Stage {
 
   /// A still for paper, in the colours of the light theme.
   private photograph(): void {
-    if (!this.renderer || this.canvas.width < 10) return;
+    if (!this.renderer || !this.sized) return;
     const dark = isDark();
     if (dark) this.paint(false);
-    this.draw(false);
+    // In the light theme the canvas shows it already, unless a change is not drawn yet.
+    if (dark || this.pending) this.draw(false);
     this.still.src = this.canvas.toDataURL('image/png');
     if (dark) {
       this.paint(true);

@@ -80,6 +80,9 @@ export class SurfaceView extends Stage {
 
   /// A line on the part where a plane cuts it. @param ends  [6 lines] mm
   showCut(ends: Float32Array): void {
+    // A section is drawn anew for another width too, and the same cut is there already.
+    const there = this.cut.geometry.getAttribute('position')?.array;
+    if (there?.length === ends.length && ends.every((value, i) => value === there[i])) return;
     this.cut.geometry.dispose();
     this.cut.geometry = new BufferGeometry();
     this.cut.geometry.setAttribute('position', new BufferAttribute(ends, 3));
