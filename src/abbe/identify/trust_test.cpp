@@ -172,7 +172,8 @@ TEST(Trust, RoundingIsNoError) {
 TEST(Trust, AStationFittedToFewReadingsHidesMoreThanOneFittedToMany) {
   // Per point what the station took up, and nothing else: the limits are f F(f, n - f), 1855 for 4 points and 46.3 for
   // 50, times the variance.
-  for (const auto& [points, limit] : {std::pair(4.0, 1855.0), std::pair(50.0, 46.3)}) {
+  for (const std::pair<double, double>& known : {std::pair(4.0, 1855.0), std::pair(50.0, 46.3)}) {
+    const double points = known.first, limit = known.second;
     const auto count = static_cast<std::size_t>(points);
     const double numbers = 3 * points, variance = 1e-4;
     HeldOutErrors errors{.before = std::vector<double>(count, std::sqrt(variance * (numbers - 6) / points)),
