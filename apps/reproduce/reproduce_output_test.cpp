@@ -71,7 +71,8 @@ TEST(ReproduceOutput, ANumberThatIsNotFiniteIsAMissingOneEverywhere) {
                   {{"case"}, {"found", "um"}, {"words"}},
                   {{"a", nan, ""}, {"b", {}, nan}, {"c", -infinity, "d"}}}};
   for (const auto& row : made.tables[0].rows) EXPECT_FALSE(row[1].has_value());
-  for (const auto& row : reproduction_json(made)["tables"]["gaps"]["rows"]) EXPECT_TRUE(row["found_um"].is_null());
+  const nlohmann::ordered_json json = reproduction_json(made);
+  for (const auto& row : json["tables"]["gaps"]["rows"]) EXPECT_TRUE(row["found_um"].is_null());
   EXPECT_EQ(reproduction_csv(made.tables[0]), "case,found_um,words\na,,\nb,,\nc,,d\n");
   EXPECT_NE(reproduction_page(made).find(R"("rows":[["a",null,""],["b",null,null],["c",null,"d"]])"),
             std::string::npos);
