@@ -32,6 +32,18 @@ double beta_fraction(double a, double b, double x) {
   return value;
 }
 
+/// Where an exceedance that falls with x from 1 at 0 has a value. @param high  first guess, above 0
+template <typename Exceedance>
+double quantile_by_bisection(double exceedance, double high, const Exceedance& exceedance_at) {
+  double low = 0;
+  while (exceedance_at(high) > exceedance) high *= 2;
+  for (int i = 0; i < 200 && high - low > 1e-13 * high; ++i) {
+    const double middle = (low + high) / 2;
+    (exceedance_at(middle) > exceedance ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
 }  // namespace
 
 double incomplete_gamma_upper(double a, double x) {
@@ -74,26 +86,13 @@ double chi_square_exceedance(double value, double degrees_of_freedom) {
 }
 
 double chi_square_quantile(double exceedance, double degrees_of_freedom) {
-  double low = 0, high = degrees_of_freedom + 10;
-  while (chi_square_exceedance(high, degrees_of_freedom) > exceedance) high *= 2;
-  for (int i = 0; i < 200 && high - low > 1e-13 * high; ++i) {
-    const double middle = (low + high) / 2;
-    (chi_square_exceedance(middle, degrees_of_freedom) > exceedance ? low : high) = middle;
-  }
-  return (low + high) / 2;
+  return quantile_by_bisection(exceedance, degrees_of_freedom + 10,
+                               [&](double x) { return chi_square_exceedance(x, degrees_of_freedom); });
 }
 
 double fisher_quantile(double exceedance, double upper, double lower) {
-  const auto exceeded = [&](double x) {
-    return incomplete_beta(lower / 2, upper / 2, lower / (lower + upper * x)) > exceedance;
-  };
-  double low = 0, high = 10;
-  while (exceeded(high)) high *= 2;
-  for (int i = 0; i < 200 && high - low > 1e-13 * high; ++i) {
-    const double middle = (low + high) / 2;
-    (exceeded(middle) ? low : high) = middle;
-  }
-  return (low + high) / 2;
+  return quantile_by_bisection(
+      exceedance, 10, [&](double x) { return incomplete_beta(lower / 2, upper / 2, lower / (lower + upper * x)); });
 }
 
 double student_exceedance(double t, double degrees_of_freedom) {

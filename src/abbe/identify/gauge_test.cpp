@@ -249,5 +249,30 @@ TEST(Gauge, what_is_left_open_is_told_the_same_in_whichever_basis_it_was_found) 
   EXPECT_EQ(one[0].inseparable.size() + one[1].inseparable.size() + one[2].inseparable.size(), 3u + 2u + 2u);
 }
 
+TEST(Gauge, what_has_to_be_fixed_keeps_the_value_of_a_fit_where_one_is_given) {
+  FunctionObservations observations(
+      2, 1, std::vector<double>(100, 0.0), 1,
+      [](std::size_t k, std::size_t, const std::vector<FunctionObservations::Complex>& b) {
+        return (b[0] + b[1]) * std::cos(static_cast<double>(k));
+      });
+  observations.start({1, 2});
+  Problem problem = function_problem({&observations});
+  const Eigen::VectorXd start = present_values(problem);
+  const Eigen::VectorXd solution = Eigen::Vector2d(-3, 5);
+  const NullSpace space = find_null_space(problem, start);
+  const auto fixed = [&](const Eigen::VectorXd* at) {
+    return fix_gauge(problem, space, start, GaugeChoice::iso, GaugeOrder::firmest, at);
+  };
+  const std::vector<GaugeConstraint> plain = fixed(nullptr);
+  const std::vector<GaugeConstraint> kept = fixed(&solution);
+  ASSERT_EQ(plain.size(), 1u);
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_THAT(plain[0].words, testing::EndsWith(" keeps its start value"));
+  EXPECT_EQ(plain[0].value, plain[0].functional.dot(start));
+  EXPECT_THAT(kept[0].words, testing::EndsWith(" stays as the fit found it"));
+  EXPECT_EQ(kept[0].value, kept[0].functional.dot(solution));
+  EXPECT_TRUE(kept[0].by_convention);
+}
+
 }  // namespace
 }  // namespace abbe

@@ -37,8 +37,9 @@ struct GaugeAttempt {
   GaugeOrder order = GaugeOrder::convention;
   bool as_found = false;  // location errors and set-up at the values of the fit without a gauge
 };
-// At a solution without a gauge. The zeros of the first two can lie where the machine's axes are parallel and the
-// readings see less than they do nearby: there no choice of equations is firm. The values found are where they see.
+// Tried in turn at a solution that was found without a gauge. The zeros of the first two can lie where axes of the
+// machine are parallel and the readings see less than they do nearby; no choice of equations is firm there. At the
+// values that were found the readings see.
 constexpr GaugeAttempt kGaugeAttempts[] = {
     {GaugeOrder::convention, false}, {GaugeOrder::firmest, false}, {GaugeOrder::firmest, true}};
 
