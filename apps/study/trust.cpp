@@ -92,10 +92,7 @@ void judge_trust(const Study& study, StudyResult& result) {
   warn(warning_of_overstated_noise(identified.statistics));
   doubt(std::move(misfit));
   if (result.unseen && !result.unseen->after.empty()) {
-    const UnseenPoses& unseen = *result.unseen;
-    const HeldOutErrors errors = held_out_errors(unseen, identified.statistics);
-    doubt(distrust_of_held_out(errors));
-    warn(warning_of_held_out(errors));
+    doubt(distrust_of_held_out(held_out_errors(*result.unseen, identified.statistics)));
   }
   const std::vector<ReadingFacts> facts = facts_of(result.campaign);
   judge_outliers(facts, study.identification->loss != LossKind::none, result);

@@ -187,16 +187,18 @@ TEST_F(TrustOfResults, ErrorsThatMakeHeldOutPosesWorseAreRefused) {
   EXPECT_NEAR(figures["distrusted"][0]["rms_after_um"].get<double>(), after, 1e-6 * after);
 }
 
-TEST_F(TrustOfResults, AMachineWithoutErrorsIsNotRefused) {
+TEST_F(TrustOfResults, ACorrectionThatImprovesNothingIsRefused) {
   folder.write("truth.errors.toml", "chain = \"w X' b Z t\"\n");
   measure();
   write_study();
   const CommandResult run = abbe({"run", "s.study.toml", "--json"});
-  EXPECT_EQ(run.exit_code, done) << run.err;
+  EXPECT_EQ(run.exit_code, computation_says_no) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("so the correction shows no improvement"));
   const nlohmann::json figures = nlohmann::json::parse(run.out);
   ASSERT_GT(figures["held_out"]["position_after_um"]["rms"], figures["held_out"]["position_before_um"]["rms"]);
-  EXPECT_EQ(figures["trusted"], true);
-  EXPECT_THAT(figures["warnings"], Contains(HasSubstr("the correction shows no improvement there")));
+  EXPECT_EQ(figures["trusted"], false);
+  EXPECT_EQ(figures["distrusted"][0]["kind"], "no improvement");
+  EXPECT_EQ(abbe({"run", "s.study.toml", "--accept-misfit"}).exit_code, done);
 }
 
 TEST_F(TrustOfResults, WarningsStandInEveryFile) {

@@ -97,6 +97,17 @@ class Run {
     return fmt::format("rank {} of {} parameters and no gauge stated", result_.gauge.rank_at_start, start_.size());
   }
 
+  std::string no_convergence_message() const {
+    constexpr double kFarFromNoise = 3;
+    const double ratio = std::sqrt(result_.statistics.variance_factor);
+    const std::string what = fmt::format("no convergence after {} iterations", result_.history.size());
+    if (!(ratio > kFarFromNoise)) return what;
+    return fmt::format(
+        "{}; the residuals are still {:.3g} times as large as their stated uncertainties. A number of the set-up or of "
+        "the machine may be wrong, such as a scale, an offset, or the direction or point of an axis",
+        what, ratio);
+  }
+
   bool fix() {
     NullSpace null_space = find_null_space(stream_, start_, at_start_);
     Eigen::VectorXd nominal = start_;
@@ -295,7 +306,8 @@ class Run {
       result_.covariance *= result_.statistics.variance_factor;
     result_.standard_uncertainties = result_.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
     write_errors();
-    result_.message = status_text(result_.status);
+    result_.message =
+        result_.status == IdentifyStatus::no_convergence ? no_convergence_message() : status_text(result_.status);
     if (lack_of_data_ && result_.status == IdentifyStatus::converged) {
       result_.status = IdentifyStatus::rank_deficient;
       result_.message =

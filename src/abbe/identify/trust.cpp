@@ -48,7 +48,8 @@ bool is_worse_by_no_chance(const HeldOutErrors& errors) {
 }  // namespace
 
 const char* kind_text(DistrustKind kind) {
-  constexpr const char* kNames[] = {"misfit", "worse held out", "implausible size", "region left out"};
+  constexpr const char* kNames[] = {"misfit", "worse held out", "no improvement", "implausible size",
+                                    "region left out"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -81,27 +82,24 @@ std::string warning_of_overstated_noise(const FitStatistics& fit) {
 }
 
 std::optional<Distrust> distrust_of_held_out(const HeldOutErrors& errors) {
-  if (!is_worse_by_no_chance(errors)) return {};
   const double before = 1e3 * root_mean_square(errors.before), after = 1e3 * root_mean_square(errors.after);
+  const bool worse = is_worse_by_no_chance(errors);
+  if (is_rounding(errors) || !(worse || after > before)) return {};
+  const std::string why =
+      worse ? fmt::format(
+                  "which neither noise nor the uncertainty of the identified errors explains (probability "
+                  "below {:.0e}): the identified errors make the machine worse",
+                  kNoChance)
+            : "so the correction shows no improvement. Noise and the uncertainty of the identified errors may explain "
+              "that, as on a machine whose errors are smaller than these";
   return Distrust{
-      DistrustKind::worse_held_out,
+      worse ? DistrustKind::worse_held_out : DistrustKind::no_improvement,
       fmt::format("at poses that took no part in the fit the root mean square error is {:.4g} um after the correction "
-                  "and {:.4g} um before, which neither noise nor the uncertainty of the identified errors "
-                  "explains (probability below {:.0e}): the identified errors make the machine worse",
-                  after, before, kNoChance),
+                  "and {:.4g} um before, {}",
+                  after, before, why),
       {{"rms_before_um", before},
        {"rms_after_um", after},
        {"predicted_rms_um", 1e3 * std::sqrt(errors.predicted_square / static_cast<double>(errors.after.size()))}}};
-}
-
-std::string warning_of_held_out(const HeldOutErrors& errors) {
-  const double before = 1e3 * root_mean_square(errors.before), after = 1e3 * root_mean_square(errors.after);
-  if (!(after > before) || is_rounding(errors) || is_worse_by_no_chance(errors)) return {};
-  return fmt::format(
-      "at poses that took no part in the fit the root mean square error is {:.4g} um after the correction and "
-      "{:.4g} um before. Noise and the uncertainty of the identified errors may explain that, but the correction shows "
-      "no improvement there.",
-      after, before);
 }
 
 }  // namespace abbe

@@ -13,6 +13,7 @@ namespace abbe {
 enum class DistrustKind {
   misfit,            ///< chi-square too large for chance
   worse_held_out,    ///< the error at poses not used is larger after the correction than before, and not by chance
+  no_improvement,    ///< the same, but chance may explain it: the correction is of no use
   implausible_size,  ///< an error larger than any machine in use has
   region_left_out    ///< a robust loss throws out most readings of a region, a station, a reflector or a time
 };
@@ -48,13 +49,12 @@ struct HeldOutErrors {
   double fitted_before = 0;  ///< numbers of the set-up that were fitted to these very readings before, not after
 };
 
-/// The errors after are larger than before, in the sum of squares, by more than the noise and the uncertainty of the
-/// identified errors explain: if model and noise are right, an error-free machine is distrusted with a probability of
-/// kNoChance at most, and one with errors more rarely. Derivation in docs/identification.md.
+/// The errors after are larger than before in root mean square.
+///
+/// They are worse_held_out if the noise and the uncertainty of the identified errors do not explain that: if model and
+/// noise are right, that is said of an error-free machine with a probability of kNoChance at most, and of one with
+/// errors more rarely. Else they are no_improvement. Derivation in docs/identification.md.
 std::optional<Distrust> distrust_of_held_out(const HeldOutErrors& errors);
-
-/// A warning where the errors after are larger in root mean square, but within what chance explains. Empty: none.
-std::string warning_of_held_out(const HeldOutErrors& errors);
 
 /// Sizes beyond which an error is taken for a fault of the input: a wrong axis, unit, reflector or sign.
 ///
