@@ -71,7 +71,7 @@ struct CheckedMesh {
 std::string verdict(const CheckedMesh& mesh) {
   const MeshCheck& check = mesh.check;
   std::vector<std::string> words;
-  if (!mesh.file.left_out.empty()) words.push_back("incomplete: " + left_out_faces_words(mesh.file));
+  if (!mesh.file.left_out.empty()) words.push_back(incomplete_words(mesh.file));
   if (check.encloses_volume()) {
     words.push_back(mesh.is_inside_out() ? "closed, but inside out: every triangle is turned over"
                                          : "closed, turned outwards");

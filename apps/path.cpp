@@ -130,7 +130,7 @@ void write_page(const PathCommand& command, const Machine& machine, const ToolPa
   if (!command.part.empty()) {
     const MeshFile mesh = command.step.read(command.part);
     part = part_picture(mesh.mesh, 0, 0);
-    if (!mesh.left_out.empty()) incomplete = "; incomplete: " + left_out_faces_words(mesh);
+    if (!mesh.left_out.empty()) incomplete = "; " + incomplete_words(mesh);
   }
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
   std::vector<std::pair<std::string, std::string>> facts{

@@ -52,7 +52,7 @@ OnWorkpiece lay_on_workpiece(const WorkpieceScan& workpiece, const StepReading& 
   RegistrationOptions options;
   options.noise_mm = workpiece.noise;
   const MeshFile part = step.read(workpiece.part);
-  if (!part.left_out.empty()) result.warnings.push_back("the part is incomplete: " + left_out_faces_words(part));
+  if (!part.left_out.empty()) result.warnings.push_back("the part is " + incomplete_words(part));
   const PointCloudFile scan = read_point_cloud(workpiece.scan);
   Progress progress("registering");
   const Registration found = RegistrationTarget(part.mesh, options).register_scan(scan.cloud, progress.callback());

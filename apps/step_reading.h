@@ -34,14 +34,14 @@ class StepReading {
   void refuse(const std::string& why) const;
 
  private:
-  MeshFile read_with_progress(const std::filesystem::path& mesh, const MeshFileOptions& options) const;
+  MeshFile read_with_progress(const std::filesystem::path& mesh, MeshFileOptions options) const;
   const Option* given() const;
 
   StepOptions options_;
   std::vector<const Option*> added_;
 };
 
-/// "2 faces are left out (1.3 % of the area): #78 ...; #91 ..."; empty if none is.
-std::string left_out_faces_words(const MeshFile& mesh);
+/// "incomplete: 2 faces are left out (1.3 % of the area): #78 ...; #91 ..."; empty if none is.
+std::string incomplete_words(const MeshFile& mesh);
 
 }  // namespace abbe

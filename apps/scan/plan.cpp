@@ -54,9 +54,9 @@ TriangleMesh welded(const TriangleMesh& mesh) {
   return result;
 }
 
-/// Of a part or a stage.
+/// Reads a part or a stage, which must be complete.
 MeshFile read_whole(const std::string& file, const StepReading& step) {
-  return step.read_whole(file, "all faces of the part and of the stage, of which the probe has to keep clear");
+  return step.read_whole(file, "all faces of the part and the stage, because the probe must keep clear of them");
 }
 
 TriangleMesh read_part(const std::string& file, const StepReading& step) {

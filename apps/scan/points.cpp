@@ -107,7 +107,7 @@ int run_points(PointsOptions options) {
   const int code = tell_left_out({.all = summary.readings, .not_covered = summary.not_covered, .what = "readings"},
                                  options.accept_uncovered);
   if (summary.points > 0) return code;
-  // All that are left out by the errors have been told of.
+  // Readings outside the known errors have already been reported.
   if (summary.not_covered == 0) tell("abbe: no reading lies within the probe's range\n");
   return kNegative;
 }

@@ -45,7 +45,7 @@ void add_scan_files(Subcommand* command, ScanFiles& files) {
 std::vector<std::pair<std::string, std::string>> facts_of(const PointCloudFile& scan, const MeshFile& part) {
   return {{"scan", fmt::format("{} points, {}, {}", scan.cloud.size(), scan.format, unit_words(scan.unit))},
           {"part", fmt::format("{} triangles, {}, {}{}{}", part.mesh.size(), part.format, unit_words(part.unit),
-                               part.left_out.empty() ? "" : "; incomplete: ", left_out_faces_words(part))}};
+                               part.left_out.empty() ? "" : "; ", incomplete_words(part))}};
 }
 
 std::string triple_text(const Eigen::Vector3d& vector) {

@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "abbe/formats/list_text.h"
 #include "abbe/geometry/mesh_check.h"
 #include "abbe/geometry/vertex_welder.h"
 #include "face_deviation.h"
@@ -111,8 +112,7 @@ StepMesh shape_triangles(const StepShape& read, const ShapeTrianglesOptions& opt
   }
   if (division.deviation_mm > chord) result.notes.push_back(deviation_note(read, division, chord));
   if (division.without_area > 0) {
-    result.notes.push_back(division.without_area == 1 ? "1 face has no area"
-                                                      : fmt::format("{} faces have no area", division.without_area));
+    result.notes.push_back(counted(division.without_area, "face has no area", "faces have no area"));
   }
   result.deviation_mm = division.deviation_mm;
   std::set<const void*> lost;

@@ -3,6 +3,7 @@
 #include <Interface_Graph.hxx>
 #include <StepData_StepModel.hxx>
 #include <StepShape_FaceSurface.hxx>
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,7 +18,7 @@ struct BadEntity {
 
 struct BadEntities {
   std::vector<BadEntity> of_shape;  ///< of shape, place or size, in the order of the file
-  int others = 0;                   ///< that make no shape
+  std::size_t others = 0;           ///< that make no shape
 };
 
 BadEntities bad_entities(const StepData_StepModel& model);
@@ -28,7 +29,7 @@ struct BadFaces {
   std::map<int, std::string> problems;
   /// Bad entities of curves in the parameters of faces only. A face is sound without them: such a curve is given
   /// besides the one in space, and for both faces along an edge.
-  int in_parameters = 0;
+  std::size_t in_parameters = 0;
 };
 
 /// @throws std::runtime_error for the first bad entity in the file that not faces alone refer to

@@ -29,6 +29,7 @@
 #include <stdexcept>
 
 #include "abbe/formats/ascii_letters.h"
+#include "abbe/formats/list_text.h"
 #include "abbe/formats/number_text.h"
 #include "step_entities.h"
 
@@ -93,19 +94,10 @@ TopoDS_Shape without(const TopoDS_Shape& shape, const std::vector<TopoDS_Shape>&
   return edit->Apply(shape);
 }
 
-/// The first few.
-std::string joined(const std::vector<std::string>& texts, const char* between) {
-  constexpr std::size_t kShown = 5;
-  std::string all;
-  for (std::size_t i = 0; i < std::min(texts.size(), kShown); ++i) all += (i > 0 ? between : "") + texts[i];
-  if (texts.size() > kShown) all += fmt::format("{}{} more", between, texts.size() - kShown);
-  return all;
-}
-
 [[noreturn]] void refuse_without_shape(const Interface_InterfaceModel& model) {
   const std::vector<std::string> files = files_referred_to(model);
   if (files.empty()) throw std::runtime_error("there is no shape in the file");
-  throw StepRefused("there is no shape in the file; it refers to the files " + joined(files, ", "),
+  throw StepRefused("there is no shape in the file; it refers to the files " + first_few(files, ", "),
                     "these files one by one, or the assembly exported as one file");
 }
 
@@ -119,11 +111,6 @@ std::string unit_name(STEPControl_Reader& reader) {
     if (names.find(name) == std::string::npos) names += (names.empty() ? "" : ", ") + name;
   }
   return names;
-}
-
-/// "1 face has ...", "3 faces have ...".
-std::string counted(int count, const char* one, const char* more) {
-  return fmt::format("{} {}", count, count == 1 ? one : more);
 }
 
 /// Largest extent. @throws std::runtime_error if there is none or it is beyond all measure
@@ -172,7 +159,7 @@ std::string StepShape::face_name(const TopoDS_Face& face) const {
 
 void refuse_faces(const std::vector<std::string>& faces) {
   throw StepRefused(
-      (faces.size() == 1 ? "face " : fmt::format("{} faces cannot be read: ", faces.size())) + joined(faces, "; "),
+      (faces.size() == 1 ? "face " : fmt::format("{} faces cannot be read: ", faces.size())) + first_few(faces, "; "),
       "faces that can be read, or --leave-out-faces to go on without them");
 }
 
@@ -214,7 +201,7 @@ StepShape read_step_shape(const std::string& path, bool leave_out_faces, const H
   result.shape = reader.OneShape();
   if (!result.shape.IsNull() && !unsound.empty()) result.shape = without(result.shape, unsound);
   if (!result.left_out.empty() && !has_faces(result.shape)) {
-    throw std::runtime_error("no face of the file can be read: " + joined(result.left_out, "; "));
+    throw std::runtime_error("no face of the file can be read: " + first_few(result.left_out, "; "));
   }
   if (result.shape.IsNull()) refuse_without_shape(*model);
   // All faces are there, so that these are products without a shape.
@@ -223,11 +210,11 @@ StepShape read_step_shape(const std::string& path, bool leave_out_faces, const H
                                        roots - done == 1 ? "has" : "have"));
   }
   if (const std::vector<std::string> files = files_referred_to(*model); !files.empty()) {
-    result.notes.push_back("what stands in other files is missing: " + joined(files, ", "));
+    result.notes.push_back("what stands in other files is missing: " + first_few(files, ", "));
   }
   Interface_CheckIterator checks = reader.WS()->TransferReader()->TransientProcess()->CheckList(Standard_False);
-  int failed = 0;
-  for (checks.Start(); checks.More(); checks.Next()) failed += checks.Value()->HasFailed() ? 1 : 0;
+  std::size_t failed = 0;
+  for (checks.Start(); checks.More(); checks.Next()) failed += checks.Value()->HasFailed() ? 1U : 0U;
   if (failed > 0) {
     result.notes.push_back(
         counted(failed, "entity of the file could not be converted", "entities of the file could not be converted"));

@@ -5,12 +5,13 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "abbe/formats/mesh_file.h"
 #include "abbe/formats/placement_file.h"
+#include "abbe/formats/replaced_text_for_test.h"
+#include "abbe/formats/text_file.h"
 #include "abbe/geometry/surface_samples.h"
 #include "cli/command_test.h"
 
@@ -33,6 +34,17 @@ class StepOptionsCommand : public CommandTest {
             {"scan", "plan", mesh, "--machine", examples + "machines/liu-scanner.machine.toml"}};
   }
 
+  static bool has_step_program() {
+    return std::filesystem::exists(std::filesystem::path(ABBE_COMMAND).parent_path() / "abbe-step");
+  }
+
+  static std::string step_file(const char* name) { return std::string(ABBE_SOURCE_DIR "/tests/golden/step/") + name; }
+
+  /// part.step: a STEP file with its first `from` replaced.
+  void write_part(const std::string& whole, const std::string& from, const std::string& to) const {
+    folder.write("part.step", test::replaced(read_text_file(whole), from, to));
+  }
+
   CommandResult abbe_with(std::vector<std::string> command, const std::vector<std::string>& options) const {
     command.insert(command.end(), options.begin(), options.end());
     return abbe(command);
@@ -41,8 +53,7 @@ class StepOptionsCommand : public CommandTest {
   /// mesh.positioning.toml: the scans of the example, the workpiece by this mesh.
   void write_positioning(const std::string& mesh) const {
     const std::string folder_of_example = ABBE_SOURCE_DIR "/examples/laser_engraver/";
-    std::ifstream file(folder_of_example + "scanner.positioning.toml");
-    std::string text{std::istreambuf_iterator<char>(file), {}};
+    std::string text = read_text_file(folder_of_example + "scanner.positioning.toml");
     text.resize(text.find("[workpiece]"));
     std::ifstream scans(folder_of_example + "scans.csv");
     std::string targets;
@@ -80,7 +91,7 @@ TEST_F(StepOptionsCommand, AreRefusedWhereNoMeshIsRead) {
 }
 
 TEST_F(StepOptionsCommand, ReachTheReaderInEveryCommand) {
-  const std::string part = ABBE_SOURCE_DIR "/tests/golden/step/cylinder.step";
+  const std::string part = step_file("cylinder.step");
   folder.write("scan.csv", "x_mm,y_mm,z_mm\n0.1,0.1,0\n");
   write_positioning(part);
   // In place of abbe-step a program that says how it was called.
@@ -95,13 +106,8 @@ TEST_F(StepOptionsCommand, ReachTheReaderInEveryCommand) {
 }
 
 TEST_F(StepOptionsCommand, AnIncompletePartIsSaidEverywhere) {
-  if (!std::filesystem::exists(std::filesystem::path(ABBE_COMMAND).parent_path() / "abbe-step")) {
-    GTEST_SKIP() << "built without OpenCASCADE";
-  }
-  std::ifstream file(ABBE_SOURCE_DIR "/tests/golden/step/block.step");
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  text.replace(text.find("#32 = PLANE("), 12, "#32 = PLONE(");
-  folder.write("part.step", text);
+  if (!has_step_program()) GTEST_SKIP() << "built without OpenCASCADE";
+  write_part(step_file("block.step"), "#32 = PLANE(", "#32 = PLONE(");
   folder.write("scan.csv", "x_mm,y_mm,z_mm\n0.1,0.1,10.01\n3,4,10.02\n");
   EXPECT_EQ(abbe({"check", "part.step"}).exit_code, ExitCode::bad_input);
   const CommandResult check = abbe({"check", "part.step", "--leave-out-faces"});
@@ -117,18 +123,13 @@ TEST_F(StepOptionsCommand, AnIncompletePartIsSaidEverywhere) {
                                    ABBE_SOURCE_DIR "/examples/machines/liu-scanner.machine.toml", "--leave-out-faces"});
   EXPECT_EQ(plan.exit_code, ExitCode::bad_input);
   EXPECT_THAT(plan.err, HasSubstr("part.step: 1 face is left out (of unknown area): #17 (AdvancedFace): "));
-  EXPECT_THAT(plan.err, HasSubstr("expected all faces of the part and of the stage"));
+  EXPECT_THAT(plan.err, HasSubstr("expected all faces of the part and the stage"));
 }
 
 TEST_F(StepOptionsCommand, AnIncompletePartIsSaidInThePlacement) {
-  if (!std::filesystem::exists(std::filesystem::path(ABBE_COMMAND).parent_path() / "abbe-step")) {
-    GTEST_SKIP() << "built without OpenCASCADE";
-  }
-  const std::string whole = ABBE_SOURCE_DIR "/tests/golden/step/assembly.step";
-  std::ifstream file(whole);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  text.replace(text.find("= PLANE("), 8, "= PLONE(");
-  folder.write("part.step", text);
+  if (!has_step_program()) GTEST_SKIP() << "built without OpenCASCADE";
+  const std::string whole = step_file("assembly.step");
+  write_part(whole, "= PLANE(", "= PLONE(");
   const RigidTransform scanner_from_part{rotation_xyz({0.1, -0.2, 0.3}), {20, -10, 500}};
   const Eigen::Matrix3Xd points = sample_surface(read_mesh(whole).mesh, 300, 7).points;
   std::string scan = "x_mm,y_mm,z_mm\n";

@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <cstring>
-#include <filesystem>
 #include <random>
 #include <string>
 
@@ -13,6 +12,7 @@
 #include "abbe/formats/obj_file.h"
 #include "abbe/formats/ply_file.h"
 #include "abbe/formats/stl_file.h"
+#include "abbe/formats/temporary_file_for_test.h"
 #include "abbe/formats/text_blocks.h"
 #include "abbe/formats/text_file.h"
 #include "abbe/geometry/mesh_check.h"
@@ -173,10 +173,9 @@ TEST(StlFile, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(PlyFile, BinaryReadsBackToTheSameBits) {
   TriangleMesh sphere = sphere_for_test({1.0 / 3, -2.0 / 7, 1e5 / 3}, 12.703, 12);
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "abbe_mesh_file_test.ply";
-  write_mesh(path, sphere);
-  const MeshFile file = read_mesh(path);
-  std::filesystem::remove(path);
+  const test::TemporaryFile written("", ".ply");
+  write_mesh(written.path(), sphere);
+  const MeshFile file = read_mesh(written.path());
   EXPECT_EQ(file.format, "PLY, binary little-endian");
   EXPECT_EQ(unit_words(file.unit), "mm (stated by the file)");
   EXPECT_EQ(file.mesh.vertices, sphere.vertices);

@@ -12,6 +12,7 @@
 
 #include "abbe/formats/child_process.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/list_text.h"
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/step_mesh.h"
 #include "abbe/formats/text_cursor.h"
@@ -135,8 +136,7 @@ MeshFile read_step(const std::filesystem::path& path, const MeshFileOptions& opt
   result.left_out_share = read.left_out_share;
   result.notes.push_back(
       fmt::format("{} of {}, divided within {:.3g} mm of them (tolerance {:.3g} mm{})",
-                  read.faces == 1 ? "1 face" : fmt::format("{} faces", read.faces),
-                  read.solids == 1 ? "1 solid" : fmt::format("{} solids", read.solids), read.deviation_mm,
+                  counted(read.faces, "face", "faces"), counted(read.solids, "solid", "solids"), read.deviation_mm,
                   read.chord_mm, options.step.chord_mm ? "" : fmt::format(", for {:.3g} mm of size", read.size_mm)));
   result.faces = read.faces;
   result.face_of_triangle = std::move(read.face_of_triangle);
