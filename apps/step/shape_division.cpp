@@ -142,8 +142,8 @@ double mean_width(const TopoDS_Face& face) try {
 
 /// What the statuses of a face without triangles say.
 std::string words_for_status(const IMeshData_Face& face) {
-  if (face.IsSet(IMeshData_SelfIntersectingWire)) return "its edges cross one another";
-  if (face.IsSet(IMeshData_OpenWire)) return "its edges do not close";
+  // OpenCASCADE marks an open wire, but not its face.
+  if (face.IsSet(IMeshData_SelfIntersectingWire)) return "its edges cross one another or do not close";
   if (face.IsSet(IMeshData_TooFewPoints)) return "its edges enclose nothing";
   return "OpenCASCADE finds none";
 }
@@ -244,11 +244,12 @@ class Division {
       result.lost.push_back({face, divided.problem, divided.timed_out});
       return;
     }
-    result.excess_mm = std::max(result.excess_mm, deviation - unavoidable_mm(divided.deviation, options_.chord_mm));
-    if (result.worst.IsNull() || deviation > result.deviation_mm) {
-      result.deviation_mm = deviation;
-      result.worst = face;
-      result.gap_mm = divided.deviation.corners_mm;
+    const ShapeDivision::Off off{face, deviation, divided.deviation.corners_mm};
+    if (result.farthest.face.IsNull() || deviation > result.farthest.deviation_mm) result.farthest = off;
+    const double excess = deviation - unavoidable_mm(divided.deviation, options_.chord_mm);
+    if (result.most_in_excess.face.IsNull() || excess > result.excess_mm) {
+      result.excess_mm = std::max(excess, 0.0);
+      result.most_in_excess = off;
     }
   }
 

@@ -28,10 +28,15 @@ struct LostFace {
 };
 
 struct ShapeDivision {
-  double deviation_mm = 0;  ///< of triangles and faces, edges included: kBetweenPoints times what was measured
-  double excess_mm = 0;     ///< largest of a face without what no division of it can avoid (unavoidable_mm())
-  TopoDS_Face worst;        ///< where the deviation is
-  double gap_mm = 0;        ///< how far the file's own edges lie beside that face
+  /// How far a face is off its triangles.
+  struct Off {
+    TopoDS_Face face;
+    double deviation_mm = 0;  ///< edges included: kBetweenPoints times what was measured
+    double gap_mm = 0;        ///< how far the file's own edges lie beside the face
+  };
+  Off farthest;
+  double excess_mm = 0;  ///< largest deviation of a face without what no division of it can avoid (unavoidable_mm())
+  Off most_in_excess;    ///< the face of this excess
   std::vector<LostFace> lost;
   /// Faces without triangles that have no area, such as those bounded by one edge twice.
   std::size_t without_area = 0;

@@ -88,11 +88,11 @@ void account_for_lost(const StepShape& read, const std::vector<LostFace>& lost, 
   if (!result.left_out.empty() && !leave_out) refuse_faces(result.left_out);
 }
 
-std::string deviation_note(const StepShape& read, const ShapeDivision& division, double chord_mm) {
-  return fmt::format("face {} is up to {:.3g} mm off its triangles instead of {:.3g} mm{}",
-                     read.face_name(division.worst), division.deviation_mm, chord_mm,
-                     division.gap_mm > 0.1 * chord_mm
-                         ? fmt::format(": the file's own edges lie up to {:.3g} mm beside it", division.gap_mm)
+std::string deviation_note(const StepShape& read, const ShapeDivision::Off& off, double chord_mm) {
+  return fmt::format("face {} is up to {:.3g} mm off its triangles instead of {:.3g} mm{}", read.face_name(off.face),
+                     off.deviation_mm, chord_mm,
+                     off.gap_mm > 0.1 * chord_mm
+                         ? fmt::format(": the file's own edges lie up to {:.3g} mm beside it", off.gap_mm)
                          : "");
 }
 
@@ -103,18 +103,18 @@ StepMesh shape_triangles(const StepShape& read, const ShapeTrianglesOptions& opt
   const ShapeDivision division = divide_shape(read.shape, options.division);
   StepMesh result;
   account_for_lost(read, division.lost, options.leave_out_faces, result);
-  // Anything else than edges beside faces is a failure to divide.
-  const bool edges_decide = division.excess_mm <= chord;
-  if (division.deviation_mm > (edges_decide ? options.most_mm : chord)) {
-    throw StepRefused(
-        deviation_note(read, division, chord),
-        fmt::format("a chord tolerance of at least {:.3g} mm (--chord-mm)", 1.01 * division.deviation_mm));
+  const double deviation = division.farthest.deviation_mm;
+  // Only edges that lie beside their faces excuse a larger deviation.
+  const bool is_in_excess = division.excess_mm > chord;
+  if (is_in_excess || deviation > options.most_mm) {
+    throw StepRefused(deviation_note(read, is_in_excess ? division.most_in_excess : division.farthest, chord),
+                      fmt::format("a chord tolerance of at least {:.3g} mm (--chord-mm)", 1.01 * deviation));
   }
-  if (division.deviation_mm > chord) result.notes.push_back(deviation_note(read, division, chord));
+  if (deviation > chord) result.notes.push_back(deviation_note(read, division.farthest, chord));
   if (division.without_area > 0) {
     result.notes.push_back(counted(division.without_area, "face has no area", "faces have no area"));
   }
-  result.deviation_mm = division.deviation_mm;
+  result.deviation_mm = deviation;
   std::set<const void*> lost;
   for (const LostFace& face : division.lost) lost.insert(face.face.TShape().get());
   Growing growing;
@@ -141,8 +141,10 @@ StepMesh shape_triangles(const StepShape& read, const ShapeTrianglesOptions& opt
   }
   add_faces_of(read.shape, TopAbs_SHELL);
   if (growing.triangles.empty()) {
-    throw std::runtime_error(result.left_out.empty() ? "there are no faces in the file"
-                                                     : "no face of the file could be divided: " + result.left_out[0]);
+    throw std::runtime_error(faces == 0 ? "there are no faces in the file"
+                             : result.left_out.empty()
+                                 ? "no face of the file has an area"
+                                 : "no face of the file could be divided: " + first_few(result.left_out, "; "));
   }
   result.faces = faces;
   result.mesh.vertices = growing.welder.vertices();

@@ -42,8 +42,8 @@ bool makes_the_shape(const Handle(Standard_Transient) & entity) {
   return type.starts_with("StepGeom_") || type.starts_with("StepShape_") || type.starts_with("StepRepr_");
 }
 
-/// True where the only thing wrong is that a list of items has one that is no geometry, such as a note of a drawing. A
-/// face that is missed for such a reason is found by its not becoming one.
+/// True where the only thing wrong is that a list of items has one that is not geometry, such as a note of a drawing.
+/// A face that is missed for such a reason is found by its not becoming one.
 bool has_foreign_items_only(const Handle(Standard_Transient) & entity, const Interface_Check& check) {
   if (!entity->IsKind(STANDARD_TYPE(StepRepr_Representation))) return false;
   for (int i = 1; i <= check.NbFails(); ++i) {
@@ -58,11 +58,7 @@ bool has_foreign_items_only(const Handle(Standard_Transient) & entity, const Int
 
 bool is_face(const Handle(Standard_Transient) & entity) { return entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface)); }
 
-bool is_curve_in_parameters(const Handle(Standard_Transient) & entity) {
-  return entity->IsKind(STANDARD_TYPE(StepGeom_Pcurve));
-}
-
-bool is_nothing(const Handle(Standard_Transient) & /*entity*/) { return false; }
+bool is_pcurve(const Handle(Standard_Transient) & entity) { return entity->IsKind(STANDARD_TYPE(StepGeom_Pcurve)); }
 
 /// Adds an entity and all that it refers to, but not what is left out or below that.
 void add_with_parts(const Interface_Graph& graph, const Handle(Standard_Transient) & entity,
@@ -114,14 +110,14 @@ BadEntities bad_entities(const StepData_StepModel& model) {
 BadFaces bad_faces(const StepData_StepModel& model, const Interface_Graph& graph, const BadEntities& bad) {
   BadFaces result;
   if (bad.of_shape.empty()) return result;
-  Entities above_faces, in_faces, in_faces_or_their_parameters;
+  Entities above_faces, in_faces;
   for (int i = 1; i <= model.NbEntities(); ++i) {
     const Handle(Standard_Transient)& entity = model.Value(i);
     if (graph.Sharings(entity).NbEntities() == 0) add_with_parts(graph, entity, is_face, above_faces);
   }
   for (const auto& [number, face] : faces_in_use(model, graph)) {
     Entities in_face;
-    add_with_parts(graph, face, is_curve_in_parameters, in_face);
+    add_with_parts(graph, face, is_pcurve, in_face);
     for (const BadEntity& one : bad.of_shape) {
       if (in_face.count(one.entity) == 0) continue;
       const bool is_itself = one.entity == face.get();
@@ -131,13 +127,10 @@ BadFaces bad_faces(const StepData_StepModel& model, const Interface_Graph& graph
       }
     }
     in_faces.insert(in_face.begin(), in_face.end());
-    add_with_parts(graph, face, is_nothing, in_faces_or_their_parameters);
   }
   for (const auto& [entity, problem] : bad.of_shape) {
-    if (above_faces.count(entity) > 0 || in_faces_or_their_parameters.count(entity) == 0) {
-      throw std::runtime_error(problem);
-    }
-    if (in_faces.count(entity) == 0) ++result.in_parameters;
+    if (above_faces.count(entity) > 0) throw std::runtime_error(problem);
+    if (in_faces.count(entity) == 0) ++result.not_needed;
   }
   return result;
 }

@@ -18,7 +18,7 @@ struct BadEntity {
 
 struct BadEntities {
   std::vector<BadEntity> of_shape;  ///< of shape, place or size, in the order of the file
-  std::size_t others = 0;           ///< that make no shape
+  std::size_t others = 0;           ///< that are not geometry
 };
 
 BadEntities bad_entities(const StepData_StepModel& model);
@@ -27,12 +27,13 @@ BadEntities bad_entities(const StepData_StepModel& model);
 struct BadFaces {
   /// By the number of the face in the model: "#21 (SphericalSurface) refers to #22 (SphericalSurface): Count of ...".
   std::map<int, std::string> problems;
-  /// Bad entities of curves in the parameters of faces only. A face is sound without them: such a curve is given
-  /// besides the one in space, and for both faces along an edge.
-  std::size_t in_parameters = 0;
+  /// Bad entities that no face in use needs: those of parameter-space curves (pcurves), each of which is given besides
+  /// the curve in space and for both faces along an edge, and those of faces that nothing refers to.
+  std::size_t not_needed = 0;
 };
 
-/// @throws std::runtime_error for the first bad entity in the file that not faces alone refer to
+/// @throws std::runtime_error for the first bad entity, in the order of the file, that something other than a face
+/// refers to
 BadFaces bad_faces(const StepData_StepModel& model, const Interface_Graph& graph, const BadEntities& bad);
 
 /// "#78": what the file calls an entity.

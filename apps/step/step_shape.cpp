@@ -185,13 +185,13 @@ StepShape read_step_shape(const std::string& path, bool leave_out_faces, const H
     refuse_faces(faces);
   }
   if (bad.others > 0) {
-    result.notes.push_back(counted(bad.others, "entity that is no geometry was not understood",
-                                   "entities that are no geometry were not understood"));
+    result.notes.push_back(counted(bad.others, "entity that is not geometry was not understood",
+                                   "entities that are not geometry were not understood"));
   }
-  if (in_faces.in_parameters > 0) {
-    result.notes.push_back(counted(in_faces.in_parameters,
-                                   "entity of the curves in the parameters of faces was not understood",
-                                   "entities of the curves in the parameters of faces were not understood"));
+  if (in_faces.not_needed > 0) {
+    result.notes.push_back(
+        counted(in_faces.not_needed, "entity of parameter-space curves (PCURVE) or of unused faces was not understood",
+                "entities of parameter-space curves (PCURVE) or of unused faces were not understood"));
   }
   const int roots = reader.NbRootsForTransfer();
   const int done = reader.TransferRoots(limit->Start());

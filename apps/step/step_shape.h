@@ -36,7 +36,8 @@ struct StepRefused : std::runtime_error {
 
 /// Reads a STEP file whole: one with errors of syntax, without a shape, with a face that cannot be converted, with an
 /// entity of shape, place or size that cannot be understood or with a coordinate beyond kLargestInput is refused.
-/// Products without a shape, curves in the parameters of faces and entities that are no geometry are noted only.
+/// Products without a shape, and entities of parameter-space curves (pcurves), of unused faces or of anything that is
+/// not geometry, are only noted.
 /// @param leave_out_faces  faces that cannot be converted or understood are left out instead
 /// @throws std::runtime_error with a sentence for the user, StepRefused, TimeIsUp, Standard_Failure
 StepShape read_step_shape(const std::string& path, bool leave_out_faces, const Handle(TimeLimit) & limit);
