@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "abbe/formats/ascii_letters.h"
 #include "abbe/formats/input_error.h"
 
 namespace abbe {
@@ -26,7 +27,7 @@ struct NcCursor {
     skip_blanks();
     if (at == end) return 0;
     if (*at == 0) return '\1';
-    return *at >= 'A' && *at <= 'Z' ? static_cast<char>(*at - 'A' + 'a') : *at;
+    return lower_case(*at);
   }
 
   /// @param word  where the word begins that is wrong; it is named up to `at` or the next blank

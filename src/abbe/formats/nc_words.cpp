@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 
+#include "abbe/formats/ascii_letters.h"
 #include "abbe/formats/nc_interpreter.h"
 
 namespace abbe {
@@ -19,8 +19,7 @@ std::string plain_number(double value) {
 }
 
 bool is_plain(const NcWord& word) {
-  return std::none_of(word.begin + 1, word.end,
-                      [](char c) { return c == '[' || c == '#' || std::isalpha(static_cast<unsigned char>(c)) != 0; });
+  return std::none_of(word.begin + 1, word.end, [](char c) { return c == '[' || c == '#' || is_letter(c); });
 }
 
 std::string_view without_blanks_behind(std::string_view text) {
@@ -51,9 +50,7 @@ std::string NcInterpreter::resolved_comment(std::string_view comment) const {
   std::string_view inside = comment.substr(1);
   while (!inside.empty() && inside.front() == ' ') inside.remove_prefix(1);
   std::string name;
-  for (std::size_t i = 0; i < inside.size() && i < 6; ++i) {
-    name += static_cast<char>(std::tolower(static_cast<unsigned char>(inside[i])));
-  }
+  for (std::size_t i = 0; i < inside.size() && i < 6; ++i) name += lower_case(inside[i]);
   const bool is_active = name.starts_with("debug,") || name.starts_with("print,") || name.starts_with("log,");
   if (!is_active || comment.find('#') == std::string_view::npos) return std::string(comment);
   // The control shows values of parameters here, which the corrected program does not always have.

@@ -9,13 +9,14 @@
 namespace abbe::fits {
 namespace {
 
-// Of the complementarity and the constraints: reached.
+// At the solution: the mean product of a slack and its multiplier, and the residuals.
 constexpr double kComplementary = 1e-15;
-constexpr double kReached = 1e-12;
-// Slopes of badly scaled problems do not come to kReached. Where they are below this and do not fall any more, rounding
-// has been reached; further steps would only divide by slacks that are rounding themselves, and lead away again.
-constexpr double kNearlyReached = 1e-6;
-constexpr double kStillFalls = 0.9;
+constexpr double kSolved = 1e-12;
+// In badly scaled problems rounding keeps the dual residual above kSolved. The iteration therefore also ends where the
+// residual is below kNearlySolved and a step leaves more than kNoGain of it: further steps would divide by slacks that
+// consist of rounding, and would lead away from the solution.
+constexpr double kNearlySolved = 1e-6;
+constexpr double kNoGain = 0.9;
 
 }  // namespace
 
@@ -28,16 +29,16 @@ VectorXd quadratic_program(const MatrixXd& rows, const VectorXd& bound, const Ve
   const Index m = rows.rows();
   VectorXd s = (bound - rows * x).cwiseMax(1e-3);
   VectorXd lambda = VectorXd::Constant(m, 1.0 / static_cast<double>(m));
-  double last_slope = std::numeric_limits<double>::infinity();
+  double last_dual_residual = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < 80; ++iteration) {
     const VectorXd dual = cost + quadratic * x + rows.transpose() * lambda;
     const VectorXd primal = rows * x + s - bound;
     const double mu = s.dot(lambda) / static_cast<double>(m);
-    const double slope = dual.cwiseAbs().maxCoeff();
-    const bool at_rounding = slope < kNearlyReached && slope > kStillFalls * last_slope;
-    if (mu < kComplementary && primal.cwiseAbs().maxCoeff() < kReached && (slope < kReached || at_rounding))
+    const double dual_residual = dual.cwiseAbs().maxCoeff();
+    const bool is_rounding = dual_residual < kNearlySolved && dual_residual > kNoGain * last_dual_residual;
+    if (mu < kComplementary && primal.cwiseAbs().maxCoeff() < kSolved && (dual_residual < kSolved || is_rounding))
       return lambda;
-    last_slope = slope;
+    last_dual_residual = dual_residual;
     const VectorXd ratio = lambda.cwiseQuotient(s);
     MatrixXd normal = quadratic + rows.transpose() * ratio.asDiagonal() * rows;
     normal.diagonal().array() += 1e-14 * normal.diagonal().maxCoeff();

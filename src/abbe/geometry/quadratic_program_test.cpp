@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <numbers>
-#include <random>
+
+#include "abbe/geometry/numbers_for_test.h"
 
 namespace abbe::fits {
 namespace {
@@ -14,9 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// From -1 to 1: the same on every compiler, which std::uniform_real_distribution is not.
-double program_number(std::mt19937_64& generator) { return static_cast<double>(generator() >> 11) * 0x1p-52 - 1; }
-
 /// Smallest t that no distance from a line exceeds: each is the largest of many components across the line, whose
 /// slopes are nearly the same, so that more rows hold at the solution than it has unknowns.
 TEST(QuadraticProgram, ManyRowsThatHoldTogetherEndAtTheirSolution) {
@@ -24,13 +23,13 @@ TEST(QuadraticProgram, ManyRowsThatHoldTogetherEndAtTheirSolution) {
   constexpr double kNear[] = {0, -0.01, 0.01, -0.03, 0.03, -0.1, 0.1};
   constexpr Index kRows = kAround + std::size(kNear);
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    std::mt19937_64 generator(2026 + seed);
+    test::Numbers numbers(2026 + seed);
     MatrixXd rows(kRows * kPoints, kParameters + 1);
     VectorXd bound(kRows * kPoints);
     for (Index k = 0; k < kPoints; ++k) {
       // The line may move and tilt; the point is anywhere along it.
-      const double along = program_number(generator), own = std::numbers::pi * program_number(generator);
-      const double distance = 1 + 0.01 * program_number(generator);
+      const double along = numbers.uniform(-1, 1), own = std::numbers::pi * numbers.uniform(-1, 1);
+      const double distance = 1 + 0.01 * numbers.uniform(-1, 1);
       for (Index r = 0; r < kRows; ++r) {
         const double turn =
             r < kAround ? (static_cast<double>(r) + 0.5) * 2 * std::numbers::pi / kAround : kNear[r - kAround];
@@ -46,7 +45,7 @@ TEST(QuadraticProgram, ManyRowsThatHoldTogetherEndAtTheirSolution) {
     EXPECT_GE(lambda.minCoeff(), 0) << "seed " << seed;
     EXPECT_LT((cost + rows.transpose() * lambda).cwiseAbs().maxCoeff(), 1e-8) << "seed " << seed;
     EXPECT_LT((rows * x - bound).maxCoeff(), 1e-12) << "seed " << seed;
-    EXPECT_NEAR(x[kParameters], -bound.dot(lambda), 1e-8) << "seed " << seed;  // the value of the dual problem
+    EXPECT_NEAR(x[kParameters], -bound.dot(lambda), 1e-8) << "seed " << seed;  // value of the dual problem
   }
 }
 
