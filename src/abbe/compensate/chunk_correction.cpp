@@ -1,4 +1,4 @@
-#include "abbe/compensate/program_chunk.h"
+#include "abbe/compensate/chunk_correction.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "abbe/compensate/program_chunk.h"
+#include "abbe/compensate/chunk_correction.h"
 
 namespace abbe {
 

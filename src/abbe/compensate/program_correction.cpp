@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "abbe/compensate/program_chunk.h"
+#include "abbe/compensate/chunk_correction.h"
 #include "abbe/geometry/parallel_blocks.h"
 
 namespace abbe {
