@@ -8,7 +8,6 @@
 #include <IMeshTools_MeshAlgo.hxx>
 #include <IMeshTools_Parameters.hxx>
 #include <Precision.hxx>
-#include <Standard_Failure.hxx>
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -19,8 +18,8 @@
 namespace abbe {
 namespace {
 
-/// The algorithms, in the order in which they are tried: OpenCASCADE's for the surface, the same by its other
-/// triangulation, and those for surfaces of any kind, which do not rely on the parameters of a cone, say.
+/// The algorithms in the order in which they are tried: the one that OpenCASCADE has for this kind of surface, the same
+/// with its other triangulation, and both with the algorithm for B-spline surfaces, which suits every kind.
 enum Method : std::size_t { kOwn, kOwnDelabella, kAny, kAnyDelabella, kMethods };
 
 Handle(IMeshTools_MeshAlgo)
@@ -66,13 +65,13 @@ struct FaceMesher::OneFace {
 
   /// @returns false if there are no triangles then. @throws TimeIsUp
   bool divide(double chord_mm) {
-    IMeshTools_Parameters finer = parameters;
-    finer.DeflectionInterior = chord_mm;
-    finer.MinSize = std::max(IMeshTools_Parameters::RelMinSize() * std::min(chord_mm, parameters.Deflection),
-                             Precision::Confusion());
+    IMeshTools_Parameters of_chord = parameters;
+    of_chord.DeflectionInterior = chord_mm;
+    of_chord.MinSize = std::max(IMeshTools_Parameters::RelMinSize() * std::min(chord_mm, parameters.Deflection),
+                                Precision::Confusion());
     face->SetDeflection(chord_mm);
     face->UnsetStatus(IMeshData_Failure);
-    algorithm(result.method, face->GetSurface()->GetType(), finer)->Perform(face, finer, limit->Start());
+    algorithm(result.method, face->GetSurface()->GetType(), of_chord)->Perform(face, of_chord, limit->Start());
     if (limit->is_over()) throw TimeIsUp{};
     return !face->IsSet(IMeshData_Failure) && has_triangles(face->GetFace());
   }
@@ -87,10 +86,10 @@ FaceMesher::FaceMesher(double chord_mm, double face_seconds, Handle(TimeLimit) l
 
 Handle(IMeshTools_MeshAlgoFactory) FaceMesher::factory() { return new MeasuredDivisions(*this); }
 
-DividedFace FaceMesher::result(const TopoDS_Face& face) const {
+std::optional<DividedFace> FaceMesher::result(const TopoDS_Face& face) const {
   const std::lock_guard lock(mutex_);
   const auto at = results_.find(face.TShape().get());
-  return at != results_.end() ? at->second : DividedFace{};
+  return at != results_.end() ? std::optional(at->second) : std::nullopt;
 }
 
 void FaceMesher::keep(const TopoDS_Face& face, const DividedFace& result) {
@@ -100,19 +99,14 @@ void FaceMesher::keep(const TopoDS_Face& face, const DividedFace& result) {
 
 void FaceMesher::divide(const IMeshData::IFaceHandle& face, const IMeshTools_Parameters& parameters) {
   OneFace one{face, parameters, new TimeLimit(std::min(TimeLimit::after(face_seconds_), limit_->end())),
-              result(face->GetFace())};
+              result(face->GetFace()).value_or(DividedFace{})};
   if (!one.result.timed_out) {
-    one.result.problem.clear();
-    one.result.was_tried = true;
     try {
-      divide_finely_enough(one);
+      const std::string problem = problem_of([&] { divide_finely_enough(one); });
+      one.result.problem = problem.empty() ? "" : kNotDivided + problem;
     } catch (const TimeIsUp&) {
       one.result.problem = fmt::format("was not divided into triangles within {:.3g} s", face_seconds_);
       one.result.timed_out = true;
-    } catch (const Standard_Failure& failure) {
-      one.result.problem = "could not be divided into triangles: " + failure_words(failure);
-    } catch (const std::runtime_error& error) {
-      one.result.problem = fmt::format("could not be divided into triangles: {}", error.what());
     }
     keep(face->GetFace(), one.result);
   }
@@ -122,9 +116,9 @@ void FaceMesher::divide(const IMeshData::IFaceHandle& face, const IMeshTools_Par
 void FaceMesher::divide_finely_enough(OneFace& one) const {
   while (!one.divide(chord_mm_)) {
     if (++one.result.method < kMethods) continue;
-    // With other edges the first one may do.
+    // Along other edges the first one may succeed.
     one.result.method = kOwn;
-    throw std::runtime_error("OpenCASCADE finds none");
+    throw std::runtime_error(kNoneFound);
   }
   one.result.deviation = refine_face(one.face->GetFace(), chord_mm_, *one.limit);
 }

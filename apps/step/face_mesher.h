@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "face_deviation.h"
@@ -16,15 +17,14 @@ namespace abbe {
 
 /// What became of one face.
 struct DividedFace {
-  bool was_tried = false;  ///< whether OpenCASCADE came to the face
   std::size_t method = 0;  ///< algorithm to begin with, of those in face_mesher.cpp
-  FaceDeviation deviation;
+  FaceDeviation deviation{};
   std::string problem;     ///< why it has no triangles; empty if it has
-  bool timed_out = false;  ///< is the problem
+  bool timed_out = false;  ///< whether that is because it took too long
 };
 
-/// Divides faces one by one, each as finely as it needs, where OpenCASCADE's mesher has one deflection for all
-/// (refine_face()). A face that one of OpenCASCADE's algorithms gives no triangles is tried with others.
+/// Divides faces one by one, each as finely as it needs (refine_face()); OpenCASCADE's mesher has one deflection for
+/// all faces. Where one of OpenCASCADE's algorithms gives a face no triangles, the others are tried.
 class FaceMesher {
  public:
   /// @param chord_mm      largest deviation wanted
@@ -33,11 +33,11 @@ class FaceMesher {
   /// @param face_is_done  called for every face, by several threads
   FaceMesher(double chord_mm, double face_seconds, Handle(TimeLimit) limit, std::function<void()> face_is_done);
 
-  /// For BRepMesh_FaceDiscret, which calls what it makes for several faces at a time. This object has to live on.
+  /// For BRepMesh_FaceDiscret, which calls what it makes for several faces at a time. This object must outlive it.
   Handle(IMeshTools_MeshAlgoFactory) factory();
 
-  /// Of the last division of a face, with which the next one begins.
-  DividedFace result(const TopoDS_Face& face) const;
+  /// The last division of a face, with which the next one begins; nothing if OpenCASCADE never came to the face.
+  std::optional<DividedFace> result(const TopoDS_Face& face) const;
 
   /// A face that once took too long is not tried again: each trial takes as long.
   void divide(const IMeshData::IFaceHandle& face, const IMeshTools_Parameters& parameters);

@@ -25,6 +25,7 @@
 #include <atomic>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -55,21 +56,19 @@ std::vector<TopoDS_Face> faces_of(const TopoDS_Shape& shape) {
 
 /// Nothing for an edge that cannot be measured, such as one with a point that is not finite: its faces cannot be
 /// measured either, and are named for that.
-double edge_deviation(const IMeshData_Edge& edge) try {
+double edge_deviation(const IMeshData_Edge& edge) {
   const IMeshData::ICurveHandle& points = edge.GetCurve();
   if (edge.GetDegenerated() || points.IsNull()) return 0;
-  const BRepAdaptor_Curve curve(edge.GetEdge());
   double largest = 0;
-  for (int i = 1; i < points->ParametersNb(); ++i) {
-    const double from = points->GetParameter(i - 1), to = points->GetParameter(i);
-    largest =
-        std::max(largest, curve_deviation(curve, from, to, points->GetPoint(i - 1).XYZ(), points->GetPoint(i).XYZ()));
-  }
-  return largest;
-} catch (const std::runtime_error&) {
-  return 0;
-} catch (const Standard_Failure&) {
-  return 0;
+  const std::string problem = problem_of([&] {
+    const BRepAdaptor_Curve curve(edge.GetEdge());
+    for (int i = 1; i < points->ParametersNb(); ++i) {
+      const double from = points->GetParameter(i - 1), to = points->GetParameter(i);
+      largest =
+          std::max(largest, curve_deviation(curve, from, to, points->GetPoint(i - 1).XYZ(), points->GetPoint(i).XYZ()));
+    }
+  });
+  return problem.empty() ? largest : 0;
 }
 
 IMeshTools_Parameters parameters_for(double edge_deflection_mm, const DivisionOptions& options) {
@@ -111,8 +110,8 @@ Handle(IMeshTools_Context)
   return context;
 }
 
-/// OpenCASCADE's reader may take the two curves of a seam in the parameters of its face for one another. Its mesher
-/// corrects their ends only, and later inserts points between them where the face is a cone: the curves then cross to
+/// OpenCASCADE's reader may take the two parameter-space curves (pcurves) of a seam for one another. Its mesher
+/// corrects only their ends, and later inserts points between them where the face is a cone: the curves then cross to
 /// the other side and back, and the face is not divided (https://github.com/Open-Cascade-SAS/OCCT/issues/572).
 void exchange_curves_of_seams(const IMeshData_Model& model) {
   for (int i = 0; i < model.EdgesNb(); ++i) {
@@ -145,7 +144,7 @@ std::string words_for_status(const IMeshData_Face& face) {
   // OpenCASCADE marks an open wire, but not its face.
   if (face.IsSet(IMeshData_SelfIntersectingWire)) return "its edges cross one another or do not close";
   if (face.IsSet(IMeshData_TooFewPoints)) return "its edges enclose nothing";
-  return "OpenCASCADE finds none";
+  return kNoneFound;
 }
 
 class Division {
@@ -222,28 +221,19 @@ class Division {
   }
 
   void add(const TopoDS_Face& face, const std::string& status, ShapeDivision& result) const {
-    DividedFace divided = mesher_.result(face);
-    double deviation = 0;
-    std::string problem;
-    try {
-      deviation = kBetweenPoints * std::max(edges_deviation(face), divided.deviation.triangles_mm);
-    } catch (const std::runtime_error& error) {
-      problem = error.what();
-    } catch (const Standard_Failure& failure) {
-      problem = failure_words(failure);
+    DividedFace divided = mesher_.result(face).value_or(DividedFace{.problem = kNotDivided + status});
+    double edges_mm = 0;
+    const std::string problem = problem_of([&] { edges_mm = edges_deviation(face); });
+    if (!problem.empty() && mean_width(face) < kNoWidth * options_.chord_mm) {
+      ++result.without_area;
+      return;
     }
-    if (!problem.empty()) {
-      if (mean_width(face) < kNoWidth * options_.chord_mm) {
-        ++result.without_area;
-        return;
-      }
-      if (divided.problem.empty()) divided.problem = "could not be divided into triangles: " + problem;
-    }
-    if (!divided.was_tried) divided.problem = "could not be divided into triangles: " + status;
+    if (divided.problem.empty() && !problem.empty()) divided.problem = kNotDivided + problem;
     if (!divided.problem.empty()) {
       result.lost.push_back({face, divided.problem, divided.timed_out});
       return;
     }
+    const double deviation = kBetweenPoints * std::max(edges_mm, divided.deviation.triangles_mm);
     const ShapeDivision::Off off{face, deviation, divided.deviation.corners_mm};
     if (result.farthest.face.IsNull() || deviation > result.farthest.deviation_mm) result.farthest = off;
     const double excess = deviation - unavoidable_mm(divided.deviation, options_.chord_mm);

@@ -24,14 +24,14 @@ struct DivisionOptions {
 struct LostFace {
   TopoDS_Face face;
   std::string problem;     ///< "could not be divided into triangles: ..."
-  bool timed_out = false;  ///< is the problem
+  bool timed_out = false;  ///< whether that is because it took too long
 };
 
 struct ShapeDivision {
   /// How far a face is off its triangles.
   struct Off {
     TopoDS_Face face;
-    double deviation_mm = 0;  ///< edges included: kBetweenPoints times what was measured
+    double deviation_mm = 0;  ///< kBetweenPoints times the largest distance found, edges included
     double gap_mm = 0;        ///< how far the file's own edges lie beside the face
   };
   Off farthest;
@@ -43,11 +43,11 @@ struct ShapeDivision {
 };
 
 /// Gives the faces of a shape their triangles, which OpenCASCADE keeps in the shape, each face once however often it
-/// occurs. The edges are divided until they keep to the chord, then each face along them (FaceMesher); where the edges
-/// turn out to decide about the faces, or a face finds no triangles along them, both again. The best division counts:
-/// the one that loses the fewest faces, and of these the one with the least deviation that can be avoided.
+/// occurs. The edges are divided until they keep to the chord, then each face along them (FaceMesher). Where the edges
+/// turn out to limit the faces, or a face gets no triangles along them, edges and faces are divided again, more finely.
+/// The best division is kept: the one that loses the fewest faces, and of these the one with the least excess_mm.
 ///
-/// Whether the chord was kept is for the caller to see: where the file's own edges lie beside its faces it cannot be.
+/// The caller checks whether the chord was kept: where the file's own edges lie beside its faces, it cannot be.
 /// @throws TimeIsUp, Standard_Failure
 ShapeDivision divide_shape(const TopoDS_Shape& shape, const DivisionOptions& options);
 

@@ -32,8 +32,7 @@ struct BadFaces {
   std::size_t not_needed = 0;
 };
 
-/// @throws std::runtime_error for the first bad entity, in the order of the file, that something other than a face
-/// refers to
+/// @throws std::runtime_error for the first bad entity, in the order of the file, that does not belong to faces alone
 BadFaces bad_faces(const StepData_StepModel& model, const Interface_Graph& graph, const BadEntities& bad);
 
 /// "#78": what the file calls an entity.

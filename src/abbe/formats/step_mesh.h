@@ -12,7 +12,7 @@
 
 namespace abbe {
 
-/// Exit code of abbe-step when its time is up; with it no message, as after any other end without one.
+/// Exit code of abbe-step when its time is up. It then gives no message.
 constexpr int kStepTimeIsUp = 3;
 
 /// Faces of a STEP file as triangles.
@@ -22,7 +22,7 @@ struct StepMesh {
   std::size_t faces = 0;
   std::size_t solids = 0;
   std::string unit;         ///< of length, as the file names it; empty if it states none
-  double deviation_mm = 0;  ///< largest distance of triangles and faces, edges included: 1.03 times what was measured
+  double deviation_mm = 0;  ///< 1.03 times the largest distance found between triangles and faces, edges included
   double chord_mm = 0;      ///< deviation that was aimed at
   double size_mm = 0;       ///< largest extent of the shape
   std::vector<std::string> left_out;     ///< faces: "#78 (cone about (0, 0, 5) mm) could not be divided ..."
@@ -30,8 +30,8 @@ struct StepMesh {
   std::vector<std::string> notes;        ///< sentences for the user
 };
 
-/// Least deviation that may be aimed at, in parts of the size: a finer one makes thousands of millions of triangles,
-/// and only a damaged file or a slip asks for that.
+/// Smallest deviation that may be asked for, as a fraction of the size. A smaller one would need thousands of millions
+/// of triangles, and only a damaged file or a mistyped tolerance asks for it.
 constexpr double kFinestStepChord = 1e-7;
 
 /// The deviation aimed at where the user states none: 0.01 mm; under 10 mm a thousandth of the size, over 100 mm a
