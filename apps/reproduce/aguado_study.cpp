@@ -1,6 +1,5 @@
 #include "reproduce/aguado_study.h"
 
-#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -149,11 +148,6 @@ ErrorSet aguado_model(const AguadoOrders& orders) {
   return errors;
 }
 
-bool reached_minimum(const Identification& identification) {
-  return identification.status == IdentifyStatus::converged ||
-         (identification.status == IdentifyStatus::rank_deficient && identification.covariance.size() > 0);
-}
-
 AguadoFit fit_aguado(const AguadoTruth& truth, const TrackerReadings& readings, const TrackerNoise& noise,
                      const AguadoOrders& orders, Strategy strategy, int threads) {
   const Machine machine = aguado_machine();
@@ -183,13 +177,16 @@ AguadoFit fit_aguado(const AguadoTruth& truth, const TrackerReadings& readings, 
   options.solver.threads = threads;
   // (15) with the pose of the tracker misfits by 200 um in directions that the readings hardly see: a long valley.
   options.solver.max_iterations = 1000;
-  fit.rank = find_null_space(problem, present_values(problem), threads).rank;
-  Problem alone = problem;
-  alone.observations[0].unknowns.clear();
-  fit.open_alone = estimated.size() - find_null_space(alone, present_values(alone), threads).rank;
-  StagedIdentification staged = identify_in_stages(problem, strategy, options);
-  fit.converged = std::all_of(staged.stages.begin(), staged.stages.end(), reached_minimum);
-  fit.identification = std::move(staged.total);
+  const auto rank_of = [&](const Problem& seen) { return find_null_space(seen, present_values(seen), threads).rank; };
+  fit.rank = rank_of(problem);
+  std::size_t rank_alone = fit.rank;
+  if (orders.estimate_pose) {
+    Problem alone = problem;
+    alone.observations[0].unknowns.clear();
+    rank_alone = rank_of(alone);
+  }
+  fit.open_alone = estimated.size() - rank_alone;
+  fit.identification = identify_in_stages(problem, strategy, options).total;
   fit.residual = lengths(observations);
 
   fit.setup = observations.setup();

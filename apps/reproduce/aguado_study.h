@@ -41,13 +41,8 @@ struct AguadoOrders {
 };
 ErrorSet aguado_model(const AguadoOrders& orders);
 
-/// Whether the solver has reached a minimum. Combinations of parameters may stay open there, fixed by no convention:
-/// the status is then rank_deficient too, as it is for a fit without covariance, which has reached nothing.
-bool reached_minimum(const Identification& identification);
-
 struct AguadoFit {
-  Identification identification;
-  bool converged = false;          ///< every stage of the strategy has reached a minimum
+  Identification identification;   ///< `converged`: every stage of the strategy has reached a minimum
   std::size_t rank = 0;            ///< of the readings at the nominal machine, of all parameters
   std::size_t open_alone = 0;      ///< combinations of the errors that the readings leave open with the pose known
   TrackerSetup setup;              ///< station and reflectors as identified
@@ -56,8 +51,8 @@ struct AguadoFit {
   SampleStatistics unseen;         ///< identified against true, at poses and offsets that were not measured, mm
   SampleStatistics unseen_before;  ///< nominal against true there, mm
 
-  /// Combinations of the errors and the pose of the tracker that only the unknown pose leaves open. Both ranks have
-  /// thresholds of their own, so that it need not be positive.
+  /// Combinations of the errors and the pose of the tracker that only the unknown pose leaves open. Negative if the two
+  /// ranks, each with a threshold of its own, contradict each other.
   int shared_with_pose() const {
     return static_cast<int>(identification.parameters.size()) - static_cast<int>(rank) - static_cast<int>(open_alone);
   }

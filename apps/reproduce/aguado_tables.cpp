@@ -113,7 +113,7 @@ double largest_angle(const ErrorSet& errors) {
   const std::size_t c = aguado_machine().find_axis("C");
   double angle = 0;
   for (const ErrorMotion& motion : errors.motions) {
-    if (motion.axis != c || static_cast<std::size_t>(motion.component) < 3) continue;
+    if (motion.axis != c || !is_rotation(motion.component)) continue;
     for (const double coefficient : motion.coefficients) angle = std::max(angle, std::abs(coefficient));
   }
   return angle;
@@ -134,9 +134,9 @@ std::string far_angle_words(const std::vector<AguadoRow>& rows, const ErrorSet& 
   if (fits == 0) return "";
   return fmt::format(
       "{} of these models find{} angles of more than {:.0f} times the largest of the machine's C ({:.3f} mrad) and "
-      "misfit{} by {:.0f} um or more on average. Such a model lacks terms: the open combinations lower the residual at "
-      "second order, and the least-squares solution goes to large angles. It minimises the formula but is not a "
-      "property of the machine.",
+      "misfit{} by {:.0f} um or more on average. Where the misfit is far above the noise of the tracker, the model "
+      "lacks terms: the open combinations then lower the residual at second order, and the least-squares solution goes "
+      "to large angles. It minimises the sum of squares but is not a property of the machine.",
       fits, fits == 1 ? "s" : "", kFarBeyond, 1e3 * of_machine, fits == 1 ? "s" : "", 1e3 * least_misfit);
 }
 
@@ -158,8 +158,9 @@ ReproducedTable aguado_rank_table(const std::vector<AguadoRow>& rows, const Erro
                           row.fit.shared_with_pose(), 1e3 * largest_angle(found.errors)});
   }
   table.notes = {
-      "Determined: rank of the readings at the nominal machine. Rotations about the line: combinations that "
-      "they leave open if the pose of the tracker is known. A rotation of C about the line through the two reflectors "
+      "Determined: rank of the readings at the nominal machine. Rotations about the line: combinations of "
+      "the errors that the readings leave open when the pose of the tracker is known. A rotation of C about the line "
+      "through the two reflectors "
       "moves neither of them, so one combination of EXC, EYC, EZC, EAC, EBC and ECC is open for each function of C "
       "(constant, cosine, sine). The other five are determined: they are the displacements of the two reflectors. With "
       "the pose of the tracker found, the constants and the once-per-turn parts of C are shared with it.",
@@ -219,7 +220,7 @@ std::vector<ReproducedTable> aguado_tables(const std::vector<AguadoRow>& rows, c
     const AguadoFit& fit = row.fit;
     table.rows.push_back({row.model, 1e3 * fit.initial.mean, 1e3 * fit.initial.maximum, 1e3 * fit.residual.mean,
                           1e3 * fit.residual.maximum, row.percent_left(), row.percent_left_unseen(),
-                          fit.converged ? "yes" : "NO", status_text(fit.identification.status)});
+                          fit.identification.converged ? "yes" : "NO", status_text(fit.identification.status)});
   }
   tables.insert(tables.begin() + 1, aguado_rank_table(rows, truth));
   tables.back().notes = {

@@ -306,8 +306,8 @@ class Run {
       result_.covariance *= result_.statistics.variance_factor;
     result_.standard_uncertainties = result_.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
     write_errors();
-    result_.message =
-        result_.status == IdentifyStatus::no_convergence ? no_convergence_message() : status_text(result_.status);
+    result_.converged = solved.status == IdentifyStatus::converged;
+    result_.message = result_.converged ? status_text(result_.status) : no_convergence_message();
     if (lack_of_data_ && result_.status == IdentifyStatus::converged) {
       result_.status = IdentifyStatus::rank_deficient;
       result_.message =

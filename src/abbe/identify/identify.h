@@ -29,10 +29,15 @@ struct Outlier {
   double weight = 0;  ///< final weight, 0 to 1
 };
 
-/// Result of an identification. Everything is empty or zero unless status is converged or no_convergence.
+/// Result of an identification.
+///
+/// All of it is filled in where there is a covariance: with status converged or no_convergence, and with rank_deficient
+/// if the readings only leave combinations open that no convention fixes. If they do not determine the parameters at
+/// the solution, there are estimates but neither covariance nor errors. In all other cases there are no estimates.
 struct Identification {
   IdentifyStatus status = IdentifyStatus::not_run;
-  std::string message;                         ///< one sentence for people
+  bool converged = false;  ///< the solver has reached a minimum with a covariance, whatever else the status says
+  std::string message;     ///< one sentence for people
   std::vector<EstimatedParameter> parameters;  ///< [p]
   Eigen::VectorXd estimates;                   ///< [p], mm or rad
   Eigen::MatrixXd covariance;                  ///< [p, p]; variance 0 where the gauge fixes a parameter

@@ -142,7 +142,10 @@ TEST(Identify, failures_have_their_status_and_leave_the_start) {
   Fit limited(simulate(1));
   IdentifyOptions options;
   options.solver.max_iterations = 2;
-  EXPECT_EQ(identify(limited.problem, options).status, IdentifyStatus::no_convergence);
+  const Identification stopped = identify(limited.problem, options);
+  EXPECT_EQ(stopped.status, IdentifyStatus::no_convergence);
+  EXPECT_FALSE(stopped.converged);
+  EXPECT_GT(stopped.covariance.size(), 0);  // of where it stopped, which is no minimum
   std::vector<double> broken = simulate(1);
   broken[7] = std::nan("");
   Fit not_finite(broken);
@@ -150,7 +153,9 @@ TEST(Identify, failures_have_their_status_and_leave_the_start) {
   EXPECT_EQ(result.status, IdentifyStatus::not_finite);
   EXPECT_EQ(result.estimates.size(), 0);
   EXPECT_EQ(not_finite.observations.unknown_values(), (std::vector<double>{1, 1, 0.5, 0}));
+  EXPECT_FALSE(result.converged);
   EXPECT_EQ(Identification{}.status, IdentifyStatus::not_run);
+  EXPECT_FALSE(Identification{}.converged);
 }
 
 TEST(Identify, all_readings_at_one_place_are_rank_deficient) {
@@ -166,6 +171,7 @@ TEST(Identify, all_readings_at_one_place_are_rank_deficient) {
     const Identification result = identify(problem, options);
     EXPECT_EQ(result.gauge.rank_at_start, 2u);
     EXPECT_EQ(result.status, gauge == GaugeChoice::none ? IdentifyStatus::rank_deficient : IdentifyStatus::converged);
+    EXPECT_EQ(result.converged, gauge != GaugeChoice::none);
     // With set-up unknowns only, the convention keeps start values and says so.
     EXPECT_EQ(result.gauge.constraints.size(), gauge == GaugeChoice::none ? 0u : 2u);
   }

@@ -226,6 +226,8 @@ StagedIdentification identify_in_stages(Problem& problem, Strategy strategy, con
     merge(problem, last, result.stages.front(), result.stages.back(), options.solver.threads, total);
     write_uncertainties(problem, total);
   }
+  result.total.converged = std::all_of(result.stages.begin(), result.stages.end(),
+                                       [](const Identification& stage) { return stage.converged; });
   for (std::size_t s = 0; s < result.stages.size(); ++s)
     if (result.stages[s].status != IdentifyStatus::converged) {
       result.total.status = result.stages[s].status;

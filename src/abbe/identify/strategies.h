@@ -50,7 +50,8 @@ struct StagedIdentification {
 /// independent: the second stage takes the first stage's estimates (errors of the linear axes, set-up) as fixed and
 /// passes their uncertainty on: Cov = Cov(later | earlier) + S Cov_earlier S', S = -Z (Z'HZ)^-1 Z'H_le the sensitivity
 /// of the later estimates to the earlier ones (GUM 5.2). Set-up unknowns of observations without linear_moves readings
-/// are estimated in the second stage. Status and message of `total` are those of the first stage that did not converge.
+/// are estimated in the second stage. Status and message of `total` are those of the first stage whose status is not
+/// converged; `total.converged` says whether every stage has reached a minimum.
 StagedIdentification identify_in_stages(Problem& problem, Strategy strategy, const IdentifyOptions& options = {});
 
 }  // namespace abbe

@@ -114,10 +114,12 @@ TEST(Strategies, independent_identifies_each_kind_of_axis_from_its_own_test) {
   ASSERT_EQ(result.stages.size(), 2u);
   for (const Identification& stage : result.stages) {
     EXPECT_EQ(stage.status, IdentifyStatus::converged);
+    EXPECT_TRUE(stage.converged);
     EXPECT_NEAR(stage.statistics.variance_factor, 1, 0.2);  // each test is described to the noise
   }
   // Elsewhere the angles of C, seen with offsets of 0.1 m, reach out to 0.7 m: worse than the noise, by little.
   EXPECT_LT(campaign.mean_distance(), 3 * kTrackerNoise_mm);
+  EXPECT_TRUE(result.total.converged);
   ASSERT_GT(result.total.covariance.size(), 0);
   for (const EstimatedParameter& parameter : result.stages[1].parameters)
     if (parameter.id.is_machine()) {

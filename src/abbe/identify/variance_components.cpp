@@ -112,6 +112,7 @@ class VarianceEstimation {
 
   void fail(IdentifyStatus status, const std::string& message) {
     result_.identification.status = status;
+    result_.identification.converged = false;  // at a minimum, but not with the weights that were sought
     result_.identification.message = message;
   }
 

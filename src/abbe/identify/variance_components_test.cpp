@@ -188,12 +188,14 @@ TEST(VarianceComponents, poses_with_one_reading_do_not_tell_them_apart) {
   const WeighedIdentification both = identify_with_variances(one.problem, kBoth);
   EXPECT_FALSE(both.components.converged);
   EXPECT_EQ(both.identification.status, IdentifyStatus::rank_deficient);
+  EXPECT_FALSE(both.identification.converged);
   EXPECT_NE(both.identification.message.find("do not tell the variance factor from the pose noise"), std::string::npos)
       << both.identification.message;
   // With stated uncertainties that are right, what is left is pose noise.
   one.observations.start({0.5, -0.4, 0.2, 0.9, 0});
   const WeighedIdentification pose = identify_with_variances(one.problem, {.pose_noise = true});
   ASSERT_TRUE(pose.components.converged);
+  EXPECT_TRUE(pose.identification.converged);
   EXPECT_NEAR(pose.components.pose_noise(), 0.05, 4 * pose.components.pose_noise_uncertainty());
 }
 
@@ -203,6 +205,7 @@ TEST(VarianceComponents, that_do_not_settle_are_no_result) {
   choice.max_iterations = 3;
   const WeighedIdentification found = identify_with_variances(one.problem, choice);
   EXPECT_EQ(found.identification.status, IdentifyStatus::no_convergence);
+  EXPECT_FALSE(found.identification.converged);
   EXPECT_NE(found.identification.message.find("have not settled after 3"), std::string::npos);
 }
 
