@@ -39,7 +39,7 @@ VirtualScanSetup scan_setup(const Machine& machine, const LiuScanner& scanner, s
 }
 
 /// What the stages and the zero of the probe really are. The zero is set on the standard cylinder: if that is larger
-/// than it is taken for, so is the height of the zero.
+/// than assumed, so is the height of the zero.
 ErrorSet truth_of(const Machine& machine, const LiuScanner& scanner) {
   ErrorSet errors = liu_errors(machine, scanner.unit);
   errors.tool_offset_error.z() = scanner.radius_error;

@@ -17,7 +17,7 @@ namespace abbe {
 struct LiuScanner {
   LiuUnit unit = LiuUnit::micrometre;
   double taper = 0;         ///< mm/mm, of the standard cylinder; 14 um over 23.5 mm are the cylindricity of Table 2
-  double radius_error = 0;  ///< mm, by how much the standard cylinder is larger than it is taken for
+  double radius_error = 0;  ///< mm, by how much the standard cylinder is larger than assumed
   bool reversed = false;    ///< calibrate with a second clamping of the cylinder end for end, and its taper
   bool noise = true;        ///< 1 um and 0.004 degrees of the axes, 0.1 um of the probe (Table 2)
   std::uint64_t seed = 1;

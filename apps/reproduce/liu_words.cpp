@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "abbe/geometry/angle_units.h"
 #include "reproduce/liu_results.h"
@@ -172,13 +173,17 @@ std::vector<std::string> liu_conclusions(const LiuResults& r) {
       "The paper's fitted radius of the sphere is 21 um short, as it would be with a standard cylinder 21 um larger "
       "than assumed: the fitted radius is then {:.4f} mm here, and the deviations grow with the share of the sphere.",
       r.variants.back().spheres.back().after.fitted_radius));
-  constexpr double kLeast = 9.6;  // um, of what remains of the paper's parts
-  double largest = 0;
-  for (const LiuMeasuredPart& p : r.units.back().parts) largest = std::max(largest, p.measurement.after.rms);
+  double here = 0, paper_least = std::numeric_limits<double>::infinity(), paper_most = 0;  // um
+  for (const LiuMeasuredPart& p : r.units.back().parts) {
+    here = std::max(here, 1e3 * p.measurement.after.rms);
+    if (!(p.paper_after > 0)) continue;
+    paper_least = std::min(paper_least, p.paper_after);
+    paper_most = std::max(paper_most, p.paper_after);
+  }
   words.push_back(
       fmt::format("With the stages and the probe of Table 2 alone at most {:.1f} um remain of a part, in the "
-                  "paper {} to 86.25 um{}.",
-                  1e3 * largest, kLeast, 1e3 * largest < kLeast ? ": Tables 2 and 3 do not explain them" : ""));
+                  "paper {} to {} um{}.",
+                  here, paper_least, paper_most, here < paper_least ? ": Tables 2 and 3 do not explain them" : ""));
   words.emplace_back(
       "The paper publishes no data, and its text gives no numbers with Figures 4b, 6, 9 and 11b. They are compared "
       "with its words; the curves were not read off the pictures. Figures 7 and 8 are compared with the limits that "

@@ -22,7 +22,7 @@ std::string printed_words(const MaInversions& paper) {
   const std::size_t angle = largest(printed, 0), length = largest(printed, 3);
   return fmt::format(
       "The formulas as printed miss {} by up to {:.0f} arcsec and {} by up to {:.0f} um; the exact inversion is right "
-      "to {:.0e} arcsec and {:.0e} um",
+      "to within {:.0e} arcsec and {:.0e} um",
       kMaMotionNames[angle], printed[angle], kMaMotionNames[length], printed[length], exact[largest(exact, 0)],
       exact[largest(exact, 3)]);
 }
@@ -42,7 +42,7 @@ EvaluationPlot draw_figure_3(const MaResults& r, std::size_t first) {
     plot.line(points, {kMaColours[i]}, kMaMotionNames[first + i]);
   }
   return {first == 0 ? "figure-3a" : "figure-3b",
-          "Corrected formulas, paper order. " + printed_words(r.inversions[0]) + ": tables/figure-3.csv.", plot.svg()};
+          "Corrected formulas, paper order. " + printed_words(r.inversions[0]) + " (tables/figure-3.csv).", plot.svg()};
 }
 
 EvaluationPlot draw_figure_5(const MaTable& t, std::size_t motion) {

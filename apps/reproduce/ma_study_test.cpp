@@ -62,7 +62,7 @@ TEST(MaFigures, CaptionsSayWhatTheFormulasAsPrintedMiss) {
   EXPECT_EQ(
       plots[0].caption,
       "Corrected formulas, paper order. The formulas as printed miss eps_y by up to 42 arcsec and delta_z by up to "
-      "7 um; the exact inversion is right to 4e-14 arcsec and 3e-12 um: tables/figure-3.csv.");
+      "7 um; the exact inversion is right to within 4e-14 arcsec and 3e-12 um (tables/figure-3.csv).");
   EXPECT_TRUE(plots[2].caption.starts_with("10 runs of a simulated table")) << plots[2].caption;
 }
 

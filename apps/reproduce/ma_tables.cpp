@@ -19,9 +19,9 @@ std::vector<ReproducedCell> motion_row(std::vector<ReproducedCell> cells, const 
   return cells;
 }
 
-/// Adds rows of one text and six motions in their units.
-auto motion_adder(ReproducedTable& table) {
-  return [&table](const char* words, const SixMotions& in_unit) { table.rows.push_back(motion_row({words}, in_unit)); };
+/// Adds a row of one text and six motions in their units.
+void add_motions(ReproducedTable& table, const char* words, const SixMotions& in_unit) {
+  table.rows.push_back(motion_row({words}, in_unit));
 }
 
 ReproducedTable reference_readings(const MaResults& r) {
@@ -93,16 +93,15 @@ ReproducedTable section_33(const MaResults& r) {
                         with_motions({{"evaluation"}}, 4),
                         {},
                         {}};
-  const auto add = motion_adder(table);
   const MaInversions &paper = r.inversions[0], &face = r.inversions[1];
-  add("paper", kMaPaper33);
-  add("formulas as printed, paper order", in_ma_units(paper.printed));
-  add("formulas corrected, paper order", in_ma_units(paper.corrected));
-  add("formulas corrected, face order", in_ma_units(face.corrected));
-  add("exact inversion, stepwise, paper order", in_ma_units(paper.stepwise));
-  add("exact inversion, simultaneous, paper order", in_ma_units(paper.simultaneous));
-  add("exact inversion, stepwise, face order", in_ma_units(face.stepwise));
-  add("exact inversion, simultaneous, face order", in_ma_units(face.simultaneous));
+  add_motions(table, "paper", kMaPaper33);
+  add_motions(table, "formulas as printed, paper order", in_ma_units(paper.printed));
+  add_motions(table, "formulas corrected, paper order", in_ma_units(paper.corrected));
+  add_motions(table, "formulas corrected, face order", in_ma_units(face.corrected));
+  add_motions(table, "exact inversion, stepwise, paper order", in_ma_units(paper.stepwise));
+  add_motions(table, "exact inversion, simultaneous, paper order", in_ma_units(paper.simultaneous));
+  add_motions(table, "exact inversion, stepwise, face order", in_ma_units(face.stepwise));
+  add_motions(table, "exact inversion, simultaneous, face order", in_ma_units(face.simultaneous));
   return table;
 }
 
@@ -132,14 +131,13 @@ ReproducedTable motion_table_3(const MaTable& t) {
                         with_motions({{"evaluation"}}, 2),
                         {},
                         {}};
-  const auto add = motion_adder(table);
-  add("paper, before compensation", kMaPaperBefore);
-  add("simulated, before", in_ma_units(t.before));
-  add("paper, after compensation", kMaPaperAfter);
-  add("simulated, after the paper's trigonometric fit", in_ma_units(t.fitted));
-  add("simulated, exact inversion, installation known", in_ma_units(t.inverted));
-  add("what the simulated table did", in_ma_units(t.truth));
-  add("true motion that the fit takes for installation", in_ma_units(t.absorbed));
+  add_motions(table, "paper, before compensation", kMaPaperBefore);
+  add_motions(table, "simulated, before", in_ma_units(t.before));
+  add_motions(table, "paper, after compensation", kMaPaperAfter);
+  add_motions(table, "simulated, after the paper's trigonometric fit", in_ma_units(t.fitted));
+  add_motions(table, "simulated, exact inversion, installation known", in_ma_units(t.inverted));
+  add_motions(table, "what the simulated table did", in_ma_units(t.truth));
+  add_motions(table, "true motion that the fit takes for installation", in_ma_units(t.absorbed));
   return table;
 }
 
@@ -149,13 +147,12 @@ ReproducedTable repeatability_table(const MaTable& t) {
                         with_motions({{"evaluation"}}, 2),
                         {},
                         {}};
-  const auto add = motion_adder(table);
-  add("paper, before compensation", kMaPaperRepeatabilityBefore);
-  add("simulated, before", in_ma_units(t.repeatability_before));
-  add("paper, after compensation", kMaPaperRepeatability);
-  add("simulated, after the trigonometric fit", in_ma_units(t.repeatability_fitted));
-  add("simulated, exact inversion", in_ma_units(t.repeatability_inverted));
-  add("what the simulated table did", in_ma_units(t.repeatability_truth));
+  add_motions(table, "paper, before compensation", kMaPaperRepeatabilityBefore);
+  add_motions(table, "simulated, before", in_ma_units(t.repeatability_before));
+  add_motions(table, "paper, after compensation", kMaPaperRepeatability);
+  add_motions(table, "simulated, after the trigonometric fit", in_ma_units(t.repeatability_fitted));
+  add_motions(table, "simulated, exact inversion", in_ma_units(t.repeatability_inverted));
+  add_motions(table, "what the simulated table did", in_ma_units(t.repeatability_truth));
   return table;
 }
 
@@ -225,11 +222,10 @@ ReproducedTable separation_table(const MaResults& r) {
                         with_motions({{"case"}}, 4),
                         {},
                         {}};
-  const auto add = motion_adder(table);
-  add("noise 0.05 arcsec and 0.03 um", in_ma_units(r.separation.error));
-  add("without noise (second order of the gauge)", in_ma_units(r.noise_free.error));
-  add("stated standard uncertainty, largest", in_ma_units(r.separation.uncertainty));
-  add("one mount alone, prism taken as perfect", in_ma_units(r.separation.confused));
+  add_motions(table, "noise 0.05 arcsec and 0.03 um", in_ma_units(r.separation.error));
+  add_motions(table, "without noise (second order of the gauge)", in_ma_units(r.noise_free.error));
+  add_motions(table, "stated standard uncertainty, largest", in_ma_units(r.separation.uncertainty));
+  add_motions(table, "one mount alone, prism taken as perfect", in_ma_units(r.separation.confused));
   table.notes = {fmt::format(
       "Faces: azimuth {:.4f} arcsec, tilt {:.4f} arcsec, distance {:.4f} um; chi-square {:.1f} with {} degrees of "
       "freedom.",

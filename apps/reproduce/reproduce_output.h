@@ -52,7 +52,8 @@ struct ReproducedCell {
   const std::string* text() const { return std::get_if<std::string>(&value); }
   /// Null if this is not a finite number.
   const double* number() const;
-  /// Null in JSON, empty in CSV and on the page, "-" in text.
+  /// Whether there is a text or a finite number. If not: null in JSON and on the page, empty in CSV; in text "-" in a
+  /// column of numbers, else blank.
   bool has_value() const { return text() != nullptr || number() != nullptr; }
 };
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cctype>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,9 +14,7 @@ namespace {
 std::vector<std::string> wang_conclusions(const WangResults& r) {
   std::vector<std::string> lines;
   for (const auto& row : wang_conclusion_rows(r.conclusions)) {
-    std::string answer = row[3];
-    answer[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(answer[0])));
-    lines.push_back(fmt::format("{}: the paper says {}; here {}. Does it hold? {}.", row[0], row[1], row[2], answer));
+    lines.push_back(fmt::format("{}: the paper says {}; here {}. Confirmed: {}.", row[0], row[1], row[2], row[3]));
   }
   const double displacements = r.displacements.machine.norm();
   lines.push_back(

@@ -17,7 +17,6 @@
 #include "abbe/machine/machine.h"
 #include "abbe/report/svg_polar_plot.h"
 #include "abbe/verify/circular.h"
-#include "reproduce/wang_study.h"
 
 namespace abbe {
 namespace {
@@ -90,6 +89,19 @@ void add_uncertainty(const Eigen::MatrixXd& slopes, const Eigen::MatrixXd& covar
   circle.circular_uncertainty = std::sqrt(squares);
 }
 
+/// The readings of the tables whose circles are shown beside that of the errors found.
+std::vector<WangBallBarModel> ball_bar_models() {
+  std::vector<WangBallBarModel> models = {
+      {"displacements only", {.angles = WangAngleUnit::none, .composition = {}}, {}},
+      {"angles only, millidegrees",
+       {.angles = WangAngleUnit::millidegrees, .composition = {}, .rows = 11, .displacements = false},
+       {}},
+      {"complete, millidegrees", {.angles = WangAngleUnit::millidegrees, .composition = {}}, {}},
+      {"complete, degrees as printed", {.angles = WangAngleUnit::degrees, .composition = {}}, {}}};
+  for (WangBallBarModel& model : models) model.circles = wang_ball_bar(wang_errors(model.reading));
+  return models;
+}
+
 double degrees_at(std::size_t reading) { return 360.0 * static_cast<double>(reading) / kReadings; }
 
 }  // namespace
@@ -132,6 +144,11 @@ std::vector<WangCircle> wang_ball_bar(const ErrorSet& errors, const Eigen::Matri
     circles.push_back(std::move(circle));
   }
   return circles;
+}
+
+WangBallBarStudy wang_ball_bar_study(const DecoupledErrors& with_noise, const DecoupledErrors& without_noise) {
+  return {ball_bar_models(), wang_ball_bar(with_noise.errors, &with_noise.covariance),
+          wang_ball_bar(without_noise.errors)};
 }
 
 double wang_share_within(const WangCircle& circle, const WangCircle& without_noise) {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "abbe/errors/error_set.h"
+#include "abbe/identify/decoupled_errors.h"
+#include "reproduce/wang_study.h"
 
 namespace abbe {
 
@@ -29,6 +31,22 @@ struct WangCircle {
 /// G. A trace with noise is wider than one without: its share in U(G) is not only scatter.
 /// @param covariance  null, or of ErrorSet::parameters(), [p, p]
 std::vector<WangCircle> wang_ball_bar(const ErrorSet& errors, const Eigen::MatrixXd* covariance = nullptr);
+
+/// The circles of one reading of the paper's tables.
+struct WangBallBarModel {
+  std::string name;  ///< "displacements only"
+  WangReading reading;
+  std::vector<WangCircle> circles;  ///< XY, YZ, ZX; lengths in mm
+};
+
+/// What a ball bar would read according to the tables and to the errors found by dials and laser.
+struct WangBallBarStudy {
+  std::vector<WangBallBarModel> models;
+  std::vector<WangCircle> with_noise, without_noise;  ///< from the errors found; lengths in mm
+};
+
+/// @param with_noise, without_noise  errors found from the same readings with and without noise, mm or rad
+WangBallBarStudy wang_ball_bar_study(const DecoupledErrors& with_noise, const DecoupledErrors& without_noise);
 
 /// Polar plot of a circle beside that without noise as SVG text, the k = 2 band by its two edges.
 std::string wang_circle_svg(const WangCircle& circle, const WangCircle& without_noise);

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -19,13 +17,14 @@ nlohmann::ordered_json wang_dials_json(const WangDialFigures& figures) {
                                          {"correct_roll_rms_bias_urad", 1e6 * grid.correct_roll},
                                          {"dial_travel_if_degrees_mm", grid.dial_range_mm}};
   }
+  const Machine machine = wang_machine();
   for (const WangDialAxis& axis : figures.study.axes) {
+    const std::size_t index = machine.find_axis(kWangAxisNames[axis.table]);
     nlohmann::ordered_json uncertainty;
     for (std::size_t c = 0; c < 6; ++c) {
       if (!axis.with_noise.seen[c]) continue;
-      const std::string name = fmt::format("E{}{}_{}", component_letter(static_cast<Component>(c)),
-                                           kWangAxisNames[axis.table], micro_unit_name(c));
-      uncertainty[name] = axis.largest_standard_uncertainty(c) * micro_per_unit(c);
+      const std::string name = error_motion_name(machine, index, static_cast<Component>(c));
+      uncertainty[name + "_" + micro_unit_name(c)] = axis.largest_standard_uncertainty(c) * micro_per_unit(c);
     }
     json["axes"][kWangAxisNames[axis.table]] = {{"bias_um", 1e3 * axis.bias_mm},
                                                 {"bias_urad", 1e6 * axis.bias_rad},

@@ -14,19 +14,6 @@ namespace {
 
 constexpr std::uint64_t kDialSeed = 2020;
 
-/// The readings of the tables whose circles are shown beside that of the errors found.
-std::vector<WangBallBarModel> ball_bar_models() {
-  std::vector<WangBallBarModel> models = {
-      {"displacements only", {.angles = WangAngleUnit::none, .composition = {}}, {}},
-      {"angles only, millidegrees",
-       {.angles = WangAngleUnit::millidegrees, .composition = {}, .rows = 11, .displacements = false},
-       {}},
-      {"complete, millidegrees", {.angles = WangAngleUnit::millidegrees, .composition = {}}, {}},
-      {"complete, degrees as printed", {.angles = WangAngleUnit::degrees, .composition = {}}, {}}};
-  for (WangBallBarModel& model : models) model.circles = wang_ball_bar(wang_errors(model.reading));
-  return models;
-}
-
 ReproducedTable one_dial_table(const WangDialFigures& figures) {
   ReproducedTable table{
       "one-dial",
@@ -170,9 +157,7 @@ WangDialFigures wang_dial_figures() {
   figures.study = wang_dial_study(kDialSeed);
   figures.map = wang_dial_map(figures.study);
   figures.grids = wang_grid_comparison();
-  const DecoupledErrors &with_noise = figures.study.with_noise, &without_noise = figures.study.without_noise;
-  figures.ball_bar = {ball_bar_models(), wang_ball_bar(with_noise.errors, &with_noise.covariance),
-                      wang_ball_bar(without_noise.errors)};
+  figures.ball_bar = wang_ball_bar_study(figures.study.with_noise, figures.study.without_noise);
   return figures;
 }
 

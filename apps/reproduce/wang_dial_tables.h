@@ -6,22 +6,8 @@
 #include "reproduce/reproduce_output.h"
 #include "reproduce/wang_ball_bar.h"
 #include "reproduce/wang_dials.h"
-#include "reproduce/wang_study.h"
 
 namespace abbe {
-
-/// What a ball bar would read with one reading of the paper's tables.
-struct WangBallBarModel {
-  std::string name;  ///< "displacements only"
-  WangReading reading;
-  std::vector<WangCircle> circles;
-};
-
-/// The same with the tables, and with the errors found by dials and laser.
-struct WangBallBarStudy {
-  std::vector<WangBallBarModel> models;
-  std::vector<WangCircle> with_noise, without_noise;
-};
 
 /// The parts of `abbe reproduce wang` about dials and ball bar, computed once for tables, plots and JSON.
 struct WangDialFigures {

@@ -87,10 +87,7 @@ double to_a_nanometre(double mm) { return std::round(1e6 * mm) / 1e6 + 0.0; }
 /// The same in um; rounded last, so that a file has six decimals at most.
 double um_to_a_picometre(double mm) { return std::round(1e9 * mm) / 1e6 + 0.0; }
 
-/// Within a factor of the square root of 10.
-bool is_of_the_order(double value, double order) { return std::abs(std::log10(value / order)) <= 0.5; }
-
-/// What half and twice the size change beyond rounding.
+/// Relative difference up to which two means are the same but for rounding.
 constexpr double kSameMean = 1e-6;
 bool wang_size_grows(double half, double twice) { return twice > (1 + kSameMean) * half; }
 const char* wang_size_words(double half, double twice) {
@@ -137,7 +134,7 @@ std::vector<std::array<std::string, 4>> wang_conclusion_rows(const WangConclusio
        fmt::format("over all poses its mean is {:.0f} um and its least value {:.0f} um with the angles in degrees; in "
                    "millidegrees its mean is {:.1f} um",
                    1e3 * c.complete_degrees, 1e3 * c.smallest_degrees, 1e3 * c.complete_millidegrees),
-       fmt::format("{}: {:.2g} % of the poses lie between 0.32 and 3.2 mm in degrees, and the largest error in "
+       fmt::format("{}; {:.2g} % of the poses lie between 0.32 and 3.2 mm in degrees, and the largest error in "
                    "millidegrees is {:.3g} mm",
                    in_which_unit(is_of_the_order(c.complete_degrees, 1), is_of_the_order(c.complete_millidegrees, 1)),
                    100 * c.share_of_order_1_mm, c.largest_millidegrees)},
@@ -180,6 +177,7 @@ nlohmann::ordered_json wang_conclusions_json(const WangConclusions& c) {
                                  {"mean_angles_only_millidegrees_um", 1e3 * c.angles_millidegrees},
                                  {"mean_displacements_only_um", 1e3 * c.displacements},
                                  {"smallest_degrees_um", 1e3 * c.smallest_degrees},
+                                 {"largest_millidegrees_um", 1e3 * c.largest_millidegrees},
                                  {"share_of_order_1_mm_degrees", c.share_of_order_1_mm}};
   for (const WangSize& size : c.sizes) {
     json["size"].push_back({{"factor", size.factor},

@@ -155,8 +155,9 @@ TEST(WangFigures, WhetherAConclusionHoldsFollowsFromTheFigures) {
     return wang_conclusion_rows(conclusions)[row][3];
   };
   EXPECT_EQ(holds(c, 0),
-            "no, in neither unit: 0 % of the poses lie between 0.32 and 3.2 mm in degrees, and the largest error in "
+            "no, in neither unit; 0 % of the poses lie between 0.32 and 3.2 mm in degrees, and the largest error in "
             "millidegrees is 0.05 mm");
+  EXPECT_EQ(wang_conclusions_json(c)["largest_millidegrees_um"], 50);
   EXPECT_EQ(holds(c, 1), "no, in neither unit");
   EXPECT_EQ(holds(c, 2), "only with the angles in degrees as printed");
   EXPECT_EQ(holds(c, 3), "yes, in both units; the error by the displacements only does not depend on the size");
@@ -164,10 +165,17 @@ TEST(WangFigures, WhetherAConclusionHoldsFollowsFromTheFigures) {
   c.complete_millidegrees = 0.12;
   c.angles_millidegrees = 0.02;
   c.sizes[0] = {0.5, 21, 0.013, 0.013};
-  EXPECT_TRUE(holds(c, 0).starts_with("only with the angles in degrees as printed: "));
+  EXPECT_TRUE(holds(c, 0).starts_with("only with the angles in degrees as printed; "));
   EXPECT_EQ(holds(c, 1), "only with the angles in millidegrees");
   EXPECT_EQ(holds(c, 2), "yes, in both units");
   EXPECT_EQ(holds(c, 3), "only with the angles in millidegrees; the error by the displacements only becomes smaller");
+}
+
+TEST(WangFigures, OfTheOrderOfMeansWithinAFactorOfTheRootOfTen) {
+  for (const double order : {1.0, 10.0}) {
+    EXPECT_TRUE(is_of_the_order(0.32 * order, order) && is_of_the_order(3.1 * order, order));
+    EXPECT_FALSE(is_of_the_order(0.31 * order, order) || is_of_the_order(3.2 * order, order));
+  }
 }
 
 TEST(WangFigures, SizeOfTheStructureCountsForTheAnglesAlone) {

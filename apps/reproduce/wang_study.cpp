@@ -89,6 +89,10 @@ std::vector<std::size_t> wang_zero_rows() { return {0, 0, 0, 0, 6, 0}; }
 
 std::vector<double> wang_zero_pose() { return wang_positions(wang_zero_rows()); }
 
+bool is_of_the_order(double value, double order) {
+  return value >= std::sqrt(0.1) * order && value <= std::sqrt(10.0) * order;
+}
+
 WangPopulation wang_all_poses(const WangReading& reading, int threads) {
   const Machine machine = wang_machine();
   const ErrorSet errors = wang_errors(reading);
@@ -132,8 +136,7 @@ WangPopulation wang_all_poses(const WangReading& reading, int threads) {
   for (std::size_t block = 0; block < blocks; ++block) {
     population.mean_components += sums[block] / static_cast<double>(poses.count);
   }
-  const double low = std::sqrt(0.1), high = std::sqrt(10.0);
-  const auto near = std::count_if(norm.begin(), norm.end(), [&](double e) { return e >= low && e <= high; });
+  const auto near = std::count_if(norm.begin(), norm.end(), [](double e) { return is_of_the_order(e, 1); });
   population.share_of_order_1_mm = static_cast<double>(near) / static_cast<double>(norm.size());
   population.histogram = histogram(norm, 0, population.norm.maximum, 60);
   population.worst_pose.resize(kWangAxes);

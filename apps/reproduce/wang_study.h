@@ -47,11 +47,14 @@ std::vector<double> wang_positions(const std::vector<std::size_t>& rows_xyzabc);
 std::vector<std::size_t> wang_zero_rows();  ///< tables X Y Z A B C
 std::vector<double> wang_zero_pose();       ///< chain order, mm or rad
 
+/// What "of the order of" means here: within a factor of the square root of 10. For positive numbers.
+bool is_of_the_order(double value, double order);
+
 /// Integrated error over all combinations of the rows, as printed in machine coordinates.
 struct WangPopulation {
   SampleStatistics norm;                                      ///< mm
   Eigen::Vector3d mean_components = Eigen::Vector3d::Zero();  ///< mm
-  double share_of_order_1_mm = 0;                             ///< |E| from 0.316 to 3.16 mm, 0 to 1
+  double share_of_order_1_mm = 0;                             ///< of the poses, is_of_the_order(|E|, 1 mm), 0 to 1
   std::vector<double> worst_pose;                             ///< chain order
   Histogram histogram;                                        ///< of norm, mm
 };

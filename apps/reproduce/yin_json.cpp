@@ -30,6 +30,10 @@ ordered_json linkage_json(const YinResults& r) {
   ordered_json json;
   for (const auto* steps : {&r.table_moves, &r.head_moves}) {
     ordered_json& part = json[steps == &r.table_moves ? "U" : "P"];
+    if (steps->found.status != LinkageStatus::ok) {
+      part["not_found"] = steps->found.reason;
+      continue;
+    }
     part["corrected"] = parameters_json(steps->found.linkage);
     part["printed"] = parameters_json(steps->found.printed);
     for (std::size_t i = 0; i < SwingHeadLinkage::kCount; ++i) {

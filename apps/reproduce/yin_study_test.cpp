@@ -250,6 +250,16 @@ TEST(YinResults, EveryPublishedNumberSaysWhatTheOneHereIs) {
     if (row.where.starts_with("Table 2")) continue;
     EXPECT_EQ(row.note, r.positioning.failure) << row.where;
   }
+  r.table_moves.found.status = LinkageStatus::not_run;
+  r.table_moves.found.reason = "a line of step 2 has no width";
+  for (const PublishedNumber& row : yin_published(r)) {
+    if (!row.where.starts_with("Table 2")) continue;
+    EXPECT_FALSE(row.here) << row.where;
+    EXPECT_EQ(row.note, r.table_moves.found.reason) << row.where;
+  }
+  const std::vector<ReproducedTable> tables = yin_tables(r);
+  ASSERT_EQ(tables[1].name, "table-2");
+  for (const std::vector<ReproducedCell>& row : tables[1].rows) EXPECT_FALSE(row[2].has_value());
 }
 
 TEST(YinResults, WhatIsNotFoundIsSaidAndDoesNotAgree) {
@@ -299,10 +309,13 @@ TEST(YinResults, WhatIsNotFoundIsSaidAndDoesNotAgree) {
   r = whole;
   r.head_moves.found.status = LinkageStatus::not_run;
   expect_failure(r, "five steps, P");
+  EXPECT_EQ(yin_details(r)["linkage"]["P"].count("corrected"), 0U);
+  EXPECT_EQ(yin_details(r)["linkage"]["P"].count("not_found"), 1U);
 
   r = whole;
   const auto conclusion = [&](std::size_t i) { return yin_reproduction(r).conclusions[i]; };
-  r.joint.focus = 0.5 * (r.joint.focus_by_steps = 0.01);
+  r.joint.focus_by_steps = 0.01;
+  r.joint.focus = 0.5 * r.joint.focus_by_steps;
   r.contour.across.mean = 14;
   EXPECT_NE(conclusion(0).find("the linkage better than"), std::string::npos) << conclusion(0);
   EXPECT_NE(conclusion(1).find(" is about what "), std::string::npos) << conclusion(1);

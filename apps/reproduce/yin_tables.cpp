@@ -29,7 +29,7 @@ ReproducedTable equation_table(const std::vector<YinEquation>& equations) {
   return table;
 }
 
-/// A fit that did not converge has no uncertainty.
+/// Steps that failed have no values, and a fit that did not converge has no uncertainty.
 ReproducedTable linkage_table(const YinResults& r) {
   ReproducedTable table{"table-2",
                         "Table 2: linkage parameters by the five steps, from exact readings of a machine with them",
@@ -42,12 +42,15 @@ ReproducedTable linkage_table(const YinResults& r) {
                          {"u by joint fit", "um", 1}},
                         {},
                         {}};
-  const auto paper = yin_linkage().values();
+  const LinkageEvaluation &table_moves = r.table_moves.found, &head_moves = r.head_moves.found;
+  const auto if_found = [](bool found, double value) { return found ? ReproducedCell(value) : ReproducedCell(); };
+  const bool in_u = table_moves.status == LinkageStatus::ok, in_p = head_moves.status == LinkageStatus::ok;
+  const auto paper = yin_linkage().values(), corrected = table_moves.linkage.values(),
+             printed_u = table_moves.printed.values(), printed_p = head_moves.printed.values();
   for (std::size_t i = 0; i < SwingHeadLinkage::kCount; ++i) {
-    table.rows.push_back(
-        {linkage_name(i), paper[i], r.table_moves.found.linkage.values()[i], r.table_moves.found.printed.values()[i],
-         r.head_moves.found.printed.values()[i], 1e3 * r.table_moves.found.standard_uncertainty(i),
-         r.joint.converged ? ReproducedCell(1e3 * r.joint.standard_uncertainty(i)) : ReproducedCell()});
+    table.rows.push_back({linkage_name(i), paper[i], if_found(in_u, corrected[i]), if_found(in_u, printed_u[i]),
+                          if_found(in_p, printed_p[i]), if_found(in_u, 1e3 * table_moves.standard_uncertainty(i)),
+                          if_found(r.joint.converged, 1e3 * r.joint.standard_uncertainty(i))});
   }
   table.notes = {
       "U: X and Y carry the table, as in the text, (12) and Tables 2 and 3; P: (5) as printed. u: standard uncertainty "
@@ -213,10 +216,14 @@ std::vector<ReproducedTable> yin_tables(const YinResults& r) {
 std::vector<PublishedNumber> yin_published(const YinResults& r) {
   std::vector<PublishedNumber> rows;
   // Every note says what the number here is: those of Tables 2 and 3 go in and come out again.
-  const auto paper = yin_linkage().values(), found = r.table_moves.found.linkage.values();
+  const LinkageEvaluation& steps = r.table_moves.found;
+  const bool stepped = steps.status == LinkageStatus::ok;
+  const auto paper = yin_linkage().values(), found = steps.linkage.values();
   for (std::size_t i = 0; i < SwingHeadLinkage::kCount; ++i) {
-    rows.push_back({fmt::format("Table 2, {}", linkage_name(i)), "mm", paper[i], found[i],
-                    "set in the simulation, found again by the corrected steps from exact readings", 3});
+    rows.push_back(
+        {fmt::format("Table 2, {}", linkage_name(i)), "mm", paper[i],
+         stepped ? std::optional<double>(found[i]) : std::nullopt,
+         stepped ? "set in the simulation, found again by the corrected steps from exact readings" : steps.reason, 3});
   }
   const bool located = r.positioning.failure.empty();
   constexpr const char* kNames[] = {"x", "y", "z", "alpha", "beta", "gamma"};

@@ -62,7 +62,7 @@ TEST_F(Published, ScannerAgreesWithTheReferenceAndTheCylinderBeforeCalibrationWi
   for (const nlohmann::json& part : json["details"]["table_3_in_um"]["parts"]) {
     EXPECT_LT(part["after"]["rms_um"].get<double>(), 8) << part["part"];
   }
-  // Calibrated with a cylinder 21 um larger than taken for, the sphere is 21 um short, as in the paper.
+  // Calibrated with a cylinder 21 um larger than assumed, the sphere is 21 um short, as in the paper.
   EXPECT_NEAR(json["details"]["variants"][3]["spheres"][2]["after"]["fitted_radius_mm"].get<double>(), 12.682, 2e-3);
   // Figures 7 and 8: the paper states limits of 10 and 1 nm; the clamping of Table 3 is found.
   EXPECT_EQ(json["failures"].size(), 0U);
