@@ -13,4 +13,8 @@ inline double position_unit(const Axis& axis) { return position_unit(axis.kind);
 inline const char* position_suffix(AxisKind kind) { return kind == AxisKind::rotary ? "deg" : "mm"; }
 inline const char* position_suffix(const Axis& axis) { return position_suffix(axis.kind); }
 
+/// From mm or rad to um or urad, and the name of that unit.
+inline double micro_per_unit(bool angle) { return angle ? 1e6 : 1e3; }
+inline const char* micro_unit(bool angle) { return angle ? "urad" : "um"; }
+
 }  // namespace abbe

@@ -7,6 +7,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/study_file.h"
+#include "axis_unit.h"
 #include "command.h"
 #include "options.h"
 #include "progress.h"
@@ -74,10 +75,10 @@ void add_identify_command(CommandLine& line) {
         fmt::print("\n{:<24} {:>16} {:>16}\n", "parameter", "value", "u");
         for (std::size_t p = 0; p < identified.parameters.size(); ++p) {
           const bool angle = identified.parameters[p].is_angle;
-          const double unit = angle ? 1e6 : 1e3;
+          const double unit = micro_per_unit(angle);
           fmt::print("{:<24} {:>16.4f} {:>16.4f} {}\n", identified.parameters[p].name,
                      unit * identified.estimates[static_cast<Eigen::Index>(p)],
-                     unit * identified.standard_uncertainties[static_cast<Eigen::Index>(p)], angle ? "urad" : "um");
+                     unit * identified.standard_uncertainties[static_cast<Eigen::Index>(p)], micro_unit(angle));
         }
       }
       if (!options->output.empty() && result.usable()) fmt::print("\n{} written\n", options->output);

@@ -19,6 +19,7 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/runtime/abbe_runtime.h"
+#include "axis_unit.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/position_words.h"
@@ -89,7 +90,7 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const bool rotary = machine.axes[i].kind == AxisKind::rotary;
     fmt::print("  largest correction of {}: {:.4g} {}", machine.axes[i].name,
-               frozen.largest_joint[i] * (rotary ? 1e6 : 1e3), rotary ? "urad" : "um");
+               frozen.largest_joint[i] * micro_per_unit(rotary), micro_unit(rotary));
     fmt::print("{}\n", frozen.largest_joint[i] > 0
                            ? " at " + position_words(machine, frozen.largest_joint_at[i], "{:.4g}")
                            : "");

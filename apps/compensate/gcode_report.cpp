@@ -83,8 +83,8 @@ nlohmann::ordered_json reversals_json(const Machine& machine, const GcodeResult&
   for (std::size_t r = 0; r < result.reversals.size(); ++r) {
     const ReversalAxis& axis = result.reversals[r];
     const bool rotary = machine.axes[axis.axis].kind == AxisKind::rotary;
-    const std::string unit = rotary ? "_urad" : "_um";
-    const double factor = rotary ? 1e6 : 1e3;
+    const std::string unit = std::string("_") + micro_unit(rotary);
+    const double factor = micro_per_unit(rotary);
     nlohmann::ordered_json one;
     one["axis"] = machine.axes[axis.axis].name;
     one["value" + unit] = factor * axis.value;
@@ -201,8 +201,8 @@ void print_gcode_report(const GcodeOptions& options, const Machine& machine, con
     const ProgramPlace& place = report.by_axis[i];
     if (place.line == 0) continue;
     const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    const double unit = rotary ? 1e6 : 1e3;
-    fmt::print("  {:<3} {:>10.3f} {:<4}", machine.axes[i].name, unit * place.value, rotary ? "urad" : "um");
+    const double unit = micro_per_unit(rotary);
+    fmt::print("  {:<3} {:>10.3f} {:<4}", machine.axes[i].name, unit * place.value, micro_unit(rotary));
     if (result.by_axis[i].axes_known) fmt::print(" u {:.3f}", unit * result.by_axis[i].axis[i]);
     fmt::print(", line {}\n", place.line);
   }
@@ -285,8 +285,8 @@ nlohmann::ordered_json gcode_json(const GcodeOptions& options, const Machine& ma
     const ProgramPlace& place = report.by_axis[i];
     if (place.line == 0) continue;
     const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    const std::string unit = rotary ? "_urad" : "_um";
-    const double factor = rotary ? 1e6 : 1e3;
+    const std::string unit = std::string("_") + micro_unit(rotary);
+    const double factor = micro_per_unit(rotary);
     nlohmann::ordered_json axis;
     axis["axis"] = machine.axes[i].name;
     axis["largest" + unit] = factor * place.value;

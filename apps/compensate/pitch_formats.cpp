@@ -8,6 +8,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/table_fanuc.h"
 #include "abbe/formats/table_heidenhain.h"
+#include "axis_unit.h"
 #include "compensate/axis_table_formats.h"
 #include "compensate/reversal_words.h"
 
@@ -82,9 +83,9 @@ ControllerTables make_fanuc(const TableFormat& format, const Machine& machine, c
         "{}: data rounded to {:g} {}; they are zero at the reference position of the control (its parameter "
         "1240, machine coordinate {:g} {} of the machine file; --reference-position says where else it is), "
         "which has to be shifted by {:.2f} {} (the figures above take it that it is)",
-        machine.axes[table.input].name, (rotary ? 1e6 : 1e3) * unit * pitch.magnification, rotary ? "urad" : "um",
+        machine.axes[table.input].name, micro_per_unit(rotary) * unit * pitch.magnification, micro_unit(rotary),
         reference * (rotary ? 180 / std::numbers::pi : 1), rotary ? "deg" : "mm",
-        (rotary ? 1e6 : 1e3) * constants.back(), rotary ? "urad" : "um"));
+        micro_per_unit(rotary) * constants.back(), micro_unit(rotary)));
   }
   std::vector<AxisTable> read;
   if (!pitches.empty()) {

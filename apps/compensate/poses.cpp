@@ -186,7 +186,7 @@ void print_poses(const PosesCommand& command, const Machine& machine, const Pose
     if (result.by_axis[i].row == 0) continue;
     const bool rotary = machine.axes[i].kind == AxisKind::rotary;
     fmt::print("  {:<3} {:>10.3f} {:<4}, row {}\n", machine.axes[i].name,
-               (rotary ? 1e6 : 1e3) * result.by_axis[i].value, rotary ? "urad" : "um", result.by_axis[i].row);
+               micro_per_unit(rotary) * result.by_axis[i].value, micro_unit(rotary), result.by_axis[i].row);
   }
   fmt::print(
       "what is left: at most {:.1e} mm{} and {:.1e} rad{}\n", result.largest_position_left.value,
@@ -213,7 +213,7 @@ nlohmann::ordered_json poses_json(const PosesCommand& command, const Machine& ma
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const bool rotary = machine.axes[i].kind == AxisKind::rotary;
     json["axes"].push_back({{"axis", machine.axes[i].name},
-                            {rotary ? "largest_urad" : "largest_um", (rotary ? 1e6 : 1e3) * result.by_axis[i].value},
+                            {rotary ? "largest_urad" : "largest_um", micro_per_unit(rotary) * result.by_axis[i].value},
                             {"row", result.by_axis[i].row}});
   }
   json["largest_position_left_um"] = 1e3 * result.largest_position_left.value;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "axis_unit.h"
 #include "compensate/joint_order.h"
 
 namespace abbe {
@@ -19,7 +20,7 @@ std::string number_in_units(double value, bool rotary) {
 
 std::string reversal_size(const Machine& machine, std::size_t axis, double value) {
   const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
-  return fmt::format("{:.4g} {}", (rotary ? 1e6 : 1e3) * value, rotary ? "urad" : "um");
+  return fmt::format("{:.4g} {}", micro_per_unit(rotary) * value, micro_unit(rotary));
 }
 
 std::string lost_motion_words(double lost_motion, bool rotary) {

@@ -15,6 +15,7 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/verify/error_map.h"
+#include "axis_unit.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/position_words.h"
@@ -102,9 +103,9 @@ void look_at_limits(const TableCommand& command, const ControllerTables& tables,
   const auto refuse = [&](double value, bool is_angle, const std::string& where) {
     const double limit = is_angle ? refusal_limit("--limit-urad", command.limit_urad, "urad")
                                   : refusal_limit("--limit-um", command.limit_um, "um");
-    const double shown = is_angle ? 1e6 * value : 1e3 * value;
+    const double shown = micro_per_unit(is_angle) * value;
     if (!(shown <= limit)) {
-      const char* const unit = is_angle ? "urad" : "um";
+      const char* const unit = micro_unit(is_angle);
       report.refused.push_back(fmt::format("{:.3f} {} is above --limit-{} {:g}: {}", shown, unit, unit, limit, where));
     }
   };

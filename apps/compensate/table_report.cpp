@@ -143,8 +143,8 @@ void print_table_json(const TableReport& report) {
     one["name"] = table.name;
     one["nodes"] = table.nodes;
     one[table.step_is_angle ? "step_deg" : "step_mm"] = table.step_is_angle ? table.step / kDegree : table.step;
-    const char* const unit = table.is_angle ? "urad" : "um";
-    const double scale = table.is_angle ? 1e6 : 1e3;
+    const char* const unit = micro_unit(table.is_angle);
+    const double scale = micro_per_unit(table.is_angle);
     one[std::string("largest_") + unit] = scale * table.largest;
     one[table.step_is_angle ? "largest_at_deg" : "largest_at_mm"] =
         table.step_is_angle ? table.largest_at / kDegree : table.largest_at;

@@ -6,6 +6,7 @@
 
 #include "abbe/formats/evaluation_rotation_file.h"
 #include "abbe/report/svg_polar_plot.h"
+#include "axis_unit.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
@@ -99,7 +100,7 @@ void add_figures(AxisErrorMotionKind kind, const AxisErrorMotion* motion, bool s
 }
 
 EvaluationPlot plot_of(const RotationResult& result, const AxisErrorMotion& motion, const std::string& file) {
-  const double unit = is_tilt(motion.kind) ? 1e6 : 1e3;
+  const double unit = micro_per_unit(is_tilt(motion.kind));
   const MotionName name = name_of(motion.kind);
   PolarPlot plot(fmt::format("Error motion, {} ({})", name.name, file),
                  is_tilt(motion.kind) ? "error motion in \xC2\xB5rad" : "error motion in \xC2\xB5m");
@@ -137,8 +138,8 @@ void add_notes(const RotationResult& result, const RotationCommand& command, Eva
           fmt::format("{}: the mean of a turn drifts by {:.2f} {} from the first to the last turn; that is part of the "
                       "asynchronous and "
                       "total values.",
-                      name_of(motion.kind).name, motion.drift * (is_tilt(motion.kind) ? 1e6 : 1e3),
-                      unit_symbol(is_tilt(motion.kind) ? "urad" : "um")));
+                      name_of(motion.kind).name, motion.drift * micro_per_unit(is_tilt(motion.kind)),
+                      unit_symbol(micro_unit(is_tilt(motion.kind)))));
     }
     if (motion.kind == AxisErrorMotionKind::face) {
       report.notes.push_back(

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "abbe/verify/statistics.h"
+#include "axis_unit.h"
 #include "reproduce/wang_dial_tables.h"
 #include "reproduce/wang_tables.h"
 
@@ -23,8 +24,10 @@ nlohmann::ordered_json wang_dials_json(const WangDialFigures& figures) {
     nlohmann::ordered_json uncertainty;
     for (std::size_t c = 0; c < 6; ++c) {
       if (!axis.with_noise.seen[c]) continue;
-      const std::string name = error_motion_name(machine, index, static_cast<Component>(c));
-      uncertainty[name + "_" + micro_unit_name(c)] = axis.largest_standard_uncertainty(c) * micro_per_unit(c);
+      const auto component = static_cast<Component>(c);
+      const bool angle = is_rotation(component);
+      uncertainty[error_motion_name(machine, index, component) + "_" + micro_unit(angle)] =
+          axis.largest_standard_uncertainty(c) * micro_per_unit(angle);
     }
     json["axes"][kWangAxisNames[axis.table]] = {{"bias_um", 1e3 * axis.bias_mm},
                                                 {"bias_urad", 1e6 * axis.bias_rad},

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "abbe/verify/statistics.h"
+#include "axis_unit.h"
 #include "reproduce/wang_tables.h"
 
 namespace abbe {
@@ -63,8 +64,9 @@ ReproducedTable decoupled_table(const WangDialFigures& figures) {
       }
       const auto column = static_cast<Eigen::Index>(c);
       const double off = (axis.without_noise.errors.col(column) - axis.truth.col(column)).cwiseAbs().maxCoeff();
-      uncertainty.emplace_back(axis.largest_standard_uncertainty(c) * micro_per_unit(c));
-      bias.emplace_back(off * micro_per_unit(c));
+      const double micro = micro_per_unit(is_rotation(static_cast<Component>(c)));
+      uncertainty.emplace_back(axis.largest_standard_uncertainty(c) * micro);
+      bias.emplace_back(off * micro);
     }
     table.rows.push_back(std::move(uncertainty));
     table.rows.push_back(std::move(bias));

@@ -15,10 +15,6 @@ namespace abbe {
 inline constexpr double kWangLaserUncertainty = 0.011e-3;
 inline constexpr double kWangDialUncertainty = 0.6e-3;
 
-/// From mm or rad to um or urad, of the errors x y z, rotations about x y z.
-inline double micro_per_unit(std::size_t component) { return component < 3 ? 1e3 : 1e6; }
-inline const char* micro_unit_name(std::size_t component) { return component < 3 ? "um" : "urad"; }
-
 /// One axis of the simulated campaign.
 struct WangDialAxis {
   std::size_t table = 0;     ///< 0 to 5: X Y Z A B C

@@ -65,18 +65,21 @@ std::string decoupling_csv(const Machine& machine, const GridFile& file) {
   std::string text = axis.name + "_" + position_suffix(axis);
   for (std::size_t c = 0; c < 6; ++c) {
     if (!file.found.seen[c]) continue;
-    const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
-    text += fmt::format(",{}_{},u_{}_{}", name, micro_unit_name(c), name, micro_unit_name(c));
+    const auto component = static_cast<Component>(c);
+    const std::string name =
+        error_motion_name(machine, file.table.axis, component) + "_" + micro_unit(is_rotation(component));
+    text += fmt::format(",{},u_{}", name, name);
   }
   text += '\n';
   for (std::size_t i = 0; i < file.found.positions.size(); ++i) {
     text += fmt::format("{:.9g}", file.found.positions[i] / position_unit(axis));
     for (std::size_t c = 0; c < 6; ++c) {
       if (!file.found.seen[c]) continue;
-      text +=
-          fmt::format(",{:.6f},{:.6f}",
-                      file.found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * micro_per_unit(c),
-                      file.found.standard_uncertainty(static_cast<Component>(c), i) * micro_per_unit(c));
+      const auto component = static_cast<Component>(c);
+      const double micro = micro_per_unit(is_rotation(component));
+      text += fmt::format(",{:.6f},{:.6f}",
+                          file.found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * micro,
+                          file.found.standard_uncertainty(component, i) * micro);
     }
     text += '\n';
   }
@@ -96,17 +99,20 @@ void print(const Machine& machine, const GridFile& file) {
   fmt::print("  {:>10}", fmt::format("{} / {}", axis.name, position_suffix(axis)));
   for (std::size_t c = 0; c < 6; ++c) {
     if (!found.seen[c]) continue;
-    const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
-    fmt::print(" {:>12} {:>8}", fmt::format("{} / {}", name, micro_unit_name(c)), "u");
+    const auto component = static_cast<Component>(c);
+    const std::string name = error_motion_name(machine, file.table.axis, component);
+    fmt::print(" {:>12} {:>8}", fmt::format("{} / {}", name, micro_unit(is_rotation(component))), "u");
   }
   fmt::print("\n");
   for (std::size_t i = 0; i < found.positions.size(); ++i) {
     fmt::print("  {:>10.3f}", found.positions[i] / position_unit(axis));
     for (std::size_t c = 0; c < 6; ++c) {
       if (!found.seen[c]) continue;
+      const auto component = static_cast<Component>(c);
+      const double micro = micro_per_unit(is_rotation(component));
       fmt::print(" {:>12.3f} {:>8.3f}",
-                 found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * micro_per_unit(c),
-                 found.standard_uncertainty(static_cast<Component>(c), i) * micro_per_unit(c));
+                 found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * micro,
+                 found.standard_uncertainty(component, i) * micro);
     }
     fmt::print("\n");
   }
@@ -137,15 +143,17 @@ nlohmann::ordered_json json_of(const Machine& machine, const GridFile& file) {
   }
   for (std::size_t c = 0; c < 6; ++c) {
     if (!file.found.seen[c]) continue;
+    const auto component = static_cast<Component>(c);
+    const bool angle = is_rotation(component);
+    const double micro = micro_per_unit(angle);
     std::vector<double> values, uncertainties;
     for (std::size_t i = 0; i < file.found.positions.size(); ++i) {
-      values.push_back(file.found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) *
-                       micro_per_unit(c));
-      uncertainties.push_back(file.found.standard_uncertainty(static_cast<Component>(c), i) * micro_per_unit(c));
+      values.push_back(file.found.errors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) * micro);
+      uncertainties.push_back(file.found.standard_uncertainty(component, i) * micro);
     }
-    const std::string name = error_motion_name(machine, file.table.axis, static_cast<Component>(c));
-    json[name + "_" + micro_unit_name(c)] = values;
-    json["u_" + name + "_" + micro_unit_name(c)] = uncertainties;
+    const std::string name = error_motion_name(machine, file.table.axis, component) + "_" + micro_unit(angle);
+    json[name] = values;
+    json["u_" + name] = uncertainties;
   }
   json["notes"] = file.found.notes;
   json["chi_square"] = file.found.chi_square;

@@ -8,6 +8,7 @@
 #include "abbe/geometry/angle_units.h"
 #include "abbe/identify/identify.h"
 #include "abbe/instruments/instrument.h"
+#include "axis_unit.h"
 
 namespace abbe {
 namespace {
@@ -25,8 +26,8 @@ int decimals_for(double uncertainty) {
 /// Machine errors are small: um and urad. What is a size of a set-up reads in mm and deg, its uncertainty as the
 /// others.
 void print_number(const FoundNumber& number, bool is_machine) {
-  const char* const small = number.is_angle ? "urad" : "um";
-  const double to_small = number.is_angle ? 1e6 : 1e3;
+  const char* const small = micro_unit(number.is_angle);
+  const double to_small = micro_per_unit(number.is_angle);
   const bool in_small = is_machine || number.is_angle;
   const double unit = in_small ? to_small : 1;
   const char* const unit_name = in_small ? small : "mm";
@@ -71,8 +72,8 @@ void print_place(const FoundPlace& place) {
 
 nlohmann::ordered_json number_json(const FoundNumber& number, bool is_machine) {
   const bool in_small = is_machine || number.is_angle;
-  const std::string small = number.is_angle ? "_urad" : "_um";
-  const double to_small = number.is_angle ? 1e6 : 1e3;
+  const std::string small = std::string("_") + micro_unit(number.is_angle);
+  const double to_small = micro_per_unit(number.is_angle);
   nlohmann::ordered_json json;
   json["name"] = number.name;
   if (!number.words.empty()) json["words"] = number.words;

@@ -12,6 +12,7 @@
 #include "abbe/identify/planning_candidates.h"
 #include "abbe/instruments/tracker_observations.h"
 #include "abbe/instruments/tracker_simulation.h"
+#include "axis_unit.h"
 #include "study/planning.h"
 #include "study/tracker_campaign.h"
 
@@ -237,7 +238,7 @@ Eigen::MatrixXd PlanningModel::parameter_rows() const {
       if (!matches_pattern(parameters_[i].name, pattern)) continue;
       rows.conservativeResize(rows.rows() + 1, rows.cols());
       rows.row(rows.rows() - 1) =
-          Eigen::RowVectorXd::Unit(rows.cols(), static_cast<Index>(i)) * (parameters_[i].is_angle ? 1e6 : 1e3);
+          Eigen::RowVectorXd::Unit(rows.cols(), static_cast<Index>(i)) * micro_per_unit(parameters_[i].is_angle);
     }
     if (rows.rows() == before)
       throw InputError({.field = "plan.parameters"}, fmt::format("no estimated parameter matches '{}'", pattern),

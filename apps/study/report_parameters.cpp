@@ -58,8 +58,6 @@ void add_monte_carlo(const StudyResult& result, const std::vector<double>& scale
   json["monte_carlo_high"] = high;
 }
 
-double unit_of(bool angle) { return angle ? 1e6 : 1e3; }
-
 }  // namespace
 
 nlohmann::ordered_json report_error_motions(const Machine& machine, const Identification& identification,
@@ -83,14 +81,14 @@ nlohmann::ordered_json report_error_motions(const Machine& machine, const Identi
       basis.values(q, motion.coefficients, {functions.data(), basis.size()});
       const double variance = functions.dot(covariance.block(first, first, size, size) * functions);
       position.push_back(for_drawing(q / position_unit(axis)));
-      value.push_back(for_drawing(unit_of(angle) * basis.evaluate(q, motion.coefficients)));
-      band.push_back(for_drawing(2 * unit_of(angle) * std::sqrt(std::max(variance, 0.0))));
+      value.push_back(for_drawing(micro_per_unit(angle) * basis.evaluate(q, motion.coefficients)));
+      band.push_back(for_drawing(2 * micro_per_unit(angle) * std::sqrt(std::max(variance, 0.0))));
       if (truth != nullptr) {
-        true_value.push_back(for_drawing(unit_of(angle) * basis.evaluate(q, truth->motions[m].coefficients)));
+        true_value.push_back(for_drawing(micro_per_unit(angle) * basis.evaluate(q, truth->motions[m].coefficients)));
       }
     }
     const std::string name = error_motion_name(machine, motion.axis, motion.component);
-    const std::string suffix = angle ? "_urad" : "_um";
+    const std::string suffix = std::string("_") + micro_unit(angle);
     nlohmann::ordered_json curve;
     curve["name"] = name;
     curve["axis"] = axis.name;
@@ -113,13 +111,13 @@ nlohmann::ordered_json report_location_errors(const Machine& machine, const Iden
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   const auto add = [&](const std::string& name, std::size_t axis, bool angle, double value, double uncertainty,
                        const double* true_value) {
-    const std::string suffix = angle ? "_urad" : "_um";
+    const std::string suffix = std::string("_") + micro_unit(angle);
     nlohmann::ordered_json entry;
     entry["name"] = name;
     entry["axis"] = machine.axes[axis].name;
-    entry["value" + suffix] = unit_of(angle) * value;
-    entry["standard_uncertainty" + suffix] = unit_of(angle) * uncertainty;
-    if (true_value != nullptr) entry["truth" + suffix] = unit_of(angle) * *true_value;
+    entry["value" + suffix] = micro_per_unit(angle) * value;
+    entry["standard_uncertainty" + suffix] = micro_per_unit(angle) * uncertainty;
+    if (true_value != nullptr) entry["truth" + suffix] = micro_per_unit(angle) * *true_value;
     const std::string note = gauge_note(identification, name);
     if (!note.empty()) entry["note"] = note;
     list.push_back(entry);
@@ -160,12 +158,12 @@ nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResu
     const Eigen::Index i = static_cast<Eigen::Index>(p);
     const bool is_machine = parameter.id.is_machine();
     // Set-up unknowns are large: mm and mrad read better than um and urad.
-    const double unit = is_machine ? unit_of(parameter.is_angle) : (parameter.is_angle ? 1e3 : 1);
+    const double unit = is_machine ? micro_per_unit(parameter.is_angle) : (parameter.is_angle ? 1e3 : 1);
     names.push_back(parameter.name);
     groups.push_back(is_machine ? machine_groups[parameter.id.index]
                                 : result.campaign.setups[parameter.id.observations]->name);
     scales.push_back(unit);
-    units.emplace_back(is_machine ? (parameter.is_angle ? "urad" : "um") : (parameter.is_angle ? "mrad" : "mm"));
+    units.emplace_back(is_machine ? micro_unit(parameter.is_angle) : (parameter.is_angle ? "mrad" : "mm"));
     values.push_back(unit * identified.estimates[i]);
     const double u = identified.standard_uncertainties[i];
     if (u > 0) {

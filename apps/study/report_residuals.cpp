@@ -113,13 +113,13 @@ std::vector<ResidualComponent> residual_components(const Observations& observati
   std::vector<ResidualComponent> components(rows);
   for (std::size_t row = 0; row < rows; ++row) {
     components[row].name = of_reading[row].name;
-    components[row].unit = of_reading[row].is_angle ? "urad" : "um";
+    components[row].unit = micro_unit(of_reading[row].is_angle);
   }
   for (std::size_t k = 0; k < observations.reading_count(); ++k) {
     const std::vector<double> deviation = observations.deviation(k);
     for (std::size_t row = 0; row < rows; ++row) {
       components[row].normalised.push_back(residuals[rows * k + row]);
-      components[row].residual.push_back(deviation[row] * (of_reading[row].is_angle ? 1e6 : 1e3));
+      components[row].residual.push_back(deviation[row] * micro_per_unit(of_reading[row].is_angle));
     }
   }
   return components;
