@@ -103,31 +103,42 @@ export async function mapChoicesOf(page, data, expect, shot, compareFigures) {
   expect(heading === wanted, `the map is called ${heading}, not ${wanted}`);
   const lead = await page.textContent('#map .lead');
   expect(lead.includes(data.map.quantity ?? 'where the tool really is'), `the map does not say what its arrows show: ${lead}`);
+  if (data.map.quantity && data.summary?.map && !data.summary.held_out && !data.summary.verdict) {
+    const verdict = await page.textContent('.verdict'), rows = await page.textContent('table.statistics');
+    expect(verdict.startsWith(`Mean ${data.map.quantity} `), `the verdict is not on the ${data.map.quantity}: ${verdict}`);
+    expect(!rows.includes('fitted again'), `the statistics of the map speak of a fit: ${rows}`);
+  }
   const legend = () => page.textContent('.colour-bar .axis-label');
   const bars = await page.locator('.colour-bar svg').count();
   expect(bars === 1, `${bars} colour scales`);
-  const statistics = async (stem) => {
+  const statistics = async (stem, wantedCaption) => {
     const keys = await page.$$eval('.map-statistics [data-key]', (all) => all.map((e) => e.dataset.key));
     const table = data.summary?.map?.[stem];
     expect(!table || keys.filter((key) => key.startsWith(`map.${stem}.`)).length === 3, `mean, 95 % and maximum of ${stem} are not beside the map: ${keys}`);
+    if (table) {
+      const caption = await page.textContent('.map-statistics caption');
+      expect(caption.startsWith(wantedCaption), `the table beside the map is called ${caption}, not ${wantedCaption}`);
+    }
     await compareFigures('.map-statistics [data-key]');
   };
-  await statistics('position_before_um');
-  expect((await legend()).includes('µm'), `legend of the map: ${await legend()}`);
+  await statistics('position_before_um', `Length of the ${data.map.quantity ?? 'displacement of the tool'}`);
+  const length = `length of the ${data.map.quantity ?? 'error'} / µm`;
+  expect((await legend()) === length, `legend of the map: ${await legend()}, not ${length}`);
   const still = () => page.$eval('.still', (e) => e.src);
   if (data.map.before_urad) {
     const first = await still();
     await page.selectOption('#map-vectors', 'rotation');
     expect(await until(async () => (await legend()).includes('µrad')), `legend of the rotations: ${await legend()}`);
     expect((await page.textContent('.view figcaption .note')).includes('µrad'), 'the rotations have no scale of their own');
-    await statistics('orientation_before_urad');
+    await statistics('orientation_before_urad', 'Angle of the rotation of the tool');
     expect(await until(async () => (await still()) !== first), 'rotations look like displacements');
     await shot(page.locator('#map'), 'rotation');
     await page.selectOption('#map-vectors', 'displacement');
   } else expect((await page.locator('#map-vectors').count()) === 0, 'a choice of arrows without rotations in the data');
   if (data.map.expanded_uncertainty_um) {
     await page.selectOption('#map-colour', 'uncertainty');
-    expect(await until(async () => (await legend()).includes('uncertainty')), `legend of the uncertainty: ${await legend()}`);
+    const of = `expanded uncertainty of the ${data.map.quantity ?? 'predicted displacement'} `;
+    expect(await until(async () => (await legend()).startsWith(of)), `legend of the uncertainty: ${await legend()}, not ${of}`);
     const last = await page.$$eval('.colour-bar .tick', (all) => Number(all.pop().textContent));
     const largest = Math.max(...data.map.expanded_uncertainty_um);
     expect(last <= largest * 1.001 && last > largest / 3, `colours of the uncertainty end near ${last}, data at ${largest}`);

@@ -249,10 +249,10 @@ const grinder = {name: 'Five-axis grinder', chain: 'w C b X Z A Y B t', tool_ref
 const mapOnly = {
   format: 'abbe-report/1', title: 'Integrated error of a published machine', simulated: false, machine: grinder,
   summary: {machine: grinder.name, chain: grinder.chain,
-    map: {poses: 1771561, description: 'full travel, 11 steps per axis', reference: 'model', position_before_um: data.summary.held_out.position_before_um}},
+    map: {quantity: 'integrated error', poses: 1771561, description: 'full travel, 11 steps per axis', reference: 'model', position_before_um: data.summary.held_out.position_before_um}},
   warnings: ['The unit of the angles is inferred, not stated in the source.'],
   map: {...map, quantity: 'integrated error', after_um: undefined, poses: 1771561},
-  histograms: [{title: 'Volumetric error over all poses', edges_um: Array.from({length: 41}, (_, i) => 12.5 * i), before_counts: counts.map(Math.round)}],
+  histograms: [{title: 'Integrated error over all poses', edges_um: Array.from({length: 41}, (_, i) => 12.5 * i), before_counts: counts.map(Math.round)}],
   error_motions: motions.map((m, i) => Object.fromEntries(Object.entries(m).filter(([k]) => !/^(expanded|truth)/.test(k)).map(([k, v]) => [k, i === 4 && k.startsWith('value') ? v.map(() => 0) : v]))),
   tables: [{title: 'Published figures beside ours', columns: ['Pose', 'Published / mm', 'Here / mm', 'Why'], rows: [['i = 1', -5.39, -5.400842, 'sign of one column'], ['i = 7', null, 0.001, 'sum is wrong in print']], note: 'The published sum does not add up.'}],
 };

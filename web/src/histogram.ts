@@ -146,7 +146,7 @@ function one(entry: Histogram): HTMLElement | undefined {
 export function histogramSection(entries: Histogram[] | undefined, map: ErrorMap | undefined, summary: Summary | undefined): HTMLElement | undefined {
   let list = entries ?? [];
   if (!list.length && map)
-    list = [{title: map.quantity ? `Length of the ${map.quantity}` : 'Volumetric error at the points of the map', before_um: lengths(map.before_um), after_um: map.after_um && lengths(map.after_um),
+    list = [{title: `${map.quantity ? `Length of the ${map.quantity}` : 'Volumetric error'} at the points of the map`, before_um: lengths(map.before_um), after_um: map.after_um && lengths(map.after_um),
       before_percentiles_um: summary?.map?.position_before_um, after_percentiles_um: summary?.map?.position_after_um}];
   const figures = list.map(one).filter((f): f is HTMLElement => f !== undefined);
   const table = summary && statisticsTable(summary);

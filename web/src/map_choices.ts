@@ -46,11 +46,12 @@ export function quantities(map: ErrorMap): Quantity[] {
 
 export function colours(map: ErrorMap, quantity: Quantity): Colour[] {
   const word = quantity.id === 'rotation' ? 'rotation' : 'error';
-  const list: Colour[] = [{id: 'length', label: `size of the ${word}`, legend: `length of the ${word} / ${quantity.unit}`, unit: quantity.unit,
+  const named = quantity.id === 'rotation' ? word : map.quantity ?? word;
+  const list: Colour[] = [{id: 'length', label: `size of the ${word}`, legend: `length of the ${named} / ${quantity.unit}`, unit: quantity.unit,
     values: (view) => quantity.views[Math.min(view, quantity.views.length - 1)].length}];
   const uncertainty = map.expanded_uncertainty_um;
   if (uncertainty?.length)
-    list.push({id: 'uncertainty', label: 'uncertainty', legend: 'expanded uncertainty of the predicted displacement (k = 2) / µm', unit: 'µm',
+    list.push({id: 'uncertainty', label: 'uncertainty', legend: `expanded uncertainty of the ${map.quantity ?? 'predicted displacement'} (k = 2) / µm`, unit: 'µm',
       values: () => uncertainty});
   return list;
 }
@@ -84,7 +85,7 @@ export function statisticsTable(kind: Quantity, hasUncertainty: boolean, summary
   const cell = (value: number | undefined, path: string) =>
     html('td', {class: 'number'}, value === undefined ? '\u2013' : html('span', {'data-key': path}, number(value)));
   return html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Statistics of the map'}, html('table', {class: 'map-statistics'},
-    html('caption', {}, `${kind.id === 'displacement' ? 'Length of the displacement' : 'Angle of the rotation'}${summary.poses ? ` over all ${count(summary.poses)} poses` : ''}`),
+    html('caption', {}, `${kind.id === 'displacement' ? 'Length' : 'Angle'} of the ${kind.label}${summary.poses ? ` over all ${count(summary.poses)} poses` : ''}`),
     html('thead', {}, html('tr', {}, ...['', 'mean', '95\u2009% below', 'max', ''].map((name, i) =>
       html('th', {scope: 'col', class: i > 0 && i < 4 ? 'number' : ''}, name)))),
     html('tbody', {}, ...present.map(({name, key, unit, statistics}) => html('tr', {},

@@ -90,8 +90,8 @@ const capitalised = (text: string) => text[0].toUpperCase() + text.slice(1);
 
 function errorTiles(errors: PoseErrors, key: string, where = ''): HTMLElement[] {
   const quantity = errors.quantity ?? 'volumetric error';
-  // Of reflectors and readings the set-up is fitted again for the nominal machine.
-  const fitted = errors.quantity !== undefined && !errors.quantity.endsWith('volumetric error');
+  // At held-out reflectors and readings the set-up is fitted again for the nominal machine.
+  const fitted = key === 'held_out' && errors.quantity !== undefined && !errors.quantity.endsWith('volumetric error');
   const states = fitted ? ['nominal machine, set-up fitted again', 'identified machine'] : ['before', 'after'];
   const pair = (label: string, before: Statistics | undefined, after: Statistics | undefined, stem: string, unit: string) => {
     const suffix = unit === 'µm' ? 'um' : 'urad';

@@ -24,7 +24,7 @@ function rowsOf(summary: Summary): {name: string; key: string; unit: string; sta
     if (!errors) continue;
     const corrected = errors.position_after_um !== undefined;
     const residual = errors.quantity?.startsWith('residual') ?? false;
-    const fitted = errors.quantity !== undefined && !errors.quantity.endsWith('volumetric error');
+    const fitted = group === 'held_out' && errors.quantity !== undefined && !errors.quantity.endsWith('volumetric error');
     const name = residual ? 'Residual of held-out readings' : `${errors.quantity ? errors.quantity[0].toUpperCase() + errors.quantity.slice(1) : 'Position error'}, ${words}`;
     add(`${name}, ${fitted ? 'nominal machine, set-up fitted again' : corrected ? 'before' : 'as it is'}`, `${group}.position_before_um`, 'µm', errors.position_before_um);
     add(`${name}, ${fitted ? 'identified machine' : 'after'}`, `${group}.position_after_um`, 'µm', errors.position_after_um);
