@@ -76,13 +76,15 @@ async function inspect(browser, file) {
   await page.setViewportSize({width: 1280, height: 900});
   await page.goto(url, {timeout: 120_000});
   await settled(page, 5);
-  // What is drawn stays: for half a second, and for an image on paper, which is in the light theme too.
-  if (await page.locator('.stage canvas').count()) {
-    const drawings = () => page.evaluate(() => window.drawings);
-    const drawn = await drawings();
+  // Each view is drawn once. What is drawn stays: for half a second, and for an image on paper, which is in the light theme too.
+  const views = await page.locator('.stage canvas').count();
+  const drawings = () => page.evaluate(() => window.drawings);
+  const drawn = await drawings();
+  check(drawn === views, problems(`${views} views are drawn ${drawn} times when the page opens`));
+  if (views) {
     await page.evaluate(() => ['beforeprint', 'afterprint'].forEach((name) => window.dispatchEvent(new Event(name))));
     await settled(page, 30);
-    check(drawn > 0 && (await drawings()) === drawn, problems(`the views are drawn ${await drawings()} times, ${drawn} before, although nothing changes`));
+    check((await drawings()) === drawn, problems(`the views are drawn ${await drawings()} times, ${drawn} before, although nothing changes`));
   }
 
   check((await page.textContent('h1')) === data.title, problems('the heading is not the title'));

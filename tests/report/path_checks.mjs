@@ -64,16 +64,17 @@ async function pathOf(page, data, expect, shot, parse) {
     // Plays on from there, stops, and stays. Stopped within the page, since a slow machine could come to the end before another click.
     const before = String(await positions());
     await page.click('#path-play');
-    const [played, label] = await page.evaluate(async (before) => {
+    const [played, label, paused] = await page.evaluate(async (before) => {
       const shown = () => String([...document.querySelectorAll('#path [data-axis]')].map((e) => e.textContent));
       const play = document.querySelector('#path-play');
       for (const start = performance.now(); shown() === before && performance.now() < start + 15000;) await new Promise((done) => requestAnimationFrame(done));
       const seen = [shown() !== before, play.textContent];
       play.click();
-      return seen;
+      return [...seen, play.textContent];
     }, before);
     expect(played, 'nothing is played');
     expect(label === 'Pause', 'the button does not say pause');
+    expect(paused === 'Play', `after a pause the button says ${paused}`);
     const still = String(await positions());
     await settled(page, 10);
     expect(String(await positions()) === still, 'the path goes on after a pause');

@@ -7,7 +7,8 @@ export async function until(condition) {
   return condition();
 }
 
-/// Runs in the page before its own script: counts the drawings of the three-dimensional views, and waits for frames.
+/// Runs in the page before its own script: counts the drawings of the three-dimensional views, each of which clears its canvas once, and
+/// waits for frames.
 export function watchDrawing() {
   const {clear} = WebGL2RenderingContext.prototype;
   window.drawings = 0;
@@ -15,12 +16,13 @@ export function watchDrawing() {
     ++window.drawings;
     return clear.apply(this, what);
   };
-  // Changes are drawn at the next frame after the sizes are known; the drawing may be later in the last frame than this is told of it.
+  // A change is drawn in the next frame, or one later if a size changes first. Other callbacks of the last frame may still be running: they
+  // get a turn before this returns.
   window.settled = async (frames = 2) => {
     for (let i = 0; i < frames; ++i) await new Promise((done) => requestAnimationFrame(done));
     await new Promise((done) => setTimeout(done));
   };
 }
 
-/// Returns when the page has drawn what was asked of it so far.
+/// Waits for so many frames: two are enough for any drawing; the image for paper takes 300 ms more.
 export const settled = (page, frames) => page.evaluate((n) => window.settled(n), frames);
