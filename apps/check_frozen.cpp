@@ -10,8 +10,8 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/machine/axis_unit.h"
 #include "abbe/runtime/abbe_runtime.h"
-#include "axis_unit.h"
 #include "exit_code.h"
 
 namespace abbe {

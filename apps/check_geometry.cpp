@@ -13,10 +13,10 @@
 #include "abbe/formats/ply_file.h"
 #include "abbe/formats/point_cloud_file.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/formats/vector_json.h"
 #include "abbe/geometry/mesh_check.h"
 #include "abbe/geometry/vertex_welder.h"
 #include "exit_code.h"
-#include "vector_json.h"
 
 namespace abbe {
 namespace {

@@ -1,5 +1,7 @@
 #include "command.h"
 
+#include "abbe/report/version.h"
+
 namespace abbe {
 
 CommandLine::CommandLine()
@@ -11,7 +13,7 @@ CommandLine::CommandLine()
       "  abbe reproduce wang                            a published study, recomputed\n\n"
       "Exit codes: 0 done, 1 the computation says no, 2 bad input, 3 internal error;\n"
       "interrupted: 130 by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.");
-  program.set_version_flag("--version", "abbe " ABBE_VERSION);
+  program.set_version_flag("--version", std::string("abbe ") + version_text());
   program.require_subcommand(1);
   program.set_help_all_flag("--help-all", "Help of all subcommands");
 }

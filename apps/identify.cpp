@@ -7,16 +7,17 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/study_file.h"
-#include "axis_unit.h"
+#include "abbe/machine/axis_unit.h"
+#include "abbe/study/advice.h"
+#include "abbe/study/job.h"
+#include "abbe/study/report_parameters.h"
+#include "abbe/study/study_text.h"
+#include "abbe/study/summary.h"
+#include "abbe/study/trust.h"
 #include "command.h"
 #include "options.h"
 #include "progress.h"
-#include "study/advice.h"
-#include "study/job.h"
-#include "study/print.h"
-#include "study/report_parameters.h"
-#include "study/summary.h"
-#include "study/trust.h"
+#include "study_outcome.h"
 
 namespace abbe {
 
@@ -69,7 +70,7 @@ void add_identify_command(CommandLine& line) {
         tell_distrust(study, result);
         return study_exit_code(study, result);
       }
-      print_study(study, result, options->parameters ? nullptr : "--parameters");
+      fmt::print("{}", study_text(study, result, options->parameters ? nullptr : "--parameters"));
       if (options->parameters && result.usable()) {
         const Identification& identified = result.identification;
         fmt::print("\n{:<24} {:>16} {:>16}\n", "parameter", "value", "u");

@@ -10,18 +10,20 @@
 #include "abbe/formats/map_file.h"
 #include "abbe/formats/measurement_file.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/report/partial_errors.h"
+#include "abbe/report/statistics_json.h"
+#include "abbe/report/volumetric_words.h"
+#include "abbe/study/job.h"
+#include "abbe/study/results.h"
+#include "abbe/study/summary.h"
 #include "abbe/verify/error_map.h"
+#include "abbe/verify/volumetric_figures.h"
 #include "axis_option.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
 #include "options.h"
-#include "partial_errors.h"
 #include "progress.h"
-#include "study/job.h"
-#include "study/results.h"
-#include "study/summary.h"
-#include "study/volumetric_figures.h"
 #include "uncovered_poses.h"
 
 namespace abbe {
@@ -100,18 +102,18 @@ void print_text(const MapReport& report) {
   };
   const bool two = report.after != nullptr;
   if (report.figures) {
-    print_volumetric_figures(*report.figures);
+    fmt::print("{}", volumetric_text(*report.figures));
     if (two && !report.after_is_true) {
-      print_error_line("difference from the errors of --minus", report.after->statistics);
+      fmt::print("{}", error_line("difference from the errors of --minus", report.after->statistics));
     }
   } else {
     fmt::print("displacement of the functional point, the workpiece datum as it is\n");
-    print_error_line(two ? "before" : "as it is", before.statistics);
-    if (two) print_error_line("after", report.after->statistics);
+    fmt::print("{}", error_line(two ? "before" : "as it is", before.statistics));
+    if (two) fmt::print("{}", error_line("after", report.after->statistics));
   }
   if (!before.norm_uncertainty.empty()) {
-    print_error_line("standard uncertainty along the displacement",
-                     sample_statistics(before.norm_uncertainty, before.covered));
+    fmt::print("{}", error_line("standard uncertainty along the displacement",
+                                sample_statistics(before.norm_uncertainty, before.covered)));
   }
   print(two ? "orientation error, before" : "orientation error", orientation_statistics(before));
   if (two) print("orientation error, after", orientation_statistics(*report.after));

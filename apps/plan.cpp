@@ -6,14 +6,14 @@
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/study_file.h"
+#include "abbe/machine/axis_unit.h"
 #include "abbe/report/svg_plot.h"
-#include "axis_unit.h"
+#include "abbe/study/planning.h"
 #include "command.h"
 #include "exit_code.h"
 #include "messages.h"
 #include "options.h"
 #include "progress.h"
-#include "study/planning.h"
 
 namespace abbe {
 namespace {

@@ -10,6 +10,7 @@
 #include "abbe/formats/point_cloud_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/scanner_positioning_file.h"
+#include "abbe/formats/vector_json.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/registration.h"
 #include "command.h"
@@ -19,7 +20,6 @@
 #include "position/position_json.h"
 #include "progress.h"
 #include "step_reading.h"
-#include "vector_json.h"
 
 namespace abbe {
 namespace {

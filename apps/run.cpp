@@ -5,16 +5,17 @@
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/study_file.h"
+#include "abbe/study/advice.h"
+#include "abbe/study/job.h"
+#include "abbe/study/results.h"
+#include "abbe/study/study_text.h"
+#include "abbe/study/summary.h"
+#include "abbe/study/trust.h"
 #include "command.h"
 #include "exit_code.h"
 #include "options.h"
 #include "progress.h"
-#include "study/advice.h"
-#include "study/job.h"
-#include "study/print.h"
-#include "study/results.h"
-#include "study/summary.h"
-#include "study/trust.h"
+#include "study_outcome.h"
 #include "uncovered_poses.h"
 
 namespace abbe {
@@ -66,7 +67,7 @@ void add_run_command(CommandLine& line) {
       if (options->json) {
         fmt::print("{}", json_text(summary));
       } else {
-        print_study(study, result, options->all_values ? nullptr : "--all-values, or summary.json");
+        fmt::print("{}", study_text(study, result, options->all_values ? nullptr : "--all-values, or summary.json"));
         fmt::print("\nresults in {}\n", study.output.string());
         if (study.report.page) fmt::print("report:    {}\n", (study.output / "report.html").string());
       }

@@ -4,12 +4,12 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/study_file.h"
+#include "abbe/study/campaign.h"
+#include "abbe/study/results.h"
 #include "command.h"
 #include "exit_code.h"
 #include "options.h"
 #include "progress.h"
-#include "study/campaign.h"
-#include "study/results.h"
 
 namespace abbe {
 

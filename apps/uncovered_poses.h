@@ -1,28 +1,12 @@
 #pragma once
 
-#include <cstddef>
-#include <string>
+#include "abbe/verify/left_out_poses.h"
 
 namespace abbe {
 
 /// What --accept-uncovered does, for --help.
 inline constexpr const char* kAcceptUncoveredWords =
     "Exit code 0 even if poses are left out, such as where the errors are not known";
-
-/// Poses that have no result, by reason.
-struct LeftOutPoses {
-  std::size_t all = 0;             ///< poses asked for, with and without a result
-  std::size_t not_covered = 0;     ///< outside the range in which the errors are known
-  std::size_t outside_travel = 0;  ///< their corrected commands leave the travel
-  std::size_t not_reached = 0;     ///< no command of the axes that are corrected reaches the point
-  const char* what = "poses of the map";
-
-  std::size_t count() const { return not_covered + outside_travel + not_reached; }
-};
-
-/// That poses have no result, and why: "2 of 6 poses of the map lie outside the range in which the errors are known;
-/// they are left out".
-std::string left_out_words(const LeftOutPoses& left_out);
 
 /// The one rule of all commands that leave poses out: says on standard error how many have no result, if any.
 /// @returns the exit code of the command: kNegative for poses left out unless that is accepted

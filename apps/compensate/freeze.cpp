@@ -18,8 +18,9 @@
 #include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/machine/axis_unit.h"
+#include "abbe/report/version.h"
 #include "abbe/runtime/abbe_runtime.h"
-#include "axis_unit.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/position_words.h"
@@ -58,7 +59,7 @@ FreezeOptions options_of(const FreezeArguments& arguments, const Machine& machin
   options.world_zero_at_joints = arguments.world == "joints";
   options.covariance = parameter_covariance(errors.errors, errors.covariance);
   options.source = machine_text(machine) + errors_text(machine, errors);
-  options.version = ABBE_VERSION;
+  options.version = version_text();
   return options;
 }
 
@@ -80,7 +81,7 @@ void print_result(const FreezeArguments& arguments, const Machine& machine, cons
              written             ? arguments.output
              : arguments.dry_run ? "dry run, nothing written"
                                  : "nothing written",
-             frozen.bytes.size(), static_cast<int>(ABBE_RUNTIME_FORMAT), ABBE_VERSION, frozen.checksum,
+             frozen.bytes.size(), static_cast<int>(ABBE_RUNTIME_FORMAT), version_text(), frozen.checksum,
              frozen.source_checksum);
   fmt::print("  tried at {} poses, tools of {:g} to {:g} mm\n", frozen.poses, arguments.lengths[0],
              arguments.lengths[1]);
@@ -125,7 +126,7 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
   json["written"] = written;
   json["bytes"] = frozen.bytes.size();
   json["format"] = static_cast<int>(ABBE_RUNTIME_FORMAT);
-  json["version"] = ABBE_VERSION;
+  json["version"] = version_text();
   json["checksum"] = fmt::format("{:016x}", frozen.checksum);
   json["source_checksum"] = fmt::format("{:016x}", frozen.source_checksum);
   json["poses"] = frozen.poses;

@@ -8,8 +8,8 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/path_program.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/machine/axis_unit.h"
 #include "axis_option.h"
-#include "axis_unit.h"
 #include "compensate/safety.h"
 
 namespace abbe {

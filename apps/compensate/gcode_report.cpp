@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "axis_unit.h"
+#include "abbe/machine/axis_unit.h"
 #include "compensate/position_words.h"
 #include "compensate/reversal_words.h"
 #include "compensate/safety.h"

@@ -8,7 +8,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/table_fanuc.h"
 #include "abbe/formats/table_heidenhain.h"
-#include "axis_unit.h"
+#include "abbe/machine/axis_unit.h"
 #include "compensate/axis_table_formats.h"
 #include "compensate/reversal_words.h"
 

@@ -20,7 +20,7 @@
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/geometry/angle.h"
-#include "axis_unit.h"
+#include "abbe/machine/axis_unit.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/position_words.h"

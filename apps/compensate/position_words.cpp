@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "axis_unit.h"
+#include "abbe/machine/axis_unit.h"
 
 namespace abbe {
 std::string position_words(const Machine& machine, std::span<const double> commands, const char* number) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "axis_unit.h"
+#include "abbe/machine/axis_unit.h"
 #include "compensate/joint_order.h"
 
 namespace abbe {

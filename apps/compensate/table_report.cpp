@@ -8,8 +8,10 @@
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/map_file.h"
 #include "abbe/geometry/angle_units.h"
-#include "axis_unit.h"
-#include "study/summary.h"
+#include "abbe/machine/axis_unit.h"
+#include "abbe/report/statistics_json.h"
+#include "abbe/report/volumetric_words.h"
+#include "abbe/study/summary.h"
 
 namespace abbe {
 namespace {
@@ -103,8 +105,8 @@ void print_table_report(const TableReport& report) {
   for (const std::string& name : report.left_out_kept)
     fmt::print("  kept, as not small together with others: {}\n", name);
   print_errors(report);
-  print_volumetric_figures(report.volumetric);
-  print_error_line("what these tables leave of it between their nodes", report.left_by_tables);
+  fmt::print("{}", volumetric_text(report.volumetric));
+  fmt::print("{}", error_line("what these tables leave of it between their nodes", report.left_by_tables));
   fmt::print(
       "displacement of the tool over {} poses between the nodes, the datum as it is, from the worse direction of "
       "approach:\n",

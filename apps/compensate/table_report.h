@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "abbe/errors/poses.h"
+#include "abbe/report/partial_errors.h"
 #include "abbe/verify/table_loss.h"
+#include "abbe/verify/volumetric_figures.h"
 #include "compensate/table_formats.h"
-#include "partial_errors.h"
-#include "study/volumetric_figures.h"
 
 namespace abbe {
 

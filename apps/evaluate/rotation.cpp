@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "abbe/formats/evaluation_rotation_file.h"
+#include "abbe/machine/axis_unit.h"
 #include "abbe/report/svg_polar_plot.h"
-#include "axis_unit.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"

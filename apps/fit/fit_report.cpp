@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "vector_json.h"
+#include "abbe/formats/vector_json.h"
 
 namespace abbe {
 namespace {

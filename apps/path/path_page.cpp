@@ -4,7 +4,7 @@
 
 #include "abbe/report/evaluation_data.h"
 #include "abbe/report/report.h"
-#include "study/report_data.h"
+#include "abbe/study/report_data.h"
 
 namespace abbe {
 

@@ -11,7 +11,7 @@
 #include "abbe/formats/ply_file.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/scan_plan_file.h"
-#include "axis_unit.h"
+#include "abbe/machine/axis_unit.h"
 #include "reproduce/liu_machine.h"
 #include "scan/plan_page.h"
 

@@ -8,10 +8,10 @@
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/formats/vector_json.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/polygon_trace.h"
 #include "shared_file.h"
-#include "vector_json.h"
 
 namespace abbe {
 namespace {

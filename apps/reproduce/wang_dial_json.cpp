@@ -1,8 +1,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "abbe/machine/axis_unit.h"
 #include "abbe/verify/statistics.h"
-#include "axis_unit.h"
 #include "reproduce/wang_dial_tables.h"
 #include "reproduce/wang_tables.h"
 

@@ -6,8 +6,8 @@
 #include <functional>
 #include <utility>
 
+#include "abbe/machine/axis_unit.h"
 #include "abbe/verify/statistics.h"
-#include "axis_unit.h"
 #include "reproduce/wang_tables.h"
 
 namespace abbe {

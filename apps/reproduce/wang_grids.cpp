@@ -14,7 +14,7 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/identify/decoupled_errors.h"
 #include "abbe/identify/distributions.h"
-#include "axis_unit.h"
+#include "abbe/machine/axis_unit.h"
 #include "exit_code.h"
 #include "reproduce/wang_dials.h"
 #include "reproduce/wang_study.h"

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <utility>
 
+#include "abbe/machine/axis_unit.h"
+#include "abbe/study/report_data.h"
 #include "abbe/verify/error_map.h"
-#include "axis_unit.h"
-#include "study/report_data.h"
 
 namespace abbe {
 namespace {

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "abbe/report/statistics_json.h"
+#include "abbe/study/summary.h"
 #include "progress.h"
 #include "reproduce/wang_tables.h"
-#include "study/summary.h"
 
 namespace abbe {
 namespace {

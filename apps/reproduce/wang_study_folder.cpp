@@ -10,10 +10,10 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/map_file.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/study/report_data.h"
 #include "reproduce/wang_integrated.h"
 #include "reproduce/wang_results.h"
 #include "reproduce/wang_tables.h"
-#include "study/report_data.h"
 
 namespace abbe {
 namespace {

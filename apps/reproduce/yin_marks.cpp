@@ -8,8 +8,8 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/study_file.h"
 #include "abbe/identify/prediction.h"
+#include "abbe/study/job.h"
 #include "shared_file.h"
-#include "study/job.h"
 
 namespace abbe {
 namespace {

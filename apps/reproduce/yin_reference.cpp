@@ -7,9 +7,9 @@
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/curve_file.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/formats/vector_json.h"
 #include "abbe/verify/contour_error.h"
 #include "shared_file.h"
-#include "vector_json.h"
 
 namespace abbe {
 namespace {

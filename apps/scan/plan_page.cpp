@@ -9,9 +9,9 @@
 #include "abbe/formats/scan_plan_file.h"
 #include "abbe/report/evaluation_data.h"
 #include "abbe/report/report.h"
+#include "abbe/study/report_data.h"
 #include "scan/coverage_picture.h"
 #include "scan/plan_words.h"
-#include "study/report_data.h"
 
 namespace abbe {
 namespace {

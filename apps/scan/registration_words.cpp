@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "abbe/formats/vector_json.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "scan/scan_files.h"
-#include "vector_json.h"
 
 namespace abbe {
 namespace {

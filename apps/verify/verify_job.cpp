@@ -12,10 +12,11 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/text_file.h"
 #include "abbe/formats/trace_file.h"
+#include "abbe/study/job.h"
+#include "abbe/study/random_poses.h"
+#include "abbe/verify/volumetric_figures.h"
 #include "axis_option.h"
 #include "errors_for_use.h"
-#include "study/job.h"
-#include "study/random_poses.h"
 
 namespace abbe {
 namespace {

@@ -9,10 +9,10 @@
 #include "abbe/formats/errors_file.h"
 #include "abbe/instruments/measurement_plan.h"
 #include "abbe/machine/machine.h"
+#include "abbe/report/partial_errors.h"
 #include "abbe/verify/compensated_poses.h"
 #include "abbe/verify/test_piece_deviation.h"
-#include "partial_errors.h"
-#include "study/volumetric_figures.h"
+#include "abbe/verify/volumetric_figures.h"
 #include "test_piece/sizes.h"
 #include "uncovered_poses.h"
 

@@ -11,7 +11,8 @@
 
 #include "abbe/formats/text_file.h"
 #include "abbe/report/report.h"
-#include "study/report_data.h"
+#include "abbe/report/volumetric_words.h"
+#include "abbe/study/report_data.h"
 #include "verify/verify_text.h"
 
 namespace abbe {

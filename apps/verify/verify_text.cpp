@@ -5,9 +5,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "study/not_identified.h"
-#include "study/summary.h"
-#include "study/unseen.h"
+#include "abbe/report/statistics_json.h"
+#include "abbe/report/volumetric_words.h"
+#include "abbe/study/not_identified.h"
+#include "abbe/study/summary.h"
+#include "abbe/study/unseen.h"
 
 namespace abbe {
 namespace {
@@ -140,7 +142,7 @@ void print_verify(const VerifyResult& result) {
   }
   if (result.left_out().count() > 0) fmt::print("  {}\n", left_out_words(result.left_out()));
   fmt::print("\n");
-  print_volumetric_figures(result.volumetric);
+  fmt::print("{}", volumetric_text(result.volumetric));
   for (const PieceResult& piece : result.pieces) print_piece(piece);
   if (!result.verdicts.empty()) fmt::print("\n");
   for (const VerifyVerdict& verdict : result.verdicts) fmt::print("{}\n", verdict.text);

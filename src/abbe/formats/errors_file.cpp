@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string_view>
 
+#include "abbe/compensate/correction_uncertainty.h"
 #include "abbe/formats/covariance_file.h"
 #include "abbe/formats/csv_reader.h"
 #include "abbe/formats/error_fields.h"
@@ -296,6 +298,15 @@ void write_errors(const std::filesystem::path& path, const Machine& machine, con
     write_file_atomically(covariance, covariance_text(machine, contents));
   }
   write_file_atomically(path, errors_text(machine, contents, beside));
+}
+
+bool is_truth(const ErrorsFile& file) {
+  return std::any_of(file.provenance.begin(), file.provenance.end(),
+                     [](const auto& entry) { return entry.first == "method" && entry.second == kTruthOfSimulation; });
+}
+
+Eigen::MatrixXd covariance_of(const ErrorsFile& file) {
+  return file.covariance.size() > 0 ? file.covariance : stated_variances(file.errors);
 }
 
 }  // namespace abbe

@@ -26,6 +26,13 @@ struct ErrorsFile {
   std::vector<std::string> warnings{};    ///< what else the identification had to say
 };
 
+/// Whether these errors are said to be the truth of a simulation.
+bool is_truth(const ErrorsFile& file);
+
+/// The covariance of an errors file; without one that of the standard uncertainties it states, as if they were
+/// independent; 0 x 0 if it states none.
+Eigen::MatrixXd covariance_of(const ErrorsFile& file);
+
 /// Reads the errors of a machine and the CSV files that the file names (beside it). Bases without from/to run over the
 /// travel of their axis. @throws InputError
 ErrorsFile read_errors(const std::filesystem::path& path, const Machine& machine);

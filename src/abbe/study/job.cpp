@@ -1,0 +1,159 @@
+#include "abbe/study/job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "abbe/formats/measurement_file.h"
+#include "abbe/identify/prediction.h"
+#include "abbe/study/coverage.h"
+#include "abbe/verify/volumetric_figures.h"
+
+namespace abbe {
+IdentifyOptions identify_options(const Study& study) {
+  const IdentificationPlan& plan = *study.identification;
+  IdentifyOptions options;
+  options.solver.max_iterations = plan.max_iterations;
+  options.solver.relative_cost = plan.tolerance;
+  options.solver.threads = study.threads;
+  options.loss = plan.loss;
+  options.loss_tuning = plan.loss_scale;
+  return options;
+}
+
+void append_length(const Observations& observations, std::size_t reading, std::vector<double>& lengths) {
+  const std::vector<double> deviation = observations.deviation(reading);
+  double square = -1;
+  for (std::size_t row = 0; row < deviation.size(); ++row) {
+    if (!observations.components()[row].is_angle) square = std::max(square, 0.0) + deviation[row] * deviation[row];
+  }
+  if (square >= 0) lengths.push_back(std::sqrt(square));
+}
+
+void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress) {
+  find_start_values(study.machine, result.campaign);
+  result.model = build_model(study, result.campaign);
+  result.warnings = result.campaign.warnings;
+  if (!result.model.impossible.empty()) {
+    result.identification.status = IdentifyStatus::rank_deficient;
+    result.identification.message = result.model.impossible;
+    return;
+  }
+  const IdentificationPlan& plan = *study.identification;
+  Problem& problem = result.model.problem;
+  const IdentifyOptions options = identify_options(study);
+  if (!result.model.order_groups.empty()) {
+    OrderSelectionOptions selection;
+    selection.seed = study.seed;
+    selection.identify = options;
+    result.order_selection = select_model(study, result.campaign, selection, result.model);
+    if (!result.order_selection->done) {
+      result.warnings.push_back(
+          "orders: no model of the range could be identified with poses held out; the largest orders are used");
+    }
+  }
+  const VarianceComponentChoice variances{.variance_factor = plan.estimate_variance_factor,
+                                          .pose_noise = plan.estimate_pose_noise};
+  if (variances.any()) {
+    result.weighed = identify_with_variances(problem, variances, options);
+    result.identification = std::move(result.weighed->identification);
+  } else {
+    StagedIdentification staged = identify_in_stages(problem, plan.strategy, options);
+    result.stages = std::move(staged.stages);
+    result.identification = std::move(staged.total);
+  }
+  // What a convention fixes is listed with the gauge; what had to be fixed without one is a warning.
+  for (const GaugeConstraint& constraint : result.identification.gauge.constraints) {
+    if (!constraint.by_convention) result.warnings.push_back(constraint.words + ": " + constraint.inseparable_words);
+  }
+  if (result.identification.estimates.size() > 0) {
+    result.advice = unseen_advice(problem, result.identification, possible_measurements(problem));
+  }
+  if (!result.usable()) return;
+  if (plan.monte_carlo > 0) {
+    MonteCarloOptions monte_carlo_options;
+    monte_carlo_options.samples = static_cast<std::size_t>(plan.monte_carlo);
+    monte_carlo_options.seed = study.seed;
+    monte_carlo_options.threads = study.threads;
+    monte_carlo_options.loss = options.loss;
+    monte_carlo_options.loss_tuning = options.loss_tuning;
+    result.monte_carlo =
+        monte_carlo(result.weighed ? result.weighed->problem : problem, result.identification, monte_carlo_options);
+    if (result.monte_carlo->not_settled > 0) {
+      result.warnings.push_back(fmt::format("Monte Carlo: {} of {} robust fits had not settled",
+                                            result.monte_carlo->not_settled, result.monte_carlo->samples));
+    }
+  }
+  result.not_identified = find_not_identified(study, result);
+  result.volumetric = study_volumetric_figures(study, result);
+  if (progress) progress(1, 1);
+}
+
+VolumetricFigures study_volumetric_figures(const Study& study, const StudyResult& result) {
+  const ErrorSet& identified = result.identification.errors;
+  const ErrorSet* const truth = result.campaign.truth ? &*result.campaign.truth : nullptr;
+  std::vector<const ErrorSet*> known = {&identified};
+  if (truth != nullptr) known.push_back(truth);
+  return volumetric_figures(study.machine, &identified,
+                            machine_covariance(result.identification, identified.parameter_count()), truth,
+                            stated_grid(study.machine, known), study.threads);
+}
+
+StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress) {
+  const Machine& machine = study.machine;
+  const ErrorSet& identified = result.identification.errors;
+  StudyMap map;
+  if (study.map && study.map->poses_file) {
+    map.poses = read_poses(*study.map->poses_file, machine);
+    map.description = fmt::format("{} poses of {}", map.poses.count(), study.map->poses_file->filename().string());
+  } else {
+    std::vector<AxisRange> ranges;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+      if (!study.map) {
+        ranges.push_back(known_range(machine, identified, i, machine.axes.size() > 3 ? 5 : 9));
+        continue;
+      }
+      // Outside the measured range there is no result; a range entirely outside stays, and its poses are left out.
+      AxisRange range = study.map->axes[i];
+      if (!range.is_fixed() && narrow_to_known_range(identified, i, range) && range.from < range.to) {
+        map.moved.push_back(moved_range_sentence(machine.axes[i], study.map->axes[i], range));
+        ranges.push_back(range);
+      } else {
+        ranges.push_back(study.map->axes[i]);
+      }
+    }
+    StatedPoses stated = grid_over(machine, ranges);
+    map.grid = std::move(stated.grid);
+    map.poses = std::move(stated.poses);
+    map.description = "grid of";
+    for (std::size_t i = 0; i < map.grid.size(); ++i)
+      map.description += fmt::format("{} {}", i == 0 ? "" : " x", map.grid[i]);
+    map.description += map.moved.empty() ? " poses" : " poses over the range in which the errors are known";
+  }
+  const PoseSource poses = pose_source(map.poses);
+  ErrorMapOptions options;
+  options.remove_rigid_motion = true;
+  options.threads = study.threads;
+  options.progress = progress;
+  map.against_truth = result.campaign.truth.has_value();
+  ParameterCovariance covariance;
+  covariance.covariance = machine_covariance(result.identification, identified.parameter_count());
+  for (std::size_t p = 0; p < identified.parameter_count(); ++p) covariance.parameters.push_back(p);
+  ErrorMapOptions with_uncertainty = options;
+  with_uncertainty.covariance = &covariance;
+  map.predicted = error_map(machine, identified, nullptr, poses, with_uncertainty);
+  if (map.against_truth) {
+    map.before = error_map(machine, *result.campaign.truth, nullptr, poses, options);
+    map.after = error_map(machine, *result.campaign.truth, &identified, poses, options);
+  } else {
+    map.before = map.predicted;
+  }
+  std::vector<ErrorMap*> maps = {&map.before, &map.predicted};
+  if (map.after) maps.push_back(&*map.after);
+  keep_common_poses(maps);
+  return map;
+}
+
+}  // namespace abbe

@@ -1,0 +1,134 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "abbe/formats/study.h"
+#include "abbe/identify/planning.h"
+#include "abbe/identify/problem.h"
+#include "abbe/instruments/tracker.h"
+#include "abbe/study/not_identified.h"
+
+namespace abbe {
+
+/// One reading that may be taken: where the machine stands, who looks at what.
+struct SightReading {
+  std::vector<double> pose;  ///< [axes] mm or rad
+  std::size_t setup = 0, station = 0, reflector = 0;
+};
+
+/// The identification problem of a study as far as it can be set up before anything is measured: all errors zero,
+/// stations where the study says they stand.
+class PlanningModel {
+ public:
+  /// @throws InputError naming what is missing for a plan
+  explicit PlanningModel(const Study& study);
+
+  struct Candidates {
+    PlanningCandidates rows;
+    std::vector<SightReading> readings;  ///< [rows.count()]
+    std::size_t hidden = 0;              ///< without a line of sight
+    std::size_t forbidden = 0;           ///< poses in a forbidden box
+  };
+  /// What could be read at poses. Rows over the vector of estimates.
+  /// @param sight  [poses] the one sight used at each, modulo sight_count(); empty: every one
+  Candidates readings_at(const PoseList& poses, const std::vector<std::size_t>& sight = {}) const;
+
+  /// [poses] true where the functional point stands in a forbidden box.
+  std::vector<bool> forbidden(const PoseList& poses) const;
+
+  /// Deviation of the tool's functional point in the workpiece frame, best-fit rigid motion over all poses removed, as
+  /// rows over the vector of estimates: [3 poses, p], mm per mm or rad.
+  Eigen::MatrixXd prediction_rows(const PoseList& poses) const;
+  /// Rows of named parameters in um or urad, for goal = "parameters". @throws InputError if a pattern matches nothing
+  Eigen::MatrixXd parameter_rows() const;
+  /// Knowledge of the kind one always has, [p, p]: every error within 20 um or 60 urad, every number of a set-up within
+  /// a thousand times that.
+  Eigen::MatrixXd weak_prior() const;
+  /// Priors of the study, [rows, p].
+  const Eigen::MatrixXd& known() const { return known_; }
+
+  const Study& study() const { return study_; }
+  const ErrorSet& errors() const { return errors_; }
+  std::size_t sight_count() const { return sights_.size(); }
+  std::size_t parameter_count() const { return parameters_.size(); }
+  const std::vector<EstimatedParameter>& parameters() const { return parameters_; }
+
+ private:
+  struct Sight {
+    std::size_t setup, station, reflector;
+  };
+  Problem problem(std::vector<std::unique_ptr<Observations>>& observations,
+                  const std::vector<TrackerReadings>& readings) const;
+
+  const Study& study_;
+  ErrorSet errors_;
+  std::vector<TrackerSetup> setups_;
+  std::vector<Sight> sights_;
+  std::vector<EstimatedParameter> parameters_;
+  Eigen::MatrixXd known_;
+};
+
+/// Uncertainty that a number of readings would give.
+struct PlanPoint {
+  std::size_t readings = 0;
+  bool determined = false;
+  double uncertainty = 0;  ///< mm, root mean square of the predicted volumetric standard uncertainty; where determined
+  double with_prior = 0;   ///< mm, the same with PlanningModel::weak_prior() added
+};
+
+/// A grid that was compared.
+struct GridPoint {
+  std::string words;  ///< how it is made
+  PlanPoint value;
+  std::size_t open = 0;    ///< directions that the candidates see and it does not
+  std::string open_words;  ///< the errors in them
+};
+
+/// The best grids of at least as many readings (up to a fifth more).
+struct GridsOfANumber {
+  std::size_t tried = 0;
+  std::optional<GridPoint> determined;  ///< the best one that determines everything that the candidates see
+  std::optional<GridPoint> any;         ///< the best one with the weak prior, whether it determines everything or not
+};
+
+/// A plan of readings and what it is worth.
+struct StudyPlan {
+  ReadingPlan plan;
+  std::vector<SightReading> readings;  ///< in the order in which they are to be taken
+  double time = 0;                     ///< s
+  double uncertainty = 0;              ///< mm, as PlanPoint
+  std::size_t candidates = 0, hidden = 0, forbidden = 0;
+  std::size_t parameters = 0, seen = 0;
+  int refinements = 0;     ///< rounds in which poses beside the chosen ones were tried
+  double unseen_part = 0;  ///< largest part of a prediction that lies in directions no candidate sees, 0..1
+  std::vector<PlanPoint> curve;
+  std::size_t enough = 0;  ///< index into curve; its size: not reached
+  std::string enough_words;
+  double with_prior = 0;                    ///< mm, of the plan with the weak prior
+  std::vector<GridsOfANumber> curve_grids;  ///< [curve]
+  GridsOfANumber same_number;               ///< of as many readings as the plan has
+  std::size_t grids_tried = 0;              ///< in all
+  std::optional<GridPoint> equal_grid;      ///< smallest determined grid found that is as good as the plan
+  std::size_t random_tried = 0;
+  std::optional<PlanPoint> random_poses;  ///< median of choices of as many candidates at random
+  NotIdentified not_identified;           ///< errors of the machine that no predicted uncertainty covers
+};
+
+/// Chooses readings for a study with a [plan] table. @throws InputError
+/// @param progress  share done, 0 to 1
+StudyPlan plan_study(const Study& study, const std::function<void(double)>& progress = {});
+
+/// Root mean square of the predicted volumetric uncertainty, mm, of readings with the weak prior.
+double uncertainty_with_prior(const PlanningModel& model, const PlanningCandidates::Rows& rows,
+                              const Eigen::MatrixXd& predictions);
+
+/// Looks for the grids that one would really take: for every number of the curve, for the plan's and for larger ones.
+void compare_with_grids(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
+                        StudyPlan& result);
+
+}  // namespace abbe

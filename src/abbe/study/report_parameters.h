@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "abbe/study/job.h"
+
+namespace abbe {
+
+/// Curves of the identified error motions with their 95 % band, and the truth in the same gauge where it is known.
+/// @param truth  may be null
+nlohmann::ordered_json report_error_motions(const Machine& machine, const Identification& identification,
+                                            const ErrorSet* truth);
+
+/// Identified location errors.
+nlohmann::ordered_json report_location_errors(const Machine& machine, const Identification& identification,
+                                              const ErrorSet* truth);
+
+/// Columns of the table of all estimated parameters.
+nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResult& result, const ErrorSet* truth);
+
+}  // namespace abbe

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "abbe/study/job.h"
+
+namespace abbe {
+
+/// The result of a study for people: verdict, key figures, identified values, gauge, warnings.
+/// @param shows_all  option that shows every identified value, outlier and direction not seen, to be named where only
+///                   the first of them are printed; null: print all
+std::string study_text(const Study& study, const StudyResult& result, const char* shows_all);
+
+}  // namespace abbe
