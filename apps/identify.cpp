@@ -6,14 +6,10 @@
 #include "abbe/formats/existing_output.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
-#include "abbe/formats/study_file.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/study/advice.h"
-#include "abbe/study/job.h"
 #include "abbe/study/report_parameters.h"
-#include "abbe/study/study_text.h"
+#include "abbe/study/run_study.h"
 #include "abbe/study/summary.h"
-#include "abbe/study/trust.h"
 #include "command.h"
 #include "options.h"
 #include "progress.h"
@@ -43,19 +39,14 @@ void add_identify_command(CommandLine& line) {
       if (!study.identification)
         throw InputError({.file = options->study}, "nothing to identify", "an [identify] table");
       if (!options->output.empty()) refuse_existing_output(covariance_beside(options->output));
-      StudyResult result;
-      result.misfit_accepted = options->accept_misfit;
-      {
-        Progress progress(study.simulation ? "simulating readings" : "reading measurements");
-        result.campaign = gather_readings(study, progress.callback());
-      }
-      Progress progress("identifying");
-      identify_study(study, result, progress.callback());
-      if (result.usable()) {
-        result.unseen = evaluate_unseen(study, result);
-        tell_datum_apart(result, *result.unseen);
-      }
-      judge_trust(study, result);
+      StepProgress progress;
+      const StudyResult result =
+          run_study(study, {.accept_misfit = options->accept_misfit,
+                            .map = false,
+                            .progress = [&](StudyStep step, std::size_t done, std::size_t total) {
+                              progress.show(step_words(study, step), done, total);
+                            }});
+      progress.end();
       if (result.usable()) {
         if (!options->output.empty()) {
           ErrorsFile file = identified_errors_file(study, result);

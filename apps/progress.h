@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace abbe {
@@ -22,6 +23,24 @@ class Progress {
   bool terminal_ = false;
   bool drawn_ = false;
   double start_ = 0, last_ = 0;
+};
+
+/// Progress of work in several steps, one line after the other.
+class StepProgress {
+ public:
+  void show(const std::string& step, std::size_t done, std::size_t total) {
+    if (step != step_) {
+      progress_.emplace(step);
+      step_ = step;
+    }
+    (*progress_)(done, total);
+  }
+  /// Removes the line.
+  void end() { progress_.reset(); }
+
+ private:
+  std::string step_;
+  std::optional<Progress> progress_;
 };
 
 }  // namespace abbe

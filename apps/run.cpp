@@ -4,13 +4,9 @@
 
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
-#include "abbe/formats/study_file.h"
-#include "abbe/study/advice.h"
-#include "abbe/study/job.h"
 #include "abbe/study/results.h"
-#include "abbe/study/study_text.h"
+#include "abbe/study/run_study.h"
 #include "abbe/study/summary.h"
-#include "abbe/study/trust.h"
 #include "command.h"
 #include "exit_code.h"
 #include "options.h"
@@ -43,26 +39,13 @@ void add_run_command(CommandLine& line) {
       Study study = read_study(options->study);
       if (!options->output.empty()) study.output = options->output;
       check_results_folder(study.output);
-      StudyResult result;
-      result.misfit_accepted = options->accept_misfit;
-      {
-        Progress progress(study.simulation ? "simulating readings" : "reading measurements");
-        result.campaign = gather_readings(study, progress.callback());
-      }
-      if (study.identification) {
-        {
-          Progress progress("identifying");
-          identify_study(study, result, progress.callback());
-        }
-        if (result.usable()) {
-          result.unseen = evaluate_unseen(study, result);
-          tell_datum_apart(result, *result.unseen);
-          judge_trust(study, result);
-          Progress progress("mapping the volumetric error");
-          result.map = map_study(study, result, progress.callback());
-        }
-      }
-      if (study.identification && !result.usable()) judge_trust(study, result);
+      StepProgress progress;
+      const StudyResult result =
+          run_study(study, {.accept_misfit = options->accept_misfit,
+                            .progress = [&](StudyStep step, std::size_t done, std::size_t total) {
+                              progress.show(step_words(study, step), done, total);
+                            }});
+      progress.end();
       const nlohmann::ordered_json summary = write_results(study, result);
       if (options->json) {
         fmt::print("{}", json_text(summary));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "abbe/geometry/decompositions.h"
+#include "abbe/geometry/stopped.h"
 #include "abbe/identify/normal_equations.h"
 
 namespace abbe {
@@ -123,6 +124,7 @@ class Minimiser {
     bool chord = false;
     result.status = IdentifyStatus::no_convergence;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+      stop_if_asked(options_.stop);
       const Eigen::VectorXd gradient = scaled_gradient();
       const double residual_norm = std::sqrt(2 * sums_.cost);
       IterationRecord record;

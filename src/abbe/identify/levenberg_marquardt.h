@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct SolverOptions {
   double least_damping = 0;      ///< above 0: directions may be open without a gauge, and the rank is not judged
   bool chord_iterations = true;  ///< keep the factor while it still lowers the gradient well
   int threads = 0;               ///< 0: all; the result does not depend on it
+  std::stop_token stop{};        ///< looked at in every iteration: solve() then throws Stopped
 };
 
 /// One iteration, for the convergence history.

@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "abbe/geometry/parallel_blocks.h"
+#include "abbe/geometry/stopped.h"
 #include "abbe/identify/sampled_fit.h"
 
 namespace abbe {
@@ -57,6 +58,7 @@ MonteCarloResult monte_carlo(const Problem& problem, const Identification& ident
   Eigen::MatrixXd changes(p, static_cast<Index>(options.samples));
   Eigen::MatrixXd y(directions.cols(), static_cast<Index>(kSampleBatch));
   for (std::size_t start = 0; start < options.samples; start += kSampleBatch) {
+    stop_if_asked(options.stop);
     const std::size_t batch = std::min(kSampleBatch, options.samples - start);
     const auto in_tasks = [&](const auto& work) {
       for_each_block((batch + kSampleTask - 1) / kSampleTask, options.threads, [&](std::size_t task) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "abbe/identify/identify.h"
@@ -17,6 +18,7 @@ struct MonteCarloOptions {
   std::vector<double> probabilities = {0.025, 0.5, 0.975};
   int threads = 0;
   std::size_t memory_limit_bytes = std::size_t{1} << 30;  ///< for the kept Jacobian and the samples
+  std::stop_token stop{};                                 ///< looked at before every batch of samples: throws Stopped
 };
 
 enum class MonteCarloStatus { not_run, done, no_solution, too_large };

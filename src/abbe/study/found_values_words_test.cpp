@@ -13,11 +13,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-std::string printed(const FoundValues& found) {
-  testing::internal::CaptureStdout();
-  print_found_values(found, "--every-value");
-  return testing::internal::GetCapturedStdout();
-}
+std::string printed(const FoundValues& found) { return found_values_text(found, "--every-value"); }
 
 TEST(FoundValuesWords, WhatWasNotEstimatedHasNoUncertainty) {
   FoundPlace place{.name = "pose", .position = {1, 2, 3}, .position_expanded = {1e-3, 2e-3, 3e-3}};

@@ -32,7 +32,8 @@ void append_length(const Observations& observations, std::size_t reading, std::v
   if (square >= 0) lengths.push_back(std::sqrt(square));
 }
 
-void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress) {
+void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress,
+                    const std::stop_token& stop) {
   find_start_values(study.machine, result.campaign);
   result.model = build_model(study, result.campaign);
   result.warnings = result.campaign.warnings;
@@ -43,7 +44,8 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
   }
   const IdentificationPlan& plan = *study.identification;
   Problem& problem = result.model.problem;
-  const IdentifyOptions options = identify_options(study);
+  IdentifyOptions options = identify_options(study);
+  options.solver.stop = stop;
   if (!result.model.order_groups.empty()) {
     OrderSelectionOptions selection;
     selection.seed = study.seed;
@@ -77,6 +79,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
     monte_carlo_options.samples = static_cast<std::size_t>(plan.monte_carlo);
     monte_carlo_options.seed = study.seed;
     monte_carlo_options.threads = study.threads;
+    monte_carlo_options.stop = stop;
     monte_carlo_options.loss = options.loss;
     monte_carlo_options.loss_tuning = options.loss_tuning;
     result.monte_carlo =

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <optional>
-#include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -61,7 +61,9 @@ struct StudyResult {
 IdentifyOptions identify_options(const Study& study);
 
 /// The identification of a study from its readings, with the volumetric error that it predicts; no map.
-void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress = {});
+/// @throws Stopped if `stop` asks for it
+void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress = {},
+                    const std::stop_token& stop = {});
 
 /// Figures of the volumetric error over the grid that all commands state (docs/conventions.md).
 VolumetricFigures study_volumetric_figures(const Study& study, const StudyResult& result);

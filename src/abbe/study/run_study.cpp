@@ -1,0 +1,52 @@
+#include "abbe/study/run_study.h"
+
+#include "abbe/study/advice.h"
+
+namespace abbe {
+namespace {
+
+/// Progress of one step; asks at every turn whether to go on.
+ProgressCallback progress_of(const RunOptions& options, StudyStep step) {
+  return [&options, step](std::size_t done, std::size_t total) {
+    stop_if_asked(options.stop);
+    if (options.progress) options.progress(step, done, total);
+  };
+}
+
+}  // namespace
+
+const char* step_words(const Study& study, StudyStep step) {
+  switch (step) {
+    case StudyStep::gather:
+      return study.simulation ? "simulating readings" : "reading measurements";
+    case StudyStep::identify:
+      return "identifying";
+    case StudyStep::map:
+      return "mapping the volumetric error";
+  }
+  return "";
+}
+
+StudyResult run_study(const Study& study, const RunOptions& options) {
+  StudyResult result;
+  result.misfit_accepted = options.accept_misfit;
+  const auto begin = [&](StudyStep step) {
+    ProgressCallback progress = progress_of(options, step);
+    progress(0, 1);
+    return progress;
+  };
+  result.campaign = gather_readings(study, begin(StudyStep::gather));
+  if (!study.identification) return result;
+  identify_study(study, result, begin(StudyStep::identify), options.stop);
+  if (!result.usable()) {
+    judge_trust(study, result);
+    return result;
+  }
+  result.unseen = evaluate_unseen(study, result);
+  tell_datum_apart(result, *result.unseen);
+  judge_trust(study, result);
+  if (options.map) result.map = map_study(study, result, begin(StudyStep::map));
+  return result;
+}
+
+}  // namespace abbe

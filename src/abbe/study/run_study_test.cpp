@@ -1,0 +1,72 @@
+#include "abbe/study/run_study.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace abbe {
+namespace {
+
+Study dials() { return read_study(ABBE_SOURCE_DIR "/examples/three_axis/dials.study.toml"); }
+
+TEST(RunStudy, TellsOfEveryStepInOrderAndMapsLast) {
+  const Study study = dials();
+  std::vector<StudyStep> steps;
+  const StudyResult result = run_study(study, {.progress = [&](StudyStep step, std::size_t done, std::size_t total) {
+                                         EXPECT_LE(done, total);
+                                         if (steps.empty() || steps.back() != step) steps.push_back(step);
+                                       }});
+  EXPECT_EQ(steps, (std::vector{StudyStep::gather, StudyStep::identify, StudyStep::map}));
+  EXPECT_TRUE(result.usable()) << result.identification.message;
+  EXPECT_TRUE(result.map && result.unseen && result.volumetric);
+  EXPECT_FALSE(says_no(study, result));
+  EXPECT_NE(study_text(study, result, nullptr).find("identification: converged"), std::string::npos);
+}
+
+TEST(RunStudy, TheResultDoesNotNeedTheStudyThatItIsOf) {
+  StudyResult result;
+  {
+    const Study passing = dials();
+    result = run_study(passing, {.map = false});
+  }
+  EXPECT_FALSE(result.map);
+  const Study study = dials();
+  EXPECT_EQ(study_text(study, result, nullptr), study_text(study, run_study(study, {.map = false}), nullptr));
+}
+
+TEST(RunStudy, StopsInEveryStep) {
+  const Study study = dials();
+  for (const StudyStep last : {StudyStep::gather, StudyStep::identify, StudyStep::map}) {
+    std::stop_source source;
+    RunOptions options;
+    options.stop = source.get_token();
+    options.progress = [&](StudyStep step, std::size_t, std::size_t) {
+      EXPECT_LE(step, last);
+      if (step == last) source.request_stop();
+    };
+    EXPECT_THROW(run_study(study, options), Stopped) << step_words(study, last);
+  }
+}
+
+TEST(RunStudy, TheExampleOfItsHeaderIsTheConsumerThatIsCompiled) {
+  const auto text = [](const std::string& name) {
+    std::ifstream stream(ABBE_SOURCE_DIR "/" + name);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  std::string commented;
+  std::string consumer = text("tests/install/consumer/study.cpp");
+  for (std::size_t begin = 0; begin < consumer.size();) {
+    const std::size_t end = consumer.find('\n', begin);
+    const std::string line = consumer.substr(begin, end - begin);
+    commented += line.empty() ? "//\n" : "//   " + line + "\n";
+    begin = end + 1;
+  }
+  EXPECT_NE(text("src/abbe/study/run_study.h").find(commented), std::string::npos) << commented;
+}
+
+}  // namespace
+}  // namespace abbe

@@ -1,0 +1,22 @@
+# A study run by a program of a stranger and by the command: the same files with the same bytes.
+file(REMOVE_RECURSE ${OUT})
+file(MAKE_DIRECTORY ${OUT})
+execute_process(COMMAND ${CONSUMER} ${STUDY} ${OUT}/consumer OUTPUT_VARIABLE by_consumer COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${ABBE} run ${STUDY} -o ${OUT}/command --all-values OUTPUT_VARIABLE by_command
+                COMMAND_ERROR_IS_FATAL ANY)
+string(FIND "${by_command}" "${by_consumer}" where)
+if(NOT where EQUAL 0)
+  message(FATAL_ERROR "the texts differ:\n${by_consumer}\nand\n${by_command}")
+endif()
+file(GLOB_RECURSE of_consumer RELATIVE ${OUT}/consumer ${OUT}/consumer/*)
+file(GLOB_RECURSE of_command RELATIVE ${OUT}/command ${OUT}/command/*)
+if(NOT of_consumer STREQUAL of_command OR NOT "summary.json" IN_LIST of_consumer)
+  message(FATAL_ERROR "the files differ: ${of_consumer} and ${of_command}")
+endif()
+foreach(name IN LISTS of_consumer)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${OUT}/consumer/${name} ${OUT}/command/${name}
+                  RESULT_VARIABLE different)
+  if(different)
+    message(FATAL_ERROR "${name} differs")
+  endif()
+endforeach()
