@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
-#include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/study/results.h"
 #include "abbe/study/run_study.h"
@@ -46,9 +43,9 @@ void add_run_command(CommandLine& line) {
                               progress.show(step_words(study, step), done, total);
                             }});
       progress.end();
-      const nlohmann::ordered_json summary = write_results(study, result);
+      const std::string summary = write_results(study, result);
       if (options->json) {
-        fmt::print("{}", json_text(summary));
+        fmt::print("{}", summary);
       } else {
         fmt::print("{}", study_text(study, result, options->all_values ? nullptr : "--all-values, or summary.json"));
         fmt::print("\nresults in {}\n", study.output.string());

@@ -36,7 +36,7 @@ void add_simulate_command(CommandLine& line) {
         campaign = gather_readings(study, progress.callback());
       }
       ResultsFolder folder(options->output);
-      for (const std::unique_ptr<CampaignSetup>& setup : campaign.setups) {
+      for (const std::shared_ptr<CampaignSetup>& setup : campaign.setups) {
         folder.write(setup->name + ".csv", setup->readings_text(study.machine));
         fmt::print("{}/{}.csv  {} readings", options->output, setup->name, setup->reading_count());
         if (!setup->outliers.empty()) fmt::print(", {} of them gross errors", setup->outliers.size());

@@ -164,7 +164,7 @@ AguadoFit fit_aguado(const AguadoTruth& truth, const TrackerReadings& readings, 
     apply(find_station_poses(machine, ErrorSet{}, setup, readings), setup);
   }
   TrackerObservations observations(machine, errors, setup, readings);
-  Problem problem = estimate_everything(machine, errors, {&observations});
+  Problem problem = estimate_everything(machine, errors, {borrowed(observations)});
   const std::vector<std::string> names = parameter_names(machine, errors);
   std::vector<std::size_t> estimated;
   for (std::size_t p : problem.machine_parameters) {

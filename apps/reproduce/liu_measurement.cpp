@@ -103,7 +103,7 @@ Identification calibrate_stage(const Machine& machine, const LiuScanner& scanner
     scan_clamped(machine, scanner, stage, clampings[i], static_cast<std::uint32_t>(i), seed + i, readings);
   }
   InstrumentObservations observations(machine, known, std::make_shared<SurfaceProbe>(setup), std::move(readings));
-  Problem problem = estimate_everything(machine, known, {&observations});
+  Problem problem = estimate_everything(machine, known, {borrowed(observations)});
   problem.machine_parameters = {first, first + 1, first + 2, first + 3};
   return identify(problem);
 }

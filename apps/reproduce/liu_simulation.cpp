@@ -89,7 +89,7 @@ LiuClampingCalibration calibrate_clamping(const Machine& machine, const ErrorSet
                                           const LiuNoise& noise) {
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
   InstrumentObservations observations(machine, calibrated, liu_probe_on(y, noise, "probe"), liu_readings(scan));
-  Problem problem = estimate_everything(machine, calibrated, {&observations});
+  Problem problem = estimate_everything(machine, calibrated, {borrowed(observations)});
   problem.machine_parameters.clear();
   const Identification found = identify(problem);
   LiuClampingCalibration result;
@@ -152,7 +152,7 @@ LiuStageCalibration liu_simulate_stage(const Machine& machine, const std::string
   const Eigen::Vector3d direction = standard_on(stage, 0).direction;
   const LiuScan scan = scan_stage(machine, stage, truth, how);
   InstrumentObservations observations(machine, known, liu_probe_on(direction, how.noise, "probe"), liu_readings(scan));
-  Problem problem = estimate_everything(machine, known, {&observations});
+  Problem problem = estimate_everything(machine, known, {borrowed(observations)});
   const std::size_t first = stage == "A" ? 0 : 4;  // in the order of liu_unknowns()
   problem.machine_parameters = {first, first + 1, first + 2, first + 3};
   const Identification found = identify(problem);
@@ -242,7 +242,7 @@ LiuJointClamping liu_joint_clamping(const Machine& machine, const ErrorSet& trut
                               liu_readings(scan_stage(machine, "C", truth, how)));
   InstrumentObservations part(machine, start, liu_probe_on(y, how.noise, "probe_w"),
                               liu_readings(scan_clamped_standard(machine, truth, clamping, how)));
-  Problem problem = estimate_everything(machine, start, {&on_a, &on_c, &part});
+  Problem problem = estimate_everything(machine, start, {borrowed(on_a), borrowed(on_c), borrowed(part)});
   problem.machine_parameters = {0, 1, 2, 3, 4, 5, 6, 7};
   const Identification found = identify(problem);
   LiuJointClamping result;

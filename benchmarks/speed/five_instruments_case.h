@@ -74,8 +74,8 @@ class FiveInstrumentsCase {
   }
 
   Problem problem(const std::vector<std::unique_ptr<Observations>>& observed) const {
-    std::vector<Observations*> all;
-    for (const std::unique_ptr<Observations>& one : observed) all.push_back(one.get());
+    std::vector<std::shared_ptr<Observations>> all;
+    for (const std::unique_ptr<Observations>& one : observed) all.push_back(borrowed(*one));
     Problem result = estimate_everything(machine, start, all);
     result.machine_parameters.resize(result.machine_parameters.size() - 3);  // not the tool offset
     const std::vector<bool> angles = parameters_are_angles(machine, start);

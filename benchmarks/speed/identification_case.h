@@ -101,7 +101,7 @@ struct XcfzCase {
     return std::make_unique<TrackerObservations>(machine, start, setup, readings);
   }
   Problem problem(Observations& observed) const {
-    Problem result = estimate_everything(machine, start, {&observed});
+    Problem result = estimate_everything(machine, start, {borrowed(observed)});
     result.machine_parameters = parameters;
     return result;
   }

@@ -58,7 +58,7 @@ PlanningCandidates tracker_rows(std::size_t count) {
   const PoseList poses = random_plan(data.machine, full_ranges(data.machine, 2), count, 1);
   const TrackerReadings readings = simulate_tracker(data.machine, errors, setup, poses, options).readings;
   TrackerObservations observations(data.machine, errors, setup, readings);
-  const Problem problem = estimate_everything(data.machine, errors, {&observations});
+  const Problem problem = estimate_everything(data.machine, errors, {borrowed(observations)});
   return candidate_rows(problem);
 }
 

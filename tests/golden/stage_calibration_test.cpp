@@ -77,7 +77,7 @@ Calibrated calibrate(const Machine& machine, const std::string& stage, const std
   const std::size_t axis = machine.find_axis(stage);
   for (const Component component : components) errors.locations.push_back({axis, component, 0, 0});
   InstrumentObservations observations(machine, errors, probe_on_cylinder(along), readings_of(machine, file, stage));
-  Problem problem = estimate_everything(machine, errors, {&observations});
+  Problem problem = estimate_everything(machine, errors, {borrowed(observations)});
   const std::size_t first = errors.parameter_count() - 3 - components.size();  // three of the tool offset are last
   problem.machine_parameters.clear();
   for (std::size_t i = 0; i < components.size(); ++i) problem.machine_parameters.push_back(first + i);

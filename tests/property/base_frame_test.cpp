@@ -66,7 +66,7 @@ Fit identify_in(const Campaign& campaign, const RigidTransform& base) {
   }
   const ErrorSet errors = test::all_locations(machine);
   TrackerObservations observations(machine, errors, setup, readings);
-  Problem problem = estimate_everything(machine, errors, {&observations});
+  Problem problem = estimate_everything(machine, errors, {borrowed(observations)});
   const Identification result = identify(problem);
 
   Fit fit;

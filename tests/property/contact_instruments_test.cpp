@@ -102,7 +102,7 @@ CampaignFit fit(const Campaign& campaign, double noise_factor, std::uint64_t see
   }
   // What is known is known wrongly by its uncertainty, the rest is guessed roughly.
   std::vector<double> setup = observations.unknown_values();
-  SelectedObservations selected{&observations, {}, std::vector<std::uint8_t>(observations.reading_count(), 1)};
+  SelectedObservations selected{borrowed(observations), {}, std::vector<std::uint8_t>(observations.reading_count(), 1)};
   for (std::size_t i = 0; i < setup.size(); ++i) {
     const SetupQuantity& quantity = campaign.instrument->quantities()[observations.quantity_of(i)];
     RandomStream random(seed, 1000 + i);

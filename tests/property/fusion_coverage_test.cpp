@@ -67,8 +67,8 @@ class FusedCampaign {
   };
 
   Outcome identified_with(const std::vector<std::size_t>& chosen) {
-    std::vector<Observations*> observations;
-    for (const std::size_t i : chosen) observations.push_back(observations_[i].get());
+    std::vector<std::shared_ptr<Observations>> observations;
+    for (const std::size_t i : chosen) observations.push_back(borrowed(*observations_[i]));
     Problem problem = estimate_everything(machine_, drawn_errors(machine_, nullptr), observations);
     problem.machine_parameters.resize(problem.machine_parameters.size() - 3);  // not the tool offset
     const std::vector<bool> angles = parameters_are_angles(problem.machine, problem.errors);

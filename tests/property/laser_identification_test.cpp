@@ -50,7 +50,7 @@ void predict(const Machine& machine, const ErrorSet& truth, const std::vector<Me
   problem.errors = start;
   // The tool offset error belongs to the optics, whose places are quantities of the set-up.
   for (std::size_t i = 0; i + 3 < start.parameter_count(); ++i) problem.machine_parameters.push_back(i);
-  std::vector<std::unique_ptr<InstrumentObservations>> all;
+  std::vector<std::shared_ptr<InstrumentObservations>> all;
   for (const Measured& one : measured) {
     InstrumentSimulationOptions options;
     options.seed = seed + 1000 * all.size();
@@ -63,9 +63,9 @@ void predict(const Machine& machine, const ErrorSet& truth, const std::vector<Me
     const std::size_t seen = readings.count();
     options.noise_factor = 0;
     readings.append(simulate_instrument(machine, truth, one.truth, one.unseen, options).readings);
-    all.push_back(std::make_unique<InstrumentObservations>(machine, start, described, readings));
+    all.push_back(std::make_shared<InstrumentObservations>(machine, start, described, readings));
     SelectedObservations selected;
-    selected.observations = all.back().get();
+    selected.observations = all.back();
     selected.use.assign(readings.count(), 0);
     std::fill_n(selected.use.begin(), seen, std::uint8_t{1});
     for (std::size_t u = 0; u < all.back()->unknowns().size(); ++u) {

@@ -63,7 +63,7 @@ TEST(PolygonIdentification, AMachinesRotaryAxisIsIdentifiedTogetherWithThePrism)
   const InstrumentReadings readings =
       simulate_instrument(machine, truth, actual, polygon_plan(machine, *actual, 0, {0}), options).readings;
   InstrumentObservations observations(machine, table_errors(0), nominal, readings);
-  Problem problem = estimate_everything(machine, table_errors(0), {&observations});
+  Problem problem = estimate_everything(machine, table_errors(0), {borrowed(observations)});
   problem.machine_parameters.resize(6 * kCoefficients);  // not the tool: there is none
 
   const Identification found = identify(problem);
@@ -110,7 +110,7 @@ TEST(PolygonIdentification, OneMountCannotTellTheTableFromThePrism) {
   const InstrumentReadings readings =
       simulate_instrument(machine, table_errors(4), nominal, polygon_plan(machine, *nominal, 0, {0}), options).readings;
   InstrumentObservations observations(machine, table_errors(0), nominal, readings);
-  Problem problem = estimate_everything(machine, table_errors(0), {&observations});
+  Problem problem = estimate_everything(machine, table_errors(0), {borrowed(observations)});
   problem.machine_parameters.resize(6 * kCoefficients);
   const NullSpace unseen = find_null_space(problem, present_values(problem));
   EXPECT_LE(unseen.rank, 72U);

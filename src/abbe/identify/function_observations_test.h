@@ -76,7 +76,9 @@ class FunctionObservations : public Observations {
 
 /// A problem with the function's parameters as only unknowns.
 inline Problem function_problem(const std::vector<Observations*>& observations) {
-  Problem problem = estimate_everything({}, {}, observations);
+  std::vector<std::shared_ptr<Observations>> shared;
+  for (Observations* one : observations) shared.push_back(borrowed(*one));
+  Problem problem = estimate_everything({}, {}, shared);
   problem.machine_parameters.clear();
   return problem;
 }

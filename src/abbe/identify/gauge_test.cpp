@@ -56,7 +56,7 @@ struct Aguado {
     for (ErrorMotion& motion : errors.motions) std::fill(motion.coefficients.begin(), motion.coefficients.end(), 0.0);
     errors.locations = {{0, Component::X, 0, 0}, {0, Component::Y, 0, 0}};
     observations = std::make_unique<TrackerObservations>(given.machine, errors, setup, readings);
-    problem = estimate_everything(given.machine, errors, {observations.get()});
+    problem = estimate_everything(given.machine, errors, {borrowed(*observations)});
     for (int i = 0; i < 3; ++i) problem.machine_parameters.pop_back();  // the tool offset error
   }
   NullSpace null_space() const { return find_null_space(problem, present_values(problem)); }

@@ -232,7 +232,7 @@ class InstrumentTrials {
 
 void add_instrument_readings(const Problem& problem, std::vector<PossibleMeasurement>& list) {
   for (std::size_t o = 0; o < problem.observations.size(); ++o) {
-    const auto* measured = dynamic_cast<const InstrumentObservations*>(problem.observations[o].observations);
+    const auto* measured = dynamic_cast<const InstrumentObservations*>(problem.observations[o].observations.get());
     if (measured == nullptr || measured->reading_count() == 0) continue;
     InstrumentTrials(problem, o, *measured).add(list);
   }

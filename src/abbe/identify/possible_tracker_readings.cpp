@@ -176,7 +176,7 @@ class TrackerTrials {
 
 void add_tracker_readings(const Problem& problem, std::vector<PossibleMeasurement>& list) {
   for (std::size_t o = 0; o < problem.observations.size(); ++o) {
-    const auto* tracker = dynamic_cast<const TrackerObservations*>(problem.observations[o].observations);
+    const auto* tracker = dynamic_cast<const TrackerObservations*>(problem.observations[o].observations.get());
     if (!tracker || tracker->reading_count() == 0) continue;
     TrackerTrials(problem, o, *tracker).add(list);
   }

@@ -6,13 +6,13 @@
 namespace abbe {
 
 Problem estimate_everything(const Machine& machine, const ErrorSet& errors,
-                            const std::vector<Observations*>& observations) {
+                            const std::vector<std::shared_ptr<Observations>>& observations) {
   Problem problem;
   problem.machine = machine;
   problem.errors = errors;
   problem.machine_parameters.resize(errors.parameter_count());
   std::iota(problem.machine_parameters.begin(), problem.machine_parameters.end(), std::size_t{0});
-  for (Observations* one : observations) {
+  for (const std::shared_ptr<Observations>& one : observations) {
     SelectedObservations selected;
     selected.observations = one;
     selected.unknowns.resize(one->unknowns().size());
@@ -20,6 +20,10 @@ Problem estimate_everything(const Machine& machine, const ErrorSet& errors,
     problem.observations.push_back(std::move(selected));
   }
   return problem;
+}
+
+std::shared_ptr<Observations> borrowed(Observations& observations) {
+  return {std::shared_ptr<Observations>(), &observations};
 }
 
 std::vector<EstimatedParameter> estimated_parameters(const Problem& problem) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -41,9 +42,9 @@ struct JointPrior {
 
 /// One set of readings and what is estimated of its set-up.
 struct SelectedObservations {
-  Observations* observations = nullptr;  ///< not owned; its present unknown_values() are the start
-  std::vector<std::size_t> unknowns;     ///< estimated ones, indices into Observations::unknowns()
-  std::vector<std::uint8_t> use;         ///< per reading: 0 leaves it out; empty: all are used
+  std::shared_ptr<Observations> observations;  ///< its present unknown_values() are the start; shared by copies
+  std::vector<std::size_t> unknowns;           ///< estimated ones, indices into Observations::unknowns()
+  std::vector<std::uint8_t> use;               ///< per reading: 0 leaves it out; empty: all are used
 };
 
 /// What is to be identified from what.
@@ -69,7 +70,10 @@ struct EstimatedParameter {
 
 /// A problem in which everything is estimated: all machine parameters and all set-up unknowns, all readings used.
 Problem estimate_everything(const Machine& machine, const ErrorSet& errors,
-                            const std::vector<Observations*>& observations);
+                            const std::vector<std::shared_ptr<Observations>>& observations);
+
+/// Observations that somebody else owns, who outlives whatever they are given to.
+std::shared_ptr<Observations> borrowed(Observations& observations);
 
 /// The vector of estimates in words. Names of set-up unknowns are taken as the observations give them.
 std::vector<EstimatedParameter> estimated_parameters(const Problem& problem);

@@ -40,7 +40,7 @@ class LevelStudy {
     }
     const InstrumentReadings readings = simulate_instrument(machine, errors, level, plan, {}).readings;
     observations_ = std::make_unique<InstrumentObservations>(machine, errors, level, readings);
-    problem = estimate_everything(machine, errors, {observations_.get()});
+    problem = estimate_everything(machine, errors, {borrowed(*observations_)});
     problem.machine_parameters.resize(problem.machine_parameters.size() - 3);  // the tool offset error comes last
   }
   Problem problem;

@@ -53,7 +53,7 @@ struct Campaign {
     ErrorSet start = truth;
     for (ErrorMotion& motion : start.motions) std::fill(motion.coefficients.begin(), motion.coefficients.end(), 0.0);
     observations = std::make_unique<TrackerObservations>(given.machine, start, given.setup, readings);
-    problem = estimate_everything(given.machine, start, {observations.get()});
+    problem = estimate_everything(given.machine, start, {borrowed(*observations)});
     for (int i = 0; i < 3; ++i) problem.machine_parameters.pop_back();
   }
 

@@ -39,7 +39,7 @@ ErrorSet without_errors(const Problem& problem) {
 
 PossibleMeasurement trial_measurement(const Problem& problem, std::size_t observations, std::string words,
                                       Observations& trial, const std::vector<TrialUnknown>& unknowns) {
-  Problem small = estimate_everything(problem.machine, without_errors(problem), {&trial});
+  Problem small = estimate_everything(problem.machine, without_errors(problem), {borrowed(trial)});
   small.machine_parameters = problem.machine_parameters;
   const PlanningCandidates rows = candidate_rows(small);
   const std::vector<EstimatedParameter> ours = estimated_parameters(problem), theirs = estimated_parameters(small);

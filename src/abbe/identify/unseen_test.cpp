@@ -70,7 +70,7 @@ class BlindStudy {
       : errors_(errors_named(machine, errors)) {
     const InstrumentReadings readings = simulate_instrument(machine, errors_, device, plan, {}).readings;
     observations_ = std::make_unique<InstrumentObservations>(machine, errors_, device, readings);
-    problem = estimate_everything(machine, errors_, {observations_.get()});
+    problem = estimate_everything(machine, errors_, {borrowed(*observations_)});
     problem.machine_parameters.resize(problem.machine_parameters.size() - 3);  // the tool offset error comes last
     std::size_t unknown = 0;
     for (const SetupQuantity& quantity : device->quantities()) {

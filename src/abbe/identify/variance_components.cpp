@@ -55,8 +55,8 @@ class VarianceEstimation {
     result_.components.estimated = choice;
     result_.problem = problem;
     for (SelectedObservations& selected : result_.problem.observations) {
-      result_.observations.push_back(std::make_unique<WeighedObservations>(*selected.observations, selected.use));
-      selected.observations = result_.observations.back().get();
+      result_.observations.push_back(std::make_shared<WeighedObservations>(selected.observations, selected.use));
+      selected.observations = result_.observations.back();
       poses_.push_back(&result_.observations.back()->poses());
     }
   }
@@ -100,7 +100,7 @@ class VarianceEstimation {
 
   bool fit() {
     // Derivatives by the displacement are those at the last estimates; the fit itself begins where the problem does.
-    for (const std::unique_ptr<WeighedObservations>& one : result_.observations)
+    for (const std::shared_ptr<WeighedObservations>& one : result_.observations)
       one->weigh(result_.components.variance);
     result_.problem.errors = errors_;
     set_observations(result_.problem, start_);

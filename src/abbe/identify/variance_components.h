@@ -43,7 +43,7 @@ struct VarianceComponents {
 struct WeighedIdentification {
   Identification identification;
   VarianceComponents components;
-  std::vector<std::unique_ptr<WeighedObservations>> observations;
+  std::vector<std::shared_ptr<WeighedObservations>> observations;
   Problem problem;  ///< the given one with these observations: what the identification solved
 };
 

@@ -63,10 +63,10 @@ TEST(RestrictedLikelihood, agrees_with_whole_matrices_and_its_finite_differences
   Eigen::VectorXd at_start(dense.rows.rows());
   at_start << dense.dense.residuals, (1.02 - one.observations.unknown_values()[0]) / 0.01;
   for (const ReadingVariance variance : {ReadingVariance{1.3, 0.001}, ReadingVariance{0.8, 0}}) {
-    WeighedObservations weighed(one.observations, {});
+    WeighedObservations weighed(borrowed(one.observations), {});
     weighed.weigh(variance);
     Problem problem = one.problem;
-    problem.observations[0].observations = &weighed;
+    problem.observations[0].observations = borrowed(weighed);
     const Identification fit = identify(problem);
     ASSERT_EQ(fit.status, IdentifyStatus::converged);
     const PoseGroups* const poses = &weighed.poses();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace abbe {
 namespace {
@@ -49,8 +50,9 @@ ReadingsOutside& readings_outside() {
 
 }  // namespace
 
-WeighedObservations::WeighedObservations(Observations& observations, const std::vector<std::uint8_t>& use)
-    : observations_(&observations), poses_(observations, use) {
+WeighedObservations::WeighedObservations(std::shared_ptr<Observations> observations,
+                                         const std::vector<std::uint8_t>& use)
+    : observations_(std::move(observations)), poses_(*observations_, use) {
   weigh({});
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "abbe/identify/pose_groups.h"
 
 namespace abbe {
@@ -22,9 +25,8 @@ struct ReadingVariance {
 /// Readings that are not used take no part in the weighting of others. Everything not weighted is that of the others.
 class WeighedObservations : public Observations {
  public:
-  /// @param observations  not owned
   /// @param use           per reading, as SelectedObservations::use
-  WeighedObservations(Observations& observations, const std::vector<std::uint8_t>& use);
+  WeighedObservations(std::shared_ptr<Observations> observations, const std::vector<std::uint8_t>& use);
 
   /// Sets the variances, and z at the present point.
   /// @param variance  factor > 0, pose >= 0
@@ -47,7 +49,7 @@ class WeighedObservations : public Observations {
                 std::size_t stride) const override;
 
  private:
-  Observations* observations_;
+  std::shared_ptr<Observations> observations_;
   PoseGroups poses_;
   ReadingVariance variance_;
   std::vector<Eigen::Matrix3d> taken_;  ///< per group: U diag(...) U'

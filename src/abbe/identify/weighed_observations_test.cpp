@@ -21,7 +21,7 @@ TEST(WeighedObservations, sums_are_those_of_the_whole_covariance_matrix) {
   std::vector<std::uint8_t> use(300, 1);
   for (std::size_t k = 0; k < 300; k += 7) use[k] = 0;
   observations.data()[3 * 7] = std::nan("");  // not used
-  WeighedObservations weighed(observations, use);
+  WeighedObservations weighed(borrowed(observations), use);
   weighed.weigh({1.7, 0.003});
   Problem problem = function_problem({&weighed});
   problem.observations[0].use = use;
@@ -40,7 +40,7 @@ TEST(WeighedObservations, sums_are_those_of_the_whole_covariance_matrix) {
 TEST(WeighedObservations, derivatives_are_those_of_the_weighted_residuals) {
   constexpr std::size_t kPoses = 30;
   PoseObservations observations(kPoses, PoseObservations::simulate(4, kPoses, 2, 1, 0.05));
-  WeighedObservations weighed(observations, {});
+  WeighedObservations weighed(borrowed(observations), {});
   weighed.weigh({0.5, 0.01});
   const std::vector<double> at = weighed.unknown_values();
   const std::vector<std::size_t> columns = {0, 1, 2, 3, 4};
@@ -61,7 +61,7 @@ TEST(WeighedObservations, derivatives_are_those_of_the_weighted_residuals) {
 
 TEST(WeighedObservations, without_variances_nothing_changes) {
   PoseObservations observations(20, PoseObservations::simulate(5, 20, 2, 1, 0));
-  const WeighedObservations weighed(observations, {});
+  const WeighedObservations weighed(borrowed(observations), {});
   std::vector<double> as_given(120), residuals(120);
   observations.evaluate(0, 40, {}, {}, as_given.data(), nullptr, 0);
   weighed.evaluate(0, 40, {}, {}, residuals.data(), nullptr, 0);

@@ -39,7 +39,7 @@ PoseList poses_once(const Machine& machine, const MeasurementPlan& plan, std::ui
 
 std::size_t Campaign::reading_count() const {
   std::size_t count = 0;
-  for (const std::unique_ptr<CampaignSetup>& setup : setups) count += setup->reading_count();
+  for (const std::shared_ptr<CampaignSetup>& setup : setups) count += setup->reading_count();
   return count;
 }
 
@@ -86,7 +86,7 @@ Campaign gather_readings(const Study& study, const ProgressCallback& progress) {
   const ErrorSet* truth = campaign.truth ? &*campaign.truth : nullptr;
   for (std::size_t i = 0; i < study.setups.size(); ++i) {
     const Setup& setup = study.setups[i];
-    std::unique_ptr<CampaignSetup> result =
+    std::shared_ptr<CampaignSetup> result =
         setup.device ? gather_instrument(study, i, truth) : gather_tracker(study, i, truth, progress);
     result->name = setup.name;
     if (result->hidden > 0) {
@@ -102,7 +102,7 @@ Campaign gather_readings(const Study& study, const ProgressCallback& progress) {
 }
 
 void find_start_values(const Machine& machine, Campaign& campaign) {
-  for (const std::unique_ptr<CampaignSetup>& setup : campaign.setups) {
+  for (const std::shared_ptr<CampaignSetup>& setup : campaign.setups) {
     setup->find_start(machine, campaign.warnings, campaign.notes);
   }
 }

@@ -59,7 +59,7 @@ class CampaignSetup {
 
 /// All readings of a study, measured or simulated, and what is known about them.
 struct Campaign {
-  std::vector<std::unique_ptr<CampaignSetup>> setups;
+  std::vector<std::shared_ptr<CampaignSetup>> setups;
   std::optional<ErrorSet> truth;      ///< simulation: the errors the machine really has
   std::vector<std::string> warnings;  ///< swapped reflectors, poses that the data do not determine
   std::vector<std::string> notes;     ///< what was done, for the report's assumptions

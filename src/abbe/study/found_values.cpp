@@ -180,11 +180,11 @@ FoundValues found_values(const Study& study, const StudyResult& result) {
     }
     found.tool_offset = machine.tool_offset + errors.tool_offset_error;
   }
-  for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
+  for (std::size_t s = 0; s < result.model.problem.observations.size(); ++s) {
     FoundSetup setup;
     setup.name = result.campaign.setups[s]->name;
     setup.instrument = study.setups[s].instrument;
-    const Observations& observations = *result.model.observations[s];
+    const Observations& observations = *result.model.problem.observations[s].observations;
     if (const auto* tracker = dynamic_cast<const TrackerObservations*>(&observations)) {
       add_stations(*tracker, s, identified, estimates, setup);
     } else if (const auto* instrument = dynamic_cast<const InstrumentObservations*>(&observations)) {

@@ -253,7 +253,7 @@ InstrumentReadings planned_readings(const Machine& machine, const Setup& setup, 
   return readings;
 }
 
-std::unique_ptr<CampaignSetup> gather_instrument(const Study& study, std::size_t setup, const ErrorSet* truth) {
+std::shared_ptr<CampaignSetup> gather_instrument(const Study& study, std::size_t setup, const ErrorSet* truth) {
   auto result = std::make_unique<InstrumentCampaign>();
   result->device = study.setups[setup].device;
   if (truth != nullptr) {

@@ -36,7 +36,7 @@ class InstrumentCampaign : public CampaignSetup {
 /// is what the study states as true, or else drawn from that uncertainty.
 /// @param truth  null: measured
 /// @throws InputError
-std::unique_ptr<CampaignSetup> gather_instrument(const Study& study, std::size_t setup, const ErrorSet* truth);
+std::shared_ptr<CampaignSetup> gather_instrument(const Study& study, std::size_t setup, const ErrorSet* truth);
 
 /// What one plan would measure with an instrument: each pose with each target and each of its inputs.
 /// @throws InputError if a pose is out of reach

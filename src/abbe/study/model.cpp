@@ -16,7 +16,7 @@ namespace {
 /// Positions of one axis in all readings, sorted, each once.
 std::vector<double> measured_positions(const Campaign& campaign, std::size_t axis) {
   std::vector<double> positions;
-  for (const std::unique_ptr<CampaignSetup>& setup : campaign.setups) {
+  for (const std::shared_ptr<CampaignSetup>& setup : campaign.setups) {
     const std::vector<double>& values = setup->poses().axis[axis];
     positions.insert(positions.end(), values.begin(), values.end());
   }
@@ -171,12 +171,11 @@ StudyModel model_of(const Study& study, const Campaign& campaign, bool all_prior
   const IdentificationPlan& plan = *study.identification;
   const ErrorSet errors = model_errors(study, campaign, model);
   if (!model.impossible.empty()) return model;
-  std::vector<Observations*> pointers;
-  for (const std::unique_ptr<CampaignSetup>& setup : campaign.setups) {
-    model.observations.push_back(setup->observations(study.machine, errors));
-    pointers.push_back(model.observations.back().get());
+  std::vector<std::shared_ptr<Observations>> observations;
+  for (const std::shared_ptr<CampaignSetup>& setup : campaign.setups) {
+    observations.push_back(setup->observations(study.machine, errors));
   }
-  model.problem = estimate_everything(study.machine, errors, pointers);
+  model.problem = estimate_everything(study.machine, errors, observations);
   if (!plan.tool_offset) {
     std::vector<std::size_t>& parameters = model.problem.machine_parameters;
     const std::size_t first_tool = errors.parameter_count() - 3;

@@ -13,8 +13,7 @@ namespace abbe {
 
 /// The identification problem of a study: the model's errors, the observations and what is estimated.
 struct StudyModel {
-  std::vector<std::unique_ptr<Observations>> observations;  ///< one per set-up
-  Problem problem;
+  Problem problem;                       ///< its observations: one per set-up
   std::vector<OrderGroup> order_groups;  ///< for the automatic choice of orders, if the study asks for it
   std::vector<AxisCoverage> coverage;    ///< one for each axis whose error motions are known over a range
   std::string impossible;                ///< not empty: why nothing can be identified, in words

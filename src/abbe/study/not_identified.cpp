@@ -34,7 +34,6 @@ double volumetric_rms(const Machine& machine, const ErrorSet& errors, const Erro
 
 /// The study's problem with the errors added, at errors of zero; its priors keep their parameters.
 struct ExtendedProblem {
-  std::vector<std::unique_ptr<Observations>> observations;
   Problem problem;
   std::vector<std::vector<std::size_t>> groups;  ///< entries of the estimates of each added error
 };
@@ -46,7 +45,7 @@ ExtendedProblem extended_problem(const Study& study, const StudyResult& result, 
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     from.push_back(machine.axes[i].travel_min);
     to.push_back(machine.axes[i].travel_max);
-    for (const std::unique_ptr<CampaignSetup>& setup : result.campaign.setups) {
+    for (const std::shared_ptr<CampaignSetup>& setup : result.campaign.setups) {
       for (const double position : setup->poses().axis[i]) {
         from.back() = std::min(from.back(), position);
         to.back() = std::max(to.back(), position);
@@ -56,15 +55,14 @@ ExtendedProblem extended_problem(const Study& study, const StudyResult& result, 
   ErrorSet errors = errors_with(machine, before.errors, found.errors, from, to);
   errors.set_parameters(std::vector<double>(errors.parameter_count(), 0.0));
   ExtendedProblem extended;
-  std::vector<Observations*> pointers;
+  std::vector<std::shared_ptr<Observations>> observations;
   for (std::size_t s = 0; s < result.campaign.setups.size(); ++s) {
-    extended.observations.push_back(result.campaign.setups[s]->observations(machine, errors));
-    extended.observations.back()->set_parameters(errors.parameters(), result.identification.setup[s]);
-    pointers.push_back(extended.observations.back().get());
+    observations.push_back(result.campaign.setups[s]->observations(machine, errors));
+    observations.back()->set_parameters(errors.parameters(), result.identification.setup[s]);
   }
   Problem& problem = extended.problem;
-  problem = estimate_everything(machine, errors, pointers);
-  for (std::size_t s = 0; s < pointers.size(); ++s) problem.observations[s].use = before.observations[s].use;
+  problem = estimate_everything(machine, errors, observations);
+  for (std::size_t s = 0; s < observations.size(); ++s) problem.observations[s].use = before.observations[s].use;
 
   // Motions of the model stay first, locations and the tool follow all motions.
   std::size_t old_motions = 0, all_motions = 0;

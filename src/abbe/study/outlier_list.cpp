@@ -32,7 +32,8 @@ std::string outliers_text(const Study& study, const StudyResult& result, const c
     const Outlier& outlier = outliers[i];
     const std::string point = point_of(result, outlier);
     std::string pose;
-    const std::vector<double> positions = result.model.observations[outlier.observations]->positions(outlier.reading);
+    const std::vector<double> positions =
+        result.model.problem.observations[outlier.observations].observations->positions(outlier.reading);
     for (std::size_t a = 0; a < positions.size(); ++a) {
       const Axis& axis = study.machine.axes[a];
       pose += fmt::format("{}{} {:.6g} {}", a > 0 ? ", " : "", axis.name, positions[a] / position_unit(axis),

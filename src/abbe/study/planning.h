@@ -62,8 +62,7 @@ class PlanningModel {
   struct Sight {
     std::size_t setup, station, reflector;
   };
-  Problem problem(std::vector<std::unique_ptr<Observations>>& observations,
-                  const std::vector<TrackerReadings>& readings) const;
+  Problem problem(const std::vector<TrackerReadings>& readings) const;
 
   const Study& study_;
   ErrorSet errors_;

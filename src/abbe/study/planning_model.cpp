@@ -96,8 +96,7 @@ PlanningModel::PlanningModel(const Study& study) : study_(study) {
       for (std::size_t j = 0; j < setup.reflectors.size(); ++j) sights_.push_back({s, i, j});
   }
   if (sights_.empty()) throw InputError({.field = "setup"}, "the reflectors are missing", "[[setup.reflector]]");
-  std::vector<std::unique_ptr<Observations>> none;
-  const Problem empty = problem(none, std::vector<TrackerReadings>(setups_.size()));
+  const Problem empty = problem(std::vector<TrackerReadings>(setups_.size()));
   parameters_ = estimated_parameters(empty);
   Problem with_priors = empty;
   for (const ParameterPrior& prior : study.identification->priors)
@@ -114,16 +113,14 @@ PlanningModel::PlanningModel(const Study& study) : study_(study) {
   known_ = prior_rows(with_priors);
 }
 
-Problem PlanningModel::problem(std::vector<std::unique_ptr<Observations>>& observations,
-                               const std::vector<TrackerReadings>& readings) const {
-  std::vector<Observations*> plain;
+Problem PlanningModel::problem(const std::vector<TrackerReadings>& readings) const {
+  std::vector<std::shared_ptr<Observations>> observations;
   for (std::size_t s = 0; s < setups_.size(); ++s) {
     TrackerReadings own = readings[s];
     own.poses.axis.resize(study_.machine.axes.size());
-    observations.push_back(std::make_unique<TrackerObservations>(study_.machine, errors_, setups_[s], own));
-    plain.push_back(observations.back().get());
+    observations.push_back(std::make_shared<TrackerObservations>(study_.machine, errors_, setups_[s], own));
   }
-  Problem result = estimate_everything(study_.machine, errors_, plain);
+  Problem result = estimate_everything(study_.machine, errors_, observations);
   if (!study_.identification->tool_offset)
     result.machine_parameters.resize(result.machine_parameters.size() - 3);  // they come last
   return result;
@@ -153,8 +150,7 @@ PlanningModel::Candidates PlanningModel::readings_at(const PoseList& poses,
     result.hidden += seen.hidden;
     append_planned(readings[sights_[i].setup], seen.readings);
   }
-  std::vector<std::unique_ptr<Observations>> observations;
-  result.rows = candidate_rows(problem(observations, readings));
+  result.rows = candidate_rows(problem(readings));
   for (std::size_t s = 0; s < readings.size(); ++s)
     for (std::size_t k = 0; k < readings[s].count(); ++k)
       result.readings.push_back({readings[s].poses.pose(k), s, readings[s].station[k], readings[s].reflector[k]});

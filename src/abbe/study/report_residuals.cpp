@@ -127,8 +127,8 @@ std::vector<ResidualComponent> residual_components(const Observations& observati
 
 nlohmann::ordered_json report_residuals(const Machine& machine, const StudyResult& result) {
   nlohmann::ordered_json setups = nlohmann::ordered_json::array();
-  for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
-    const Observations& observations = *result.model.observations[s];
+  for (std::size_t s = 0; s < result.model.problem.observations.size(); ++s) {
+    const Observations& observations = *result.model.problem.observations[s].observations;
     const CampaignSetup& setup = *result.campaign.setups[s];
     setups.push_back(setup_json(machine, result, s, observations, residual_components(observations), setup.time_s()));
   }

@@ -25,13 +25,13 @@ ResidualFigures residual_figures(const Study& study, const StudyResult& result) 
   for (const Outlier& outlier : identified.outliers) {
     outliers.insert({outlier.observations, outlier.reading});
     outlier_square += outlier.norm * outlier.norm;
-    outlier_residuals += result.model.observations[outlier.observations]->rows();
+    outlier_residuals += result.model.problem.observations[outlier.observations].observations->rows();
   }
   figures.outliers = outliers.size();
   figures.residuals = used_residual_count(result.model.problem);
   std::vector<double> all, good;
-  for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
-    const Observations& observations = *result.model.observations[s];
+  for (std::size_t s = 0; s < result.model.problem.observations.size(); ++s) {
+    const Observations& observations = *result.model.problem.observations[s].observations;
     const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
     for (std::size_t k = 0; k < observations.reading_count(); ++k) {
       if (!use.empty() && use[k] == 0) continue;

@@ -77,8 +77,8 @@ std::string residuals_csv(const Study& study, const StudyResult& result) {
   std::string text = "setup,reading,point";
   for (const Axis& axis : machine.axes) text += fmt::format(",{}_{}", axis.name, position_suffix(axis));
   text += ",used,weight,component,normalised,residual,unit\n";
-  for (std::size_t s = 0; s < result.model.observations.size(); ++s) {
-    const Observations& observations = *result.model.observations[s];
+  for (std::size_t s = 0; s < result.model.problem.observations.size(); ++s) {
+    const Observations& observations = *result.model.problem.observations[s].observations;
     const std::vector<ResidualComponent> components = residual_components(observations);
     const std::vector<std::string>& points = result.campaign.setups[s]->points();
     const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
@@ -106,13 +106,14 @@ std::string residuals_csv(const Study& study, const StudyResult& result) {
   return text;
 }
 
-nlohmann::ordered_json write_results(const Study& study, const StudyResult& result) {
-  nlohmann::ordered_json summary = study_summary(study, result);
+std::string write_results(const Study& study, const StudyResult& result) {
+  const nlohmann::ordered_json summary = study_summary(study, result);
+  std::string summary_text = json_text(summary);
   ResultsFolder folder(study.output);
-  folder.write("summary.json", json_text(summary));
+  folder.write("summary.json", summary_text);
   folder.write("machine.toml", machine_text(study.machine));
   if (result.campaign.truth) {
-    for (const std::unique_ptr<CampaignSetup>& setup : result.campaign.setups) {
+    for (const std::shared_ptr<CampaignSetup>& setup : result.campaign.setups) {
       folder.write("readings/" + setup->name + ".csv", setup->readings_text(study.machine));
     }
     ErrorsFile truth{
@@ -137,7 +138,7 @@ nlohmann::ordered_json write_results(const Study& study, const StudyResult& resu
   if (study.report.page)
     folder.write("report.html", report_page(nlohmann::json(study_report_data(study, result, summary))));
   folder.commit();
-  return summary;
+  return summary_text;
 }
 
 }  // namespace abbe

@@ -1,17 +1,19 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
 
 #include "abbe/formats/map_file.h"
 #include "abbe/study/job.h"
 
 namespace abbe {
 
-/// Writes everything a study has computed into its results folder, whole or not at all. @returns the summary
+/// Writes everything a study has computed into its results folder, whole or not at all.
 ///
 /// machine.toml, errors.toml with errors.covariance.csv, summary.json, residuals.csv, readings (simulated studies),
 /// maps/, report.html.
-nlohmann::ordered_json write_results(const Study& study, const StudyResult& result);
+/// @returns the text of summary.json
+std::string write_results(const Study& study, const StudyResult& result);
 
 /// Map as the files hold it.
 /// @param after, uncertainty  may be null

@@ -272,7 +272,7 @@ std::vector<KnownUnknown> TrackerCampaign::known_offsets(const TrackerSetup& fro
 std::vector<KnownUnknown> TrackerCampaign::known_unknowns() const { return known_offsets(start); }
 std::vector<KnownUnknown> TrackerCampaign::true_unknowns() const { return known_offsets(truth); }
 
-std::unique_ptr<CampaignSetup> gather_tracker(const Study& study, std::size_t setup, const ErrorSet* truth,
+std::shared_ptr<CampaignSetup> gather_tracker(const Study& study, std::size_t setup, const ErrorSet* truth,
                                               const ProgressCallback& progress) {
   const Setup& given = study.setups[setup];
   auto result = std::make_unique<TrackerCampaign>();

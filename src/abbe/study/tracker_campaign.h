@@ -36,7 +36,7 @@ TrackerSetup tracker_setup(const Setup& setup, bool truth);
 
 /// Reads or simulates the readings of one set-up. @param truth  null: measured
 /// @throws InputError
-std::unique_ptr<CampaignSetup> gather_tracker(const Study& study, std::size_t setup, const ErrorSet* truth,
+std::shared_ptr<CampaignSetup> gather_tracker(const Study& study, std::size_t setup, const ErrorSet* truth,
                                               const ProgressCallback& progress);
 
 /// Readings of the first set-up's instrument that are for validation only, from the study's held-out file.

@@ -41,7 +41,7 @@ HeldOutErrors held_out_errors(const UnseenPoses& unseen, const FitStatistics& fi
 
 std::vector<ReadingFacts> facts_of(const Campaign& campaign) {
   std::vector<ReadingFacts> facts;
-  for (const std::unique_ptr<CampaignSetup>& setup : campaign.setups) facts.push_back(setup->facts());
+  for (const std::shared_ptr<CampaignSetup>& setup : campaign.setups) facts.push_back(setup->facts());
   return facts;
 }
 
@@ -95,7 +95,7 @@ void judge_trust(const Study& study, StudyResult& result) {
   const std::vector<ReadingFacts> facts = facts_of(result.campaign);
   judge_outliers(facts, study.identification->loss != LossKind::none, result);
   for (std::size_t s = 0; s < facts.size(); ++s) {
-    const RepeatedReadings repeated = repeated_readings(*result.model.observations[s], facts[s]);
+    const RepeatedReadings repeated = repeated_readings(*result.model.problem.observations[s].observations, facts[s]);
     if (repeated.are_copies()) warn(copies_text(repeated, facts[s]));
   }
   for (Distrust& size : distrust_of_sizes(study.machine, identified.errors))

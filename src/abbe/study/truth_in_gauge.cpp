@@ -67,11 +67,9 @@ std::optional<ErrorSet> truth_in_gauge(const Study& study, const StudyResult& re
       problem.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
     }
   }
-  std::vector<std::unique_ptr<Observations>> observations;
   for (std::size_t s = 0; s < result.campaign.setups.size(); ++s) {
-    observations.push_back(result.campaign.setups[s]->exact_observations(study.machine, problem.errors));
-    observations.back()->set_parameters(problem.errors.parameters(), result.identification.setup[s]);
-    problem.observations[s].observations = observations.back().get();
+    problem.observations[s].observations = result.campaign.setups[s]->exact_observations(study.machine, problem.errors);
+    problem.observations[s].observations->set_parameters(problem.errors.parameters(), result.identification.setup[s]);
   }
   SolverOptions options;
   options.threads = study.threads;

@@ -137,7 +137,7 @@ std::vector<double> nominal_deviations(const Study& study, const StudyResult& re
                                        const InstrumentReadings& held_out) {
   const InstrumentCampaign& setup = dynamic_cast<const InstrumentCampaign&>(*result.campaign.setups[s]);
   const std::unique_ptr<Observations> all = setup.observations(study.machine, ErrorSet{});
-  Problem problem = estimate_everything(study.machine, ErrorSet{}, {all.get()});
+  Problem problem = estimate_everything(study.machine, ErrorSet{}, {borrowed(*all)});
   problem.machine_parameters.clear();
   problem.observations[0].use = result.model.problem.observations[s].use;
   for (const KnownUnknown& known : setup.known_unknowns()) {
@@ -281,7 +281,7 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
   UnseenPoses unseen;
   unseen.against_truth = result.campaign.truth.has_value();
   Tally tally{unseen};
-  const std::vector<std::unique_ptr<CampaignSetup>>& setups = result.campaign.setups;
+  const std::vector<std::shared_ptr<CampaignSetup>>& setups = result.campaign.setups;
   const bool trackers_only = std::none_of(study.setups.begin(), study.setups.end(),
                                           [](const Setup& setup) { return setup.device != nullptr; });
   add_volumetric(study, result, poses, !trackers_only, tally);
