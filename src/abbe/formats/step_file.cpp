@@ -1,16 +1,15 @@
 #include "abbe/formats/step_file.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "abbe/formats/child_process.h"
+#include "abbe/formats/companion_program.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/list_text.h"
 #include "abbe/formats/number_text.h"
@@ -21,6 +20,7 @@
 namespace abbe {
 namespace {
 
+constexpr CompanionProgram kStepProgram{"abbe-step", "ABBE_STEP_PROGRAM"};
 constexpr const char* kValid = "a valid STEP file (AP203, AP214 or AP242) with faces";
 
 /// What abbe-step said, without its progress.
@@ -53,17 +53,13 @@ void require_positive(double value, const char* field, const char* expected) {
 }
 
 std::filesystem::path require_program(const InputError::Place& place) {
-  std::filesystem::path program = step_program();
-  if (program.empty()) {
-    throw InputError(place, "STEP files cannot be read here: this Abbe was built without OpenCASCADE",
-                     "Abbe built where the Debian package libocct-data-exchange-dev is installed, or the part as STL");
-  }
-  std::error_code error;
-  if (::access(program.c_str(), X_OK) != 0 || !std::filesystem::is_regular_file(program, error)) {
-    throw InputError(place, fmt::format("ABBE_STEP_PROGRAM names {}, which is no program", program.string()),
-                     "the program abbe-step, or no such variable");
-  }
-  return program;
+  std::filesystem::path program = find_companion_program(kStepProgram, place);
+  if (!program.empty()) return program;
+  throw InputError(place,
+                   fmt::format("STEP files cannot be read here: there is no program {}",
+                               path_beside_this_program(kStepProgram).string()),
+                   "Abbe built with `make build` where the Debian package libocct-data-exchange-dev is installed, or "
+                   "the part as STL");
 }
 
 [[noreturn]] void refuse(const InputError::Place& place, const ChildProcess& child, double seconds) {
@@ -94,13 +90,7 @@ bool is_step(std::string_view contents) {
 
 bool is_step_file(const std::filesystem::path& path) { return is_step(MappedFile(path).text()); }
 
-std::filesystem::path step_program() {
-  if (const char* named = std::getenv("ABBE_STEP_PROGRAM"); named != nullptr && *named != '\0') return named;
-  std::error_code error;
-  const std::filesystem::path beside =
-      std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "abbe-step";
-  return ::access(beside.c_str(), X_OK) == 0 ? beside : std::filesystem::path();
-}
+std::filesystem::path step_program() { return find_companion_program(kStepProgram); }
 
 MeshFile read_step(const std::filesystem::path& path, const MeshFileOptions& options) {
   const InputError::Place place{path.string(), 0, 0, ""};

@@ -14,7 +14,8 @@ bool is_step(std::string_view contents);
 bool is_step_file(const std::filesystem::path& path);
 
 /// Where abbe-step is: the value of the environment variable ABBE_STEP_PROGRAM where that is set, else beside the
-/// running program; empty if there is none, because this Abbe was built without OpenCASCADE.
+/// running program; empty if there is none: it was not built, perhaps because OpenCASCADE is missing.
+/// @throws InputError if the variable names what is no program
 std::filesystem::path step_program();
 
 /// Reads the faces of a STEP file as triangles; see read_mesh() and docs/geometry-files.md.
