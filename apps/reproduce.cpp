@@ -1,21 +1,16 @@
-#include "reproduce/reproduce.h"
+#include "reproduce.h"
 
 #include <fmt/format.h>
 
 #include "abbe/formats/input_error.h"
-#include "command.h"
 #include "options.h"
 
 namespace abbe {
 
-void add_reproduce_command(CommandLine& line) {
-  struct Options {
-    std::string paper;
-    std::string output;
-    std::string grids;
-    ReproduceOptions reproduce;
-  };
-  auto options = std::make_shared<Options>();
+void add_reproduce_command(CommandLine& line) { add_reproduce_command(line, start_papers_program); }
+
+void add_reproduce_command(CommandLine& line, const std::function<int(const ReproduceOptions&)>& run) {
+  auto options = std::make_shared<ReproduceOptions>();
   Subcommand* command = line.add(
       "reproduce", "Print a paper's figures beside ours, and where its equations are wrong",
       "  abbe reproduce wang\n"
@@ -34,20 +29,15 @@ void add_reproduce_command(CommandLine& line) {
                              "Results folder to write (tables, figures, report, study); default: print only");
   command->add_option("--grids", options->grids,
                       "wang: decouple the indications of this folder (X.csv, A.csv, ...) instead");
-  command->add_option("--threads", options->reproduce.threads, "Threads (0: all)")->check(in_range(0, 64));
-  command->add_flag("--json", options->reproduce.json, "Print JSON for programs");
-  command->callback([&line, options] {
-    line.run = [options]() -> int {
-      options->reproduce.output = options->output;
-      options->reproduce.grids = options->grids;
+  command->add_option("--threads", options->threads, "Threads (0: all)")->check(in_range(0, 64));
+  command->add_flag("--json", options->json, "Print JSON for programs");
+  command->callback([&line, options, run] {
+    line.run = [options, run]() -> int {
       if (options->paper != "wang" && !options->grids.empty()) {
         throw InputError({.field = "--grids"}, fmt::format("does not belong to {}", options->paper),
                          "abbe reproduce wang");
       }
-      if (options->paper == "yin") return reproduce_yin(options->reproduce);
-      if (options->paper == "liu") return reproduce_liu(options->reproduce);
-      if (options->paper == "ma") return reproduce_ma(options->reproduce);
-      return options->paper == "wang" ? reproduce_wang(options->reproduce) : reproduce_aguado(options->reproduce);
+      return run(*options);
     };
   });
 }

@@ -3,7 +3,7 @@
 # abbe_cross_test(NAME SOURCES a_test.cpp ... LINK abbe::identify ... [LABEL quick|long] [TIMEOUT seconds] [USES_COMMAND])
 #
 # Quick tests run on every build and under the sanitizers; long ones only in `make test`. USES_COMMAND: the test runs the
-# `abbe` command and is given its path as ABBE_COMMAND. Every test gets ABBE_SOURCE_DIR, to find examples/ and tests/golden/.
+# `abbe` command, which may start its companion programs, and is given its path as ABBE_COMMAND. Every test gets ABBE_SOURCE_DIR, to find examples/ and tests/golden/.
 function(abbe_cross_test name)
   cmake_parse_arguments(ARG "USES_COMMAND" "LABEL;TIMEOUT" "SOURCES;LINK" ${ARGN})
   if(NOT ARG_LABEL)
@@ -20,7 +20,10 @@ function(abbe_cross_test name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   if(ARG_USES_COMMAND)
     target_compile_definitions(${name} PRIVATE ABBE_COMMAND="$<TARGET_FILE:abbe>")
-    add_dependencies(${name} abbe)
+    add_dependencies(${name} abbe abbe-papers)
+    if(TARGET abbe-step)
+      add_dependencies(${name} abbe-step)
+    endif()
   endif()
   abbe_discover_tests(${name} "${name}." "${ARG_LABEL}" ${ARG_TIMEOUT})
 endfunction()

@@ -5,8 +5,8 @@
 
 Runs the examples of the help texts, the studies of examples/ and the published studies, each in a fresh copy of the
 repository's data, and compares exit code, standard output, standard error and all files. If anything differs, its name is
-printed and the exit code is 1. The commands look for
-published readings beside their build folder, so both must be in one.
+printed and the exit code is 1. The commands look for published readings beside their build folder, and for abbe-papers and
+abbe-step beside themselves, so each must be in a build folder of its own.
 """
 import concurrent.futures
 import hashlib

@@ -139,6 +139,20 @@ TEST_F(Interruption, WhileItComputesACommandEndsWithTheNumberOfTheSignalAndWrite
   }
 }
 
+TEST_F(Interruption, AProgramThatTookThePlaceOfTheCommandEndsLikeIt) {
+  const auto computes = [](pid_t process) {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/" + std::to_string(process) + "/exe", error);
+    return program.filename() == "abbe-papers" && used_time(process) > 0.5;
+  };
+  const CommandResult result = interrupted({"reproduce", "aguado", "-o", "results"}, SIGINT, computes);
+  ASSERT_TRUE(result.signalled) << "it ended before: exit code " << result.exit_code << ", " << result.err;
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.err, "abbe: interrupted; what was not finished is removed\n");
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(names(), testing::IsEmpty());
+}
+
 TEST_F(Interruption, WhileResultsAreWrittenTheOlderOnesStayWhole) {
   const std::vector<std::string> deviate{"deviate",     example("scan/pin-scan.csv"),      example("scan/pin.stl"),
                                          "--transform", example("scan/pin-transform.csv"), "-o",

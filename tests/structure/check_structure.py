@@ -2,7 +2,7 @@
 """Check that the source tree keeps to the order in which data flows. Usage: check_structure.py ROOT
 
 A folder of src/abbe includes only itself and folders above it in ORDER; `identify` and `compensate` do not see each
-other; only `formats`, `report` and `apps` touch files; headers have `#pragma once`; nothing is included twice; no file
+other; only `formats`, `report`, `apps` and `papers` touch files; `src` and `apps` include nothing from `papers`; headers have `#pragma once`; nothing is included twice; no file
 is longer than MAX_LINES; no folder has a name that says nothing; no two headers of the library declare a type of one name. Every violation is one line: file:line: message.
 """
 import os
@@ -16,7 +16,7 @@ TOUCH_FILES = {"formats", "report"}
 FILE_HEADERS = {"fstream", "cstdio", "stdio.h", "filesystem", "fcntl.h", "unistd.h", "sys/stat.h", "sys/mman.h"}
 MEANINGLESS = {"util", "utils", "common", "core", "helper", "helpers", "misc", "manager", "managers"}
 MAX_LINES = 500
-PLACES = ["src", "apps", "linuxcnc", "tests", "fuzz", "benchmarks", "python", "web", "cmake", ".ci"]
+PLACES = ["src", "apps", "papers", "linuxcnc", "tests", "fuzz", "benchmarks", "python", "web", "cmake", ".ci"]
 SOURCES = (".h", ".cpp", ".py", ".ts", ".js", ".mjs", ".css", ".cmake")
 SKIP = {"node_modules", "build", "dist", "__pycache__"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -43,6 +43,15 @@ def check_library_include(folder, target, is_test):
     return None
 
 
+def is_of_papers(root, path, target):
+    """Whether a file of src/ or apps/ that includes `target` means one of papers/."""
+    beside = os.path.normpath(os.path.join(os.path.dirname(path), target)).replace(os.sep, "/")
+    for meant in (beside, f"apps/{target}", f"papers/{target}", target):
+        if os.path.exists(os.path.join(root, meant)):
+            return meant.startswith("papers/")
+    return False
+
+
 def check_cpp(root, path, text):
     parts = path.split("/")
     folder = parts[2] if parts[:2] == ["src", "abbe"] and len(parts) > 3 else None
@@ -62,6 +71,8 @@ def check_cpp(root, path, text):
         if target in seen:
             yield number, f"'{target}' is included twice (line {seen[target]})"
         seen[target] = number
+        if parts[0] in ("src", "apps") and is_of_papers(root, path, target):
+            yield number, f"'{target}': '{parts[0]}' does without 'papers'"
         if target.startswith("abbe/") and not os.path.exists(os.path.join(root, "src", target)):
             yield number, f"'{target}' does not exist"
         if folder is None:

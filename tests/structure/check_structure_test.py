@@ -46,6 +46,12 @@ class CheckStructure(unittest.TestCase):
             self.assert_one({**headers, f"src/abbe/{source}": f'#include "abbe/{target}"\n'},
                             f"src/abbe/{source}:1:", "do not see each other")
 
+    def test_including_a_paper_is_found(self):
+        paper = {"papers/wang/study.h": "#pragma once\n", "papers/main.cpp": '#include "wang/study.h"\n', "apps/main.h": "#pragma once\n"}
+        self.assertEqual(self.found({**paper, "apps/a.cpp": '#include "main.h"\n'}), [])
+        for target in ("wang/study.h", "papers/wang/study.h", "../papers/wang/study.h"):
+            self.assert_one({**paper, "apps/a.cpp": f'#include "main.h"\n#include "{target}"\n'}, "apps/a.cpp:2:", "does without")
+
     def test_touching_files_in_the_engine_is_found(self):
         for header in ("fstream", "cstdio", "filesystem"):
             self.assert_one({"src/abbe/verify/a.cpp": f"#include <{header}>\n"}, "src/abbe/verify/a.cpp:1:", "touch files")

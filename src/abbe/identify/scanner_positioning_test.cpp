@@ -56,7 +56,7 @@ Eigen::Matrix<double, 6, 1> motion(const RigidTransform& measured, const RigidTr
   return v;
 }
 
-// The reference's scans: apps/reproduce/yin_study_test.cpp.
+// The reference's scans: papers/yin/study_test.cpp.
 TEST(ScannerPositioning, ExactScansGiveScannerAndWorkpieceExactly) {
   const ScannerPosition found = locate_scanner(exact_scans());
   ASSERT_EQ(found.status, PositioningStatus::ok) << found.reason;

@@ -1,0 +1,121 @@
+#include "command_main.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "abbe/formats/existing_output.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/formats/interruption.h"
+#include "abbe/formats/kept_inputs.h"
+#include "abbe/formats/mapped_inputs.h"
+#include "abbe/formats/not_finite.h"
+#include "abbe/formats/utf8.h"
+#include "exit_code.h"
+#include "messages.h"
+#include "options.h"
+
+namespace abbe {
+namespace {
+
+constexpr std::size_t kLongestArgument = 500;
+
+/// What was said comes before what went wrong, also where both go to one file.
+void complain(const std::string& message) {
+  std::fflush(stdout);
+  tell("abbe: {}\n", message);
+}
+
+/// Whoever reads that something failed has to know what was written before.
+void tell_complete_outputs() {
+  const std::vector<std::string> names = complete_outputs();
+  if (names.empty()) return;
+  std::string all;
+  for (const std::string& name : names) {
+    all += (all.empty() ? "" : ", ") + printable(name, kLongestArgument, LineFeeds::escaped);
+  }
+  tell("abbe: complete before that: {}\n", all);
+}
+
+/// Results that were printed and did not arrive are not done. @returns the code of the command if they did
+int printed(int code) {
+  errno = 0;
+  if (flush_standard_output() == 0 && std::ferror(stdout) == 0) return code;
+  const int error = errno;
+  complain("standard output: cannot be written" +
+           (error == 0 ? std::string() : ": " + std::generic_category().message(error)) +
+           "; expected a place with enough space");
+  tell_complete_outputs();
+  return kBadInput;
+}
+
+int run_command(int argc, const char* const* argv, const std::function<void(CommandLine&)>& add_subcommands) {
+  for (int i = 1; i < argc; ++i) {
+    if (!has_control_character(argv[i])) continue;
+    // Names of files go into comments of programs and tables.
+    complain(printable(argv[i], kLongestArgument, LineFeeds::escaped) +
+             ": has control characters in it; expected a name or an option on one line");
+    return kBadInput;
+  }
+  CommandLine line;
+  add_subcommands(line);
+  if (argc > 1 && argv[1][0] != '-') {
+    const std::string name = argv[1];
+    if (!line.program.has_subcommand(name)) {
+      tell("abbe: there is no subcommand '{}'; abbe --help lists them\n", name);
+      return kBadInput;
+    }
+  }
+  try {
+    switch (line.program.parse(argc, argv)) {
+      case ParseResult::shown:
+        return printed(kDone);
+      case ParseResult::refused:
+        return printed(kBadInput);
+      case ParseResult::command:
+        break;
+    }
+    return printed(line.run ? line.run() : static_cast<int>(kInternalError));
+  } catch (const InputError& error) {
+    complain(error.what());
+    tell_complete_outputs();
+    return kBadInput;
+  } catch (const NotFinite& error) {
+    complain(std::string("there is no result: ") + error.what() +
+             "; expected inputs of sizes that a machine and its errors can have");
+    tell_complete_outputs();
+    return kNegative;
+  } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return printed(kBadInput);
+    complain(std::string("internal error: ") + error.what());
+    tell_complete_outputs();
+    return kInternalError;
+  }
+}
+
+}  // namespace
+
+int command_main(int argc, const char* const* argv, const std::function<void(CommandLine&)>& add_subcommands) {
+  keep_numbers_of_standard_streams();
+  make_standard_output_printable();
+  end_cleanly_when_interrupted([](int /*signal*/) {
+    if (isatty(STDERR_FILENO) == 1) draw("\r\x1b[K");
+    tell("abbe: interrupted; what was not finished is removed\n");
+    tell_complete_outputs();
+  });
+  end_where_an_input_was_cut_short(kBadInput);
+  // A limit on the size of files is then an error of writing, with a message and nothing half done, not the end.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const KeptInputs kept_inputs;
+  const KeptOutputs kept_outputs;
+  return run_command(argc, argv, add_subcommands);
+}
+
+}  // namespace abbe
