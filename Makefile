@@ -1,8 +1,8 @@
 # The few commands a visitor needs. The work itself is done by CMake presets (CMakePresets.json), which .ci/build configures
 # when needed and builds, with ccache where it is installed. What is missing is installed, or named, by .ci/set-up.
 #
-#   make build     set-up, release build: build/release/bin/abbe
-#   make demo      set-up, build, run the main study of examples/, say where the report is
+#   make build     set-up, release build: build/release/bin/abbe and the programs that it starts
+#   make demo      set-up, build the command alone, run the main study of examples/, say where the report is
 #   make closed-loop  measure, identify, compensate, run in LinuxCNC, verify: examples/closed_loop
 #   make test      set-up, all tests, the most important ones under the sanitizers too, short fuzzing
 #   make sanitize  all quick tests under the sanitizers; continuous integration runs it after make test
@@ -37,6 +37,7 @@ export CTEST_OUTPUT_ON_FAILURE := 1
 
 # What is said at the start: minutes that the whole takes on two cores when nothing is built and nothing is in ccache.
 BUILD_MINUTES := 6
+DEMO_MINUTES := 5
 LOOP_MINUTES := 3
 TEST_MINUTES := 25
 SANITIZE_MINUTES := 15
@@ -51,7 +52,7 @@ build:
 
 demo:
 	@.ci/set-up build
-	@.ci/build --expect $(BUILD_MINUTES) "make $@ builds the command and runs the main study" release
+	@.ci/build --target abbe --expect $(DEMO_MINUTES) "make $@ builds the command and runs the main study" release
 	build/release/bin/abbe run $(DEMO_STUDY) --output $(DEMO_RESULTS)
 	@echo "The report is in $(CURDIR)/$(DEMO_RESULTS)/report.html"
 
