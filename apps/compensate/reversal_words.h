@@ -1,8 +1,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
+#include "abbe/controls/lost_motion.h"
 #include "abbe/errors/error_set.h"
 #include "abbe/machine/machine.h"
 
@@ -11,18 +11,7 @@ namespace abbe {
 /// "-12 um", "35 urad".
 std::string reversal_size(const Machine& machine, std::size_t axis, double value);
 
-/// "0.012000 mm more than when the errors were measured"; less where the lost motion is below zero.
-std::string lost_motion_words(double lost_motion, bool rotary);
-
-/// What LinuxCNC's own backlash compensation takes of a joint.
-struct JointBacklash {
-  std::string axis, setting;  ///< "X", "[JOINT_0]BACKLASH"
-  double lost_motion = 0;     ///< minus the reversal value, mm or deg
-  bool rotary = false;
-};
-/// Of all joints with a reversal value, in the order that the LinuxCNC module takes if it is not told another one.
-std::vector<JointBacklash> linuxcnc_backlash(const Machine& machine, const ErrorSet& errors);
-/// The lines of the ini file; nothing where there are none.
+/// The lines of linuxcnc_backlash() for the ini file; nothing where there are none.
 void print_linuxcnc_backlash(const Machine& machine, const ErrorSet& errors);
 
 }  // namespace abbe

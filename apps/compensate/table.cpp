@@ -1,33 +1,23 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <set>
 
-#include "abbe/compensate/correction_uncertainty.h"
-#include "abbe/compensate/left_out_errors.h"
-#include "abbe/compensate/line_tables.h"
-#include "abbe/formats/errors_file.h"
+#include "abbe/controls/control_table.h"
+#include "abbe/controls/table_format.h"
+#include "abbe/controls/table_map.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/machine_file.h"
+#include "abbe/formats/map_file.h"
 #include "abbe/formats/results_folder.h"
-#include "abbe/machine/axis_unit.h"
-#include "abbe/verify/error_map.h"
-#include "abbe/verify/volumetric_figures.h"
 #include "command.h"
 #include "compensate/compensate.h"
-#include "compensate/position_words.h"
-#include "compensate/reversal_words.h"
 #include "compensate/safety.h"
-#include "compensate/table_formats.h"
-#include "compensate/table_left_out.h"
 #include "compensate/table_options.h"
 #include "compensate/table_report.h"
-#include "compensate/travel_grid.h"
-#include "compensate/useless_tables.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
 #include "messages.h"
@@ -35,9 +25,6 @@
 
 namespace abbe {
 namespace {
-
-/// Tables that make the error larger by more than this are refused.
-constexpr double kWorse = 1.02;
 
 struct TableCommand {
   std::string machine, errors, format, output, map;
@@ -49,80 +36,10 @@ struct TableCommand {
   double unit_um = 1;
   int type = 1;
   bool json = false, dry_run = false, accept_misfit = false, negate = false;
-  std::vector<std::string> given;  ///< of the options that not every format has
+  std::set<TableSetting> given;
+
+  std::string map_extension() const { return std::filesystem::path(map).extension().string(); }
 };
-
-std::size_t checked_positions(const TableCommand& command, const Machine& machine) {
-  if (!command.positions) return machine.axes.size() > 3 ? 5 : 9;
-  const std::size_t positions = *command.positions;
-  double poses = 1;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) poses *= static_cast<double>(positions);
-  if (positions < 2 || poses > 1e6) {
-    throw InputError({.field = fmt::format("--positions {}", positions)},
-                     fmt::format("{:.0f} poses for {} axes", poses, machine.axes.size()),
-                     "at least 2 positions per axis and at most 1,000,000 poses");
-  }
-  return positions;
-}
-
-/// What takes the reversal values that the tables do not carry.
-void state_reversals(const ErrorSet& errors, const TableRequest& request, TableReport& report) {
-  for (const Reversal& reversal : errors.reversals) {
-    if (reversal.value == 0) continue;
-    const Axis& axis = report.machine->axes[reversal.axis];
-    const bool rotary = axis.kind == AxisKind::rotary, in_tables = report.format->directions;
-    std::string words;
-    if (in_tables && !request.axes.empty() && !request.axes[reversal.axis]) {
-      words = "no table is wanted for this axis";
-    } else if (report.format->backlash) {
-      const bool named = !report.format->axis_names.empty();
-      words = report.format->backlash(named ? table_axis(request.names, reversal.axis).name : axis.name,
-                                      -reversal.value, rotary);
-    } else {
-      words =
-          "backlash compensation of the control takes it, if it has one: " + lost_motion_words(-reversal.value, rotary);
-    }
-    report.reversals.emplace_back(reversal_name(*report.machine, reversal.axis), words);
-  }
-}
-
-/// The largest corrections over tables and grid, and what of them is above a limit.
-void look_at_limits(const TableCommand& command, const ControllerTables& tables, TableReport& report) {
-  const Machine& machine = *report.machine;
-  PoseList added;
-  tables.correction->evaluate(report.poses, added);
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    double& largest = rotary ? report.largest_rad : report.largest_mm;
-    for (std::size_t k = 0; k < report.poses.count(); ++k) {
-      if (!(std::abs(added.axis[i][k]) > largest)) continue;
-      largest = std::abs(added.axis[i][k]);
-      (rotary ? report.largest_rad_at : report.largest_mm_at) =
-          fmt::format("{} for axis {}", position_words(machine, report.poses.pose(k)), machine.axes[i].name);
-    }
-  }
-  const auto refuse = [&](double value, bool is_angle, const std::string& where) {
-    const double limit = is_angle ? refusal_limit("--limit-urad", command.limit_urad, "urad")
-                                  : refusal_limit("--limit-um", command.limit_um, "um");
-    const double shown = micro_per_unit(is_angle) * value;
-    if (!(shown <= limit)) {
-      const char* const unit = micro_unit(is_angle);
-      report.refused.push_back(fmt::format("{:.3f} {} is above --limit-{} {:g}: {}", shown, unit, unit, limit, where));
-    }
-  };
-  const double before = report.before.position_statistics.rms, after = report.after.position_statistics.rms;
-  if (!tables.tables.empty() && after > kWorse * before) {
-    report.refused.push_back(fmt::format(
-        "the displacement of the tool would grow from {:.3f} to {:.3f} um rms: the tables hold near the reference "
-        "pose only (--at, --axis)",
-        1e3 * before, 1e3 * after));
-  }
-  for (const TableSummary& table : tables.tables) {
-    refuse(table.largest, table.is_angle, "table " + table.name);
-  }
-  refuse(report.largest_mm, false, report.largest_mm_at);
-  refuse(report.largest_rad, true, report.largest_rad_at);
-}
 
 void check_outputs(const TableCommand& command) {
   if (command.output.empty() && !command.dry_run) {
@@ -131,150 +48,83 @@ void check_outputs(const TableCommand& command) {
   if (!command.output.empty()) refuse_input_as_output(command.output);
   if (command.map.empty()) return;
   refuse_input_as_output(command.map);
-  const std::string extension = std::filesystem::path(command.map).extension().string();
+  const std::string extension = command.map_extension();
   if (extension != ".csv" && extension != ".vts" && extension != ".vtu") {
     throw InputError({.file = command.map}, "unknown kind of map file", "a name ending in .csv, .vts or .vtu");
   }
 }
 
-void write_tables(const TableCommand& command, const ControllerTables& tables, TableReport& report) {
-  if (tables.files.empty()) return;
+/// @returns the names of the files written
+std::vector<std::string> write_tables(const TableCommand& command, const ControlTables& made) {
+  if (made.files.empty()) return {};
   if (names_folder(command.output)) {
+    std::vector<std::string> written;
     ResultsFolder folder(command.output);
-    for (const auto& [name, text] : tables.files) {
-      folder.write(name, text);
-      report.written.push_back((std::filesystem::path(command.output) / name).string());
+    for (const ControlFile& file : made.files) {
+      folder.write(file.name, file.text);
+      written.push_back((std::filesystem::path(command.output) / file.name).string());
     }
     folder.commit();
-    return;
+    return written;
   }
-  if (tables.files.size() > 1) {
-    throw InputError({.field = "-o " + command.output}, fmt::format("{} files are to be written", tables.files.size()),
+  if (made.files.size() > 1) {
+    throw InputError({.field = "-o " + command.output}, fmt::format("{} files are to be written", made.files.size()),
                      std::string("a folder (a name without ending)") +
-                         (report.format->file_per_axis ? ", or one axis with --axis" : ""));
+                         (made.format->file_per_axis ? ", or one axis with --axis" : ""));
   }
-  write_file_atomically(command.output, tables.files.front().second);
-  report.written.push_back(command.output);
+  write_file_atomically(command.output, made.files.front().text);
+  return {command.output};
 }
 
-TableRequest request_of(const TableCommand& command, const Machine& machine, const ErrorSet& errors,
-                        const TableFormat& format) {
-  TableRequest request;
-  request.tolerance_mm = 1e-3 * command.interpolation_um.value_or(format.default_interpolation_um);
-  request.tolerance_rad = 1e-6 * command.interpolation_urad;
-  if (!(request.tolerance_mm > 0 && request.tolerance_rad > 0)) {
-    throw InputError({.field = "--interpolation-um, --interpolation-urad"}, "not above zero", "a positive number");
-  }
-  request.reference = pose_option(machine, "--at", middle_of_travel(machine, errors), command.at);
-  request.reference_position =
-      pose_option(machine, "--reference-position", machine_zero(machine), command.reference_position);
-  request.axes = chosen_axes(machine, command.axes);
-  request.names = table_axis_names(machine, format, command.names);
-  if (command.max_points && *command.max_points < 2) {
-    throw InputError({.field = fmt::format("--max-points {}", *command.max_points)}, "is no table", "at least 2 nodes");
-  }
-  request.most_nodes = command.max_points.value_or(0);
-  if (command.type != 0 && command.type != 1) throw InputError({.field = "--type"}, "unknown type", "0 or 1");
-  request.type = command.type;
-  if (command.encoder > 1) throw InputError({.field = "--encoder"}, "unknown measuring system", "0 or 1");
-  request.encoder = command.encoder;
-  if (command.first_table > 999) throw InputError({.field = "--first-table"}, "too large", "0 to 999");
-  request.first_table = command.first_table;
+/// What only some formats take.
+void add_settings(const TableCommand& command, ControlTableRequest& request) {
+  const auto given = [&](TableSetting setting) { return command.given.contains(setting); };
+  const TableFormat& format = table_format(command.format);
+  request.reference = held_axes_option(request.machine, "--at", command.at);
+  request.reference_position = held_axes_option(request.machine, "--reference-position", command.reference_position);
+  request.axes = command.axes;
+  request.names = axis_names_option(format, command.names);
+  if (command.interpolation_um) request.tolerance_mm = 1e-3 * *command.interpolation_um;
+  if (given(TableSetting::tolerance_rad)) request.tolerance_rad = 1e-6 * command.interpolation_urad;
+  request.most_nodes = command.max_points;
+  if (given(TableSetting::type)) request.type = command.type;
+  if (given(TableSetting::encoder)) request.encoder = command.encoder;
+  if (given(TableSetting::first_table)) request.first_table = command.first_table;
   request.negate = command.negate;
-  if (!(command.unit_um >= 0.001 && command.unit_um <= 10)) {
-    throw InputError({.field = "--detection-unit-um"}, "out of range", "0.001 to 10 um");
-  }
-  request.unit_mm = 1e-3 * command.unit_um;
-  return request;
+  if (given(TableSetting::detection_unit)) request.detection_unit_mm = 1e-3 * command.unit_um;
 }
 
 int run_table(const TableCommand& command) {
-  const TableFormat& format = table_format(command.format);
-  refuse_options_of_other_formats(format, command.given);
-  const Machine machine = read_machine(command.machine);
-  const ErrorsFile file = read_errors_for_use(command.errors, machine, command.accept_misfit);
+  refuse_settings_of_other_formats(table_format(command.format), command.given);
+  ControlTableRequest request;
+  request.format = command.format;
+  request.machine = read_machine(command.machine);
+  const ErrorsFile file = read_errors_for_use(command.errors, request.machine, command.accept_misfit);
+  request.errors = file.errors;
+  request.covariance = file.covariance;
   check_outputs(command);
   check_leave_out(command.times_uncertainty, file, command.errors);
-  refusal_limit("--limit-um", command.limit_um, "um");
-  refusal_limit("--limit-urad", command.limit_urad, "urad");
-  const ErrorSet& errors = file.errors;
-  TableRequest request = request_of(command, machine, errors, format);
-  TableReport report;
-  report.format = &format;
-  report.machine = &machine;
-  report.partial = partial_errors(machine, file);
-  report.poses = travel_grid(machine, errors, checked_positions(command, machine), report.grid);
+  request.limit_mm = 1e-3 * refusal_limit("--limit-um", command.limit_um, "um");
+  request.limit_rad = 1e-6 * refusal_limit("--limit-urad", command.limit_urad, "urad");
+  request.positions = command.positions;
+  request.least_reduction = 0.01 * command.least_reduction_percent;
+  request.leave_out_below = command.times_uncertainty;
+  add_settings(command, request);
 
-  const Eigen::MatrixXd covariance = covariance_of(file);
-  report.volumetric = volumetric_figures(machine, &errors, covariance, nullptr, stated_grid(machine, {&errors}));
-  // What the tables are made of; they are judged by the errors of the file.
-  ErrorSet carried = errors;
-  std::vector<LeftOutReversal> left_out;
-  if (covariance.size() > 0) {
-    left_out = leave_out_uncertain_reversals(carried, covariance, command.times_uncertainty);
-  }
-  for (const LeftOutReversal& one : left_out) {
-    report.left_out.push_back(
-        fmt::format("{}: {:.2g} times its standard uncertainty", reversal_name(machine, one.axis), one.times));
-  }
-  ControllerTables tables = format.make(machine, carried, request);
-  if (covariance.size() > 0) {
-    std::vector<SmallTable> small, unused;
-    report.uncertainty = table_uncertainties(carried, covariance, tables.tables, command.times_uncertainty, small);
-    for (const SmallTable& table : leave_out_tables(machine, carried, covariance, report.poses, format, request,
-                                                    command.times_uncertainty, tables, small)) {
-      report.left_out_kept.push_back(table.text());
-    }
-    for (const SmallTable& table : small) report.left_out.push_back(table.text());
-    if (!small.empty()) report.uncertainty = table_uncertainties(carried, covariance, tables.tables, 0, unused);
-    ErrorMapOptions options;
-    ParameterCovariance parameters;
-    parameters.covariance = covariance;
-    for (std::size_t p = 0; p < errors.parameter_count(); ++p) parameters.parameters.push_back(p);
-    options.covariance = &parameters;
-    options.orientation = false;
-    const ErrorMap map = error_map(machine, errors, nullptr, pose_source(report.poses), options);
-    report.uncertainty_statistics = sample_statistics(map.norm_uncertainty, map.covered);
-  }
-  report.tables = &tables;
-  report.tolerance_mm = request.tolerance_mm;
-  report.tolerance_rad = request.tolerance_rad;
-  report.before = deviations_with(machine, errors, report.poses, NoCorrection());
-  report.after = deviations_with(machine, errors, report.poses, *tables.correction);
-  report.left_by_tables = volumetric_error_with(machine, errors, report.poses, *tables.correction);
-  report.ideal = ideal_deviations(machine, errors, report.poses, report.ideal_not_reached);
-  {
-    std::vector<std::size_t> unused;
-    const PoseList few = travel_grid(machine, errors, machine.axes.size() > 3 ? 3 : 5, unused);
-    TableRequest quick = request;
-    quick.nodes = 33;
-    report.errors = carried_errors(machine, errors, few, [&](ErrorSet alone) {
-      for (Reversal& reversal : alone.reversals) {
-        for (const LeftOutReversal& one : left_out) reversal.value = reversal.axis == one.axis ? 0 : reversal.value;
-      }
-      return format.make(machine, alone, quick).correction;
-    });
-  }
-  state_reversals(carried, request, report);
-  look_at_limits(command, tables, report);
-  report.refused.insert(report.refused.end(), tables.problems.begin(), tables.problems.end());
-  if (report.refused.empty()) {
-    const std::string useless = useless_tables(carried, request, report, command.least_reduction_percent);
-    if (!useless.empty()) report.refused.push_back(useless);
-  }
-  const bool within =
-      std::all_of(tables.tables.begin(), tables.tables.end(), [](const TableSummary& table) { return table.within; });
-  const bool refused = !report.refused.empty();
-  const std::string extension = std::filesystem::path(command.map).extension().string();
-  if (!command.map.empty() && extension != ".csv" && (extension == ".vts") != table_map_is_structured(report)) {
+  const ControlTables made = make_control_tables(request);
+  const std::string extension = command.map_extension();
+  const MapData map = command.map.empty() ? MapData() : control_table_map(request.machine, made);
+  if (!command.map.empty() && extension != ".csv" && (extension == ".vts") != map_is_structured(map)) {
     throw InputError({.file = command.map}, "wrong kind of map file",
-                     table_map_is_structured(report) ? ".vts for these poses" : ".vtu for these poses");
+                     map_is_structured(map) ? ".vts for these poses" : ".vtu for these poses");
   }
-  if (!refused && within && !command.dry_run) write_tables(command, tables, report);
-  if (!refused && !command.map.empty()) {
-    write_file_atomically(command.map, table_map_text(report, extension == ".csv"));
-    report.written.push_back(command.map);
+  std::vector<std::string> written;
+  if (!made.says_no() && !command.dry_run) written = write_tables(command, made);
+  if (made.refused.empty() && !command.map.empty()) {
+    write_file_atomically(command.map, extension == ".csv" ? map_csv(map) : map_vtk(map));
+    written.push_back(command.map);
   }
+  const TableReport report{request.machine, made, partial_errors(request.machine, file), written};
   if (command.json) {
     print_table_json(report);
   } else {
@@ -282,14 +132,9 @@ int run_table(const TableCommand& command) {
     if (command.dry_run) fmt::print("dry run: no table is written\n");
   }
   std::fflush(stdout);
-  for (const std::string& words : report.refused) tell("abbe: {}; nothing is written\n", words);
-  if (!refused && !within) {
-    tell(
-        "abbe: straight lines between the nodes that {} has room for do not keep to --interpolation-um or "
-        "--interpolation-urad; no table is written\n",
-        format.name);
-  }
-  return refused || !within ? kNegative : kDone;
+  for (const std::string& words : made.refused) tell("abbe: {}; nothing is written\n", words);
+  if (!made.too_few_nodes.empty()) tell("abbe: {}; no table is written\n", made.too_few_nodes);
+  return made.says_no() ? kNegative : kDone;
 }
 
 }  // namespace
@@ -356,8 +201,8 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options, command] {
-    for (const FormatOption& option : format_options()) {
-      if (command->count(option.name) > 0) options->given.push_back(option.name);
+    for (const TableSetting setting : table_settings()) {
+      if (command->count(setting_option(setting)) > 0) options->given.insert(setting);
     }
     line.run = [options]() -> int { return run_table(*options); };
   });

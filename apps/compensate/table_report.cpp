@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "abbe/controls/table_format.h"
 #include "abbe/formats/json_text.h"
-#include "abbe/formats/map_file.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/statistics_json.h"
 #include "abbe/report/volumetric_words.h"
-#include "abbe/study/summary.h"
 
 namespace abbe {
 namespace {
@@ -38,9 +37,9 @@ const char* carried_word(const CarriedError& error) {
   return share > 0.05 ? "in part" : "not carried";
 }
 
-void print_errors(const TableReport& report) {
+void print_errors(const ControlTables& made) {
   fmt::print("what becomes of the errors, each alone (shift of the functional point, rms over the grid):\n");
-  for (const CarriedError& error : report.errors) {
+  for (const CarriedError& error : made.errors) {
     fmt::print("  {:<8} {:>14}  {:<12} {:8.3f} -> {:.3f} um", error.name, size_words(error.size, error.is_angle),
                carried_word(error), in_um(error.effect_before), in_um(error.effect_after));
     if (error.turn_before > 1e-12) {
@@ -48,8 +47,8 @@ void print_errors(const TableReport& report) {
     }
     fmt::print("\n");
   }
-  fmt::print("  why not: {}\n", report.format->cannot);
-  for (const auto& [name, words] : report.reversals) fmt::print("  {}: {}\n", name, words);
+  fmt::print("  why not: {}\n", made.format->cannot);
+  for (const auto& [name, words] : made.reversals) fmt::print("  {}: {}\n", name, words);
 }
 
 void print_deviations(const char* name, const PoseDeviations& deviations) {
@@ -74,17 +73,17 @@ nlohmann::ordered_json statistics_json(const PoseDeviations& deviations) {
 }  // namespace
 
 void print_table_report(const TableReport& report) {
-  const TableFormat& format = *report.format;
-  fmt::print("tables of {} for {}: {}\n", report.machine->name, format.name, format.what);
+  const ControlTables& made = report.made;
+  const TableFormat& format = *made.format;
+  fmt::print("tables of {} for {}: {}\n", report.machine.name, format.name, format.what);
   fmt::print("convention: {}\n", format.convention);
   if (!format.unverified.empty()) fmt::print("EXPERIMENTAL, not verified: {}\n", format.unverified);
-  const std::vector<TableSummary>& tables = report.tables->tables;
-  if (std::any_of(tables.begin(), tables.end(), [](const TableSummary& table) { return table.nodes > 1; })) {
+  const std::vector<TableFigures>& tables = made.tables;
+  if (std::any_of(tables.begin(), tables.end(), [](const TableFigures& table) { return table.nodes > 1; })) {
     fmt::print("nodes: evenly spaced, few that keep straight lines between them within {:g} um and {:g} urad\n",
-               in_um(report.tolerance_mm), in_micro(report.tolerance_rad));
+               in_um(made.tolerance_mm), in_micro(made.tolerance_rad));
   }
-  for (std::size_t t = 0; t < tables.size(); ++t) {
-    const TableSummary& table = tables[t];
+  for (const TableFigures& table : tables) {
     fmt::print("  {:<10} {:>5} {}", table.name, table.nodes, table.nodes == 1 ? "value" : "nodes");
     if (table.step > 0) fmt::print(", step {}", position_text(table.step, table.step_is_angle));
     fmt::print("; largest correction {}{}", size_words(table.largest, table.is_angle),
@@ -95,52 +94,52 @@ void print_table_report(const TableReport& report) {
                                                   : fmt::format("{:.4f} um", in_um(table.interpolation_error)));
     }
     if (!table.within) fmt::print(" (ABOVE the limit: no more nodes)");
-    if (!report.uncertainty.empty()) {
-      fmt::print("; standard uncertainty up to {}", size_words(report.uncertainty[t], table.is_angle));
+    if (table.standard_uncertainty) {
+      fmt::print("; standard uncertainty up to {}", size_words(*table.standard_uncertainty, table.is_angle));
     }
     fmt::print("\n");
   }
   if (tables.empty()) fmt::print("  no table is needed: nothing that this format carries is there\n");
-  for (const std::string& name : report.left_out) fmt::print("  left out: {}\n", name);
-  for (const std::string& name : report.left_out_kept)
+  for (const std::string& name : made.left_out) fmt::print("  left out: {}\n", name);
+  for (const std::string& name : made.left_out_kept)
     fmt::print("  kept, as not small together with others: {}\n", name);
-  print_errors(report);
-  fmt::print("{}", volumetric_text(report.volumetric));
-  fmt::print("{}", error_line("what these tables leave of it between their nodes", report.left_by_tables));
+  print_errors(made);
+  fmt::print("{}", volumetric_text(made.volumetric));
+  fmt::print("{}", error_line("what these tables leave of it between their nodes", made.left_by_tables));
   fmt::print(
       "displacement of the tool over {} poses between the nodes, the datum as it is, from the worse direction of "
       "approach:\n",
-      report.poses.count());
-  print_deviations("without tables", report.before);
-  print_deviations("with these tables", report.after);
-  print_deviations("ideal compensation", report.ideal);
-  if (report.ideal_not_reached > 0) {
-    fmt::print("  (ideal: the point is not reached at {} poses)\n", report.ideal_not_reached);
+      made.poses.count());
+  print_deviations("without tables", made.before);
+  print_deviations("with these tables", made.after);
+  print_deviations("ideal compensation", made.ideal);
+  if (made.ideal_not_reached > 0) {
+    fmt::print("  (ideal: the point is not reached at {} poses)\n", made.ideal_not_reached);
   }
-  if (report.uncertainty_statistics) {
+  if (made.uncertainty) {
     fmt::print("standard uncertainty along that displacement: mean {:.3f}  95 % {:.3f} um\n",
-               in_um(report.uncertainty_statistics->mean), in_um(report.uncertainty_statistics->p95));
+               in_um(made.uncertainty->mean), in_um(made.uncertainty->p95));
   }
   if (report.partial.is_partial()) fmt::print("caution: {}\n", report.partial.caution());
-  if (report.largest_mm > 0) {
-    fmt::print("largest sum of corrections: {} at {}\n", size_words(report.largest_mm, false), report.largest_mm_at);
+  if (made.largest_mm > 0) {
+    fmt::print("largest sum of corrections: {} at {}\n", size_words(made.largest_mm, false), made.largest_mm_at);
   }
-  if (report.largest_rad > 0) {
-    fmt::print("largest sum of corrections: {} at {}\n", size_words(report.largest_rad, true), report.largest_rad_at);
+  if (made.largest_rad > 0) {
+    fmt::print("largest sum of corrections: {} at {}\n", size_words(made.largest_rad, true), made.largest_rad_at);
   }
-  for (const std::string& remark : report.tables->remarks) fmt::print("set: {}\n", remark);
+  for (const std::string& remark : made.settings) fmt::print("set: {}\n", remark);
   for (const std::string& name : report.written) fmt::print("{} written\n", name);
 }
 
 void print_table_json(const TableReport& report) {
+  const ControlTables& made = report.made;
   nlohmann::ordered_json json;
-  json["machine"] = report.machine->name;
-  json["format"] = report.format->name;
-  json["convention"] = report.format->convention;
-  json["unverified"] = report.format->unverified;
+  json["machine"] = report.machine.name;
+  json["format"] = made.format->name;
+  json["convention"] = made.format->convention;
+  json["unverified"] = made.format->unverified;
   json["tables"] = nlohmann::ordered_json::array();
-  for (std::size_t t = 0; t < report.tables->tables.size(); ++t) {
-    const TableSummary& table = report.tables->tables[t];
+  for (const TableFigures& table : made.tables) {
     nlohmann::ordered_json one;
     one["name"] = table.name;
     one["nodes"] = table.nodes;
@@ -152,16 +151,16 @@ void print_table_json(const TableReport& report) {
         table.step_is_angle ? table.largest_at / kDegree : table.largest_at;
     one[std::string("interpolation_") + unit] = scale * table.interpolation_error;
     one["interpolation_within_limit"] = table.within;
-    if (!report.uncertainty.empty()) {
-      one[std::string("standard_uncertainty_") + unit] = scale * report.uncertainty[t];
+    if (table.standard_uncertainty) {
+      one[std::string("standard_uncertainty_") + unit] = scale * *table.standard_uncertainty;
     }
     json["tables"].push_back(one);
   }
-  json["left_out"] = report.left_out;
-  json["left_out_kept"] = report.left_out_kept;
-  json["refused"] = report.refused;
+  json["left_out"] = made.left_out;
+  json["left_out_kept"] = made.left_out_kept;
+  json["refused"] = made.refused;
   json["errors"] = nlohmann::ordered_json::array();
-  for (const CarriedError& error : report.errors) {
+  for (const CarriedError& error : made.errors) {
     nlohmann::ordered_json one;
     one["name"] = error.name;
     one[error.is_angle ? "size_urad" : "size_um"] = error.is_angle ? in_micro(error.size) : in_um(error.size);
@@ -170,64 +169,26 @@ void print_table_json(const TableReport& report) {
     one["rms_after_um"] = in_um(error.effect_after);
     one["direction_rms_before_urad"] = in_micro(error.turn_before);
     one["direction_rms_after_urad"] = in_micro(error.turn_after);
-    for (const auto& [name, words] : report.reversals) {
+    for (const auto& [name, words] : made.reversals) {
       if (name == error.name) one["control"] = words;
     }
     json["errors"].push_back(one);
   }
-  json["why_not"] = report.format->cannot;
-  json["poses"] = report.poses.count();
-  add_volumetric_figures(report.volumetric, json);
-  json["volumetric_error_left_by_tables_um"] = statistics_um(report.left_by_tables);
-  json["before"] = statistics_json(report.before);
-  json["after"] = statistics_json(report.after);
-  json["ideal"] = statistics_json(report.ideal);
-  json["ideal_not_reached"] = report.ideal_not_reached;
-  if (report.uncertainty_statistics) json["standard_uncertainty_um"] = statistics_um(*report.uncertainty_statistics);
+  json["why_not"] = made.format->cannot;
+  json["poses"] = made.poses.count();
+  add_volumetric_figures(made.volumetric, json);
+  json["volumetric_error_left_by_tables_um"] = statistics_um(made.left_by_tables);
+  json["before"] = statistics_json(made.before);
+  json["after"] = statistics_json(made.after);
+  json["ideal"] = statistics_json(made.ideal);
+  json["ideal_not_reached"] = made.ideal_not_reached;
+  if (made.uncertainty) json["standard_uncertainty_um"] = statistics_um(*made.uncertainty);
   add_partial_errors(report.partial, json);
-  json["largest_correction_um"] = in_um(report.largest_mm);
-  json["largest_correction_urad"] = in_micro(report.largest_rad);
-  json["settings"] = report.tables->remarks;
+  json["largest_correction_um"] = in_um(made.largest_mm);
+  json["largest_correction_urad"] = in_micro(made.largest_rad);
+  json["settings"] = made.settings;
   json["files"] = report.written;
   fmt::print("{}", json_text(json));
 }
-
-namespace {
-
-MapData map_of(const TableReport& report) {
-  const Machine& machine = *report.machine;
-  MapData data;
-  for (std::vector<double>& coordinate : data.points) coordinate.resize(report.poses.count());
-  for (std::size_t k = 0; k < report.poses.count(); ++k) {
-    const Eigen::Vector3d point = nominal_workpiece_from_tool(machine, report.poses.pose(k)).translation;
-    for (std::size_t c = 0; c < 3; ++c) data.points[c][k] = point[static_cast<Eigen::Index>(c)];
-  }
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const Axis& axis = machine.axes[i];
-    data.fields.push_back({axis.name,
-                           axis.kind == AxisKind::rotary ? Quantity::angle : Quantity::length,
-                           position_suffix(axis),
-                           {report.poses.axis[i]}});
-  }
-  const auto add = [&](const std::string& name, const PoseDeviations& deviations) {
-    data.fields.push_back({name, Quantity::length, "um", {deviations.position}});
-    data.fields.push_back({name + "_direction", Quantity::angle, "urad", {deviations.orientation}});
-  };
-  add("before", report.before);
-  add("after", report.after);
-  add("ideal", report.ideal);
-  // Poses run with the last axis fastest, map files with the first direction fastest.
-  data.grid.assign(report.grid.rbegin(), report.grid.rend());
-  return data;
-}
-
-}  // namespace
-
-std::string table_map_text(const TableReport& report, bool csv) {
-  const MapData data = map_of(report);
-  return csv ? map_csv(data) : map_vtk(data);
-}
-
-bool table_map_is_structured(const TableReport& report) { return map_is_structured(map_of(report)); }
 
 }  // namespace abbe

@@ -10,7 +10,7 @@ import re
 import sys
 
 ORDER = ["geometry", "machine", "errors", "instruments", "plan", "identify", "compensate", "verify", "formats",
-         "report", "study", "runtime"]
+         "report", "controls", "study", "runtime"]
 STRANGERS = {("identify", "compensate"), ("compensate", "identify")}
 TOUCH_FILES = {"formats", "report"}
 FILE_HEADERS = {"fstream", "cstdio", "stdio.h", "filesystem", "fcntl.h", "unistd.h", "sys/stat.h", "sys/mman.h"}

@@ -1,4 +1,4 @@
-#include "compensate/lattice_request.h"
+#include "abbe/controls/lattice_writer.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace abbe {
 namespace {
 
 /// Axes of the grid: those wanted that move, without wishes and `linear_only` no rotary ones.
-std::vector<std::size_t> grid_axes(const Machine& machine, const ErrorSet& errors, const TableRequest& request,
+std::vector<std::size_t> grid_axes(const Machine& machine, const ErrorSet& errors, const WriterRequest& request,
                                    bool linear_only) {
   std::vector<std::size_t> axes;
   const bool all = std::all_of(request.axes.begin(), request.axes.end(), [](bool wanted) { return wanted; });
@@ -46,7 +46,7 @@ PoseList some_nodes(const Machine& machine, const CorrectionLattice& lattice, co
 
 }  // namespace
 
-LatticeOptions lattice_options(const Machine& machine, const ErrorSet& errors, const TableRequest& request,
+LatticeOptions lattice_options(const Machine& machine, const ErrorSet& errors, const WriterRequest& request,
                                const TableFormat& format, std::size_t most_inputs, bool linear_only) {
   LatticeOptions options;
   options.inputs = grid_axes(machine, errors, request, linear_only);
@@ -67,7 +67,7 @@ LatticeOptions lattice_options(const Machine& machine, const ErrorSet& errors, c
 }
 
 void add_lattice_summaries(const Machine& machine, const BuiltLattice& built, const LatticeOptions& options,
-                           ControllerTables& made) {
+                           WrittenTables& made) {
   const CorrectionLattice& lattice = built.lattice;
   std::vector<std::size_t> indices;
   const PoseList poses = some_nodes(machine, lattice, options.reference, indices);
@@ -79,7 +79,7 @@ void add_lattice_summaries(const Machine& machine, const BuiltLattice& built, co
   made.remarks.push_back("grid of " + grid + ", " + fmt::format("{} nodes; other axes as --at says", lattice.count()));
   for (std::size_t o = 0; o < lattice.outputs.size(); ++o) {
     const std::size_t output = lattice.outputs[o];
-    TableSummary summary;
+    WrittenTable summary;
     summary.name = "correction of " + machine.axes[output].name;
     summary.nodes = lattice.count();
     summary.is_angle = machine.axes[output].kind == AxisKind::rotary;

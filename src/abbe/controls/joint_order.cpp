@@ -1,4 +1,4 @@
-#include "compensate/joint_order.h"
+#include "abbe/controls/joint_order.h"
 
 #include <algorithm>
 #include <string>

@@ -1,13 +1,12 @@
-#include "compensate/useless_tables.h"
+#include "abbe/controls/useless_tables.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "abbe/compensate/point_correction.h"
+#include "abbe/controls/writer_request.h"
 #include "abbe/formats/input_error.h"
-#include "compensate/table_options.h"
 
 namespace abbe {
 namespace {
@@ -18,29 +17,28 @@ constexpr double kNothingToCorrect = 1e-6;
 constexpr double kWorthNaming = 0.5;
 constexpr std::size_t kQuickNodes = 33;
 
-bool is_reversal(const TableReport& report, const CarriedError& error) {
-  return std::any_of(report.reversals.begin(), report.reversals.end(),
-                     [&](const std::pair<std::string, std::string>& one) { return one.first == error.name; });
+bool is_reversal(const ControlTables& made, const CarriedError& error) {
+  return std::any_of(made.reversals.begin(), made.reversals.end(),
+                     [&](const ControlNote& one) { return one.name == error.name; });
 }
 
 /// Formats that take most of these errors away on this machine.
-std::vector<std::string> formats_that_do(const ErrorSet& errors, const TableRequest& request,
-                                         const TableReport& report) {
-  const Machine& machine = *report.machine;
+std::vector<std::string> formats_that_do(const Machine& machine, const ErrorSet& errors, const WriterRequest& request,
+                                         const ControlTables& made) {
   std::vector<std::string> names;
   for (const TableFormat& format : table_formats()) {
-    if (format.name == report.format->name) continue;
+    if (format.name == made.format->name) continue;
     try {
-      TableRequest quick = request;
-      quick.names = table_axis_names(machine, format, {});
+      WriterRequest quick = request;
+      quick.names = control_axis_names(machine, format, {});
       quick.left_out.clear();
       quick.negate = false;
       quick.most_nodes = 0;
       quick.nodes = kQuickNodes;
-      const ControllerTables tables = format.make(machine, errors, quick);
+      const WrittenTables tables = format.write(machine, errors, quick);
       if (!tables.problems.empty()) continue;
-      const PoseDeviations after = deviations_with(machine, errors, report.poses, *tables.correction);
-      if (after.position_statistics.rms <= kWorthNaming * report.before.position_statistics.rms) {
+      const PoseDeviations after = deviations_with(machine, errors, made.poses, *tables.correction);
+      if (after.position_statistics.rms <= kWorthNaming * made.before.position_statistics.rms) {
         names.push_back(format.name);
       }
     } catch (const InputError&) {
@@ -52,30 +50,29 @@ std::vector<std::string> formats_that_do(const ErrorSet& errors, const TableRequ
 
 }  // namespace
 
-std::string useless_tables(const ErrorSet& errors, const TableRequest& request, const TableReport& report,
-                           double least_percent) {
-  const double least = 0.01 * least_percent;
-  const double before = report.before.position_statistics.rms, after = report.after.position_statistics.rms;
-  const double turn_before = report.before.orientation_statistics.rms,
-               turn_after = report.after.orientation_statistics.rms;
+std::string useless_tables(const Machine& machine, const ErrorSet& errors, const WriterRequest& request,
+                           const ControlTables& made, double least_reduction) {
+  const double least = least_reduction;
+  const double before = made.before.position_statistics.rms, after = made.after.position_statistics.rms;
+  const double turn_before = made.before.orientation_statistics.rms, turn_after = made.after.orientation_statistics.rms;
   if (!(least > 0) || (before < kNothingToCorrect && turn_before < kNothingToCorrect)) return {};
-  const bool all_left_out = report.tables->tables.empty() && !report.left_out.empty();
+  const bool all_left_out = made.tables.empty() && !made.left_out.empty();
   if (all_left_out || before - after >= least * before) return {};
   if (turn_before >= kNothingToCorrect && turn_before - turn_after >= least * turn_before) return {};
   std::string not_carried;
-  for (const CarriedError& error : report.errors) {
+  for (const CarriedError& error : made.errors) {
     if (error.effect_before - error.effect_after >= least * before) return {};
-    const bool counts = error.effect_before >= least * before && !is_reversal(report, error);
+    const bool counts = error.effect_before >= least * before && !is_reversal(made, error);
     if (counts) not_carried += (not_carried.empty() ? "" : ", ") + error.name;
   }
   if (not_carried.empty()) return {};
   std::string text = fmt::format(
       "the tables would take away {:.2g} % of the volumetric error ({:.3f} to {:.3f} um rms), less than "
       "--least-reduction-percent {:g}: {} does not carry {}",
-      std::max(0.0, 100 * (before - after) / before), 1e3 * before, 1e3 * after, least_percent, report.format->name,
+      std::max(0.0, 100 * (before - after) / before), 1e3 * before, 1e3 * after, 100 * least, made.format->name,
       not_carried);
   std::string ways;
-  for (const std::string& format : formats_that_do(errors, request, report))
+  for (const std::string& format : formats_that_do(machine, errors, request, made))
     ways += (ways.empty() ? "" : ", ") + format;
   text += ways.empty() ? "; no other table does either. " : fmt::format("; tables that do: {}. ", ways);
   return text + "`abbe compensate gcode` corrects the programs instead";

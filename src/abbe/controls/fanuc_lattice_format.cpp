@@ -1,5 +1,3 @@
-#include "compensate/fanuc_lattice_format.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,17 +6,18 @@
 
 #include "abbe/compensate/anchored_lattice.h"
 #include "abbe/compensate/whole_unit_correction.h"
+#include "abbe/controls/lattice_writer.h"
+#include "abbe/controls/lost_motion.h"
+#include "abbe/controls/table_format.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/table_fanuc_lattice.h"
-#include "compensate/lattice_request.h"
-#include "compensate/reversal_words.h"
 
 namespace abbe {
 namespace {
 
 constexpr std::size_t kLatticeAxes = 3;
 
-LatticeOptions three_linear_axes(const Machine& machine, const ErrorSet& errors, const TableRequest& request,
+LatticeOptions three_linear_axes(const Machine& machine, const ErrorSet& errors, const WriterRequest& request,
                                  const TableFormat& format) {
   LatticeOptions options = lattice_options(machine, errors, request, format, kLatticeAxes, true);
   const bool linear = std::all_of(options.inputs.begin(), options.inputs.end(),
@@ -58,9 +57,9 @@ double tolerance_left(double tolerance, double unit, int magnification) {
   return tolerance - 0.5 * unit * magnification;
 }
 
-ControllerTables make_fanuc_lattice(const TableFormat& format, const Machine& machine, const ErrorSet& errors,
-                                    const TableRequest& request) {
-  ControllerTables made;
+WrittenTables make_fanuc_lattice(const TableFormat& format, const Machine& machine, const ErrorSet& errors,
+                                 const WriterRequest& request) {
+  WrittenTables made;
   const LatticeOptions options = three_linear_axes(machine, errors, request, format);
   if (request.nodes > 0) {
     made.correction = std::make_unique<LatticeFunction>(machine, errors, options);
@@ -167,8 +166,11 @@ ControllerTables make_fanuc_lattice(const TableFormat& format, const Machine& ma
 }  // namespace
 
 TableFormat fanuc_lattice_format() {
+  using enum TableSetting;
   TableFormat format;
   format.name = "fanuc-3d";
+  format.control = "FANUC";
+  format.kind = TableKind::lattice;
   format.what = "three-dimensional error compensation of FANUC, three linear axes over a grid of their positions";
   format.convention =
       "corrections (minus the error) of every axis at numbered points, in whole detection units times the "
@@ -179,18 +181,19 @@ TableFormat fanuc_lattice_format() {
       "parameters (10800 to 10814), the order of the points (first axis fastest, from 1), their largest number (25 "
       "per axis, 15625), the range of values (-128 to 127) and magnification (100), the sign (--negate), that "
       "values are whole corrections and not steps, and what holds outside the grid";
+  format.takes = {negate, detection_unit, reference_position, reference, names, axes, tolerance_mm, most_nodes};
   format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
     return fmt::format("parameter 1851 of axis {} takes it, in detection units (sign not verified): {}", axis,
                        lost_motion_words(lost_motion, rotary));
   };
   format.axis_names = "number of the controlled axis";
-  format.default_interpolation_um = 1;
+  format.default_tolerance_mm = 1e-3;
   format.most_nodes = kFanucLatticePoints * kFanucLatticePoints * kFanucLatticePoints;
   format.cannot =
       "linear axes take the shift of the point as it is with the rotary axes where --at says; whole units are added; "
       "rotary axes and the direction of the tool stay";
   format.default_name = [](std::size_t index, const Axis& /*axis*/) { return fmt::format("{}", index + 1); };
-  format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+  format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_fanuc_lattice(format, machine, errors, request);
   };
   return format;

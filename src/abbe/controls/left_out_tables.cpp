@@ -1,4 +1,4 @@
-#include "compensate/table_left_out.h"
+#include "abbe/controls/left_out_tables.h"
 
 #include <fmt/format.h>
 
@@ -21,10 +21,10 @@ std::string SmallTable::text() const {
 }
 
 std::vector<double> table_uncertainties(const ErrorSet& errors, const Eigen::MatrixXd& covariance,
-                                        const std::vector<TableSummary>& tables, double times,
+                                        const std::vector<WrittenTable>& tables, double times,
                                         std::vector<SmallTable>& small) {
   std::vector<double> largest;
-  for (const TableSummary& table : tables) {
+  for (const WrittenTable& table : tables) {
     const std::vector<double> uncertainty = propagated_uncertainty(errors, covariance, table.values);
     double ratio = 0;
     bool known = false;
@@ -69,18 +69,18 @@ bool TablesTogether::is_small(const CommandCorrection& without, double times) co
 
 std::vector<SmallTable> leave_out_tables(const Machine& machine, const ErrorSet& errors,
                                          const Eigen::MatrixXd& covariance, const PoseList& poses,
-                                         const TableFormat& format, TableRequest& request, double times,
-                                         ControllerTables& tables, std::vector<SmallTable>& left_out) {
+                                         const TableFormat& format, WriterRequest& request, double times,
+                                         WrittenTables& tables, std::vector<SmallTable>& left_out) {
   std::vector<SmallTable> kept;
   if (left_out.empty()) return kept;
-  const ControllerTables all = std::exchange(tables, ControllerTables{});
+  const WrittenTables all = std::exchange(tables, WrittenTables{});
   const TablesTogether together(machine, errors, covariance, poses, *all.correction);
   std::stable_sort(left_out.begin(), left_out.end(),
                    [](const SmallTable& a, const SmallTable& b) { return a.times < b.times; });
   while (true) {
     request.left_out.clear();
     for (const SmallTable& table : left_out) request.left_out.insert(table.name);
-    tables = format.make(machine, errors, request);
+    tables = format.write(machine, errors, request);
     if (left_out.empty() || together.is_small(*tables.correction, times)) return kept;
     kept.push_back(left_out.back());
     left_out.pop_back();

@@ -1,16 +1,15 @@
-#include "compensate/lattice_formats.h"
-
 #include "abbe/compensate/correction_lattice.h"
 #include "abbe/compensate/point_correction.h"
+#include "abbe/controls/lattice_writer.h"
+#include "abbe/controls/table_format.h"
 #include "abbe/formats/table_lattice.h"
-#include "compensate/lattice_request.h"
 
 namespace abbe {
 namespace {
 
-ControllerTables make_lattice(bool vtk, const TableFormat& format, const Machine& machine, const ErrorSet& errors,
-                              const TableRequest& request) {
-  ControllerTables made;
+WrittenTables make_lattice(bool vtk, const TableFormat& format, const Machine& machine, const ErrorSet& errors,
+                           const WriterRequest& request) {
+  WrittenTables made;
   const std::size_t most_inputs = vtk ? 3 : kMaxAxes;
   const LatticeOptions options =
       lattice_options(machine, errors, request, format, most_inputs, most_inputs < machine.axes.size());
@@ -29,7 +28,7 @@ ControllerTables make_lattice(bool vtk, const TableFormat& format, const Machine
   for (std::size_t a = 0; a < read.inputs.size(); ++a) {
     read.modulo[a] = known_travel(machine, errors, read.inputs[a]).whole_turn;
   }
-  made.files.emplace_back(name, text);
+  made.files.push_back({name, text});
   made.correction = std::make_unique<LatticeCorrection>(std::move(read));
   return made;
 }
@@ -37,18 +36,22 @@ ControllerTables make_lattice(bool vtk, const TableFormat& format, const Machine
 }  // namespace
 
 TableFormat lattice_csv_format() {
+  using enum TableSetting;
   TableFormat format;
   format.name = "lattice-csv";
+  format.control = "any";
+  format.kind = TableKind::lattice;
   format.what = "corrections of all axes over a grid of axis positions, CSV";
   format.convention =
       "columns of axis positions (X_mm, C_deg), then the corrections (minus the error) to be added to the commands "
       "(um, "
       "urad); linear in every position between the nodes, the end values outside";
+  format.takes = {reference, names, axes, tolerance_mm, tolerance_rad, most_nodes};
   format.most_nodes = 2'000'000;
   format.cannot =
       "linear axes take the shift of the point, rotary axes their own positioning error; the direction of "
       "the tool stays";
-  format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+  format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_lattice(false, format, machine, errors, request);
   };
   return format;
@@ -61,7 +64,7 @@ TableFormat lattice_vtk_format() {
   format.convention =
       "coordinates are axis positions (mm, deg), scalars the corrections (minus the error) to be added to the commands "
       "(um, urad); linear in every position between the nodes, the end values outside";
-  format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+  format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_lattice(true, format, machine, errors, request);
   };
   return format;

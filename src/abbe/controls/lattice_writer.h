@@ -1,7 +1,7 @@
 #pragma once
 
 #include "abbe/compensate/correction_lattice.h"
-#include "compensate/table_formats.h"
+#include "abbe/controls/table_format.h"
 
 namespace abbe {
 
@@ -9,11 +9,11 @@ namespace abbe {
 /// rotary ones in the grid.
 /// @param linear_only  where no axes are chosen, those of the grid are the linear ones
 /// @throws InputError for more than `most_inputs` axes, or none
-LatticeOptions lattice_options(const Machine& machine, const ErrorSet& errors, const TableRequest& request,
+LatticeOptions lattice_options(const Machine& machine, const ErrorSet& errors, const WriterRequest& request,
                                const TableFormat& format, std::size_t most_inputs, bool linear_only);
 
 /// A summary per corrected axis, and the grid as a remark.
 void add_lattice_summaries(const Machine& machine, const BuiltLattice& built, const LatticeOptions& options,
-                           ControllerTables& made);
+                           WrittenTables& made);
 
 }  // namespace abbe

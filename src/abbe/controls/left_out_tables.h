@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "abbe/compensate/command_correction.h"
+#include "abbe/controls/table_format.h"
 #include "abbe/errors/error_set.h"
 #include "abbe/errors/poses.h"
 #include "abbe/machine/machine.h"
-#include "compensate/table_formats.h"
 
 namespace abbe {
 
@@ -22,7 +22,7 @@ struct SmallTable {
 
 /// Largest standard uncertainty of every table, mm or rad, and the tables that are nowhere `times` of it or more.
 std::vector<double> table_uncertainties(const ErrorSet& errors, const Eigen::MatrixXd& covariance,
-                                        const std::vector<TableSummary>& tables, double times,
+                                        const std::vector<WrittenTable>& tables, double times,
                                         std::vector<SmallTable>& small);
 
 /// What tables do together, against the uncertainty of the whole correction of the functional point.
@@ -57,7 +57,7 @@ class TablesTogether {
 /// @returns those that went back
 std::vector<SmallTable> leave_out_tables(const Machine& machine, const ErrorSet& errors,
                                          const Eigen::MatrixXd& covariance, const PoseList& poses,
-                                         const TableFormat& format, TableRequest& request, double times,
-                                         ControllerTables& tables, std::vector<SmallTable>& left_out);
+                                         const TableFormat& format, WriterRequest& request, double times,
+                                         WrittenTables& tables, std::vector<SmallTable>& left_out);
 
 }  // namespace abbe

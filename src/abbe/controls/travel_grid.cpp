@@ -1,4 +1,4 @@
-#include "compensate/travel_grid.h"
+#include "abbe/controls/travel_grid.h"
 
 #include <utility>
 

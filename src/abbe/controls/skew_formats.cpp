@@ -1,5 +1,3 @@
-#include "compensate/skew_formats.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -7,9 +5,10 @@
 
 #include "abbe/compensate/point_correction.h"
 #include "abbe/compensate/skew_factors.h"
+#include "abbe/controls/lost_motion.h"
+#include "abbe/controls/table_format.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/table_skew.h"
-#include "compensate/reversal_words.h"
 
 namespace abbe {
 namespace {
@@ -26,9 +25,9 @@ std::array<std::size_t, 3> printer_axes(const Machine& machine) {
   return axes;
 }
 
-ControllerTables make_skew(bool klipper, const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+WrittenTables make_skew(bool klipper, const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
   const std::array<std::size_t, 3> axes = printer_axes(machine);
-  ControllerTables made;
+  WrittenTables made;
   SkewFactors factors = fit_skew(machine, errors, axes, request.reference);
   const char* const names[3] = {"XY", "XZ", "YZ"};
   double* const values[3] = {&factors.xy, &factors.xz, &factors.yz};
@@ -41,7 +40,7 @@ ControllerTables make_skew(bool klipper, const Machine& machine, const ErrorSet&
     // The axis whose position it is multiplied with.
     const KnownTravel travel = known_travel(machine, errors, axes[f == 0 ? 1 : 2]);
     const double farthest = std::abs(travel.from) > std::abs(travel.to) ? travel.from : travel.to;
-    TableSummary summary;
+    WrittenTable summary;
     summary.name = names[f];
     summary.nodes = 1;
     summary.largest = std::abs(*values[f] * farthest);
@@ -54,7 +53,7 @@ ControllerTables make_skew(bool klipper, const Machine& machine, const ErrorSet&
   }
   const std::string name = klipper ? "skew.cfg.gcode" : "skew.gcode";
   const std::string text = klipper ? klipper_skew_text(factors) : marlin_skew_text(factors);
-  if (!made.tables.empty()) made.files.emplace_back(name, text);
+  if (!made.tables.empty()) made.files.push_back({name, text});
   made.remarks.push_back(fmt::format("factors XY {:.9f}, XZ {:.9f}, YZ {:.9f}", factors.xy, factors.xz, factors.yz));
   made.remarks.push_back(klipper
                              ? "[skew_correction] in printer.cfg, and SKEW_PROFILE LOAD=abbe at the start of a print"
@@ -65,13 +64,17 @@ ControllerTables make_skew(bool klipper, const Machine& machine, const ErrorSet&
 }
 
 TableFormat skew_format(bool klipper) {
+  using enum TableSetting;
   TableFormat format;
   format.name = klipper ? "klipper" : "marlin";
+  format.control = klipper ? "Klipper" : "Marlin";
+  format.kind = TableKind::skew;
   format.what = klipper ? "skew of Klipper (SET_SKEW): three angles as lengths of parallelograms"
                         : "skew of Marlin (M852): three angles";
   format.convention =
       "X' = X - Y XY - Z (XZ - XY YZ), Y' = Y - Z YZ with factors (tangents) XY, XZ, YZ from machine zero; best fit "
       "over the travel with a free constant";
+  format.takes = {reference};
   format.cannot =
       "three angles and nothing else: no scale, no straightness, no error motion; what is left of a "
       "constant is a shift of the workpiece's zero";
@@ -81,7 +84,7 @@ TableFormat skew_format(bool klipper) {
                          lost_motion_words(lost_motion, rotary));
     };
   }
-  format.make = [klipper](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+  format.write = [klipper](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_skew(klipper, machine, errors, request);
   };
   return format;

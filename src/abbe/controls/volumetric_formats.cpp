@@ -1,5 +1,3 @@
-#include "compensate/volumetric_formats.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "abbe/compensate/error_tables.h"
 #include "abbe/compensate/point_correction.h"
+#include "abbe/controls/table_format.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/table_volumetric.h"
 
@@ -21,7 +20,7 @@ std::vector<std::size_t> some_of(std::size_t count) {
 }
 
 /// What of the errors is written: wanted axes, no tool offset, nothing that was left out.
-ErrorSet written_errors(const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+ErrorSet written_errors(const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
   ErrorSet written;
   for (const ErrorMotion& motion : errors.motions) {
     if (!request.axes[motion.axis]) continue;
@@ -36,7 +35,7 @@ ErrorSet written_errors(const Machine& machine, const ErrorSet& errors, const Ta
   return written;
 }
 
-void check_model(const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+void check_model(const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
   if (errors.composition.order != ErrorOrder::iso || errors.composition.first_order) {
     throw InputError({.field = "--for"}, "these errors are not in the composition `iso`",
                      "errors of ISO 230-1: the control composes them itself");
@@ -50,12 +49,12 @@ void check_model(const Machine& machine, const ErrorSet& errors, const TableRequ
 }
 
 void add_summaries(const Machine& machine, const ErrorSet& written, const BuiltErrorTables& built,
-                   const ErrorTableOptions& options, ControllerTables& made) {
+                   const ErrorTableOptions& options, WrittenTables& made) {
   for (std::size_t t = 0; t < built.tables.tables.size(); ++t) {
     const ErrorTable& table = built.tables.tables[t];
     for (std::size_t c = 0; c < table.components.size(); ++c) {
       const Component component = table.components[c];
-      TableSummary summary;
+      WrittenTable summary;
       summary.name = error_motion_name(machine, table.axis, component);
       summary.nodes = table.positions.size();
       summary.step = table.positions.size() > 1 ? table.positions[1] - table.positions[0] : 0;
@@ -83,7 +82,7 @@ void add_summaries(const Machine& machine, const ErrorSet& written, const BuiltE
     }
   }
   for (const LocationError& location : written.locations) {
-    TableSummary summary;
+    WrittenTable summary;
     summary.name = location_error_name(machine, location.axis, location.component);
     summary.nodes = 1;
     summary.is_angle = is_rotation(location.component);
@@ -101,7 +100,7 @@ void add_summaries(const Machine& machine, const ErrorSet& written, const BuiltE
 }
 
 /// Configuration list with the documented names: axes by number in the order X Y Z A B C, sides, file.
-std::string isg_list(const Machine& machine, const TableRequest& request) {
+std::string isg_list(const Machine& machine, const WriterRequest& request) {
   std::string text = "# Volumetric compensation of " + machine.chain() + "; logical axis numbers have to be set\n";
   text += fmt::format("workpiece_axes           {}\n", machine.workpiece_axis_count());
   std::size_t number = 0;
@@ -110,11 +109,11 @@ std::string isg_list(const Machine& machine, const TableRequest& request) {
          "Interpolation            GRID\nfile[0]                  volcomp.csv\nfile_format[0]           ISG_CSV\n";
 }
 
-ControllerTables make_volumetric(bool isg, const TableFormat& format, const Machine& machine, const ErrorSet& errors,
-                                 const TableRequest& request) {
+WrittenTables make_volumetric(bool isg, const TableFormat& format, const Machine& machine, const ErrorSet& errors,
+                              const WriterRequest& request) {
   check_model(machine, errors, request);
   const ErrorSet written = written_errors(machine, errors, request);
-  ControllerTables made;
+  WrittenTables made;
   std::unique_ptr<PointCorrection> correction;
   if (request.nodes > 0 || (written.motions.empty() && written.locations.empty())) {
     correction = std::make_unique<PointCorrection>(machine, written);
@@ -128,9 +127,9 @@ ControllerTables make_volumetric(bool isg, const TableFormat& format, const Mach
     const std::string name = isg ? "volcomp.csv" : "etalon.txt";
     const std::string text = isg ? isg_csv_text(built.tables, request.names) : etalon_text(built.tables, request.names);
     const ErrorTables read = isg ? parse_isg_csv(text, name, request.names) : parse_etalon(text, name, request.names);
-    made.files.emplace_back(name, text);
+    made.files.push_back({name, text});
     if (isg) {
-      made.files.emplace_back("volcomp.lis", isg_list(machine, request));
+      made.files.push_back({"volcomp.lis", isg_list(machine, request)});
       std::size_t rows = built.tables.locations.empty() ? 0 : 1;
       for (const ErrorTable& table : built.tables.tables) rows += table.positions.size();
       made.remarks.push_back(
@@ -146,8 +145,11 @@ ControllerTables make_volumetric(bool isg, const TableFormat& format, const Mach
 }  // namespace
 
 TableFormat beckhoff_format() {
+  using enum TableSetting;
   TableFormat format;
   format.name = "beckhoff-isg";
+  format.control = "Beckhoff TwinCAT, ISG";
+  format.kind = TableKind::error_model;
   format.what =
       "volumetric compensation of Beckhoff (TF5280) and ISG controls: error motions and position errors, ISG_CSV";
   format.convention =
@@ -158,12 +160,13 @@ TableFormat beckhoff_format() {
       "(alternative_model), its kinematic chain (Chain), how it counts the sign of errors of axes that carry the "
       "workpiece, and position errors (it offers `negate` per axis); that it takes errors where the corrected axes "
       "stand";
+  format.takes = {names, axes, tolerance_mm, tolerance_rad, most_nodes};
   format.axis_names = "letter X Y Z A B C";
   format.most_nodes = 10000;
   format.cannot =
       "tool offset errors are not written, and the control corrects X, Y and Z only: the direction of the "
       "tool stays";
-  format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+  format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_volumetric(true, format, machine, errors, request);
   };
   return format;
@@ -172,9 +175,10 @@ TableFormat beckhoff_format() {
 TableFormat etalon_format() {
   TableFormat format = beckhoff_format();
   format.name = "etalon";
+  format.control = "ISG, exchange format of Etalon";
   format.what = "exchange format of Etalon, variant \"Vendor\": one grid of points per error motion, position errors";
   format.unverified += "; of the exchange format only what the manual of the ISG control shows is known";
-  format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+  format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_volumetric(false, format, machine, errors, request);
   };
   return format;

@@ -1,65 +1,21 @@
-#include "compensate/pitch_formats.h"
-
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <numbers>
 
+#include "abbe/compensate/axis_table.h"
+#include "abbe/controls/line_writer.h"
+#include "abbe/controls/lost_motion.h"
+#include "abbe/controls/table_format.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/table_fanuc.h"
-#include "abbe/formats/table_heidenhain.h"
 #include "abbe/machine/axis_unit.h"
-#include "compensate/axis_table_formats.h"
-#include "compensate/reversal_words.h"
 
 namespace abbe {
 namespace {
 
-/// One table of table names per line; the first is the active one.
-std::string heidenhain_assignment(const TableRequest& request, const std::vector<std::size_t>& inputs) {
-  std::string columns = "NR ACTIVE", files = "0 *";
-  for (const std::size_t input : inputs) {
-    const std::string& name = table_axis(request.names, input).name;
-    columns += " " + name;
-    files += " " + name + ".COM";
-  }
-  return "BEGIN CONFIG.CMA MM\n" + columns + "\n" + files + "\n[END]\n";
-}
-
-ControllerTables make_heidenhain(const TableFormat& format, const Machine& machine, const ErrorSet& errors,
-                                 const TableRequest& request) {
-  ControllerTables made;
-  LineTableOptions options = line_options(request, format);
-  options.cross = true;
-  const std::vector<AxisTable> tables = wanted_tables(machine, errors, request, options, made);
-  const double sign = request.negate ? 1 : -1;
-  std::vector<AxisTable> read;
-  std::vector<std::size_t> inputs;
-  for (const AxisTable& table : tables) {
-    if (std::find(inputs.begin(), inputs.end(), table.input) == inputs.end()) inputs.push_back(table.input);
-  }
-  for (const std::size_t input : inputs) {
-    std::vector<AxisTable> of_input;
-    for (const AxisTable& table : tables) {
-      if (table.input == input) of_input.push_back(table);
-    }
-    const std::string name = table_axis(request.names, input).name + ".COM";
-    const std::string text = heidenhain_com_text(of_input, request.names, sign);
-    made.files.emplace_back(name, text);
-    for (AxisTable& table : parse_heidenhain_com(text, name, input, request.names, sign)) {
-      // A rotary axis has entries from 0 to 360 degrees, and repeats itself.
-      table.modulo = machine.axes[input].endless;
-      read.push_back(std::move(table));
-    }
-  }
-  if (!inputs.empty()) made.files.emplace_back("CONFIG.CMA", heidenhain_assignment(request, inputs));
-  made.correction = std::make_unique<AxisTableCorrection>(std::move(read));
-  return made;
-}
-
-ControllerTables make_fanuc(const TableFormat& format, const Machine& machine, const ErrorSet& errors,
-                            const TableRequest& request) {
-  ControllerTables made;
+WrittenTables make_fanuc(const TableFormat& format, const Machine& machine, const ErrorSet& errors,
+                         const WriterRequest& request) {
+  WrittenTables made;
   const auto unit_of = [&](std::size_t axis) {
     return machine.axes[axis].kind == AxisKind::rotary ? request.unit_mm * std::numbers::pi / 180 : request.unit_mm;
   };
@@ -91,7 +47,7 @@ ControllerTables make_fanuc(const TableFormat& format, const Machine& machine, c
   if (!pitches.empty()) {
     const std::string name = "PITCH.PRM";
     const std::string text = fanuc_pitch_text(pitches, request.names);
-    made.files.emplace_back(name, text);
+    made.files.push_back({name, text});
     for (const FanucPitch& pitch : parse_fanuc_pitch(text, name, request.names)) {
       AxisTable table =
           with_sign({fanuc_table(pitch, unit_of(pitch.axis), request.reference_position[pitch.axis])}, request.negate)
@@ -111,38 +67,12 @@ ControllerTables make_fanuc(const TableFormat& format, const Machine& machine, c
 
 }  // namespace
 
-TableFormat heidenhain_format() {
-  TableFormat format;
-  format.name = "heidenhain";
-  format.what =
-      "compensation-value tables of HEIDENHAIN (*.COM, CONFIG.CMA), every axis for itself and for the linear axes";
-  format.convention =
-      "AXISPOS in mm or degrees from the machine datum; values are errors (actual minus nominal), mm or degrees; "
-      "straight "
-      "lines between points";
-  format.unverified =
-      "head and end of the text (BEGIN, NR, [END]); the sign of the values (--negate); that the end values hold "
-      "outside; "
-      "BACKLASH is not written";
-  format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
-    return fmt::format(
-        "the backlash compensation of {} takes it (column BACKLASH or its parameter; sign not verified): {}", axis,
-        lost_motion_words(lost_motion, rotary));
-  };
-  format.axis_names = "axis key of CfgAxes/axisList";
-  format.most_nodes = kHeidenhainPoints;
-  format.cannot =
-      "tables add up, each of one axis's position: an angle times a lever that another axis changes is right "
-      "only on the lines through the reference pose, and the direction of the tool stays";
-  format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
-    return make_heidenhain(format, machine, errors, request);
-  };
-  return format;
-}
-
 TableFormat fanuc_pitch_format() {
+  using enum TableSetting;
   TableFormat format;
   format.name = "fanuc-pitch";
+  format.control = "FANUC";
+  format.kind = TableKind::own_axis;
   format.what = "stored pitch error compensation of FANUC as a parameter file, every axis for itself";
   format.convention =
       "steps of the correction (minus the error) from point to point in whole detection units times the magnification, "
@@ -150,6 +80,8 @@ TableFormat fanuc_pitch_format() {
   format.unverified =
       "the numbers of data blocks (10000 + point) and of the parameters for a given control, the sign (--negate), that "
       "the control interpolates between points, largest step and number of points";
+  format.takes = {negate, detection_unit, reference_position, reference, names,
+                  axes,   tolerance_mm,   tolerance_rad,      most_nodes};
   format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
     return fmt::format("parameter 1851 of axis {} takes it, in detection units (sign not verified): {}", axis,
                        lost_motion_words(lost_motion, rotary));
@@ -160,7 +92,7 @@ TableFormat fanuc_pitch_format() {
       "an axis is corrected by its own position only, in whole units and zero at its reference position; "
       "a constant is the reference position's matter";
   format.default_name = [](std::size_t index, const Axis& /*axis*/) { return fmt::format("{}", index + 1); };
-  format.make = [format](const Machine& machine, const ErrorSet& errors, const TableRequest& request) {
+  format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
     return make_fanuc(format, machine, errors, request);
   };
   return format;

@@ -1,0 +1,201 @@
+#include "abbe/controls/control_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "abbe/compensate/correction_uncertainty.h"
+#include "abbe/compensate/left_out_errors.h"
+#include "abbe/controls/left_out_tables.h"
+#include "abbe/controls/lost_motion.h"
+#include "abbe/controls/table_format.h"
+#include "abbe/controls/table_limits.h"
+#include "abbe/controls/travel_grid.h"
+#include "abbe/controls/useless_tables.h"
+#include "abbe/controls/writer_request.h"
+#include "abbe/formats/input_error.h"
+#include "abbe/verify/error_map.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kMostPoses = 1e6;
+/// Nodes of tables that are made for one error alone, to see what of it is carried.
+constexpr std::size_t kNodesForOneError = 33;
+
+std::size_t positions_per_axis(const ControlTableRequest& request) {
+  const std::size_t axes = request.machine.axes.size();
+  if (!request.positions) return axes > 3 ? 5 : 9;
+  const std::size_t positions = *request.positions;
+  double poses = 1;
+  for (std::size_t i = 0; i < axes; ++i) poses *= static_cast<double>(positions);
+  if (positions < 2 || poses > kMostPoses) {
+    throw InputError({.field = fmt::format("--positions {}", positions)},
+                     fmt::format("{:.0f} poses for {} axes", poses, axes),
+                     "at least 2 positions per axis and at most 1,000,000 poses");
+  }
+  return positions;
+}
+
+void check_judgement(const ControlTableRequest& request, const Eigen::MatrixXd& covariance) {
+  if (!(request.leave_out_below >= 0)) {
+    throw InputError({.field = "--leave-out-below-uncertainty"}, "below zero", "a number of standard uncertainties");
+  }
+  if (request.leave_out_below > 0 && covariance.size() == 0) {
+    throw InputError({.field = "--leave-out-below-uncertainty"}, "no standard uncertainties are stated", "some");
+  }
+  if (!(request.limit_mm > 0)) throw InputError({.field = "--limit-um"}, "is no limit", "a number above zero");
+  if (!(request.limit_rad > 0)) throw InputError({.field = "--limit-urad"}, "is no limit", "a number above zero");
+  if (!(request.least_reduction >= 0 && request.least_reduction <= 1)) {
+    throw InputError({.field = "--least-reduction-percent"}, "out of range", "0 to 100 %");
+  }
+}
+
+/// What takes the reversal values that the tables do not carry.
+std::vector<ControlNote> reversal_notes(const Machine& machine, const ErrorSet& errors, const TableFormat& format,
+                                        const WriterRequest& request) {
+  std::vector<ControlNote> notes;
+  for (const Reversal& reversal : errors.reversals) {
+    if (reversal.value == 0) continue;
+    const Axis& axis = machine.axes[reversal.axis];
+    const bool rotary = axis.kind == AxisKind::rotary;
+    std::string words;
+    if (format.directions && !request.axes[reversal.axis]) {
+      words = "no table is wanted for this axis";
+    } else if (format.backlash) {
+      const bool named = !format.axis_names.empty();
+      words =
+          format.backlash(named ? table_axis(request.names, reversal.axis).name : axis.name, -reversal.value, rotary);
+    } else {
+      words =
+          "backlash compensation of the control takes it, if it has one: " + lost_motion_words(-reversal.value, rotary);
+    }
+    notes.push_back({reversal_name(machine, reversal.axis), std::move(words)});
+  }
+  return notes;
+}
+
+/// Standard uncertainty of the displacement that is corrected, over poses.
+SampleStatistics displacement_uncertainty(const Machine& machine, const ErrorSet& errors,
+                                          const Eigen::MatrixXd& covariance, const PoseList& poses) {
+  ErrorMapOptions options;
+  ParameterCovariance parameters;
+  parameters.covariance = covariance;
+  for (std::size_t p = 0; p < errors.parameter_count(); ++p) parameters.parameters.push_back(p);
+  options.covariance = &parameters;
+  options.orientation = false;
+  const ErrorMap map = error_map(machine, errors, nullptr, pose_source(poses), options);
+  return sample_statistics(map.norm_uncertainty, map.covered);
+}
+
+/// The tables of a request on their way to a result.
+struct Making {
+  const ControlTableRequest& request;
+  const TableFormat& format;
+  const Eigen::MatrixXd& covariance;  ///< 0 x 0: not known
+  WriterRequest writer;
+  ErrorSet carried;  ///< what the tables are made of; they are judged by all errors
+  std::vector<LeftOutReversal> left_out;
+  WrittenTables tables;
+};
+
+/// Writes the tables, leaves out those below their uncertainty and states the uncertainty of the others.
+void write_tables(Making& making, ControlTables& made) {
+  const Machine& machine = making.request.machine;
+  const double times = making.request.leave_out_below;
+  const Eigen::MatrixXd& covariance = making.covariance;
+  if (covariance.size() > 0) {
+    making.left_out = leave_out_uncertain_reversals(making.carried, covariance, times);
+  }
+  for (const LeftOutReversal& one : making.left_out) {
+    made.left_out.push_back(
+        fmt::format("{}: {:.2g} times its standard uncertainty", reversal_name(machine, one.axis), one.times));
+  }
+  WrittenTables& tables = making.tables;
+  tables = making.format.write(machine, making.carried, making.writer);
+  std::vector<double> uncertainty;
+  if (covariance.size() > 0) {
+    std::vector<SmallTable> small, unused;
+    uncertainty = table_uncertainties(making.carried, covariance, tables.tables, times, small);
+    for (const SmallTable& table : leave_out_tables(machine, making.carried, covariance, made.poses, making.format,
+                                                    making.writer, times, tables, small)) {
+      made.left_out_kept.push_back(table.text());
+    }
+    for (const SmallTable& table : small) made.left_out.push_back(table.text());
+    if (!small.empty()) uncertainty = table_uncertainties(making.carried, covariance, tables.tables, 0, unused);
+    made.uncertainty = displacement_uncertainty(machine, making.request.errors, covariance, made.poses);
+  }
+  for (std::size_t t = 0; t < tables.tables.size(); ++t) {
+    if (t < uncertainty.size()) tables.tables[t].standard_uncertainty = uncertainty[t];
+    made.tables.push_back(tables.tables[t]);
+  }
+}
+
+/// What becomes of every error alone.
+std::vector<CarriedError> what_is_carried(const Making& making) {
+  const Machine& machine = making.request.machine;
+  std::vector<std::size_t> unused;
+  const PoseList few = travel_grid(machine, making.request.errors, machine.axes.size() > 3 ? 3 : 5, unused);
+  WriterRequest quick = making.writer;
+  quick.nodes = kNodesForOneError;
+  return carried_errors(machine, making.request.errors, few, [&](ErrorSet alone) {
+    for (Reversal& reversal : alone.reversals) {
+      for (const LeftOutReversal& one : making.left_out) {
+        reversal.value = reversal.axis == one.axis ? 0 : reversal.value;
+      }
+    }
+    return making.format.write(machine, alone, quick).correction;
+  });
+}
+
+/// Why the tables must not be used.
+void judge(const Making& making, ControlTables& made) {
+  const ControlTableRequest& request = making.request;
+  check_limits(request, *making.tables.correction, made);
+  made.refused.insert(made.refused.end(), making.tables.problems.begin(), making.tables.problems.end());
+  if (made.refused.empty()) {
+    const std::string useless =
+        useless_tables(request.machine, making.carried, making.writer, made, request.least_reduction);
+    if (!useless.empty()) made.refused.push_back(useless);
+  }
+  const bool within =
+      std::all_of(made.tables.begin(), made.tables.end(), [](const TableFigures& table) { return table.within; });
+  if (made.refused.empty() && !within) {
+    made.too_few_nodes = fmt::format(
+        "straight lines between the nodes that {} has room for do not keep to --interpolation-um or "
+        "--interpolation-urad",
+        making.format.name);
+  }
+}
+
+}  // namespace
+
+ControlTables make_control_tables(const ControlTableRequest& request) {
+  const TableFormat& format = table_format(request.format);
+  const Machine& machine = request.machine;
+  const ErrorSet& errors = request.errors;
+  const Eigen::MatrixXd covariance = request.covariance.size() > 0 ? request.covariance : stated_variances(errors);
+  check_judgement(request, covariance);
+  Making making{request, format, covariance, writer_request(request, format), errors, {}, {}};
+  ControlTables made;
+  made.format = &format;
+  made.tolerance_mm = making.writer.tolerance_mm;
+  made.tolerance_rad = making.writer.tolerance_rad;
+  made.poses = travel_grid(machine, errors, positions_per_axis(request), made.grid);
+  made.volumetric = volumetric_figures(machine, &errors, covariance, nullptr, stated_grid(machine, {&errors}));
+  write_tables(making, made);
+  made.settings = making.tables.remarks;
+  const CommandCorrection& correction = *making.tables.correction;
+  made.before = deviations_with(machine, errors, made.poses, NoCorrection());
+  made.after = deviations_with(machine, errors, made.poses, correction);
+  made.left_by_tables = volumetric_error_with(machine, errors, made.poses, correction);
+  made.ideal = ideal_deviations(machine, errors, made.poses, made.ideal_not_reached);
+  made.errors = what_is_carried(making);
+  made.reversals = reversal_notes(machine, making.carried, format, making.writer);
+  judge(making, made);
+  if (!made.says_no()) made.files = std::move(making.tables.files);
+  return made;
+}
+
+}  // namespace abbe

@@ -1,0 +1,145 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "abbe/errors/error_set.h"
+#include "abbe/errors/poses.h"
+#include "abbe/machine/inverse_plan.h"
+#include "abbe/machine/machine.h"
+#include "abbe/verify/table_loss.h"
+#include "abbe/verify/volumetric_figures.h"
+
+namespace abbe {
+
+// Correction tables of a control, from the known errors of a machine:
+//
+//     abbe::ControlTableRequest request;
+//     request.format = "siemens-cec";
+//     request.machine = abbe::read_machine("mill.machine.toml");
+//     request.errors = abbe::read_errors("mill.errors.toml", request.machine).errors;
+//     request.limit_mm = 0.1;
+//     const abbe::ControlTables made = abbe::make_control_tables(request);
+//     for (const std::string& why : made.refused) std::cerr << why << '\n';
+//     for (const abbe::ControlFile& file : made.files) abbe::write_file_atomically(file.name, file.text);
+//
+// What the formats are, and what each takes: table_format.h. How tables are made and judged: docs/controller-tables.md.
+
+struct TableFormat;
+
+/// What the control calls an axis of the machine.
+struct ControlAxisName {
+  std::string axis;  ///< of the machine file: "X"
+  std::string name;  ///< at the control: "X1", "AX2", "3"
+};
+
+/// What tables are made of and what is asked of them; lengths in mm, angles in rad.
+///
+/// Messages name a field by the option of `abbe compensate table` that sets it, given below. A field that the format
+/// has no use for has to stay as it is here.
+struct ControlTableRequest {
+  std::string format;  ///< --for: TableFormat::name
+  Machine machine;
+  ErrorSet errors;
+  /// [p, p] of errors.parameters(), mm and rad; 0 x 0: what the errors state of their standard uncertainties.
+  Eigen::MatrixXd covariance;
+
+  /// --at: where an axis stands while another one moves; axes that are not named stand in the middle of their known
+  /// travel.
+  std::vector<HeldAxis> reference;
+  std::vector<std::string> axes;       ///< --axis: only tables over their positions; empty: over all axes
+  std::vector<ControlAxisName> names;  ///< --name: axes that the control calls otherwise than TableFormat::default_name
+  std::optional<double> tolerance_mm;  ///< --interpolation-um: of straight lines between nodes; else the format's
+  std::optional<double> tolerance_rad;    ///< --interpolation-urad: else 0.1 urad
+  std::optional<std::size_t> most_nodes;  ///< --max-points: room for nodes per table, of a grid in all
+
+  std::optional<int> type;                   ///< --type, linuxcnc: COMP_FILE_TYPE, 0 or 1; else 1
+  std::optional<std::size_t> encoder;        ///< --encoder, siemens-eec: measuring system, 0 or 1; else 0
+  std::optional<std::size_t> first_table;    ///< --first-table, siemens-cec: 0 to 999; else 0
+  bool negate = false;                       ///< --negate: the other sign, where the control's is not known for sure
+  std::optional<double> detection_unit_mm;   ///< --detection-unit-um, FANUC: as many degrees for rotary axes; else 1 um
+  std::vector<HeldAxis> reference_position;  ///< --reference-position, FANUC: else zero, or the next end of the travel
+
+  std::optional<std::size_t> positions;  ///< --positions: per axis of the grid of `poses`; else 9, or 5 above 3 axes
+  double limit_mm = std::numeric_limits<double>::infinity();   ///< --limit-um: a larger correction is refused
+  double limit_rad = std::numeric_limits<double>::infinity();  ///< --limit-urad
+  double least_reduction = 0.01;  ///< --least-reduction-percent: share of the error below which tables are refused
+  double leave_out_below = 0;     ///< --leave-out-below-uncertainty: standard uncertainties; 0: nothing is left out
+};
+
+/// A file for the control, not yet written.
+struct ControlFile {
+  std::string name;  ///< without a folder: "X.comp"
+  std::string text;
+};
+
+/// One table, or what of the files can be left out like one; lengths in mm, angles in rad.
+struct TableFigures {
+  std::string name;  ///< "X", "Y for X", "EXX"
+  std::size_t nodes = 0;
+  double step = 0;             ///< between nodes
+  bool step_is_angle = false;  ///< `step` and `largest_at`
+  bool is_angle = false;       ///< the values
+  double largest = 0;          ///< correction
+  double largest_at = 0;       ///< command at which it is
+  double interpolation_error = 0;
+  bool within = true;                          ///< the tolerance of interpolation is kept
+  std::optional<double> standard_uncertainty;  ///< largest of a correction; not known: none is stated of the errors
+};
+
+/// What a control does, in words.
+struct ControlNote {
+  std::string name;   ///< what it is about: "reversal_X"
+  std::string words;  ///< without a full stop
+};
+
+/// Tables as a control would use them: the text read back, and what the simulated control leaves of the error.
+///
+/// Lengths in mm, angles in rad. Sentences begin with a small letter and have no full stop.
+struct ControlTables {
+  const TableFormat* format = nullptr;  ///< null: not made
+  std::vector<ControlFile> files;       ///< empty where says_no(), and where there is nothing to correct
+  std::vector<TableFigures> tables;
+  std::vector<std::string> settings;       ///< what has to be set at the control
+  std::vector<std::string> left_out;       ///< "X: at most 1.2 times its standard uncertainty"
+  std::vector<std::string> left_out_kept;  ///< small by themselves, but not together
+  std::vector<ControlNote> reversals;      ///< where reversal values are, or what of the control takes them
+  std::vector<std::string> refused;        ///< why the tables must not be used
+  /// Why not, although nothing is refused: straight lines between the nodes that there is room for are too far off.
+  std::string too_few_nodes;
+  /// Whether there are no tables that may be used.
+  bool says_no() const { return format == nullptr || !refused.empty() || !too_few_nodes.empty(); }
+
+  double tolerance_mm = 0, tolerance_rad = 0;  ///< of straight lines between nodes, as they were asked for
+  /// Predicted from the errors over the grid of all commands (docs/conventions.md).
+  VolumetricFigures volumetric;
+
+  PoseList poses;                   ///< between the nodes, where the figures below are stated
+  std::vector<std::size_t> grid;    ///< positions per axis, chain order
+  SampleStatistics left_by_tables;  ///< volumetric error that these tables leave, the datum fitted
+  /// Displacement as the control sees it, no datum fitted, the worse direction of approach: without tables, with them,
+  /// and with the best that the axes can do.
+  PoseDeviations before, after, ideal;
+  std::size_t ideal_not_reached = 0;  ///< poses whose point the ideal correction does not reach
+  std::vector<CarriedError> errors;   ///< what becomes of every error alone
+  /// Standard uncertainty of the displacement that is corrected.
+  std::optional<SampleStatistics> uncertainty;
+  double largest_mm = 0, largest_rad = 0;     ///< sum of corrections of one axis
+  std::string largest_mm_at, largest_rad_at;  ///< "X 1.5 mm, C 30 deg for axis X"
+};
+
+/// Tables for a control, and what they do and do not carry. Opens no file and prints nothing.
+///
+/// The text is read back by the reader of the format, and a control that uses it is simulated over
+/// ControlTables::poses. Where tables must not be used, that is in the result (`refused`, `too_few_nodes`) and not an
+/// error.
+/// @throws InputError for an unknown format, for what the format cannot take (another kind of machine, an option of
+///   other formats) and for values out of range; the field is named by its option: "--for", "--axis Q"
+/// @throws std::invalid_argument for a covariance of the wrong size
+ControlTables make_control_tables(const ControlTableRequest& request);
+
+}  // namespace abbe

@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "abbe/controls/line_writer.h"
+#include "abbe/controls/lost_motion.h"
+#include "abbe/controls/table_format.h"
+#include "abbe/formats/table_heidenhain.h"
+
+namespace abbe {
+namespace {
+
+/// One table of table names per line; the first is the active one.
+std::string heidenhain_assignment(const WriterRequest& request, const std::vector<std::size_t>& inputs) {
+  std::string columns = "NR ACTIVE", files = "0 *";
+  for (const std::size_t input : inputs) {
+    const std::string& name = table_axis(request.names, input).name;
+    columns += " " + name;
+    files += " " + name + ".COM";
+  }
+  return "BEGIN CONFIG.CMA MM\n" + columns + "\n" + files + "\n[END]\n";
+}
+
+WrittenTables make_heidenhain(const TableFormat& format, const Machine& machine, const ErrorSet& errors,
+                              const WriterRequest& request) {
+  WrittenTables made;
+  const std::vector<AxisTable> tables = wanted_tables(machine, errors, request, line_options(request, format), made);
+  const double sign = request.negate ? 1 : -1;
+  std::vector<AxisTable> read;
+  std::vector<std::size_t> inputs;
+  for (const AxisTable& table : tables) {
+    if (std::find(inputs.begin(), inputs.end(), table.input) == inputs.end()) inputs.push_back(table.input);
+  }
+  for (const std::size_t input : inputs) {
+    std::vector<AxisTable> of_input;
+    for (const AxisTable& table : tables) {
+      if (table.input == input) of_input.push_back(table);
+    }
+    const std::string name = table_axis(request.names, input).name + ".COM";
+    const std::string text = heidenhain_com_text(of_input, request.names, sign);
+    made.files.push_back({name, text});
+    for (AxisTable& table : parse_heidenhain_com(text, name, input, request.names, sign)) {
+      // A rotary axis has entries from 0 to 360 degrees, and repeats itself.
+      table.modulo = machine.axes[input].endless;
+      read.push_back(std::move(table));
+    }
+  }
+  if (!inputs.empty()) made.files.push_back({"CONFIG.CMA", heidenhain_assignment(request, inputs)});
+  made.correction = std::make_unique<AxisTableCorrection>(std::move(read));
+  return made;
+}
+
+}  // namespace
+
+TableFormat heidenhain_format() {
+  using enum TableSetting;
+  TableFormat format;
+  format.name = "heidenhain";
+  format.control = "HEIDENHAIN";
+  format.kind = TableKind::axis_pairs;
+  format.what =
+      "compensation-value tables of HEIDENHAIN (*.COM, CONFIG.CMA), every axis for itself and for the linear axes";
+  format.convention =
+      "AXISPOS in mm or degrees from the machine datum; values are errors (actual minus nominal), mm or degrees; "
+      "straight "
+      "lines between points";
+  format.unverified =
+      "head and end of the text (BEGIN, NR, [END]); the sign of the values (--negate); that the end values hold "
+      "outside; "
+      "BACKLASH is not written";
+  format.takes = {negate, reference, names, axes, tolerance_mm, tolerance_rad, most_nodes};
+  format.backlash = [](const std::string& axis, double lost_motion, bool rotary) {
+    return fmt::format(
+        "the backlash compensation of {} takes it (column BACKLASH or its parameter; sign not verified): {}", axis,
+        lost_motion_words(lost_motion, rotary));
+  };
+  format.axis_names = "axis key of CfgAxes/axisList";
+  format.most_nodes = kHeidenhainPoints;
+  format.cannot =
+      "tables add up, each of one axis's position: an angle times a lever that another axis changes is right "
+      "only on the lines through the reference pose, and the direction of the tool stays";
+  format.write = [format](const Machine& machine, const ErrorSet& errors, const WriterRequest& request) {
+    return make_heidenhain(format, machine, errors, request);
+  };
+  return format;
+}
+
+}  // namespace abbe
