@@ -13,13 +13,14 @@ CommandLine::CommandLine()
       "  abbe reproduce wang                            a published study, recomputed\n\n"
       "Exit codes: 0 done, 1 the computation says no, 2 bad input, 3 internal error;\n"
       "interrupted: 130 by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.");
-  program.set_version_flag("--version", std::string("abbe ") + version_text());
+  program.set_version_flag("-V,--version", std::string("abbe ") + version_text());
   program.require_subcommand(1);
   program.set_help_all_flag("--help-all", "Help of all subcommands");
 }
 
 Subcommand* CommandLine::add(const std::string& name, const std::string& description, const std::string& example) {
   Subcommand* command = program.add_subcommand(name, description);
+  command->section(section_);
   command->footer("Example:\n" + example);
   return command;
 }

@@ -14,7 +14,13 @@ struct CommandLine {
 
   CommandLine();
   /// @param example  shown at the end of --help
+  /// It stands in the section that was begun last.
+  /// Heading in --help of the subcommands that are added from now on.
+  void begin_section(const std::string& heading) { section_ = heading; }
   Subcommand* add(const std::string& name, const std::string& description, const std::string& example);
+
+ private:
+  std::string section_ = "Subcommands";
 };
 
 void add_new_command(CommandLine& line);

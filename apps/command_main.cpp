@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -20,6 +23,7 @@
 #include "abbe/formats/utf8.h"
 #include "exit_code.h"
 #include "messages.h"
+#include "nearest_word.h"
 #include "options.h"
 
 namespace abbe {
@@ -66,15 +70,24 @@ int run_command(int argc, const char* const* argv, const std::function<void(Comm
   }
   CommandLine line;
   add_subcommands(line);
-  if (argc > 1 && argv[1][0] != '-') {
-    const std::string name = argv[1];
-    if (!line.program.has_subcommand(name)) {
-      tell("abbe: there is no subcommand '{}'; abbe --help lists them\n", name);
+  std::vector<const char*> words(argv, argv + argc);
+  if (argc > 1 && std::string_view(argv[1]) == "help") {
+    // abbe help compensate table: what abbe compensate table --help says.
+    words.erase(words.begin() + 1);
+    words.push_back("--help");
+  }
+  if (words.size() > 1 && words[1][0] != '-') {
+    const std::string name = words[1];
+    const std::vector<std::string> names = line.program.subcommand_names();
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      const std::optional<std::string> meant = nearest_word(name, names);
+      tell("abbe: there is no subcommand '{}'{}; abbe --help lists them\n", name,
+           meant ? "; did you mean " + *meant + "?" : "");
       return kBadInput;
     }
   }
   try {
-    switch (line.program.parse(argc, argv)) {
+    switch (line.program.parse(static_cast<int>(words.size()), words.data())) {
       case ParseResult::shown:
         return printed(kDone);
       case ParseResult::refused:

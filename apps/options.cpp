@@ -10,6 +10,7 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/results_folder.h"
 #include "messages.h"
+#include "nearest_word.h"
 
 namespace abbe {
 namespace {
@@ -220,6 +221,7 @@ Subcommand* Subcommand::add_subcommand(const std::string& name, const std::strin
 void Subcommand::require_subcommand(int count) { app_->require_subcommand(count); }
 void Subcommand::require_subcommand(std::size_t least, std::size_t most) { app_->require_subcommand(least, most); }
 void Subcommand::fallthrough() { app_->fallthrough(); }
+void Subcommand::section(const std::string& heading) { app_->group(heading); }
 void Subcommand::footer(const std::string& text) { app_->footer(text); }
 void Subcommand::callback(const std::function<void()>& call) { app_->callback(call); }
 bool Subcommand::parsed() const { return app_->parsed(); }
@@ -241,9 +243,19 @@ Subcommand* Program::add_subcommand(const std::string& name, const std::string& 
   return subcommands_.emplace_back(std::make_unique<Subcommand>(*app_->add_subcommand(name, description))).get();
 }
 
-bool Program::has_subcommand(const std::string& name) const {
-  return !app_->get_subcommands([&](const CLI::App* subcommand) { return subcommand->get_name() == name; }).empty();
+namespace {
+
+std::vector<std::string> subcommand_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* const one : app.get_subcommands([](const CLI::App* /*any*/) { return true; })) {
+    names.push_back(one->get_name());
+  }
+  return names;
 }
+
+}  // namespace
+
+std::vector<std::string> Program::subcommand_names() const { return abbe::subcommand_names(*app_); }
 
 void Program::require_subcommand(int count) { app_->require_subcommand(count); }
 void Program::footer(const std::string& text) { app_->footer(text); }
@@ -256,10 +268,56 @@ void Program::set_help_all_flag(const std::string& name, const std::string& desc
   app_->set_help_all_flag(name, description);
 }
 
+namespace {
+
+/// What was typed to get here: "abbe compensate table".
+std::string words_of(const CLI::App& app) {
+  return app.get_parent() == nullptr ? app.get_name() : words_of(*app.get_parent()) + " " + app.get_name();
+}
+
+/// The command that the command line names, as far as it was understood.
+const CLI::App& innermost_command(const CLI::App& app) {
+  const std::vector<CLI::App*> named = app.get_subcommands();
+  return named.empty() ? app : innermost_command(*named.back());
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* const option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+/// What cannot be placed, and what may have been meant.
+std::string unexpected_words(const CLI::App& program) {
+  const CLI::App& command = innermost_command(program);
+  const std::vector<std::string> extras = program.remaining(true);
+  std::string text;
+  for (const std::string& word : extras) {
+    const bool is_option = word.starts_with('-') && word.size() > 1;
+    const std::string name = is_option ? word.substr(0, word.find('=')) : word;
+    const std::optional<std::string> meant =
+        nearest_word(name, is_option ? option_names(command) : subcommand_names(command));
+    text += fmt::format("abbe: '{}' is {} {}{}\n", name, is_option ? "not an option of" : "not expected by",
+                        words_of(command), meant ? "; did you mean " + *meant + "?" : "");
+  }
+  return text + fmt::format("abbe: {} --help says what there is\n", words_of(command));
+}
+
+}  // namespace
+
 ParseResult Program::parse(int argc, const char* const* argv) {
   try {
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    // What is missing is often there, but misspelled.
+    const bool is_lack = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    if ((is_lack || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) && app_->remaining_size(true) > 0) {
+      tell_text(unexpected_words(*app_));
+      return ParseResult::refused;
+    }
     // Help and version come this way too, with code 0.
     std::ostringstream shown, problem;
     const int code = app_->exit(error, shown, problem);

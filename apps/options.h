@@ -109,6 +109,8 @@ class Subcommand {
   void require_subcommand(std::size_t least, std::size_t most);
   /// What it does not know is looked for in the command that it is a part of.
   void fallthrough();
+  /// Heading under which the help of the program lists it.
+  void section(const std::string& heading);
   /// Text at the end of --help.
   void footer(const std::string& text);
   /// Called when the command line was parsed and names this command.
@@ -166,7 +168,7 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   Subcommand* add_subcommand(const std::string& name, const std::string& description);
-  bool has_subcommand(const std::string& name) const;
+  std::vector<std::string> subcommand_names() const;
   /// How many subcommands have to be given.
   void require_subcommand(int count);
   /// Text at the end of --help.

@@ -28,6 +28,13 @@ def help_of(abbe, words):
     return subprocess.run([abbe, *words, "--help"], capture_output=True, text=True, check=True).stdout
 
 
+SECTIONS = {"Subcommands", "Whole studies", "Machines", "Measure", "Identify", "Evaluate", "Compensate", "Verify", "Shapes"}
+
+
+def is_heading_of_commands(line):
+    return line.rstrip().removesuffix(":") in SECTIONS
+
+
 def examples(abbe, words=()):
     """Example lines of a help text and of those of its subcommands: lists of commands that stand in one text."""
     text = help_of(abbe, words)
@@ -39,7 +46,7 @@ def examples(abbe, words=()):
     found = [lines] if lines else []
     in_list = False
     for line in text.splitlines():
-        if line.rstrip().endswith("Subcommands:"):
+        if is_heading_of_commands(line):
             in_list = True
         elif in_list and (match := re.match(r"  (\S+)\s", line)):
             found += examples(abbe, (*words, match.group(1)))

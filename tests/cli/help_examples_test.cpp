@@ -44,6 +44,10 @@ std::vector<std::string> example_lines(const std::string& help) {
   return lines;
 }
 
+/// Headings of subcommands in helps.
+const std::set<std::string> kSections = {"Subcommands:", "Whole studies:", "Machines:", "Measure:", "Identify:",
+                                         "Evaluate:",    "Compensate:",    "Verify:",   "Shapes:"};
+
 class HelpExamples : public CommandTest {
  protected:
   HelpExamples() {
@@ -63,7 +67,7 @@ class HelpExamples : public CommandTest {
     std::istringstream stream(help.out);
     bool below = false;
     for (std::string line; std::getline(stream, line);) {
-      if (line.empty() || line[0] != ' ') below = line.starts_with("Subcommands") || line.starts_with("Commands");
+      if (line.empty() || line[0] != ' ') below = kSections.contains(line);
       if (!below || line.size() < 3 || line[2] == ' ' || line[0] != ' ') continue;
       std::vector<std::string> deeper = command;
       deeper.push_back(line.substr(2, line.find(' ', 2) - 2));
