@@ -114,7 +114,7 @@ RigidTransform looking_at(const Vector3d& from, const Vector3d& at) {
   return t;
 }
 
-double to_a_nanometre(double mm) { return std::round(1e6 * mm) / 1e6; }
+double rounded_to_a_nanometre(double mm) { return std::round(1e6 * mm) / 1e6; }
 
 std::vector<Vector3d> list_of(const Eigen::Matrix3Xd& points) {
   std::vector<Vector3d> list;
@@ -230,13 +230,13 @@ YinScansFound yin_locate(const YinScans& scans) {
 YinScanFiles yin_scan_files(const YinScans& scans, const std::string& points_file) {
   ScannerPositioningFile file;
   file.scans = scans.scans;
-  file.scans.sphere_height = to_a_nanometre(scans.scans.sphere_height);
+  file.scans.sphere_height = rounded_to_a_nanometre(scans.scans.sphere_height);
   WorkpieceScan& workpiece = file.workpiece.emplace();
   workpiece.features = yin_part();
   workpiece.points = scans.surface;
   workpiece.labels = scans.labels;
   workpiece.start = scans.start;
-  workpiece.start.translation = scans.start.translation.unaryExpr(&to_a_nanometre);
+  workpiece.start.translation = scans.start.translation.unaryExpr(&rounded_to_a_nanometre);
   workpiece.noise = yin::kSurfaceNoise;
   const std::vector<std::string> names = {"cylinder", "top", "side"};
   return {
