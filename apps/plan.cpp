@@ -11,23 +11,49 @@
 #include "abbe/study/planning.h"
 #include "command.h"
 #include "exit_code.h"
-#include "messages.h"
 #include "options.h"
 #include "progress.h"
 
 namespace abbe {
 namespace {
 
+bool has_other_instruments(const Study& study) {
+  return std::any_of(study.setups.begin(), study.setups.end(),
+                     [](const Setup& setup) { return !setup.device->measures_points(); });
+}
+
+/// Columns behind those of the axes. A column `target` where the set-ups call their targets differently.
+struct PlanColumns {
+  bool setup = false, station = false;
+  std::string target;
+};
+
+PlanColumns plan_columns(const Study& study) {
+  PlanColumns columns{study.setups.size() > 1, false, {}};
+  for (const Setup& setup : study.setups) {
+    columns.station = columns.station || !setup.device->station_names().empty();
+    const std::string word = setup.device->target_word();
+    columns.target = columns.target.empty() || columns.target == word ? word : "target";
+  }
+  return columns;
+}
+
 std::string plan_csv(const Study& study, const StudyPlan& result) {
+  const PlanColumns columns = plan_columns(study);
   std::string text = "# " + study.name + ": readings in the order in which they are to be taken\n";
   for (const Axis& axis : study.machine.axes) text += fmt::format("{}_{},", axis.name, position_suffix(axis));
-  text += study.setups.size() > 1 ? "setup,station,reflector\n" : "station,reflector\n";
-  for (const SightReading& reading : result.readings) {
+  if (columns.setup) text += "setup,";
+  if (columns.station) text += "station,";
+  text += columns.target + "\n";
+  for (const CandidateReading& reading : result.readings) {
     for (std::size_t i = 0; i < reading.pose.size(); ++i)
       text += fmt::format("{:.6f},", reading.pose[i] / position_unit(study.machine.axes[i]));
     const Setup& setup = study.setups[reading.setup];
-    if (study.setups.size() > 1) text += setup.name + ",";
-    text += fmt::format("{},{}\n", setup.stations[reading.station].name, setup.reflectors[reading.reflector].name);
+    const Instrument& device = *setup.device;
+    const std::vector<std::string> stations = device.station_names();
+    if (columns.setup) text += csv_field(setup.name) + ",";
+    if (columns.station) text += (stations.empty() ? "-" : csv_field(stations[device.station_of(reading.item)])) + ",";
+    text += csv_field(device.target_names()[device.target_of(reading.item)]) + "\n";
   }
   return text;
 }
@@ -81,8 +107,24 @@ nlohmann::ordered_json plan_json(const Study& study, const StudyPlan& result) {
   json["forbidden_poses"] = result.forbidden;
   json["parameters"] = result.parameters;
   json["seen_directions"] = result.seen;
+  for (const SetupChoice& choice : result.combinations) {
+    nlohmann::ordered_json entry = {{"setups", choice.setups}, {"possible", choice.possible}};
+    if (choice.possible) {
+      entry["readings"] = choice.readings;
+      entry["time_s"] = choice.time;
+      entry["uncertainty_with_prior_um"] = 1e3 * choice.with_prior;
+    }
+    json["combinations"].push_back(entry);
+  }
   if (result.plan.status != PlanningStatus::done) return json;
   json["readings"] = result.readings.size();
+  if (has_other_instruments(study)) {
+    for (std::size_t s = 0; s < study.setups.size(); ++s) {
+      json["readings_of_setups"][study.setups[s].name] =
+          std::count_if(result.readings.begin(), result.readings.end(),
+                        [s](const CandidateReading& reading) { return reading.setup == s; });
+    }
+  }
   json["time_s"] = result.time;
   json["predicted_volumetric_uncertainty_um"] = 1e3 * result.uncertainty;
   if (!result.not_identified.errors.empty()) {
@@ -166,6 +208,30 @@ void print_grids(const StudyPlan& result) {
   }
 }
 
+void print_combinations(const StudyPlan& result) {
+  if (result.combinations.empty()) return;
+  fmt::print("\nwhich instruments are worth setting up (uncertainty with prior knowledge of 20 um and 60 urad)\n");
+  for (const SetupChoice& choice : result.combinations) {
+    const std::string names = fmt::format("{}", fmt::join(choice.setups, ", "));
+    if (choice.possible) {
+      fmt::print("  {:>8.3f} um  {:>5} readings in {:>4.0f} min  {}\n", 1e3 * choice.with_prior, choice.readings,
+                 choice.time / 60, names);
+    } else {
+      fmt::print("      open     in the time allowed                {}\n", names);
+    }
+  }
+}
+
+/// How many readings every set-up takes, where there are several.
+void print_setups(const Study& study, const StudyPlan& result) {
+  if (study.setups.size() < 2) return;
+  for (std::size_t s = 0; s < study.setups.size(); ++s) {
+    const auto count = std::count_if(result.readings.begin(), result.readings.end(),
+                                     [s](const CandidateReading& reading) { return reading.setup == s; });
+    fmt::print("  {:>6} with {} ({})\n", count, study.setups[s].name, study.setups[s].instrument);
+  }
+}
+
 void print_study_plan(const Study& study, const StudyPlan& result) {
   fmt::print("{}: {}   ({})\n", study.name, study.machine.name, study.machine.chain());
   fmt::print("{} candidates; {} sights without a line of sight and {} poses in forbidden boxes left out\n",
@@ -175,10 +241,12 @@ void print_study_plan(const Study& study, const StudyPlan& result) {
     fmt::print("no plan: {}\n", status_text(result.plan.status));
     return;
   }
+  print_combinations(result);
   if (result.unseen_part > 1e-6)
     fmt::print("note: {:.2g} % of a prediction depends on directions that no candidate sees; they are left out\n",
                100 * result.unseen_part);
   fmt::print("\n{} readings in {:.0f} min\n", result.readings.size(), result.time / 60);
+  if (has_other_instruments(study)) print_setups(study, result);
   if (study.planning->time > 0 && result.time > study.planning->time)
     fmt::print("warning: this is more than the {:.0f} min allowed\n", study.planning->time / 60);
   fmt::print("predicted volumetric standard uncertainty (root mean square): {:.3f} um\n", 1e3 * result.uncertainty);
@@ -186,31 +254,21 @@ void print_study_plan(const Study& study, const StudyPlan& result) {
     fmt::print("  of the {}: not in the model and not covered are {}\n", kIdentifiedErrorsOnly,
                not_identified_names(study, result.not_identified));
   fmt::print("\nhow many are enough: {}\n", result.enough_words);
-  fmt::print("                  chosen    best grid\n");
+  const bool grids = result.grids_tried > 0;
+  fmt::print("                  chosen{}\n", grids ? "    best grid" : "");
   for (std::size_t k = 0; k < result.curve.size(); ++k) {
     const PlanPoint& point = result.curve[k];
-    std::string grid = "       open";
+    std::string grid = grids ? "       open" : "";
     if (k < result.curve_grids.size() && result.curve_grids[k].determined)
       grid = fmt::format("{:>8.3f} um", 1e3 * result.curve_grids[k].determined->value.uncertainty);
     const char* const mark = k == result.enough ? "   <- enough" : "";
     if (point.determined)
-      fmt::print("  {:>6} readings {:>6.3f} um {}{}\n", point.readings, 1e3 * point.uncertainty, grid, mark);
+      fmt::print("  {:>6} readings {:>6.3f} um{}{}\n", point.readings, 1e3 * point.uncertainty,
+                 grid.empty() ? "" : " " + grid, mark);
     else
       fmt::print("  {:>6} readings   do not determine everything\n", point.readings);
   }
-  print_grids(result);
-}
-
-/// Takes the set-ups out that are not planned, and names them; all stay if none could be planned.
-std::string leave_out_other_instruments(Study& study) {
-  std::string names;
-  const auto is_tracker = [](const Setup& setup) { return setup.device == nullptr; };
-  if (std::none_of(study.setups.begin(), study.setups.end(), is_tracker)) return names;
-  for (const Setup& setup : study.setups) {
-    if (!is_tracker(setup)) names += (names.empty() ? "" : ", ") + setup.name + " (" + setup.instrument + ")";
-  }
-  std::erase_if(study.setups, [&](const Setup& setup) { return !is_tracker(setup); });
-  return names;
+  if (grids) print_grids(result);
 }
 
 }  // namespace
@@ -230,9 +288,7 @@ void add_plan_command(CommandLine& line) {
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] {
     line.run = [options]() -> int {
-      Study study = read_study(options->study);
-      const std::string others = leave_out_other_instruments(study);
-      if (!others.empty()) tell("note: only trackers are planned, not {}\n", others);
+      const Study study = read_study(options->study);
       StudyPlan result;
       {
         Progress progress("planning");

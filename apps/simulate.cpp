@@ -36,11 +36,11 @@ void add_simulate_command(CommandLine& line) {
         campaign = gather_readings(study, progress.callback());
       }
       ResultsFolder folder(options->output);
-      for (const std::shared_ptr<CampaignSetup>& setup : campaign.setups) {
-        folder.write(setup->name + ".csv", setup->readings_text(study.machine));
-        fmt::print("{}/{}.csv  {} readings", options->output, setup->name, setup->reading_count());
-        if (!setup->outliers.empty()) fmt::print(", {} of them gross errors", setup->outliers.size());
-        if (setup->hidden > 0) fmt::print("; {} without a line of sight left out", setup->hidden);
+      for (const CampaignSetup& setup : campaign.setups) {
+        folder.write(setup.name + ".csv", setup.readings_text(study.machine));
+        fmt::print("{}/{}.csv  {} readings", options->output, setup.name, setup.reading_count());
+        if (!setup.outliers.empty()) fmt::print(", {} of them gross errors", setup.outliers.size());
+        if (setup.hidden > 0) fmt::print("; {} without a line of sight left out", setup.hidden);
         fmt::print("\n");
       }
       const ErrorsFile truth{

@@ -11,6 +11,7 @@
 #include "abbe/formats/planned_poses.h"
 #include "abbe/formats/study_file.h"
 #include "abbe/formats/trace_file.h"
+#include "abbe/instruments/laser_tracker.h"
 #include "fuzz_machine_data.h"
 
 namespace {
@@ -38,14 +39,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       "centre_mm = [70, 0, 0]\n[[setup.plan]]\nkind = \"random\"\npoints = 4\naxis.X = {}\n[identify]\nlocations = "
       "[\"EX0C\"]\n",
       "no-folder/s.study.toml", machine);
+  abbe::TrackerSetup stations;
+  stations.stations.resize(2);
+  stations.stations[0].name = "S1";
+  stations.stations[1].name = "S2";
+  stations.reflectors.resize(2);
+  stations.reflectors[0].name = "R1";
+  stations.reflectors[1].name = "R2";
   abbe::Setup tracker;
   tracker.name = "tracker";
-  tracker.stations.resize(2);
-  tracker.stations[0].name = "S1";
-  tracker.stations[1].name = "S2";
-  tracker.reflectors.resize(2);
-  tracker.reflectors[0].name = "R1";
-  tracker.reflectors[1].name = "R2";
+  tracker.device = std::make_shared<abbe::LaserTracker>("tracker", stations, abbe::TrackerMeasure::cartesian);
 
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {
@@ -61,7 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
       const abbe::PlannedPoses planned = abbe::parse_planned_poses(text, "poses.csv", machine, *setup);
       const std::size_t count = planned.poses.count();
-      if (!fits(planned.poses, machine) || planned.station.size() != (setup->device ? 0 : count) ||
+      if (!fits(planned.poses, machine) || planned.station.size() != (setup == &tracker ? count : 0) ||
           !(planned.target.empty() || planned.target.size() == count) || !below(planned.station, 2) ||
           !below(planned.target, 2)) {
         std::abort();

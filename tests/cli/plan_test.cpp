@@ -27,14 +27,9 @@ std::string trunnion_study() {
 }
 
 TEST_F(Plans, ListReadingsAndCompareThemWithGrids) {
-  // An instrument that is not planned changes nothing but for the note.
-  folder.write("trunnion.study.toml", trunnion_study() +
-                                          "\n[[setup]]\nname = \"bar\"\ninstrument = \"ball-bar\"\n"
-                                          "spindle_ball_mm = [0, 0, -150]\nnoise = { length_um = 0.2 }\n"
-                                          "[[setup.ball]]\nname = \"middle\"\ncentre_mm = [10, 5, 60]\n");
+  folder.write("trunnion.study.toml", trunnion_study());
   const CommandResult planned = abbe({"plan", "trunnion.study.toml", "-o", "poses.csv", "--json"});
   ASSERT_EQ(planned.exit_code, done) << planned.err;
-  EXPECT_THAT(planned.err, HasSubstr("only trackers are planned, not bar (ball-bar)"));
   const nlohmann::json json = nlohmann::json::parse(planned.out);
   const std::string csv = folder.read("poses.csv");
   EXPECT_EQ(csv.substr(csv.find("\nC_deg") + 1, 45), "C_deg,A_deg,Y_mm,X_mm,Z_mm,station,reflector\n");
@@ -68,6 +63,117 @@ TEST_F(Plans, SayInWordsHowManyReadingsAreEnoughAndWhatGridsReach) {
   ASSERT_EQ(planned.exit_code, done) << planned.err;
   EXPECT_THAT(planned.out, HasSubstr("how many are enough"));
   EXPECT_THAT(planned.out, HasSubstr("against grids"));
+}
+
+/// A study of examples/, with other lines.
+std::string example(const std::string& name) {
+  std::ifstream file(ABBE_SOURCE_DIR "/examples/" + name);
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string study = text.str();
+  const std::string relative = "\"../machines";
+  return study.replace(study.find(relative), relative.size(), "\"" ABBE_SOURCE_DIR "/examples/machines");
+}
+
+/// The study with all its plans replaced by the poses of a file, and no reading held out.
+std::string with_poses_of(const std::string& study, const std::string& file) {
+  std::istringstream lines(study);
+  std::string result, line;
+  bool in_plan = false, has_file = false;
+  while (std::getline(lines, line)) {
+    if (line.starts_with('[')) in_plan = line.starts_with("[[setup.plan]]") || line.starts_with("[setup.plan");
+    if (line.starts_with("[[setup]]")) has_file = false;
+    if (in_plan && !has_file) result += "[[setup.plan]]\nkind = \"poses\"\nfile = \"" + file + "\"\n";
+    has_file = has_file || in_plan;
+    if (in_plan || line.starts_with("held_out_fraction")) continue;
+    result += line + "\n";
+    if (line == "[identify]") result += "held_out_fraction = 0\n";
+  }
+  return result;
+}
+
+TEST_F(Plans, OfEveryInstrumentPredictTheUncertaintyThatTheIdentificationFinds) {
+  for (const char* const name :
+       {"trunnion/ball-bar", "three_axis/interferometer", "three_axis/tracking-interferometer"}) {
+    SCOPED_TRACE(name);
+    const std::string study = example(std::string(name) + ".study.toml");
+    folder.write("planned.study.toml", study + "\n[plan]\nreadings = 150\nposes = 600\n");
+    const CommandResult planned = abbe({"plan", "planned.study.toml", "-o", "poses.csv", "--force", "--json"});
+    ASSERT_EQ(planned.exit_code, done) << planned.err;
+    const nlohmann::json json = nlohmann::json::parse(planned.out);
+    EXPECT_EQ(json.at("readings"), 150);
+    EXPECT_EQ(json.at("grids_tried"), 0);
+    folder.write("measured.study.toml", with_poses_of(study, "poses.csv"));
+    const CommandResult identified = abbe({"run", "measured.study.toml", "-o", std::string(name).substr(9)});
+    ASSERT_EQ(identified.exit_code, done) << identified.err << identified.out;
+    const nlohmann::json summary = nlohmann::json::parse(folder.read(std::string(name).substr(9) + "/summary.json"));
+    const double expanded = summary.at("held_out").at("predicted_expanded_uncertainty_um").at("rms");
+    EXPECT_NEAR(json.at("predicted_volumetric_uncertainty_um").get<double>() / (expanded / 2), 1, 0.06);
+  }
+}
+
+TEST_F(Plans, SayWhichInstrumentsAreWorthSettingUp) {
+  const std::string study = example("three_axis/interferometer.study.toml") +
+                            "\n[plan]\ntime_s = 5400\n[plan.setup.positioning]\nset_up_s = 900\n"
+                            "[plan.setup.straightness]\nset_up_s = 1200\n[plan.setup.diagonals]\nset_up_s = 1500\n"
+                            "[plan.setup.step-diagonal]\nset_up_s = 1200\nreading_s = 2\n";
+  folder.write("s.study.toml", study);
+  const CommandResult planned = abbe({"plan", "s.study.toml", "--json"});
+  ASSERT_EQ(planned.exit_code, done) << planned.err;
+  const nlohmann::json json = nlohmann::json::parse(planned.out);
+  ASSERT_EQ(json.at("combinations").size(), 15U);
+  double best = 1e9;
+  for (const nlohmann::json& choice : json.at("combinations")) {
+    if (!choice.at("possible").get<bool>()) continue;
+    EXPECT_LE(choice.at("time_s"), 5400);
+    best = std::min(best, choice.at("uncertainty_with_prior_um").get<double>());
+  }
+  EXPECT_LE(json.at("predicted_volumetric_uncertainty_with_prior_um").get<double>(), 1.02 * best);
+  EXPECT_LE(json.at("time_s"), 5400);
+  // Less time than setting one up takes leaves nothing.
+  std::string hasty = study;
+  folder.write("hasty.study.toml", hasty.replace(hasty.find("time_s = 5400"), 13, "time_s = 1000"));
+  const CommandResult less = abbe({"plan", "hasty.study.toml"});
+  EXPECT_EQ(less.exit_code, done) << less.err;
+  EXPECT_THAT(less.out, HasSubstr("open     in the time allowed"));
+
+  std::string wrong = study;
+  folder.write("wrong.study.toml", wrong.replace(wrong.find("setup.diagonals]"), 16, "setup.diagonal]"));
+  const CommandResult refused = abbe({"plan", "wrong.study.toml"});
+  EXPECT_EQ(refused.exit_code, bad_input);
+  EXPECT_THAT(refused.err, HasSubstr("plan.setup.diagonal: there is no set-up of that name; expected one of "
+                                     "positioning, straightness, diagonals, step-diagonal"));
+}
+
+TEST_F(Plans, ABarNeedsItsCircles) {
+  const std::string bar =
+      "\n[[setup]]\nname = \"bar\"\ninstrument = \"ball-bar\"\nspindle_ball_mm = [0, 0, -150]\n"
+      "noise = { length_um = 0.2 }\n[[setup.ball]]\nname = \"middle\"\ncentre_mm = [10, 5, 60]\n";
+  folder.write("trunnion.study.toml", trunnion_study() + bar);
+  const CommandResult refused = abbe({"plan", "trunnion.study.toml"});
+  EXPECT_EQ(refused.exit_code, bad_input);
+  EXPECT_THAT(refused.err, HasSubstr("setup bar: it is not said where instrument \"ball-bar\" can be read"));
+
+  folder.write("both.study.toml", trunnion_study() + bar +
+                                      "[[setup.plan]]\nkind = \"circle\"\nplane = [\"X\", \"Y\"]\n"
+                                      "radius_mm = 60\npoints = 90\n");
+  const CommandResult both = abbe({"plan", "both.study.toml", "-o", "poses.csv", "--json"});
+  ASSERT_EQ(both.exit_code, done) << both.err;
+  const nlohmann::json json = nlohmann::json::parse(both.out);
+  EXPECT_EQ(json.at("readings_of_setups").at("bar").get<int>() + json.at("readings_of_setups").at("tracker").get<int>(),
+            100);
+  // Thirty readings have more rows than there are errors and still leave some open: that is said, and no number.
+  double before = 1e9;
+  for (const nlohmann::json& point : json.at("curve")) {
+    if (!point.at("determined").get<bool>()) continue;
+    EXPECT_GT(point.at("uncertainty_um"), 0);
+    EXPECT_LT(point.at("uncertainty_um"), before);
+    before = point.at("uncertainty_um");
+  }
+  // Readings of the two are told apart by a column that both understand.
+  const std::string csv = folder.read("poses.csv");
+  EXPECT_THAT(csv, HasSubstr("C_deg,A_deg,Y_mm,X_mm,Z_mm,setup,station,target\n"));
+  EXPECT_THAT(csv, HasSubstr(",bar,-,middle\n"));
 }
 
 TEST_F(Plans, AreReadAgainAsPosesOfASimulation) {

@@ -54,7 +54,7 @@ std::vector<std::uint16_t> take_items(std::string_view text, const std::string& 
   std::vector<std::uint16_t> items(targets.size());
   for (std::size_t row = 0; row < targets.size(); ++row) {
     try {
-      items[row] = static_cast<std::uint16_t>(instrument.item_at(machine, targets[row], poses.pose(row)));
+      items[row] = static_cast<std::uint16_t>(instrument.item_at(machine, targets[row], 0, poses.pose(row)));
     } catch (const std::invalid_argument& error) {
       throw InputError({file, csv_line(text, row), 0, "item"},
                        fmt::format("{}: {}", instrument.target_names()[targets[row]], error.what()),
@@ -134,6 +134,21 @@ InstrumentReadings read_instrument_readings(const std::filesystem::path& path, c
                                             const Instrument& instrument, const MeasurementOptions& options) {
   const MappedFile file(path);
   return parse_instrument_readings(file.text(), path.string(), machine, instrument, options);
+}
+
+InstrumentFile read_instrument_file(const std::filesystem::path& path, const Machine& machine,
+                                    const std::shared_ptr<const Instrument>& device, const std::string&,
+                                    bool noise_from_data, const MeasurementOptions& options) {
+  InstrumentFile file{device, read_instrument_readings(path, machine, *device, options), {}};
+  if (!noise_from_data) {
+    file.readings.uncertainty.clear();
+  } else if (file.readings.uncertainty.empty()) {
+    const ReadingComponent& first = device->components().front();
+    throw InputError({.file = path.string()},
+                     "the study takes the noise from the data, but the file states no uncertainties",
+                     fmt::format("columns such as u_{}_{}", first.name, first.is_angle ? "arcsec" : "um"));
+  }
+  return file;
 }
 
 std::string instrument_readings_text(const Machine& machine, const Instrument& instrument,

@@ -20,26 +20,27 @@ class PlannedPosesReader {
   PlannedPoses read() {
     std::vector<CsvColumn> columns = axis_columns(machine_);
     const std::size_t setup = columns.size(), station = setup + 1, target = setup + 2;
-    const std::string one = setup_.device ? "item" : "reflector";
-    for (const std::string& name : {std::string("setup"), std::string("station"), one})
+    const std::string one = setup_.device->target_word();
+    for (const std::string& name : {std::string("setup"), std::string("station"), one, std::string("target")})
       columns.push_back({name, Quantity::dimensionless, true, false});
     table_ = read_csv(text_, file_, columns);
     const PoseList all = take_poses(text_, file_, machine_, table_, true);
+    const std::size_t named = table_.columns[target].present ? target : target + 1;
+    if (table_.columns[target].present && table_.columns[target + 1].present) {
+      throw InputError({file_, 0, 0, "target"}, "stands beside " + table_.columns[target].header, "only one of them");
+    }
 
-    std::vector<std::string> stations, targets;
-    for (const SetupStation& known : setup_.stations) stations.push_back(known.name);
-    for (const SetupReflector& known : setup_.reflectors) targets.push_back(known.name);
-    if (setup_.device) targets = setup_.device->target_names();
+    const std::vector<std::string> stations = setup_.device->station_names(), targets = setup_.device->target_names();
 
     PlannedPoses result;
     for (std::size_t row = 0; row < table_.rows; ++row) {
       if (table_.columns[setup].present && name(setup, row) != setup_.name) continue;
       result.poses.append(all.pose(row));
-      if (!setup_.device) {
+      if (!stations.empty()) {
         if (!table_.columns[station].present && stations.size() > 1) fail(row, "station", "is missing", stations);
         result.station.push_back(table_.columns[station].present ? find(station, row, stations) : 0);
       }
-      if (table_.columns[target].present) result.target.push_back(find(target, row, targets));
+      if (table_.columns[named].present) result.target.push_back(find(named, row, targets));
     }
     if (result.poses.count() == 0) {
       throw InputError({.file = file_}, fmt::format("has no pose for the set-up '{}'", setup_.name),

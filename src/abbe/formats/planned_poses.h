@@ -13,12 +13,12 @@ namespace abbe {
 /// Poses of a file at which a set-up is measured, in the order of the file.
 struct PlannedPoses {
   PoseList poses;
-  std::vector<std::size_t> station;  ///< [poses] index into Setup::stations; empty for instruments without stations
-  std::vector<std::size_t> target;   ///< [poses] reflector or item; empty: the file does not say, so all of the plan
+  std::vector<std::size_t> station;  ///< [poses] index into Instrument::station_names(); empty where it has none
+  std::vector<std::size_t> target;   ///< [poses] into target_names(); empty: the file does not say, so all of the plan
 };
 
 /// CSV with a column for every axis and optionally `setup` (rows of other set-ups are passed over), `station` and
-/// `reflector` or `item`: what `abbe plan -o` writes. Other columns are refused.
+/// `reflector` or `item`, which may be called `target` too: what `abbe plan -o` writes. Other columns are refused.
 /// @throws InputError for names that the set-up does not have, poses outside a travel, no pose for the set-up
 PlannedPoses parse_planned_poses(std::string_view text, const std::string& file, const Machine& machine,
                                  const Setup& setup);

@@ -1,33 +1,24 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "abbe/errors/error_set.h"
-#include "abbe/formats/measurement_file.h"
+#include "abbe/formats/csv_reader.h"
 #include "abbe/formats/study_planning.h"
 #include "abbe/identify/robust_loss.h"
 #include "abbe/identify/strategies.h"
 #include "abbe/instruments/instrument.h"
 #include "abbe/instruments/measurement_plan.h"
 #include "abbe/instruments/path_plan.h"
-#include "abbe/instruments/tracker.h"
 #include "abbe/machine/machine.h"
 
 namespace abbe {
-
-/// Position and attitude of a body: rotation Rz(c) Ry(b) Rx(a). mm, rad.
-struct StudyPose {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Vector3d angles = Eigen::Vector3d::Zero();  ///< about x, y, z
-};
 
 /// Random smooth errors of stated size, instead of a file with the true errors.
 struct ErrorGenerator {
@@ -71,40 +62,18 @@ enum class PlanKind {
 /// al., fig. 5, are fixed axes and restricted ranges: A all axes over their range, B one fixed C, C one fixed X and Z.
 struct MeasurementPlan {
   PlanKind kind = PlanKind::grid;
-  std::filesystem::path file;      ///< poses: what read_planned_poses() reads
-  std::vector<AxisRange> axes;     ///< [axes], chain order; mm or rad
-  int points = 0;                  ///< line, random, spiral, circle
-  double turns = 1;                ///< spiral: turns of the ellipse over the two axes of largest range
-  std::size_t steps = 0;           ///< step diagonal: how often every axis moves
-  std::vector<std::size_t> order;  ///< step diagonal: axes that move, in their order within a step
-  /// Indices into Setup::reflectors or the instrument's items; each position is measured with each.
-  std::vector<std::size_t> targets;
-  std::size_t station = 0;                                 ///< index into Setup::stations
-  std::size_t repeats = 1;                                 ///< how often the poses are gone through
-  bool there_and_back = false;                             ///< every second time in reverse order
-  CircleDescription circle;                                ///< of kind circle; its count is `points`
+  std::filesystem::path file;        ///< poses: what read_planned_poses() reads
+  std::vector<AxisRange> axes;       ///< [axes], chain order; mm or rad
+  int points = 0;                    ///< line, random, spiral, circle
+  double turns = 1;                  ///< spiral: turns of the ellipse over the two axes of largest range
+  std::size_t steps = 0;             ///< step diagonal: how often every axis moves
+  std::vector<std::size_t> order;    ///< step diagonal: axes that move, in their order within a step
+  std::vector<std::size_t> targets;  ///< indices into Instrument::target_names(); each position is measured with each
+  std::size_t station = 0;           ///< index into Instrument::station_names()
+  std::size_t repeats = 1;           ///< how often the poses are gone through
+  bool there_and_back = false;       ///< every second time in reverse order
+  CircleDescription circle;          ///< of kind circle; its count is `points`
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< follow: of the points from each other, mm, machine frame
-};
-
-struct SetupReflector {
-  std::string name;
-  Body mounted_on = Body::tool;
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< mm: tool: from the gauge point; workpiece, bed: in that frame
-  bool offset_from_data = false;                     ///< the measurement file has the offset
-  bool estimate_offset = false;
-  Eigen::Vector3d offset_standard_uncertainty = Eigen::Vector3d::Zero();  ///< mm, prior of the estimate; 0: none
-  std::optional<Eigen::Vector3d> true_offset;                             ///< mm, simulation; else the offset
-  Eigen::Vector3d view_direction = Eigen::Vector3d::UnitX();              ///< unit: middle of its acceptance cone
-  double view_half_angle = std::numbers::pi;                              ///< rad; pi: seen from everywhere
-};
-
-struct SetupStation {
-  std::string name;
-  std::optional<StudyPose> pose;  ///< start of the estimate, or fixed; absent: find it from the data
-  bool estimate_pose = true;
-  std::optional<StudyPose> true_pose;                                               ///< simulation; else `pose`
-  std::array<double, 2> elevation = {-std::numbers::pi / 2, std::numbers::pi / 2};  ///< rad, limits of the sight
-  std::array<double, 2> range = {0, 1e9};                                           ///< mm, limits of the sight
 };
 
 struct SetupData {
@@ -115,19 +84,11 @@ struct SetupData {
 /// One instrument at one place in one period of time.
 struct Setup {
   std::string name;
-  std::string instrument;  ///< "tracker", "ball-bar", ...
-  /// Any instrument but the tracker, as the identification starts with it; of the fields below only `noise_from_data`,
-  /// `plans` and `data` are then used.
-  std::shared_ptr<const Instrument> device;
-  Body mounted_on = Body::workpiece;
-  TrackerMeasure measure = TrackerMeasure::cartesian;
-  TrackerNoise noise;
-  StatedUncertainty stated = StatedUncertainty::none;  ///< simulation: what the written readings say of themselves
-  bool noise_from_data = false;                        ///< use the uncertainties in the data; `noise` is then unused
-  std::vector<SetupStation> stations;                  ///< at least one
-  std::vector<SetupReflector> reflectors;              ///< at least one unless the data define them
-  std::vector<MeasurementPlan> plans;                  ///< simulation
-  std::vector<SetupData> data;                         ///< measurement; exactly one of plans and data is given
+  std::string instrument;                    ///< "tracker", "ball-bar", ...: see instrument_words()
+  std::shared_ptr<const Instrument> device;  ///< as the study states it
+  bool noise_from_data = false;              ///< use the uncertainties in the data
+  std::vector<MeasurementPlan> plans;        ///< simulation
+  std::vector<SetupData> data;               ///< measurement; exactly one of plans and data is given
 };
 
 /// One error motion to be identified.

@@ -10,6 +10,8 @@
 #include "abbe/formats/replaced_text_for_test.h"
 #include "abbe/formats/study_parts.h"
 #include "abbe/formats/turntable_machine_for_test.h"
+#include "abbe/geometry/rotation.h"
+#include "abbe/instruments/laser_tracker.h"
 
 namespace abbe {
 namespace {
@@ -95,13 +97,15 @@ TEST(StudyFile, ReadsASimulation) {
 
   ASSERT_EQ(study.setups.size(), 1U);
   const auto& setup = study.setups[0];
-  EXPECT_EQ(setup.mounted_on, Body::workpiece);
-  EXPECT_DOUBLE_EQ(setup.noise.range_um, 10);
-  EXPECT_DOUBLE_EQ(setup.noise.transverse_um_per_m, 5);
-  EXPECT_FALSE(setup.stations[0].pose);
-  EXPECT_TRUE(setup.stations[0].estimate_pose);
-  EXPECT_DOUBLE_EQ(setup.stations[0].true_pose->angles.z(), std::numbers::pi / 6);
-  EXPECT_TRUE(setup.reflectors[0].estimate_offset);
+  const TrackerSetup tracker = dynamic_cast<const LaserTracker&>(*setup.device).setup();
+  const TrackerStation& station = tracker.stations[0];
+  EXPECT_EQ(station.body, Body::workpiece);
+  EXPECT_DOUBLE_EQ(station.noise.range_um, 10);
+  EXPECT_DOUBLE_EQ(station.noise.transverse_um_per_m, 5);
+  EXPECT_FALSE(station.pose_is_known);
+  EXPECT_TRUE(station.estimate_pose);
+  EXPECT_DOUBLE_EQ(error_angles_from_rotation(station.true_pose->rotation).z(), std::numbers::pi / 6);
+  EXPECT_TRUE(tracker.reflectors[0].estimate_offset);
 
   ASSERT_EQ(setup.plans.size(), 2U);
   EXPECT_EQ(setup.plans[0].axes[1].count, 8U);
@@ -167,9 +171,10 @@ locations = "EC0X"
   EXPECT_EQ(setup.data[0].file, folder / "readings.csv");
   EXPECT_EQ(setup.data[0].mapping.columns.at("C_deg"), "c");
   EXPECT_EQ(setup.data[0].mapping.ignore, (std::vector<std::string>{"remark"}));
-  EXPECT_EQ(setup.measure, TrackerMeasure::range_and_angles);
-  EXPECT_DOUBLE_EQ(setup.noise.transverse_um_per_m, std::numbers::pi / 648000 * 1e6);
-  EXPECT_EQ(setup.stations[0].name, "tracker");
+  const LaserTracker& tracker = dynamic_cast<const LaserTracker&>(*setup.device);
+  EXPECT_EQ(tracker.measure(), TrackerMeasure::range_and_angles);
+  EXPECT_DOUBLE_EQ(tracker.setup().stations[0].noise.transverse_um_per_m, std::numbers::pi / 648000 * 1e6);
+  EXPECT_EQ(tracker.station_names(), (std::vector<std::string>{"tracker"}));
 
   std::ofstream(folder / "b.study.toml") << "machine = \"no.machine.toml\"\n";
   EXPECT_EQ(message_of([&] { read_study(folder / "b.study.toml"); }),

@@ -1,14 +1,14 @@
 #include "abbe/formats/study_instrument.h"
 
+#include <stdexcept>
+
+#include "abbe/formats/tracker_file.h"
+
 namespace abbe {
 namespace {
 
-struct Kind {
-  std::string_view word;
-  std::shared_ptr<Instrument> (*read)(TomlTable&, const InstrumentContext&);
-};
-
-constexpr Kind kKinds[] = {
+constexpr InstrumentForm kForms[] = {
+    {"tracker", read_tracker, {read_tracker_file, tracker_file_text}},
     {"ball-bar", read_ball_bar},
     {"r-test", read_r_test},
     {"surface-probe", read_surface_probe},
@@ -26,12 +26,15 @@ constexpr Kind kKinds[] = {
 
 std::vector<std::string_view> instrument_words() {
   std::vector<std::string_view> words;
-  for (const Kind& kind : kKinds) words.push_back(kind.word);
+  for (const InstrumentForm& form : kForms) words.push_back(form.word);
   return words;
 }
 
-std::shared_ptr<Instrument> read_instrument(std::size_t index, TomlTable& table, const InstrumentContext& context) {
-  return kKinds[index].read(table, context);
+const InstrumentForm& instrument_form(std::string_view word) {
+  for (const InstrumentForm& form : kForms) {
+    if (form.word == word) return form;
+  }
+  throw std::invalid_argument("there is no instrument \"" + std::string(word) + "\"");
 }
 
 Body read_body(TomlTable& table, std::string_view key, Body otherwise) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "abbe/formats/instrument_file.h"
 #include "abbe/formats/study.h"
 #include "abbe/formats/toml_table.h"
 
@@ -16,15 +17,24 @@ struct InstrumentContext {
   std::string name;  ///< of the set-up
   const Machine& machine;
   bool simulated = false;
+  bool noise_from_data = false;
 };
 
-/// Words for `instrument` in a study file, in the order of instrument_reader(); the tracker is not among them.
-std::vector<std::string_view> instrument_words();
+/// What is known of an instrument in files. Adding one is a row in study_instrument.cpp.
+struct InstrumentForm {
+  std::string_view word;  ///< for `instrument` in a study file
+  /// Reads it from the table of its set-up: everything but name, instrument, noise_from_data, plan and data.
+  std::shared_ptr<Instrument> (*read)(TomlTable&, const InstrumentContext&);
+  InstrumentFileForm readings{};  ///< of its files of readings
+};
 
-/// Reads the instrument of that index from the table of its set-up: everything but name, instrument, plan and data.
-std::shared_ptr<Instrument> read_instrument(std::size_t index, TomlTable& table, const InstrumentContext& context);
+/// Words for `instrument` in a study file.
+std::vector<std::string_view> instrument_words();
+/// @param word  one of instrument_words()
+const InstrumentForm& instrument_form(std::string_view word);
 
 // One per instrument, each in a file of its own. Numbers stated as true are in SetupQuantity::truth.
+std::shared_ptr<Instrument> read_tracker(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_autocollimator(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_ball_bar(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_board_marks(TomlTable& table, const InstrumentContext& context);

@@ -5,6 +5,7 @@
 #include "abbe/formats/replaced_text_for_test.h"
 #include "abbe/formats/study_file.h"
 #include "abbe/formats/turntable_machine_for_test.h"
+#include "abbe/instruments/laser_tracker.h"
 
 namespace abbe {
 namespace {
@@ -174,13 +175,15 @@ TEST(StudyInstrument, PosesOfAFileNameTheirItems) {
 
 TEST(StudyInstrument, PosesOfATrackersFileNameTheirStations) {
   const Study study = parsed_study(with_plan("kind = \"random\"\npoints = 4\naxis.X = {}\n"));
+  TrackerSetup stations;
+  stations.stations.resize(2);
+  stations.stations[0].name = "S1";
+  stations.stations[1].name = "S2";
+  stations.reflectors.resize(1);
+  stations.reflectors[0].name = "R1";
   abbe::Setup tracker;
   tracker.name = "tracker";
-  tracker.stations.resize(2);
-  tracker.stations[0].name = "S1";
-  tracker.stations[1].name = "S2";
-  tracker.reflectors.resize(1);
-  tracker.reflectors[0].name = "R1";
+  tracker.device = std::make_shared<LaserTracker>("tracker", stations, TrackerMeasure::cartesian);
   const auto read = [&](const char* text) { return parse_planned_poses(text, "poses.csv", study.machine, tracker); };
   const PlannedPoses named = read("C_deg,X_mm,Z_mm,station\n0,10,20,S2\n90,30,40,S1\n");
   EXPECT_EQ(named.station, (std::vector<std::size_t>{1, 0}));
@@ -190,12 +193,20 @@ TEST(StudyInstrument, PosesOfATrackersFileNameTheirStations) {
               read("C_deg,X_mm,Z_mm,station\n0,10,20,S3\n");
             }).find("poses.csv:2: station: 'S3' is not in the set-up 'tracker'; expected one of S1, S2"),
             std::string::npos);
+  // A plan of several kinds of instruments calls reflectors and items targets.
+  EXPECT_EQ(read("C_deg,X_mm,Z_mm,setup,station,target\n0,10,20,bar,-,B1\n90,30,40,tracker,S2,R1\n").station,
+            (std::vector<std::size_t>{1}));
+  EXPECT_NE(message_of([&] {
+              read("C_deg,X_mm,Z_mm,station,reflector,target\n0,10,20,S1,R1,R1\n");
+            }).find("target: stands beside reflector"),
+            std::string::npos);
   // With one station there is nothing to choose, with two there is.
   EXPECT_NE(message_of([&] {
               read("C_deg,X_mm,Z_mm\n0,10,20\n");
             }).find("poses.csv:2: station: is missing; expected one of S1, S2"),
             std::string::npos);
-  tracker.stations.pop_back();
+  stations.stations.pop_back();
+  tracker.device = std::make_shared<LaserTracker>("tracker", stations, TrackerMeasure::cartesian);
   EXPECT_EQ(read("C_deg,X_mm,Z_mm\n0,10,20\n").station, (std::vector<std::size_t>{0}));
 }
 

@@ -43,7 +43,38 @@ ForbiddenBox read_box(TomlTable& table) {
   return box;
 }
 
+PlannedSetup read_planned_setup(TomlTable& parent, const std::string& name) {
+  TomlTable table = parent.table(name);
+  PlannedSetup setup{name, table.size_or("set_up", Quantity::time, 0), {}, {}};
+  if (table.has("settle", Quantity::time)) setup.settle = table.size_or("settle", Quantity::time, 0);
+  if (table.has("reading", Quantity::time)) setup.reading = table.size_or("reading", Quantity::time, 0);
+  table.finish();
+  return setup;
+}
+
 }  // namespace
+
+const PlannedSetup* PlanningStudy::find(const std::string& setup) const {
+  for (const PlannedSetup& one : setups) {
+    if (one.name == setup) return &one;
+  }
+  return nullptr;
+}
+
+double PlanningStudy::settle_of(const std::string& setup) const {
+  const PlannedSetup* const own = find(setup);
+  return own != nullptr ? own->settle.value_or(settle) : settle;
+}
+
+double PlanningStudy::reading_of(const std::string& setup) const {
+  const PlannedSetup* const own = find(setup);
+  return own != nullptr ? own->reading.value_or(reading) : reading;
+}
+
+double PlanningStudy::set_up_of(const std::string& setup) const {
+  const PlannedSetup* const own = find(setup);
+  return own != nullptr ? own->set_up : 0;
+}
 
 PlanningStudy read_planning(TomlTable& table, const Machine& machine) {
   PlanningStudy plan;
@@ -79,6 +110,10 @@ PlanningStudy read_planning(TomlTable& table, const Machine& machine) {
   plan.settle = table.size_or("settle", Quantity::time, 2);
   plan.reading = table.size_or("reading", Quantity::time, 1);
   for (TomlTable& box : table.tables("forbidden")) plan.forbidden.push_back(read_box(box));
+  if (auto setups = table.optional_table("setup")) {
+    for (const std::string& name : setups->keys()) plan.setups.push_back(read_planned_setup(*setups, name));
+    setups->finish();
+  }
   table.finish();
   return plan;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,14 @@ struct ForbiddenBox {
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();  ///< corners, mm
 };
 
+/// What one set-up of the study costs. Table [plan.setup.NAME].
+struct PlannedSetup {
+  std::string name;
+  double set_up = 0;             ///< s, to bring the instrument there and align it, once
+  std::optional<double> settle;  ///< s; else that of the plan
+  std::optional<double> reading;
+};
+
 /// What `abbe plan` is to choose from, and how much it may take. Table [plan] of a study.
 struct PlanningStudy {
   int readings = 0;  ///< to be chosen; 0: as many as the time allows
@@ -36,6 +45,12 @@ struct PlanningStudy {
   double settle = 0;                    ///< s, from standstill to the reading
   double reading = 0;                   ///< s, one reading
   std::vector<ForbiddenBox> forbidden;
+  std::vector<PlannedSetup> setups;  ///< those that cost something else than the rest
+
+  const PlannedSetup* find(const std::string& setup) const;
+  double settle_of(const std::string& setup) const;
+  double reading_of(const std::string& setup) const;
+  double set_up_of(const std::string& setup) const;
 };
 
 }  // namespace abbe

@@ -139,7 +139,7 @@ TEST(StudyPolygon, AZeroIsTheIndicationOfThePrismAtItsNominalPlace) {
     values.push_back(zero || quantity.name.find(".distance") != std::string::npos ? quantity.value : 0);
   }
   // Aligned at C = 30 deg, so that the first mount shows its first face there.
-  const std::size_t item = device.item_at(study.machine, 0, {30 * 3600 * kArcsec, 100, 0});
+  const std::size_t item = device.item_at(study.machine, 0, 0, {30 * 3600 * kArcsec, 100, 0});
   EXPECT_EQ(device.items()[item].name, "first.face1");
   // C' turned by 30 deg carries the workpiece the other way; X' = 100 carries it to -100.
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> rotation =

@@ -38,6 +38,10 @@ class PlanSearch {
         continue;
       }
       improve(plan);
+      if (plan.status != PlanningStatus::done) {
+        if (best.status == PlanningStatus::not_run) best.status = plan.status;
+        continue;
+      }
       if (best.status != PlanningStatus::done || plan.history.back() < best.history.back() - design_.tie())
         best = std::move(plan);
     }
@@ -54,14 +58,16 @@ class PlanSearch {
     }
     return true;
   }
-  void start_from(const std::vector<std::size_t>& chosen) { design_.rebuild(chosen, 0); }
+  /// False if the choice determines everything so weakly that nothing can be added to it one by one.
+  bool start_from(const std::vector<std::size_t>& chosen) { return design_.rebuild(chosen, 0); }
 
   ReadingPlan result() const {
     ReadingPlan plan;
-    plan.status = PlanningStatus::done;
     plan.chosen = design_.chosen();
     std::sort(plan.chosen.begin(), plan.chosen.end());
     plan.value = value_of(space_, plan.chosen, by_variance_ ? options_.functionals : Eigen::MatrixXd());
+    // The design takes a choice for determined that its rows, factorised, are not.
+    plan.status = plan.value.determined ? PlanningStatus::done : PlanningStatus::not_determined;
     plan.history = {design_.objective()};
     return plan;
   }
@@ -266,15 +272,14 @@ std::vector<ReadingPlan> plan_curve(const PlanningSpace& space, const PlanningOp
   PlanningOptions grown = options;
   grown.time_s = std::numeric_limits<double>::infinity();
   std::size_t next = 0;
-  // Too small a number may determine nothing yet.
+  PlanSearch search(space, grown);
+  // Too small a number may determine nothing yet, or too little to go on from.
   for (; next < counts.size(); ++next) {
     grown.count = counts[next];
     curve.push_back(plan_readings(space, grown));
-    if (curve.back().status == PlanningStatus::done) break;
+    if (curve.back().status == PlanningStatus::done && search.start_from(curve.back().chosen)) break;
   }
   if (next >= counts.size()) return curve;
-  PlanSearch search(space, grown);
-  search.start_from(curve.back().chosen);
   for (++next; next < counts.size(); ++next) {
     if (!search.grow(counts[next])) break;
     curve.push_back(search.result());

@@ -190,6 +190,25 @@ TEST_P(UpdatedDesign, FindsTheBestOfAllWhateverTheBoundPassesOver) {
 
 INSTANTIATE_TEST_SUITE_P(ByCriterion, UpdatedDesign, ::testing::Bool());
 
+TEST(PlanningTest, CandidatesOfOneRowAndOfThreeAreChosenTogether) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    PlanningCandidates candidates = random_candidates(24, 1, 4, seed);
+    candidates.first_row = {0};
+    for (std::size_t i = 0; i < 12; ++i)
+      candidates.first_row.push_back(candidates.first_row.back() + (i % 2 == 0 ? 1 : 3));
+    PlanningOptions options;
+    options.count = 4;
+    options.starts = 20;
+    options.pass_gain = 0;
+    options.criterion = PlanningCriterion::variance;
+    options.functionals = random_matrix(3, 4, seed);
+    const ReadingPlan plan = plan_readings(PlanningSpace(candidates, Eigen::MatrixXd()), options);
+    ASSERT_EQ(plan.status, PlanningStatus::done);
+    EXPECT_NEAR(criterion(candidates, plan, options.functionals), best_of_all(candidates, 4, options.functionals),
+                1e-9);
+  }
+}
+
 TEST(PlanningTest, EveryExchangeImprovesTheCriterion) {
   const PlanningSpace space(random_candidates(300, 3, 24, 4), Eigen::MatrixXd());
   for (const bool variance : {false, true}) {

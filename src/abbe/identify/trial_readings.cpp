@@ -1,7 +1,6 @@
 #include "abbe/identify/trial_readings.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include "abbe/geometry/decompositions.h"
 #include "abbe/identify/planning_candidates.h"
@@ -9,27 +8,6 @@
 namespace abbe {
 
 using Eigen::Index;
-
-std::vector<TrialRange> measured_ranges(const Machine& machine, const PoseList& poses) {
-  std::vector<TrialRange> ranges;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    const std::vector<double>& values = poses.axis[i];
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    TrialRange range;
-    if (!values.empty()) range = {*low, *high};
-    const Axis& axis = machine.axes[i];
-    // Steps of a whole turn leave the last one out; the axis moved over all of it nevertheless.
-    if (axis.kind == AxisKind::rotary && range.to - range.from > std::numbers::pi)
-      range.to = std::max(range.to, axis.endless ? range.from + 2 * std::numbers::pi : axis.travel_max);
-    ranges.push_back(range);
-  }
-  return ranges;
-}
-
-TrialRange whole_travel(const Axis& axis) {
-  if (axis.endless) return {0, 2 * std::numbers::pi};
-  return {axis.travel_min, axis.travel_max};
-}
 
 ErrorSet without_errors(const Problem& problem) {
   ErrorSet errors = problem.errors;
@@ -93,10 +71,33 @@ Eigen::VectorXd typical_sizes(const std::vector<EstimatedParameter>& parameters,
   return sizes;
 }
 
+namespace {
+
+/// What the set-ups of a problem could read additionally where they stand.
+void add_further_readings(const Problem& problem, std::vector<PossibleMeasurement>& list) {
+  const std::vector<EstimatedParameter> parameters = estimated_parameters(problem);
+  const ErrorSet errors = without_errors(problem);
+  for (std::size_t o = 0; o < problem.observations.size(); ++o) {
+    for (const FurtherReadings& further :
+         problem.observations[o].observations->further_readings(problem.machine, errors)) {
+      PossibleMeasurement measurement = trial_measurement(problem, o, further.words, *further.trial, further.unknowns);
+      for (const auto& [name, axes] : further.turned) {
+        for (std::size_t c = 0; c + 2 < parameters.size(); ++c) {
+          if (parameters[c].id.observations != o || parameters[c].name != name) continue;
+          measurement.rows.middleCols<3>(static_cast<Index>(c)) =
+              (measurement.rows.middleCols<3>(static_cast<Index>(c)) * axes).eval();
+        }
+      }
+      list.push_back(std::move(measurement));
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<PossibleMeasurement> possible_measurements(const Problem& problem) {
   std::vector<PossibleMeasurement> list;
-  add_tracker_readings(problem, list);
-  add_instrument_readings(problem, list);
+  add_further_readings(problem, list);
   add_further_instruments(problem, list);
   return list;
 }

@@ -2,9 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "abbe/errors/random_stream.h"
+#include "abbe/geometry/rotation.h"
+#include "abbe/instruments/instrument_observations.h"
+#include "abbe/instruments/instrument_simulation.h"
 
 namespace abbe {
 namespace {
@@ -36,6 +42,15 @@ void check_columns(const std::vector<std::vector<double>>& columns, std::size_t 
   }
 }
 
+/// Position and turn of a place as six numbers beside another state of it: mm, rad.
+Eigen::VectorXd difference(const InstrumentPlace& from, const InstrumentPlace& to) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(6);
+  result.head<3>() = to.position - from.position;
+  if (from.rotation) result.tail<3>() = rotation_vector(*to.rotation * from.rotation->transpose());
+  if (from.direction) result.tail<3>() = from.direction->cross(*to.direction);
+  return result;
+}
+
 }  // namespace
 
 const char* body_name(Body body) { return body == Body::bed ? "bed" : body == Body::workpiece ? "workpiece" : "tool"; }
@@ -55,6 +70,7 @@ void InstrumentReadings::append(const InstrumentReadings& more) {
   append_columns(inputs, more.inputs);
   append_columns(measured, more.measured);
   append_columns(uncertainty, more.uncertainty);
+  append_columns(covariance, more.covariance);
   const double after = time_s.empty() ? 0 : time_s.back();
   for (const double time : more.time_s) time_s.push_back(after + time);
 }
@@ -70,6 +86,7 @@ InstrumentReadings InstrumentReadings::subset(const std::vector<std::size_t>& re
   for (const std::vector<double>& column : inputs) part.inputs.push_back(picked(column, readings));
   for (const std::vector<double>& column : measured) part.measured.push_back(picked(column, readings));
   for (const std::vector<double>& column : uncertainty) part.uncertainty.push_back(picked(column, readings));
+  for (const std::vector<double>& column : covariance) part.covariance.push_back(picked(column, readings));
   if (!time_s.empty()) part.time_s = picked(time_s, readings);
   for (const std::size_t k : readings) {
     if (!point_name.empty()) part.point_name.push_back(point_name[k]);
@@ -84,6 +101,74 @@ std::vector<double> Instrument::start_values(const Machine&, const InstrumentRea
   return values;
 }
 
+StartedInstrument Instrument::started(const Machine& machine, const InstrumentReadings& readings) const {
+  StartedInstrument result;
+  result.instrument = with_values(start_values(machine, readings, result.warnings));
+  return result;
+}
+
+std::shared_ptr<const Instrument> Instrument::truth(RandomStream& random) const {
+  std::vector<double> values;
+  for (const SetupQuantity& quantity : quantities_) {
+    const double drawn = quantity.value + quantity.standard_uncertainty * random.normal();
+    values.push_back(quantity.truth.value_or(quantity.knowledge == Knowledge::within ? drawn : quantity.value));
+  }
+  return with_values(values);
+}
+
+std::shared_ptr<const Instrument> Instrument::as_planned() const {
+  std::vector<double> values;
+  for (const SetupQuantity& quantity : quantities_) values.push_back(quantity.truth.value_or(quantity.value));
+  return with_values(values);
+}
+
+std::unique_ptr<Observations> Instrument::observations(const Machine& machine, const ErrorSet& errors,
+                                                       const InstrumentReadings& readings) const {
+  return std::make_unique<InstrumentObservations>(machine, errors, shared_from_this(), readings);
+}
+
+std::unique_ptr<Observations> Instrument::observations_in_um(const Machine& machine, const ErrorSet& errors,
+                                                             InstrumentReadings readings) const {
+  readings.uncertainty.assign(components_.size(), std::vector<double>(readings.count(), 1e-3));
+  return observations(machine, errors, readings);
+}
+
+SimulatedInstrument Instrument::simulate(const Machine& machine, const ErrorSet& errors, const InstrumentReadings& plan,
+                                         const InstrumentSimulationOptions& options) const {
+  return simulate_instrument(machine, errors, shared_from_this(), plan, options);
+}
+
+std::vector<ItemLabel> Instrument::item_labels() const {
+  ItemLabel label{"target", {}, {}};
+  for (const InstrumentItem& item : items_) {
+    label.of_item.push_back(static_cast<std::uint16_t>(label.names.size()));
+    label.names.push_back(item.name);
+  }
+  return {std::move(label)};
+}
+
+std::vector<double> Instrument::deviation_arms(const InstrumentReadings&) const {
+  return std::vector<double>(components_.size(), 1.0);
+}
+
+Eigen::MatrixXd Instrument::place_slopes(std::size_t place, const std::vector<std::size_t>& quantities) const {
+  std::vector<double> values;
+  for (const SetupQuantity& quantity : quantities_) values.push_back(quantity.value);
+  const InstrumentPlace present = places()[place];
+  Eigen::MatrixXd slopes(6, static_cast<Eigen::Index>(quantities.size()));
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    const std::size_t q = quantities[i];
+    const double step = 1e-3 * quantities_[q].scale;
+    std::vector<double> moved = values;
+    moved[q] = values[q] + step;
+    const InstrumentPlace after = with_values(moved)->places()[place];
+    moved[q] = values[q] - step;
+    const InstrumentPlace before = with_values(moved)->places()[place];
+    slopes.col(static_cast<Eigen::Index>(i)) = (difference(present, after) - difference(present, before)) / (2 * step);
+  }
+  return slopes;
+}
+
 std::optional<MeetingPoints> Instrument::meeting_points(std::size_t) const { return std::nullopt; }
 
 std::vector<std::vector<double>> Instrument::planned_inputs(std::size_t) const {
@@ -96,7 +181,9 @@ std::vector<std::string> Instrument::target_names() const {
   return names;
 }
 
-std::size_t Instrument::item_at(const Machine&, std::size_t target, const std::vector<double>&) const { return target; }
+std::size_t Instrument::item_at(const Machine&, std::size_t target, std::size_t, const std::vector<double>&) const {
+  return target;
+}
 
 void Instrument::set_values(const std::vector<double>& values) {
   for (std::size_t i = 0; i < quantities_.size(); ++i) quantities_[i].value = values.at(i);
@@ -123,7 +210,6 @@ std::size_t Instrument::add(InstrumentItem item) {
 void check_readings(const Machine& machine, const Instrument& instrument, const InstrumentReadings& readings,
                     bool measured) {
   const std::size_t count = readings.count();
-  if (count == 0) throw std::invalid_argument(instrument.name() + ": no readings");
   for (const InstrumentItem& item : instrument.items()) {
     if (item.from == item.to) {
       throw std::invalid_argument(fmt::format("{}: both ends of {} are on one body", instrument.name(), item.name));
@@ -136,6 +222,9 @@ void check_readings(const Machine& machine, const Instrument& instrument, const 
     }
   }
   check_columns(readings.inputs, instrument.inputs().size(), count, "inputs");
+  if (!readings.covariance.empty()) {
+    throw std::invalid_argument(instrument.name() + ": covariances of readings; expected standard uncertainties");
+  }
   if (measured) {
     check_columns(readings.measured, instrument.components().size(), count, "measured values");
     if (!readings.uncertainty.empty()) {

@@ -19,6 +19,8 @@ namespace abbe {
 /// "bed", "workpiece" or "tool".
 const char* body_name(Body body);
 
+class Instrument;
+
 /// What a reading is taken on: a ball, a line, a run, a face. Several items share one instrument.
 struct InstrumentItem {
   std::string name;
@@ -34,8 +36,11 @@ struct InstrumentReadings {
   std::vector<std::vector<double>> inputs;       ///< [Instrument::inputs()][count]: known numbers of each reading
   std::vector<std::vector<double>> measured;     ///< [components][count], mm or rad; a plan has none
   std::vector<std::vector<double>> uncertainty;  ///< [components][count] standard uncertainties, or empty: noise model
-  std::vector<double> time_s;                    ///< [count] or empty
-  std::vector<std::string> point_name;           ///< [count] name of the point in the input, or empty: it gives none
+  /// [components (components + 1) / 2][count] or empty: variances, then covariances (xx, yy, zz, xy, xz, yz), where the
+  /// data state them; `uncertainty` is then empty. Only for instruments whose observations() take them.
+  std::vector<std::vector<double>> covariance;
+  std::vector<double> time_s;           ///< [count] or empty
+  std::vector<std::string> point_name;  ///< [count] name of the point in the input, or empty: it gives none
 
   std::size_t count() const { return item.size(); }
   /// Adds one reading to a plan (nothing measured yet).
@@ -70,6 +75,28 @@ enum class PoseFreedom {
   at_distance  ///< where the meeting points keep their distance: a bar
 };
 
+/// Which items the readings of an instrument belong to in one respect: their station, their reflector.
+struct ItemLabel {
+  std::string kind;                    ///< "station"
+  std::vector<std::string> names;      ///< of the stations
+  std::vector<std::uint16_t> of_item;  ///< [Instrument::items()] index into names
+};
+
+/// A set-up that an identification can start with.
+struct StartedInstrument {
+  std::shared_ptr<const Instrument> instrument;
+  std::vector<std::string> warnings;  ///< what there is to say: what is not determined, readings of another reflector
+};
+
+/// A number of a set-up that is to be found from the readings, so that nothing can be planned with it.
+struct MissingNumber {
+  std::string problem, expected;  ///< in words
+};
+
+struct InstrumentSimulationOptions;
+struct SimulatedInstrument;
+class RandomStream;
+
 /// Poses at which readings of one item are modelled, and where its body is seen there.
 struct ItemBlock {
   std::size_t item = 0;
@@ -96,7 +123,7 @@ struct ModelledBlock {
 /// pose. Frames: the tool's frame has its origin at the gauge point (with the tool offset error, which belongs to
 /// whatever is clamped there) and is parallel to the machine's with all axes at zero; the workpiece's and the bed's as
 /// docs/conventions.md says. Write one by deriving from EquationInstrument.
-class Instrument {
+class Instrument : public std::enable_shared_from_this<Instrument> {
  public:
   virtual ~Instrument() = default;
 
@@ -121,9 +148,62 @@ class Instrument {
   virtual std::vector<double> start_values(const Machine& machine, const InstrumentReadings& readings,
                                            std::vector<std::string>& notes) const;
 
+  /// This instrument with the set-up that an identification starts with: start_values(), unless it knows better.
+  virtual StartedInstrument started(const Machine& machine, const InstrumentReadings& readings) const;
+
+  /// How many numbers of the set-up started() fits to the readings so well that a nominal machine can be judged by
+  /// what is left; 0: they are a rough start only.
+  virtual std::size_t fitted_by_start() const { return 0; }
+
+  /// This instrument as it really is in a simulation: a number known within an uncertainty is what was stated as true,
+  /// or is drawn from that uncertainty.
+  virtual std::shared_ptr<const Instrument> truth(RandomStream& random) const;
+
+  /// This instrument as a plan of readings takes it: with what is stated as true, else with the start values.
+  virtual std::shared_ptr<const Instrument> as_planned() const;
+
+  /// What of the set-up has to be said before readings can be planned, and how; nothing where all is said.
+  virtual std::optional<MissingNumber> missing_for_plan() const { return std::nullopt; }
+
+  /// The readings as weighted residuals of these errors; the unknowns stand at the present values. Every instrument
+  /// is held by a std::shared_ptr, and the observations share it.
+  /// @throws std::invalid_argument as check_readings()
+  virtual std::unique_ptr<Observations> observations(const Machine& machine, const ErrorSet& errors,
+                                                     const InstrumentReadings& readings) const;
+
+  /// The same, every length weighted as if its standard uncertainty were 1 um, so that residuals are in um.
+  virtual std::unique_ptr<Observations> observations_in_um(const Machine& machine, const ErrorSet& errors,
+                                                           InstrumentReadings readings) const;
+
+  /// What this instrument, whose quantities are taken as true, would read: see simulate_instrument().
+  virtual SimulatedInstrument simulate(const Machine& machine, const ErrorSet& errors, const InstrumentReadings& plan,
+                                       const InstrumentSimulationOptions& options) const;
+
+  /// False if there is a reading at every pose where there is a sight; else poses can lie beside what is measured.
+  virtual bool may_miss() const { return true; }
+
+  /// True if a reading is a point: where what is seen stands, in all three directions.
+  virtual bool measures_points() const { return false; }
+  /// The same instrument if it said where a point is by its coordinates x, y, z; itself where it does not see points.
+  virtual std::shared_ptr<const Instrument> in_coordinates() const { return shared_from_this(); }
+
+  /// What readings are grouped by when patterns are looked for.
+  virtual std::vector<ItemLabel> item_labels() const;
+
+  /// [components] change of the deviation with the measured number: 1, or the typical range (mm) of an angle whose
+  /// deviation is the length across the beam.
+  virtual std::vector<double> deviation_arms(const InstrumentReadings& readings) const;
+
+  /// The standard uncertainty of a reading in words, "10 um + 5 um/m in every direction"; empty: as the study states.
+  virtual std::string noise_words() const { return {}; }
+
   /// Places of the set-up at the present values of the quantities, where these are deviations from a nominal place or
   /// angles; a point that is a quantity itself needs none.
   virtual std::vector<InstrumentPlace> places() const { return {}; }
+
+  /// Derivatives of a place by some quantities: [6, quantities], shift along and turn about x, y, z of its body's
+  /// frame, mm or rad per mm or rad. By central differences: a place is smooth on the scale of its quantities.
+  virtual Eigen::MatrixXd place_slopes(std::size_t place, const std::vector<std::size_t>& quantities) const;
 
   /// Nominal points of an item that plans bring together; none where the instrument has no such points.
   virtual std::optional<MeetingPoints> meeting_points(std::size_t item) const;
@@ -137,14 +217,23 @@ class Instrument {
   /// What plans and files of readings name: the items, or groups of items among which the pose decides (the mounts of a
   /// prism: which face then stands before the sensors).
   virtual std::vector<std::string> target_names() const;
+  /// What a target is called: "item", "reflector". Its plural ends with an s.
+  virtual const char* target_word() const { return "item"; }
+  /// Names of the places from which targets are seen, where plans have to choose between them.
+  virtual std::vector<std::string> station_names() const { return {}; }
+  /// True if a plan measures every target at a pose before it goes on to the next; else one target after the other.
+  virtual bool targets_share_poses() const { return false; }
 
   /// The item that a target is at a pose, by the nominal machine.
+  /// @param station    index into station_names(), 0 without stations
   /// @param positions  commands in chain order, mm or rad
   /// @throws std::invalid_argument if there is none, in words
-  virtual std::size_t item_at(const Machine& machine, std::size_t target, const std::vector<double>& positions) const;
+  virtual std::size_t item_at(const Machine& machine, std::size_t target, std::size_t station,
+                              const std::vector<double>& positions) const;
 
-  /// The target of an item.
+  /// The target of an item, and the place from which it is seen.
   virtual std::size_t target_of(std::size_t item) const { return item; }
+  virtual std::size_t station_of(std::size_t item) const { return static_cast<void>(item), std::size_t{0}; }
 
   /// The same instrument with other values of its quantities, [quantities()]; knowledge and uncertainties stay.
   virtual std::shared_ptr<const Instrument> with_values(const std::vector<double>& values) const = 0;

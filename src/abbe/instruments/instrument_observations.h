@@ -33,6 +33,7 @@ class InstrumentObservations : public Observations {
                 std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                 std::size_t stride) const override;
   bool displacement_rows(std::size_t first, std::size_t count, double* rows_out) const override;
+  std::vector<FurtherReadings> further_readings(const Machine& machine, const ErrorSet& errors) const override;
 
   const Instrument& instrument() const;
   const InstrumentReadings& readings() const;

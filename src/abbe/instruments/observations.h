@@ -1,11 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace abbe {
+
+struct ErrorSet;
+struct FurtherReadings;
+struct Machine;
 
 /// An unknown of a set-up: the pose of an instrument, an offset of a target.
 struct SetupUnknown {
@@ -76,6 +81,13 @@ class Observations {
     static_cast<void>(first), static_cast<void>(count), static_cast<void>(rows_out);
     return false;
   }
+
+  /// What this set-up could read additionally, easiest first; nothing where there are no readings to start from.
+  /// @param errors  those of the model, all zero
+  virtual std::vector<FurtherReadings> further_readings(const Machine& machine, const ErrorSet& errors) const;
+
+  /// How far measured and modelled are apart at the present point, mm, not weighted; none where only angles are read.
+  virtual std::optional<double> length_of_deviation(std::size_t reading) const;
 };
 
 }  // namespace abbe

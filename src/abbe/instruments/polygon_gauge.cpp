@@ -150,7 +150,7 @@ std::vector<std::string> PolygonGauge::target_names() const {
   return names;
 }
 
-std::size_t PolygonGauge::item_at(const Machine& machine, std::size_t target,
+std::size_t PolygonGauge::item_at(const Machine& machine, std::size_t target, std::size_t,
                                   const std::vector<double>& positions) const {
   const Polygon& polygon = setup_.polygon;
   const std::size_t faces = polygon.faces.size();
@@ -201,7 +201,7 @@ InstrumentReadings polygon_plan(const Machine& machine, const PolygonGauge& gaug
   for (std::size_t target = 0; target < targets; ++target) {
     for (std::size_t k = 0; k < faces; ++k) {
       positions[axis] = first + step * static_cast<double>(k);
-      plan.append(positions, gauge.item_at(machine, target, positions));
+      plan.append(positions, gauge.item_at(machine, target, 0, positions));
     }
   }
   return plan;

@@ -75,7 +75,8 @@ class PolygonGauge : public EquationInstrument<PolygonGauge, 20, 6> {
   /// @throws std::invalid_argument if no face looks along the sensors' axes there, saying by how many degrees it
   /// misses,
   ///         or if a beam misses its face
-  std::size_t item_at(const Machine& machine, std::size_t target, const std::vector<double>& positions) const override;
+  std::size_t item_at(const Machine& machine, std::size_t target, std::size_t station,
+                      const std::vector<double>& positions) const override;
   std::size_t target_of(std::size_t item) const override { return item / setup_.polygon.faces.size(); }
 
   const PolygonGaugeSetup& setup() const { return setup_; }

@@ -122,11 +122,11 @@ TEST(PolygonGauge, ABeamThatMissesThePrismIsRefused) {
   std::vector<double> at(machine.axes.size(), 0.0);
   place(machine, "C", 0, Body::bed, at, setup);
   const PolygonGauge gauge(setup);
-  EXPECT_EQ(gauge.item_at(machine, 1, at), 12U + 1U);
+  EXPECT_EQ(gauge.item_at(machine, 1, 0, at), 12U + 1U);
   at[machine.find_axis("Y")] = 12;  // the table carries the prism aside
-  EXPECT_NO_THROW(gauge.item_at(machine, 0, at));
+  EXPECT_NO_THROW(gauge.item_at(machine, 0, 0, at));
   at[machine.find_axis("Y")] = 14;  // half a face is 12.9 mm
-  EXPECT_THROW(gauge.item_at(machine, 0, at), std::invalid_argument);
+  EXPECT_THROW(gauge.item_at(machine, 0, 0, at), std::invalid_argument);
 }
 
 TEST(PolygonGauge, StepwiseReadsTheSameOneAfterTheOther) {
@@ -143,7 +143,7 @@ TEST(PolygonGauge, StepwiseReadsTheSameOneAfterTheOther) {
   EXPECT_EQ(gauge->target_names(),
             (std::vector<std::string>{"mount1.x", "mount1.y", "mount1.z", "mount2.x", "mount2.y", "mount2.z"}));
   EXPECT_EQ(gauge->components()[1].name, "autocollimator_tilt");
-  EXPECT_EQ(gauge->target_of(gauge->item_at(machine, 4, {0})), 4U);
+  EXPECT_EQ(gauge->target_of(gauge->item_at(machine, 4, 0, {0})), 4U);
   const InstrumentReadings plan = polygon_plan(machine, *gauge, 0, {0});
   ASSERT_EQ(plan.count(), 72U);
   test::expect_jacobian_equals_differences(machine, errors, gauge, plan);

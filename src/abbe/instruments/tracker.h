@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,8 @@ struct TrackerStation {
   double elevation_max = std::numbers::pi / 2;  ///< rad
   double range_min = 0;                         ///< mm
   double range_max = 1e9;                       ///< mm
+  bool pose_is_known = true;                    ///< false: it has to be found from the readings
+  std::optional<RigidTransform> true_pose{};    ///< simulation, where it is not body_from_tracker
 };
 
 /// A reflector fixed to one body of the machine.
@@ -66,6 +69,9 @@ struct Reflector {
   bool estimate_offset = false;                      ///< its three numbers are unknowns
   Eigen::Vector3d view_direction = Eigen::Vector3d::UnitX();  ///< unit, body frame: middle of its acceptance cone
   double view_half_angle = std::numbers::pi;                  ///< rad; pi: seen from everywhere
+  bool offset_from_data = false;                              ///< the file of the readings states the offset
+  Eigen::Vector3d offset_standard_uncertainty = Eigen::Vector3d::Zero();  ///< mm, of an estimated one; 0: open
+  std::optional<Eigen::Vector3d> true_offset{};                           ///< mm; simulation, where it is not `offset`
 };
 
 /// The stations and reflectors of one campaign.

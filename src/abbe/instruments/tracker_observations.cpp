@@ -472,4 +472,8 @@ Eigen::Vector3d TrackerObservations::distance(std::size_t reading) const {
   return own.readings.point(reading) - station.body_from_tracker.transpose() * (seen - station.origin);
 }
 
+std::optional<double> TrackerObservations::length_of_deviation(std::size_t reading) const {
+  return distance(reading).norm();
+}
+
 }  // namespace abbe

@@ -40,6 +40,8 @@ class TrackerObservations : public Observations {
                 std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                 std::size_t stride) const override;
   bool displacement_rows(std::size_t first, std::size_t count, double* rows_out) const override;
+  std::vector<FurtherReadings> further_readings(const Machine& machine, const ErrorSet& errors) const override;
+  std::optional<double> length_of_deviation(std::size_t reading) const override;
 
   /// The set-up with the present values of the unknowns.
   TrackerSetup setup() const;

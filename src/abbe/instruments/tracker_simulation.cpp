@@ -24,9 +24,14 @@ struct Reading {
   bool outlier = false, swapped = false;
 };
 
-/// Chains for every pair of station and reflector that a sight uses.
+/// Chains for every pair of bodies between which a sight goes.
 struct SightChains {
-  std::vector<ChainPlan> point, back;
+  struct Pair {
+    Body on, from;
+    ChainPlan point, back;
+  };
+  std::vector<Pair> pairs;
+  std::vector<std::size_t> pair_of;  ///< [sights]
 };
 
 std::vector<Sight> sights_of(const TrackerSetup& setup, const TrackerSimulationOptions& options) {
@@ -98,8 +103,12 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
   SightChains chains;
   for (const Sight& sight : sights) {
     const Body on = setup.reflectors[sight.reflector].body, from = setup.stations[sight.station].body;
-    chains.point.emplace_back(machine, errors, on, from);
-    chains.back.emplace_back(machine, errors, from, on);
+    std::size_t pair = 0;
+    while (pair < chains.pairs.size() && (chains.pairs[pair].on != on || chains.pairs[pair].from != from)) ++pair;
+    if (pair == chains.pairs.size()) {
+      chains.pairs.push_back({on, from, ChainPlan(machine, errors, on, from), ChainPlan(machine, errors, from, on)});
+    }
+    chains.pair_of.push_back(pair);
   }
   const ReversalShift reversal(errors);
   const std::size_t blocks = (poses.count() + kPosesPerBlock - 1) / kPosesPerBlock;
@@ -149,10 +158,11 @@ SimulatedTracker simulate_tracker(const Machine& machine, const ErrorSet& errors
         }
         const TrackerStation& station = setup.stations[sights[taken].station];
         const Reflector& reflector = setup.reflectors[sights[taken].reflector];
+        const SightChains::Pair& chain = chains.pairs[chains.pair_of[taken]];
         const Vector3d start = reflector_start(reflector, errors);
-        const Vector3d point = station.body_from_tracker.inverse() * transformed(chains.point[taken], start);
+        const Vector3d point = station.body_from_tracker.inverse() * transformed(chain.point, start);
         if (options.line_of_sight) {
-          const Vector3d back = transformed(chains.back[taken], station.body_from_tracker.translation) - start;
+          const Vector3d back = transformed(chain.back, station.body_from_tracker.translation) - start;
           if (!visible(station, reflector, point, back)) {
             ++hidden[block];
             continue;

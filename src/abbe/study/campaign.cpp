@@ -3,43 +3,182 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "abbe/errors/random_errors.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
-#include "abbe/study/instrument_campaign.h"
-#include "abbe/study/tracker_campaign.h"
+#include "abbe/formats/study_instrument.h"
+#include "abbe/instruments/instrument_simulation.h"
+#include "abbe/machine/axis_unit.h"
+#include "abbe/study/planned_readings.h"
 
 namespace abbe {
 namespace {
 
-// A stream of its own, apart from those of the other errors.
+// Streams of their own, apart from those of the readings and of the other errors.
+constexpr std::uint64_t kTruthStream = 1'000'000'007;
 constexpr std::uint64_t kReversalStream = 1'000'000'009;
 
-PoseList poses_once(const Machine& machine, const MeasurementPlan& plan, std::uint64_t seed) {
-  const std::size_t points = static_cast<std::size_t>(std::max(plan.points, 0));
-  if (plan.kind == PlanKind::line) return line_plan(machine, plan.axes, points);
-  if (plan.kind == PlanKind::step_diagonal) return step_diagonal_plan(machine, plan.axes, plan.steps, plan.order);
-  if (plan.kind == PlanKind::random) return random_plan(machine, plan.axes, points, seed);
-  if (plan.kind != PlanKind::spiral) return grid_plan(machine, plan.axes);
-  // The two axes of largest range carry the ellipse.
-  std::vector<std::size_t> order(plan.axes.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto extent = [&](std::size_t i) {
-    const Axis& axis = machine.axes[i];
-    const double whole = axis.travel_max - axis.travel_min;
-    return whole > 0 ? (plan.axes[i].to - plan.axes[i].from) / whole : plan.axes[i].to - plan.axes[i].from;
-  };
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return extent(a) > extent(b); });
-  return spiral_plan(machine, plan.axes, points, plan.turns, order.at(0), order.at(1));
+/// A dial along its face, a beam past its mirror: nothing can be read there.
+/// @param place  file or set-up to be named
+/// @param with   the machine on which: "", " with the true errors of the simulation"
+void refuse_unreadable(const Machine& machine, const Instrument& device, const InstrumentReadings& readings,
+                       const std::string& place, const std::string& with, const std::string& expected) {
+  for (std::size_t c = 0; c < readings.measured.size(); ++c) {
+    for (std::size_t k = 0; k < readings.count(); ++k) {
+      if (std::isfinite(readings.measured[c][k])) continue;
+      std::string pose;
+      for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        pose += fmt::format("{}{} = {:.6g} {}", i > 0 ? ", " : "", axis.name,
+                            readings.poses.axis[i][k] / position_unit(axis), position_suffix(axis));
+      }
+      throw InputError({.file = place, .field = device.components()[c].name},
+                       fmt::format("reads nothing at {} ({}){}", pose, device.items()[readings.item[k]].name, with),
+                       expected);
+    }
+  }
+}
+
+void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet& truth,
+                    const ProgressCallback& progress, CampaignSetup& result) {
+  const Setup& setup = study.setups[setup_index];
+  RandomStream random(study.seed, kTruthStream + setup_index);
+  result.truth = setup.device->truth(random);
+  for (std::size_t p = 0; p < setup.plans.size(); ++p) {
+    const std::uint64_t seed = plan_seed(study, setup_index, p);
+    // Poses are planned with what is known of the set-up, not with what it really is.
+    PlannedReadings planned = planned_readings(study.machine, setup, setup.plans[p], seed);
+    InstrumentReadings& plan = planned.readings;
+    if (approach_matters(study, truth)) plan.poses.approach = approach_in_order(plan.poses);
+    InstrumentSimulationOptions options;
+    options.seed = seed;
+    options.noise_factor = study.simulation->noise ? 1 : 0;
+    options.outlier_fraction = study.simulation->outliers.fraction;
+    options.outlier_mm = study.simulation->outliers.size;
+    options.readings_per_pose = planned.per_pose;
+    options.threads = study.threads;
+    options.progress = progress;
+    const SimulatedInstrument simulated = result.truth->simulate(study.machine, truth, plan, options);
+    options.noise_factor = 0;
+    options.outlier_fraction = 0;
+    options.progress = nullptr;
+    if (setup.device->may_miss()) {
+      refuse_unreadable(study.machine, *result.truth,
+                        setup.device->simulate(study.machine, ErrorSet{}, plan, options).readings, setup.name, "",
+                        "an instrument that meets what it measures at all poses of the plan");
+      const std::filesystem::path errors_file = study.simulation->errors_file.value_or(setup.name);
+      refuse_unreadable(
+          study.machine, *result.truth, simulated.readings, errors_file.string(),
+          fmt::format(" in set-up {} with the true errors", setup.name),
+          "errors, and true values of the set-up, with which the instrument still meets what it measures");
+    }
+    const std::size_t offset = result.readings.count();
+    for (const std::uint32_t outlier : simulated.outliers) {
+      result.outliers.push_back(static_cast<std::uint32_t>(offset) + outlier);
+    }
+    result.hidden += simulated.hidden;
+    result.readings.append(simulated.readings);
+    result.exact.append(result.truth->simulate(study.machine, truth, plan, options).readings);
+  }
+}
+
+InstrumentFile read_file(const Study& study, const Setup& setup, const std::shared_ptr<const Instrument>& device,
+                         const SetupData& data) {
+  MeasurementOptions options;
+  options.mapping = data.mapping;
+  options.threads = study.threads;
+  return instrument_form(setup.instrument)
+      .readings.read(data.file, study.machine, device, setup.name, setup.noise_from_data, options);
+}
+
+bool same_kind(const InstrumentReadings& a, const InstrumentReadings& b) {
+  return a.uncertainty.empty() == b.uncertainty.empty() && a.covariance.empty() == b.covariance.empty();
+}
+
+bool same_components(const Instrument& a, const Instrument& b) {
+  return std::equal(a.components().begin(), a.components().end(), b.components().begin(), b.components().end(),
+                    [](const ReadingComponent& one, const ReadingComponent& other) { return one.name == other.name; });
+}
+
+void read_setup_files(const Study& study, const Setup& setup, CampaignSetup& result) {
+  for (const SetupData& data : setup.data) {
+    InstrumentFile file = read_file(study, setup, result.device, data);
+    if (result.readings.count() > 0) {
+      const auto refuse = [&](const char* expected) {
+        throw InputError({.file = data.file.string()}, "the files of one set-up differ in their columns", expected);
+      };
+      if (!same_kind(file.readings, result.readings) || !same_components(*file.device, *result.device)) {
+        refuse("the same kind of reading and of uncertainty in all files of a set-up");
+      }
+      if (file.readings.time_s.empty() != result.readings.time_s.empty()) {
+        refuse("time_s in all files of a set-up, or in none");
+      }
+    }
+    result.device = file.device;
+    result.readings.append(file.readings);
+    result.contradictions.insert(result.contradictions.end(), file.contradictions.begin(), file.contradictions.end());
+  }
 }
 
 }  // namespace
 
+std::vector<KnownUnknown> known_unknowns_of(const Instrument& device) {
+  std::vector<KnownUnknown> known;
+  std::size_t unknown = 0;
+  for (const SetupQuantity& quantity : device.quantities()) {
+    if (quantity.knowledge == Knowledge::exact) continue;
+    if (quantity.knowledge == Knowledge::within) {
+      known.push_back({unknown, quantity.value, quantity.standard_uncertainty});
+    }
+    ++unknown;
+  }
+  return known;
+}
+
+std::string CampaignSetup::readings_text(const Machine& machine) const {
+  return instrument_form(instrument).readings.text(machine, *device, readings);
+}
+
+ReadingFacts CampaignSetup::facts() const {
+  ReadingFacts facts;
+  facts.setup = name;
+  facts.time_s = readings.time_s;
+  for (ItemLabel& label : device->item_labels()) {
+    ReadingLabel& of = facts.labels.emplace_back(ReadingLabel{std::move(label.kind), std::move(label.names), {}});
+    for (const std::uint16_t item : readings.item) of.of_reading.push_back(label.of_item[item]);
+  }
+  facts.measured = readings.measured;
+  facts.inputs = readings.inputs;
+  facts.arm = device->deviation_arms(readings);
+  return facts;
+}
+
+std::unique_ptr<Observations> CampaignSetup::observations(const Machine& machine, const ErrorSet& errors) const {
+  return start->observations(machine, errors, readings);
+}
+
+std::unique_ptr<Observations> CampaignSetup::exact_observations(const Machine& machine, const ErrorSet& errors) const {
+  return start->observations(machine, errors, exact);
+}
+
+std::vector<KnownUnknown> CampaignSetup::known_unknowns() const { return known_unknowns_of(*device); }
+
+std::vector<KnownUnknown> CampaignSetup::true_unknowns() const {
+  std::vector<double> estimated;
+  for (std::size_t q = 0; q < device->quantities().size(); ++q) {
+    if (device->quantities()[q].knowledge != Knowledge::exact) estimated.push_back(truth->quantities()[q].value);
+  }
+  std::vector<KnownUnknown> known = known_unknowns();
+  for (KnownUnknown& one : known) one.value = estimated.at(one.unknown);
+  return known;
+}
+
 std::size_t Campaign::reading_count() const {
   std::size_t count = 0;
-  for (const std::shared_ptr<CampaignSetup>& setup : setups) count += setup->reading_count();
+  for (const CampaignSetup& setup : setups) count += setup.reading_count();
   return count;
 }
 
@@ -72,28 +211,26 @@ bool approach_matters(const Study& study, const ErrorSet& truth) {
   return !truth.reversals.empty() || (study.identification && !study.identification->reversals.empty());
 }
 
-std::uint64_t plan_seed(const Study& study, std::size_t setup, std::size_t plan) {
-  return study.seed * 1000003 + setup * 1009 + plan;
-}
-
-PoseList plan_poses(const Machine& machine, const MeasurementPlan& plan, std::uint64_t seed) {
-  return repeated(poses_once(machine, plan, seed), plan.repeats, plan.there_and_back);
-}
-
 Campaign gather_readings(const Study& study, const ProgressCallback& progress) {
   Campaign campaign;
   if (study.simulation) campaign.truth = true_errors(study);
-  const ErrorSet* truth = campaign.truth ? &*campaign.truth : nullptr;
   for (std::size_t i = 0; i < study.setups.size(); ++i) {
     const Setup& setup = study.setups[i];
-    std::shared_ptr<CampaignSetup> result =
-        setup.device ? gather_instrument(study, i, truth) : gather_tracker(study, i, truth, progress);
-    result->name = setup.name;
-    if (result->hidden > 0) {
-      campaign.notes.push_back(
-          fmt::format("{}: {} readings left out for lack of a line of sight", setup.name, result->hidden));
+    CampaignSetup result;
+    result.name = setup.name;
+    result.instrument = setup.instrument;
+    result.device = setup.device;
+    if (campaign.truth) {
+      simulate_setup(study, i, *campaign.truth, progress, result);
+    } else {
+      read_setup_files(study, setup, result);
     }
-    if (result->reading_count() == 0) {
+    result.start = result.device;
+    if (result.hidden > 0) {
+      campaign.notes.push_back(
+          fmt::format("{}: {} readings left out for lack of a line of sight", setup.name, result.hidden));
+    }
+    if (result.reading_count() == 0) {
       throw InputError({.file = setup.name}, "the set-up has no readings", "at least one reading");
     }
     campaign.setups.push_back(std::move(result));
@@ -101,9 +238,30 @@ Campaign gather_readings(const Study& study, const ProgressCallback& progress) {
   return campaign;
 }
 
+InstrumentReadings read_held_out(const Study& study, const Campaign& campaign) {
+  const Setup& setup = study.setups.front();
+  const std::shared_ptr<const Instrument>& device = campaign.setups.front().start;
+  SetupData data;
+  if (!setup.data.empty()) data.mapping = setup.data.front().mapping;
+  data.file = *study.identification->held_out_file;
+  const InstrumentFile file = read_file(study, setup, device, data);  // contradictions: told of what is fitted
+  const std::vector<std::string> known = device->target_names(), named = file.device->target_names();
+  if (named.size() > known.size()) {
+    const std::string word = device->target_word();
+    throw InputError({.file = data.file.string(), .field = word},
+                     fmt::format("{} '{}' was not measured", word, named.back()),
+                     fmt::format("{}s of set-up '{}'", word, setup.name));
+  }
+  return file.readings;
+}
+
 void find_start_values(const Machine& machine, Campaign& campaign) {
-  for (const std::shared_ptr<CampaignSetup>& setup : campaign.setups) {
-    setup->find_start(machine, campaign.warnings, campaign.notes);
+  for (CampaignSetup& setup : campaign.setups) {
+    const auto tell = [&](const std::string& message) { campaign.warnings.push_back(setup.name + ": " + message); };
+    for (const std::string& message : setup.contradictions) tell(message);
+    StartedInstrument started = setup.device->started(machine, setup.readings);
+    setup.start = std::move(started.instrument);
+    for (const std::string& message : started.warnings) tell(message);
   }
 }
 

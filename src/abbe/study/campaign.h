@@ -9,7 +9,7 @@
 #include "abbe/errors/error_set.h"
 #include "abbe/formats/study.h"
 #include "abbe/identify/reading_facts.h"
-#include "abbe/instruments/observations.h"
+#include "abbe/instruments/instrument.h"
 
 namespace abbe {
 
@@ -22,44 +22,44 @@ struct KnownUnknown {
   double standard_uncertainty = 0;  ///< mm or rad, > 0
 };
 
-/// One set-up of a study with its readings: what the steps of a study need to know of an instrument, whatever it is.
-class CampaignSetup {
- public:
-  virtual ~CampaignSetup() = default;
+/// What is known beforehand of the unknowns of an instrument's set-up.
+std::vector<KnownUnknown> known_unknowns_of(const Instrument& device);
 
+/// One set-up of a study with its readings.
+struct CampaignSetup {
   std::string name;
-  std::vector<std::uint32_t> outliers;  ///< simulation: readings made to outliers
-  std::size_t hidden = 0;               ///< simulation: sights left out for lack of a line of sight
+  std::string instrument;                    ///< as Setup::instrument
+  std::shared_ptr<const Instrument> device;  ///< as the study and the files of readings state it
+  std::shared_ptr<const Instrument> start;   ///< as the identification starts: `device` until find_start_values()
+  std::shared_ptr<const Instrument> truth;   ///< simulation: as it really is
+  InstrumentReadings readings;
+  InstrumentReadings exact;                 ///< simulation: the same readings without noise and outliers
+  std::vector<std::uint32_t> outliers;      ///< simulation: readings made to outliers
+  std::size_t hidden = 0;                   ///< simulation: sights left out for lack of a line of sight
+  std::vector<std::string> contradictions;  ///< in words, where a file of readings and the study differ
 
-  virtual const PoseList& poses() const = 0;
-  virtual const std::vector<double>& time_s() const = 0;
-  /// [readings] names of the points in the input, or empty.
-  virtual const std::vector<std::string>& points() const = 0;
-  std::size_t reading_count() const { return poses().count(); }
+  const PoseList& poses() const { return readings.poses; }
+  std::size_t reading_count() const { return readings.count(); }
 
   /// The readings as a measurement file.
-  virtual std::string readings_text(const Machine& machine) const = 0;
+  std::string readings_text(const Machine& machine) const;
 
   /// What else is known of the readings, to look for patterns in them.
-  virtual ReadingFacts facts() const = 0;
-
-  /// Finds from the data what has to be known roughly before an identification can start.
-  virtual void find_start(const Machine& machine, std::vector<std::string>& warnings,
-                          std::vector<std::string>& notes) = 0;
+  ReadingFacts facts() const;
 
   /// The readings as residuals of these errors; the unknowns stand at their start.
-  virtual std::unique_ptr<Observations> observations(const Machine& machine, const ErrorSet& errors) const = 0;
+  std::unique_ptr<Observations> observations(const Machine& machine, const ErrorSet& errors) const;
   /// The same for what an instrument without noise would have read; simulation only.
-  virtual std::unique_ptr<Observations> exact_observations(const Machine& machine, const ErrorSet& errors) const = 0;
+  std::unique_ptr<Observations> exact_observations(const Machine& machine, const ErrorSet& errors) const;
 
-  virtual std::vector<KnownUnknown> known_unknowns() const = 0;
+  std::vector<KnownUnknown> known_unknowns() const;
   /// The same unknowns with what they really are; simulation only.
-  virtual std::vector<KnownUnknown> true_unknowns() const = 0;
+  std::vector<KnownUnknown> true_unknowns() const;
 };
 
 /// All readings of a study, measured or simulated, and what is known about them.
 struct Campaign {
-  std::vector<std::shared_ptr<CampaignSetup>> setups;
+  std::vector<CampaignSetup> setups;
   std::optional<ErrorSet> truth;      ///< simulation: the errors the machine really has
   std::vector<std::string> warnings;  ///< swapped reflectors, poses that the data do not determine
   std::vector<std::string> notes;     ///< what was done, for the report's assumptions
@@ -73,14 +73,12 @@ ErrorSet true_errors(const Study& study);
 /// True if readings are to say from which side the axes came: some axis has a reversal value, or one is identified.
 bool approach_matters(const Study& study, const ErrorSet& truth);
 
-/// Seed of one plan: every plan of every set-up has numbers of its own, whatever stands beside it in the study.
-std::uint64_t plan_seed(const Study& study, std::size_t setup, std::size_t plan);
-
-/// Poses of a plan of one of the kinds grid, line, random, spiral and step diagonal, repeated as it says.
-PoseList plan_poses(const Machine& machine, const MeasurementPlan& plan, std::uint64_t seed);
-
 /// Reads or simulates all readings. Start values are not yet looked for. @throws InputError
 Campaign gather_readings(const Study& study, const ProgressCallback& progress = {});
+
+/// Readings of the first set-up's instrument that are for validation only, from the study's held-out file.
+/// @throws InputError
+InstrumentReadings read_held_out(const Study& study, const Campaign& campaign);
 
 /// Finds what every set-up needs to start with; appends what there is to say.
 void find_start_values(const Machine& machine, Campaign& campaign);

@@ -6,9 +6,7 @@
 
 #include "abbe/geometry/rotation.h"
 #include "abbe/identify/parameter_words.h"
-#include "abbe/instruments/instrument_observations.h"
-#include "abbe/instruments/tracker_observations.h"
-#include "abbe/instruments/tracker_residual.h"
+#include "abbe/instruments/instrument.h"
 #include "abbe/study/job.h"
 
 namespace abbe {
@@ -58,91 +56,42 @@ class Estimates {
   const Identification& identified_;
 };
 
-/// Poses of the stations; everything else of a tracker are numbers.
-void add_stations(const TrackerObservations& observations, std::size_t s, const Identification& identified,
-                  const Estimates& estimates, FoundSetup& found) {
-  const TrackerSetup setup = observations.setup();
-  const std::vector<SetupUnknown>& unknowns = observations.unknowns();
-  std::size_t next = 0;
-  for (const TrackerStation& station : setup.stations) {
-    if (!station.estimate_pose) continue;
-    FoundPlace place;
-    place.name = station.name;
-    place.body = station.body;
-    place.position = station.body_from_tracker.translation;
-    place.rotation = station.body_from_tracker.rotation;
-    const std::vector<double>& values = identified.setup[s];
-    const Eigen::Matrix3d axes = rotation_vector_axes({values[next + 3], values[next + 4], values[next + 5]});
-    std::vector<Eigen::Index> entries;
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, 0);
-    for (std::size_t k = 0; k < 6; ++k) {
-      const std::optional<Eigen::Index> entry = estimates.find({s, next + k});
-      if (!entry) continue;
-      entries.push_back(*entry);
-      rows.conservativeResize(Eigen::NoChange, rows.cols() + 1);
-      const Eigen::Index row = static_cast<Eigen::Index>(k);
-      rows.rightCols<1>().setZero();
-      if (k < 3) {
-        rows.rightCols<1>()[row] = 1;
-      } else {
-        rows.rightCols<1>().tail<3>() = axes.col(row - 3);
-      }
-    }
-    const Eigen::VectorXd expanded = estimates.expanded(rows, entries);
-    place.position_expanded = expanded.head<3>();
-    place.turn_expanded = expanded.tail<3>();
-    found.places.push_back(std::move(place));
-    next += 6;
+void add_places(const Instrument& start, std::size_t s, const Identification& identified, const Estimates& estimates,
+                FoundSetup& found) {
+  const std::vector<SetupQuantity>& quantities = start.quantities();
+  const std::vector<double>& unknowns = identified.setup[s];
+  std::vector<double> values;
+  std::vector<std::size_t> quantity_of;
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    const bool is_exact = quantities[q].knowledge == Knowledge::exact;
+    values.push_back(is_exact ? quantities[q].value : unknowns[quantity_of.size()]);
+    if (!is_exact) quantity_of.push_back(q);
   }
-  for (std::size_t u = next; u < unknowns.size(); ++u) {
-    found.numbers.push_back(estimates.number(unknowns[u].name, {s, u}, unknowns[u].is_angle, identified.setup[s][u]));
-  }
-}
-
-/// Position and turn of a place as six numbers beside another state of it: mm, rad.
-Eigen::VectorXd difference(const InstrumentPlace& from, const InstrumentPlace& to) {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(6);
-  result.head<3>() = to.position - from.position;
-  if (from.rotation) result.tail<3>() = rotation_vector(*to.rotation * from.rotation->transpose());
-  if (from.direction) result.tail<3>() = from.direction->cross(*to.direction);
-  return result;
-}
-
-void add_places(const InstrumentObservations& observations, std::size_t s, const Identification& identified,
-                const Estimates& estimates, FoundSetup& found) {
-  const std::vector<double> values = observations.quantity_values();
-  const std::vector<SetupUnknown>& unknowns = observations.unknowns();
-  const std::vector<InstrumentPlace> places = observations.instrument().with_values(values)->places();
-  std::vector<std::uint8_t> angle_of_place(unknowns.size(), 0);
+  const std::shared_ptr<const Instrument> device = start.with_values(values);
+  const std::vector<InstrumentPlace> places = device->places();
+  std::vector<std::uint8_t> is_of_place(unknowns.size(), 0);
   for (std::size_t p = 0; p < places.size(); ++p) {
     const InstrumentPlace& place = places[p];
     std::vector<Eigen::Index> entries;
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, 0);
+    std::vector<std::size_t> estimated;
     for (std::size_t u = 0; u < unknowns.size(); ++u) {
-      const std::size_t q = observations.quantity_of(u);
+      const std::size_t q = quantity_of[u];
       if (std::find(place.quantities.begin(), place.quantities.end(), q) == place.quantities.end()) continue;
-      angle_of_place[u] = 1;
+      is_of_place[u] = 1;
       const std::optional<Eigen::Index> entry = estimates.find({s, u});
       if (!entry) continue;
-      // A place is smooth on the scale of its quantities: mm, and mrad for angles.
-      const double step = 1e-3 * unknowns[u].scale;
-      std::vector<double> moved = values;
-      moved[q] = values[q] + step;
-      const InstrumentPlace after = observations.instrument().with_values(moved)->places()[p];
-      moved[q] = values[q] - step;
-      const InstrumentPlace before = observations.instrument().with_values(moved)->places()[p];
       entries.push_back(*entry);
-      rows.conservativeResize(Eigen::NoChange, rows.cols() + 1);
-      rows.rightCols<1>() = (difference(place, after) - difference(place, before)) / (2 * step);
+      estimated.push_back(q);
     }
     if (entries.empty()) continue;
-    const Eigen::VectorXd expanded = estimates.expanded(rows, entries);
+    const Eigen::VectorXd expanded = estimates.expanded(device->place_slopes(p, estimated), entries);
     found.places.push_back({place.name, place.body, place.position, expanded.head<3>(), place.rotation, place.direction,
                             expanded.tail<3>()});
   }
   for (std::size_t u = 0; u < unknowns.size(); ++u) {
-    if (angle_of_place[u] != 0) continue;
-    found.numbers.push_back(estimates.number(unknowns[u].name, {s, u}, unknowns[u].is_angle, identified.setup[s][u]));
+    if (is_of_place[u] != 0) continue;
+    const SetupQuantity& quantity = quantities[quantity_of[u]];
+    found.numbers.push_back(estimates.number(quantity.name, {s, u}, quantity.is_angle, unknowns[u]));
   }
 }
 
@@ -182,14 +131,9 @@ FoundValues found_values(const Study& study, const StudyResult& result) {
   }
   for (std::size_t s = 0; s < result.model.problem.observations.size(); ++s) {
     FoundSetup setup;
-    setup.name = result.campaign.setups[s]->name;
+    setup.name = result.campaign.setups[s].name;
     setup.instrument = study.setups[s].instrument;
-    const Observations& observations = *result.model.problem.observations[s].observations;
-    if (const auto* tracker = dynamic_cast<const TrackerObservations*>(&observations)) {
-      add_stations(*tracker, s, identified, estimates, setup);
-    } else if (const auto* instrument = dynamic_cast<const InstrumentObservations*>(&observations)) {
-      add_places(*instrument, s, identified, estimates, setup);
-    }
+    add_places(*result.campaign.setups[s].start, s, identified, estimates, setup);
     if (!setup.places.empty() || !setup.numbers.empty()) found.setups.push_back(std::move(setup));
   }
   return found;

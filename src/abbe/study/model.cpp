@@ -16,8 +16,8 @@ namespace {
 /// Positions of one axis in all readings, sorted, each once.
 std::vector<double> measured_positions(const Campaign& campaign, std::size_t axis) {
   std::vector<double> positions;
-  for (const std::shared_ptr<CampaignSetup>& setup : campaign.setups) {
-    const std::vector<double>& values = setup->poses().axis[axis];
+  for (const CampaignSetup& setup : campaign.setups) {
+    const std::vector<double>& values = setup.poses().axis[axis];
     positions.insert(positions.end(), values.begin(), values.end());
   }
   std::sort(positions.begin(), positions.end());
@@ -100,7 +100,7 @@ void add_priors(const Study& study, const Campaign& campaign, bool all_found, Pr
     }
   }
   for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
-    for (const KnownUnknown& known : campaign.setups[s]->known_unknowns()) {
+    for (const KnownUnknown& known : campaign.setups[s].known_unknowns()) {
       problem.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
     }
   }
@@ -172,8 +172,8 @@ StudyModel model_of(const Study& study, const Campaign& campaign, bool all_prior
   const ErrorSet errors = model_errors(study, campaign, model);
   if (!model.impossible.empty()) return model;
   std::vector<std::shared_ptr<Observations>> observations;
-  for (const std::shared_ptr<CampaignSetup>& setup : campaign.setups) {
-    observations.push_back(setup->observations(study.machine, errors));
+  for (const CampaignSetup& setup : campaign.setups) {
+    observations.push_back(setup.observations(study.machine, errors));
   }
   model.problem = estimate_everything(study.machine, errors, observations);
   if (!plan.tool_offset) {

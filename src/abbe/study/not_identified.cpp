@@ -45,8 +45,8 @@ ExtendedProblem extended_problem(const Study& study, const StudyResult& result, 
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     from.push_back(machine.axes[i].travel_min);
     to.push_back(machine.axes[i].travel_max);
-    for (const std::shared_ptr<CampaignSetup>& setup : result.campaign.setups) {
-      for (const double position : setup->poses().axis[i]) {
+    for (const CampaignSetup& setup : result.campaign.setups) {
+      for (const double position : setup.poses().axis[i]) {
         from.back() = std::min(from.back(), position);
         to.back() = std::max(to.back(), position);
       }
@@ -57,7 +57,7 @@ ExtendedProblem extended_problem(const Study& study, const StudyResult& result, 
   ExtendedProblem extended;
   std::vector<std::shared_ptr<Observations>> observations;
   for (std::size_t s = 0; s < result.campaign.setups.size(); ++s) {
-    observations.push_back(result.campaign.setups[s]->observations(machine, errors));
+    observations.push_back(result.campaign.setups[s].observations(machine, errors));
     observations.back()->set_parameters(errors.parameters(), result.identification.setup[s]);
   }
   Problem& problem = extended.problem;

@@ -16,7 +16,7 @@ constexpr std::size_t kMostOutliers = 1000;
 
 /// Name of the point of a reading in the input, empty if it has none.
 std::string point_of(const StudyResult& result, const Outlier& outlier) {
-  const std::vector<std::string>& points = result.campaign.setups[outlier.observations]->points();
+  const std::vector<std::string>& points = result.campaign.setups[outlier.observations].readings.point_name;
   return points.empty() ? std::string() : points[outlier.reading];
 }
 
@@ -39,7 +39,7 @@ std::string outliers_text(const Study& study, const StudyResult& result, const c
       pose += fmt::format("{}{} {:.6g} {}", a > 0 ? ", " : "", axis.name, positions[a] / position_unit(axis),
                           position_suffix(axis));
     }
-    text += fmt::format("  {} reading {}{}{}: {:.1f} at {}\n", result.campaign.setups[outlier.observations]->name,
+    text += fmt::format("  {} reading {}{}{}: {:.1f} at {}\n", result.campaign.setups[outlier.observations].name,
                         outlier.reading, point.empty() ? "" : ", point ", point, outlier.norm, pose);
   }
   if (shown < outliers.size()) text += fmt::format("  {} more: {}\n", outliers.size() - shown, shows_all);

@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numbers>
 #include <set>
-#include <tuple>
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/study/campaign.h"
+#include "abbe/study/model.h"
+#include "abbe/study/random_poses.h"
 
 namespace abbe {
 namespace {
@@ -24,6 +27,14 @@ constexpr int kRefinements = 4;
 constexpr std::size_t kPosesAround = 6;
 constexpr double kWholeTurn = 2 * std::numbers::pi * 0.99;
 constexpr double kAtAnEnd = 0.4;
+constexpr double kLeastCost_s = 1e-3;
+constexpr std::size_t kMostTogether = 6;
+
+/// How far a plan is worked out.
+enum class PlanningDepth {
+  choice,  ///< readings and their uncertainty
+  whole    ///< refined and compared with other choices
+};
 
 double move_time(const PlanningStudy& plan, const std::vector<double>& from, const std::vector<double>& to) {
   double longest = 0;
@@ -50,10 +61,10 @@ PoseList candidate_poses(const Machine& machine, const PlanningStudy& plan, std:
 
 /// The poses of readings, and beside each some in which one or two axes stand elsewhere (coordinate exchange; Meyer and
 /// Nachtsheim, Technometrics 37 (1995) 60): at an end, in the middle, or anywhere.
-PoseList poses_around(const PlanningStudy& plan, const std::vector<SightReading>& readings, std::uint64_t seed) {
+PoseList poses_around(const PlanningStudy& plan, const std::vector<CandidateReading>& readings, std::uint64_t seed) {
   PoseList poses;
   std::set<std::vector<double>> known;
-  for (const SightReading& reading : readings)
+  for (const CandidateReading& reading : readings)
     if (known.insert(reading.pose).second) poses.append(reading.pose);
   const std::size_t given = poses.count();
   for (std::size_t k = 0; k < given; ++k)
@@ -75,36 +86,70 @@ PoseList poses_around(const PlanningStudy& plan, const std::vector<SightReading>
   return poses;
 }
 
-/// Same readings, poses in an order of short travel; all readings of one pose together.
-std::vector<SightReading> by_travel(const Machine& machine, const std::vector<SightReading>& readings) {
-  std::map<std::vector<double>, std::vector<SightReading>> at;
+bool sees_points_only(const Study& study) {
+  return std::all_of(study.setups.begin(), study.setups.end(),
+                     [](const Setup& setup) { return setup.device->measures_points(); });
+}
+
+/// The errors to be identified, of zero, over the ranges that an identification from all candidates would state.
+/// @throws InputError if an axis with error motions stands still in all of them
+ErrorSet measurable_errors(const Study& study, const PlanningModel::Candidates& candidates) {
+  Campaign campaign;
+  for (const InstrumentReadings& readings : candidates.of_setup) campaign.setups.emplace_back().readings = readings;
+  StudyModel model;
+  ErrorSet errors = model_errors(study, campaign, model);
+  if (!model.impossible.empty()) {
+    throw InputError({.field = "plan"}, model.impossible, "plans of the set-ups in which it moves");
+  }
+  errors.set_parameters(std::vector<double>(errors.parameter_count(), 0.0));
+  return errors;
+}
+
+/// Poses in an order of short travel; all readings of one pose together.
+std::vector<CandidateReading> by_short_travel(const Machine& machine, const std::vector<CandidateReading>& readings) {
+  std::map<std::vector<double>, std::vector<CandidateReading>> at;
   PoseList poses;
-  for (const SightReading& reading : readings) {
-    std::vector<SightReading>& here = at[reading.pose];
+  for (const CandidateReading& reading : readings) {
+    std::vector<CandidateReading>& here = at[reading.pose];
     if (here.empty()) poses.append(reading.pose);
     here.push_back(reading);
   }
   const PoseList ordered = order_by_travel(machine, poses);
-  std::vector<SightReading> result;
+  std::vector<CandidateReading> result;
   for (std::size_t k = 0; k < ordered.count(); ++k)
-    for (const SightReading& reading : at[ordered.pose(k)]) result.push_back(reading);
+    for (const CandidateReading& reading : at[ordered.pose(k)]) result.push_back(reading);
   return result;
 }
 
-double total_time(const PlanningStudy& plan, const std::vector<SightReading>& readings) {
-  double time = 0;
-  for (std::size_t k = 0; k < readings.size(); ++k) {
-    time += plan.reading;
-    if (k > 0 && readings[k].pose == readings[k - 1].pose) continue;
-    time += plan.settle + (k > 0 ? move_time(plan, readings[k - 1].pose, readings[k].pose) : 0);
+/// Same readings in the order in which they are to be taken. Trackers stand there all the time; other instruments are
+/// used one after the other.
+std::vector<CandidateReading> in_order(const Study& study, const std::vector<CandidateReading>& readings) {
+  if (sees_points_only(study)) return by_short_travel(study.machine, readings);
+  std::vector<CandidateReading> result;
+  for (std::size_t s = 0; s < study.setups.size(); ++s) {
+    std::vector<CandidateReading> own;
+    for (const CandidateReading& reading : readings) {
+      if (reading.setup == s) own.push_back(reading);
+    }
+    if (own.empty()) continue;
+    own = by_short_travel(study.machine, own);
+    result.insert(result.end(), own.begin(), own.end());
   }
-  return time;
+  return result;
 }
 
-/// Who looks at what from where.
-using ReadingPlace = std::tuple<std::vector<double>, std::size_t, std::size_t, std::size_t>;
-ReadingPlace place_of(const SightReading& reading) {
-  return {reading.pose, reading.setup, reading.station, reading.reflector};
+double total_time(const Study& study, const std::vector<CandidateReading>& readings) {
+  const PlanningStudy& plan = *study.planning;
+  double time = 0;
+  std::set<std::size_t> used;
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    const std::string& setup = study.setups[readings[k].setup].name;
+    if (used.insert(readings[k].setup).second) time += plan.set_up_of(setup);
+    time += plan.reading_of(setup);
+    if (k > 0 && readings[k].pose == readings[k - 1].pose) continue;
+    time += plan.settle_of(setup) + (k > 0 ? move_time(plan, readings[k - 1].pose, readings[k].pose) : 0);
+  }
+  return time;
 }
 
 double root_mean_square(const PlanValue& value, const Eigen::MatrixXd& predictions) {
@@ -163,14 +208,44 @@ void say_what_is_enough(const PlanningStudy& plan, StudyPlan& result) {
   }
 }
 
-}  // namespace
+void check_costs(const Study& study) {
+  for (const PlannedSetup& cost : study.planning->setups) {
+    if (std::any_of(study.setups.begin(), study.setups.end(),
+                    [&](const Setup& setup) { return setup.name == cost.name; })) {
+      continue;
+    }
+    std::string names;
+    for (const Setup& setup : study.setups) names += (names.empty() ? "" : ", ") + setup.name;
+    throw InputError({.field = "plan.setup." + cost.name}, "there is no set-up of that name", "one of " + names);
+  }
+}
 
-StudyPlan plan_study(const Study& study, const std::function<void(double)>& progress) {
-  const PlanningModel model(study);
+/// What every candidate costs, s, without the way to it; where some cost something else than others.
+void add_costs(const Study& study, PlanningModel::Candidates& candidates) {
+  const PlanningStudy& plan = *study.planning;
+  if (plan.time <= 0 || plan.setups.empty()) return;
+  for (const CandidateReading& reading : candidates.readings) {
+    const std::string& setup = study.setups[reading.setup].name;
+    candidates.rows.cost_s.push_back(std::max(kLeastCost_s, plan.settle_of(setup) + plan.reading_of(setup)));
+  }
+}
+
+StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const std::function<void(double)>& progress) {
+  auto whole_model = std::make_unique<const PlanningModel>(study);
   const PlanningStudy& plan = *study.planning;
   const PoseList poses =
       plan.grid ? grid_plan(study.machine, plan.axes) : candidate_poses(study.machine, plan, study.seed);
-  PlanningModel::Candidates candidates = model.readings_at(poses);
+  PlanningModel::Candidates candidates = whole_model->readings_at(poses);
+  std::vector<AxisRange> predicted = plan.axes;
+  // Trackers are planned for the ranges of the plan, which they can all see. What other instruments see decides where
+  // errors can be known at all.
+  if (!sees_points_only(study) && !candidates.readings.empty()) {
+    const ErrorSet errors = measurable_errors(study, candidates);
+    whole_model = std::make_unique<const PlanningModel>(study, &errors);
+    candidates = whole_model->readings_at(poses);
+    predicted = unseen_ranges(study.machine, {&errors});
+  }
+  const PlanningModel& model = *whole_model;
   StudyPlan result;
   result.candidates = candidates.readings.size();
   result.hidden = candidates.hidden;
@@ -179,11 +254,12 @@ StudyPlan plan_study(const Study& study, const std::function<void(double)>& prog
     throw InputError({.field = "plan"}, "no candidate has a line of sight outside the forbidden boxes",
                      "other stations, reflectors, ranges or boxes");
   }
+  add_costs(study, candidates);
   auto space = std::make_unique<const PlanningSpace>(candidates.rows, model.known());
   result.parameters = space->parameter_count();
   result.seen = space->dimension();
   const Eigen::MatrixXd predictions =
-      model.prediction_rows(random_plan(study.machine, plan.axes, kPredictionPoses, study.seed * 7919 + 1));
+      model.prediction_rows(random_plan(study.machine, predicted, kPredictionPoses, study.seed * 7919 + 1));
   const Eigen::VectorXd unseen = space->unseen_part(predictions);
   // Rows that are zero but for rounding have no direction.
   const Eigen::VectorXd sizes = space->functionals(predictions).rowwise().norm();
@@ -199,7 +275,8 @@ StudyPlan plan_study(const Study& study, const std::function<void(double)>& prog
   }
   if (progress) options.progress = [&](double share) { progress(0.6 * share); };
 
-  const double quickest = plan.reading + plan.settle / static_cast<double>(model.sight_count());
+  const double sights = static_cast<double>(std::max<std::size_t>(1, model.sight_count()));
+  const double quickest = plan.reading + plan.settle / sights;
   std::size_t count = plan.readings > 0 ? static_cast<std::size_t>(plan.readings) : result.candidates;
   if (plan.time > 0 && quickest > 0)
     count = std::min(count, static_cast<std::size_t>(std::max(1.0, plan.time / quickest)));
@@ -207,32 +284,58 @@ StudyPlan plan_study(const Study& study, const std::function<void(double)>& prog
     result.plan = chosen;
     result.readings.clear();
     for (const std::size_t i : chosen.chosen) result.readings.push_back(from.readings[i]);
-    result.readings = by_travel(study.machine, result.readings);
-    result.time = total_time(plan, result.readings);
+    result.readings = in_order(study, result.readings);
+    result.time = total_time(study, result.readings);
   };
+  const bool has_costs = !candidates.rows.cost_s.empty();
+  double set_up = 0;
+  for (const Setup& setup : study.setups) set_up += plan.set_up_of(setup.name);
+  double budget = plan.time - set_up;
+  if (has_costs) count = plan.readings > 0 ? static_cast<std::size_t>(plan.readings) : result.candidates;
   for (int round = 0; round < kTimeRounds; ++round) {
     options.count = std::min(count, result.candidates);
+    if (has_costs) options.time_s = budget;
     take(plan_readings(*space, options), candidates);
     if (result.plan.status != PlanningStatus::done || plan.time <= 0 || result.time <= plan.time) break;
-    count =
-        static_cast<std::size_t>(std::max(1.0, 0.99 * static_cast<double>(options.count) * plan.time / result.time));
+    if (has_costs) {
+      budget *= 0.99 * (plan.time - set_up) / std::max(result.time - set_up, kLeastCost_s);
+    } else {
+      count =
+          static_cast<std::size_t>(std::max(1.0, 0.99 * static_cast<double>(options.count) * plan.time / result.time));
+    }
   }
   if (result.plan.status != PlanningStatus::done) return result;
+  const auto rows_of = [&](const std::vector<std::size_t>& chosen) {
+    std::size_t count_rows = 0;
+    for (const std::size_t i : chosen) count_rows += candidates.rows.first_row[i + 1] - candidates.rows.first_row[i];
+    PlanningCandidates::Rows rows(static_cast<Eigen::Index>(count_rows), candidates.rows.rows.cols());
+    Eigen::Index next = 0;
+    for (const std::size_t i : chosen)
+      for (std::size_t k = candidates.rows.first_row[i]; k < candidates.rows.first_row[i + 1]; ++k)
+        rows.row(next++) = candidates.rows.rows.row(static_cast<Eigen::Index>(k));
+    return rows;
+  };
+  if (depth == PlanningDepth::choice) {
+    result.with_prior = uncertainty_with_prior(model, rows_of(result.plan.chosen), predictions);
+    return result;
+  }
   try_at_random(*space, predictions, study.seed, result);
 
-  const bool may_stand_anywhere = !plan.grid && std::none_of(plan.axes.begin(), plan.axes.end(),
-                                                             [](const AxisRange& range) { return range.step > 0; });
+  const bool may_stand_anywhere =
+      !plan.grid && model.sights_stand_anywhere() &&
+      std::none_of(plan.axes.begin(), plan.axes.end(), [](const AxisRange& range) { return range.step > 0; });
   options.progress = nullptr;
   for (int round = 0; round < kRefinements && may_stand_anywhere; ++round) {
     PlanningModel::Candidates around =
         model.readings_at(poses_around(plan, result.readings, study.seed * 31 + static_cast<std::uint64_t>(round)));
+    add_costs(study, around);
     auto space_around = std::make_unique<const PlanningSpace>(around.rows, model.known());
     if (space_around->dimension() != space->dimension()) break;
-    std::map<ReadingPlace, std::size_t> places;
-    for (std::size_t i = 0; i < around.readings.size(); ++i) places[place_of(around.readings[i])] = i;
+    std::map<CandidateReading, std::size_t> places;
+    for (std::size_t i = 0; i < around.readings.size(); ++i) places[around.readings[i]] = i;
     PlanningOptions refined = options;
     refined.count = result.plan.chosen.size();
-    for (const SightReading& reading : result.readings) refined.start.push_back(places.at(place_of(reading)));
+    for (const CandidateReading& reading : result.readings) refined.start.push_back(places.at(reading));
     const ReadingPlan better = plan_readings(*space_around, refined);
     if (better.status != PlanningStatus::done) break;
     const StudyPlan before = result;
@@ -247,20 +350,11 @@ StudyPlan plan_study(const Study& study, const std::function<void(double)>& prog
     if (progress) progress(0.6 + 0.2 * (round + 1) / kRefinements);
   }
   result.uncertainty = root_mean_square(value_of(*space, result.plan.chosen, predictions), predictions);
-  const auto rows_of = [&](const std::vector<std::size_t>& chosen) {
-    std::size_t count_rows = 0;
-    for (const std::size_t i : chosen) count_rows += candidates.rows.first_row[i + 1] - candidates.rows.first_row[i];
-    PlanningCandidates::Rows rows(static_cast<Eigen::Index>(count_rows), candidates.rows.rows.cols());
-    Eigen::Index next = 0;
-    for (const std::size_t i : chosen)
-      for (std::size_t k = candidates.rows.first_row[i]; k < candidates.rows.first_row[i + 1]; ++k)
-        rows.row(next++) = candidates.rows.rows.row(static_cast<Eigen::Index>(k));
-    return rows;
-  };
   result.with_prior = uncertainty_with_prior(model, rows_of(result.plan.chosen), predictions);
 
   PlanningOptions curve_options = options;
   curve_options.most_passes = 2;
+  curve_options.time_s = std::numeric_limits<double>::infinity();
   std::vector<std::size_t> counts;
   for (const double share : kShares) {
     const auto number = static_cast<std::size_t>(share * static_cast<double>(result.readings.size()));
@@ -276,10 +370,80 @@ StudyPlan plan_study(const Study& study, const std::function<void(double)>& prog
   }
   say_what_is_enough(plan, result);
   if (progress) progress(0.85);
-  compare_with_grids(model, *space, predictions, result);
+  if (model.sights_stand_anywhere() && !model.has_given_readings()) {
+    compare_with_grids(model, *space, predictions, result);
+  }
   result.not_identified = find_not_in_model(study, model.errors());
   if (progress) progress(1);
   return result;
+}
+
+/// The study with some of its set-ups, and what is known of costs of these.
+Study with_setups(const Study& study, std::size_t subset) {
+  Study part = study;
+  part.setups.clear();
+  for (std::size_t s = 0; s < study.setups.size(); ++s) {
+    if ((subset >> s & 1) != 0) part.setups.push_back(study.setups[s]);
+  }
+  std::erase_if(part.planning->setups, [&](const PlannedSetup& cost) {
+    return std::none_of(part.setups.begin(), part.setups.end(),
+                        [&](const Setup& setup) { return setup.name == cost.name; });
+  });
+  return part;
+}
+
+/// Which instruments are worth setting up: every combination of them is planned, and the one counts whose predicted
+/// uncertainty, with the weak prior for what it does not see, is smallest.
+std::vector<SetupChoice> try_combinations(const Study& study, const std::function<void(double)>& progress) {
+  std::vector<SetupChoice> choices;
+  const std::size_t combinations = (std::size_t{1} << study.setups.size()) - 1;
+  for (std::size_t subset = 1; subset <= combinations; ++subset) {
+    const Study part = with_setups(study, subset);
+    SetupChoice choice{subset, {}, 0, 0, 0, false};
+    double set_up = 0;
+    for (const Setup& setup : part.setups) {
+      choice.setups.push_back(setup.name);
+      set_up += part.planning->set_up_of(setup.name);
+    }
+    if (set_up < part.planning->time) {
+      const StudyPlan plan = plan_all_setups(part, PlanningDepth::choice, {});
+      choice.possible = plan.plan.status == PlanningStatus::done;
+      choice.readings = plan.readings.size();
+      choice.time = plan.time;
+      choice.with_prior = plan.with_prior;
+    }
+    choices.push_back(std::move(choice));
+    if (progress) progress(0.5 * static_cast<double>(subset) / static_cast<double>(combinations));
+  }
+  return choices;
+}
+
+}  // namespace
+
+StudyPlan plan_study(const Study& study, const std::function<void(double)>& progress) {
+  if (!study.planning) throw InputError({.field = "plan"}, "there is nothing to plan", "a table [plan]");
+  check_costs(study);
+  const bool set_up_costs = std::any_of(study.planning->setups.begin(), study.planning->setups.end(),
+                                        [](const PlannedSetup& setup) { return setup.set_up > 0; });
+  const std::size_t setups = study.setups.size();
+  if (!set_up_costs || study.planning->time <= 0 || setups < 2 || setups > kMostTogether) {
+    return plan_all_setups(study, PlanningDepth::whole, progress);
+  }
+  std::vector<SetupChoice> choices = try_combinations(study, progress);
+  const auto worse = [](const SetupChoice& a, const SetupChoice& b) {
+    return a.possible != b.possible ? b.possible : a.with_prior > b.with_prior;
+  };
+  const SetupChoice& best = *std::max_element(choices.begin(), choices.end(), worse);
+  std::vector<std::size_t> kept;
+  for (std::size_t s = 0; s < setups; ++s) {
+    if ((best.subset >> s & 1) != 0) kept.push_back(s);
+  }
+  const auto rest = [&](double share) { progress(0.5 + 0.5 * share); };
+  StudyPlan plan = plan_all_setups(with_setups(study, best.subset), PlanningDepth::whole,
+                                   progress ? std::function<void(double)>(rest) : nullptr);
+  for (CandidateReading& reading : plan.readings) reading.setup = kept[reading.setup];
+  plan.combinations = std::move(choices);
+  return plan;
 }
 
 }  // namespace abbe

@@ -5,34 +5,47 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "abbe/formats/study.h"
 #include "abbe/identify/planning.h"
 #include "abbe/identify/problem.h"
-#include "abbe/instruments/tracker.h"
+#include "abbe/instruments/instrument.h"
 #include "abbe/study/not_identified.h"
 
 namespace abbe {
 
 /// One reading that may be taken: where the machine stands, who looks at what.
-struct SightReading {
-  std::vector<double> pose;  ///< [axes] mm or rad
-  std::size_t setup = 0, station = 0, reflector = 0;
+struct CandidateReading {
+  std::vector<double> pose;    ///< [axes] mm or rad
+  std::size_t setup = 0;       ///< index into Study::setups
+  std::size_t item = 0;        ///< index into Instrument::items()
+  std::vector<double> inputs;  ///< [Instrument::inputs()]
+  bool operator<(const CandidateReading& other) const {
+    return std::tie(pose, setup, item, inputs) < std::tie(other.pose, other.setup, other.item, other.inputs);
+  }
 };
 
 /// The identification problem of a study as far as it can be set up before anything is measured: all errors zero,
-/// stations where the study says they stand.
+/// instruments where the study says they stand.
+///
+/// An instrument that can be read anywhere may be read at any pose; one whose points meet follows with the linear axes
+/// (PoseFreedom::together). All others, and those with a [[setup.plan]] that are no trackers, may be read where their
+/// plans say: a bar on its circles, a laser along its lines.
 class PlanningModel {
  public:
+  /// @param errors  of zero, with the ranges over which they are to be known; null: those of the study
   /// @throws InputError naming what is missing for a plan
-  explicit PlanningModel(const Study& study);
+  explicit PlanningModel(const Study& study, const ErrorSet* errors = nullptr);
 
   struct Candidates {
     PlanningCandidates rows;
-    std::vector<SightReading> readings;  ///< [rows.count()]
-    std::size_t hidden = 0;              ///< without a line of sight
-    std::size_t forbidden = 0;           ///< poses in a forbidden box
+    std::vector<CandidateReading> readings;    ///< [rows.count()]
+    std::vector<InstrumentReadings> of_setup;  ///< [setups] the same
+    std::size_t hidden = 0;                    ///< without a line of sight
+    std::size_t forbidden = 0;                 ///< poses in a forbidden box
   };
   /// What could be read at poses. Rows over the vector of estimates.
   /// @param sight  [poses] the one sight used at each, modulo sight_count(); empty: every one
@@ -54,20 +67,34 @@ class PlanningModel {
 
   const Study& study() const { return study_; }
   const ErrorSet& errors() const { return errors_; }
+  /// Of instruments that may be read at any pose: stations times targets.
   std::size_t sight_count() const { return sights_.size(); }
+  /// True if those instruments may be read wherever the axes go, so that poses beside a chosen one can be tried.
+  bool sights_stand_anywhere() const { return sights_stand_anywhere_; }
+  /// True if some instrument may be read at the poses of its plans only.
+  bool has_given_readings() const { return !given_.empty(); }
   std::size_t parameter_count() const { return parameters_.size(); }
   const std::vector<EstimatedParameter>& parameters() const { return parameters_; }
 
  private:
   struct Sight {
-    std::size_t setup, station, reflector;
+    std::size_t setup, station, target;
   };
-  Problem problem(const std::vector<TrackerReadings>& readings) const;
+  Problem problem(const std::vector<InstrumentReadings>& readings) const;
+  void check_setups() const;
+  void add_sights(std::size_t setup);
+  void add_given(std::size_t setup);
+  void see(std::size_t setup, const InstrumentReadings& plan, std::vector<InstrumentReadings>& readings,
+           Candidates& result) const;
+  InstrumentReadings sight_plan(const Sight& sight, const PoseList& poses, Candidates& result) const;
 
   const Study& study_;
   ErrorSet errors_;
-  std::vector<TrackerSetup> setups_;
+  std::vector<std::shared_ptr<const Instrument>> devices_;
   std::vector<Sight> sights_;
+  bool sights_stand_anywhere_ = true;
+  /// Readings that plans of the study allow, of the set-ups that have no sights.
+  std::vector<std::pair<std::size_t, InstrumentReadings>> given_;
   std::vector<EstimatedParameter> parameters_;
   Eigen::MatrixXd known_;
 };
@@ -95,12 +122,22 @@ struct GridsOfANumber {
   std::optional<GridPoint> any;         ///< the best one with the weak prior, whether it determines everything or not
 };
 
+/// One combination of the set-ups and what it would be worth.
+struct SetupChoice {
+  std::size_t subset = 0;  ///< bit s: Study::setups[s] takes part
+  std::vector<std::string> setups;
+  std::size_t readings = 0;
+  double time = 0;        ///< s
+  double with_prior = 0;  ///< mm, as PlanPoint
+  bool possible = false;  ///< false: no time is left for readings, or too few to determine what they can see
+};
+
 /// A plan of readings and what it is worth.
 struct StudyPlan {
   ReadingPlan plan;
-  std::vector<SightReading> readings;  ///< in the order in which they are to be taken
-  double time = 0;                     ///< s
-  double uncertainty = 0;              ///< mm, as PlanPoint
+  std::vector<CandidateReading> readings;  ///< in the order in which they are to be taken
+  double time = 0;                         ///< s
+  double uncertainty = 0;                  ///< mm, as PlanPoint
   std::size_t candidates = 0, hidden = 0, forbidden = 0;
   std::size_t parameters = 0, seen = 0;
   int refinements = 0;     ///< rounds in which poses beside the chosen ones were tried
@@ -115,10 +152,12 @@ struct StudyPlan {
   std::optional<GridPoint> equal_grid;      ///< smallest determined grid found that is as good as the plan
   std::size_t random_tried = 0;
   std::optional<PlanPoint> random_poses;  ///< median of choices of as many candidates at random
+  std::vector<SetupChoice> combinations;  ///< those that were compared; empty where setting up costs nothing
   NotIdentified not_identified;           ///< errors of the machine that no predicted uncertainty covers
 };
 
-/// Chooses readings for a study with a [plan] table. @throws InputError
+/// Chooses readings for a study with a [plan] table. Where setting an instrument up takes time, every combination of up
+/// to six set-ups is tried, and the best one is planned. @throws InputError
 /// @param progress  share done, 0 to 1
 StudyPlan plan_study(const Study& study, const std::function<void(double)>& progress = {});
 

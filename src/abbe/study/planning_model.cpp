@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <stdexcept>
 
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
@@ -10,11 +12,12 @@
 #include "abbe/geometry/decompositions.h"
 #include "abbe/identify/normal_equations.h"
 #include "abbe/identify/planning_candidates.h"
-#include "abbe/instruments/tracker_observations.h"
-#include "abbe/instruments/tracker_simulation.h"
+#include "abbe/instruments/instrument_simulation.h"
+#include "abbe/instruments/path_plan.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/study/campaign.h"
+#include "abbe/study/planned_readings.h"
 #include "abbe/study/planning.h"
-#include "abbe/study/tracker_campaign.h"
 
 namespace abbe {
 namespace {
@@ -34,17 +37,13 @@ ErrorSet planned_errors(const Study& study) {
   return errors;
 }
 
-void append_planned(TrackerReadings& all, const TrackerReadings& more) {
-  if (all.poses.axis.empty()) {
-    all = more;
-    return;
-  }
-  const auto join = [](auto& a, const auto& b) { a.insert(a.end(), b.begin(), b.end()); };
-  join_poses(all.poses, more.poses);
-  join(all.station, more.station);
-  join(all.reflector, more.reflector);
-  for (std::size_t i = 0; i < 3; ++i) join(all.measured[i], more.measured[i]);
-  all.time_s.clear();
+/// No readings at all, which still have a place in the problem.
+InstrumentReadings empty_readings(const Machine& machine, const Instrument& device) {
+  InstrumentReadings readings;
+  readings.poses.axis.resize(machine.axes.size());
+  readings.inputs.resize(device.inputs().size());
+  readings.measured.resize(device.components().size());
+  return readings;
 }
 
 std::vector<const double*> pointers(const PoseList& poses, std::size_t first = 0) {
@@ -70,55 +69,78 @@ std::array<std::vector<double>, 3> tool_points(const Machine& machine, const Pos
 
 }  // namespace
 
-PlanningModel::PlanningModel(const Study& study) : study_(study) {
+PlanningModel::PlanningModel(const Study& study, const ErrorSet* errors) : study_(study) {
   if (!study.planning) throw InputError({.field = "plan"}, "there is nothing to plan", "a table [plan]");
   if (!study.identification)
     throw InputError({.field = "identify"}, "it is not said what is to be identified", "a table [identify]");
   if (study.setups.empty()) throw InputError({.field = "setup"}, "there is no instrument", "[[setup]]");
-  errors_ = planned_errors(study);
+  errors_ = errors != nullptr ? *errors : planned_errors(study);
+  check_setups();
   for (std::size_t s = 0; s < study.setups.size(); ++s) {
-    const Setup& setup = study.setups[s];
-    const std::string field = "setup " + setup.name;
-    if (setup.instrument != "tracker") {
-      throw InputError({.field = field}, fmt::format("a plan for instrument \"{}\" is not possible", setup.instrument),
-                       "set-ups with instrument = \"tracker\"");
+    const Instrument& device = *devices_.emplace_back(study.setups[s].device->as_planned());
+    const PoseFreedom freedom = device.pose_freedom();
+    const bool anywhere = freedom == PoseFreedom::anywhere || freedom == PoseFreedom::together;
+    if (device.measures_points() || (anywhere && study.setups[s].plans.empty())) {
+      add_sights(s);
+    } else {
+      add_given(s);
     }
-    if (setup.noise_from_data) throw InputError({.field = field}, "a plan has no data", "[setup.noise]");
-    for (const SetupStation& station : setup.stations)
-      if (!station.pose && !station.true_pose)
-        throw InputError({.field = field}, fmt::format("it is not said where {} will stand", station.name),
-                         "pose = { position_mm = [x, y, z], angles_deg = [a, b, c] }, roughly");
-    for (const SetupReflector& reflector : setup.reflectors)
-      if (reflector.offset_from_data)
-        throw InputError({.field = field}, "a plan has no data for the offset of " + reflector.name, "offset_mm");
-    setups_.push_back(tracker_setup(setup, true));
-    for (std::size_t i = 0; i < setup.stations.size(); ++i)
-      for (std::size_t j = 0; j < setup.reflectors.size(); ++j) sights_.push_back({s, i, j});
   }
-  if (sights_.empty()) throw InputError({.field = "setup"}, "the reflectors are missing", "[[setup.reflector]]");
-  const Problem empty = problem(std::vector<TrackerReadings>(setups_.size()));
+  if (sights_.empty() && given_.empty()) {
+    throw InputError({.field = "setup"}, "the reflectors are missing", "[[setup.reflector]]");
+  }
+  std::vector<InstrumentReadings> none;
+  for (const auto& device : devices_) none.push_back(empty_readings(study.machine, *device));
+  const Problem empty = problem(none);
   parameters_ = estimated_parameters(empty);
   Problem with_priors = empty;
   for (const ParameterPrior& prior : study.identification->priors)
     for (const EstimatedParameter& parameter : parameters_)
       if (matches_pattern(parameter.name, prior.parameters) && parameter.is_angle == prior.is_angle)
         with_priors.priors.push_back({parameter.id, prior.value, prior.standard_uncertainty});
-  for (std::size_t s = 0; s < study.setups.size(); ++s)
-    for (const SetupReflector& reflector : study.setups[s].reflectors)
-      for (int k = 0; k < 3; ++k)
-        for (const EstimatedParameter& parameter : parameters_)
-          if (reflector.offset_standard_uncertainty[k] > 0 && parameter.id.observations == s &&
-              parameter.name == fmt::format("{}.offset_{}", reflector.name, "xyz"[k]))
-            with_priors.priors.push_back({parameter.id, reflector.offset[k], reflector.offset_standard_uncertainty[k]});
+  for (std::size_t s = 0; s < devices_.size(); ++s)
+    for (const KnownUnknown& known : known_unknowns_of(*devices_[s]))
+      with_priors.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
   known_ = prior_rows(with_priors);
 }
 
-Problem PlanningModel::problem(const std::vector<TrackerReadings>& readings) const {
+void PlanningModel::check_setups() const {
+  for (const Setup& setup : study_.setups) {
+    const std::string field = "setup " + setup.name;
+    if (setup.noise_from_data) throw InputError({.field = field}, "a plan has no data", "[setup.noise]");
+    if (const auto missing = setup.device->missing_for_plan()) {
+      throw InputError({.field = field}, missing->problem, missing->expected);
+    }
+  }
+}
+
+void PlanningModel::add_sights(std::size_t setup) {
+  const Instrument& device = *devices_[setup];
+  const std::size_t stations = std::max<std::size_t>(1, device.station_names().size());
+  const std::size_t targets = device.target_names().size();
+  if (device.pose_freedom() != PoseFreedom::anywhere) sights_stand_anywhere_ = false;
+  for (std::size_t i = 0; i < stations; ++i)
+    for (std::size_t j = 0; j < targets; ++j) sights_.push_back({setup, i, j});
+}
+
+void PlanningModel::add_given(std::size_t setup) {
+  const Setup& given = study_.setups[setup];
+  if (given.plans.empty()) {
+    throw InputError({.field = "setup " + given.name},
+                     fmt::format("it is not said where instrument \"{}\" can be read", given.instrument),
+                     "[[setup.plan]] with all readings to choose from: its circles, its lines");
+  }
+  InstrumentReadings all;
+  for (std::size_t p = 0; p < given.plans.size(); ++p) {
+    all.append(planned_readings(study_.machine, given, given.plans[p], plan_seed(study_, setup, p)).readings);
+  }
+  given_.emplace_back(setup, std::move(all));
+}
+
+Problem PlanningModel::problem(const std::vector<InstrumentReadings>& readings) const {
   std::vector<std::shared_ptr<Observations>> observations;
-  for (std::size_t s = 0; s < setups_.size(); ++s) {
-    TrackerReadings own = readings[s];
-    own.poses.axis.resize(study_.machine.axes.size());
-    observations.push_back(std::make_shared<TrackerObservations>(study_.machine, errors_, setups_[s], own));
+  for (std::size_t s = 0; s < devices_.size(); ++s) {
+    observations.push_back(devices_[s]->observations(study_.machine, errors_, readings[s]));
   }
   Problem result = estimate_everything(study_.machine, errors_, observations);
   if (!study_.identification->tool_offset)
@@ -126,12 +148,66 @@ Problem PlanningModel::problem(const std::vector<TrackerReadings>& readings) con
   return result;
 }
 
+/// Readings of one sight at poses; what cannot be read at a pose counts as hidden.
+InstrumentReadings PlanningModel::sight_plan(const Sight& sight, const PoseList& poses, Candidates& result) const {
+  const Instrument& device = *devices_[sight.setup];
+  const Machine& machine = study_.machine;
+  InstrumentReadings plan = empty_readings(machine, device);
+  plan.measured.clear();
+  for (std::size_t k = 0; k < poses.count(); ++k) {
+    std::vector<double> pose = poses.pose(k);
+    try {
+      const std::size_t item = device.item_at(machine, sight.target, sight.station, pose);
+      if (device.pose_freedom() == PoseFreedom::together) {
+        const InstrumentItem& ends = device.items()[item];
+        const std::optional<MeetingPoints> points = device.meeting_points(item);
+        const auto reached =
+            points ? meet(machine, pose, ends.from, ends.to, *points, Eigen::Vector3d::Zero()) : std::nullopt;
+        if (!reached) {
+          ++result.hidden;
+          continue;
+        }
+        pose = *reached;
+      }
+      for (const std::vector<double>& inputs : device.planned_inputs(item)) plan.append(pose, item, inputs);
+    } catch (const std::invalid_argument&) {
+      ++result.hidden;  // no item of the target can be read there
+    }
+  }
+  return plan;
+}
+
+/// Adds what of a plan can be read.
+void PlanningModel::see(std::size_t setup, const InstrumentReadings& plan, std::vector<InstrumentReadings>& readings,
+                        Candidates& result) const {
+  if (plan.count() == 0) return;
+  InstrumentSimulationOptions options;
+  options.noise_factor = 0;
+  options.threads = study_.threads;
+  options.readings_per_pose = devices_[setup]->targets_share_poses() ? 1 : 0;
+  SimulatedInstrument seen = devices_[setup]->simulate(study_.machine, ErrorSet{}, plan, options);
+  result.hidden += seen.hidden;
+  std::vector<std::size_t> shown;
+  for (std::size_t k = 0; k < seen.readings.count(); ++k) {
+    const bool finite = std::all_of(seen.readings.measured.begin(), seen.readings.measured.end(),
+                                    [k](const std::vector<double>& values) { return std::isfinite(values[k]); });
+    if (finite) shown.push_back(k);
+  }
+  result.hidden += seen.readings.count() - shown.size();
+  if (shown.size() < seen.readings.count()) seen.readings = seen.readings.subset(shown);
+  seen.readings.time_s.clear();
+  seen.readings.uncertainty.clear();
+  seen.readings.covariance.clear();
+  readings[setup].append(seen.readings);
+}
+
 PlanningModel::Candidates PlanningModel::readings_at(const PoseList& poses,
                                                      const std::vector<std::size_t>& sight) const {
   Candidates result;
   const std::vector<bool> out = forbidden(poses);
   result.forbidden = static_cast<std::size_t>(std::count(out.begin(), out.end(), true));
-  std::vector<TrackerReadings> readings(setups_.size());
+  std::vector<InstrumentReadings> readings;
+  for (const auto& device : devices_) readings.push_back(empty_readings(study_.machine, *device));
   for (std::size_t i = 0; i < sights_.size(); ++i) {
     PoseList own;
     own.axis.resize(poses.axis.size());
@@ -140,20 +216,25 @@ PlanningModel::Candidates PlanningModel::readings_at(const PoseList& poses,
       for (std::size_t a = 0; a < poses.axis.size(); ++a) own.axis[a].push_back(poses.axis[a][k]);
     }
     if (own.count() == 0) continue;
-    TrackerSimulationOptions options;
-    options.measure = study_.setups[sights_[i].setup].measure;
-    options.noise_factor = 0;
-    options.threads = study_.threads;
-    options.sights = {
-        {static_cast<std::uint16_t>(sights_[i].station), static_cast<std::uint16_t>(sights_[i].reflector)}};
-    const SimulatedTracker seen = simulate_tracker(study_.machine, ErrorSet{}, setups_[sights_[i].setup], own, options);
-    result.hidden += seen.hidden;
-    append_planned(readings[sights_[i].setup], seen.readings);
+    see(sights_[i].setup, sight_plan(sights_[i], own, result), readings, result);
+  }
+  for (const auto& [setup, plan] : given_) {
+    const std::vector<bool> blocked = forbidden(plan.poses);
+    std::vector<std::size_t> allowed;
+    for (std::size_t k = 0; k < plan.count(); ++k) {
+      if (!blocked[k]) allowed.push_back(k);
+    }
+    result.forbidden += plan.count() - allowed.size();
+    see(setup, plan.subset(allowed), readings, result);
   }
   result.rows = candidate_rows(problem(readings));
   for (std::size_t s = 0; s < readings.size(); ++s)
-    for (std::size_t k = 0; k < readings[s].count(); ++k)
-      result.readings.push_back({readings[s].poses.pose(k), s, readings[s].station[k], readings[s].reflector[k]});
+    for (std::size_t k = 0; k < readings[s].count(); ++k) {
+      std::vector<double> inputs;
+      for (const std::vector<double>& column : readings[s].inputs) inputs.push_back(column[k]);
+      result.readings.push_back({readings[s].poses.pose(k), s, readings[s].item[k], std::move(inputs)});
+    }
+  result.of_setup = std::move(readings);
   return result;
 }
 

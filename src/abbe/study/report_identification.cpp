@@ -79,36 +79,20 @@ nlohmann::ordered_json stages_json(const StudyResult& result) {
   return stages;
 }
 
-/// "10 um + 5 um/m"
-std::string growing(double at_zero, double per_metre) {
-  if (per_metre == 0) return fmt::format("{:.3g} um", at_zero);
-  if (at_zero == 0) return fmt::format("{:.3g} um/m", per_metre);
-  return fmt::format("{:.3g} um + {:.3g} um/m", at_zero, per_metre);
-}
-
 /// What is taken as the uncertainty of the readings of one set-up.
 std::string noise_words(const Setup& setup) {
   if (setup.noise_from_data) {
     return fmt::format("{}: standard uncertainties of the readings as the data state them.", setup.name);
   }
-  if (setup.device) {
+  const std::string noise = setup.device->noise_words();
+  if (noise.empty()) {
     return fmt::format(
         "{}: standard uncertainty of a reading as the study states it for this {}, independent from "
         "reading to reading.",
         setup.name, setup.instrument);
   }
-  const TrackerNoise& noise = setup.noise;
-  const std::string along = growing(noise.range_um, noise.range_um_per_m),
-                    across = growing(noise.transverse_um, noise.transverse_um_per_m);
-  return along == across
-             ? fmt::format(
-                   "{}: standard uncertainty of a reading {} in every direction, independent from reading to "
-                   "reading.",
-                   setup.name, along)
-             : fmt::format(
-                   "{}: standard uncertainty of a reading {} along the beam and {} across it, independent from "
-                   "reading to reading.",
-                   setup.name, along, across);
+  return fmt::format("{}: standard uncertainty of a reading {}, independent from reading to reading.", setup.name,
+                     noise);
 }
 
 /// What was found about the variances of the readings, and what that means.

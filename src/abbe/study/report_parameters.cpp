@@ -161,7 +161,7 @@ nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResu
     const double unit = is_machine ? micro_per_unit(parameter.is_angle) : (parameter.is_angle ? 1e3 : 1);
     names.push_back(parameter.name);
     groups.push_back(is_machine ? machine_groups[parameter.id.index]
-                                : result.campaign.setups[parameter.id.observations]->name);
+                                : result.campaign.setups[parameter.id.observations].name);
     scales.push_back(unit);
     units.emplace_back(is_machine ? micro_unit(parameter.is_angle) : (parameter.is_angle ? "mrad" : "mm"));
     values.push_back(unit * identified.estimates[i]);

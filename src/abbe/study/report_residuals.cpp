@@ -70,7 +70,7 @@ nlohmann::ordered_json setup_json(const Machine& machine, const StudyResult& res
     if (k % step == 0 || outliers.count(k) != 0) shown.push_back(k);
   }
   nlohmann::ordered_json setup;
-  setup["name"] = result.campaign.setups[s]->name;
+  setup["name"] = result.campaign.setups[s].name;
   setup["readings"] = count;
   setup["outlier_limit"] = for_drawing(norm_limit);
   setup["reading"] = shown;
@@ -79,7 +79,7 @@ nlohmann::ordered_json setup_json(const Machine& machine, const StudyResult& res
     for (std::size_t k : shown) times.push_back(time_s[k]);
     setup["time_s"] = times;
   }
-  if (const std::vector<std::string>& points = result.campaign.setups[s]->points(); !points.empty()) {
+  if (const std::vector<std::string>& points = result.campaign.setups[s].readings.point_name; !points.empty()) {
     std::vector<std::string> names;
     for (std::size_t k : shown) names.push_back(points[k]);
     setup["point"] = names;
@@ -129,8 +129,9 @@ nlohmann::ordered_json report_residuals(const Machine& machine, const StudyResul
   nlohmann::ordered_json setups = nlohmann::ordered_json::array();
   for (std::size_t s = 0; s < result.model.problem.observations.size(); ++s) {
     const Observations& observations = *result.model.problem.observations[s].observations;
-    const CampaignSetup& setup = *result.campaign.setups[s];
-    setups.push_back(setup_json(machine, result, s, observations, residual_components(observations), setup.time_s()));
+    const CampaignSetup& setup = result.campaign.setups[s];
+    setups.push_back(
+        setup_json(machine, result, s, observations, residual_components(observations), setup.readings.time_s));
   }
   return {{"setups", setups}};
 }

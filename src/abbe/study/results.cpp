@@ -80,14 +80,14 @@ std::string residuals_csv(const Study& study, const StudyResult& result) {
   for (std::size_t s = 0; s < result.model.problem.observations.size(); ++s) {
     const Observations& observations = *result.model.problem.observations[s].observations;
     const std::vector<ResidualComponent> components = residual_components(observations);
-    const std::vector<std::string>& points = result.campaign.setups[s]->points();
+    const std::vector<std::string>& points = result.campaign.setups[s].readings.point_name;
     const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
     std::map<std::size_t, double> weights;
     for (const Outlier& outlier : result.identification.outliers) {
       if (outlier.observations == s) weights[outlier.reading] = outlier.weight;
     }
     for (std::size_t k = 0; k < observations.reading_count(); ++k) {
-      std::string start = fmt::format("{},{},", csv_field(result.campaign.setups[s]->name), k);
+      std::string start = fmt::format("{},{},", csv_field(result.campaign.setups[s].name), k);
       if (!points.empty() && !points[k].empty()) start += csv_field(points[k]);
       const std::vector<double> positions = observations.positions(k);
       for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -113,8 +113,8 @@ std::string write_results(const Study& study, const StudyResult& result) {
   folder.write("summary.json", summary_text);
   folder.write("machine.toml", machine_text(study.machine));
   if (result.campaign.truth) {
-    for (const std::shared_ptr<CampaignSetup>& setup : result.campaign.setups) {
-      folder.write("readings/" + setup->name + ".csv", setup->readings_text(study.machine));
+    for (const CampaignSetup& setup : result.campaign.setups) {
+      folder.write("readings/" + setup.name + ".csv", setup.readings_text(study.machine));
     }
     ErrorsFile truth{
         .errors = *result.campaign.truth, .covariance = {}, .provenance = {{"method", kTruthOfSimulation}}};

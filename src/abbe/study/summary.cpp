@@ -136,7 +136,7 @@ nlohmann::ordered_json study_summary(const Study& study, const StudyResult& resu
   for (std::size_t s = 0; s < study.setups.size() && s < result.campaign.setups.size(); ++s) {
     json["setups"].push_back({{"name", study.setups[s].name},
                               {"instrument", study.setups[s].instrument},
-                              {"readings", result.campaign.setups[s]->reading_count()}});
+                              {"readings", result.campaign.setups[s].reading_count()}});
   }
   if (study.identification) {
     const Identification& identified = result.identification;

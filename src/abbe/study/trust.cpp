@@ -41,7 +41,7 @@ HeldOutErrors held_out_errors(const UnseenPoses& unseen, const FitStatistics& fi
 
 std::vector<ReadingFacts> facts_of(const Campaign& campaign) {
   std::vector<ReadingFacts> facts;
-  for (const std::shared_ptr<CampaignSetup>& setup : campaign.setups) facts.push_back(setup->facts());
+  for (const CampaignSetup& setup : campaign.setups) facts.push_back(setup.facts());
   return facts;
 }
 

@@ -63,12 +63,12 @@ std::optional<ErrorSet> truth_in_gauge(const Study& study, const StudyResult& re
   std::erase_if(problem.priors, [](const Prior& prior) { return !prior.parameter.is_machine(); });
   for (Prior& prior : problem.priors) prior.value = real[prior.parameter.index];
   for (std::size_t s = 0; s < result.campaign.setups.size(); ++s) {
-    for (const KnownUnknown& known : result.campaign.setups[s]->true_unknowns()) {
+    for (const KnownUnknown& known : result.campaign.setups[s].true_unknowns()) {
       problem.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
     }
   }
   for (std::size_t s = 0; s < result.campaign.setups.size(); ++s) {
-    problem.observations[s].observations = result.campaign.setups[s]->exact_observations(study.machine, problem.errors);
+    problem.observations[s].observations = result.campaign.setups[s].exact_observations(study.machine, problem.errors);
     problem.observations[s].observations->set_parameters(problem.errors.parameters(), result.identification.setup[s]);
   }
   SolverOptions options;

@@ -7,13 +7,10 @@
 
 #include "abbe/identify/identify.h"
 #include "abbe/identify/prediction.h"
-#include "abbe/instruments/instrument_observations.h"
-#include "abbe/instruments/tracker_start.h"
-#include "abbe/study/instrument_campaign.h"
+#include "abbe/instruments/instrument_simulation.h"
 #include "abbe/study/job.h"
 #include "abbe/study/predicted_readings.h"
 #include "abbe/study/random_poses.h"
-#include "abbe/study/tracker_campaign.h"
 #include "abbe/verify/compensated_poses.h"
 #include "abbe/verify/determined_part.h"
 #include "abbe/verify/error_map.h"
@@ -50,42 +47,15 @@ void add_coverage(const StudyResult& result, std::size_t s, Observations& observ
   tally.unseen.readings->add(reading_coverage(observations, identified, s, result.weighed->components.variance));
 }
 
-void weigh_in_micrometres(TrackerSetup& setup, TrackerReadings& readings) {
-  for (TrackerStation& station : setup.stations) station.noise = TrackerNoise::isotropic(1, 0);
-  readings.stated = StatedUncertainty::none;
-  readings.uncertainty = {};
-}
-
-/// The readings held out of the fit (or used in it), as a list of their own.
-TrackerReadings select(const TrackerReadings& all, const std::vector<std::uint8_t>& use, bool used) {
-  TrackerReadings part;
-  part.measure = all.measure;
-  part.stated = all.stated;
-  part.poses.axis.resize(all.poses.axis.size());
-  part.poses.approach.resize(all.poses.approach.size());
-  for (std::size_t k = 0; k < all.count(); ++k) {
-    if ((use.empty() || use[k] != 0) != used) continue;
-    for (std::size_t i = 0; i < all.poses.axis.size(); ++i) part.poses.axis[i].push_back(all.poses.axis[i][k]);
-    for (std::size_t i = 0; i < all.poses.approach.size(); ++i)
-      part.poses.approach[i].push_back(all.poses.approach[i][k]);
-    part.station.push_back(all.station[k]);
-    part.reflector.push_back(all.reflector[k]);
-    for (std::size_t i = 0; i < 3; ++i) part.measured[i].push_back(all.measured[i][k]);
-    if (!all.point_name.empty()) part.point_name.push_back(all.point_name[k]);
-    if (!all.time_s.empty()) part.time_s.push_back(all.time_s[k]);
-    for (std::size_t i = 0; i < 6; ++i) {
-      if (!all.uncertainty[i].empty()) part.uncertainty[i].push_back(all.uncertainty[i][k]);
-    }
+/// Distances of the nominal machine from readings, the numbers of the set-up fitted to these readings.
+std::vector<double> refitted_nominal_errors(const Machine& machine, const Instrument& device,
+                                            const InstrumentReadings& readings) {
+  const std::unique_ptr<Observations> observations =
+      device.started(machine, readings).instrument->observations(machine, ErrorSet{}, readings);
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < readings.count(); ++k) {
+    if (const auto length = observations->length_of_deviation(k)) errors.push_back(*length);
   }
-  return part;
-}
-
-/// Distances of the nominal machine from points, with station poses fitted to them.
-std::vector<double> nominal_errors(const Machine& machine, TrackerSetup setup, const TrackerReadings& readings) {
-  apply(find_station_poses(machine, ErrorSet{}, setup, readings), setup);
-  const TrackerObservations observations(machine, ErrorSet{}, setup, readings);
-  std::vector<double> errors(readings.count());
-  for (std::size_t k = 0; k < errors.size(); ++k) errors[k] = observations.distance(k).norm();
   return errors;
 }
 
@@ -95,47 +65,10 @@ std::vector<AxisRange> known_ranges(const Study& study, const StudyResult& resul
   return unseen_ranges(study.machine, errors);
 }
 
-/// @param readings  of a tracker that took no part in the fit
-void add_tracker(const Study& study, const StudyResult& result, std::size_t s, const TrackerCampaign& setup,
-                 TrackerReadings readings, Tally& tally) {
-  const ErrorSet& identified = result.identification.errors;
-  const bool simulated = tally.unseen.against_truth;
-  const std::vector<double> before = nominal_errors(study.machine, simulated ? setup.truth : setup.start, readings);
-  tally.unseen.before.insert(tally.unseen.before.end(), before.begin(), before.end());
-  if (!simulated) {
-    TrackerObservations as_stated(study.machine, identified, setup.start, readings);
-    as_stated.set_parameters(identified.parameters(), result.identification.setup[s]);
-    tally.add_against_noise(as_stated);
-  }
-  tally.unseen.fitted_before += 6 * setup.start.stations.size();
-  // The observations carry the identified poses and offsets; build them as the fit did, so that the unknowns
-  // correspond.
-  if (result.weighed) {
-    TrackerObservations stated(study.machine, identified, setup.start, readings);
-    add_coverage(result, s, stated, tally);
-  }
-  TrackerSetup weighed = setup.start;
-  weigh_in_micrometres(weighed, readings);
-  TrackerObservations observations(study.machine, identified, weighed, std::move(readings));
-  observations.set_parameters(identified.parameters(), result.identification.setup[s]);
-  tally.add(predict_readings(observations, result.identification, s));
-}
-
-TrackerReadings unseen_tracker_readings(const Study& study, const StudyResult& result, std::size_t s,
-                                        const TrackerCampaign& setup, std::size_t poses) {
-  TrackerSimulationOptions options;
-  options.noise_factor = 0;
-  options.line_of_sight = false;
-  options.choice = SightChoice::cycle;
-  options.threads = study.threads;
-  const PoseList list = random_plan(study.machine, known_ranges(study, result), poses, unseen_seed(study.seed) + s);
-  return simulate_tracker(study.machine, *result.campaign.truth, setup.truth, list, options).readings;
-}
-
 /// Distances of the nominal machine from readings, the set-up's unknowns fitted to all readings that were used.
-std::vector<double> nominal_deviations(const Study& study, const StudyResult& result, std::size_t s,
-                                       const InstrumentReadings& held_out) {
-  const InstrumentCampaign& setup = dynamic_cast<const InstrumentCampaign&>(*result.campaign.setups[s]);
+std::vector<double> nominal_errors(const Study& study, const StudyResult& result, std::size_t s,
+                                   const InstrumentReadings& readings) {
+  const CampaignSetup& setup = result.campaign.setups[s];
   const std::unique_ptr<Observations> all = setup.observations(study.machine, ErrorSet{});
   Problem problem = estimate_everything(study.machine, ErrorSet{}, {borrowed(*all)});
   problem.machine_parameters.clear();
@@ -144,39 +77,64 @@ std::vector<double> nominal_deviations(const Study& study, const StudyResult& re
     problem.priors.push_back({{0, known.unknown}, known.value, known.standard_uncertainty});
   }
   if (!all->unknowns().empty()) identify(problem, identify_options(study));
-  InstrumentObservations apart(
-      study.machine, ErrorSet{},
-      setup.device->with_values(dynamic_cast<const InstrumentObservations&>(*all).quantity_values()), held_out);
+  const std::unique_ptr<Observations> apart = setup.start->observations(study.machine, ErrorSet{}, readings);
+  apart->set_parameters(ErrorSet{}.parameters(), all->unknown_values());
   std::vector<double> lengths;
-  for (std::size_t k = 0; k < apart.reading_count(); ++k) append_length(apart, k, lengths);
+  for (std::size_t k = 0; k < apart->reading_count(); ++k) append_length(*apart, k, lengths);
   return lengths;
 }
 
-/// Readings of an instrument that were held out of the fit.
-void add_instrument(const Study& study, const StudyResult& result, std::size_t s, const InstrumentCampaign& setup,
-                    Tally& tally) {
+/// @param readings  that took no part in the fit
+void add_readings(const Study& study, const StudyResult& result, std::size_t s, const InstrumentReadings& readings,
+                  Tally& tally) {
+  const CampaignSetup& setup = result.campaign.setups[s];
+  const std::vector<ReadingComponent>& components = setup.device->components();
+  const bool has_length = std::any_of(components.begin(), components.end(),
+                                      [](const ReadingComponent& component) { return !component.is_angle; });
+  if (readings.count() == 0 || !has_length) return;
+  const ErrorSet& identified = result.identification.errors;
+  const bool simulated = tally.unseen.against_truth;
+  // Points against the truth are compared by their coordinates, whatever the instrument reads.
+  const std::shared_ptr<const Instrument> start = simulated ? setup.start->in_coordinates() : setup.start;
+  const std::size_t fitted = start->fitted_by_start();
+  const std::vector<double> before =
+      fitted > 0 ? refitted_nominal_errors(study.machine, simulated ? *setup.truth->in_coordinates() : *start, readings)
+                 : nominal_errors(study, result, s, readings);
+  tally.unseen.before.insert(tally.unseen.before.end(), before.begin(), before.end());
+  tally.unseen.fitted_before += fitted;
+  // As the fit had them, so that the unknowns correspond.
+  const std::unique_ptr<Observations> as_stated = start->observations(study.machine, identified, readings);
+  as_stated->set_parameters(identified.parameters(), result.identification.setup[s]);
+  if (!simulated) tally.add_against_noise(*as_stated);
+  if (result.weighed) add_coverage(result, s, *as_stated, tally);
+  const std::unique_ptr<Observations> in_um = start->observations_in_um(study.machine, identified, readings);
+  in_um->set_parameters(identified.parameters(), result.identification.setup[s]);
+  tally.add(predict_readings(*in_um, result.identification, s));
+}
+
+/// What an instrument that sees points would read at random poses, each from one of its stations on one of its targets.
+InstrumentReadings unseen_points(const Study& study, const StudyResult& result, std::size_t s, std::size_t poses) {
+  const std::shared_ptr<const Instrument> truth = result.campaign.setups[s].truth->in_coordinates();
+  const PoseList list = random_plan(study.machine, known_ranges(study, result), poses, unseen_seed(study.seed) + s);
+  InstrumentReadings plan;
+  for (std::size_t k = 0; k < list.count(); ++k) plan.append(list.pose(k), k % truth->items().size());
+  InstrumentSimulationOptions options;
+  options.noise_factor = 0;
+  options.line_of_sight = false;
+  options.threads = study.threads;
+  return truth->simulate(study.machine, *result.campaign.truth, plan, options).readings;
+}
+
+InstrumentReadings held_out_readings(const Study& study, const StudyResult& result, std::size_t s) {
+  if (study.identification->held_out_file) {
+    return s == 0 ? read_held_out(study, result.campaign) : InstrumentReadings{};
+  }
   const std::vector<std::uint8_t>& use = result.model.problem.observations[s].use;
   std::vector<std::size_t> held_out;
   for (std::size_t k = 0; k < use.size(); ++k) {
     if (use[k] == 0) held_out.push_back(k);
   }
-  const std::vector<ReadingComponent>& components = setup.device->components();
-  const bool has_length = std::any_of(components.begin(), components.end(),
-                                      [](const ReadingComponent& component) { return !component.is_angle; });
-  if (held_out.empty() || !has_length) return;
-  InstrumentReadings readings = setup.readings.subset(held_out);
-  const std::vector<double> before = nominal_deviations(study, result, s, readings);
-  tally.unseen.before.insert(tally.unseen.before.end(), before.begin(), before.end());
-  {
-    InstrumentObservations as_stated(study.machine, result.identification.errors, setup.device, readings);
-    as_stated.set_parameters(result.identification.errors.parameters(), result.identification.setup[s]);
-    tally.add_against_noise(as_stated);
-    if (result.weighed) add_coverage(result, s, as_stated, tally);
-  }
-  readings.uncertainty.assign(components.size(), std::vector<double>(readings.count(), 1e-3));
-  InstrumentObservations observations(study.machine, result.identification.errors, setup.device, std::move(readings));
-  observations.set_parameters(result.identification.errors.parameters(), result.identification.setup[s]);
-  tally.add(predict_readings(observations, result.identification, s));
+  return result.campaign.setups[s].readings.subset(held_out);
 }
 
 ParameterCovariance covariance_of_errors(const StudyResult& result) {
@@ -281,25 +239,14 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
   UnseenPoses unseen;
   unseen.against_truth = result.campaign.truth.has_value();
   Tally tally{unseen};
-  const std::vector<std::shared_ptr<CampaignSetup>>& setups = result.campaign.setups;
-  const bool trackers_only = std::none_of(study.setups.begin(), study.setups.end(),
-                                          [](const Setup& setup) { return setup.device != nullptr; });
-  add_volumetric(study, result, poses, !trackers_only, tally);
-  for (std::size_t s = 0; s < setups.size() && (!unseen.against_truth || trackers_only); ++s) {
-    if (const auto* tracker = dynamic_cast<const TrackerCampaign*>(setups[s].get())) {
-      TrackerReadings readings;
-      if (unseen.against_truth) {
-        readings = unseen_tracker_readings(study, result, s, *tracker, poses);
-      } else if (study.identification->held_out_file) {
-        if (s > 0) continue;
-        readings = read_held_out(study, *tracker);
-      } else {
-        readings = select(tracker->readings, result.model.problem.observations[s].use, false);
-      }
-      if (readings.count() > 0) add_tracker(study, result, s, *tracker, std::move(readings), tally);
-    } else {
-      add_instrument(study, result, s, dynamic_cast<const InstrumentCampaign&>(*setups[s]), tally);
-    }
+  const std::vector<CampaignSetup>& setups = result.campaign.setups;
+  const bool points_only = std::all_of(setups.begin(), setups.end(),
+                                       [](const CampaignSetup& setup) { return setup.device->measures_points(); });
+  add_volumetric(study, result, poses, !points_only, tally);
+  for (std::size_t s = 0; s < setups.size() && (!unseen.against_truth || points_only); ++s) {
+    add_readings(study, result, s,
+                 unseen.against_truth ? unseen_points(study, result, s, poses) : held_out_readings(study, result, s),
+                 tally);
   }
   unseen.numbers = tally.coordinates;
   unseen.coverage =
@@ -308,7 +255,7 @@ UnseenPoses evaluate_unseen(const Study& study, const StudyResult& result, std::
     unseen.times_noise = std::sqrt(tally.noise_square / static_cast<double>(tally.noise_count));
   }
   unseen.quantity = !unseen.against_truth ? UnseenQuantity::held_out_residual
-                    : trackers_only       ? UnseenQuantity::error_at_reflectors
+                    : points_only         ? UnseenQuantity::error_at_reflectors
                                           : UnseenQuantity::volumetric_error;
   unseen.before_statistics = sample_statistics(unseen.before);
   unseen.after_statistics = sample_statistics(unseen.after);

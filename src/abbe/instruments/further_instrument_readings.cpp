@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/identify/trial_readings.h"
+#include "abbe/instruments/further_readings.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/instruments/path_plan.h"
@@ -30,19 +30,19 @@ struct Change {
   std::vector<std::size_t> places;  // quantities of other values
 };
 
-/// One set-up of a problem with the trials that can be made of it.
+/// One set-up with the trials that can be made of it.
 class InstrumentTrials {
  public:
-  InstrumentTrials(const Problem& problem, std::size_t observations, const InstrumentObservations& measured)
-      : problem_(problem),
-        observations_(observations),
+  InstrumentTrials(const Machine& machine, const ErrorSet& errors, const InstrumentObservations& measured)
+      : machine_(machine),
+        errors_(errors),
         measured_(measured),
         values_(measured.quantity_values()),
         device_(measured.instrument().with_values(values_)),
         freedom_(device_->pose_freedom()),
-        ranges_(measured_ranges(problem.machine, measured.readings().poses)) {}
+        ranges_(measured_ranges(machine, measured.readings().poses)) {}
 
-  void add(std::vector<PossibleMeasurement>& list) {
+  void add(std::vector<FurtherReadings>& list) {
     add_positions(list);
     if (freedom_ == PoseFreedom::at_distance) add_bars(list);
     add_places(list);
@@ -50,11 +50,11 @@ class InstrumentTrials {
 
  private:
   bool follows() const { return freedom_ == PoseFreedom::together || freedom_ == PoseFreedom::at_distance; }
-  bool may_move(std::size_t axis) const { return !follows() || problem_.machine.axes[axis].kind == AxisKind::rotary; }
+  bool may_move(std::size_t axis) const { return !follows() || machine_.axes[axis].kind == AxisKind::rotary; }
   std::vector<bool> no_axes() const { return std::vector<bool>(ranges_.size(), false); }
 
-  void add_positions(std::vector<PossibleMeasurement>& list) {
-    const std::vector<Axis>& axes = problem_.machine.axes;
+  void add_positions(std::vector<FurtherReadings>& list) {
+    const std::vector<Axis>& axes = machine_.axes;
     std::vector<bool> all = no_axes();
     for (const bool moved : {true, false})
       for (std::size_t i = 0; i < axes.size(); ++i) {
@@ -73,7 +73,7 @@ class InstrumentTrials {
                 device_);
   }
 
-  void add_bars(std::vector<PossibleMeasurement>& list) {
+  void add_bars(std::vector<FurtherReadings>& list) {
     std::vector<bool> rotary = no_axes();
     for (std::size_t i = 0; i < ranges_.size(); ++i) rotary[i] = may_move(i) && ranges_[i].moved();
     add_trial(list, fmt::format("{} in other directions", name()), {no_axes(), true, 1, {}}, device_);
@@ -85,7 +85,7 @@ class InstrumentTrials {
   }
 
   /// Balls, spheres, optics, reflectors somewhere else.
-  void add_places(std::vector<PossibleMeasurement>& list) {
+  void add_places(std::vector<FurtherReadings>& list) {
     const std::vector<SetupQuantity>& quantities = device_->quantities();
     std::size_t points = 0;
     std::vector<bool> moved = no_axes();
@@ -114,7 +114,7 @@ class InstrumentTrials {
   /// Readings that the change allows; nothing measured yet.
   InstrumentReadings plan(const Change& change, const Instrument& device) const {
     const InstrumentReadings& readings = measured_.readings();
-    const Machine& machine = problem_.machine;
+    const Machine& machine = machine_;
     std::vector<std::size_t> bases;
     for (std::size_t k = 0; k < readings.count(); ++k) {
       const std::vector<std::size_t>& used = device.items()[readings.item[k]].quantities;
@@ -162,7 +162,7 @@ class InstrumentTrials {
   /// Error motions have no value outside their range.
   bool within_known(const std::vector<double>& pose) const {
     for (std::size_t i = 0; i < pose.size(); ++i)
-      if (!problem_.errors.covers(i, pose[i])) return false;
+      if (!errors_.covers(i, pose[i])) return false;
     return true;
   }
 
@@ -171,8 +171,7 @@ class InstrumentTrials {
                               const InstrumentReadings& planned) const {
     InstrumentSimulationOptions options;
     options.noise_factor = 0;
-    InstrumentReadings all =
-        simulate_instrument(problem_.machine, without_errors(problem_), device, planned, options).readings;
+    InstrumentReadings all = simulate_instrument(machine_, errors_, device, planned, options).readings;
     const InstrumentReadings& before = measured_.readings();
     std::vector<std::size_t> kept;
     for (std::size_t k = 0; k < all.count(); ++k) {
@@ -195,23 +194,23 @@ class InstrumentTrials {
     return all;
   }
 
-  bool add_trial(std::vector<PossibleMeasurement>& list, std::string words, const Change& change,
+  bool add_trial(std::vector<FurtherReadings>& list, std::string words, const Change& change,
                  const std::shared_ptr<const Instrument>& device) const {
     const InstrumentReadings planned = plan(change, *device);
     if (planned.count() < kLeastReadings) return false;
     const InstrumentReadings readings = readable(device, planned);
     if (readings.count() < kLeastReadings) return false;
-    InstrumentObservations trial(problem_.machine, without_errors(problem_), device, readings);
+    const auto trial = std::make_shared<InstrumentObservations>(machine_, errors_, device, readings);
     std::vector<TrialUnknown> unknowns;
-    for (std::size_t u = 0; u < trial.unknowns().size(); ++u) {
-      const std::size_t q = trial.quantity_of(u);
+    for (std::size_t u = 0; u < trial->unknowns().size(); ++u) {
+      const std::size_t q = trial->quantity_of(u);
       const SetupQuantity& quantity = device->quantities()[q];
       const bool moved = std::find(change.places.begin(), change.places.end(), q) != change.places.end();
       // What is set up anew has new zeros and a new alignment; a bar, a nest and a probe keep theirs.
       const bool anew = moved || (!change.places.empty() && !follows() && !is_coordinate(quantity.name));
       unknowns.push_back({anew, anew && quantity.knowledge == Knowledge::within ? quantity.standard_uncertainty : 0.0});
     }
-    list.push_back(trial_measurement(problem_, observations_, std::move(words), trial, unknowns));
+    list.push_back({std::move(words), trial, std::move(unknowns), {}});
     return true;
   }
 
@@ -219,8 +218,8 @@ class InstrumentTrials {
     return quantity.ends_with(".x") || quantity.ends_with(".y") || quantity.ends_with(".z");
   }
 
-  const Problem& problem_;
-  std::size_t observations_;
+  const Machine& machine_;
+  const ErrorSet& errors_;
   const InstrumentObservations& measured_;
   std::vector<double> values_;
   std::shared_ptr<const Instrument> device_;  // at the present values
@@ -230,12 +229,11 @@ class InstrumentTrials {
 
 }  // namespace
 
-void add_instrument_readings(const Problem& problem, std::vector<PossibleMeasurement>& list) {
-  for (std::size_t o = 0; o < problem.observations.size(); ++o) {
-    const auto* measured = dynamic_cast<const InstrumentObservations*>(problem.observations[o].observations.get());
-    if (measured == nullptr || measured->reading_count() == 0) continue;
-    InstrumentTrials(problem, o, *measured).add(list);
-  }
+std::vector<FurtherReadings> InstrumentObservations::further_readings(const Machine& machine,
+                                                                      const ErrorSet& errors) const {
+  std::vector<FurtherReadings> list;
+  if (reading_count() > 0) InstrumentTrials(machine, errors, *this).add(list);
+  return list;
 }
 
 }  // namespace abbe

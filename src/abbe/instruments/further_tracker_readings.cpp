@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/identify/trial_readings.h"
+#include "abbe/instruments/further_readings.h"
 #include "abbe/instruments/tracker_observations.h"
 #include "abbe/instruments/tracker_residual.h"
 #include "abbe/instruments/tracker_simulation.h"
@@ -15,30 +15,25 @@
 namespace abbe {
 namespace {
 
-using Eigen::Index;
 using Eigen::Vector3d;
 constexpr std::size_t kTrialPoses = 90;
 constexpr double kNewReflector_mm = 100;
 constexpr double kNewStation_mm = 500;
 
-/// One tracker set-up of a problem with the trials that can be made of it.
+/// One tracker set-up with the trials that can be made of it.
 class TrackerTrials {
  public:
-  TrackerTrials(const Problem& problem, std::size_t observations, const TrackerObservations& tracker)
-      : problem_(problem),
-        observations_(observations),
-        tracker_(tracker),
-        errors_(without_errors(problem)),
-        parameters_(estimated_parameters(problem)) {
+  TrackerTrials(const Machine& machine, const ErrorSet& errors, const TrackerObservations& tracker)
+      : machine_(machine), errors_(errors), tracker_(tracker) {
     if (tracker.readings().stated != StatedUncertainty::none) noise_ = typical_noise(tracker.readings());
-    for (const TrialRange& range : measured_ranges(problem.machine, tracker.readings().poses)) {
+    for (const TrialRange& range : measured_ranges(machine, tracker.readings().poses)) {
       from_.push_back(range.from);
       to_.push_back(range.to);
     }
   }
 
-  void add(std::vector<PossibleMeasurement>& list) {
-    const std::vector<Axis>& axes = problem_.machine.axes;
+  void add(std::vector<FurtherReadings>& list) {
+    const std::vector<Axis>& axes = machine_.axes;
     for (std::size_t i = 0; i < axes.size(); ++i)
       if (to_[i] > from_[i])
         add_trial(list, fmt::format("more positions of {}, not in equal steps,", axes[i].name), poses(i),
@@ -96,7 +91,7 @@ class TrackerTrials {
   /// Random positions of one axis (of all, for the number of axes); the others as they were measured.
   PoseList poses(std::size_t moving) const {
     const PoseList& measured = tracker_.readings().poses;
-    const std::vector<Axis>& axes = problem_.machine.axes;
+    const std::vector<Axis>& axes = machine_.axes;
     PoseList result;
     for (std::size_t k = 0; k < kTrialPoses; ++k) {
       RandomStream random(17, k);
@@ -126,8 +121,8 @@ class TrackerTrials {
     return {kNewReflector_mm * first, kNewReflector_mm * second, kNewReflector_mm * line};
   }
 
-  void add_trial(std::vector<PossibleMeasurement>& list, std::string words, const PoseList& trial_poses,
-                 TrackerSetup setup, const std::vector<Sight>& sights) const {
+  void add_trial(std::vector<FurtherReadings>& list, std::string words, const PoseList& trial_poses, TrackerSetup setup,
+                 const std::vector<Sight>& sights) const {
     if (sights.empty()) return;
     if (tracker_.readings().stated != StatedUncertainty::none) {
       // The stations have no noise model of their own then.
@@ -139,47 +134,43 @@ class TrackerTrials {
     options.line_of_sight = false;
     options.sights = sights;
     options.choice = sights.size() > 3 ? SightChoice::cycle : SightChoice::every;
-    const TrackerReadings readings = simulate_tracker(problem_.machine, errors_, setup, trial_poses, options).readings;
+    const TrackerReadings readings = simulate_tracker(machine_, errors_, setup, trial_poses, options).readings;
     if (readings.count() == 0) return;
-    TrackerObservations trial(problem_.machine, errors_, setup, readings);
-    PossibleMeasurement measurement = trial_measurement(problem_, observations_, std::move(words), trial,
-                                                        std::vector<TrialUnknown>(trial.unknowns().size()));
-    turn_as_ours(measurement.rows);
-    list.push_back(std::move(measurement));
+    FurtherReadings further;
+    further.words = std::move(words);
+    further.trial = std::make_shared<TrackerObservations>(machine_, errors_, setup, readings);
+    further.unknowns.resize(further.trial->unknowns().size());
+    further.turned = turned();
+    list.push_back(std::move(further));
   }
 
   // A trial's station has its present rotation as the given one; ours has a rotation vector w on top of the given one:
   // a change of w turns it about the columns of J(w).
-  void turn_as_ours(PlanningCandidates::Rows& rows) const {
+  std::vector<std::pair<std::string, Eigen::Matrix3d>> turned() const {
+    std::vector<std::pair<std::string, Eigen::Matrix3d>> result;
     const std::vector<SetupUnknown>& unknowns = tracker_.unknowns();
     const std::vector<double> values = tracker_.unknown_values();
     for (std::size_t u = 0; u + 2 < unknowns.size(); ++u) {
       if (!unknowns[u].name.ends_with(".rx")) continue;
-      for (std::size_t c = 0; c + 2 < parameters_.size(); ++c) {
-        if (parameters_[c].id.observations != observations_ || parameters_[c].name != unknowns[u].name) continue;
-        const Eigen::Matrix3d axes = rotation_vector_axes({values[u], values[u + 1], values[u + 2]});
-        rows.middleCols<3>(static_cast<Index>(c)) = (rows.middleCols<3>(static_cast<Index>(c)) * axes).eval();
-      }
+      result.emplace_back(unknowns[u].name, rotation_vector_axes({values[u], values[u + 1], values[u + 2]}));
     }
+    return result;
   }
 
-  const Problem& problem_;
-  std::size_t observations_;
+  const Machine& machine_;
+  const ErrorSet& errors_;
   const TrackerObservations& tracker_;
-  ErrorSet errors_;
-  std::vector<EstimatedParameter> parameters_;
   TrackerNoise noise_;  ///< if the data state their uncertainties
   std::vector<double> from_, to_;
 };
 
 }  // namespace
 
-void add_tracker_readings(const Problem& problem, std::vector<PossibleMeasurement>& list) {
-  for (std::size_t o = 0; o < problem.observations.size(); ++o) {
-    const auto* tracker = dynamic_cast<const TrackerObservations*>(problem.observations[o].observations.get());
-    if (!tracker || tracker->reading_count() == 0) continue;
-    TrackerTrials(problem, o, *tracker).add(list);
-  }
+std::vector<FurtherReadings> TrackerObservations::further_readings(const Machine& machine,
+                                                                   const ErrorSet& errors) const {
+  std::vector<FurtherReadings> list;
+  if (reading_count() > 0) TrackerTrials(machine, errors, *this).add(list);
+  return list;
 }
 
 }  // namespace abbe

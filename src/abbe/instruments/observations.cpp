@@ -1,0 +1,22 @@
+#include "abbe/instruments/observations.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "abbe/instruments/further_readings.h"
+
+namespace abbe {
+
+std::vector<FurtherReadings> Observations::further_readings(const Machine&, const ErrorSet&) const { return {}; }
+
+std::optional<double> Observations::length_of_deviation(std::size_t reading) const {
+  const std::vector<double> apart = deviation(reading);
+  double square = -1;
+  for (std::size_t row = 0; row < apart.size(); ++row) {
+    if (!components()[row].is_angle) square = std::max(square, 0.0) + apart[row] * apart[row];
+  }
+  if (square < 0) return std::nullopt;
+  return std::sqrt(square);
+}
+
+}  // namespace abbe
