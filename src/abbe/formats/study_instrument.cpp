@@ -18,6 +18,7 @@ constexpr InstrumentForm kForms[] = {
     {"autocollimator", read_autocollimator},
     {"board-marks", read_board_marks},
     {"polygon", read_polygon},
+    {"grid-encoder", read_grid_encoder},
     {"interferometer", read_interferometer},
     {"tracking-interferometer", read_tracking_interferometer},
 };

@@ -39,6 +39,7 @@ std::shared_ptr<Instrument> read_autocollimator(TomlTable& table, const Instrume
 std::shared_ptr<Instrument> read_ball_bar(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_board_marks(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_dials(TomlTable& table, const InstrumentContext& context);
+std::shared_ptr<Instrument> read_grid_encoder(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_level(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_polygon(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_r_test(TomlTable& table, const InstrumentContext& context);
