@@ -120,19 +120,19 @@ void add_check_command(CommandLine& line) {
       "  abbe check examples/machines/aguado.machine.toml --errors examples/aguado/results/aguado/errors.toml\n"
       "  abbe check examples/parts/wedge.stl --unit mm\n"
       "A frozen compensation (abbe compensate freeze) is refused here as a controller would refuse it.\n"
-      "Exit code 1: a mesh in which inside and outside are not told apart everywhere (turned or branching edges,\n"
-      "duplicate triangles, inside out), or of which faces were left out. Holes are counted and are no error.");
+      "Exit code 1: the inside and outside of a mesh cannot be told apart everywhere (turned or branching edges,\n"
+      "duplicate triangles, inside out), or faces were left out. Holes are counted; they are not an error.");
   command
       ->add_option("file", options->file,
                    "Machine file (*.machine.toml), frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or "
                    "point cloud (.xyz .asc .pts .csv .ply)")
       ->required();
   const Option* errors_option =
-      command->add_option("--errors", options->errors, "Errors file of this machine to validate too (*.errors.toml)");
+      command->add_option("--errors", options->errors, "Also validate an errors file of this machine (*.errors.toml)");
   command->add_flag("--json", options->json, "Print JSON for programs");
   const Option* unit =
       command->add_option("--unit", options->geometry.unit,
-                          "Unit of a mesh or point cloud whose file states none: mm (assumed if not given), m or inch");
+                          "Unit of a mesh or point cloud whose file states none: mm (default), m or inch");
   options->geometry.step.add_to(command);
   command->callback([&line, options, errors_option, unit] {
     line.run = [options, errors_option, unit]() -> int {
@@ -143,7 +143,7 @@ void add_check_command(CommandLine& line) {
         return check_geometry(options->geometry);
       }
       if (is_frozen_file(options->file)) {
-        const char* const why = "a frozen compensation has all of it in it";
+        const char* const why = "a frozen compensation contains its errors and units";
         for (const Option* const option : {errors_option, unit}) refuse_if_given(option, why);
         options->geometry.step.refuse(why);
         return check_frozen(options->file, options->json);

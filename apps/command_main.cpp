@@ -102,7 +102,7 @@ int run_command(int argc, const char* const* argv, const std::function<void(Comm
     return kBadInput;
   } catch (const NotFinite& error) {
     complain(std::string("there is no result: ") + error.what() +
-             "; expected inputs of sizes that a machine and its errors can have");
+             "; expected inputs of a size that a machine and its errors can have");
     tell_complete_outputs();
     return kNegative;
   } catch (const std::exception& error) {

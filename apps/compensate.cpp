@@ -6,19 +6,18 @@
 namespace abbe {
 
 void add_compensate_command(CommandLine& line) {
-  Subcommand* command =
-      line.add("compensate", "Corrections of known errors, for controls",
-               "  abbe compensate gcode examples/compensate/cone.ngc --machine "
-               "examples/machines/trunnion-mill.machine.toml --errors "
-               "examples/compensate/trunnion.errors.toml -o cone-corrected.ngc\n"
-               "  abbe compensate table examples/machines/three-axis-mill.machine.toml "
-               "examples/compensate/mill.errors.toml --for linuxcnc -o comp\n"
-               "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml "
-               "examples/trunnion/table.errors.toml -o mill.abbec\n"
-               "  abbe compensate poses examples/machines/trunnion-mill.machine.toml "
-               "examples/compensate/trunnion.errors.toml examples/compensate/poses.csv --dry-run\n\n"
-               "abbe compensate gcode --help says what X, Y and Z mean, abbe compensate table --help which controls "
-               "have tables here.");
+  Subcommand* command = line.add(
+      "compensate", "Correct known errors: programs, tables for controls, real time, single poses",
+      "  abbe compensate gcode examples/compensate/cone.ngc --machine "
+      "examples/machines/trunnion-mill.machine.toml --errors "
+      "examples/compensate/trunnion.errors.toml -o cone-corrected.ngc\n"
+      "  abbe compensate table examples/machines/three-axis-mill.machine.toml "
+      "examples/compensate/mill.errors.toml --for linuxcnc -o comp\n"
+      "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml "
+      "examples/trunnion/table.errors.toml -o mill.abbec\n"
+      "  abbe compensate poses examples/machines/trunnion-mill.machine.toml "
+      "examples/compensate/trunnion.errors.toml examples/compensate/poses.csv --dry-run\n\n"
+      "abbe compensate gcode --help explains what X, Y and Z mean; abbe compensate table --help lists the controls.");
   command->require_subcommand(1);
   add_compensate_freeze(*command, line);
   add_compensate_gcode(*command, line);

@@ -264,20 +264,20 @@ void add_deviate_command(CommandLine& line) {
   add_number(app, "--largest-mm", Quantity::length, "mm", {0, 1e9}, command->largest_mm,
              "Points farther away are left out (default 0: all count)");
   add_number(app, "--lower-um", Quantity::length, "um", {-1e9, 1e9}, command->lower_mm,
-             "With --upper-um: a band, of which the share of points within is said");
-  add_number(app, "--upper-um", Quantity::length, "um", {-1e9, 1e9}, command->upper_mm, "Its upper end");
+             "With --upper-um: a band; reports the share of points within it");
+  add_number(app, "--upper-um", Quantity::length, "um", {-1e9, 1e9}, command->upper_mm, "Upper end of the band");
   add_number(app, "--faces-deg", Quantity::angle, "deg", {0, 180}, command->crease,
-             "Statistics by faces too: surfaces between edges sharper than this angle (default 0: none)");
+             "Add statistics by face, where faces end at edges sharper than this angle (default 0: none)");
   app->add_flag("--faces", command->faces_of_file,
-                "Statistics by the faces of a STEP file, or the objects, groups and materials of an OBJ file")
+                "Add statistics by the faces of a STEP file, or by the objects, groups and materials of an OBJ file")
       ->excludes("--faces-deg");
   add_number(app, "--colour-um", Quantity::length, "um", {0, 1e9}, command->colour_mm,
-             "Deviation of the full colour (default: by the 98th percentile)");
+             "Deviation shown in full colour (default: from the 98th percentile)");
   app->add_output_folder("-o,--output", command->options.output,
                          "Results folder to write: evaluation.json, deviation.csv, deviation.ply (coloured), plot.svg, "
                          "report.html (part in three dimensions, sections)");
   app->add_option("--tolerance", command->options.tolerances,
-                  "Largest permitted amount of a figure, such as maximum_um=50; may be given again. Exit code 1 if "
+                  "Largest permitted amount of a figure, such as maximum_um=50; repeatable. Exit code 1 if "
                   "exceeded")
       ->allow_extra_args(false);
   app->add_flag("--json", command->options.json, "Print JSON for programs");

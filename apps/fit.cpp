@@ -244,12 +244,12 @@ void add_fit_command(CommandLine& line) {
   app->add_option("--method", command->method,
                   "least-squares (default), minimum-zone, circumscribed, inscribed, robust (up to 30 % wrong points)")
       ->check(one_of(names(methods())));
-  app->add_option("--loss", command->loss, "Of the robust method: tukey (default), huber, welsch")
+  app->add_option("--loss", command->loss, "Loss of the robust method: tukey (default), huber, welsch")
       ->check(one_of({"tukey", "huber", "welsch"}));
-  app->add_option("--fixed-radius-mm", command->radii, "Radius to hold; of coaxial circles one per file: 12,30");
-  app->add_option("--fixed-direction", command->direction, "Direction to hold, of any length: 0,0,1");
+  app->add_option("--fixed-radius-mm", command->radii, "Radius to hold fixed; one per file for coaxial circles: 12,30");
+  app->add_option("--fixed-direction", command->direction, "Direction to hold fixed, of any length: 0,0,1");
   add_number(app, "--fixed-half-angle-deg", Quantity::angle, "deg", {0.001, 89.9}, command->half_angle,
-             "Angle between axis and generator of a cone to hold");
+             "Angle between axis and generator of a cone, to hold fixed");
   add_number(app, "--u-point-um", Quantity::length, "um", {0, 1e6}, command->sigma,
              "Standard uncertainty of a point across the shape; default: from the residuals");
   app->add_option("--unit", command->unit, "Unit of files that state none: mm (default), m, inch")
@@ -257,11 +257,10 @@ void add_fit_command(CommandLine& line) {
   app->add_output_file("--residuals", command->residuals, "CSV file to write: the points with their deviation_mm");
   app->add_output_folder("-o,--output", command->options.output,
                          "Results folder to write: evaluation.json, plot.svg, report.html; default: print only");
-  app->add_option(
-         "--tolerance", command->options.tolerances,
-         "Largest permitted value of a figure, such as form_um=10; may be given again. Exit code 1 if exceeded")
+  app->add_option("--tolerance", command->options.tolerances,
+                  "Largest permitted value of a figure, such as form_um=10; repeatable. Exit code 1 if exceeded")
       ->allow_extra_args(false);
-  app->add_option("--threads", command->threads, "0: all (default); does not change the result")
+  app->add_option("--threads", command->threads, "Number of threads; 0: all (default). Does not change the result")
       ->check(in_range(0, 256));
   app->add_flag("--json", command->options.json, "Print JSON for programs");
   app->callback([&line, command] { line.run = [command] { return run_fit(*command); }; });

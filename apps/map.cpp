@@ -214,21 +214,21 @@ void add_map_command(CommandLine& line) {
                                  "map.csv -o map.vts\n"
                                  "  abbe map examples/machines/aguado.machine.toml readings/truth.errors.toml --minus "
                                  "examples/aguado/results/aguado/errors.toml\n\n"
-                                 "The files are those that the examples of run and simulate write. The names of the\n"
-                                 "figures are those of docs/conventions.md.\n"
-                                 "Without --grid every axis runs over the range in which its errors are known.");
+                                 "The examples of run and simulate write these files. docs/conventions.md defines the\n"
+                                 "figures. Without --grid, every axis runs over the range in which its errors are\n"
+                                 "known.");
   command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
   command->add_option("--minus", options->reference,
-                      "Errors corrected for (*.errors.toml): adds the error after correction");
+                      "Errors that are corrected (*.errors.toml): adds the error that remains");
   command->add_option("--grid", options->grid, "AXIS_unit=from:to:count or AXIS_unit=position; repeat per axis");
   command->add_option("--poses", options->poses, "CSV with one column per axis (X_mm, C_deg, ...) instead of a grid")
       ->excludes("--grid");
   command->add_flag("--keep-datum", options->keep_datum,
-                    "Leave the workpiece datum where it is: displacements, not the volumetric error");
+                    "Keep the workpiece datum where it is: gives displacements, not the volumetric error");
   command
       ->add_flag("--fit-datum", options->fit_datum,
-                 "Take the best-fit rigid motion of the workpiece out (done unless --keep-datum is given)")
+                 "Remove the best-fit rigid motion of the workpiece (done unless --keep-datum is given)")
       ->excludes("--keep-datum");
   command->add_flag("--accept-uncovered", options->accept_uncovered, kAcceptUncoveredWords);
   command->add_output_file("-o,--output", options->outputs, "File to write: .csv, .vts or .vtu (ParaView); repeatable");

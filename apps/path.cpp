@@ -269,19 +269,20 @@ void add_path_command(CommandLine& line) {
       ->check(positive_number());
   command
       ->add_option("--retract-mm", options->retract_mm,
-                   "Retract along the tool before and behind each region; needed if axes are set anew")
+                   "Retract along the tool before and after each region; needed if axes are repositioned in between")
       ->check(non_negative_number());
   command
       ->add_option("--tolerance-um", options->tolerance_um,
-                   "Insert poses until the tool stays so near to the lines between the points (0: none)")
+                   "Insert poses until the tool stays this close to the lines between the points (0: none)")
       ->check(non_negative_number());
   command->add_option("--word", options->words, "Word of an axis in the program, AXIS=WORD (C1=C); repeatable");
-  command->add_option("--decimals", options->decimals, "Of mm and degrees in the program")->check(in_range(1, 12));
+  command->add_option("--decimals", options->decimals, "Decimals of mm and degrees in the program")
+      ->check(in_range(1, 12));
   command->add_flag("--feed-per-minute", options->feed_per_minute,
                     "Write F in mm/min (G94) instead of inverse time (G93)");
   command->add_output_file("-o,--output", options->outputs, "File to write: .ngc, .nc, .tap, .mpf or .csv; repeatable");
   command->add_output_file("--report", options->report,
-                           "Page to write (.html): the tool on its path, played, on the part");
+                           "Page to write (.html): an animation of the tool on its path over the part");
   command->add_option("--part", options->part, "Mesh of the workpiece for that page (.stl .ply .obj .step), mm")
       ->needs("--report");
   options->step.add_to(command);

@@ -283,7 +283,7 @@ void add_plan_command(CommandLine& line) {
                                  "  abbe plan examples/trunnion/trunnion.study.toml -o poses.csv --svg curve.svg");
   command->add_option("study", options->study, "Study file (*.study.toml) with tables [plan] and [identify]")
       ->required();
-  command->add_output_file("-o,--output", options->output, "Readings to take, in an order of short travel (*.csv)");
+  command->add_output_file("-o,--output", options->output, "Readings to take, ordered for short travel (*.csv)");
   command->add_output_file("--svg", options->plot, "Plot of uncertainty against number of readings (*.svg)");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] {

@@ -204,7 +204,7 @@ void add_position_command(CommandLine& line) {
   app->add_option("file", command->file, "Scans and what they show (*.positioning.toml)")->required();
   app->add_output_file("-o,--output", command->output, "Placement to write (*.placement.toml), as abbe path takes it");
   app->add_option("--maps", command->maps,
-                  "Which way the matrix of the placement that is written maps: table-to-workpiece (default) or "
+                  "Direction in which the matrix of the written placement maps: table-to-workpiece (default) or "
                   "workpiece-to-table")
       ->check(one_of({"table-to-workpiece", "workpiece-to-table"}));
   command->step.add_to(app);

@@ -111,13 +111,13 @@ int run_register(const RegisterCommand& command) {
 void add_register_command(CommandLine& line) {
   auto command = std::make_shared<RegisterCommand>();
   Subcommand* app = line.add(
-      "register", "Lay a scan on its part: pose with uncertainty, from any start",
+      "register", "Fit a scan onto its part: pose with uncertainty, from any start",
       "  abbe register examples/scan/bracket-scan.csv examples/scan/bracket.stl -o results/bracket\n"
       "  abbe register examples/scan/bracket-scan.csv examples/scan/bracket.stl --loss tukey --noise-um 5 "
       "--uncertainty\n"
       "  abbe register examples/scan/pin-scan.csv examples/scan/pin.stl   a pin turns about its axis: exit code 1\n\n"
       "Exit code 1: the scan does not fix one pose (ambiguous, undetermined), or none was found; the output says "
-      "what.");
+      "which.");
   add_scan_files(app, command->files);
   app->add_option("--start", command->start,
                   "Where to begin: global (any pose, the default), identity, or a transform file (transform.csv)");
@@ -128,7 +128,7 @@ void add_register_command(CommandLine& line) {
   add_number(app, "--noise-um", Quantity::length, "um", {0, 1e6}, command->noise_mm,
              "Standard uncertainty of a point along the normal (default: from the residuals)");
   app->add_option("--seed", command->seed, "Seed of the random choices of the search (default 1)");
-  app->add_flag("--uncertainty", command->uncertainty, "Print the covariance of the pose too");
+  app->add_flag("--uncertainty", command->uncertainty, "Also print the covariance of the pose");
   app->add_output_folder(
       "-o,--output", command->output,
       "Results folder to write: registered.ply (the scan in the frame of the part), transform.csv, "

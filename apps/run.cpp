@@ -20,7 +20,7 @@ void add_run_command(CommandLine& line) {
   };
   auto options = std::make_shared<Options>();
   Subcommand* command =
-      line.add("run", "Do a whole study: simulate or read, identify, verify, map, report",
+      line.add("run", "Run a whole study: simulate or read, identify, verify, map, report",
                "  abbe run examples/aguado/aguado.study.toml\n"
                "  abbe run examples/three_axis/level-and-autocollimator.study.toml -o results/level --json");
   command->add_option("study", options->study, "Study file (*.study.toml)")->required();

@@ -11,7 +11,7 @@ void add_scan_command(CommandLine& line) {
       "  abbe scan points examples/machines/liu-scanner.machine.toml examples/cradle_scanner/readings.csv -o p.ply\n"
       "  abbe scan plan examples/cradle_scanner/pyramid.stl --machine examples/machines/liu-scanner.machine.toml -o "
       "pyramid-path.csv\n\n"
-      "abbe scan points --help says what the readings look like.");
+      "abbe scan points --help describes the readings.");
   command->require_subcommand(1);
   add_scan_plan(*command, line);
   add_scan_points(*command, line);

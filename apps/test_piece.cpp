@@ -42,7 +42,7 @@ int write_piece(const TestPieceOptions& options, const char* what, const std::st
 void add_common(Subcommand& piece, TestPieceOptions& options) {
   piece.add_output_file("-o,--output", options.output,
                         "CSV to write: points and directions of the tool (default: standard output)");
-  piece.add_option("--feed-mm-per-min", options.feed_mm_per_min, "Feed of the middle of the tool's end")
+  piece.add_option("--feed-mm-per-min", options.feed_mm_per_min, "Feed of the centre of the tool tip")
       ->check(in_range(0.001, 1e6))
       ->capture_default_str();
   piece
@@ -55,12 +55,12 @@ void add_common(Subcommand& piece, TestPieceOptions& options) {
 }  // namespace
 
 void add_test_piece_command(CommandLine& line) {
-  Subcommand* command = line.add(
-      "test-piece", "Tool paths of five-axis test pieces, milled with the flank of the tool",
-      "  abbe test-piece cone-frustum -o cone.csv\n"
-      "  abbe test-piece s-shape --centre-mm 0 0 30 -o s.csv\n\n"
-      "Axis commands and a program: abbe path MACHINE cone.csv -o cone.ngc. Sizes and what is measured on the pieces:\n"
-      "docs/test-pieces.md.");
+  Subcommand* command = line.add("test-piece", "Tool paths of five-axis test pieces, milled with the flank of the tool",
+                                 "  abbe test-piece cone-frustum -o cone.csv\n"
+                                 "  abbe test-piece s-shape --centre-mm 0 0 30 -o s.csv\n\n"
+                                 "Axis commands and a program: abbe path MACHINE cone.csv -o cone.ngc. "
+                                 "docs/test-pieces.md explains the sizes and\n"
+                                 "what is measured on the pieces.");
   command->require_subcommand(1);
   auto options = std::make_shared<TestPieceOptions>();
   Subcommand* cone =

@@ -73,35 +73,35 @@ void add_verify_command(CommandLine& line) {
   auto asked = std::make_shared<Pieces>();
   VerifyOptions& options = asked->options;
   Subcommand* command = line.add(
-      "verify", "What a compensation leaves: at unseen poses and on test pieces, against the simulated truth",
+      "verify", "Check what a compensation leaves: unseen poses and test pieces, against the simulated truth",
       "  abbe verify examples/aguado/results/aguado\n"
       "  abbe verify --machine examples/machines/trunnion-mill.machine.toml --errors "
       "examples/compensate/trunnion.errors.toml --truth examples/verify/truth.errors.toml -o page.html "
       "cone-frustum --before examples/verify/cone-before.csv --after examples/verify/cone-after.csv s-shape --before "
       "examples/verify/s-before.csv --after examples/verify/s-after.csv\n\n"
-      "Test pieces stand at the end, each with the traces of both runs and its sizes as in abbe test-piece. A trace "
+      "Test pieces come last, each with the traces of both runs and its sizes as in abbe test-piece. A trace "
       "is\n"
       "a CSV of what the axes were commanded while the program ran, a row for each servo cycle or so: time_s, X_mm,\n"
       "Y_mm, Z_mm, A_deg, C_deg. Method and figures: docs/verify.md.");
-  command->add_option("results", options.results, "Results folder of abbe run, of a study with simulated readings");
+  command->add_option("results", options.results, "Results folder of abbe run for a study with simulated readings");
   command->add_option("--machine", options.machine, "Machine file (default: machine.toml of the results)");
   command->add_option("--errors", options.errors, "Identified errors (default: errors.toml of the results)");
   command->add_option("--truth", options.truth, "True errors (default: truth.errors.toml of the results)");
   command->add_option("--poses", options.poses, "Number of random poses")
       ->check(in_range(10, 10000))
       ->capture_default_str();
-  command->add_option("--seed", options.seed, "Of the random poses (default: that of the results, else 1)");
+  command->add_option("--seed", options.seed, "Seed of the random poses (default: that of the results, else 1)");
   command
       ->add_option("--range", options.ranges,
                    "AXIS_unit=from:to or AXIS_unit=position; repeatable (default: where the errors are known)")
       ->allow_extra_args(false);
   Option* const reduction =
       command->add_option("--least-reduction", asked->reduction,
-                          "Wanted: mean volumetric error so many times smaller; exit code 1 if it is not");
+                          "Exit code 1 unless the mean volumetric error becomes this many times smaller");
   Option* const ratio =
       command->add_option("--largest-ratio", asked->ratio,
-                          "Wanted: volumetric error (root mean square) at most so many times its predicted standard "
-                          "uncertainty; exit code 1 if it is more");
+                          "Exit code 1 if the volumetric error (root mean square) is more than this many times its "
+                          "predicted standard uncertainty");
   command->add_option("--reach-mm", options.reach, "A sample farther from the test piece's tool path does not cut it")
       ->check(in_range(0.01, 10.0))
       ->capture_default_str();

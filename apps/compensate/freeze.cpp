@@ -236,12 +236,12 @@ int run_freeze(const FreezeArguments& arguments) {
 void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
   auto arguments = std::make_shared<FreezeArguments>();
   Subcommand* command =
-      compensate.add_subcommand("freeze", "Machine and errors to one file that a controller uses in real time");
+      compensate.add_subcommand("freeze", "Write machine and errors to one file that a controller uses in real time");
   command->footer(
       "The file is for the C interface abbe/runtime/abbe_runtime.h and for the LinuxCNC module (docs/runtime.md). It "
       "is\n"
-      "tried at thousands of poses before it is written; what is said here was found there. Reversal values are not\n"
-      "in it: the lines for LinuxCNC's own BACKLASH are printed.\n\n"
+      "tried at thousands of poses before it is written; the printed figures come from there. It does not contain\n"
+      "reversal values: the lines for LinuxCNC's own BACKLASH are printed instead.\n\n"
       "Example:\n"
       "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml examples/trunnion/table.errors.toml -o "
       "mill.abbec\n"
@@ -250,10 +250,11 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
   command->add_option("machine", arguments->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("errors", arguments->errors, "Errors file (*.errors.toml)")->required();
   command->add_output_file("-o,--output", arguments->output, "File to write (*.abbec)", &arguments->dry_run);
-  command->add_flag("--dry-run", arguments->dry_run, "Say all, largest corrections and where; write nothing");
+  command->add_flag("--dry-run", arguments->dry_run,
+                    "Report only: the largest corrections and where they are; write nothing");
   command
       ->add_option("--tool-mm", arguments->tool,
-                   "Functional point from the gauge point, of calls that give no tool (default: that of the machine)")
+                   "Functional point from the gauge point, for calls that give no tool (default: that of the machine)")
       ->expected(3);
   command->add_option("--tool-length-mm", arguments->lengths, "Tool lengths that are tried; others are flagged")
       ->expected(2)
@@ -261,7 +262,7 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
   command->add_option("--limit-um", arguments->limit_um, "Refuse if the tool would be corrected by more than this");
   command
       ->add_option("--largest-turn-deg", arguments->largest_turn_deg,
-                   "Largest turn of rotary axes together; binds near singularities")
+                   "Largest turn of all rotary axes together; takes effect near singularities")
       ->capture_default_str();
   command
       ->add_option("--world", arguments->world,
@@ -269,9 +270,9 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
       ->check(one_of({"joints", "workpiece"}))
       ->capture_default_str();
   command->add_option("--leave-out-below-uncertainty", arguments->leave_out_factor,
-                      "Leave out errors that are smaller than so many of their standard uncertainties everywhere");
+                      "Leave out errors that are everywhere smaller than this many of their standard uncertainties");
   add_accept_misfit(*command, arguments->accept_misfit);
-  command->add_flag("--json", arguments->json, "Print the result as JSON");
+  command->add_flag("--json", arguments->json, "Print JSON for programs");
   command->callback([arguments, &line] { line.run = [arguments] { return run_freeze(*arguments); }; });
 }
 

@@ -128,67 +128,71 @@ int run_gcode(const GcodeOptions& options) {
 void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
   auto options = std::make_shared<GcodeOptions>();
   Subcommand* command = compensate.add_subcommand(
-      "gcode", "Corrects an NC program: the actual tool follows the commanded path within a tolerance");
+      "gcode", "Correct an NC program: the actual tool follows the commanded path within a tolerance");
   command->footer(
       "Example:\n"
       "  abbe compensate gcode examples/compensate/cone.ngc --machine "
       "examples/machines/trunnion-mill.machine.toml --errors examples/compensate/trunnion.errors.toml -o "
       "corrected.ngc\n\n"
-      "Words X Y Z are positions of the axes unless G43.4 or --tool-centre says otherwise. The tool is the machine\n"
-      "file's, longer by the tool length offset in force. Axes with reversal values take up their play by a motion of\n"
-      "their own where they turn round; the control's own backlash compensation stays as it was when the errors were\n"
-      "measured. See docs/programs.md.");
+      "X, Y and Z are axis positions unless G43.4 or --tool-centre says otherwise. The tool is that of the machine\n"
+      "file, lengthened by the tool length offset in force. An axis with a reversal value takes up its play by a\n"
+      "motion of its own wherever it reverses. Leave the control's own backlash compensation as it was when the "
+      "errors\n"
+      "were measured. See docs/programs.md.");
   command->add_option("program", options->program, "NC program (RS274/NGC, ISO 6983)")->required();
-  command->add_option("--machine", options->machine, "machine file")->required();
-  command->add_option("--errors", options->errors, "errors file of the machine")->required();
-  command->add_output_file("-o,--output", options->output, "the corrected program", &options->dry_run);
+  command->add_option("--machine", options->machine, "Machine file (*.machine.toml)")->required();
+  command->add_option("--errors", options->errors, "Errors file of the machine (*.errors.toml)")->required();
+  command->add_output_file("-o,--output", options->output, "Corrected program to write", &options->dry_run);
   command
       ->add_option("--tolerance-um", options->tolerance_um,
-                   "largest distance of the actual tool from the commanded path between corrected poses")
+                   "Largest distance of the actual tool from the commanded path between corrected poses")
       ->capture_default_str();
-  command->add_option("--rapid-tolerance-um", options->rapid_tolerance_um, "the same for rapid moves")
+  command->add_option("--rapid-tolerance-um", options->rapid_tolerance_um, "The same for rapid moves")
       ->capture_default_str();
   command
       ->add_option("--orientation-tolerance-urad", options->orientation_tolerance_urad,
-                   "the same for the direction of the tool")
+                   "The same for the direction of the tool")
       ->capture_default_str();
   command->add_option(
       "--reversal-dead-band-um", options->dead_band_um,
-      "axes with reversal values have turned round when they have come back by more than this "
-      "(default: an eighth of the tolerance, in which it is then; else it comes on top); of rotary axes at "
-      "the longest lever of the tool in force");
+      "An axis with a reversal value counts as reversed once it has come back by more than this. The default, an "
+      "eighth "
+      "of the tolerance, is part of the tolerance; a value given here is added to it. For a rotary axis it is a "
+      "distance at the longest lever of the tool in force");
   command->add_option("--limit-um", options->limit_um,
-                      "corrections of the functional point above it are refused and nothing is written");
+                      "Refuse corrections of the functional point above this, um; nothing is written then");
   command->add_option("--leave-out-below-uncertainty", options->leave_out_factor,
-                      "leave out errors that are smaller than so many of their standard uncertainties everywhere");
+                      "Leave out errors that are everywhere smaller than this many of their standard uncertainties");
   command
       ->add_option("--largest-turn-deg", options->largest_turn_deg,
-                   "how far rotary axes may turn for a correction near a singularity")
+                   "How far rotary axes may turn for a correction near a singularity")
       ->capture_default_str();
-  command->add_option("--word", options->words, "word of an axis in the program: C1=C");
-  command->add_option("--start", options->start, "where an axis stands when the program begins: X_mm=0, C_deg=30");
-  command->add_option("--tool-table", options->tool_table, "tool table of LinuxCNC, for G43 H");
+  command->add_option("--word", options->words, "Word of an axis in the program: C1=C");
+  command->add_option("--start", options->start, "Where an axis stands when the program begins: X_mm=0, C_deg=30");
+  command->add_option("--tool-table", options->tool_table, "Tool table of LinuxCNC, for G43 H");
   command->add_flag("--tool-table-in-inches", options->tool_table_in_inches,
-                    "the lengths of the tool table are in inches");
-  command->add_option("--tool", options->tool, "number of the tool in the spindle");
-  command->add_option("--parameters", options->parameters, "parameter file of LinuxCNC (.var), for work offsets");
+                    "The lengths of the tool table are in inches");
+  command->add_option("--tool", options->tool, "Number of the tool in the spindle");
+  command->add_option("--parameters", options->parameters, "Parameter file of LinuxCNC (.var), for work offsets");
   command->add_flag("--parameters-in-inches", options->parameters_in_inches,
-                    "the offsets of the parameter file are in inches");
+                    "The offsets of the parameter file are in inches");
   command->add_flag("--tool-centre", options->tool_centre,
-                    "X Y Z are the functional point in the workpiece frame throughout: the control has the kinematics");
+                    "X Y Z are always the functional point in the workpiece frame: the control has the kinematics");
   command->add_flag("--inches", options->inches, "G20 is in force when the program begins");
-  command->add_flag("--block-delete", options->block_delete, "leave out blocks that begin with a slash");
-  command->add_option("--decimals", options->decimals, "of mm and degrees")->check(in_range(0, 9));
+  command->add_flag("--block-delete", options->block_delete, "Leave out blocks that begin with a slash");
+  command->add_option("--decimals", options->decimals, "Decimals of mm and degrees in the program")
+      ->check(in_range(0, 9));
   command->add_option("--allow", options->allow,
-                      "write the program in spite of: not-covered, outside-travel, held-start, position-left, "
+                      "Write the program despite: not-covered, outside-travel, held-start, position-left, "
                       "not-converged, not-proven");
   command->add_option("--max-output-mb", options->max_output_mb,
-                      "give up on a program that becomes longer (default: 200, and 20 times the size of the program)");
+                      "Give up on a program that becomes longer (default: 200, plus 20 times the size of the program)");
   command->add_option("--max-minutes", options->max_minutes,
-                      "give up on a program that takes longer (default: 5, and 1 for every 10 MB of the program)");
-  command->add_flag("--dry-run", options->dry_run, "only the report: largest corrections and where; writes nothing");
+                      "Give up on a program that takes longer (default: 5, plus 1 for every 10 MB of the program)");
+  command->add_flag("--dry-run", options->dry_run,
+                    "Report only: the largest corrections and where they are; write nothing");
   add_accept_misfit(*command, options->accept_misfit);
-  command->add_flag("--json", options->json, "print JSON for programs");
+  command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options] { return run_gcode(*options); }; });
 }
 

@@ -265,13 +265,13 @@ int run_poses(const PosesCommand& command) {
 void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
   auto options = std::make_shared<PosesCommand>();
   Subcommand* const command = compensate.add_subcommand(
-      "poses", "Axis commands that bring the actual tool to where the nominal machine has it, pose by pose");
+      "poses", "Correct single poses: axis commands that bring the actual tool to where the nominal machine has it");
   command->footer(
       "Example:\n"
       "  abbe compensate poses examples/machines/trunnion-mill.machine.toml examples/compensate/trunnion.errors.toml "
       "examples/compensate/poses.csv -o corrected.csv\n\n"
-      "Every row of the output has a status: reached; orientation left and turn limited (the point is exact, the\n"
-      "orientation error that stays is stated); position left, outside travel, not covered, not converged (exit code "
+      "Every row of the output has a status: reached; orientation left or turn limited (the point is exact, and the\n"
+      "remaining orientation error is stated); position left, outside travel, not covered or not converged (exit code "
       "1).\n"
       "See docs/compensation.md.");
   command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
@@ -287,8 +287,9 @@ void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
       ->capture_default_str();
   command->add_option("--limit-um", options->limit_um, "Refuse corrections of the functional point above this, um");
   command->add_option("--leave-out-below-uncertainty", options->leave_out_factor,
-                      "Leave out errors that are smaller than so many of their standard uncertainties everywhere");
-  command->add_flag("--dry-run", options->dry_run, "Say all, largest corrections and where; write nothing");
+                      "Leave out errors that are everywhere smaller than this many of their standard uncertainties");
+  command->add_flag("--dry-run", options->dry_run,
+                    "Report only: the largest corrections and where they are; write nothing");
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] { line.run = [options] { return run_poses(*options); }; });

@@ -147,7 +147,8 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
     if (format.unverified.empty()) continue;
     formats += fmt::format("  {:<16} EXPERIMENTAL, not verified: {}\n", "", format.unverified);
   }
-  Subcommand* const command = compensate.add_subcommand("table", "Tables for a control, and what they do not carry");
+  Subcommand* const command =
+      compensate.add_subcommand("table", "Write tables for a control, and report what they cannot carry");
   command->footer(formats +
                   "\nExample:\n"
                   "  abbe compensate table examples/machines/three-axis-mill.machine.toml "
@@ -156,48 +157,51 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
   command->add_option("--for", options->format, "Format, see below")->required();
-  command->add_output_file_or_folder("-o,--output", options->output,
-                                     "File to write, or a folder (a name without ending) where there are several",
-                                     &options->dry_run);
-  command->add_flag("--dry-run", options->dry_run, "Say all, write no table");
+  command->add_output_file_or_folder(
+      "-o,--output", options->output,
+      "File to write, or a folder (a name without an extension) if there are several files", &options->dry_run);
+  command->add_flag("--dry-run", options->dry_run, "Report only; write no table");
   command->add_option("--at", options->at,
-                      "AXIS_unit=position: where an axis stands while another moves or that is not in a grid; default "
-                      "the middle of its travel");
-  command->add_option("--axis", options->axes, "Only tables over this axis's position; repeatable");
+                      "AXIS_unit=position: where an axis stands while another one moves, or if it is not in the grid "
+                      "(default: the middle of its travel)");
+  command->add_option("--axis", options->axes, "Write only tables over the position of this axis; repeatable");
   command->add_option("--name", options->names,
-                      "AXIS=NAME: what the control calls an axis (joint, number); repeatable");
-  command->add_option(
-      "--interpolation-um", options->interpolation_um,
-      "Largest error of straight lines between nodes, um (0.1; fanuc-3d, with the rounding of its data: 1)");
-  command->add_option("--interpolation-urad", options->interpolation_urad, "The same of rotary axes, urad (0.1)");
-  command->add_option("--max-points", options->max_points,
-                      "Nodes per table the control has room for; of a grid in all");
+                      "AXIS=NAME: the name or number that the control has for an axis; repeatable");
+  command->add_option("--interpolation-um", options->interpolation_um,
+                      "Largest error of straight lines between nodes, um (default 0.1; fanuc-3d 1, including the "
+                      "rounding of its data)");
+  command->add_option("--interpolation-urad", options->interpolation_urad,
+                      "The same for rotary axes, urad (default 0.1)");
+  command->add_option("--max-points", options->max_points, "Largest number of nodes per table; of a grid, in all");
   command->add_option("--positions", options->positions,
-                      "Positions per axis between the nodes, where the displacement is stated (9, 5 above 3 axes)");
+                      "Positions per axis, between the nodes, at which the displacement is stated (default 9; 5 with "
+                      "more than 3 axes)");
   command->add_option("--limit-um", options->limit_um, "Refuse any correction of a linear axis above this, um");
   command->add_option("--limit-urad", options->limit_urad, "Refuse any correction of a rotary axis above this, urad");
   command
       ->add_option("--least-reduction-percent", options->least_reduction_percent,
-                   "Refuse tables that take away less of the error than this; 0 writes them anyway")
+                   "Refuse tables that remove less of the error than this; 0 writes them anyway")
       ->check(in_range(0.0, 100.0))
       ->capture_default_str();
   command->add_option("--leave-out-below-uncertainty", options->times_uncertainty,
-                      "Leave out tables that are nowhere more than so many standard uncertainties");
-  command->add_option("--type", options->type, "linuxcnc: COMP_FILE_TYPE, 0 or 1 (1)");
-  command->add_option("--first-table", options->first_table, "siemens-cec: index of the first table (0)");
-  command->add_option("--encoder", options->encoder, "siemens-eec: measuring system, 0 or 1 (0)");
-  command->add_flag(
-      "--negate", options->negate,
-      "siemens-cec, heidenhain, fanuc-pitch, fanuc-3d: values with the other sign (theirs is not known for "
-      "sure)");
-  command->add_option("--detection-unit-um", options->unit_um,
-                      "fanuc-pitch, fanuc-3d: unit of the data, um; of rotary axes thousandths of a degree (1)");
+                      "Leave out tables that nowhere exceed this many of their standard uncertainties");
+  command->add_option("--type", options->type, "linuxcnc: COMP_FILE_TYPE, 0 or 1 (default 1)");
+  command->add_option("--first-table", options->first_table, "siemens-cec: index of the first table (default 0)");
+  command->add_option("--encoder", options->encoder, "siemens-eec: measuring system, 0 or 1 (default 0)");
+  command->add_flag("--negate", options->negate,
+                    "siemens-cec, heidenhain, fanuc-pitch, fanuc-3d: write values with the other sign (the sign of the "
+                    "control is not "
+                    "verified)");
+  command->add_option(
+      "--detection-unit-um", options->unit_um,
+      "fanuc-pitch, fanuc-3d: unit of the data, um, or thousandths of a degree for rotary axes (default 1)");
   command->add_option(
       "--reference-position", options->reference_position,
-      "fanuc-pitch, fanuc-3d: AXIS_unit=position, where the control's reference position is in the machine file; "
-      "default 0, or the end of the travel next to it; repeatable");
-  command->add_output_file("--map", options->map,
-                           "Map of the displacement without tables, with them and ideal: .csv, .vts or .vtu");
+      "fanuc-pitch, fanuc-3d: AXIS_unit=position, the reference position of the control in machine file coordinates "
+      "(default: 0, or the end of the travel next to it); repeatable");
+  command->add_output_file(
+      "--map", options->map,
+      "Map to write of the displacement without tables, with tables and ideal: .csv, .vts or .vtu");
   add_accept_misfit(*command, options->accept_misfit);
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options, command] {

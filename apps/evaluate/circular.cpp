@@ -49,7 +49,8 @@ int run(const CircularCommand& command) {
 void add_evaluate_circular(Subcommand& evaluate, CommandLine& line) {
   auto command = std::make_shared<CircularCommand>();
   Subcommand* app =
-      add_evaluation(evaluate, "circular", "Circular test (ISO 230-4) of a ball bar or grid encoder, with its causes",
+      add_evaluation(evaluate, "circular",
+                     "Circular test (ISO 230-4) with a ball bar or grid encoder, and the causes of the deviations",
                      "  direction   cw or ccw\n"
                      "  angle_deg   with deviation_um (from the nominal radius) or radius_mm: ball bar\n"
                      "  X_mm, Y_mm  or Y_mm, Z_mm or Z_mm, X_mm, from the centre of the nominal circle: grid encoder",
@@ -62,18 +63,18 @@ void add_evaluate_circular(Subcommand& evaluate, CommandLine& line) {
   app->add_option("--plane", command->plane,
                   "Axes of a ball bar test, angles run from the first to the second (default XY)")
       ->check(one_of({"XY", "YZ", "ZX"}));
-  app->add_option("--centre", command->centre, "About which radii are taken (default least-squares)")
+  app->add_option("--centre", command->centre, "Centre from which radii are measured (default least-squares)")
       ->check(one_of({"least-squares", "minimum-zone", "instrument"}));
   add_number(app, "--u-reading-um", Quantity::length, "um", {0, 1e6}, command->reading_mm,
              "Standard uncertainty of one reading");
   add_number(app, "--u-length-um", Quantity::length, "um", {0, 1e6}, command->length_mm,
              "Standard uncertainty of the length that all readings share (calibration, temperature)");
   app->add_flag("--length-not-calibrated", command->length_unknown,
-                "The length tells nothing of the scales, only of their difference");
+                "The length is not calibrated: it shows the difference of the scales, not the scales");
   add_number(app, "--skip-reversal-deg", Quantity::angle, "deg", {0, 40}, command->reversal_rad,
-             "Readings nearer to a reversal of an axis take no part in the fit of causes (default 0)");
+             "Readings nearer than this to a reversal of an axis are left out of the fit of causes (default 0)");
   add_number(app, "--feed-mm-min", Quantity::length, "mm", {0.001, 1e6}, command->feed_mm,
-             "Feed speed along the path: gives the servo mismatch as a time constant too");
+             "Feed along the path: also gives the servo mismatch as a time constant");
   app->callback([&line, command] { line.run = [command] { return run(*command); }; });
 }
 

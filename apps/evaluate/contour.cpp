@@ -164,9 +164,8 @@ void add_evaluate_contour(Subcommand& evaluate, CommandLine& line) {
       "                           commanded curve\n"
       "  along_mm                 where on the curve, optional\n"
       "  beam_tilt_deg            direction of the laser from the height towards across, optional\n"
-      "With --curve: x_mm, y_mm, z_mm, points of the engraved curve in the frame of the commanded one; or\n"
-      "a .ply, .obj or .xyz file. Moves on which\n"
-      "the tool does not work are no part of that curve.",
+      "With --curve: x_mm, y_mm, z_mm, points of the engraved curve in the frame of the commanded one; or a .ply,\n"
+      ".obj or .xyz file. Moves on which the tool does not work are not part of that curve.",
       "  abbe evaluate contour examples/laser_engraver/sections.csv --u-height-um 2 --u-across-um 1\n"
       "  abbe evaluate contour examples/laser_engraver/engraved.csv --curve examples/laser_engraver/table-a4.csv "
       "--tolerance contour_max_um=50\n"
@@ -177,8 +176,7 @@ void add_evaluate_contour(Subcommand& evaluate, CommandLine& line) {
   app->add_option("--feature", command->feature, "edge (default), or groove: the middle between its two edges")
       ->check(one_of({"edge", "groove"}));
   app->add_option("--surface", command->surface,
-                  "Side on which the surface has remained beside an edge: left (default: "
-                  "at smaller `across`) or right")
+                  "Side of an edge on which the surface remains: left (default, at smaller `across`) or right")
       ->check(one_of({"left", "right"}));
   add_number(app, "--beam-tilt-deg", Quantity::angle, "deg", {-30, 30}, command->beam_tilt,
              "Direction of the laser where the file has none (default 0)");
@@ -190,7 +188,7 @@ void add_evaluate_contour(Subcommand& evaluate, CommandLine& line) {
   add_number(app, "--u-height-um", Quantity::length, "um", {0, 1e6}, command->height,
              "Standard uncertainty of a point along `height`");
   add_number(app, "--u-origin-um", Quantity::length, "um", {0, 1e6}, command->origin,
-             "Standard uncertainty, common to all sections or points, of their place against the commanded curve");
+             "Standard uncertainty of the position relative to the commanded curve, common to all sections or points");
   app->add_option("--curve", command->curve, "Commanded curve (as for abbe path): the file holds points instead");
   app->add_flag("--closed", command->closed, "The last point of the curve is followed by the first");
   app->add_option("--machine", command->machine,

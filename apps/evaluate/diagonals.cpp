@@ -84,7 +84,7 @@ EvaluationReport diagonals_report(const DiagonalsEvaluation& evaluation, const s
 void add_evaluate_diagonals(Subcommand& evaluate, CommandLine& line) {
   auto options = std::make_shared<EvaluationOptions>();
   Subcommand* command = add_evaluation(
-      evaluate, "diagonals", "Displacement along body or face diagonals (ISO 230-6)",
+      evaluate, "diagonals", "Positioning along body or face diagonals (ISO 230-6)",
       "  diagonal        name of the diagonal, such as +X+Y+Z\n"
       "  direction       + or -: from which side the target was approached\n"
       "  target_mm       distance along the diagonal\n"

@@ -93,7 +93,7 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
                              "Results folder to write: evaluation.json, plot.svg, report.html; default: print only");
   command
       ->add_option("--tolerance", options.tolerances,
-                   "Largest permitted value of a figure, such as A_um=10; may be given again. Exit code 1 if exceeded")
+                   "Largest permitted value of a figure, such as A_um=10; repeatable. Exit code 1 if exceeded")
       ->allow_extra_args(false);
   command->add_flag("--json", options.json, "Print JSON for programs");
   return command;

@@ -122,10 +122,10 @@ void add_evaluate_linkage(Subcommand& evaluate, CommandLine& line) {
       "  mark                     which reading a row is: exit, width, l1 ... l6, circle or point\n"
       "  X_mm, Y_mm, Z_mm         commands: Z of exit and width, X of l3 and l5, all three of circle and point\n"
       "  width_um                 of a line (width)\n"
-      "  height_mm                of l1 and l2 on the upright board, from the table upwards\n"
+      "  height_mm                of l1 and l2 on the upright board, measured upwards from the table\n"
       "  mark_x_mm, mark_y_mm     place of l3, l5 (x), l4, l6 (y) and circle (both), frame of the table\n"
       "  turn_deg                 by which the focus has turned about the table's axis, seen from the board (circle)\n"
-      "A field that does not belong to its row stays empty; columns that stay empty may be left out.",
+      "Leave a field empty if it does not belong to the row; leave out a column if all its fields are empty.",
       "  abbe evaluate linkage examples/laser_engraver/five-steps.csv --machine "
       "examples/machines/yin-engraver-u.machine.toml --exit-to-axis-mm 120 --board-mm 4 --u-x-um 2.77 --u-y-um 1.55 "
       "--u-z-um 3.55 --u-mark-um 2 --u-width-um 2",

@@ -35,7 +35,7 @@ void add_contributions(Subcommand& command, Contributions& c) {
   add("--instrument-temperature-range-K", c.device_range_K, "Full range in which its temperature is known");
   add("--instrument-expansion-range-um-per-m-K", c.device_range_um_per_m_K, "Full range of that coefficient");
   add("--temperature-from-20C-K", c.from_20_C_K, "Largest difference of the temperature from 20 \xC2\xB0\x43");
-  add("--environment-um", c.environment_um, "E_VE: range of the indication at rest during as long as a test");
+  add("--environment-um", c.environment_um, "E_VE: range of the indication at rest over the duration of a test");
   add("--environment-arcsec", c.environment_arcsec, "E_VE on a rotary axis");
 }
 

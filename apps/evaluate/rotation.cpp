@@ -194,7 +194,7 @@ void add_evaluate_rotation(Subcommand& evaluate, CommandLine& line) {
   auto command = std::make_shared<RotationCommand>();
   Subcommand* app = add_evaluation(
       evaluate, "rotation", "Error motions of a spindle or rotary table (ISO 230-7) from displacement probes",
-      "  angle_deg       of the axis, in the order of time; runs on over the turns or begins anew at each\n"
+      "  angle_deg       of the axis, in order of time; runs on from turn to turn or restarts at each\n"
       "  x1_um, y1_um    radial probes along X and Y\n"
       "  x2_um, y2_um    the same in a second plane (tilt, with --plane-distance-mm)\n"
       "  axial_um        on the axis\n"
@@ -203,7 +203,7 @@ void add_evaluate_rotation(Subcommand& evaluate, CommandLine& line) {
       "results/spindle",
       command->options);
   add_number(app, "--plane-distance-mm", Quantity::length, "mm", {0.001, 1e6}, command->rotation.plane_distance,
-             "From the first to the second plane, in the positive direction of the axis");
+             "Distance from the first to the second plane, in the positive direction of the axis");
   add_number(app, "--sensitive-deg", Quantity::angle, "deg", {-360, 360}, command->rotation.sensitive_angle,
              "Rotating sensitive direction at axis angle zero, from X towards Y (default 0)");
   add_number(app, "--u-reading-um", Quantity::length, "um", {0, 1e6}, command->rotation.reading_uncertainty,

@@ -175,14 +175,14 @@ void add_evaluate_squareness(Subcommand& evaluate, CommandLine& line) {
       evaluate, "squareness", "Squareness error (ISO 230-1) between two lines read against a reference square",
       "  line           name of the line, such as X and Y: two of them\n"
       "  position_mm    along the line\n"
-      "  deviation_um   across it: of the first line positive along the second one, and the other way round",
+      "  deviation_um   across it, positive along the other line",
       "  abbe evaluate squareness examples/evaluate/squareness.csv --u-reading-um 0.3 --u-square-urad 1",
       command->options);
   add_common_options(app, *command);
   add_number(app, "--square-urad", Quantity::angle, "urad", {-1e5, 1e5}, command->squareness.artefact,
              "Angle of the reference square less 90 degrees (default 0)");
   add_number(app, "--u-square-urad", Quantity::angle, "urad", {0, 1e5}, command->squareness.artefact_uncertainty,
-             "Its standard uncertainty");
+             "Standard uncertainty of that angle");
   app->callback([&line, command] { line.run = [command] { return run_squareness(*command); }; });
 }
 

@@ -158,10 +158,10 @@ void add_scan_plan(Subcommand& scan, CommandLine& line) {
   auto options = std::make_shared<PlanOptions>();
   Subcommand* command = scan.add_subcommand("plan", "Paths of a displacement probe over all faces of a part");
   command->footer(
-      "Faces end where triangles meet at an edge. Flat ones are scanned as a raster with one direction of the beam, "
-      "those\n"
-      "of revolution about a line to which a rotary axis can be brought on circles about it, all others along their\n"
-      "normals. Exit code 1: not everything is reached.\n\n"
+      "Faces end where triangles meet at an edge. A flat face is scanned as a raster with one direction of the beam. "
+      "A\n"
+      "face of revolution is scanned on circles, if a rotary axis can be brought to its axis. All others are scanned\n"
+      "along their normals. Exit code 1: not everything is reached.\n\n"
       "Examples:\n"
       "  abbe scan plan examples/cradle_scanner/pyramid.stl --machine examples/machines/liu-scanner.machine.toml -o "
       "path.csv "
@@ -177,16 +177,17 @@ void add_scan_plan(Subcommand& scan, CommandLine& line) {
   command->add_output_file("--program", options->program, "Path as NC program (G1, inverse time feed)");
   command->add_option("--word", options->words, "Word of an axis in the program, such as C1=C");
   command->add_output_file("--coverage", options->coverage, "Coverage as coloured points (.ply)");
-  command->add_output_file("--report", options->report,
-                           "Page to write (.html): the path played on the part, coverage in colour, figures");
+  command->add_output_file(
+      "--report", options->report,
+      "Page to write (.html): an animation of the path over the part, coverage in colour, figures");
   command
       ->add_option("--beyond-plane-mm", options->beyond,
-                   "Only what lies beyond a plane: NX x + NY y + NZ z >= D, frame of the part; more than once")
+                   "Only what lies beyond a plane: NX x + NY y + NZ z >= D, frame of the part; repeatable")
       ->expected(4)
       ->type_name("NX NY NZ D");
   command->add_option("--position-mm", options->position, "Where the part stands in the workpiece frame")->expected(3);
-  command->add_option("--turn-deg", options->turn, "How it is turned: about x, then y, then z")->expected(3);
-  command->add_option("--stage", options->stage, "Mesh of what turns with the part, workpiece frame");
+  command->add_option("--turn-deg", options->turn, "How the part is turned: about x, then y, then z")->expected(3);
+  command->add_option("--stage", options->stage, "Mesh of the stage that turns with the part, workpiece frame");
   options->step.add_to(command);
   const auto ranged = [&](const std::string& name, double& value, double low, double high, const char* words) {
     command->add_option(name, value, words)->check(within(low, high, unit_in(name)))->capture_default_str();
@@ -198,11 +199,11 @@ void add_scan_plan(Subcommand& scan, CommandLine& line) {
   positive("--between-mm", options->scan.between, "Distance of lines");
   ranged("--turn-between-deg", options->turn_between_deg, 0.1, 20,
          "Largest turn of the normal from point to point: points are closer where it turns faster");
-  ranged("--crease-deg", options->crease_deg, 1, 90, "Faces end where triangles meet at more");
+  ranged("--crease-deg", options->crease_deg, 1, 90, "Faces end where triangles meet at a larger angle than this");
   ranged("--largest-angle-deg", options->angle_deg, 2, 85, "Largest angle between beam and normal");
   positive("--range-um", options->range_um, "Range of the probe about its middle, the functional point");
-  positive("--working-distance-mm", options->scan.working_distance, "From the measured point to the probe");
-  positive("--probe-radius-mm", options->scan.probe_radius, "Radius of the probe behind it");
+  positive("--working-distance-mm", options->scan.working_distance, "Distance from the measured point to the probe");
+  positive("--probe-radius-mm", options->scan.probe_radius, "Radius of the probe beyond that distance");
   positive("--probe-length-mm", options->scan.probe_length, "Length of the probe");
   positive("--clearance-mm", options->scan.clearance, "Distance kept to part and stage");
   positive("--linear-speed-mm-per-s", options->scan.linear_speed, "Speed of linear axes");

@@ -117,7 +117,7 @@ int run_points(PointsOptions options) {
 void add_scan_points(Subcommand& scan, CommandLine& line) {
   auto options = std::make_shared<PointsOptions>();
   Subcommand* command =
-      scan.add_subcommand("points", "Axis positions and indications of a probe to points of the part");
+      scan.add_subcommand("points", "Turn axis positions and indications of a probe into points of the part");
   command->footer(
       "Readings: CSV with one column per axis (X_mm, C_deg) and the indication (indication_mm, _um), positive away "
       "from\n"
@@ -143,9 +143,11 @@ void add_scan_points(Subcommand& scan, CommandLine& line) {
       ->expected(3);
   command
       ->add_option("--indication-range-mm", options->range,
-                   "Leave out indications outside of these two: no measurement")
+                   "Leave out indications outside this range: they are not measurements")
       ->expected(2);
-  command->add_option("--column", options->columns, "Column of another name: NAME_unit=COLUMN, such as indication_um=h")
+  command
+      ->add_option("--column", options->columns,
+                   "Column that has another name: NAME_unit=COLUMN, such as indication_um=h")
       ->expected(1)
       ->take_all();
   command->add_option("--ignore", options->ignore, "Column that is not read")->expected(1)->take_all();
