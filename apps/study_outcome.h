@@ -1,6 +1,6 @@
 #pragma once
 
-#include "abbe/study/job.h"
+#include "abbe/study/study_result.h"
 
 namespace abbe {
 

@@ -8,7 +8,7 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/formats/study_file.h"
 #include "abbe/identify/prediction.h"
-#include "abbe/study/job.h"
+#include "abbe/study/study_steps.h"
 #include "shared_file.h"
 
 namespace abbe {

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "abbe/instruments/measurement_plan.h"
+#include "abbe/verify/known_range.h"
 #include "abbe/verify/unmodelled_errors.h"
-#include "abbe/verify/volumetric_figures.h"
 
 namespace abbe {
 namespace {

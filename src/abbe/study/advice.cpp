@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "abbe/study/job.h"
+#include "abbe/study/study_result.h"
 
 namespace abbe {
 namespace {
@@ -55,8 +55,7 @@ std::string advice_text(const StudyResult& result, const char* shows_all) {
     if (advice.kind == AdviceKind::convention || advice.kind == AdviceKind::datum || no_harm) continue;
     if (std::find(remedies.begin(), remedies.end(), advice.remedy) == remedies.end()) remedies.push_back(advice.remedy);
   }
-  if (!remedies.empty())
-    text += fmt::format("\nnot measured, and what would show more (tried with simulated readings)\n");
+  if (!remedies.empty()) text += "\nnot measured, and what would show more (tried with simulated readings)\n";
   for (const std::string& remedy : remedies) {
     text += fmt::format("  {}:\n", remedy);
     std::size_t found = 0;

@@ -9,7 +9,7 @@
 
 #include "abbe/identify/prediction.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/study/job.h"
+#include "abbe/study/study_result.h"
 
 namespace abbe {
 namespace {

@@ -7,7 +7,7 @@
 #include "abbe/geometry/rotation.h"
 #include "abbe/identify/parameter_words.h"
 #include "abbe/instruments/instrument.h"
-#include "abbe/study/job.h"
+#include "abbe/study/study_result.h"
 
 namespace abbe {
 namespace {

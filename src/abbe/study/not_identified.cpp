@@ -8,8 +8,8 @@
 
 #include "abbe/identify/parameter_words.h"
 #include "abbe/identify/shown_by.h"
-#include "abbe/study/job.h"
-#include "abbe/verify/volumetric_figures.h"
+#include "abbe/study/study_result.h"
+#include "abbe/verify/known_range.h"
 
 namespace abbe {
 namespace {
@@ -225,7 +225,7 @@ std::string not_identified_remedies_text(const StudyResult& result) {
   std::string text;
   const NotIdentified& found = result.not_identified;
   if (found.errors.empty()) return text;
-  text += fmt::format("\nnot identified, and what would show it\n");
+  text += "\nnot identified, and what would show it\n";
   for (const NotIdentifiedRemedy& one : found.remedies) {
     text += fmt::format("  {}: {}\n", list_text(one.errors), remedy_text(one));
   }

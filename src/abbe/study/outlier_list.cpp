@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/machine/axis_unit.h"
-#include "abbe/study/job.h"
+#include "abbe/study/study_result.h"
 
 namespace abbe {
 namespace {
@@ -26,7 +26,7 @@ std::string outliers_text(const Study& study, const StudyResult& result, const c
   std::string text;
   const std::vector<Outlier>& outliers = result.identification.outliers;
   if (outliers.empty()) return text;
-  text += fmt::format("\noutliers, by the length of their residual in standard uncertainties\n");
+  text += "\noutliers, by the length of their residual in standard uncertainties\n";
   const std::size_t shown = shows_all == nullptr ? outliers.size() : std::min(outliers.size(), kOutliersShown);
   for (std::size_t i = 0; i < shown; ++i) {
     const Outlier& outlier = outliers[i];

@@ -1,10 +1,7 @@
 #include "abbe/study/random_poses.h"
 
-#include <algorithm>
-
 #include "abbe/errors/random_stream.h"
-#include "abbe/study/job.h"
-#include "abbe/verify/volumetric_figures.h"
+#include "abbe/verify/known_range.h"
 
 namespace abbe {
 namespace {
@@ -15,19 +12,7 @@ constexpr std::uint64_t kApproachStream = 77;
 }  // namespace
 
 std::vector<AxisRange> unseen_ranges(const Machine& machine, const std::vector<const ErrorSet*>& errors) {
-  std::vector<AxisRange> ranges;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    AxisRange range = known_range(machine, *errors.front(), i, 2);
-    for (const ErrorSet* set : errors) {
-      const AxisRange other = known_range(machine, *set, i, 2);
-      // Ranges without a position in common stay: their poses have no result, and that is said.
-      if (std::max(range.from, other.from) > std::min(range.to, other.to)) continue;
-      range.from = std::max(range.from, other.from);
-      range.to = std::min(range.to, other.to);
-    }
-    ranges.push_back(range);
-  }
-  return ranges;
+  return common_known_ranges(machine, errors, 2);
 }
 
 PoseList random_unseen_poses(const Machine& machine, const std::vector<AxisRange>& ranges, std::size_t count,

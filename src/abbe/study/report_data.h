@@ -2,7 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "abbe/study/job.h"
+#include "abbe/study/study_result.h"
 
 namespace abbe {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "abbe/study/job.h"
+#include "abbe/study/study_result.h"
 
 namespace abbe {
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "abbe/report/statistics_json.h"
-#include "abbe/study/job.h"
+#include "abbe/study/study_steps.h"
 #include "abbe/study/summary.h"
 
 namespace abbe {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "abbe/formats/map_file.h"
-#include "abbe/study/job.h"
+#include "abbe/study/study_result.h"
 
 namespace abbe {
 

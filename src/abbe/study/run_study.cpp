@@ -1,6 +1,7 @@
 #include "abbe/study/run_study.h"
 
 #include "abbe/study/advice.h"
+#include "abbe/study/study_steps.h"
 
 namespace abbe {
 namespace {

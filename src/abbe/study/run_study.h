@@ -6,8 +6,8 @@
 
 #include "abbe/formats/study_file.h"
 #include "abbe/geometry/stopped.h"
-#include "abbe/study/job.h"
 #include "abbe/study/results.h"
+#include "abbe/study/study_result.h"
 #include "abbe/study/study_text.h"
 #include "abbe/study/trust.h"
 

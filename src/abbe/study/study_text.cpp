@@ -50,7 +50,7 @@ std::string unseen_text(const UnseenPoses& unseen, bool conditional) {
 
 /// Variances of the readings that were estimated from their residuals.
 std::string variances_text(const VarianceComponents& components) {
-  std::string text = fmt::format("  variances of the readings, by restricted maximum likelihood:\n");
+  std::string text = "  variances of the readings, by restricted maximum likelihood:\n";
   if (components.estimated.variance_factor) {
     text += fmt::format("    variance factor of the stated uncertainties {:.4g}, standard uncertainty {:.2g}\n",
                         components.variance.factor, components.variance_factor_uncertainty());
@@ -65,7 +65,7 @@ std::string variances_text(const VarianceComponents& components) {
   text += fmt::format("    with the uncertainties as stated, chi-square is {:.1f} with {:.0f} degrees of freedom\n",
                       components.stated_chi_square, components.stated_degrees_of_freedom);
   if (components.estimated.variance_factor) {
-    text += fmt::format("    (chi-square above is no test: the variance factor makes it what it is)\n");
+    text += "    (chi-square above is no test: the variance factor makes it what it is)\n";
   }
   return text;
 }
@@ -74,7 +74,7 @@ std::string variances_text(const VarianceComponents& components) {
 
 std::string study_text(const Study& study, const StudyResult& result, const char* shows_all) {
   std::string text = fmt::format("{}: {}   ({})\n", study.name, study.machine.name, study.machine.chain());
-  if (result.campaign.truth) text += fmt::format("simulated: the true errors are known\n");
+  if (result.campaign.truth) text += "simulated: the true errors are known\n";
   text += fmt::format("{} readings\n", result.campaign.reading_count());
   for (const std::string& warning : result.warnings) text += fmt::format("warning: {}\n", warning);
   for (const Distrust& reason : result.distrusted) text += fmt::format("not to be trusted: {}\n", reason.text);
@@ -102,22 +102,22 @@ std::string study_text(const Study& study, const StudyResult& result, const char
                         figures["largest_uncertainty_ratio"].get<double>());
   }
   if (result.order_selection && result.order_selection->done) {
-    text += fmt::format("  orders chosen at held-out poses:");
+    text += "  orders chosen at held-out poses:";
     for (std::size_t g = 0; g < result.order_selection->orders.size(); ++g) {
       text += fmt::format(" {} {}", result.model.order_groups[g].name, result.order_selection->orders[g]);
     }
-    text += fmt::format("\n");
+    text += "\n";
   }
   const bool conditional = !result.not_identified.errors.empty();
   if (result.volumetric) {
-    text += fmt::format("\n");
+    text += "\n";
     text += volumetric_text(*result.volumetric, prediction_covers(result));
   }
   text += residual_text(residual_figures(study, result));
   if (result.unseen && !result.unseen->after.empty()) text += unseen_text(*result.unseen, conditional);
   std::vector<std::string> ranges = coverage_sentences(study, result);
   if (result.map) ranges.insert(ranges.end(), result.map->moved.begin(), result.map->moved.end());
-  if (!ranges.empty()) text += fmt::format("\nranges\n");
+  if (!ranges.empty()) text += "\nranges\n";
   for (const std::string& sentence : ranges) text += fmt::format("  {}\n", sentence);
   if (conditional) text += fmt::format("\nwarning: {}\n", not_identified_text(study, result));
   if (result.unseen && !result.unseen->open.empty())
@@ -127,8 +127,7 @@ std::string study_text(const Study& study, const StudyResult& result, const char
   if (!identified.gauge.constraints.empty()) {
     text += gauge_table_text(identified);
     if (result.unseen && result.unseen->open_known && result.unseen->open.empty()) {
-      text +=
-          fmt::format("  none of these changes the volumetric error other than by the choice of the workpiece datum\n");
+      text += "  none of these changes the volumetric error other than by the choice of the workpiece datum\n";
     }
   }
   text += advice_text(result, shows_all);

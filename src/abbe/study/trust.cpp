@@ -8,7 +8,7 @@
 #include "abbe/identify/outlier_clusters.h"
 #include "abbe/identify/prediction.h"
 #include "abbe/identify/repeated_readings.h"
-#include "abbe/study/job.h"
+#include "abbe/study/study_result.h"
 #include "abbe/study/summary.h"
 
 namespace abbe {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "abbe/study/job.h"
+#include "abbe/study/study_result.h"
 
 namespace abbe {
 

@@ -7,6 +7,7 @@
 
 #include "abbe/formats/study_file.h"
 #include "abbe/instruments/measurement_plan.h"
+#include "abbe/study/study_steps.h"
 #include "abbe/verify/error_map.h"
 
 namespace abbe {

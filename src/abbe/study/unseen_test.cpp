@@ -5,7 +5,7 @@
 #include <string>
 
 #include "abbe/formats/study_file.h"
-#include "abbe/study/job.h"
+#include "abbe/study/study_steps.h"
 
 namespace abbe {
 namespace {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/machine/axis_unit.h"
+#include "abbe/verify/known_range.h"
 
 namespace abbe {
 namespace {
@@ -22,25 +23,6 @@ std::vector<double> left_at_poses(const ErrorMap& map) {
 }
 
 }  // namespace
-
-bool narrow_to_known_range(const ErrorSet& errors, std::size_t axis, AxisRange& range) {
-  const double from = range.from, to = range.to;
-  for (const ErrorMotion& motion : errors.motions) {
-    if (motion.axis != axis || motion.basis.periodic) continue;
-    const Basis& basis = motion.basis;
-    if (basis.kind == BasisKind::fourier && basis.to - basis.from >= basis.period * (1 - 1e-9)) continue;
-    range.from = std::max(range.from, basis.from);
-    range.to = std::min(range.to, basis.to);
-  }
-  return range.from != from || range.to != to;
-}
-
-AxisRange known_range(const Machine& machine, const ErrorSet& errors, std::size_t axis, std::size_t count) {
-  AxisRange range = full_ranges(machine, count)[axis];
-  narrow_to_known_range(errors, axis, range);
-  range.count = range.is_fixed() ? 1 : count;
-  return range;
-}
 
 void keep_common_poses(std::span<ErrorMap* const> maps) {
   std::vector<std::uint8_t> covered = maps.front()->covered;
@@ -71,21 +53,7 @@ std::string ranges_text(const Machine& machine, const std::vector<AxisRange>& ra
 }
 
 std::vector<AxisRange> stated_ranges(const Machine& machine, const std::vector<const ErrorSet*>& errors) {
-  std::vector<AxisRange> ranges;
-  const std::size_t count = machine.axes.size() > 3 ? 5 : 9;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    AxisRange range = known_range(machine, *errors.front(), i, count);
-    for (const ErrorSet* set : errors) {
-      const AxisRange other = known_range(machine, *set, i, count);
-      // Ranges without a position in common stay: their poses have no result, and that is said.
-      if (std::max(range.from, other.from) > std::min(range.to, other.to)) continue;
-      range.from = std::max(range.from, other.from);
-      range.to = std::min(range.to, other.to);
-    }
-    range.count = range.is_fixed() ? 1 : count;
-    ranges.push_back(range);
-  }
-  return ranges;
+  return common_known_ranges(machine, errors, machine.axes.size() > 3 ? 5 : 9);
 }
 
 StatedPoses grid_over(const Machine& machine, const std::vector<AxisRange>& ranges) {

@@ -36,18 +36,12 @@ struct StatedPoses {
   std::string words;
 };
 
-/// Narrows a range of an axis to where all its error motions are known. @returns false if that leaves it as it was
-bool narrow_to_known_range(const ErrorSet& errors, std::size_t axis, AxisRange& range);
-
-/// Range of an axis over which all its identified error motions are known; the travel where it has none.
-AxisRange known_range(const Machine& machine, const ErrorSet& errors, std::size_t axis, std::size_t count);
-
 /// The grid over which every command states the volumetric error unless it is asked for another one: 9 positions per
 /// axis (5 above 3 axes), evenly over the range in which all of the given errors are known.
 /// @param errors  at least one set
 StatedPoses stated_grid(const Machine& machine, const std::vector<const ErrorSet*>& errors);
 
-/// The range of every axis over which all of the given errors are known, with the number of positions above.
+/// The ranges of that grid, with its numbers of positions.
 std::vector<AxisRange> stated_ranges(const Machine& machine, const std::vector<const ErrorSet*>& errors);
 
 /// All combinations of evenly spaced positions, the last axis fastest.

@@ -1,4 +1,4 @@
-#include "abbe/study/job.h"
+#include "abbe/study/study_steps.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include "abbe/formats/measurement_file.h"
 #include "abbe/identify/prediction.h"
 #include "abbe/study/coverage.h"
+#include "abbe/verify/known_range.h"
 #include "abbe/verify/volumetric_figures.h"
 
 namespace abbe {

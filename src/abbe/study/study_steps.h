@@ -1,0 +1,28 @@
+#pragma once
+
+// The steps of a study. run_study() does them in order; each adds to the result.
+#include <stop_token>
+#include <vector>
+
+#include "abbe/study/study_result.h"
+
+namespace abbe {
+
+/// Options of the solver as the study states them.
+IdentifyOptions identify_options(const Study& study);
+
+/// The identification of a study from its readings, with the volumetric error that it predicts; no map.
+/// @throws Stopped if `stop` asks for it
+void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress = {},
+                    const std::stop_token& stop = {});
+
+/// Figures of the volumetric error over the grid that all commands state (docs/conventions.md).
+VolumetricFigures study_volumetric_figures(const Study& study, const StudyResult& result);
+
+/// Map of the study's plan, or of 7 positions per axis over the known range.
+StudyMap map_study(const Study& study, const StudyResult& result, const ProgressCallback& progress = {});
+
+/// Adds the length of measured - modelled of a reading (mm), if any of its components is a length.
+void append_length(const Observations& observations, std::size_t reading, std::vector<double>& lengths);
+
+}  // namespace abbe
