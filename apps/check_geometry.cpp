@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 std::optional<FileLength> unit_of(const GeometryCheckOptions& options) {
   if (options.unit.empty()) return std::nullopt;
   const auto unit = file_length_named(options.unit);
-  if (!unit) throw InputError({"", 0, 0, "--unit"}, fmt::format("'{}' is no unit", options.unit), "mm, m or inch");
+  if (!unit) throw InputError({"", 0, 0, "--unit"}, fmt::format("'{}' is not a unit", options.unit), "mm, m or inch");
   return unit;
 }
 

@@ -62,7 +62,7 @@ std::vector<double> numbers(const std::string& text, const std::string& option, 
   for (std::string part; std::getline(stream, part, ',');) {
     values.push_back(0);
     if (parse_number(part, 0, values.back()) != NumberProblem::none) {
-      throw InputError({.field = option}, fmt::format("'{}' is no number", part.substr(0, 40)), expected);
+      throw InputError({.field = option}, fmt::format("'{}' is not a number", part.substr(0, 40)), expected);
     }
   }
   return values;
@@ -74,7 +74,7 @@ std::optional<Eigen::Vector3d> held_direction(const FitCommand& command) {
   const std::vector<double> d = numbers(command.direction, "--fixed-direction", expected);
   if (d.size() != 3 || !(Eigen::Vector3d(d[0], d[1], d[2]).norm() > 0)) {
     throw InputError({.field = "--fixed-direction"},
-                     fmt::format("'{}' is no direction", command.direction.substr(0, 60)), expected);
+                     fmt::format("'{}' is not a direction", command.direction.substr(0, 60)), expected);
   }
   return Eigen::Vector3d(d[0], d[1], d[2]);
 }
@@ -86,7 +86,7 @@ std::vector<double> held_radii(const FitCommand& command, std::size_t count) {
   std::vector<double> radii = numbers(command.radii, "--fixed-radius-mm", expected);
   const bool positive = std::all_of(radii.begin(), radii.end(), [](double r) { return r > 0; });
   if (radii.size() != count || !positive) {
-    throw InputError({.field = "--fixed-radius-mm"}, fmt::format("'{}' is not that", command.radii.substr(0, 60)),
+    throw InputError({.field = "--fixed-radius-mm"}, fmt::format("'{}' is not valid", command.radii.substr(0, 60)),
                      expected);
   }
   return radii;
@@ -115,7 +115,7 @@ int run_coaxial(const FitCommand& command, FitRequest request) {
                      "--method least-squares");
   }
   if (!command.residuals.empty()) {
-    throw InputError({.field = "--residuals"}, "there are none of coaxial circles", "one shape");
+    throw InputError({.field = "--residuals"}, "coaxial circles have none", "one shape");
   }
   std::vector<Eigen::Matrix3Xd> circles;
   std::vector<std::string> circle_names;

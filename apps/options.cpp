@@ -303,7 +303,7 @@ std::string unexpected_words(const CLI::App& program) {
     text += fmt::format("abbe: '{}' is {} {}{}\n", name, is_option ? "not an option of" : "not expected by",
                         words_of(command), meant ? "; did you mean " + *meant + "?" : "");
   }
-  return text + fmt::format("abbe: {} --help says what there is\n", words_of(command));
+  return text + fmt::format("abbe: {} --help lists what there is\n", words_of(command));
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ void StepReading::require_step_among(const std::vector<std::filesystem::path>& m
   if (std::any_of(meshes.begin(), meshes.end(), is_step_that_is_read)) return;
   const auto first = std::find_if(meshes.begin(), meshes.end(), is_read);
   refuse(first == meshes.end() ? "no mesh is read"
-                               : fmt::format("{} is no STEP file and has no exact faces", first->string()));
+                               : fmt::format("{} is not a STEP file and has no exact faces", first->string()));
 }
 
 void StepReading::refuse(const std::string& why) const {

@@ -23,7 +23,7 @@ namespace {
 /// Without it, a condition that nothing meets, or everything.
 void check_condition(const char* option, std::optional<double> value) {
   if (!value || (*value > 0 && std::isfinite(*value))) return;
-  throw InputError({.field = option}, fmt::format("{} is no condition", *value), "a number above zero");
+  throw InputError({.field = option}, fmt::format("{} is not a condition", *value), "a number above zero");
 }
 
 int run_verify(const VerifyOptions& options) {

@@ -37,7 +37,7 @@ void read_start(const std::string& text, const Machine& machine, const WordAxes&
     options.start[i] = position;
     return;
   }
-  throw InputError({.field = "--start " + text}, fmt::format("'{}' is no word of an axis of the machine", name),
+  throw InputError({.field = "--start " + text}, fmt::format("'{}' is not a word of an axis of the machine", name),
                    "WORD_unit=position, such as X_mm=100 or C_deg=30");
 }
 

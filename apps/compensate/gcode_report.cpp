@@ -109,7 +109,7 @@ constexpr NamedStatus kStatuses[] = {
     {CorrectionStatus::outside_travel, "the corrected position is outside the travel and was kept at its end"},
     {CorrectionStatus::not_covered, "the errors are not known there"},
     {CorrectionStatus::not_converged, "no correction was found"},
-    {CorrectionStatus::not_finite, "a position is no number"}};
+    {CorrectionStatus::not_finite, "a position is not a number"}};
 
 }  // namespace
 
@@ -171,7 +171,7 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
       "position-left", first_place(CorrectionStatus::position_left));
   add(status_count(report, CorrectionStatus::not_converged), allowed.not_converged, "no correction found",
       "not-converged", first_place(CorrectionStatus::not_converged));
-  add(status_count(report, CorrectionStatus::not_finite), false, "position that is no number", nullptr);
+  add(status_count(report, CorrectionStatus::not_finite), false, "position that is not a number", nullptr);
   add(report.bent_with_spindle, allowed.not_proven,
       fmt::format(
           "threads or taps, which are not split, not proven to stay within the tolerance, at most {:.3f} um from "

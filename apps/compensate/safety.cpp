@@ -15,7 +15,7 @@ namespace abbe {
 double refusal_limit(const char* option, const std::optional<double>& given, const char* unit) {
   if (!given) return std::numeric_limits<double>::infinity();
   if (!(*given > 0) || !std::isfinite(*given)) {
-    throw InputError({.field = option}, fmt::format("{:g} is no limit", *given),
+    throw InputError({.field = option}, fmt::format("{:g} is not a limit", *given),
                      fmt::format("a number above zero in {}, or no limit at all", unit));
   }
   return *given;

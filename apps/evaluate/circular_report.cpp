@@ -29,7 +29,7 @@ std::string reason(CircleStatus status) {
       return "the arc is shorter than 200\xC2\xB0 and has no centre of its own; --centre instrument takes the "
              "instrument's";
     case CircleStatus::not_converged:
-      return "the readings are no circle around the instrument";
+      return "the readings are not a circle around the instrument";
   }
   return "";
 }

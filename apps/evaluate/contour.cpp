@@ -98,7 +98,7 @@ void refuse_without_effect(const ContourCommand& command) {
                    "has no effect on points against a curve", "sections, without --curve");
     return;
   }
-  command.refuse({"--closed", "--machine"}, "there is no curve that it could be said of", "with --curve");
+  command.refuse({"--closed", "--machine"}, "there is no curve to which it could apply", "with --curve");
   if (command.feature == "groove") {
     command.refuse({"--surface"}, "has no effect on a groove, which has both sides", "--feature edge, or without it");
   }

@@ -127,7 +127,7 @@ void apply_tolerances(const std::vector<std::string>& tolerances, EvaluationRepo
     if (found == nullptr) throw InputError(place, "there is no such figure", "one of " + joined_symbols(report));
     double value = 0;
     if (parse_quantity(std::string_view(text).substr(equals + 1), *unit, value) != NumberProblem::none || value <= 0) {
-      throw InputError(place, fmt::format("'{}' is no number above zero", text.substr(equals + 1)),
+      throw InputError(place, fmt::format("'{}' is not a number above zero", text.substr(equals + 1)),
                        name + "=10, with a decimal point");
     }
     if (found->tolerance) throw InputError(place, "this figure has two tolerances", "one");

@@ -15,7 +15,7 @@ Option* add_number(Subcommand* command, const std::string& name, Quantity quanti
     // Compared as written, so that the limits are those that the message names.
     if (parse_number(text, 0, number) != NumberProblem::none || number < range.from || number > range.to ||
         parse_quantity(text, unit_named(quantity, unit), inside) != NumberProblem::none) {
-      throw InputError({.field = name}, fmt::format("'{}' is no such number", text.substr(0, 40)),
+      throw InputError({.field = name}, fmt::format("'{}' is not a valid number", text.substr(0, 40)),
                        fmt::format("{} in {} from {:g} to {:g}", quantity_words(quantity), unit, range.from, range.to));
     }
     value = inside;

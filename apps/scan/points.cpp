@@ -39,7 +39,7 @@ void read_mapping(const PointsOptions& options, ColumnMapping& mapping) {
       throw InputError({.field = "--column " + text}, "not understood", "NAME_unit=COLUMN, such as indication_um=h");
     }
     if (!mapping.columns.emplace(text.substr(0, equals), text.substr(equals + 1)).second) {
-      throw InputError({.field = "--column " + text}, "this name stands twice");
+      throw InputError({.field = "--column " + text}, "this name is given twice");
     }
   }
   mapping.ignore = options.ignore;

@@ -193,7 +193,7 @@ VerifyResult verify(const VerifyOptions& options) {
   result.poses_asked = options.poses;
   std::error_code ignored;
   if (!options.results.empty() && !fs::is_directory(options.results, ignored)) {
-    throw InputError({.file = options.results}, "is no folder", "results of abbe run");
+    throw InputError({.file = options.results}, "is not a folder", "results of abbe run");
   }
   result.seed = options.seed ? *options.seed : seed_of_results(options.results).value_or(1);
   const std::string machine_file = found(options.machine, options.results, "machine.toml", "--machine");

@@ -85,7 +85,7 @@ TEST_F(BadMeasurements, AreRefusedWithFileLineFieldAndUnit) {
   write_changed("Z_mm", "X_um");
   expect_refused("r.csv:1:6: X_um: says the same as column X_mm");
   write_changed("Z_mm", "X_mm");
-  expect_refused("r.csv:1:6: X_mm: this column stands twice");
+  expect_refused("r.csv:1:6: X_mm: this column is given twice");
   write_changed("0,150,R1", "0,nan,R1");
   expect_refused("r.csv:5:3: Z_mm: 'nan' is not a finite number; expected a length in mm");
   write_changed("0,150,R1", "0,1e308,R1");

@@ -99,7 +99,7 @@ TEST_F(CheckGeometry, AStepFileSaysHowNearItsTrianglesAre) {
   EXPECT_LE(json["deviation_mm"].get<double>(), 0.1);
   const CommandResult refused = abbe({"check", part}, {"ABBE_STEP_PROGRAM=/nowhere"});
   EXPECT_EQ(refused.exit_code, ExitCode::bad_input);
-  EXPECT_THAT(refused.err, HasSubstr("ABBE_STEP_PROGRAM names /nowhere, which is no program"));
+  EXPECT_THAT(refused.err, HasSubstr("ABBE_STEP_PROGRAM names /nowhere, which is not a program"));
 }
 
 TEST_F(CheckGeometry, DamagedFilesAndOptionsThatDoNotFitAreRefused) {
@@ -108,7 +108,7 @@ TEST_F(CheckGeometry, DamagedFilesAndOptionsThatDoNotFitAreRefused) {
   EXPECT_EQ(damaged.exit_code, ExitCode::bad_input);
   EXPECT_THAT(damaged.err, HasSubstr("part.stl:4"));
   folder.write("whole.stl", "solid\n" + tetrahedron() + "endsolid\n");
-  EXPECT_THAT(abbe({"check", "whole.stl", "--unit", "cubit"}).err, HasSubstr("--unit: 'cubit' is no unit"));
+  EXPECT_THAT(abbe({"check", "whole.stl", "--unit", "cubit"}).err, HasSubstr("--unit: 'cubit' is not a unit"));
   EXPECT_THAT(abbe({"check", "whole.stl", "--errors", "e.toml"}).err,
               HasSubstr("--errors: a mesh or a point cloud has no"));
   EXPECT_THAT(abbe({"check", "m.toml", "--unit", "mm"}).err, HasSubstr("--unit: a machine file states its units"));

@@ -128,9 +128,9 @@ TEST_F(EvaluateGeometry, ResultsFoldersHoldPlotsAndAPage) {
 
 TEST_F(EvaluateGeometry, BadOptionsAndFilesAreSaid) {
   expect_refused({"circular", examples + "circular.csv", "--radius-mm", "nan"},
-                 "--radius-mm: 'nan' is no such number; expected a length in mm from 0.001 to 1e+06");
+                 "--radius-mm: 'nan' is not a valid number; expected a length in mm from 0.001 to 1e+06");
   expect_refused({"circular", examples + "circular.csv", "--radius-mm", "150", "--u-reading-um=-1"},
-                 "--u-reading-um: '-1' is no such number; expected a length in um from 0 to 1e+06");
+                 "--u-reading-um: '-1' is not a valid number; expected a length in um from 0 to 1e+06");
   folder.write("p.csv", "X_mm,Z_mm,direction\n100,0,cw\n");
   expect_refused(
       {"circular", "p.csv", "--radius-mm", "100", "--plane", "XY"},

@@ -59,8 +59,8 @@ TEST_F(Evaluate, TolerancesThatAreNone) {
   };
   refused("A=10", "the unit is missing; expected A_mm, A_um or A_m");
   refused("A_arcsec=10", "'arcsec' is not a unit of a length; expected A_mm, A_um or A_m");
-  refused("A_um=x", "'x' is no number above zero; expected A_um=10, with a decimal point");
-  refused("A_um=0", "'0' is no number above zero; expected A_um=10, with a decimal point");
+  refused("A_um=x", "'x' is not a number above zero; expected A_um=10, with a decimal point");
+  refused("A_um=0", "'0' is not a number above zero; expected A_um=10, with a decimal point");
   const CommandResult unknown = abbe({"evaluate", "positioning", "x.csv", "--tolerance", "Q_um=1"});
   EXPECT_EQ(unknown.exit_code, ExitCode::bad_input);
   EXPECT_THAT(unknown.err, HasSubstr("there is no such figure; expected one of A_um, A+_um, A-_um, E_um"));

@@ -137,7 +137,7 @@ TEST_F(Fit, RefusesWhatMeansNothing) {
                  "--fixed-radius-mm: there is no radius of plane to hold");
   expect_refused({ring, "--shape", "circle", "--fixed-radius-mm", "-3"}, "a number of mm above zero");
   expect_refused({ring, "--shape", "plane", "--fixed-direction", "0,0"}, "three numbers, not all zero");
-  expect_refused({ring, "--shape", "plane", "--fixed-direction", "0,a,1"}, "'a' is no number");
+  expect_refused({ring, "--shape", "plane", "--fixed-direction", "0,a,1"}, "'a' is not a number");
   expect_refused({ring, "--shape", "sphere", "--fixed-direction", "0,0,1"}, "there is no direction of sphere");
   expect_refused({ring, "--shape", "plane", "--method", "inscribed"}, "circle2, sphere or cylinder");
   expect_refused({ring, "--shape", "square"}, "square");

@@ -29,7 +29,7 @@ class Outputs : public CommandTest {
           std::vector<std::string>{"run", study + "aguado.study.toml", "-o", output}}) {
       const CommandResult result = abbe(command);
       EXPECT_EQ(result.exit_code, ExitCode::bad_input) << output;
-      EXPECT_THAT(result.err, HasSubstr("holds files that are no results of abbe")) << output;
+      EXPECT_THAT(result.err, HasSubstr("holds files that are not results of abbe")) << output;
       EXPECT_EQ(folder.read("mine/keep.txt"), "mine") << output;
       EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1) << output;
     }

@@ -59,7 +59,7 @@ TEST_F(PapersProgram, ThatIsNoProgramIsRefused) {
   const CommandResult none = abbe({"reproduce", "ma"}, {"ABBE_PAPERS_PROGRAM=/nowhere"});
   EXPECT_EQ(none.exit_code, ExitCode::bad_input);
   EXPECT_EQ(none.err,
-            "abbe: ABBE_PAPERS_PROGRAM names /nowhere, which is no program; expected the program abbe-papers, or no "
+            "abbe: ABBE_PAPERS_PROGRAM names /nowhere, which is not a program; expected the program abbe-papers, or no "
             "such variable\n");
   const CommandResult text = abbe({"reproduce", "ma"}, {program("no program\n")});
   EXPECT_EQ(text.exit_code, ExitCode::bad_input);

@@ -104,7 +104,7 @@ TEST_F(ReadingVariances, PoseNoiseIsFoundAndHeldOutReadingsAreCovered) {
   EXPECT_NEAR(coverage["components_within_percent"], 95, 4);
   EXPECT_NEAR(coverage["readings_within_percent"], 95, 6);
   EXPECT_THAT(result.out, HasSubstr("pose noise "));
-  EXPECT_THAT(result.out, HasSubstr("is no test"));
+  EXPECT_THAT(result.out, HasSubstr("is not a test"));
   EXPECT_THAT(folder.read("out/report.html"), HasSubstr("Pose noise (a displacement common"));
 }
 

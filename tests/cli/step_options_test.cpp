@@ -75,7 +75,7 @@ TEST_F(StepOptionsCommand, AreRefusedWithAMeshThatIsNoStepFile) {
   for (const std::vector<std::string>& command : commands_with("part.stl")) {
     const CommandResult result = abbe_with(command, {"--chord-mm", "0.1"});
     EXPECT_EQ(result.exit_code, ExitCode::bad_input) << command[0];
-    EXPECT_THAT(result.err, HasSubstr("--chord-mm: part.stl is no STEP file and has no exact faces")) << command[0];
+    EXPECT_THAT(result.err, HasSubstr("--chord-mm: part.stl is not a STEP file and has no exact faces")) << command[0];
   }
 }
 

@@ -252,7 +252,7 @@ TEST_F(TrustOfResults, RowsThatStandTwiceAreToldOf) {
   const CommandResult run = abbe({"run", "s.study.toml"});
   EXPECT_EQ(run.exit_code, done) << run.err;
   EXPECT_THAT(run.out, HasSubstr("216 of 216 pairs of readings at the same pose agree to the last digit"));
-  EXPECT_THAT(summary()["warnings"], Contains(HasSubstr("rows that stand twice")));
+  EXPECT_THAT(summary()["warnings"], Contains(HasSubstr("duplicate rows")));
 }
 
 }  // namespace

@@ -188,17 +188,17 @@ TEST_F(VerifyCommand, ErrorsWithoutUncertaintiesAreComparedWithoutAPrediction) {
 
 TEST_F(VerifyCommand, WhatIsMissingOrOutOfRangeIsSaid) {
   EXPECT_THAT(abbe({"verify"}).err, HasSubstr("--machine"));
-  EXPECT_THAT(abbe({"verify", "nowhere"}).err, HasSubstr("nowhere: is no folder"));
+  EXPECT_THAT(abbe({"verify", "nowhere"}).err, HasSubstr("nowhere: is not a folder"));
   EXPECT_THAT(abbe({"verify", folder.path().string()}).err, HasSubstr("machine.toml: these results have no such file"));
   EXPECT_THAT(verify({"--range", "X_mm=-9000:9000"}).err, HasSubstr("within the travel"));
   for (const char* const none : {"0", "-1", "nan", "inf"}) {
     for (const char* const option : {"--least-reduction", "--largest-ratio"}) {
       const CommandResult result = verify({option, none});
       EXPECT_EQ(result.exit_code, ExitCode::bad_input) << option << none;
-      EXPECT_THAT(result.err, HasSubstr(std::string(option) + ": " + none + " is no condition"));
+      EXPECT_THAT(result.err, HasSubstr(std::string(option) + ": " + none + " is not a condition"));
     }
   }
-  EXPECT_THAT(verify({"no-such-results"}).err, HasSubstr("no-such-results: is no folder"));
+  EXPECT_THAT(verify({"no-such-results"}).err, HasSubstr("no-such-results: is not a folder"));
   EXPECT_THAT(verify({"--range", "X_deg=0:1"}).err, HasSubstr("unit 'deg' for a linear axis"));
   EXPECT_THAT(verify({"--range", "B_deg=0:1"}).err, HasSubstr("the machine has no axis 'B'"));
   EXPECT_THAT(verify({"--range", "X_mm=5:1"}).err, HasSubstr("the larger one behind the smaller"));

@@ -45,8 +45,8 @@ void check_judgement(const ControlTableRequest& request, const Eigen::MatrixXd& 
   if (request.leave_out_below > 0 && covariance.size() == 0) {
     throw InputError({.field = "--leave-out-below-uncertainty"}, "no standard uncertainties are stated", "some");
   }
-  if (!(request.limit_mm > 0)) throw InputError({.field = "--limit-um"}, "is no limit", "a number above zero");
-  if (!(request.limit_rad > 0)) throw InputError({.field = "--limit-urad"}, "is no limit", "a number above zero");
+  if (!(request.limit_mm > 0)) throw InputError({.field = "--limit-um"}, "is not a limit", "a number above zero");
+  if (!(request.limit_rad > 0)) throw InputError({.field = "--limit-urad"}, "is not a limit", "a number above zero");
   if (!(request.least_reduction >= 0 && request.least_reduction <= 1)) {
     throw InputError({.field = "--least-reduction-percent"}, "out of range", "0 to 100 %");
   }

@@ -67,7 +67,7 @@ std::string useless_tables(const Machine& machine, const ErrorSet& errors, const
   }
   if (not_carried.empty()) return {};
   std::string text = fmt::format(
-      "the tables would take away {:.2g} % of the volumetric error ({:.3f} to {:.3f} um rms), less than "
+      "the tables would remove {:.2g} % of the volumetric error ({:.3f} to {:.3f} um rms), less than "
       "--least-reduction-percent {:g}: {} does not carry {}",
       std::max(0.0, 100 * (before - after) / before), 1e3 * before, 1e3 * after, 100 * least, made.format->name,
       not_carried);

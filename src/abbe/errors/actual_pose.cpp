@@ -156,7 +156,7 @@ RigidTransform actual_bed_from_workpiece(const Machine& machine, const ErrorSet&
 
 RigidTransform actual_workpiece_from_tool(const Machine& machine, const ErrorSet& errors,
                                           const std::vector<double>& positions) {
-  assert(!errors.composition.first_order && "a first-order error is no rotation and has no such inverse");
+  assert(!errors.composition.first_order && "a first-order error is not a rotation and has no such inverse");
   return actual_bed_from_workpiece(machine, errors, positions).inverse() *
          actual_bed_from_tool(machine, errors, positions);
 }

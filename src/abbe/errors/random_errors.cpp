@@ -114,7 +114,7 @@ ErrorSet random_errors(const Machine& machine, const RandomErrorOptions& options
     Component component = Component::X;
     bool is_location = false;
     if (!parse_error_name(machine, name, axis, component, is_location)) {
-      throw std::invalid_argument(name + " is no error of this machine");
+      throw std::invalid_argument(name + " is not an error of this machine");
     }
     (is_location ? locations : motions).insert({axis, static_cast<int>(component)});
   }

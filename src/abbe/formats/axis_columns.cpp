@@ -79,7 +79,7 @@ std::vector<std::vector<std::int8_t>> take_approach(std::string_view text, const
     for (std::size_t row = 0; row < table.rows; ++row) {
       const double side = column.numbers[row];
       if (side != 1 && side != -1 && side != 0) {
-        throw InputError({file, csv_line(text, row), 0, column.header}, fmt::format("{:.9g} is no side", side),
+        throw InputError({file, csv_line(text, row), 0, column.header}, fmt::format("{:.9g} is not a side", side),
                          "1 after a motion in positive direction, -1 in negative, 0 if it is not known");
       }
       approach[i][row] = static_cast<std::int8_t>(side);

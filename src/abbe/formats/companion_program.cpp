@@ -24,7 +24,7 @@ std::filesystem::path path_beside_this_program(const CompanionProgram& program) 
 std::filesystem::path find_companion_program(const CompanionProgram& program, const InputError::Place& place) {
   if (const char* named = std::getenv(program.variable); named != nullptr && *named != '\0') {
     if (can_be_run(named)) return named;
-    throw InputError(place, fmt::format("{} names {}, which is no program", program.variable, named),
+    throw InputError(place, fmt::format("{} names {}, which is not a program", program.variable, named),
                      fmt::format("the program {}, or no such variable", program.name));
   }
   const std::filesystem::path beside = path_beside_this_program(program);

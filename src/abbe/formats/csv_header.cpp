@@ -149,7 +149,7 @@ std::vector<CsvFileColumn> csv_match_header(std::string_view header, const std::
       throw InputError(place, "the columns are not separated by commas", "commas between columns and a decimal point");
     }
     for (const CsvFileColumn& other : columns) {
-      if (other.name == column.name) throw InputError(place, "this column stands twice");
+      if (other.name == column.name) throw InputError(place, "this column is given twice");
     }
     const auto mapped = std::find_if(mapping.columns.begin(), mapping.columns.end(),
                                      [&](const auto& entry) { return entry.second == column.name; });

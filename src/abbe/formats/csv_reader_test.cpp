@@ -84,7 +84,7 @@ TEST(CsvReader, RefusesWrongUnitsAndColumns) {
             "C_arcsec");
   EXPECT_EQ(message_of_csv("# c\nX_mm\n1\n"),
             "m.csv:2: C: missing column; expected C_rad, C_mrad, C_urad, C_deg or C_arcsec");
-  EXPECT_EQ(message_of_csv("X_mm,C_deg,X_mm\n1,2,3\n"), "m.csv:1:12: X_mm: this column stands twice");
+  EXPECT_EQ(message_of_csv("X_mm,C_deg,X_mm\n1,2,3\n"), "m.csv:1:12: X_mm: this column is given twice");
   EXPECT_EQ(message_of_csv("X_mm,C_deg,X_um\n1,2,3\n"), "m.csv:1:12: X_um: says the same as column X_mm");
   EXPECT_EQ(message_of_csv("X_mm,C_deg,stadion\n1,2,3\n"),
             "m.csv:1:12: stadion: unknown column, did you mean station?; expected one of X, C, station, u");

@@ -28,7 +28,7 @@ void read_name(TomlTable& table, const Machine& machine, bool location, std::siz
   const std::string name = table.text("name");
   bool is_location = false;
   if (!parse_error_name(machine, name, axis, component, is_location)) {
-    table.fail("name", fmt::format("\"{}\" is no error of this machine", name), error_name_hint(machine));
+    table.fail("name", fmt::format("\"{}\" is not an error of this machine", name), error_name_hint(machine));
   }
   if (is_location != location) {
     table.fail("name", fmt::format("\"{}\" is {}", name, is_location ? "a location error" : "an error motion"),
@@ -182,7 +182,7 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
       table.fail("name", "this component has no effect on the axis", "a location error that displaces the axis line");
     }
     for (const LocationError& other : errors.locations) {
-      if (other.axis == location.axis && other.component == location.component) table.fail("name", "stands twice");
+      if (other.axis == location.axis && other.component == location.component) table.fail("name", "is given twice");
     }
     location.value = table.number("value", quantity);
     refuse_implausible(table, "value", quantity, location.value);
@@ -195,10 +195,10 @@ ErrorsFile parse_errors(const std::string& text, const std::filesystem::path& pa
     const std::string name = table.text("axis");
     reversal.axis = machine.find_axis(name);
     if (reversal.axis == Machine::npos) {
-      table.fail("axis", fmt::format("\"{}\" is no axis of this machine", name), axis_names(machine));
+      table.fail("axis", fmt::format("\"{}\" is not an axis of this machine", name), axis_names(machine));
     }
     for (const Reversal& other : errors.reversals) {
-      if (other.axis == reversal.axis) table.fail("axis", "stands twice");
+      if (other.axis == reversal.axis) table.fail("axis", "is given twice");
     }
     const Quantity quantity = axis_quantity(machine.axes[reversal.axis]);
     reversal.value = table.number("value", quantity);

@@ -137,10 +137,10 @@ TEST(ErrorsFile, ReadsAndRefusesReversals) {
   EXPECT_EQ(parsed_errors(errors_text(test::endless_turntable(), contents)).errors.reversals,
             contents.errors.reversals);
   EXPECT_THAT(message_of_errors("[[reversal]]\naxis = \"Q\"\nvalue_um = 1\n"),
-              testing::HasSubstr("\"Q\" is no axis of this machine"));
+              testing::HasSubstr("\"Q\" is not an axis of this machine"));
   EXPECT_THAT(message_of_errors("[[reversal]]\naxis = \"C\"\nvalue_um = 1\n"), testing::HasSubstr("value_urad"));
   EXPECT_THAT(message_of_errors("[[reversal]]\naxis = \"X\"\nvalue_um = 1\n[[reversal]]\naxis = \"X\"\nvalue_um = 1\n"),
-              testing::HasSubstr("stands twice"));
+              testing::HasSubstr("is given twice"));
 }
 
 TEST(ErrorsFile, RefusesWhatIsNoErrorOfTheMachine) {
@@ -148,14 +148,14 @@ TEST(ErrorsFile, RefusesWhatIsNoErrorOfTheMachine) {
   const std::string hint =
       "expected E, one of X Y Z A B C, and an axis of the machine (C, X, Z): EXC; location errors with 0: EA0C";
   EXPECT_EQ(message_of_errors("[[motion]]\nname=\"EXY\"\n" + rest),
-            "e.toml:2:1: motion[1].name: \"EXY\" is no error of this machine; " + hint);
+            "e.toml:2:1: motion[1].name: \"EXY\" is not an error of this machine; " + hint);
   EXPECT_EQ(message_of_errors("[[motion]]\nname=\"EX0C\"\n" + rest),
             "e.toml:2:1: motion[1].name: \"EX0C\" is a location error; expected it under [[location]]");
   EXPECT_EQ(message_of_errors("[[location]]\nname=\"EZ0C\"\nvalue_um=1\n"),
             "e.toml:2:1: location[1].name: this component has no effect on the axis; expected a location error that "
             "displaces the axis line");
   EXPECT_EQ(message_of_errors("[[location]]\nname=\"EX0C\"\nvalue_um=1\n[[location]]\nname=\"EX0C\"\nvalue_um=1\n"),
-            "e.toml:5:1: location[2].name: stands twice");
+            "e.toml:5:1: location[2].name: is given twice");
   EXPECT_EQ(message_of_errors("chain = \"w b X t\"\n"),
             "e.toml:1:1: chain: the errors belong to \"w b X t\"; expected \"w C' X' b Z t\"");
 }

@@ -65,7 +65,7 @@ class CircularReader {
       refuse_columns(has(kActualX)   ? kActualX
                      : has(kActualY) ? kActualY
                                      : kActualZ,
-                     "stands beside columns of a ball bar");
+                     "is given together with columns of a ball bar");
     }
     if (coordinates > 0) {
       read_points(coordinates);
@@ -94,14 +94,14 @@ class CircularReader {
     const std::string& name = direction.names[direction.words[row]];
     if (name == "cw") return result_.paths[static_cast<std::size_t>(CircularDirection::clockwise)];
     if (name == "ccw") return result_.paths[static_cast<std::size_t>(CircularDirection::counterclockwise)];
-    refuse_row(row, direction.header, fmt::format("'{}' is no direction", name.substr(0, 40)),
+    refuse_row(row, direction.header, fmt::format("'{}' is not a direction", name.substr(0, 40)),
                "cw (clockwise) or ccw (counter-clockwise)");
   }
 
   void read_lengths() {
     if (!has(kPathAngle))
       throw InputError({file_, 0, 0, "angle"}, "missing column", accepted_names("angle", Quantity::angle));
-    if (has(kDeviation) && has(kRadius)) refuse_columns(kRadius, "stands beside the deviation");
+    if (has(kDeviation) && has(kRadius)) refuse_columns(kRadius, "is given together with the deviation");
     if (!has(kDeviation) && !has(kRadius)) {
       throw InputError({file_, 0, 0, "deviation"}, "missing column", "deviation_um or radius_mm");
     }

@@ -65,7 +65,7 @@ TEST(EvaluationCircularFile, RowsInNoOrderArePutInThatOfThePath) {
 TEST(EvaluationCircularFile, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(circular("angle_deg,deviation_um\n0,1\n"), "c.csv:1: direction: missing column; expected direction");
   EXPECT_EQ(circular("angle_deg,direction,deviation_um\n0,cw,1\n1,left,1\n"),
-            "c.csv:3: direction: 'left' is no direction; expected cw (clockwise) or ccw (counter-clockwise)");
+            "c.csv:3: direction: 'left' is not a direction; expected cw (clockwise) or ccw (counter-clockwise)");
   EXPECT_EQ(circular("direction,deviation_um\ncw,1\n"),
             "c.csv: angle: missing column; expected angle_rad, angle_mrad, angle_urad, angle_deg or angle_arcsec");
   EXPECT_EQ(circular("angle_deg,direction\n0,cw\n"),
@@ -74,9 +74,9 @@ TEST(EvaluationCircularFile, SaysWhatIsWrongAndWhere) {
             "c.csv:2: deviation_mm: the radius is 0 mm; expected a radius near the nominal 100 mm");
   const std::string either = "; expected angle_deg with deviation_um or radius_mm, or two of X_mm, Y_mm, Z_mm";
   EXPECT_EQ(circular("angle_deg,direction,deviation_mm,Y_mm\n0,cw,1,1\n"),
-            "c.csv: Y_mm: stands beside columns of a ball bar" + either);
+            "c.csv: Y_mm: is given together with columns of a ball bar" + either);
   EXPECT_EQ(circular("angle_deg,direction,deviation_mm,radius_mm\n0,cw,1,1\n"),
-            "c.csv: radius_mm: stands beside the deviation" + either);
+            "c.csv: radius_mm: is given together with the deviation" + either);
   EXPECT_EQ(circular("direction,Y_mm\ncw,1\n"), "c.csv: Y_mm: is the only coordinate" + either);
   EXPECT_EQ(circular("direction,X_mm,Y_mm,Z_mm\ncw,1,1,1\n"), "c.csv: X_mm: is one of three" + either);
   EXPECT_EQ(circular("direction,X_mm,Y_mm\ncw,1,1\ncw,0,1e-9\n"),

@@ -55,7 +55,7 @@ class PositioningReader {
     const bool has_deviation = present(kDeviationLength) || present(kDeviationAngle);
     const bool has_actual = present(kActualLength) || present(kActualAngle);
     if (has_deviation == has_actual) {
-      fail("deviation", has_actual ? "stands beside the actual positions" : "missing column",
+      fail("deviation", has_actual ? "is given together with the actual positions" : "missing column",
            rotary_ ? "deviation_arcsec or actual_deg, one of them" : "deviation_um or actual_mm, one of them");
     }
     is_actual_ = has_actual;
@@ -103,7 +103,7 @@ class PositioningReader {
   /// True for the length, false for the angle. @throws InputError if both or none are there
   bool one_of(std::size_t length, std::size_t angle, const std::string& base, const std::string& expected) const {
     if (present(length) && present(angle)) {
-      fail(csv_.columns[angle].header, "stands beside " + csv_.columns[length].header, "only one of them");
+      fail(csv_.columns[angle].header, "is given together with " + csv_.columns[length].header, "only one of them");
     }
     if (!present(length) && !present(angle)) fail(base, "missing column", expected);
     return present(length);
@@ -118,7 +118,7 @@ class PositioningReader {
       if (!positive && word != "-" && word != "negative") {
         std::size_t row = 0;
         while (values.words[row] != i) ++row;
-        fail_row(row, "direction", fmt::format("'{}' is no direction of approach", word.substr(0, 40)), "+ or -");
+        fail_row(row, "direction", fmt::format("'{}' is not a direction of approach", word.substr(0, 40)), "+ or -");
       }
       of_word.push_back(positive ? ApproachDirection::positive : ApproachDirection::negative);
     }

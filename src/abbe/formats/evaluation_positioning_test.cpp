@@ -40,7 +40,7 @@ TEST(PositioningFile, OfARotaryAxisIsInRadians) {
 TEST(PositioningFile, SaysWhatIsWrongAndWhere) {
   const std::string header = "run,direction,target_mm,deviation_um\n";
   EXPECT_EQ(refused(header + "1,+,0,0\n# remark\n2,up,0,0\n"),
-            "p.csv:4: direction: 'up' is no direction of approach; expected + or -");
+            "p.csv:4: direction: 'up' is not a direction of approach; expected + or -");
   EXPECT_EQ(
       refused(header + "1,+,0,0\n1,-,0,0\n1,+,0,1\n"),
       "p.csv:4: run: run 1 approaches this target twice from the same side, first in line 2; expected one reading "
@@ -55,9 +55,10 @@ TEST(PositioningFile, SaysWhatIsWrongAndWhere) {
   EXPECT_EQ(refused("direction,target_mm,actual_deg\n+,0,0\n"),
             "p.csv: actual_deg: is an angle, but the targets are lengths; expected actual_um or _mm");
   EXPECT_EQ(refused("direction,target_mm,target_deg,deviation_um\n+,0,0,0\n"),
-            "p.csv: target_deg: stands beside target_mm; expected only one of them");
-  EXPECT_EQ(refused("direction,target_mm,deviation_um,actual_mm\n+,0,0,0\n"),
-            "p.csv: deviation: stands beside the actual positions; expected deviation_um or actual_mm, one of them");
+            "p.csv: target_deg: is given together with target_mm; expected only one of them");
+  EXPECT_EQ(
+      refused("direction,target_mm,deviation_um,actual_mm\n+,0,0,0\n"),
+      "p.csv: deviation: is given together with the actual positions; expected deviation_um or actual_mm, one of them");
   EXPECT_EQ(refused("target_mm,deviation_um\n0,0\n"), "p.csv:1: direction: missing column; expected direction");
   EXPECT_EQ(refused("direction,target_deg,actual_deg\n+,0,359.999\n"),
             "p.csv:2: actual_deg: is more than half a turn from the target; expected angles counted on through full "

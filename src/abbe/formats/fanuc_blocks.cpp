@@ -17,7 +17,7 @@ bool next_fanuc_block(TableLines& lines, std::vector<FanucWord>& words) {
       words.push_back({block[at], without_blanks(block.substr(at + 1, end - at - 1))});
       at = end;
     }
-    if (words[0].letter != 'N') lines.fail("", fmt::format("'{}' is no block", shown_word(block)), "N12345...");
+    if (words[0].letter != 'N') lines.fail("", fmt::format("'{}' is not a block", shown_word(block)), "N12345...");
     return true;
   }
   return false;

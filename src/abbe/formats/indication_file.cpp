@@ -100,7 +100,8 @@ class IndicationReader {
     if (present.empty()) throw InputError({file_, 0, 0, ""}, "no column with the commands of an axis", names);
     if (present.size() > 1) {
       throw InputError({file_, 0, 0, csv_.columns[present[1]].header},
-                       fmt::format("stands beside {}", csv_.columns[present[0]].header), "readings of one axis a file");
+                       fmt::format("is given together with {}", csv_.columns[present[0]].header),
+                       "readings of one axis a file");
     }
     table_.axis = present[0];
     const Axis& axis = machine_.axes[table_.axis];
@@ -139,7 +140,7 @@ class IndicationReader {
       const std::size_t word = direction_->words[row];
       const Eigen::Vector3d& direction = directions[word];
       if (direction.isZero()) {
-        fail_row(row, direction_->header, fmt::format("'{}' is no direction", direction_->names[word]),
+        fail_row(row, direction_->header, fmt::format("'{}' is not a direction", direction_->names[word]),
                  "X, Y, Z, -X, -Y or -Z");
       }
       const Eigen::Vector3d place(place_[0]->numbers[row], place_[1]->numbers[row], place_[2]->numbers[row]);

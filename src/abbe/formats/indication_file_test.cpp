@@ -74,9 +74,9 @@ TEST(IndicationFile, SaysWhatIsWrongAndWhere) {
             "x.csv: no column with the commands of an axis; expected one of C_deg, X_mm, Z_mm");
   EXPECT_EQ(
       message_of_indications("X_mm,Z_mm,direction,place_x_mm,place_y_mm,place_z_mm,indication_um\n0,0,Z,0,0,0,1\n"),
-      "x.csv: Z_mm: stands beside X_mm; expected readings of one axis a file");
+      "x.csv: Z_mm: is given together with X_mm; expected readings of one axis a file");
   EXPECT_EQ(message_of_indications(kHeader + "0,Z,0,0,0,1,0.6\n40,up,0,0,0,1,0.6\n"),
-            "x.csv:3: direction: 'up' is no direction; expected X, Y, Z, -X, -Y or -Z");
+            "x.csv:3: direction: 'up' is not a direction; expected X, Y, Z, -X, -Y or -Z");
   EXPECT_EQ(
       message_of_indications(kHeader + "0,Z,0,0,0,1,0.6\n40,Z,0,0,0,1,0.6\n0,Z,0,5,0,2,0.6\n"),
       "x.csv: indication_um: no reading in direction Z at (0, 5, 0) mm at X = 40 mm; expected one reading of every "

@@ -123,7 +123,7 @@ class LinkageReader {
     const auto found = std::find_if(linkage_marks().begin(), linkage_marks().end(),
                                     [&](const LinkageMark& mark) { return name == mark.name; });
     if (found == linkage_marks().end()) {
-      refuse(row, marks.header, fmt::format("'{}' is no mark of the five steps", name.substr(0, 40)),
+      refuse(row, marks.header, fmt::format("'{}' is not a mark of the five steps", name.substr(0, 40)),
              "one of " + mark_names());
     }
     const auto [earlier, is_first] = seen_.emplace(name, row);
@@ -169,7 +169,7 @@ class LinkageReader {
     LinkageReadings& r = readings_;
     const char* const other = name == "circle" ? "point" : "circle";
     if (seen_.count(other) != 0) {
-      refuse(row, csv_.columns[kMark].header, fmt::format("stands beside '{}'", other),
+      refuse(row, csv_.columns[kMark].header, fmt::format("is given together with '{}'", other),
              "either marks of a circle or the commands that make it a point");
     }
     const bool is_first = seen_.at(name) == row;

@@ -63,9 +63,10 @@ TEST(LinkageFile, WhatIsWrongIsNamedWithItsLineAndColumn) {
       "or the commands that make it a point");
   EXPECT_EQ(message_of_linkage("exit,,,-409,,,,,\n"),
             "x.csv: mark: there is no row 'width'; expected step 2: a line while Z goes through the focus");
-  EXPECT_EQ(message_of_linkage("line7,,,-409,,,,,\n"),
-            "x.csv:2: mark: 'line7' is no mark of the five steps; expected one of exit, width, l1, l2, l3, l4, l5, l6, "
-            "circle, point");
+  EXPECT_EQ(
+      message_of_linkage("line7,,,-409,,,,,\n"),
+      "x.csv:2: mark: 'line7' is not a mark of the five steps; expected one of exit, width, l1, l2, l3, l4, l5, l6, "
+      "circle, point");
   EXPECT_EQ(message_of_linkage(kFirstSteps + "l6,,,,,,25.7,,\n"),
             "x.csv:10: mark: 'l6' is already in line 9; expected one such row");
   EXPECT_EQ(message_of_linkage("exit,,,,,,,,\n"),
@@ -80,7 +81,8 @@ TEST(LinkageFile, WhatIsWrongIsNamedWithItsLineAndColumn) {
             "x.csv:11: Z_mm: differs from the first row 'circle'; expected one position of X, Y and Z for the whole "
             "circle: only the table turns");
   EXPECT_EQ(message_of_linkage(kFirstSteps + "circle,1,2,3,0,0,1,,\npoint,1,2,4,,,,,\n"),
-            "x.csv:11: mark: stands beside 'circle'; expected either marks of a circle or the commands that make it a "
+            "x.csv:11: mark: is given together with 'circle'; expected either marks of a circle or the commands that "
+            "make it a "
             "point");
   EXPECT_EQ(
       message_of([] { parse_linkage("mark,X_mm\nexit,\n", "x.csv"); }),

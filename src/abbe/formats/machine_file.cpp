@@ -33,7 +33,7 @@ void read_travel(TomlTable& table, Axis& axis) {
   axis.endless = table.boolean_or("endless", false);
   if (axis.endless) {
     if (axis.kind == AxisKind::linear) table.fail("endless", "a linear axis cannot be endless");
-    if (table.has("travel", quantity)) table.fail_quantity("travel", quantity, "stands beside endless = true");
+    if (table.has("travel", quantity)) table.fail_quantity("travel", quantity, "is given together with endless = true");
     table.optional_numbers("travel", quantity, 2);
     axis.travel_min = 0;
     axis.travel_max = 2 * std::numbers::pi;

@@ -124,7 +124,7 @@ TEST(MachineFile, RefusesMissingFieldsAndLimitsInTheWrongOrder) {
   EXPECT_EQ(message_of_machine_with("[0, 0, 2]", "[0, 0, 0]"),
             "m.toml:13:1: axis.Z.direction: has no length; expected a vector (x, y, z) along the positive direction");
   EXPECT_EQ(message_of_machine_with("endless = true", "endless = true\ntravel_deg = [0, 10]"),
-            "m.toml:7:1: axis.C.travel_deg: stands beside endless = true");
+            "m.toml:7:1: axis.C.travel_deg: is given together with endless = true");
   EXPECT_EQ(message_of_machine_with("name =", "nane ="), "m.toml:1:1: nane: unknown key; expected name");
   EXPECT_EQ(message_of([] { parse_machine("", "m.toml"); }), "m.toml: the file is empty");
 }

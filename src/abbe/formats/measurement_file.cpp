@@ -115,7 +115,7 @@ class MeasurementReader {
 
   [[noreturn]] void fail_beside(std::size_t column, std::size_t other) const {
     throw InputError({file_, 0, 0, csv_.columns[column].header},
-                     fmt::format("stands beside {}", csv_.columns[other].header), "only one of them");
+                     fmt::format("is given together with {}", csv_.columns[other].header), "only one of them");
   }
 
   PoseList poses() { return take_poses(text_, file_, machine_, csv_, options_.check_travel); }

@@ -53,12 +53,12 @@ MeshFile parse_mesh(std::string_view contents, const std::string& file, const Me
     throw InputError({file, 0, 0, ""}, "a STEP file is read from the disk only", "STL, PLY or OBJ");
   }
   if (is_step_extension(extension)) {
-    throw InputError({file, 1, 0, ""}, "this is no STEP file", "a first line 'ISO-10303-21;'");
+    throw InputError({file, 1, 0, ""}, "this is not a STEP file", "a first line 'ISO-10303-21;'");
   }
   if (is_ply(contents)) return mesh_of_ply(contents, file, options);
   if (is_binary_stl(contents) || extension == ".stl") return parse_stl(contents, file, options);
   if (extension == ".obj") return mesh_of_obj(contents, file, options);
-  if (extension == ".ply") throw InputError({file, 1, 0, ""}, "this is no PLY file", "a first line 'ply'");
+  if (extension == ".ply") throw InputError({file, 1, 0, ""}, "this is not a PLY file", "a first line 'ply'");
   if (is_ascii_stl(contents)) return parse_stl(contents, file, options);
   throw InputError({file, 0, 0, ""}, fmt::format("files with the extension '{}' are not known", extension), kFormats);
 }

@@ -104,11 +104,12 @@ TEST(DamagedMesh, ObjNamesLineAndField) {
 }
 
 TEST(DamagedMesh, PlyHeadersSayWhatIsWrong) {
-  EXPECT_EQ(message("PLY\n", "a.ply"), "a.ply:1: this is no PLY file; expected a first line 'ply'");
+  EXPECT_EQ(message("PLY\n", "a.ply"), "a.ply:1: this is not a PLY file; expected a first line 'ply'");
   EXPECT_EQ(message("ply\nformat ascii 1.0\nelement vertex x\n", "a.ply"),
-            "a.ply:3:1: element: 'x' is no number of elements; expected a line 'element NAME NUMBER'");
-  EXPECT_EQ(message("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n", "a.ply"),
-            "a.ply:4:1: property: 'half' is no type; expected char, uchar, short, ushort, int, uint, float or double");
+            "a.ply:3:1: element: 'x' is not a number of elements; expected a line 'element NAME NUMBER'");
+  EXPECT_EQ(
+      message("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\n", "a.ply"),
+      "a.ply:4:1: property: 'half' is not a type; expected char, uchar, short, ushort, int, uint, float or double");
   EXPECT_EQ(message("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 1\n",
                     "a.ply"),
             "a.ply:3: element vertex: has no property z; expected numbers x, y, z");

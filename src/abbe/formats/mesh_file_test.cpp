@@ -289,7 +289,7 @@ TEST(ObjFile, NamesOfRegionsAreShortAndWholeCharacters) {
   };
   EXPECT_EQ(name(a + "\xc3\xa4"), a);
   EXPECT_EQ(name("\xc3\xa4\x1b[2J"), "\xc3\xa4.[2J");
-  EXPECT_EQ(name(std::string(61, '\x80')), "unnamed") << "bytes that are no text";
+  EXPECT_EQ(name(std::string(61, '\x80')), "unnamed") << "bytes that are not text";
   // Names that differ behind the 60th byte are different regions.
   const MeshFile two = parse_mesh(corners + "g " + a + "xx1\nf 1 2 3\ng " + a + "xx2\nf 1 2 3\n", "a.obj");
   EXPECT_EQ(two.faces, 2U);

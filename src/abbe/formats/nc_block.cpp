@@ -158,7 +158,7 @@ void NcBlockReader::read_word(NcBlock& block, char letter) {
   if (index == NcBlock::kNoWord) {
     index = static_cast<std::uint8_t>(block.word_count);
   } else if (letter != 'g' && letter != 'm') {
-    cursor.fail(begin, "this letter stands in the block already");
+    cursor.fail(begin, "this letter is in the block already");
   }
   ++block.word_count;
 }

@@ -80,7 +80,7 @@ TEST(NcErrors, OfCodesThatAreNotHandled) {
 }
 
 TEST(NcErrors, OfWordsThatAreWrongOrHaveNoUse) {
-  EXPECT_EQ(refusal("G0 X1 X2\n"), "p.ngc:1:7: X2: this letter stands in the block already");
+  EXPECT_EQ(refusal("G0 X1 X2\n"), "p.ngc:1:7: X2: this letter is in the block already");
   EXPECT_EQ(refusal("G0 X\n"),
             "p.ngc:1:5: a value is missing; expected a number, a parameter (#5, #<name>), an expression in [ ] or a "
             "function");
@@ -328,9 +328,9 @@ TEST(NcErrors, OfSubroutinesAndLoops) {
   EXPECT_EQ(refusal("M98 P5\n"),
             "p.ngc:1:1: M98: there is no subprogram O5 in the file; expected a subprogram in the same file: those of "
             "other files are not read");
-  EXPECT_EQ(
-      refusal("M98 P5 G0 X1\n"),
-      "p.ngc:1:8: G0: stands beside M98 or M99, which have no other words; expected a block of its own before it");
+  EXPECT_EQ(refusal("M98 P5 G0 X1\n"),
+            "p.ngc:1:8: G0: is given together with M98 or M99, which have no other words; expected a block of its own "
+            "before it");
   EXPECT_EQ(
       refusal("M99\n"),
       "p.ngc:1:1: M99: M99 outside a subprogram begins the program again without end; expected M2 or M30 at the end");
@@ -348,8 +348,8 @@ TEST(NcErrors, OfProgramsForOtherControls) {
       {"N5 GOTO 100", "p.ngc:2:4: GOTO: is a statement of another language"},
       {"WHILE [#1 LT 3] DO1", "p.ngc:2:1: WHILE: is a statement of another language"},
       {"DO1", "p.ngc:2:1: DO1: is a statement of another language"},
-      {"G54 M98 P100\nM2\nO100\nM99", "p.ngc:2:1: G54: stands beside M98"},
-      {"M98 P100 F5\nM2\nO100\nM99", "p.ngc:2:10: F5: stands beside M98"},
+      {"G54 M98 P100\nM2\nO100\nM99", "p.ngc:2:1: G54: is given together with M98"},
+      {"M98 P100 F5\nM2\nO100\nM99", "p.ngc:2:10: F5: is given together with M98"},
       {"M98 P100\nM2\nO100\nM99 P10", "p.ngc:5:5: P10: no code of this block uses it"},
       {"M98 P51001", "p.ngc:2:1: M98: there is no subprogram O51001"},
       {"M30 P1", "p.ngc:2:5: P1: no code of this block uses it"},

@@ -192,7 +192,8 @@ void NcInterpreter::execute() {
       for (std::size_t i = 0; i < block_.word_count; ++i) {
         const NcWord& beside = block_.words[i];
         if (&beside == &word || (word.value == 98 && (beside.letter == 'p' || beside.letter == 'l'))) continue;
-        block_.fail(beside, "stands beside M98 or M99, which have no other words", "a block of its own before it");
+        block_.fail(beside, "is given together with M98 or M99, which have no other words",
+                    "a block of its own before it");
       }
       if (!block_.assignments.empty()) {
         block_.fail(word, "a parameter is set beside M98 or M99", "a block of its own before it");

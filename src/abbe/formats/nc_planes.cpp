@@ -165,7 +165,7 @@ void NcInterpreter::turn_arc_to_axes(ProgramMove& move) const {
   if ((tilt_.axes_from_plane.transpose() * tilt_.axes_from_plane - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() >
       kSameNormal) {
     block_.fail(block_.words[0], "an arc in a tilted plane, on a machine whose X, Y and Z are not at right angles",
-                "straight moves: in these axes it is no arc");
+                "straight moves: in these axes it is not an arc");
   }
   // Seen from the other side where the words are left-handed.
   bool other_side = tilt_.axes_from_plane.determinant() < 0;

@@ -88,7 +88,7 @@ NcToolTable parse_nc_tools(std::string_view text, const std::string& file, bool 
       }
     }
     if (number < 0) cursor.fail(line, "the number of the tool is missing", "T");
-    if (!tools.emplace(number, offset).second) cursor.fail(line, "this tool stands in the table already");
+    if (!tools.emplace(number, offset).second) cursor.fail(line, "this tool is in the table already");
   });
   return tools;
 }

@@ -148,7 +148,7 @@ class StatementReader {
     const auto result = std::from_chars(at, end_, number);
     if (result.ec != std::errc()) {
       const std::string_view word(start, static_cast<std::size_t>(word_end(start, end_) - start));
-      return refuse(start, field, fmt::format("'{}' is no reference", shown_word(word)), "a whole number");
+      return refuse(start, field, fmt::format("'{}' is not a reference", shown_word(word)), "a whole number");
     }
     at = result.ptr;
     const auto last = static_cast<long long>(number < 0 ? so_far : count);

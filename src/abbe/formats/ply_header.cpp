@@ -35,7 +35,7 @@ class HeaderReader {
   HeaderReader(std::string_view contents, const std::string& file) : lines_(contents, file), file_(file) {}
 
   PlyHeader read() {
-    if (lines_.line() != "ply") throw InputError({file_, 1, 0, ""}, "this is no PLY file", "a first line 'ply'");
+    if (lines_.line() != "ply") throw InputError({file_, 1, 0, ""}, "this is not a PLY file", "a first line 'ply'");
     bool has_form = false;
     while (true) {
       if (lines_.at_end()) lines_.fail("", "the header does not end", "a line 'end_header'");
@@ -93,13 +93,13 @@ class HeaderReader {
     const std::string_view count = next();
     if (element.name.empty() || count.empty() || count.size() > 18 ||
         count.find_first_not_of("0123456789") != std::string_view::npos) {
-      lines_.fail("element", fmt::format("'{}' is no number of elements", shown_word(count)),
+      lines_.fail("element", fmt::format("'{}' is not a number of elements", shown_word(count)),
                   "a line 'element NAME NUMBER'");
     }
     for (const char digit : count) element.count = element.count * 10 + static_cast<std::uint64_t>(digit - '0');
     for (const PlyElement& other : header_.elements) {
       if (other.name == element.name)
-        lines_.fail("element", fmt::format("'{}' stands twice", shown_word(element.name)), "");
+        lines_.fail("element", fmt::format("'{}' is given twice", shown_word(element.name)), "");
     }
     header_.elements.push_back(std::move(element));
   }
@@ -108,7 +108,7 @@ class HeaderReader {
     for (const auto& [name, type] : kTypes) {
       if (name == word) return type;
     }
-    lines_.fail("property", fmt::format("'{}' is no type", shown_word(word)),
+    lines_.fail("property", fmt::format("'{}' is not a type", shown_word(word)),
                 "char, uchar, short, ushort, int, uint, float or double");
   }
 
@@ -119,7 +119,8 @@ class HeaderReader {
     if (word == "list") {
       property.count_type = type(next());
       if (!ply_type_is_integer(*property.count_type)) {
-        lines_.fail("property", "the length of a list is no whole number", "a list with a length of type uchar or int");
+        lines_.fail("property", "the length of a list is not a whole number",
+                    "a list with a length of type uchar or int");
       }
       word = next();
     }
@@ -128,7 +129,7 @@ class HeaderReader {
     if (property.name.empty()) lines_.fail("property", "has no name", "");
     PlyElement& element = header_.elements.back();
     if (element.find(property.name) < element.properties.size()) {
-      lines_.fail("property", fmt::format("'{}' stands twice", shown_word(property.name)), "");
+      lines_.fail("property", fmt::format("'{}' is given twice", shown_word(property.name)), "");
     }
     if (++properties_ > kMostProperties) lines_.fail("property", "too many properties", "at most 1000");
     element.properties.push_back(std::move(property));

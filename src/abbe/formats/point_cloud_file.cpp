@@ -89,7 +89,7 @@ PointCloudFile parse_point_cloud(std::string_view contents, const std::string& f
   if (extension == ".stl" || is_binary_stl(contents)) {
     throw InputError({file, 0, 0, ""}, "this is an STL file, a mesh", "a point cloud: XYZ, CSV, PLY or OBJ");
   }
-  if (extension == ".ply") throw InputError({file, 1, 0, ""}, "this is no PLY file", "a first line 'ply'");
+  if (extension == ".ply") throw InputError({file, 1, 0, ""}, "this is not a PLY file", "a first line 'ply'");
   result.unit = agreed_unit(std::nullopt, options.unit, file);
   const double factor = millimetres(result.unit.length);
   result.cloud = parse_xyz(contents, file, kLargestInput / factor, options.threads);

@@ -77,7 +77,7 @@ void check_folder(const fs::path& name, const fs::path& path) {
   refuse_input_as_output(path);
   // Results replace a folder: what somebody else keeps there must not go with it.
   if (!ResultsMarker::read(path) && !is_empty_folder(path)) {
-    throw InputError({name.string(), 0, 0, ""}, "holds files that are no results of abbe",
+    throw InputError({name.string(), 0, 0, ""}, "holds files that are not results of abbe",
                      "a new or empty folder, or one with results, which are replaced");
   }
 }
@@ -191,7 +191,7 @@ void ResultsFolder::put_in_place() {
   unfinished_->release();
   if (!older.empty() && !clear_away(older, path_)) {
     throw InputError({older.string(), 0, 0, ""},
-                     "holds files that are no results and could not be moved to " + name_.string(),
+                     "holds files that are not results and could not be moved to " + name_.string(),
                      "them to be moved by hand");
   }
 }

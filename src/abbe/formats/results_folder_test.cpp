@@ -263,7 +263,7 @@ TEST(ResultsFolder, AFolderWithOtherFilesIsNotReplaced) {
   const fs::path folder = test::empty_folder("abbe_foreign");
   fs::create_directories(folder / "r/measured");
   const std::string refused = (folder / "r").string() +
-                              ": holds files that are no results of abbe; expected a new or empty folder, or one with "
+                              ": holds files that are not results of abbe; expected a new or empty folder, or one with "
                               "results, which are replaced";
   EXPECT_EQ(message_of([&] { write_result(folder / "r", "one"); }), refused);
   std::ofstream(folder / "r/keep.txt") << "mine";

@@ -29,7 +29,7 @@ bool next_siemens_assignment(TableLines& lines, SiemensAssignment& assignment) {
     if (line[0] != '$' || open == std::string_view::npos || close == std::string_view::npos ||
         equals == std::string_view::npos || !(open < close && close < equals) ||
         !without_blanks(line.substr(close + 1, equals - close - 1)).empty()) {
-      lines.fail("", fmt::format("'{}' is no assignment", shown_word(line)), "$NAME[index] = value");
+      lines.fail("", fmt::format("'{}' is not an assignment", shown_word(line)), "$NAME[index] = value");
     }
     assignment.name = in_capitals(without_blanks(line.substr(0, open)));
     assignment.indices.clear();

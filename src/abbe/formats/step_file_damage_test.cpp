@@ -46,7 +46,7 @@ class DamagedStepFile : public testing::Test {
 TEST_F(DamagedStepFile, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(message_of_step(""), EndsWith("the file is empty"));
   EXPECT_THAT(message_of_step("solid of something else"),
-              EndsWith("this is no STEP file; expected a first line 'ISO-10303-21;'"));
+              EndsWith("this is not a STEP file; expected a first line 'ISO-10303-21;'"));
   EXPECT_THAT(message_of_step(sphere_.substr(0, sphere_.size() / 2)),
               EndsWith("the file ends early; expected a last line 'END-ISO-10303-21;'"));
   EXPECT_THAT(message_of_step("ISO-10303-21;\n\xff\x01 garbage\nEND-ISO-10303-21;\n"),
@@ -246,7 +246,7 @@ TEST_F(StepProgram, ThatIsMissingIsSaid) {
   ::setenv("ABBE_STEP_PROGRAM", "/nowhere/abbe-step", 1);
   EXPECT_THAT(
       message_of([] { read_mesh(golden_step_file("block.step")); }),
-      EndsWith("ABBE_STEP_PROGRAM names /nowhere/abbe-step, which is no program; expected the program abbe-step, or "
+      EndsWith("ABBE_STEP_PROGRAM names /nowhere/abbe-step, which is not a program; expected the program abbe-step, or "
                "no such variable"));
 }
 

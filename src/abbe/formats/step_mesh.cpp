@@ -34,7 +34,7 @@ void take(std::string_view& bytes, T* values, std::size_t count) {
 std::size_t count_of(const nlohmann::json& head, const char* name) {
   const nlohmann::json& value = head.at(name);
   if (!value.is_number_unsigned()) {
-    throw nlohmann::json::type_error::create(302, std::string(name) + " is no count", &value);
+    throw nlohmann::json::type_error::create(302, std::string(name) + " is not a count", &value);
   }
   return value.get<std::size_t>();
 }

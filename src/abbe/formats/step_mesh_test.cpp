@@ -26,7 +26,7 @@ StepMesh step_block() {
   mesh.size_mm = 40;
   mesh.left_out = {"#78 (cone) could not be converted"};
   mesh.left_out_share = 0.25;
-  mesh.notes = {"a note", "bytes that are no text: \xff"};
+  mesh.notes = {"a note", "bytes that are not text: \xff"};
   return mesh;
 }
 
@@ -108,7 +108,7 @@ TEST(StepMesh, ProgressComesThroughAsALine) {
   EXPECT_EQ(read->total, 7U);
   EXPECT_FALSE(parse_step_progress("progress"));
   EXPECT_FALSE(parse_step_progress("progress 3"));
-  EXPECT_FALSE(parse_step_progress("a file that is no STEP file"));
+  EXPECT_FALSE(parse_step_progress("a file that is not a STEP file"));
 }
 
 TEST(StepMesh, CountsAreWholeNumbers) {

@@ -68,7 +68,7 @@ std::shared_ptr<Instrument> read_dials(TomlTable& table, const InstrumentContext
     table.fail("", "the reference faces are missing", "[[setup.face]] with name, point_mm and normal");
   }
   if (table.has("dial")) {
-    if (table.has("arrangement")) table.fail("dial", "stands beside arrangements", "the dials in one of them");
+    if (table.has("arrangement")) table.fail("dial", "is given together with arrangements", "the dials in one of them");
     setup.arrangements.push_back(read_arrangement(table, context.name, setup.faces, context.simulated));
   }
   for (TomlTable& entry : table.tables("arrangement")) {

@@ -18,7 +18,7 @@ Simulation read_simulation(TomlTable& table, const std::filesystem::path& folder
   if (table.has("errors")) simulation.errors_file = folder / table.text("errors");
   table.text_or("errors", "");
   if (auto generator = table.optional_table("generator")) {
-    if (simulation.errors_file) table.fail("generator", "stands beside `errors`", "only one of them");
+    if (simulation.errors_file) table.fail("generator", "is given together with `errors`", "only one of them");
     ErrorGenerator& options = simulation.generator.emplace();
     options.seed = static_cast<std::uint64_t>(generator->integer_or("seed", 1, 0, kLargestSeed));
     options.linear_order = static_cast<int>(generator->integer_or("linear_order", 4, 0, 50));
@@ -30,7 +30,7 @@ Simulation read_simulation(TomlTable& table, const std::filesystem::path& folder
     options.rotary_reversal = generator->size_or("reversal", Quantity::angle, 0);
     generator->finish();
     if (options.mean_volumetric.has_value() == options.maximum_volumetric.has_value()) {
-      generator->fail("", "the size of the errors is missing or stands twice",
+      generator->fail("", "the size of the errors is missing or given twice",
                       "either mean_volumetric_um or maximum_volumetric_um");
     }
     if (options.mean_volumetric.value_or(1) <= 0 || options.maximum_volumetric.value_or(1) <= 0) {
@@ -57,7 +57,8 @@ AxisRange read_axis_range(TomlTable& table, const Axis& axis, bool with_counts, 
   const Quantity quantity = axis_quantity(axis);
   AxisRange range;
   if (const auto at = table.optional_number("at", quantity)) {
-    if (table.has("range", quantity)) table.fail_quantity("range", quantity, "stands beside `at`", "only one of them");
+    if (table.has("range", quantity))
+      table.fail_quantity("range", quantity, "is given together with `at`", "only one of them");
     range = AxisRange::fixed(*at);
   } else {
     const auto limits = table.optional_numbers("range", quantity, 2);
@@ -87,7 +88,7 @@ AxisRange read_axis_range(TomlTable& table, const Axis& axis, bool with_counts, 
 MapPlan read_map(TomlTable& table, const std::filesystem::path& folder, const Machine& machine) {
   MapPlan map;
   if (table.has("poses")) {
-    if (table.has("axis")) table.fail("poses", "stands beside [map.axis]", "only one of them");
+    if (table.has("axis")) table.fail("poses", "is given together with [map.axis]", "only one of them");
     map.poses_file = folder / table.text("poses");
   } else {
     table.text_or("poses", "");

@@ -229,30 +229,32 @@ TEST(StudyFile, RefusesContradictionsInASetUp) {
             file + ":10:1: simulate.outliers.fraction: is above one half; expected a fraction from 0 to 0.5");
   EXPECT_EQ(message_of_simulation_with("mean_volumetric_um = 100", ""),
             file +
-                ":6:1: simulate.generator: the size of the errors is missing or stands twice; expected either "
+                ":6:1: simulate.generator: the size of the errors is missing or given twice; expected either "
                 "mean_volumetric_um or maximum_volumetric_um");
 }
 
 TEST(StudyFile, RefusesWhatCannotBeIdentified) {
   const std::string file = "folder/xcfz.study.toml";
-  EXPECT_EQ(message_of_simulation_with("\"E?X\", \"EXZ\"", "\"E?Y\""),
-            file +
-                ":45:1: identify.motion[1].errors: \"E?Y\" is no error motion of this machine; expected names like EXX "
-                "or patterns like \"E?C\" (* any text, ? one character); axes C, X, Z");
+  EXPECT_EQ(
+      message_of_simulation_with("\"E?X\", \"EXZ\"", "\"E?Y\""),
+      file +
+          ":45:1: identify.motion[1].errors: \"E?Y\" is not an error motion of this machine; expected names like EXX "
+          "or patterns like \"E?C\" (* any text, ? one character); axes C, X, Z");
   EXPECT_EQ(message_of_simulation_with("\"E?X\", \"EXZ\"", "\"E?X\", \"EXC\""),
             file +
                 ":45:1: identify.motion[1].errors: linear and rotary axes in one table: their positions have "
                 "different units; expected one [[identify.motion]] for each kind of axis");
-  EXPECT_EQ(message_of_simulation_with("\"E?X\", \"EXZ\"", "\"E?X\", \"EXX\""),
-            file +
-                ":45:1: identify.motion[1].errors: EXX stands twice in the same basis; expected each error motion once "
-                "per basis");
+  EXPECT_EQ(
+      message_of_simulation_with("\"E?X\", \"EXZ\"", "\"E?X\", \"EXX\""),
+      file +
+          ":45:1: identify.motion[1].errors: EXX is given twice in the same basis; expected each error motion once "
+          "per basis");
   EXPECT_EQ(message_of_simulation_with("[\"E?0C\", \"EX0X\"]", "[\"EZ0C\"]"),
             file +
                 ":41:1: identify.locations: \"EZ0C\" has no effect on the axis; expected a location error that "
                 "displaces the axis line");
   EXPECT_EQ(message_of_simulation_with("[1, 6]", "[6, 1]"),
-            file + ":47:1: identify.motion[1].orders: is no range; expected [smallest, largest]");
+            file + ":47:1: identify.motion[1].orders: is not a range; expected [smallest, largest]");
   EXPECT_EQ(message_of_simulation_with("strategy =", "stratgey ="),
             file + ":42:1: identify.stratgey: unknown key, did you mean strategy?");
 }

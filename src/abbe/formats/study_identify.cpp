@@ -32,7 +32,7 @@ std::vector<std::pair<std::size_t, Component>> find_motions(const TomlTable& tab
     }
   }
   if (found.empty()) {
-    table.fail("errors", fmt::format("\"{}\" is no error motion of this machine", pattern), pattern_hint(machine));
+    table.fail("errors", fmt::format("\"{}\" is not an error motion of this machine", pattern), pattern_hint(machine));
   }
   return found;
 }
@@ -46,9 +46,9 @@ std::vector<IdentifiedMotion> read_motions(TomlTable& table, const Machine& mach
   const int smallest = smallest_order(basis);
   int smallest_tried = 0;
   if (table.has("orders")) {
-    if (table.has("order")) table.fail("orders", "stands beside `order`", "only one of them");
+    if (table.has("order")) table.fail("orders", "is given together with `order`", "only one of them");
     const std::vector<std::int64_t> orders = table.integers("orders", smallest, kLargestOrder);
-    if (orders.size() != 2 || orders[0] > orders[1]) table.fail("orders", "is no range", "[smallest, largest]");
+    if (orders.size() != 2 || orders[0] > orders[1]) table.fail("orders", "is not a range", "[smallest, largest]");
     smallest_tried = static_cast<int>(orders[0]);
     basis.order = static_cast<int>(orders[1]);
   } else {
@@ -100,7 +100,7 @@ void read_locations(TomlTable& table, const Machine& machine, IdentificationPlan
       }
     }
     if (!found) {
-      table.fail("locations", fmt::format("\"{}\" is no location error of this machine", pattern),
+      table.fail("locations", fmt::format("\"{}\" is not a location error of this machine", pattern),
                  fmt::format("names like EC0X or patterns like \"E?0{}\"; axes {}", machine.axes.front().name,
                              axis_names(machine)));
     }
@@ -118,7 +118,7 @@ void read_reversals(TomlTable& table, const Machine& machine, IdentificationPlan
       }
     }
     if (!found) {
-      table.fail("reversals", fmt::format("\"{}\" is no axis of this machine", name),
+      table.fail("reversals", fmt::format("\"{}\" is not an axis of this machine", name),
                  "names of axes or \"*\"; axes " + axis_names(machine));
     }
   }
@@ -138,7 +138,7 @@ void read_prior(TomlTable& table, std::vector<ParameterPrior>& priors) {
   prior.value = table.number_or("value", quantity, 0);
   table.finish();
   if (length.has_value() == angle.has_value()) {
-    table.fail("", "the standard uncertainty is missing or stands twice",
+    table.fail("", "the standard uncertainty is missing or given twice",
                "standard_uncertainty_um for lengths or standard_uncertainty_urad for angles");
   }
   prior.standard_uncertainty = prior.is_angle ? *angle : *length;
@@ -196,7 +196,7 @@ IdentificationPlan read_identification(TomlTable& table, const std::filesystem::
         if (other.axis != identified.axis || other.component != identified.component) continue;
         if (other.basis.kind != identified.basis.kind) continue;
         motion.fail("errors",
-                    fmt::format("{} stands twice in the same basis",
+                    fmt::format("{} is given twice in the same basis",
                                 error_motion_name(machine, identified.axis, identified.component)),
                     "each error motion once per basis");
       }

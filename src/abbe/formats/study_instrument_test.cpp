@@ -97,7 +97,7 @@ TEST(StudyInstrument, SaysWhatIsWrong) {
   EXPECT_NE(message_of_ball_bar_with("items = [\"B2\"]", "items = [\"B3\"]")
                 .find("there is no item \"B3\"; expected one of B1, B2"),
             std::string::npos);
-  EXPECT_NE(message_of_ball_bar_with("[\"X\", \"Z\"]", "[\"X\", \"X\"]").find("is no plane"), std::string::npos);
+  EXPECT_NE(message_of_ball_bar_with("[\"X\", \"Z\"]", "[\"X\", \"X\"]").find("is not a plane"), std::string::npos);
   EXPECT_NE(message_of_ball_bar_with("name = \"B2\"", "name = \"B1\"").find("two items are called \"B1\""),
             std::string::npos);
   EXPECT_NE(message_of_ball_bar_with("radius_mm = 150", "radius_mm = 0").find("is not above zero"), std::string::npos);
@@ -143,7 +143,8 @@ TEST(StudyInstrument, SaysWhatIsWrongWithAStepDiagonal) {
             std::string::npos);
   EXPECT_NE(wrong_plan("steps = 3\norder = [\"X\", \"C\", \"Z\"]\n" + axes).find("order: C does not move"),
             std::string::npos);
-  EXPECT_NE(wrong_plan("steps = 3\norder = [\"X\", \"X\"]\n" + axes).find("order: X stands twice"), std::string::npos);
+  EXPECT_NE(wrong_plan("steps = 3\norder = [\"X\", \"X\"]\n" + axes).find("order: X is given twice"),
+            std::string::npos);
   EXPECT_NE(wrong_plan("steps = 3\naxis.X = {}\n").find("too few axes move"), std::string::npos);
 }
 
@@ -198,7 +199,7 @@ TEST(StudyInstrument, PosesOfATrackersFileNameTheirStations) {
             (std::vector<std::size_t>{1}));
   EXPECT_NE(message_of([&] {
               read("C_deg,X_mm,Z_mm,station,reflector,target\n0,10,20,S1,R1,R1\n");
-            }).find("target: stands beside reflector"),
+            }).find("target: is given together with reflector"),
             std::string::npos);
   // With one station there is nothing to choose, with two there is.
   EXPECT_NE(message_of([&] {

@@ -34,7 +34,7 @@ Eigen::Vector3d machine_direction(TomlTable& table, const std::string& word) {
 void read_circle(TomlTable& table, MeasurementPlan& plan) {
   const std::vector<std::string> plane = table.texts("plane");
   if (plane.size() != 2 || plane[0] == plane[1]) {
-    table.fail("plane", "is no plane", "two directions of the machine frame: plane = [\"X\", \"Y\"]");
+    table.fail("plane", "is not a plane", "two directions of the machine frame: plane = [\"X\", \"Y\"]");
   }
   plan.circle.u = machine_direction(table, plane[0]);
   plan.circle.v = machine_direction(table, plane[1]);
@@ -56,7 +56,7 @@ void read_step_diagonal(TomlTable& table, const Machine& machine, MeasurementPla
       table.fail("order", fmt::format("{} does not move", name), "axes with a range");
     }
     if (std::find(plan.order.begin(), plan.order.end(), axis) != plan.order.end()) {
-      table.fail("order", fmt::format("{} stands twice", name), "every moving axis once");
+      table.fail("order", fmt::format("{} is given twice", name), "every moving axis once");
     }
     plan.order.push_back(axis);
   }

@@ -152,7 +152,8 @@ void read_steps(TomlTable& table, bool simulated, PolygonGaugeSetup& setup) {
     return;
   }
   for (const char* key : {"measured", "zero"}) {
-    if (table.has(key)) table.fail(key, "stands beside steps", "autocollimator, displacement and zero in each step");
+    if (table.has(key))
+      table.fail(key, "is given together with steps", "autocollimator, displacement and zero in each step");
   }
   if (entries.size() > kMostSteps) table.fail("", "there are too many steps", fmt::format("at most {}", kMostSteps));
   setup.steps.clear();

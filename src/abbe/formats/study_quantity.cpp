@@ -14,7 +14,7 @@ Knowledge read_knowledge(TomlTable& table, const std::string& base, Knowledge un
   }
   const bool estimate = table.boolean_or(key, false);
   if (!has_uncertainty) return estimate ? Knowledge::open : Knowledge::exact;
-  if (!estimate) table.fail(key, "stands beside a standard uncertainty", "only one of them");
+  if (!estimate) table.fail(key, "is given together with a standard uncertainty", "only one of them");
   return Knowledge::within;
 }
 

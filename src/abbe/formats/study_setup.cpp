@@ -63,7 +63,7 @@ Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Ma
     setup.plans.push_back(read_plan(plan, folder, machine, names));
   }
   for (TomlTable& data : table.tables("data")) {
-    if (simulated) table.fail("data", "stands beside [simulate]", "only one of them");
+    if (simulated) table.fail("data", "is given together with [simulate]", "only one of them");
     setup.data.push_back(read_data(data, folder));
   }
   if (setup.plans.empty() && setup.data.empty() && !planned) {

@@ -105,7 +105,7 @@ TrackerNoise read_tracker_noise(TomlTable table) {
   table.finish();
   const std::string expected = "xyz_um with xyz_um_per_m, or range_um with range_um_per_m and angle_arcsec";
   if (isotropic) {
-    if (range > 0 || range_slope > 0 || angle > 0) table.fail("", "xyz stands beside range or angle", expected);
+    if (range > 0 || range_slope > 0 || angle > 0) table.fail("", "xyz is given together with range or angle", expected);
     if (xyz <= 0) table.fail_quantity("xyz", Quantity::length, "is not above zero", "a standard deviation");
     return TrackerNoise::isotropic(xyz * kMicrometresPerMillimetre, xyz_slope * kMicrometresPerMetre);
   }
@@ -130,7 +130,7 @@ std::shared_ptr<Instrument> read_tracker(TomlTable& table, const InstrumentConte
   const auto measure = static_cast<TrackerMeasure>(table.word_or("measure", 0, {"xyz", "range-angles"}));
   TrackerNoise noise;
   if (context.noise_from_data && table.has("noise")) {
-    table.fail("noise", "stands beside noise_from_data = true", "only one of them");
+    table.fail("noise", "is given together with noise_from_data = true", "only one of them");
   }
   if (!context.noise_from_data) noise = read_tracker_noise(table.table("noise"));
   if (table.has("state_uncertainty") && !simulated) {

@@ -117,7 +117,7 @@ TEST(FanucLatticeTable, WrongParametersAreRefusedWithTheirLine) {
   EXPECT_THAT(changed("N10809P1", "N10809P101"), HasSubstr("0 to 100"));
   EXPECT_THAT(changed("N10812P40.0", "N10812P0.0"), testing::AllOf(HasSubstr("p:14"), HasSubstr("mm")));
   EXPECT_THAT(changed("N10812P40.0", "N10812A1P40.0"), HasSubstr("not one value"));
-  EXPECT_THAT(changed("N10812P40.0", "G10L50"), HasSubstr("is no block"));
+  EXPECT_THAT(changed("N10812P40.0", "G10L50"), HasSubstr("is not a block"));
 }
 
 TEST(FanucLatticeTable, WrongPointsAreRefusedWithTheirLine) {

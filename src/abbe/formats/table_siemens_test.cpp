@@ -93,7 +93,7 @@ TEST(SiemensTable, WhatIsWrongIsRefusedWithItsPlace) {
   EXPECT_THAT(refused("$AN_CEC_INPUT_AXIS[0]=(Q9)\n"), HasSubstr("X1, Z1 or C1"));
   EXPECT_THAT(refused("$AN_CEC[0,1e300]=0\n"), HasSubstr("$AN_CEC"));
   EXPECT_THAT(refused("G1 X0\n"), HasSubstr("CEC.INI:1"));
-  EXPECT_THAT(refused("$AN_CEC[0]\n"), HasSubstr("is no assignment"));
+  EXPECT_THAT(refused("$AN_CEC[0]\n"), HasSubstr("is not an assignment"));
   EXPECT_THAT(refused(""), HasSubstr("no tables"));
   EXPECT_THAT(test::refusal([&] { parse_siemens_eec("$AA_ENC_COMP[0,0,Y1]=1\n", "EEC.INI", kAxes); }),
               HasSubstr("unknown axis 'Y1'"));

@@ -96,7 +96,8 @@ struct TomlTable::State {
       const std::string candidate = unit.suffix.empty() ? std::string(base) : fmt::format("{}_{}", base, unit.suffix);
       const toml::node* node = look(candidate);
       if (node == nullptr) continue;
-      if (found.first != nullptr) fail(candidate, fmt::format("stands beside {}", name(key)), "only one of them");
+      if (found.first != nullptr)
+        fail(candidate, fmt::format("is given together with {}", name(key)), "only one of them");
       found = {node, &unit};
       key = candidate;
     }

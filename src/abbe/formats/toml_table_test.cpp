@@ -62,7 +62,7 @@ TEST(TomlTable, NamesTheUnitsThatWouldHaveBeenRight) {
   EXPECT_EQ(message_of_toml("travel_deg = [0, 1]\n", read_travel),
             "a.toml:1:1: travel_deg: 'deg' is not a unit of a length; expected travel_mm, travel_um or travel_m");
   EXPECT_EQ(message_of_toml("range_mm = 1\nrange_um = 1\n", read_range),
-            "a.toml:2:1: range_um: stands beside range_mm; expected only one of them");
+            "a.toml:2:1: range_um: is given together with range_mm; expected only one of them");
 }
 
 TEST(TomlTable, RefusesNumbersThatAreNone) {

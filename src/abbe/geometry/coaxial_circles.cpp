@@ -198,7 +198,7 @@ std::vector<Vector3d> directions(const std::vector<Matrix3Xd>& circles, const Co
 
 void check(Circles circles, const CoaxialOptions& options) {
   if (options.direction && !(options.direction->allFinite() && options.direction->norm() > 0)) {
-    throw std::invalid_argument("the direction to hold is no direction");
+    throw std::invalid_argument("the direction to hold is not a direction");
   }
   if (!options.radii.empty() && options.radii.size() != circles.size()) {
     throw std::invalid_argument("there is not one radius to hold per circle");

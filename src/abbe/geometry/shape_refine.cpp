@@ -150,7 +150,7 @@ void check_constraints(ShapeKind kind, const FitConstraints& constraints) {
     }
     Vector3d d = *constraints.direction;
     if (kind == ShapeKind::line2) d.z() = 0;
-    if (!d.allFinite() || !(d.norm() > 0)) throw std::invalid_argument("the direction to hold is no direction");
+    if (!d.allFinite() || !(d.norm() > 0)) throw std::invalid_argument("the direction to hold is not a direction");
   }
   if (constraints.half_angle) {
     if (kind != ShapeKind::cone) throw std::invalid_argument("only a cone has an angle to hold");

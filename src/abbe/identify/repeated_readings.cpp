@@ -142,7 +142,7 @@ RepeatedReadings repeated_readings(const Observations& observations, const Readi
 std::string copies_text(const RepeatedReadings& repeated, const ReadingFacts& facts) {
   return fmt::format(
       "set-up {}: {} of {} pairs of readings at the same pose agree to the last digit, first rows {} and {}; by the "
-      "stated uncertainty about {:.2g} would. These are rows that stand twice, or one reading used for several. They "
+      "stated uncertainty about {:.2g} would. These are duplicate rows, or one reading used for several. They "
       "count as independent, so that the stated uncertainties of the result are too small.",
       facts.setup, repeated.identical, repeated.pairs, repeated.first + 1, repeated.second + 1, repeated.expected);
 }

@@ -76,7 +76,7 @@ std::string warning_of_overstated_noise(const FitStatistics& fit) {
   return fmt::format(
       "the residuals are only {:.3g} times as large as the stated uncertainties of the readings (chi-square {:.4g} "
       "with {:.0f} degrees of freedom, probability above 1 - {:.0e}): the readings are more certain than stated, or "
-      "they are not independent, such as rows that stand twice. The stated uncertainties of the result do not fit "
+      "they are not independent, such as duplicate rows. The stated uncertainties of the result do not fit "
       "them.",
       ratio, fit.chi_square, fit.degrees_of_freedom, kNoChance);
 }

@@ -19,7 +19,8 @@ PointScan::PointScan(const Machine& machine, const ErrorSet& errors, const Probe
     : workpiece_from_tool_(machine, errors, Body::tool, Body::workpiece),
       zero_(beam.zero + errors.tool_offset_error),
       direction_(beam.direction) {
-  if (!(std::abs(direction_.norm() - 1) < 1e-9)) throw std::invalid_argument("the beam's direction is no unit vector");
+  if (!(std::abs(direction_.norm() - 1) < 1e-9))
+    throw std::invalid_argument("the beam's direction is not a unit vector");
   if (machine.axes.size() > kMostAxes) throw std::invalid_argument("more than 32 axes");
 }
 

@@ -75,7 +75,7 @@ std::string describe(const Machine& machine, const InverseResult& result) {
              angle(closest.orientation_residual);
     case InverseStatus::invalid_target:
       return "the target or the start is not finite, or the target has a direction of length zero or an orientation "
-             "that is no rotation";
+             "that is not a rotation";
     case InverseStatus::invalid_machine:
       return "the machine or the options are not usable";
   }

@@ -80,7 +80,7 @@ class Checker {
     }
     if (!sound) {
       report(axis.name, "name",
-             "'" + axis.name + "' is no axis name; expected an ISO 841 letter and optional number: X, C2");
+             "'" + axis.name + "' is not an axis name; expected an ISO 841 letter and optional number: X, C2");
     } else if (kind != axis.kind) {
       report(axis.name, "kind",
              fmt::format("the letter stands for a {} axis", kind == AxisKind::linear ? "linear" : "rotary"));
@@ -124,7 +124,8 @@ class Checker {
     if (!r.allFinite()) {
       report("", "bed_from_workpiece", "rotation is not finite");
     } else if ((r.transpose() * r - Eigen::Matrix3d::Identity()).norm() > kUnitTolerance || r.determinant() < 0) {
-      report("", "bed_from_workpiece", "is no rotation: its axes are not unit vectors at right angles, right-handed");
+      report("", "bed_from_workpiece",
+             "is not a rotation: its axes are not unit vectors at right angles, right-handed");
     }
   }
 

@@ -238,7 +238,7 @@ int abbe_runtime_uncertainty(const abbe_runtime* runtime, const double* joints, 
 const char* abbe_runtime_text(int result) ABBE_NOEXCEPT {
   switch (result) {
     case ABBE_NOT_FINITE:
-      return "an input is no number or too large";
+      return "an input is not a number or too large";
     case ABBE_NOT_CONVERGED:
       return "not converged";
     case ABBE_NOT_POSSIBLE:
@@ -254,7 +254,7 @@ const char* abbe_runtime_text(int result) ABBE_NOEXCEPT {
     case ABBE_FILE_LONG:
       return "bytes follow the end of the compensation";
     case ABBE_FILE_FOREIGN:
-      return "the file is no frozen compensation";
+      return "the file is not a frozen compensation";
     case ABBE_FILE_ORDER:
       return "the file was written by a computer of another byte order";
     case ABBE_FILE_VERSION:

@@ -98,7 +98,7 @@ TEST(RuntimeFile, AForeignOneIsRefusedAndTheReasonSaid) {
   std::string text;
   std::vector<unsigned char> other(1000, 'x');
   EXPECT_EQ(load(other, &text), ABBE_FILE_FOREIGN);
-  EXPECT_EQ(text, "the file is no frozen compensation");
+  EXPECT_EQ(text, "the file is not a frozen compensation");
   other = sound;
   std::swap(other[8], other[11]);
   std::swap(other[9], other[10]);

@@ -104,7 +104,7 @@ void variance_assumptions(const StudyResult& result, std::vector<std::string>& l
   if (components.estimated.variance_factor) {
     list.push_back(fmt::format(
         "Variance factor of the stated uncertainties: {:.4g}, standard uncertainty {:.2g}. Chi-square then equals the "
-        "degrees of freedom and is no test of the model.",
+        "degrees of freedom and is not a test of the model.",
         components.variance.factor, components.variance_factor_uncertainty()));
   }
   if (components.pose_noise_at_zero) {

@@ -65,7 +65,7 @@ std::string variances_text(const VarianceComponents& components) {
   text += fmt::format("    with the uncertainties as stated, chi-square is {:.1f} with {:.0f} degrees of freedom\n",
                       components.stated_chi_square, components.stated_degrees_of_freedom);
   if (components.estimated.variance_factor) {
-    text += "    (chi-square above is no test: the variance factor makes it what it is)\n";
+    text += "    (chi-square above is not a test: the variance factor makes it what it is)\n";
   }
   return text;
 }

@@ -269,7 +269,8 @@ std::optional<EdgeFit> find_start(std::vector<Eigen::Vector2d> points, const Edg
   Eigen::Matrix3Xd surface(3, static_cast<Index>(outer));
   for (std::size_t i = 0; i < outer; ++i) surface.col(static_cast<Index>(i)) << points[i], 0;
   const ShapeFit line = robust_fit(ShapeKind::line2, surface);
-  if (!line.ok()) return refused(EdgeStatus::no_surface, "the outer quarter of the section is no line: " + line.reason);
+  if (!line.ok())
+    return refused(EdgeStatus::no_surface, "the outer quarter of the section is not a line: " + line.reason);
   Eigen::Vector2d along = line.shape.direction.head<2>();
   if (along.x() < 0) along = -along;
   if (!(along.x() > 0.87)) {

@@ -173,7 +173,7 @@ TEST(UnmodelledErrors, RotaryAxesLackTheirAxisAverageLine) {
   // X and Z alone have one squareness; how they stand together is the tilt and the place of the table.
   for (const char* name : {"EB0Z", "EY0C", "EA0C", "EB0C"}) EXPECT_NE(list.find(name), std::string::npos) << list;
   for (const char* name : {"EB0X", "EC0X", "EA0Z"}) EXPECT_EQ(list.find(name), std::string::npos) << list;
-  EXPECT_EQ(list.find("EC0C"), std::string::npos) << "a zero position is no error of the machine: " << list;
+  EXPECT_EQ(list.find("EC0C"), std::string::npos) << "a zero position is not an error of the machine: " << list;
 }
 
 TEST(UnmodelledErrors, WhatStandsStillIsNotMissed) {
