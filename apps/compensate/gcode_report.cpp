@@ -162,10 +162,9 @@ std::vector<std::string> reasons_to_refuse(const GcodeOptions& options, const Al
   add(status_count(report, CorrectionStatus::outside_travel), allowed.outside_travel,
       "corrected position outside the travel", "outside-travel", first_place(CorrectionStatus::outside_travel));
   add(report.held_starts, allowed.held_start,
-      fmt::format(
-          "work that begins at the end of a travel, out of which its correction leads, so that the point is off "
-          "by at most {:.3f} um there; begin it further inside the travel",
-          1e3 * report.largest_held_start.value),
+      fmt::format("work that begins at the end of a travel that its correction would leave, so that the point is off "
+                  "by at most {:.3f} um there; begin it further inside the travel",
+                  1e3 * report.largest_held_start.value),
       "held-start");
   add(status_count(report, CorrectionStatus::position_left), allowed.position_left, "point not reached",
       "position-left", first_place(CorrectionStatus::position_left));
@@ -208,7 +207,7 @@ void print_gcode_report(const GcodeOptions& options, const Machine& machine, con
   }
   print_reversals(machine, result);
   if (report.largest_orientation_left.value > 1e-9) {
-    fmt::print("largest orientation error that stays {:.3f} urad, line {}\n",
+    fmt::print("largest remaining orientation error {:.3f} urad, line {}\n",
                1e6 * report.largest_orientation_left.value, report.largest_orientation_left.line);
   }
   for (const NamedStatus& named : kStatuses) {
@@ -219,15 +218,15 @@ void print_gcode_report(const GcodeOptions& options, const Machine& machine, con
   }
   if (report.held_at_travel.count > 0) {
     fmt::print(
-        "rapid moves kept at the end of a travel, where the correction points outwards: {} pose{}, {}; the point "
-        "misses its place by at most {:.3f} um, in line {}\n",
+        "rapid moves kept at the end of a travel, because the correction points outwards: {} pose{}, {}; the "
+        "point misses its place by at most {:.3f} um, in line {}\n",
         report.held_at_travel.count, report.held_at_travel.count == 1 ? "" : "s", lines_text(report.held_at_travel),
         1e3 * report.largest_held.value, report.largest_held.line);
   }
   if (report.held_starts.count > 0) {
     fmt::print(
-        "work that begins at the end of a travel, out of which its correction leads: {} move{}, {}; the point is off "
-        "by at most {:.3f} um there, and within the tolerance from where the correction is within the travel\n",
+        "work that begins at the end of a travel that its correction would leave: {} move{}, {}; the point is off by "
+        "at most {:.3f} um there, and within the tolerance once the correction is within the travel\n",
         report.held_starts.count, report.held_starts.count == 1 ? "" : "s", lines_text(report.held_starts),
         1e3 * report.largest_held_start.value);
   }
@@ -236,19 +235,19 @@ void print_gcode_report(const GcodeOptions& options, const Machine& machine, con
                report.not_proven.count == 1 ? "" : "s", lines_text(report.not_proven));
   }
   if (report.tool_changes.count > 0) {
-    fmt::print("begin where the machine stood with another tool length: {} move{}, {}\n", report.tool_changes.count,
+    fmt::print("moves that begin with another tool length in force: {} move{}, {}\n", report.tool_changes.count,
                report.tool_changes.count == 1 ? "" : "s", lines_text(report.tool_changes));
   }
   if (report.inverse_time.count > 0) {
-    fmt::print("inverse time feeds, so that durations stay: {} pieces, {}\n", report.inverse_time.count,
+    fmt::print("inverse time feeds, to keep the durations: {} pieces, {}\n", report.inverse_time.count,
                lines_text(report.inverse_time));
   }
   if (result.text.uncorrected_moves > 0) {
-    fmt::print("rapid moves not corrected, as some axis had not been sent anywhere yet: {}, first in line {}\n",
+    fmt::print("rapid moves not corrected, because the program had not yet moved some axis: {}, first in line {}\n",
                result.text.uncorrected_moves, result.text.first_uncorrected_line);
   }
   if (result.text.first_assumed_offset_line > 0) {
-    fmt::print("work offset taken for zero, as neither --parameters nor the program says it: from line {}\n",
+    fmt::print("work offset taken as zero, because neither --parameters nor the program states it: from line {}\n",
                result.text.first_assumed_offset_line);
   }
   if (options.leave_out_factor > 0)

@@ -38,7 +38,7 @@ const char* carried_word(const CarriedError& error) {
 }
 
 void print_errors(const ControlTables& made) {
-  fmt::print("what becomes of the errors, each alone (shift of the functional point, rms over the grid):\n");
+  fmt::print("each error by itself, without and with its tables (shift of the functional point, rms over the grid):\n");
   for (const CarriedError& error : made.errors) {
     fmt::print("  {:<8} {:>14}  {:<12} {:8.3f} -> {:.3f} um", error.name, size_words(error.size, error.is_angle),
                carried_word(error), in_um(error.effect_before), in_um(error.effect_after));
@@ -47,7 +47,7 @@ void print_errors(const ControlTables& made) {
     }
     fmt::print("\n");
   }
-  fmt::print("  why not: {}\n", made.format->cannot);
+  fmt::print("  limits of the format: {}\n", made.format->cannot);
   for (const auto& [name, words] : made.reversals) fmt::print("  {}: {}\n", name, words);
 }
 
@@ -80,7 +80,7 @@ void print_table_report(const TableReport& report) {
   if (!format.unverified.empty()) fmt::print("EXPERIMENTAL, not verified: {}\n", format.unverified);
   const std::vector<TableFigures>& tables = made.tables;
   if (std::any_of(tables.begin(), tables.end(), [](const TableFigures& table) { return table.nodes > 1; })) {
-    fmt::print("nodes: evenly spaced, few that keep straight lines between them within {:g} um and {:g} urad\n",
+    fmt::print("nodes: evenly spaced, so many that straight lines between them stay within {:g} um and {:g} urad\n",
                in_um(made.tolerance_mm), in_micro(made.tolerance_rad));
   }
   for (const TableFigures& table : tables) {
@@ -99,17 +99,15 @@ void print_table_report(const TableReport& report) {
     }
     fmt::print("\n");
   }
-  if (tables.empty()) fmt::print("  no table is needed: nothing that this format carries is there\n");
+  if (tables.empty()) fmt::print("  no table is needed: there are no errors that this format carries\n");
   for (const std::string& name : made.left_out) fmt::print("  left out: {}\n", name);
   for (const std::string& name : made.left_out_kept)
-    fmt::print("  kept, as not small together with others: {}\n", name);
+    fmt::print("  kept, because not small together with others: {}\n", name);
   print_errors(made);
   fmt::print("{}", volumetric_text(made.volumetric));
   fmt::print("{}", error_line("what these tables leave of it between their nodes", made.left_by_tables));
-  fmt::print(
-      "displacement of the tool over {} poses between the nodes, the datum as it is, from the worse direction of "
-      "approach:\n",
-      made.poses.count());
+  fmt::print("displacement of the tool at {} poses between the nodes, datum unchanged, worse direction of approach:\n",
+             made.poses.count());
   print_deviations("without tables", made.before);
   print_deviations("with these tables", made.after);
   print_deviations("ideal compensation", made.ideal);
@@ -127,7 +125,7 @@ void print_table_report(const TableReport& report) {
   if (made.largest_rad > 0) {
     fmt::print("largest sum of corrections: {} at {}\n", size_words(made.largest_rad, true), made.largest_rad_at);
   }
-  for (const std::string& remark : made.settings) fmt::print("set: {}\n", remark);
+  for (const std::string& remark : made.settings) fmt::print("setting: {}\n", remark);
   for (const std::string& name : report.written) fmt::print("{} written\n", name);
 }
 

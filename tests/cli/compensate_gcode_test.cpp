@@ -239,7 +239,7 @@ TEST_F(CompensateGcode, RapidMovesAreKeptAtTheEndOfTheTravel) {
                                    "--errors",   errors,  "-o",       "w.ngc",     "--json"};
   const CommandResult refused = abbe(work);
   EXPECT_EQ(refused.exit_code, ExitCode::computation_says_no);
-  EXPECT_THAT(refused.err, HasSubstr("work that begins at the end of a travel, out of which its correction leads"));
+  EXPECT_THAT(refused.err, HasSubstr("work that begins at the end of a travel that its correction would leave"));
   EXPECT_THAT(refused.err, HasSubstr("begin it further inside the travel: 1 pose, line"));
   EXPECT_THAT(refused.err, HasSubstr("--allow held-start"));
   EXPECT_FALSE(exists("w.ngc"));
