@@ -115,7 +115,7 @@ void add_check_command(CommandLine& line) {
   };
   auto options = std::make_shared<Options>();
   Subcommand* command = line.add(
-      "check", "Validate a machine file, a frozen compensation, a mesh or a point cloud and show what is in it",
+      "check", "Validate a machine file, a frozen compensation, a mesh or a point cloud, and show its contents",
       "  abbe check examples/machines/trunnion-mill.machine.toml\n"
       "  abbe check examples/machines/aguado.machine.toml --errors examples/aguado/results/aguado/errors.toml\n"
       "  abbe check examples/parts/wedge.stl --unit mm\n"

@@ -11,7 +11,7 @@ CommandLine::CommandLine()
       "  abbe run examples/aguado/aguado.study.toml     the whole job, from readings to the report\n"
       "  abbe check examples/machines/trunnion-mill.machine.toml\n"
       "  abbe reproduce wang                            a published study, recomputed\n\n"
-      "Exit codes: 0 done, 1 the computation says no, 2 bad input, 3 internal error;\n"
+      "Exit codes: 0 done, 1 the answer is no, 2 bad input, 3 internal error;\n"
       "interrupted: 130 by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.");
   program.set_version_flag("-V,--version", std::string("abbe ") + version_text());
   program.require_subcommand(1);

@@ -253,7 +253,7 @@ int run_deviate(DeviateCommand command) {
 void add_deviate_command(CommandLine& line) {
   auto command = std::make_shared<DeviateCommand>();
   Subcommand* app = line.add(
-      "deviate", "Signed deviation of a scan from its part: statistics, coloured points, report",
+      "deviate", "Compute the signed deviation of a scan from its part: statistics, coloured points, report",
       "  abbe deviate examples/scan/pin-scan.csv examples/scan/pin.stl --transform examples/scan/pin-transform.csv\n"
       "  abbe deviate examples/scan/bracket-scan.csv examples/scan/bracket.stl --transform "
       "examples/scan/bracket-transform.csv --largest-mm 0.3 --faces-deg 30 --tolerance p95_um=60 -o "

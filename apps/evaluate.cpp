@@ -7,7 +7,7 @@ namespace abbe {
 
 void add_evaluate_command(CommandLine& line) {
   Subcommand* command =
-      line.add("evaluate", "Figures of ISO 230 from readings: table, plot, report, tolerances",
+      line.add("evaluate", "Compute figures of ISO 230 from readings: table, plot, report, tolerances",
                "  abbe evaluate positioning examples/evaluate/linear.csv\n"
                "  abbe evaluate positioning examples/evaluate/linear.csv --tolerance A_um=10 -o results/x\n"
                "  abbe evaluate diagonals examples/evaluate/diagonals.csv\n\n"

@@ -226,7 +226,7 @@ int run_fit(const FitCommand& command) {
 void add_fit_command(CommandLine& line) {
   auto command = std::make_shared<FitCommand>();
   Subcommand* app = line.add(
-      "fit", "Lines, planes, circles, spheres, cylinders and cones fitted to points",
+      "fit", "Fit lines, planes, circles, spheres, cylinders and cones to points",
       "  abbe fit examples/fit/bore.csv --shape cylinder --method minimum-zone --u-point-um 0.5\n"
       "  abbe fit examples/fit/bore.csv --shape cylinder --method inscribed --tolerance form_um=20\n"
       "  abbe fit examples/fit/ring.csv --shape circle2 --residuals ring-residuals.csv -o results/ring\n"

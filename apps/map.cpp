@@ -208,7 +208,7 @@ int run_map(const MapOptions& options) {
 
 void add_map_command(CommandLine& line) {
   auto options = std::make_shared<MapOptions>();
-  Subcommand* command = line.add("map", "Volumetric error over a grid or at given poses, with uncertainty",
+  Subcommand* command = line.add("map", "Compute the volumetric error over a grid or at given poses, with uncertainty",
                                  "  abbe map examples/machines/aguado.machine.toml "
                                  "examples/aguado/results/aguado/errors.toml --grid C_deg=0:315:8 -o "
                                  "map.csv -o map.vts\n"

@@ -247,7 +247,7 @@ int run_path(const PathCommand& command) {
 void add_path_command(CommandLine& line) {
   auto options = std::make_shared<PathCommand>();
   Subcommand* command = line.add(
-      "path", "Axis commands and NC program for a curve on the workpiece, by the calibrated machine",
+      "path", "Turn a curve on the workpiece into axis commands and an NC program for the calibrated machine",
       "  abbe path examples/machines/yin-engraver-u.machine.toml examples/laser_engraver/table-a4.csv --placement "
       "examples/laser_engraver/part.placement.toml -o program.ngc -o commands.csv --report path.html\n"
       "  abbe path examples/machines/yin-engraver-u.machine.toml examples/laser_engraver/regions.ngc --errors "

@@ -196,7 +196,8 @@ int run_position(const PositionCommand& command) {
 void add_position_command(CommandLine& line) {
   auto command = std::make_shared<PositionCommand>();
   Subcommand* app = line.add(
-      "position", "Where a scanner and a workpiece stand in a machine, from scans of targets, a sphere and the part",
+      "position",
+      "Find where a scanner and a workpiece stand in a machine, from scans of targets, a sphere and the part",
       "  abbe position examples/laser_engraver/scanner.positioning.toml\n"
       "  abbe position examples/laser_engraver/scanner.positioning.toml -o part.placement.toml\n\n"
       "The file names a CSV with target, x_mm, y_mm, z_mm in the scanner's frame; docs/workpiece-position.md.\n"

@@ -7,7 +7,7 @@ namespace abbe {
 
 void add_scan_command(CommandLine& line) {
   Subcommand* command = line.add(
-      "scan", "Scans with a displacement probe on any machine",
+      "scan", "Plan scans with a displacement probe, and turn readings into points",
       "  abbe scan points examples/machines/liu-scanner.machine.toml examples/cradle_scanner/readings.csv -o p.ply\n"
       "  abbe scan plan examples/cradle_scanner/pyramid.stl --machine examples/machines/liu-scanner.machine.toml -o "
       "pyramid-path.csv\n\n"

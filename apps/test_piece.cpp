@@ -55,12 +55,13 @@ void add_common(Subcommand& piece, TestPieceOptions& options) {
 }  // namespace
 
 void add_test_piece_command(CommandLine& line) {
-  Subcommand* command = line.add("test-piece", "Tool paths of five-axis test pieces, milled with the flank of the tool",
-                                 "  abbe test-piece cone-frustum -o cone.csv\n"
-                                 "  abbe test-piece s-shape --centre-mm 0 0 30 -o s.csv\n\n"
-                                 "Axis commands and a program: abbe path MACHINE cone.csv -o cone.ngc. "
-                                 "docs/test-pieces.md explains the sizes and\n"
-                                 "what is measured on the pieces.");
+  Subcommand* command =
+      line.add("test-piece", "Write tool paths of five-axis test pieces, milled with the flank of the tool",
+               "  abbe test-piece cone-frustum -o cone.csv\n"
+               "  abbe test-piece s-shape --centre-mm 0 0 30 -o s.csv\n\n"
+               "Axis commands and a program: abbe path MACHINE cone.csv -o cone.ngc. "
+               "docs/test-pieces.md explains the sizes and\n"
+               "what is measured on the pieces.");
   command->require_subcommand(1);
   auto options = std::make_shared<TestPieceOptions>();
   Subcommand* cone =

@@ -156,7 +156,7 @@ int run_plan(const PlanOptions& options) {
 
 void add_scan_plan(Subcommand& scan, CommandLine& line) {
   auto options = std::make_shared<PlanOptions>();
-  Subcommand* command = scan.add_subcommand("plan", "Paths of a displacement probe over all faces of a part");
+  Subcommand* command = scan.add_subcommand("plan", "Plan paths of a displacement probe over all faces of a part");
   command->footer(
       "Faces end where triangles meet at an edge. A flat face is scanned as a raster with one direction of the beam. "
       "A\n"
