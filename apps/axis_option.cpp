@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/number_text.h"
+#include "abbe/machine/axis_unit.h"
 
 namespace abbe {
 
@@ -22,10 +22,12 @@ AxisNumbers axis_numbers_option(const Machine& machine, const std::string& optio
   AxisNumbers result;
   result.axis = machine.find_axis(text.substr(0, underscore));
   if (result.axis == Machine::npos) fail("the machine has no axis '" + text.substr(0, underscore) + "'");
-  const bool rotary = machine.axes[result.axis].kind == AxisKind::rotary;
+  const Axis& axis = machine.axes[result.axis];
   const std::string unit = text.substr(underscore + 1, equals - underscore - 1);
-  if (unit != (rotary ? "deg" : "mm")) fail(fmt::format("unit '{}' for a {} axis", unit, rotary ? "rotary" : "linear"));
-  result.unit = rotary ? std::numbers::pi / 180 : 1;
+  if (unit != position_suffix(axis)) {
+    fail(fmt::format("unit '{}' for a {} axis", unit, axis.kind == AxisKind::rotary ? "rotary" : "linear"));
+  }
+  result.unit = position_unit(axis);
   for (std::size_t start = equals + 1; start <= text.size();) {
     const std::size_t end = std::min(text.find(':', start), text.size());
     double value = 0;

@@ -19,10 +19,14 @@ ErrorsFile read_errors_for_use(const std::filesystem::path& path, const Machine&
   return contents;
 }
 
-ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine& machine) {
-  ErrorsFile contents = read_errors(path, machine);
+void tell_distrusted(const std::filesystem::path& path, const ErrorsFile& contents) {
   for (const std::string& reason : contents.distrusted)
     tell("abbe: {}: marked as not to be trusted: {}\n", path.string(), reason);
+}
+
+ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine& machine) {
+  ErrorsFile contents = read_errors(path, machine);
+  tell_distrusted(path, contents);
   return contents;
 }
 

@@ -16,6 +16,9 @@ ErrorsFile read_errors_for_use(const std::filesystem::path& path, const Machine&
 /// Errors that are only looked at: marks are told, nothing is refused. @throws InputError as read_errors()
 ErrorsFile read_errors_and_tell(const std::filesystem::path& path, const Machine& machine);
 
+/// Tells that errors of this file are marked as not to be trusted, if they are.
+void tell_distrusted(const std::filesystem::path& path, const ErrorsFile& contents);
+
 /// The option --accept-misfit of commands that use errors.
 void add_accept_misfit(Subcommand& command, bool& accept_misfit);
 

@@ -11,12 +11,12 @@
 #include "abbe/formats/number_text.h"
 #include "abbe/formats/point_cloud_file.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/report/fit_report.h"
+#include "abbe/report/fit_surface.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
-#include "fit/fit_report.h"
-#include "fit/fit_surface.h"
 #include "options.h"
 
 namespace abbe {
@@ -137,8 +137,8 @@ int run_coaxial(const FitCommand& command, FitRequest request) {
 }
 
 void check_request(const FitCommand& command, const FitRequest& request) {
-  const ShapeKind kind = request.kind;
-  const FitConstraints& held = request.fit.constraints;
+  const ShapeKind kind = request.choice.kind;
+  const FitConstraints& held = request.choice.options.constraints;
   const bool has_radius = kind >= ShapeKind::circle2 && kind != ShapeKind::cone;
   const std::string words = " of " + command.shape;
   if (held.radius && !has_radius) {
@@ -156,7 +156,8 @@ void check_request(const FitCommand& command, const FitRequest& request) {
     throw InputError({.field = "--fixed-half-angle-deg"}, "there is no half angle" + words + " to hold",
                      "it with a cone");
   }
-  const bool one_sided = request.method == FitMethod::circumscribed || request.method == FitMethod::inscribed;
+  const bool one_sided =
+      request.choice.method == FitMethod::circumscribed || request.choice.method == FitMethod::inscribed;
   const bool encloses = kind == ShapeKind::circle2 || kind == ShapeKind::sphere || kind == ShapeKind::cylinder;
   if (one_sided && (!encloses || held.radius)) {
     throw InputError({.field = "--method " + command.method},
@@ -167,25 +168,25 @@ void check_request(const FitCommand& command, const FitRequest& request) {
 
 int run_fit(const FitCommand& command) {
   FitRequest request;
-  request.fit.sigma = command.sigma;
-  request.fit.threads = command.threads;
+  request.choice.options.sigma = command.sigma;
+  request.choice.options.threads = command.threads;
   if (command.shape == "coaxial-circles") return run_coaxial(command, request);
   if (command.files.size() != 1) {
     throw InputError({.field = "FILE"}, fmt::format("there are {} files", command.files.size()),
                      "one; several are for --shape coaxial-circles");
   }
-  request.kind = shapes().at(command.shape);
-  request.method = methods().at(command.method);
-  request.robust.kind = command.loss == "huber"    ? RobustKind::huber
-                        : command.loss == "welsch" ? RobustKind::welsch
-                                                   : RobustKind::tukey;
-  request.fit.constraints.direction = held_direction(command);
+  request.choice.kind = shapes().at(command.shape);
+  request.choice.method = methods().at(command.method);
+  request.choice.robust.kind = command.loss == "huber"    ? RobustKind::huber
+                               : command.loss == "welsch" ? RobustKind::welsch
+                                                          : RobustKind::tukey;
+  request.choice.options.constraints.direction = held_direction(command);
   const std::vector<double> radii = held_radii(command, 1);
-  if (!radii.empty()) request.fit.constraints.radius = radii[0];
-  if (command.half_angle > 0) request.fit.constraints.half_angle = command.half_angle;
+  if (!radii.empty()) request.choice.options.constraints.radius = radii[0];
+  if (command.half_angle > 0) request.choice.options.constraints.half_angle = command.half_angle;
   check_request(command, request);
   const std::string& file = command.files[0];
-  const bool in_plane = request.kind == ShapeKind::line2 || request.kind == ShapeKind::circle2;
+  const bool in_plane = request.choice.kind == ShapeKind::line2 || request.choice.kind == ShapeKind::circle2;
   Read read = read_points(command, file, in_plane);
   request.title = "Fit of " + std::filesystem::path(file).filename().string();
   request.facts = {{"file", read.format + ", " + read.unit}};
@@ -198,7 +199,7 @@ int run_fit(const FitCommand& command) {
     flat.row(2).setZero();
   }
   const Eigen::Matrix3Xd& points = in_plane ? flat : read.cloud.points;
-  const ShapeFit fit = fit_shape(request, points);
+  const ShapeFit fit = fit_shape(request.choice, points);
   std::vector<double> deviations;
   if (fit.ok()) {
     deviations.resize(fit.points);

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
 #include <limits>
@@ -18,19 +17,18 @@
 #include "abbe/formats/path_program.h"
 #include "abbe/formats/placement_file.h"
 #include "abbe/formats/results_folder.h"
-#include "abbe/geometry/angle.h"
-#include "abbe/geometry/angle_units.h"
-#include "abbe/geometry/rotation.h"
-#include "abbe/machine/axis_unit.h"
 #include "abbe/machine/tool_path.h"
+#include "abbe/machine/tool_path_miss.h"
+#include "abbe/report/geometry_facts.h"
+#include "abbe/report/path_page.h"
+#include "abbe/report/path_words.h"
+#include "abbe/report/surface_picture.h"
 #include "axis_option.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
 #include "messages.h"
 #include "options.h"
-#include "path/path_page.h"
-#include "scan/surface_picture.h"
 #include "step_reading.h"
 
 namespace abbe {
@@ -55,73 +53,6 @@ PathProgramOptions program_options(const PathCommand& command, const Machine& ma
   return options;
 }
 
-/// Largest distance (mm) and angle (rad) of the tool from the points of the curve, by the forward kinematics.
-struct Miss {
-  double distance = 0, angle = 0;
-};
-Miss largest_miss(const Machine& machine, const Curve& curve, const ToolPath& path) {
-  Miss miss;
-  for (const ToolPathStep& step : path.steps) {
-    if (step.point == ToolPathStep::kNoPoint) continue;
-    const RigidTransform pose =
-        nominal_workpiece_from_tool(machine, std::span(step.command).first(machine.axes.size()));
-    const CurvePoint& at = curve.points[step.point];
-    const Eigen::Vector3d direction = pose.rotation * machine.tool_direction;
-    miss.distance = std::max(miss.distance, (pose.translation - at.point).norm());
-    miss.angle = std::max(miss.angle, angle_between(direction, at.direction));
-  }
-  return miss;
-}
-
-void print_path(const Machine& machine, const ToolPath& path, const Miss& miss, const PathCommand& command) {
-  fmt::print("{} moves of {} in {} region{}, {} poses inserted\n", path.steps.size(), machine.name, path.regions,
-             path.regions == 1 ? "" : "s", path.inserted);
-  fmt::print("length at work {:.3f} mm, {:.2f} s at the feeds, without acceleration\n", path.working_length,
-             path.working_time);
-  fmt::print(
-      "tool off the straight lines between the points by at most {:.3f} um; at the points by {:.1e} mm and {:.1e} "
-      "rad\n",
-      1e3 * path.largest_deviation, miss.distance, miss.angle);
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    double low = path.steps[0].command[i], high = low;
-    for (const ToolPathStep& step : path.steps) {
-      low = std::min(low, step.command[i]);
-      high = std::max(high, step.command[i]);
-    }
-    const double unit = position_unit(machine.axes[i]);
-    fmt::print("  {:<3} {:>12.4f} to {:>12.4f} {}\n", machine.axes[i].name, low / unit, high / unit,
-               position_suffix(machine.axes[i]));
-  }
-  for (const PathJump& jump : path.jumps) {
-    fmt::print("  move {}: {} turns {:.1f} deg, linear axes {:.1f} mm{}\n", jump.pose + 1, machine.axes[jump.axis].name,
-               jump.turn / kDegree, jump.largest_linear_move, path.steps[jump.pose].working ? ", at work" : "");
-  }
-  for (const std::string& output : command.outputs) fmt::print("{} written\n", output);
-}
-
-nlohmann::ordered_json path_json(const Machine& machine, const ToolPath& path, const Miss& miss) {
-  nlohmann::ordered_json json;
-  json["machine"] = machine.name;
-  json["status"] = path.status == ToolPathStatus::followed ? "followed" : "jumps_while_working";
-  json["moves"] = path.steps.size();
-  json["regions"] = path.regions;
-  json["inserted"] = path.inserted;
-  json["length_mm"] = path.working_length;
-  json["time_s"] = path.working_time;
-  json["largest_deviation_um"] = 1e3 * path.largest_deviation;
-  json["largest_miss_mm"] = miss.distance;
-  json["largest_miss_rad"] = miss.angle;
-  json["jumps"] = nlohmann::ordered_json::array();
-  for (const PathJump& jump : path.jumps) {
-    json["jumps"].push_back({{"move", jump.pose + 1},
-                             {"axis", machine.axes[jump.axis].name},
-                             {"turn_deg", jump.turn / kDegree},
-                             {"largest_linear_move_mm", jump.largest_linear_move},
-                             {"at_work", path.steps[jump.pose].working}});
-  }
-  return json;
-}
-
 /// @param warnings  of the placement
 void write_page(const PathCommand& command, const Machine& machine, const ToolPath& path,
                 const std::vector<std::vector<double>>& commands, const std::vector<std::string>& warnings) {
@@ -133,11 +64,7 @@ void write_page(const PathCommand& command, const Machine& machine, const ToolPa
     if (!mesh.left_out.empty()) incomplete = "; " + incomplete_words(mesh);
   }
   const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
-  std::vector<std::pair<std::string, std::string>> facts{
-      {"curve", name(command.curve)},
-      {"moves", fmt::format("{} in {} region{}", path.steps.size(), path.regions, path.regions == 1 ? "" : "s")},
-      {"at work", fmt::format("{:.3f} mm, {:.2f} s at the feeds", path.working_length, path.working_time)},
-      {"off the straight lines", fmt::format("at most {:.3f} \xC2\xB5m", 1e3 * path.largest_deviation)}};
+  std::vector<std::pair<std::string, std::string>> facts = path_facts(name(command.curve), path);
   if (!warnings.empty()) {
     facts.emplace_back("placement", fmt::format("{}; {}", name(command.placement), fmt::join(warnings, "; ")));
   }
@@ -227,13 +154,14 @@ int run_path(const PathCommand& command) {
     }
   }
   if (!command.report.empty()) write_page(command, machine, path, commands, warnings);
-  const Miss miss = largest_miss(machine, curve, path);
+  const ToolPathMiss miss = largest_miss(machine, curve, path);
   if (command.json) {
     nlohmann::ordered_json json = path_json(machine, path, miss);
     if (!warnings.empty()) json["warnings"] = warnings;
     fmt::print("{}", json_text(json));
   } else {
-    print_path(machine, path, miss, command);
+    fmt::print("{}", path_text(machine, path, miss));
+    for (const std::string& output : command.outputs) fmt::print("{} written\n", output);
   }
   if (path.status == ToolPathStatus::jumps_while_working) {
     tell("abbe: {}: another start (--start), a held axis, or a cut of the curve there\n", path.message);

@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numbers>
+#include <optional>
 
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
@@ -13,14 +11,15 @@
 #include "abbe/formats/transform_file.h"
 #include "abbe/geometry/registration.h"
 #include "abbe/report/evaluation_data.h"
+#include "abbe/report/geometry_facts.h"
+#include "abbe/report/registration_page.h"
+#include "abbe/report/registration_words.h"
 #include "abbe/report/report.h"
 #include "command.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
 #include "options.h"
 #include "progress.h"
-#include "scan/registration_page.h"
-#include "scan/registration_words.h"
 #include "scan/scan_files.h"
 
 namespace abbe {
@@ -82,9 +81,14 @@ int run_register(const RegisterCommand& command) {
       folder.write("registered.ply", ply_bytes({.points = placed.points, .normals = placed.normals}));
     }
     const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
+    std::optional<ScanComparison> compared;
+    if (has_pose(result)) {
+      compared = compare_scan(target.surface(), placed.points,
+                              {.largest_mm = farthest_shown_mm(part.mesh), .threads = command.files.threads});
+    }
     EvaluationReport page =
         registration_page(fmt::format("Registration of {} on {}", name(command.files.scan), name(command.files.part)),
-                          result, placed, part.mesh, target.surface(), command.files.threads);
+                          result, part.mesh, compared ? &*compared : nullptr, command.files.threads);
     const auto facts = facts_of(scan, part);
     page.facts.insert(page.facts.begin(), facts.begin(), facts.end());
     for (const std::string& note : part.notes) page.notes.push_back(name(command.files.part) + ": " + note);

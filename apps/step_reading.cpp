@@ -6,24 +6,13 @@
 #include <cstddef>
 
 #include "abbe/formats/input_error.h"
-#include "abbe/formats/list_text.h"
 #include "abbe/formats/step_file.h"
+#include "abbe/report/geometry_facts.h"
 #include "messages.h"
 #include "options.h"
 #include "progress.h"
 
 namespace abbe {
-namespace {
-
-/// "2 faces are left out (1.3 % of the area): #78 ...; #91 ..."
-std::string left_out_faces_words(const MeshFile& mesh) {
-  const std::string share =
-      mesh.left_out_share ? fmt::format("{:.2g} % of the area", 100 * *mesh.left_out_share) : "of unknown area";
-  return fmt::format("{} left out ({}): {}", counted(mesh.left_out.size(), "face is", "faces are"), share,
-                     first_few(mesh.left_out, "; "));
-}
-
-}  // namespace
 
 void StepReading::add_to(Subcommand* command) {
   added_ = {
@@ -60,10 +49,6 @@ MeshFile StepReading::read_whole(const std::filesystem::path& mesh, const std::s
   MeshFile read = read_with_progress(mesh, {{}, 0, options_});
   if (!read.left_out.empty()) throw InputError({.file = mesh.string()}, left_out_faces_words(read), expected);
   return read;
-}
-
-std::string incomplete_words(const MeshFile& mesh) {
-  return mesh.left_out.empty() ? "" : "incomplete: " + left_out_faces_words(mesh);
 }
 
 const Option* StepReading::given() const {

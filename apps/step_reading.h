@@ -41,7 +41,4 @@ class StepReading {
   std::vector<const Option*> added_;
 };
 
-/// "incomplete: 2 faces are left out (1.3 % of the area): #78 ...; #91 ..."; empty if none is.
-std::string incomplete_words(const MeshFile& mesh);
-
 }  // namespace abbe

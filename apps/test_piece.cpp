@@ -8,6 +8,7 @@
 #include "abbe/formats/curve_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/study/test_piece_sizes.h"
 #include "command.h"
 #include "exit_code.h"
 #include "options.h"
@@ -26,7 +27,7 @@ template <typename Piece>
 int write_piece(const TestPieceOptions& options, const char* what, const std::string& from, Piece sizes) {
   sizes.feed = options.feed_mm_per_min / 60;
   sizes.chord_tolerance = options.chord_um / 1000;
-  const TestPiece piece = made_piece(sizes);
+  const TestPiece piece = test_piece_of(sizes);
   std::string text = fmt::format("# {}: {}\n# tool of {} mm diameter\n", what, from, options.sizes.tool_diameter_mm);
   text += curve_csv(piece.curve);
   if (options.output.empty()) {

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,47 +8,110 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/study/verification.h"
+#include "abbe/study/verification_page.h"
+#include "abbe/study/verification_text.h"
+#include "axis_option.h"
 #include "command.h"
+#include "errors_for_use.h"
 #include "exit_code.h"
 #include "options.h"
-#include "verify/verify_job.h"
-#include "verify/verify_page.h"
-#include "verify/verify_text.h"
+#include "progress.h"
+#include "test_piece/sizes.h"
+#include "uncovered_poses.h"
 
 namespace abbe {
 namespace {
 
-/// Without it, a condition that nothing meets, or everything.
-void check_condition(const char* option, std::optional<double> value) {
-  if (!value || (*value > 0 && std::isfinite(*value))) return;
-  throw InputError({.field = option}, fmt::format("{} is not a condition", *value), "a number above zero");
+/// A test piece that was run twice.
+struct PieceOptions {
+  TestPieceSizes sizes;
+  std::string before, after;
+};
+
+struct VerifyOptions {
+  VerificationFiles files;
+  std::string output;
+  std::vector<std::string> ranges;
+  std::size_t poses = 1000;
+  std::optional<std::size_t> seed;
+  double reach_mm = 1;
+  std::optional<double> least_reduction, largest_ratio;
+  std::optional<PieceOptions> cone, s;
+  bool json = false, accept_uncovered = false;
+};
+
+/// "X_mm=-100:100" or "C_deg=30".
+void apply_range(const Machine& machine, const std::string& text, std::vector<std::optional<AxisRange>>& ranges) {
+  const std::string expected = "AXIS_unit=from:to or AXIS_unit=position, such as X_mm=-100:100";
+  const auto [axis, unit, numbers] = axis_numbers_option(machine, "--range", text, expected);
+  if (numbers.size() > 2 || !(numbers.size() == 1 || numbers[0] < numbers[1])) {
+    throw InputError({.field = "--range " + text}, "needs a position, or two with the larger one behind the smaller",
+                     expected);
+  }
+  const Axis& moved = machine.axes[axis];
+  if (!moved.endless && !(numbers.front() * unit >= moved.travel_min && numbers.back() * unit <= moved.travel_max)) {
+    throw InputError({.field = "--range " + text}, "outside the axis's travel",
+                     fmt::format("positions within the travel, {:g} to {:g} in this unit", moved.travel_min / unit,
+                                 moved.travel_max / unit));
+  }
+  ranges[axis] =
+      numbers.size() == 1 ? AxisRange::fixed(numbers[0] * unit) : AxisRange{numbers[0] * unit, numbers[1] * unit, 2, 0};
+}
+
+template <typename Sizes>
+PieceToVerify piece_to_verify(const Machine& machine, const PieceOptions& options, const Sizes& sizes) {
+  return {sizes,
+          {options.before, read_trace(options.before, machine)},
+          {options.after, read_trace(options.after, machine)}};
+}
+
+VerificationRequest request_of(const VerifyOptions& options) {
+  VerificationRequest request = read_verification(options.files);
+  tell_distrusted(request.errors_file, request.identified);
+  request.poses = options.poses;
+  if (options.seed) request.seed = *options.seed;
+  request.ranges.resize(request.machine.axes.size());
+  for (const std::string& text : options.ranges) apply_range(request.machine, text, request.ranges);
+  request.least_reduction = options.least_reduction;
+  request.largest_ratio = options.largest_ratio;
+  request.reach_mm = options.reach_mm;
+  if (options.cone) {
+    request.pieces.push_back(piece_to_verify(request.machine, *options.cone, cone_frustum_of(options.cone->sizes)));
+  }
+  if (options.s) {
+    request.pieces.push_back(piece_to_verify(request.machine, *options.s, s_shape_of(options.s->sizes)));
+  }
+  return request;
 }
 
 int run_verify(const VerifyOptions& options) {
-  check_condition("--least-reduction", options.least_reduction);
-  check_condition("--largest-ratio", options.largest_ratio);
   if (!options.output.empty()) {
     const std::string extension = std::filesystem::path(options.output).extension().string();
     if (extension != ".html" && extension != ".htm") {
       throw InputError({.file = options.output}, "unknown kind of page", "a name ending in .html");
     }
   }
-  const VerifyResult result = verify(options);
-  if (!options.output.empty()) write_file_atomically(options.output, verify_page(options, result));
+  const VerificationRequest request = request_of(options);
+  StepProgress progress;
+  const Verification result = verify_compensation(
+      request, {.progress = [&progress](VerificationStep step, std::size_t done, std::size_t total) {
+        progress.show(step_words(step), done, total);
+      }});
+  progress.end();
+  if (!options.output.empty()) write_file_atomically(options.output, verification_page(result));
   if (options.json) {
-    fmt::print("{}", json_text(verify_json(result)));
+    fmt::print("{}", json_text(verification_json(result)));
   } else {
-    print_verify(result);
+    fmt::print("{}", verification_text(result));
     if (!options.output.empty()) fmt::print("\npage: {}\n", options.output);
   }
-  const bool met = std::all_of(result.verdicts.begin(), result.verdicts.end(),
-                               [](const VerifyVerdict& verdict) { return verdict.met; });
   const int left_out = tell_left_out(result.left_out(), options.accept_uncovered);
-  return met ? left_out : kNegative;
+  return result.says_no() ? kNegative : left_out;
 }
 
 Subcommand* add_piece(Subcommand& command, const char* name, const char* description, const char* example,
-                      VerifyPiece& piece) {
+                      PieceOptions& piece) {
   Subcommand* app = command.add_subcommand(name, description);
   app->fallthrough();
   app->add_option("--before", piece.before, "Trace of the program as it was (*.csv)")->required();
@@ -67,7 +128,7 @@ Subcommand* add_piece(Subcommand& command, const char* name, const char* descrip
 void add_verify_command(CommandLine& line) {
   struct Pieces {
     VerifyOptions options;
-    VerifyPiece cone, s;
+    PieceOptions cone, s;
     double reduction = 0, ratio = 0;
   };
   auto asked = std::make_shared<Pieces>();
@@ -83,10 +144,11 @@ void add_verify_command(CommandLine& line) {
       "is\n"
       "a CSV of what the axes were commanded while the program ran, a row for each servo cycle or so: time_s, X_mm,\n"
       "Y_mm, Z_mm, A_deg, C_deg. Method and figures: docs/verify.md.");
-  command->add_option("results", options.results, "Results folder of abbe run for a study with simulated readings");
-  command->add_option("--machine", options.machine, "Machine file (default: machine.toml of the results)");
-  command->add_option("--errors", options.errors, "Identified errors (default: errors.toml of the results)");
-  command->add_option("--truth", options.truth, "True errors (default: truth.errors.toml of the results)");
+  command->add_option("results", options.files.results,
+                      "Results folder of abbe run, of a study with simulated readings");
+  command->add_option("--machine", options.files.machine, "Machine file (default: machine.toml of the results)");
+  command->add_option("--errors", options.files.errors, "Identified errors (default: errors.toml of the results)");
+  command->add_option("--truth", options.files.truth, "True errors (default: truth.errors.toml of the results)");
   command->add_option("--poses", options.poses, "Number of random poses")
       ->check(in_range(10, 10000))
       ->capture_default_str();
@@ -102,7 +164,8 @@ void add_verify_command(CommandLine& line) {
       command->add_option("--largest-ratio", asked->ratio,
                           "Exit code 1 if the volumetric error (root mean square) is more than this many times its "
                           "predicted standard uncertainty");
-  command->add_option("--reach-mm", options.reach, "A sample farther from the test piece's tool path does not cut it")
+  command
+      ->add_option("--reach-mm", options.reach_mm, "A sample farther from the test piece's tool path does not cut it")
       ->check(in_range(0.01, 10.0))
       ->capture_default_str();
   command->add_flag("--accept-uncovered", options.accept_uncovered, kAcceptUncoveredWords);
@@ -117,14 +180,13 @@ void add_verify_command(CommandLine& line) {
       add_piece(*command, "s-shape", "Wall in the shape of an S (in the manner of ISO 10791-7, M4)",
                 "--before examples/verify/s-before.csv --after examples/verify/s-after.csv", asked->s);
   add_s_shape_sizes(*s, asked->s.sizes);
-  asked->cone.is_cone = true;
   command->callback([&line, asked, reduction, ratio, cone, s] {
     line.run = [asked, reduction, ratio, cone, s] {
       VerifyOptions all = asked->options;
       if (reduction->count() > 0) all.least_reduction = asked->reduction;
       if (ratio->count() > 0) all.largest_ratio = asked->ratio;
-      if (cone->parsed()) all.pieces.push_back(asked->cone);
-      if (s->parsed()) all.pieces.push_back(asked->s);
+      if (cone->parsed()) all.cone = asked->cone;
+      if (s->parsed()) all.s = asked->s;
       return run_verify(all);
     };
   });

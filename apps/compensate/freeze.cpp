@@ -5,26 +5,28 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "abbe/compensate/left_out_errors.h"
 #include "abbe/compensate/program_uncertainty.h"
+#include "abbe/controls/lost_motion_words.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/machine/position_words.h"
+#include "abbe/report/left_out_words.h"
+#include "abbe/report/position_json.h"
 #include "abbe/report/version.h"
 #include "abbe/runtime/abbe_runtime.h"
 #include "command.h"
 #include "compensate/compensate.h"
-#include "compensate/position_words.h"
-#include "compensate/reversal_words.h"
 #include "compensate/safety.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
@@ -135,8 +137,7 @@ void print_json(const FreezeArguments& arguments, const Machine& machine, const 
   nlohmann::ordered_json joints;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-    const double degrees = 180 / std::numbers::pi;
-    joints[machine.axes[i].name + (rotary ? "_deg" : "_um")] = frozen.largest_joint[i] * (rotary ? degrees : 1e3);
+    joints[machine.axes[i].name + (rotary ? "_deg" : "_um")] = frozen.largest_joint[i] * (rotary ? 1 / kDegree : 1e3);
   }
   json["largest_correction_at"] = position_json(machine, frozen.where);
   json["largest_joint_corrections"] = joints;
@@ -224,7 +225,7 @@ int run_freeze(const FreezeArguments& arguments) {
     print_json(arguments, machine, frozen_errors, frozen, left_out, written);
   } else {
     print_result(arguments, machine, frozen, left_out, written);
-    print_linuxcnc_backlash(machine, frozen_errors);
+    fmt::print("{}", linuxcnc_backlash_text(machine, frozen_errors));
   }
   if (refused.empty()) return kDone;
   tell("abbe: refused: {}; nothing was written\n", refused);

@@ -1,29 +1,21 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "abbe/compensate/left_out_errors.h"
-#include "abbe/compensate/machine_planes.h"
-#include "abbe/compensate/program_correction.h"
-#include "abbe/compensate/program_uncertainty.h"
-#include "abbe/compensate/tool_centre_moves.h"
-#include "abbe/errors/reversal.h"
 #include "abbe/formats/errors_file.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/machine_file.h"
-#include "abbe/formats/nc_program.h"
 #include "abbe/formats/streamed_file.h"
 #include "abbe/formats/text_file.h"
+#include "abbe/study/corrected_program.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/gcode_options.h"
-#include "compensate/gcode_report.h"
 #include "compensate/safety.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
@@ -34,63 +26,36 @@
 namespace abbe {
 namespace {
 
-void state_uncertainties(const Machine& machine, const ErrorsFile& errors, const WordAxes& words, GcodeResult& result) {
-  const Eigen::MatrixXd covariance = parameter_covariance(errors.errors, errors.covariance);
-  std::vector<bool> moved;
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) moved.push_back(words.moves(i));
-  const auto at = [&](const ProgramPlace& place) {
-    return place.line == 0 ? PlaceUncertainty{} : uncertainty_at(machine, errors.errors, covariance, place, moved);
-  };
-  result.largest = at(result.report.largest_shift);
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) result.by_axis.push_back(at(result.report.by_axis[i]));
-  for (const ReversalAxis& axis : result.reversals) {
-    auto parameter = static_cast<Eigen::Index>(first_reversal(errors.errors));
-    for (const Reversal& reversal : errors.errors.reversals) {
-      if (reversal.axis == axis.axis)
-        result.reversal_uncertainty.push_back(std::sqrt(std::max(0.0, covariance(parameter, parameter))));
-      ++parameter;
-    }
-  }
-}
-
 int run_gcode(const GcodeOptions& options) {
   if (options.output.empty() && !options.dry_run) {
     throw InputError({.field = "-o"}, "missing", "a file for the corrected program, or --dry-run");
   }
-  const Machine machine = read_machine(options.machine);
+  ProgramRequest request;
+  request.machine = read_machine(options.machine);
+  const Machine& machine = request.machine;
   const ErrorsFile errors = read_errors_for_use(options.errors, machine, options.accept_misfit);
   check_leave_out(options.leave_out_factor, errors, options.errors);
-  const WordAxes words = gcode_words(options, machine);
-  NcProgramOptions text_options = gcode_text_options(options, machine, words);
-  const AllowedProblems allowed = allowed_problems(options);
-  const MachinePlanes planes(machine, words);
-  text_options.planes = &planes;
-  text_options.tool_centre = options.tool_centre;
-
-  GcodeResult result;
-  ErrorSet corrected_errors = errors.errors;
-  if (options.leave_out_factor > 0) {
-    result.left_out = leave_out_uncertain(
-        machine, corrected_errors, parameter_covariance(errors.errors, errors.covariance), options.leave_out_factor);
-  }
+  request.errors = errors.errors;
+  request.covariance = errors.covariance;
+  request.program_file = options.program;
+  request.errors_file = options.errors;
+  request.words = gcode_words(options, machine);
+  request.text = gcode_text_options(options, machine, request.words);
+  request.tool_centre = options.tool_centre;
+  request.allowed = allowed_problems(options);
+  request.leave_out_factor = options.leave_out_factor;
   MappedFile program(options.program);
   const std::size_t size = program.text().size();
-  const GcodeBudget allowed_budget = gcode_budget(options, size);
-  ProgramBudget budget(static_cast<std::size_t>(1e6 * allowed_budget.megabytes), 60 * allowed_budget.minutes);
-  text_options.budget = &budget;
-  ProgramCorrectionOptions correction_options = gcode_correction_options(options);
-  correction_options.budget = &budget;
-  ProgramCorrection correction(machine, corrected_errors, words, correction_options);
-  if (!correction.problem().empty()) throw InputError({.file = options.errors}, correction.problem());
-  ToolCentreMoves tool_centre(correction);
-  MoveCorrector& corrector = options.tool_centre ? static_cast<MoveCorrector&>(tool_centre) : correction;
+  request.limits = gcode_limits(options, size);
+  request.correction = gcode_correction_options(options);
+  request.limit_um = options.limit_um.value_or(0);
 
   std::optional<StreamedFile> out;
   if (!options.output.empty()) refuse_input_as_output(options.output);
   if (!options.dry_run) out.emplace(options.output);
   Progress progress("correcting the program");
-  result.text = correct_nc_program(
-      program.text(), options.program, text_options, corrector,
+  const CorrectedProgram result = correct_program(
+      request, program.text(),
       [&](std::string_view text) {
         if (out) out->append(text);
       },
@@ -98,25 +63,14 @@ int run_gcode(const GcodeOptions& options) {
         program.forget(end);
         progress(end, size);
       });
-  result.report = correction.report();
-  result.reversals = correction.reversals();
-  if (result.report.impossible.count > 0) {
-    throw InputError({.file = options.program, .line = result.report.impossible.line[0]},
-                     "a tool centre move, for which the machine has no solution here",
-                     "X, Y and Z as three independent linear axes without a rotary axis between them");
-  }
-  state_uncertainties(machine, errors, words, result);
-  if (result.text.spent == ProgramBudget::Spent::nothing) {
-    result.refused = reasons_to_refuse(options, allowed, machine, result.report);
-  } else {
-    result.refused = {given_up_words(options, allowed_budget, result.text)};
-  }
   if (out && result.refused.empty()) out->commit();
-  if (options.json) {
-    fmt::print("{}", json_text(gcode_json(options, machine, result)));
-  } else {
-    print_gcode_report(options, machine, result);
-  }
+  const ProgramWordsRequest words_request{.program = options.program,
+                                          .output = options.output,
+                                          .tolerance_um = options.tolerance_um,
+                                          .leave_out_factor = options.leave_out_factor,
+                                          .dry_run = options.dry_run};
+  fmt::print("{}", options.json ? json_text(program_json(words_request, machine, result))
+                                : program_text(words_request, machine, result));
   std::fflush(stdout);
   for (const std::string& reason : result.refused) tell("abbe: {}\n", reason);
   if (!result.refused.empty() && !options.dry_run) tell("abbe: nothing written\n");

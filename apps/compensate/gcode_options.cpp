@@ -117,17 +117,17 @@ NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& 
   return text;
 }
 
-GcodeBudget gcode_budget(const GcodeOptions& options, std::size_t size) {
+ProgramLimits gcode_limits(const GcodeOptions& options, std::size_t size) {
   const double megabytes = 1e-6 * static_cast<double>(size);
-  GcodeBudget budget{200 + 20 * megabytes, 5 + 0.1 * megabytes};
+  ProgramLimits limits{200 + 20 * megabytes, 5 + 0.1 * megabytes};
   constexpr double kMost = 1e9;
   if (options.max_output_mb) {
-    budget.megabytes = std::min(kMost, positive("--max-output-mb", *options.max_output_mb, "a size in MB"));
+    limits.megabytes = std::min(kMost, positive("--max-output-mb", *options.max_output_mb, "a size in MB"));
   }
   if (options.max_minutes) {
-    budget.minutes = std::min(kMost, positive("--max-minutes", *options.max_minutes, "a time in min"));
+    limits.minutes = std::min(kMost, positive("--max-minutes", *options.max_minutes, "a time in min"));
   }
-  return budget;
+  return limits;
 }
 
 ProgramCorrectionOptions gcode_correction_options(const GcodeOptions& options) {

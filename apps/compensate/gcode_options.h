@@ -8,6 +8,7 @@
 #include "abbe/compensate/program_correction.h"
 #include "abbe/formats/nc_program.h"
 #include "abbe/machine/machine.h"
+#include "abbe/report/program_words.h"
 
 namespace abbe {
 
@@ -26,23 +27,13 @@ struct GcodeOptions {
   bool accept_misfit = false, tool_centre = false, inches = false, block_delete = false, dry_run = false, json = false;
 };
 
-/// What a program may meet and still be written, by its name for --allow.
-struct AllowedProblems {
-  bool not_covered = false, outside_travel = false, held_start = false, position_left = false, not_converged = false;
-  bool not_proven = false;
-};
-
 /// @throws InputError for an unknown name
 AllowedProblems allowed_problems(const GcodeOptions& options);
 /// Axes of the program's words. @throws InputError if one is of the wrong kind, or if there is none
 WordAxes gcode_words(const GcodeOptions& options, const Machine& machine);
 NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& machine, const WordAxes& words);
-/// What a program may become and take.
-struct GcodeBudget {
-  double megabytes = 0, minutes = 0;
-};
 /// @param size  of the program, bytes @throws InputError for numbers that are not above zero
-GcodeBudget gcode_budget(const GcodeOptions& options, std::size_t size);
+ProgramLimits gcode_limits(const GcodeOptions& options, std::size_t size);
 /// @throws InputError for numbers out of range
 ProgramCorrectionOptions gcode_correction_options(const GcodeOptions& options);
 

@@ -1,12 +1,9 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
-#include "abbe/compensate/left_out_errors.h"
 #include "abbe/formats/errors_file.h"
-#include "abbe/machine/machine.h"
 
 namespace abbe {
 
@@ -20,11 +17,5 @@ double largest_turn_option(double degrees);
 /// What --leave-out-below-uncertainty needs: a factor of 0 (leave out nothing) to 1000, and stated uncertainties.
 /// @param file  name of the errors file. @throws InputError
 void check_leave_out(double factor, const ErrorsFile& errors, const std::string& file);
-
-/// What was left out, what was not although it is small by itself, and how far the former moves the tool: lines of the
-/// report, each beginning with `indent`.
-std::string left_out_text(const Machine& machine, double factor, const LeftOutErrors& left_out, const char* indent);
-/// The same under left_out, left_out_kept, left_out_largest_um and left_out_largest_at.
-void state_left_out(const Machine& machine, const LeftOutErrors& left_out, nlohmann::ordered_json& json);
 
 }  // namespace abbe

@@ -2,13 +2,16 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
 #include "abbe/controls/control_table.h"
 #include "abbe/controls/table_format.h"
 #include "abbe/controls/table_map.h"
+#include "abbe/controls/table_text.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/formats/json_text.h"
 #include "abbe/formats/kept_inputs.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/map_file.h"
@@ -17,7 +20,6 @@
 #include "compensate/compensate.h"
 #include "compensate/safety.h"
 #include "compensate/table_options.h"
-#include "compensate/table_report.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
 #include "messages.h"
@@ -125,12 +127,8 @@ int run_table(const TableCommand& command) {
     written.push_back(command.map);
   }
   const TableReport report{request.machine, made, partial_errors(request.machine, file), written};
-  if (command.json) {
-    print_table_json(report);
-  } else {
-    print_table_report(report);
-    if (command.dry_run) fmt::print("dry run: no table is written\n");
-  }
+  fmt::print("{}", command.json ? json_text(table_json(report)) : table_text(report));
+  if (command.dry_run && !command.json) fmt::print("dry run: no table is written\n");
   std::fflush(stdout);
   for (const std::string& words : made.refused) tell("abbe: {}; nothing is written\n", words);
   if (!made.too_few_nodes.empty()) tell("abbe: {}; no table is written\n", made.too_few_nodes);

@@ -2,8 +2,8 @@
 
 #include "abbe/formats/evaluation_circular_file.h"
 #include "abbe/formats/input_error.h"
+#include "abbe/report/circular_report.h"
 #include "command.h"
-#include "evaluate/circular_report.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
@@ -38,7 +38,8 @@ int run(const CircularCommand& command) {
   }
   if (!file.plane.empty()) request.plane = file.plane;
   if (!command.plane.empty()) request.plane = command.plane;
-  EvaluationReport report = circular_report(request, file.paths);
+  EvaluationReport report = circular_report(request, file.paths, circular_deviations(file.paths, request.circular),
+                                            circular_diagnosis(file.paths, request.diagnosis));
   const int code = finish_evaluation(report, command.options);
   const auto misses = [](const EvaluationFigure& figure) { return !figure.value && figure.symbol.starts_with("G_"); };
   return std::any_of(report.figures.begin(), report.figures.end(), misses) ? kNegative : code;

@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "abbe/formats/curve_file.h"
+#include "abbe/formats/curve_pieces.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/point_cloud_file.h"
-#include "abbe/machine/tool_path.h"
+#include "abbe/formats/section_file.h"
+#include "abbe/report/contour_report.h"
+#include "abbe/report/evaluation_text.h"
 #include "command.h"
-#include "evaluate/contour_report.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
@@ -25,8 +27,9 @@ namespace {
 struct ContourCommand {
   EvaluationOptions options;
   std::string feature = "edge", surface = "left", curve, machine;
-  double beam_tilt = 0, surface_radius = 0, across = 0, height = 0, origin = 0;
-  bool free_wall = false, closed = false;
+  SectionOptions sections;
+  double surface_radius = 0;
+  bool closed = false;
   std::vector<std::string> given;  ///< options of the command line: "--curve"
 
   bool has(const std::string& option) const { return std::find(given.begin(), given.end(), option) != given.end(); }
@@ -53,42 +56,6 @@ Curve commanded_curve(const ContourCommand& command) {
     throw InputError(error.place(), "the command of an axis, and no machine is given",
                      "--machine with the machine file");
   }
-}
-
-/// What the tool leaves of a curve on the workpiece.
-std::vector<CommandPiece> commanded_pieces(const ContourCommand& command) {
-  const Curve curve = commanded_curve(command);
-  const std::vector<WorkingRun> runs = working_runs(curve);
-  if (runs.empty()) {
-    throw InputError({.file = command.curve}, "the tool works on the way to none of its points",
-                     "a curve of two points or more between which it works");
-  }
-  if (command.closed && runs.size() > 1) {
-    throw InputError({.field = "--closed"}, fmt::format("the tool works on {} pieces of the curve", runs.size()),
-                     "a curve of one piece");
-  }
-  std::vector<CommandPiece> pieces;
-  for (const WorkingRun& run : runs) {
-    const auto apart = [&](std::size_t a, std::size_t b) {
-      return (curve.points[a].point - curve.points[b].point).norm() >= 1e-9;
-    };
-    for (std::size_t i = run.first; i < run.last; ++i) {
-      if (apart(i, i + 1)) continue;
-      throw InputError({.file = command.curve}, fmt::format("point {} and the next one coincide", i + 1),
-                       "neighbours apart from each other");
-    }
-    // A piece that comes back to its first point is closed, and has this point once.
-    const bool comes_back = run.last - run.first > 2 && !apart(run.first, run.last);
-    const auto n = static_cast<Eigen::Index>(run.last - run.first + (comes_back ? 0 : 1));
-    Eigen::Matrix3Xd points(3, n), normals(3, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const CurvePoint& at = curve.points[run.first + static_cast<std::size_t>(i)];
-      points.col(i) = at.point;
-      normals.col(i) = at.direction;
-    }
-    pieces.push_back({CommandCurve(points, command.closed || comes_back), normals});
-  }
-  return pieces;
 }
 
 void refuse_without_effect(const ContourCommand& command) {
@@ -127,30 +94,28 @@ void add_limits(EvaluationReport& report, const EvaluationOptions& options) {
 
 int run(const ContourCommand& command) {
   refuse_without_effect(command);
-  ContourRequest request;
-  request.title = "Contour error of " + std::filesystem::path(command.options.file).filename().string();
-  request.groove = command.feature == "groove";
-  request.edge.surface = command.surface == "right" ? EdgeSide::right : EdgeSide::left;
-  request.edge.beam_tilt = command.beam_tilt;
-  request.edge.free_wall = command.free_wall;
-  request.edge.surface_curvature = command.surface_radius == 0 ? 0 : 1 / command.surface_radius;
-  request.edge.across_noise = command.across;
-  request.edge.height_noise = command.height;
-  request.origin_uncertainty = command.origin;
+  const std::string title = "Contour error of " + std::filesystem::path(command.options.file).filename().string();
   if (command.has("--curve")) {
-    const std::vector<CommandPiece> pieces = commanded_pieces(command);
+    const std::vector<CommandPiece> pieces =
+        commanded_pieces(commanded_curve(command), command.curve, command.closed ? "--closed" : "");
     const PointCloudFile measured = read_point_cloud(command.options.file);
-    EvaluationReport report = contour_points_report(request, pieces, measured.cloud.points);
+    EvaluationReport report = contour_points_report(
+        title, pieces, evaluate_contour_points(pieces, measured.cloud.points, command.sections.origin_uncertainty));
     report.facts.front().second += fmt::format(", {}, {}", measured.format, unit_words(measured.unit));
     add_limits(report, command.options);
     return finish_evaluation(report, command.options);
   }
-  std::size_t refused = 0;
-  EvaluationReport report = section_report(request, stated_sections(command), refused);
+  SectionOptions options = command.sections;
+  options.groove = command.feature == "groove";
+  options.edge.surface = command.surface == "right" ? EdgeSide::right : EdgeSide::left;
+  options.edge.surface_curvature = command.surface_radius == 0 ? 0 : 1 / command.surface_radius;
+  const std::vector<SectionReadings> sections = stated_sections(command);
+  const SectionsEvaluation evaluated = evaluate_sections(sections, options);
+  EvaluationReport report = section_report(title, options, sections, evaluated);
   add_limits(report, command.options);
   const int code = finish_evaluation(report, command.options);
   // A mean that some of the sections have no part in is not the one that was asked for.
-  return refused > 0 ? std::max<int>(code, kNegative) : code;
+  return evaluated.refused > 0 ? std::max<int>(code, kNegative) : code;
 }
 
 }  // namespace
@@ -178,16 +143,17 @@ void add_evaluate_contour(Subcommand& evaluate, CommandLine& line) {
   app->add_option("--surface", command->surface,
                   "Side of an edge on which the surface remains: left (default, at smaller `across`) or right")
       ->check(one_of({"left", "right"}));
-  add_number(app, "--beam-tilt-deg", Quantity::angle, "deg", {-30, 30}, command->beam_tilt,
+  add_number(app, "--beam-tilt-deg", Quantity::angle, "deg", {-30, 30}, command->sections.edge.beam_tilt,
              "Direction of the laser where the file has none (default 0)");
-  app->add_flag("--free-wall", command->free_wall, "The wall need not be parallel to the laser: found from the points");
+  app->add_flag("--free-wall", command->sections.edge.free_wall,
+                "The wall need not be parallel to the laser: found from the points");
   add_number(app, "--surface-radius-mm", Quantity::length, "mm", {-1e6, 1e6}, command->surface_radius,
              "Radius of the part's surface in the sections, positive if convex (default: flat)");
-  add_number(app, "--u-across-um", Quantity::length, "um", {0, 1e6}, command->across,
+  add_number(app, "--u-across-um", Quantity::length, "um", {0, 1e6}, command->sections.edge.across_noise,
              "Standard uncertainty of a point along `across` (default: from the scatter)");
-  add_number(app, "--u-height-um", Quantity::length, "um", {0, 1e6}, command->height,
+  add_number(app, "--u-height-um", Quantity::length, "um", {0, 1e6}, command->sections.edge.height_noise,
              "Standard uncertainty of a point along `height`");
-  add_number(app, "--u-origin-um", Quantity::length, "um", {0, 1e6}, command->origin,
+  add_number(app, "--u-origin-um", Quantity::length, "um", {0, 1e6}, command->sections.origin_uncertainty,
              "Standard uncertainty of the position relative to the commanded curve, common to all sections or points");
   app->add_option("--curve", command->curve, "Commanded curve (as for abbe path): the file holds points instead");
   app->add_flag("--closed", command->closed, "The last point of the curve is followed by the first");

@@ -27,10 +27,6 @@ struct EvaluationOptions {
 Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const std::string& description,
                            const std::string& columns, const std::string& example, EvaluationOptions& options);
 
-/// Enters the tolerances into the figures. @throws InputError for an unknown figure, a unit that is missing or is not
-/// one of the figure, a value that is no number above zero
-void apply_tolerances(const std::vector<std::string>& tolerances, EvaluationReport& report);
-
 /// Prints the report for people or programs and writes the results folder: evaluation.json, one SVG file per plot,
 /// report.html. @returns kNegative if a tolerance is exceeded or a figure with one could not be evaluated, else kDone
 int finish_evaluation(EvaluationReport& report, const EvaluationOptions& options);

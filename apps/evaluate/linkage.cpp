@@ -9,9 +9,9 @@
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/linkage_file.h"
 #include "abbe/formats/machine_file.h"
+#include "abbe/report/linkage_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
-#include "evaluate/linkage_report.h"
 #include "evaluate/number_option.h"
 #include "options.h"
 

@@ -2,9 +2,9 @@
 #include "abbe/formats/evaluation_positioning.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/report/positioning_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
-#include "evaluate/positioning_report.h"
 #include "options.h"
 
 namespace abbe {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/formats/closed_part.h"
 #include "abbe/formats/input_error.h"
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/machine_file.h"
@@ -16,16 +17,14 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/scan_plan_file.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/geometry/mesh_check.h"
 #include "abbe/geometry/rotation.h"
-#include "abbe/geometry/vertex_welder.h"
 #include "abbe/plan/wanted_area.h"
+#include "abbe/report/scan_plan_page.h"
+#include "abbe/report/scan_plan_words.h"
 #include "command.h"
 #include "exit_code.h"
 #include "options.h"
 #include "progress.h"
-#include "scan/plan_page.h"
-#include "scan/plan_words.h"
 #include "scan/scan.h"
 #include "step_reading.h"
 
@@ -43,35 +42,9 @@ struct PlanOptions {
   bool json = false;
 };
 
-/// Vertices at the same place become one, as the planner needs it.
-TriangleMesh welded(const TriangleMesh& mesh) {
-  VertexWelder welder(static_cast<std::size_t>(mesh.vertices.cols()));
-  std::vector<std::uint32_t> index(static_cast<std::size_t>(mesh.vertices.cols()));
-  welder.add({mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.size())}, index.data());
-  TriangleMesh result;
-  result.vertices = welder.vertices();
-  result.triangles = mesh.triangles.unaryExpr([&](std::uint32_t vertex) { return index[vertex]; });
-  return result;
-}
-
 /// Reads a part or a stage, which must be complete.
 MeshFile read_whole(const std::string& file, const StepReading& step) {
   return step.read_whole(file, "all faces of the part and the stage, because the probe must keep clear of them");
-}
-
-TriangleMesh read_part(const std::string& file, const StepReading& step) {
-  TriangleMesh mesh = welded(read_whole(file, step).mesh);
-  const MeshCheck check = check_mesh(mesh);
-  if (!check.encloses_volume()) {
-    throw InputError({file, 0, 0, ""},
-                     fmt::format("the surface is not closed or not oriented: {} edges of one triangle, {} of more than "
-                                 "two, {} turned over",
-                                 check.border_edges, check.branching_edges, check.turned_edges),
-                     "a closed mesh; abbe check says more");
-  }
-  if (!(check.volume > 0))
-    throw InputError({file, 0, 0, ""}, "the triangles look inwards", "normals out of the material");
-  return mesh;
 }
 
 ScanPlanOptions scan_options(const PlanOptions& options) {
@@ -120,7 +93,7 @@ int run_plan(const PlanOptions& options) {
   const Machine machine = read_machine(options.machine);
   PathProgramOptions program;
   program.words = axis_words(machine, options.words, "--word");
-  const TriangleMesh part = read_part(options.part, options.step);
+  const TriangleMesh part = closed_part(read_whole(options.part, options.step).mesh, options.part);
   ScanPlanOptions scan = scan_options(options);
   const double most = wanted_area(part, scan.wanted) / (scan.along * scan.between);
   if (most > 5e6) {
@@ -147,7 +120,7 @@ int run_plan(const PlanOptions& options) {
   if (options.json) {
     fmt::print("{}", json_text(scan_plan_summary(machine, plan, name)));
   } else {
-    print_plan(machine, plan, name);
+    fmt::print("{}", scan_plan_text(machine, plan, name));
   }
   return plan.missed_places() > 0 || plan.blocked_links > 0 ? kNegative : kDone;
 }

@@ -1,6 +1,6 @@
 #include "scan/scan_files.h"
 
-#include <fmt/format.h>
+#include <optional>
 
 #include "abbe/formats/input_error.h"
 #include "options.h"
@@ -40,16 +40,6 @@ void add_scan_files(Subcommand* command, ScanFiles& files) {
   files.step.add_to(command);
   command->add_option("--threads", files.threads, "Threads; the result does not depend on them (default: all)")
       ->check(in_range(0, 1024));
-}
-
-std::vector<std::pair<std::string, std::string>> facts_of(const PointCloudFile& scan, const MeshFile& part) {
-  return {{"scan", fmt::format("{} points, {}, {}", scan.cloud.size(), scan.format, unit_words(scan.unit))},
-          {"part", fmt::format("{} triangles, {}, {}{}{}", part.mesh.size(), part.format, unit_words(part.unit),
-                               part.left_out.empty() ? "" : "; ", incomplete_words(part))}};
-}
-
-std::string triple_text(const Eigen::Vector3d& vector) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", vector.x(), vector.y(), vector.z());
 }
 
 }  // namespace abbe

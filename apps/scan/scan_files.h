@@ -1,9 +1,6 @@
 #pragma once
 
-#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "abbe/formats/mesh_file.h"
 #include "abbe/formats/point_cloud_file.h"
@@ -26,11 +23,5 @@ struct ScanFiles {
 
 /// Adds the arguments `scan` and `part` and their options.
 void add_scan_files(Subcommand* command, ScanFiles& files);
-
-/// Facts about both files for a report: "scan", "part" with format, unit, counts.
-std::vector<std::pair<std::string, std::string>> facts_of(const PointCloudFile& scan, const MeshFile& part);
-
-/// Text of a vector: "(1.25, -3, 0.5)".
-std::string triple_text(const Eigen::Vector3d& vector);
 
 }  // namespace abbe

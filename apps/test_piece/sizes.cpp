@@ -1,7 +1,5 @@
 #include "test_piece/sizes.h"
 
-#include <stdexcept>
-
 #include "abbe/formats/input_error.h"
 #include "abbe/geometry/angle_units.h"
 #include "options.h"
@@ -32,19 +30,6 @@ void take_common(const TestPieceSizes& sizes, Piece& piece, Eigen::Vector3d& cen
   if (!sizes.centre_mm.empty()) centre = Eigen::Vector3d::Map(sizes.centre_mm.data());
   if (sizes.height_mm > 0) piece.height = sizes.height_mm;
   piece.tool_radius = sizes.tool_diameter_mm / 2;
-}
-
-template <typename Piece>
-TestPiece made(const Piece& sizes, TestPiece (*make)(const Piece&), const char* what) {
-  try {
-    return make(sizes);
-  } catch (const std::invalid_argument& error) {
-    // What is wanted, behind the name of the piece.
-    const std::string wanted = error.what();
-    const std::size_t colon = wanted.find(": ");
-    throw InputError({.field = what}, "these sizes make no test piece",
-                     colon == std::string::npos ? wanted : wanted.substr(colon + 2));
-  }
 }
 
 }  // namespace
@@ -98,8 +83,5 @@ SShape s_shape_of(const TestPieceSizes& sizes) {
   shape.azimuth = sizes.azimuth_deg * kDegree;
   return shape;
 }
-
-TestPiece made_piece(const ConeFrustum& frustum) { return made(frustum, cone_frustum, "cone frustum"); }
-TestPiece made_piece(const SShape& shape) { return made(shape, s_shape, "S shape"); }
 
 }  // namespace abbe

@@ -23,8 +23,4 @@ void add_s_shape_sizes(Subcommand& piece, TestPieceSizes& sizes);
 ConeFrustum cone_frustum_of(const TestPieceSizes& sizes);
 SShape s_shape_of(const TestPieceSizes& sizes);
 
-/// The pieces themselves. @throws InputError for sizes that make none
-TestPiece made_piece(const ConeFrustum& frustum);
-TestPiece made_piece(const SShape& shape);
-
 }  // namespace abbe

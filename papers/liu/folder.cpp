@@ -12,8 +12,8 @@
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/scan_plan_file.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/report/scan_plan_page.h"
 #include "liu/machine.h"
-#include "scan/plan_page.h"
 
 namespace abbe {
 namespace {

@@ -10,6 +10,7 @@
 #include "abbe/formats/machine_file.h"
 #include "abbe/formats/map_file.h"
 #include "abbe/formats/results_folder.h"
+#include "abbe/report/machine_json.h"
 #include "abbe/study/report_data.h"
 #include "wang/integrated.h"
 #include "wang/results.h"

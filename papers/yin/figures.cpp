@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "abbe/report/contour_page.h"
 #include "abbe/report/svg_plot.h"
-#include "evaluate/contour_page.h"
 #include "yin/constants.h"
 #include "yin/results.h"
 
@@ -63,8 +63,8 @@ EvaluationPlot budget_plot(const UncertaintyBudget& budget) {
 
 /// The sections of the simulated part, as `abbe evaluate contour` shows its own.
 nlohmann::json contour_block(const YinSections& sections) {
-  ContourRequest request;
-  request.edge = sections.options;
+  SectionOptions options;
+  options.edge = sections.options;
   std::vector<SectionAnswer> answers;
   for (const EdgeFit& fit : sections.fits) {
     SectionAnswer answer;
@@ -75,7 +75,7 @@ nlohmann::json contour_block(const YinSections& sections) {
     answer.error_uncertainty = std::hypot(fit.corner_uncertainty(), yin::kSectionPlace);
     answers.push_back(std::move(answer));
   }
-  nlohmann::json block = contour_sections_block(request, sections.sections, answers);
+  nlohmann::json block = contour_sections_block(options, sections.sections, answers);
   block["title"] = "From the sections of one simulated part";
   return block;
 }

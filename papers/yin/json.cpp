@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "position/position_json.h"
+#include "abbe/report/positioning_json.h"
 #include "yin/results.h"
 
 namespace abbe {

@@ -2,8 +2,10 @@
 """Check that the source tree keeps to the order in which data flows. Usage: check_structure.py ROOT
 
 A folder of src/abbe includes only itself and folders above it in ORDER; `identify` and `compensate` do not see each
-other; only `formats`, `report`, `apps` and `papers` touch files; `src` and `apps` include nothing from `papers`; headers have `#pragma once`; nothing is included twice; no file
-is longer than MAX_LINES; no folder has a name that says nothing; no two headers of the library declare a type of one name. Every violation is one line: file:line: message.
+other; only `formats`, `report` and the programs (`apps`, `papers`, `step`) touch files; `src` and `apps` include nothing
+from `papers` and `step`; headers have `#pragma once`; nothing is included twice; no file is longer than MAX_LINES; no
+folder has a name that says nothing; no two headers of the library declare a type of one name. Every violation is one
+line: file:line: message.
 """
 import os
 import re
@@ -16,7 +18,8 @@ TOUCH_FILES = {"formats", "report"}
 FILE_HEADERS = {"fstream", "cstdio", "stdio.h", "filesystem", "fcntl.h", "unistd.h", "sys/stat.h", "sys/mman.h"}
 MEANINGLESS = {"util", "utils", "common", "core", "helper", "helpers", "misc", "manager", "managers"}
 MAX_LINES = 500
-PLACES = ["src", "apps", "papers", "linuxcnc", "tests", "fuzz", "benchmarks", "python", "web", "cmake", ".ci"]
+PLACES = ["src", "apps", "papers", "step", "linuxcnc", "tests", "fuzz", "benchmarks", "python", "web", "cmake", ".ci"]
+OTHER_PROGRAMS = ("papers", "step")
 SOURCES = (".h", ".cpp", ".py", ".ts", ".js", ".mjs", ".css", ".cmake")
 SKIP = {"node_modules", "build", "dist", "__pycache__"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
@@ -43,13 +46,14 @@ def check_library_include(folder, target, is_test):
     return None
 
 
-def is_of_papers(root, path, target):
-    """Whether a file of src/ or apps/ that includes `target` means one of papers/."""
+def other_program(root, path, target):
+    """`papers` or `step` if a file of src/ or apps/ that includes `target` means one from there, or nothing."""
     beside = os.path.normpath(os.path.join(os.path.dirname(path), target)).replace(os.sep, "/")
-    for meant in (beside, f"apps/{target}", f"papers/{target}", target):
+    for meant in (beside, f"apps/{target}", *(f"{program}/{target}" for program in OTHER_PROGRAMS), target):
         if os.path.exists(os.path.join(root, meant)):
-            return meant.startswith("papers/")
-    return False
+            place = meant.split("/")[0]
+            return place if place in OTHER_PROGRAMS else None
+    return None
 
 
 def check_cpp(root, path, text):
@@ -71,8 +75,9 @@ def check_cpp(root, path, text):
         if target in seen:
             yield number, f"'{target}' is included twice (line {seen[target]})"
         seen[target] = number
-        if parts[0] in ("src", "apps") and is_of_papers(root, path, target):
-            yield number, f"'{target}': '{parts[0]}' does without 'papers'"
+        program = other_program(root, path, target) if parts[0] in ("src", "apps") else None
+        if program:
+            yield number, f"'{target}': '{parts[0]}' does without '{program}'"
         if target.startswith("abbe/") and not os.path.exists(os.path.join(root, "src", target)):
             yield number, f"'{target}' does not exist"
         if folder is None:

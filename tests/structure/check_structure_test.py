@@ -52,6 +52,13 @@ class CheckStructure(unittest.TestCase):
         for target in ("wang/study.h", "papers/wang/study.h", "../papers/wang/study.h"):
             self.assert_one({**paper, "apps/a.cpp": f'#include "main.h"\n#include "{target}"\n'}, "apps/a.cpp:2:", "does without")
 
+    def test_including_a_source_of_the_step_program_is_found(self):
+        step = {"step/face_mesh.h": "#pragma once\n", "step/main.cpp": '#include "face_mesh.h"\n'}
+        self.assertEqual(self.found({**step, "apps/step_reading.h": "#pragma once\n",
+                                     "apps/a.cpp": '#include "step_reading.h"\n'}), [])
+        for target in ("face_mesh.h", "step/face_mesh.h", "../step/face_mesh.h"):
+            self.assert_one({**step, "apps/a.cpp": f'#include "{target}"\n'}, "apps/a.cpp:1:", "without 'step'")
+
     def test_touching_files_in_the_engine_is_found(self):
         for header in ("fstream", "cstdio", "filesystem"):
             self.assert_one({"src/abbe/verify/a.cpp": f"#include <{header}>\n"}, "src/abbe/verify/a.cpp:1:", "touch files")

@@ -334,6 +334,20 @@ std::size_t csv_line(std::string_view text, std::size_t row) {
   return line;
 }
 
+std::vector<std::size_t> csv_lines(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  std::vector<std::size_t> lines;
+  std::size_t line = 0;
+  bool header_seen = false;
+  for (std::size_t at = 0; at < text.size();) {
+    ++line;
+    if (csv_is_passed_over(csv_next_line(text, at))) continue;
+    if (header_seen) lines.push_back(line);
+    header_seen = true;
+  }
+  return lines;
+}
+
 std::string csv_field(std::string_view text) {
   const bool plain = !text.empty() && text.find_first_of(",\"#\r\n") == std::string_view::npos &&
                      csv_trimmed(text).size() == text.size();

@@ -124,6 +124,7 @@ TEST(CsvReader, FindsTheLineOfARow) {
   const char* text = "\xEF\xBB\xBF# c\nX_mm\n1\n\n# d\n2\n";
   EXPECT_EQ(csv_line(text, 0), 3U);
   EXPECT_EQ(csv_line(text, 1), 6U);
+  EXPECT_EQ(csv_lines(text), (std::vector<std::size_t>{3, 6}));
 }
 
 }  // namespace

@@ -1,21 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace abbe {
+#include "abbe/verify/contour_sections.h"
 
-/// One cross-section of an engraved line, as a line scanner gives it.
-struct SectionReadings {
-  std::string name;
-  Eigen::Matrix2Xd points;          ///< [2, n] mm: across the line, out of the material; origin on the commanded curve
-  std::optional<double> along;      ///< mm, where on the curve
-  std::optional<double> beam_tilt;  ///< rad, of the laser's direction from the height towards across
-};
+namespace abbe {
 
 /// Reads a CSV of sections: `section` (a name), `across`, `height`; optional `along` and `beam_tilt`, which are the
 /// same on all rows of a section. Sections in order of appearance. @throws InputError

@@ -26,6 +26,7 @@ TraceFile parse_trace(std::string_view text, const std::string& file, const Mach
   }
   TraceFile trace;
   trace.commands = take_poses(text, file, machine, table, false);
+  trace.lines = csv_lines(text);
   if (table.columns[time].present) {
     trace.time_s = std::move(table.columns[time].numbers);
     for (std::size_t row = 1; row < trace.time_s.size(); ++row) {
@@ -41,11 +42,6 @@ TraceFile parse_trace(std::string_view text, const std::string& file, const Mach
 TraceFile read_trace(const std::filesystem::path& path, const Machine& machine) {
   const MappedFile file(path);
   return parse_trace(file.text(), path.string(), machine);
-}
-
-std::size_t trace_line(const std::filesystem::path& path, std::size_t sample) {
-  const MappedFile file(path);
-  return csv_line(file.text(), sample);
 }
 
 }  // namespace abbe

@@ -12,8 +12,9 @@ namespace abbe {
 
 /// Where the axes of a machine were while a program ran, in the order of time.
 struct TraceFile {
-  PoseList commands;           ///< [axes][samples] mm or rad
-  std::vector<double> time_s;  ///< [samples], never decreasing; empty if the file does not say
+  PoseList commands;               ///< [axes][samples] mm or rad
+  std::vector<double> time_s;      ///< [samples], never decreasing; empty if the file does not say
+  std::vector<std::size_t> lines;  ///< [samples] of the file in which each stands, from 1, for messages
 };
 
 /// Reads a CSV with a column for each axis (X_mm, A_deg, ...) and one row per sample; `time_s` may be there. What else
@@ -24,8 +25,5 @@ struct TraceFile {
 TraceFile read_trace(const std::filesystem::path& path, const Machine& machine);
 /// The same from text. @param file  name for messages
 TraceFile parse_trace(std::string_view text, const std::string& file, const Machine& machine);
-
-/// Line of the file in which a sample stands, from 1, for messages.
-std::size_t trace_line(const std::filesystem::path& path, std::size_t sample);
 
 }  // namespace abbe

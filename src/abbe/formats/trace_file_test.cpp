@@ -32,6 +32,7 @@ TEST_F(Traces, HaveACommandOfEveryAxisForEverySample) {
   EXPECT_THAT(trace.commands.axis[machine.find_axis("Z")], ElementsAre(-3, -6));
   EXPECT_NEAR(trace.commands.axis[machine.find_axis("C")][0], std::numbers::pi, 1e-15);
   EXPECT_THAT(trace.time_s, IsEmpty());
+  EXPECT_THAT(trace.lines, ElementsAre(3, 4));
   EXPECT_TRUE(trace.commands.approach.empty());
 }
 

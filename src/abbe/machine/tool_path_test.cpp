@@ -10,6 +10,7 @@
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/machines_for_test.h"
 #include "abbe/machine/placement.h"
+#include "abbe/machine/tool_path_miss.h"
 
 namespace abbe {
 namespace {
@@ -49,6 +50,10 @@ TEST(ToolPath, MeetsEveryPointAndKeepsItsFeedAndDwell) {
   EXPECT_NEAR(path.working_length, length, 1e-12);
   EXPECT_NEAR(path.working_time, length / 10 + 0.25, 1e-12);
   EXPECT_EQ(path.steps[0].dwell, 0.25);
+  EXPECT_LT(largest_miss(machine, curve, path).distance, 1e-10);
+  curve.points[3].point.x() += 0.5;
+  EXPECT_NEAR(largest_miss(machine, curve, path).distance, 0.5, 1e-10);
+  EXPECT_LT(largest_miss(machine, curve, path).angle, 1e-6);
 }
 
 TEST(ToolPath, PosesAreInsertedUntilTheToolStaysNearTheLines) {

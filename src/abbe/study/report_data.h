@@ -10,16 +10,10 @@ namespace abbe {
 nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& result,
                                          const nlohmann::ordered_json& summary);
 
-/// The `machine` section.
-nlohmann::ordered_json report_machine(const Machine& machine);
-
 /// The `map` section from at most `limit` poses; the rest is thinned out evenly.
 /// @param after  may be null
 nlohmann::ordered_json report_map(const Machine& machine, const PoseList& poses, const ErrorMap& before,
                                   const ErrorMap* after, const ErrorMap* uncertainty, const std::string& description,
                                   std::size_t limit = 3000);
-
-/// Four significant digits, for numbers that are only drawn.
-double for_drawing(double value);
 
 }  // namespace abbe

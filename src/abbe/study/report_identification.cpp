@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "abbe/report/machine_json.h"
 #include "abbe/study/coverage.h"
-#include "abbe/study/report_data.h"
 
 namespace abbe {
 namespace {

@@ -9,7 +9,7 @@
 #include "abbe/identify/monte_carlo_comparison.h"
 #include "abbe/identify/prediction.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/study/report_data.h"
+#include "abbe/report/machine_json.h"
 
 namespace abbe {
 namespace {

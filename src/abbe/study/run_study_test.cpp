@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
+
+#include "abbe/study/header_example_for_test.h"
 
 namespace abbe {
 namespace {
@@ -53,19 +52,8 @@ TEST(RunStudy, StopsInEveryStep) {
 }
 
 TEST(RunStudy, TheExampleOfItsHeaderIsTheConsumerThatIsCompiled) {
-  const auto text = [](const std::string& name) {
-    std::ifstream stream(ABBE_SOURCE_DIR "/" + name);
-    return std::string(std::istreambuf_iterator<char>(stream), {});
-  };
-  std::string commented;
-  std::string consumer = text("tests/install/consumer/study.cpp");
-  for (std::size_t begin = 0; begin < consumer.size();) {
-    const std::size_t end = consumer.find('\n', begin);
-    const std::string line = consumer.substr(begin, end - begin);
-    commented += line.empty() ? "//\n" : "//   " + line + "\n";
-    begin = end + 1;
-  }
-  EXPECT_NE(text("src/abbe/study/run_study.h").find(commented), std::string::npos) << commented;
+  const std::string commented = test::consumer_as_comment("study.cpp");
+  EXPECT_NE(test::text_of_source("src/abbe/study/run_study.h").find(commented), std::string::npos) << commented;
 }
 
 }  // namespace

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "abbe/compensate/compensated_inverse.h"
+#include "abbe/compensate/left_out_errors.h"
+#include "abbe/errors/error_set.h"
+#include "abbe/errors/poses.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+struct CorrectedPosesOptions {
+  double largest_turn = CorrectionOptions().largest_turn;  ///< of rotary axes near a singularity, rad
+  double leave_out_factor = 0;      ///< errors below so many of their standard uncertainties are left out; 0: none
+  std::vector<std::size_t> held{};  ///< axes that keep their commands
+};
+
+/// A figure and the pose where it is, from 1; 0: nowhere.
+struct LargestOfRows {
+  double value = 0;
+  std::size_t row = 0;
+  void take(double other, std::size_t at) {
+    if (!(std::abs(other) > value)) return;
+    value = std::abs(other);
+    row = at;
+  }
+};
+
+/// Commands corrected pose by pose, and what is left.
+struct CorrectedPoses {
+  std::string problem;  ///< why no pose can be corrected on this machine; empty: they can
+  PoseList commands;
+  std::vector<CorrectionStatus> status;                 ///< [poses]
+  std::vector<double> position_left, orientation_left;  ///< [poses] mm, rad; NaN where not known
+  std::vector<double> shift;                            ///< [poses] of the functional point, mm; NaN where not known
+  std::vector<double> uncertainty;  ///< [poses] standard, of that, mm; empty: none is stated of the errors
+  std::array<std::size_t, kCorrectionStatuses> count{}, first_row{};  ///< of every status
+  LargestOfRows largest_shift, largest_position_left, largest_orientation_left;
+  std::vector<LargestOfRows> by_axis;  ///< [axes] change of the commands, mm or rad
+  LeftOutErrors left_out;              ///< errors below their uncertainty
+};
+
+/// Axis commands that bring the actual tool to where the nominal machine has it, pose by pose.
+/// @param covariance  of errors.parameters(), or 0 x 0: what the errors state of their standard uncertainties
+CorrectedPoses corrected_poses(const Machine& machine, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
+                               const PoseList& poses, const CorrectedPosesOptions& options = {});
+
+}  // namespace abbe

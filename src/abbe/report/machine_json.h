@@ -1,0 +1,15 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+/// A machine as pages hold it: the `machine` section of docs/report-data.md, units in the keys.
+nlohmann::ordered_json report_machine(const Machine& machine);
+
+/// Four significant digits, for numbers that are only drawn; 0 for what is not finite.
+double for_drawing(double value);
+
+}  // namespace abbe

@@ -1,0 +1,78 @@
+#include "abbe/study/corrected_program.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "abbe/compensate/left_out_errors.h"
+#include "abbe/compensate/machine_planes.h"
+#include "abbe/compensate/program_uncertainty.h"
+#include "abbe/compensate/tool_centre_moves.h"
+#include "abbe/errors/reversal.h"
+#include "abbe/formats/input_error.h"
+
+namespace abbe {
+namespace {
+
+void state_uncertainties(const ProgramRequest& request, const Eigen::MatrixXd& covariance, CorrectedProgram& result) {
+  const Machine& machine = request.machine;
+  const ErrorSet& errors = request.errors;
+  std::vector<bool> moved;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) moved.push_back(request.words.moves(i));
+  const auto at = [&](const ProgramPlace& place) {
+    return place.line == 0 ? PlaceUncertainty{} : uncertainty_at(machine, errors, covariance, place, moved);
+  };
+  result.largest = at(result.report.largest_shift);
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) result.by_axis.push_back(at(result.report.by_axis[i]));
+  for (const ReversalAxis& axis : result.reversals) {
+    auto parameter = static_cast<Eigen::Index>(first_reversal(errors));
+    for (const Reversal& reversal : errors.reversals) {
+      if (reversal.axis == axis.axis)
+        result.reversal_uncertainty.push_back(std::sqrt(std::max(0.0, covariance(parameter, parameter))));
+      ++parameter;
+    }
+  }
+}
+
+}  // namespace
+
+CorrectedProgram correct_program(const ProgramRequest& request, std::string_view program,
+                                 const std::function<void(std::string_view text)>& write,
+                                 const std::function<void(std::size_t end)>& done) {
+  const Machine& machine = request.machine;
+  const Eigen::MatrixXd covariance = parameter_covariance(request.errors, request.covariance);
+  CorrectedProgram result;
+  ErrorSet corrected_errors = request.errors;
+  if (request.leave_out_factor > 0) {
+    result.left_out = leave_out_uncertain(machine, corrected_errors, covariance, request.leave_out_factor);
+  }
+  const MachinePlanes planes(machine, request.words);
+  ProgramBudget budget(static_cast<std::size_t>(1e6 * request.limits.megabytes), 60 * request.limits.minutes);
+  NcProgramOptions text_options = request.text;
+  text_options.planes = &planes;
+  text_options.tool_centre = request.tool_centre;
+  text_options.budget = &budget;
+  ProgramCorrectionOptions correction_options = request.correction;
+  correction_options.budget = &budget;
+  ProgramCorrection correction(machine, corrected_errors, request.words, correction_options);
+  if (!correction.problem().empty()) throw InputError({.file = request.errors_file}, correction.problem());
+  ToolCentreMoves tool_centre(correction);
+  MoveCorrector& corrector = request.tool_centre ? static_cast<MoveCorrector&>(tool_centre) : correction;
+  result.text = correct_nc_program(program, request.program_file, text_options, corrector, write, done);
+  result.report = correction.report();
+  result.reversals = correction.reversals();
+  if (result.report.impossible.count > 0) {
+    throw InputError({.file = request.program_file, .line = result.report.impossible.line[0]},
+                     "a tool centre move, for which the machine has no solution here",
+                     "X, Y and Z as three independent linear axes without a rotary axis between them");
+  }
+  state_uncertainties(request, covariance, result);
+  if (result.text.spent == ProgramBudget::Spent::nothing) {
+    result.refused = reasons_to_refuse(request.limit_um, request.allowed, machine, result.report);
+  } else {
+    result.refused = {given_up_words(request.program_file, request.limits, result.text)};
+  }
+  return result;
+}
+
+}  // namespace abbe

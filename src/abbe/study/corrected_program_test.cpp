@@ -1,0 +1,76 @@
+#include "abbe/study/corrected_program.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "abbe/formats/errors_file.h"
+#include "abbe/formats/machine_file.h"
+
+namespace abbe {
+namespace {
+
+using testing::HasSubstr;
+
+ProgramRequest trunnion_program() {
+  const std::string examples = ABBE_SOURCE_DIR "/examples/";
+  ProgramRequest request;
+  request.machine = read_machine(examples + "machines/trunnion-mill.machine.toml");
+  const ErrorsFile file = read_errors(examples + "compensate/trunnion.errors.toml", request.machine);
+  request.errors = file.errors;
+  request.covariance = file.covariance;
+  request.program_file = "p.ngc";
+  request.words = word_axes_by_name(request.machine);
+  for (std::size_t word = 0; word < kAxisWords; ++word) {
+    request.text.words[word] = request.words.axis[word] != Machine::npos;
+  }
+  return request;
+}
+
+std::string corrected(const ProgramRequest& request, const std::string& program, CorrectedProgram& result) {
+  std::string text;
+  std::size_t last = 0;
+  result = correct_program(
+      request, program, [&](std::string_view piece) { text += piece; },
+      [&](std::size_t end) {
+        EXPECT_GE(end, last);
+        last = end;
+      });
+  return text;
+}
+
+const char* const kMoves = "G21 G90\nG0 X0 Y0 Z-100 A0 C0\nG1 X20 F600\nG1 Y20 A-10\nM2\n";
+
+TEST(CorrectedProgramOfText, IsWrittenWithFiguresOfItsLargestCorrection) {
+  const ProgramRequest request = trunnion_program();
+  CorrectedProgram result;
+  const std::string text = corrected(request, kMoves, result);
+  EXPECT_TRUE(result.refused.empty()) << testing::PrintToString(result.refused);
+  EXPECT_GT(result.report.moves, 0U);
+  EXPECT_GT(result.report.largest_shift.value, 1e-4);
+  EXPECT_THAT(text, HasSubstr("M2"));
+  EXPECT_NE(text, kMoves);
+  const ProgramWordsRequest words{.program = "p.ngc", .output = "out.ngc"};
+  EXPECT_THAT(program_text(words, request.machine, result), HasSubstr("out.ngc written\n"));
+  EXPECT_EQ(program_json(words, request.machine, result)["moves"], result.report.moves);
+}
+
+TEST(CorrectedProgramOfText, IsRefusedAboveTheLimitAndGivenUpBeyondIts) {
+  ProgramRequest request = trunnion_program();
+  CorrectedProgram result;
+  request.limit_um = 0.01;
+  request.correction.limit = 1e-5;
+  corrected(request, kMoves, result);
+  ASSERT_EQ(result.refused.size(), 1U);
+  EXPECT_THAT(result.refused[0], HasSubstr("correction above the limit of 0.01 um"));
+  request = trunnion_program();
+  request.limits.megabytes = 1e-6;
+  corrected(request, kMoves, result);
+  ASSERT_EQ(result.refused.size(), 1U);
+  EXPECT_THAT(result.refused[0], HasSubstr("--max-output-mb allows more"));
+}
+
+}  // namespace
+}  // namespace abbe
