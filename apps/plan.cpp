@@ -5,6 +5,7 @@
 #include "abbe/formats/json_text.h"
 #include "abbe/formats/results_folder.h"
 #include "abbe/formats/study_file.h"
+#include "abbe/study/plan_page.h"
 #include "abbe/study/plan_text.h"
 #include "abbe/study/planning.h"
 #include "command.h"
@@ -15,16 +16,18 @@
 namespace abbe {
 void add_plan_command(CommandLine& line) {
   struct Options {
-    std::string study, output, plot;
+    std::string study, output, plot, report;
     bool json = false;
   };
   auto options = std::make_shared<Options>();
   Subcommand* command = line.add("plan", "Choose the readings that determine a machine's errors best",
-                                 "  abbe plan examples/trunnion/trunnion.study.toml -o poses.csv --svg curve.svg");
+                                 "  abbe plan examples/trunnion/trunnion.study.toml -o poses.csv --report plan.html");
   command->add_option("study", options->study, "Study file (*.study.toml) with tables [plan] and [identify]")
       ->required();
   command->add_output_file("-o,--output", options->output, "Readings to take, ordered for short travel (*.csv)");
   command->add_output_file("--svg", options->plot, "Plot of uncertainty against number of readings (*.svg)");
+  command->add_output_file("--report", options->report,
+                           "Page with the curve, the comparison with grids and the chosen poses (*.html)");
   command->add_flag("--json", options->json, "Print JSON for programs");
   command->callback([&line, options] {
     line.run = [options]() -> int {
@@ -37,6 +40,7 @@ void add_plan_command(CommandLine& line) {
       const bool done = result.plan.status == PlanningStatus::done;
       if (done && !options->output.empty()) write_file_atomically(options->output, plan_csv(study, result));
       if (done && !options->plot.empty()) write_file_atomically(options->plot, plan_svg(study, result));
+      if (done && !options->report.empty()) write_file_atomically(options->report, plan_page(study, result));
       if (options->json) {
         fmt::print("{}", json_text(plan_json(study, result)));
       } else {

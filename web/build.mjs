@@ -1,6 +1,7 @@
 // Bundles the page into one file: JavaScript and style sheet inlined, a place left for the data.
 //   node build.mjs [--html FILE] [--cpp FILE]
 import {build} from 'esbuild';
+import {createHash} from 'node:crypto';
 import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
@@ -20,7 +21,13 @@ const [script, style] = await Promise.all([
 // A bundle must not close the element that holds it.
 const js = script.outputFiles[0].text.replace(/<\/(script)/gi, '<\\/$1').replace(/<!--/g, '<\\!--');
 const css = style.outputFiles[0].text;
+// The page asks for nothing and runs this script alone. Styles are not bound: drawings of the producer bring their own.
+const policy = [
+  "default-src 'none'", `script-src 'sha256-${createHash('sha256').update(js, 'utf8').digest('base64')}'`, "style-src 'unsafe-inline'",
+  'img-src data: blob:', "base-uri 'none'", "form-action 'none'",
+].join('; ');
 const page = readFileSync(join(here, 'src/template.html'), 'utf8')
+  .replace('@@POLICY@@', () => policy)
   .replace('/*STYLE*/', () => css)
   .replace('/*SCRIPT*/', () => js);
 if (page.split('@@ABBE_DATA@@').length !== 2) throw new Error('the template must hold the data placeholder exactly once');

@@ -148,6 +148,7 @@ Reproduction liu_reproduction() {
   made.corrections = liu_corrections();
   made.failures = liu_failures(r);
   made.agrees = r.agrees;
+  made.page = liu_page(r);
   made.details = liu_details(r);
   made.write_study = [r](ResultsFolder& folder) { write_liu_study(r, folder); };
   return made;

@@ -56,6 +56,8 @@ std::vector<EvaluationPlot> liu_figures(const LiuFigureStudy& study);
 std::vector<EvaluationFigure> liu_headline(const LiuFigureStudy& study);
 std::vector<std::string> liu_conclusions(const LiuResults& results);
 std::vector<std::string> liu_corrections();
+/// Machine, path over the standard cylinder and distances before and after compensation for the page.
+nlohmann::json liu_page(const LiuResults& results);
 /// For programs, beside the tables.
 nlohmann::ordered_json liu_details(const LiuResults& results);
 

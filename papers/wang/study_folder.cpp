@@ -40,6 +40,7 @@ nlohmann::ordered_json histograms_of(const std::vector<WangPopulationRow>& popul
       edges.push_back(for_drawing(1e3 * (p.histogram.from + p.histogram.width * static_cast<double>(i))));
     }
     histograms.push_back({{"title", "|E| of equation (18), " + row.name},
+                          {"quantity", "|E|"},
                           {"edges_um", edges},
                           {"before_counts", p.histogram.counts},
                           {"before_percentiles_um", {{"median", 1e3 * p.norm.median}, {"p95", 1e3 * p.norm.p95}}}});

@@ -77,6 +77,7 @@ std::vector<FileOutput> file_outputs() {
           {{"identify", "study"}, "-o"},
           {{"plan", "study"}, "-o"},
           {{"plan", "study"}, "--svg"},
+          {{"plan", "study"}, "--report"},
           {path, "-o"},
           {path, "--report"},
           {{"position", "marks"}, "-o"},

@@ -59,10 +59,28 @@ TEST_F(Plans, SayInWordsHowManyReadingsAreEnoughAndWhatGridsReach) {
   std::string study = trunnion_study();
   study.replace(study.find("poses = 400"), 11, "poses = 200");
   folder.write("small.study.toml", study.replace(study.find("readings = 100"), 14, "readings = 60"));
-  const CommandResult planned = abbe({"plan", "small.study.toml"});
+  const CommandResult planned = abbe({"plan", "small.study.toml", "-o", "poses.csv", "--report", "plan.html"});
   ASSERT_EQ(planned.exit_code, done) << planned.err;
   EXPECT_THAT(planned.out, HasSubstr("how many are enough"));
   EXPECT_THAT(planned.out, HasSubstr("against grids"));
+
+  const std::string page = folder.read("plan.html"), mark = "id=\"abbe-data\">";
+  const std::size_t from = page.find(mark) + mark.size();
+  const nlohmann::json data = nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+  const nlohmann::json& plan = data.at("plan");
+  EXPECT_EQ(plan.at("readings").at("rows").size(), 60U);
+  EXPECT_EQ(plan.at("readings").at("columns").size(), plan.at("readings").at("rows")[0].size());
+  EXPECT_EQ(plan.at("curve").at("readings").size(), plan.at("curve").at("uncertainty_um").size());
+  EXPECT_FALSE(plan.at("open").empty());
+  EXPECT_EQ(data.at("path").at("moves"), 60);
+  EXPECT_EQ(data.at("path").at("stops"), true);
+  const std::vector<double> times = data.at("path").at("time_s").get<std::vector<double>>();
+  EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+  // Minutes of the whole measurement are when the last reading is finished.
+  for (const nlohmann::json& figure : data.at("evaluation").at("figures")) {
+    if (figure.at("symbol") != "time") continue;
+    EXPECT_NEAR(figure.at("value_min").get<double>(), times.back() / 60, 1e-3);
+  }
 }
 
 /// A study of examples/, with other lines.

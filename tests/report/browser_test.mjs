@@ -8,6 +8,7 @@ import {basename, join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
 
 import {contentOf, mapChoicesOf} from './content_checks.mjs';
+import {layoutFaults} from './layout_checks.mjs';
 import {motionOf} from './path_checks.mjs';
 import {inksOf, scanOf} from './scan_checks.mjs';
 import {settled, until, watchDrawing} from './until.mjs';
@@ -53,7 +54,9 @@ async function inspect(browser, file) {
   const shotOfAll = (part) => options.shots && page.screenshot({path: picture(part), fullPage: true});
   const size = statSync(file).size;
   check(size < 3e6, problems(`${size} bytes, 3 MB allowed`));
-  const data = JSON.parse(readFileSync(file, 'utf8').match(/id="abbe-data">([\s\S]*?)<\/script>/)[1]);
+  const text = readFileSync(file, 'utf8');
+  const data = JSON.parse(text.match(/id="abbe-data">([\s\S]*?)<\/script>/)[1]);
+  check(/<meta http-equiv="Content-Security-Policy" content="default-src 'none'; script-src 'sha256-[^']+'/.test(text), problems('no content security policy'));
 
   // Smooth scrolling is drawn frame by frame; `keyboardOf` checks it by itself.
   const context = await browser.newContext({viewport: kTinyWindow, colorScheme: 'dark', reducedMotion: 'reduce', offline: true});
@@ -173,16 +176,15 @@ async function inspect(browser, file) {
   if (data.map) await mapChoicesOf(page, data, expect, shot, compareFigures);
   if (data.summary?.monte_carlo) await shot(page.locator('#monte-carlo'), 'monte-carlo');
 
-  const overflow = async (width) => {
+  const layout = async (width) => {
     await page.setViewportSize({width, height: 900});
     await settled(page);
-    const [inner, outer] = await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.clientWidth]);
-    check(inner <= outer, problems(`${inner} px wide in a window of ${outer} px`));
+    for (const fault of await page.evaluate(layoutFaults)) check(false, problems(`${width} px: ${fault}`));
   };
-  await overflow(320);
-  await overflow(390);
+  await layout(320);
+  await layout(360);
   await shotOfAll('narrow');
-  await overflow(1280);
+  await layout(1280);
   await shotOfAll('light');
 
   // Contrast of running text against what lies behind it, WCAG 2.1: 4.5.
@@ -217,6 +219,13 @@ async function inspect(browser, file) {
   for (const text of await contrast()) check(false, problems(`low contrast in the dark theme: ${text}`));
   await shotOfAll('dark');
   await page.pdf({path: join(options.out, `${name}-print.pdf`), format: 'A4', printBackground: true});
+  if (await page.locator('.part').count()) {
+    // What stands before the appendix is short, however large the identification is.
+    await page.evaluate(() => document.querySelectorAll('.appendix').forEach((e) => (e.hidden = true)));
+    const sheets = (await page.pdf({format: 'A4', printBackground: true})).toString('latin1').match(/\/Type\s*\/Page\b/g)?.length ?? 0;
+    check(sheets >= 1 && sheets <= kMostSheets, problems(`${sheets} sheets of paper before the appendix, ${kMostSheets} allowed`));
+    await page.evaluate(() => document.querySelectorAll('.appendix').forEach((e) => (e.hidden = false)));
+  }
 
   await paperOf(page, data, expect);
   await keyboardOf(page, expect);
@@ -230,6 +239,7 @@ async function inspect(browser, file) {
   return {name, size, figures: compared, sections: sections.length};
 }
 
+const kMostSheets = 6;
 const kTinyWindow = {width: 20, height: 20};
 const numbersOf = (colour) => colour.match(/[\d.]+/g).slice(0, 3).map(Number);
 // There is no graphics processor: the three-dimensional views are drawn in software, and Chromium would draw the whole page through the
@@ -239,8 +249,30 @@ const browser = await chromium.launch({
   args: ['--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking',
     '--no-first-run', '--disable-component-update', '--disable-sync', ...(options.shots ? [] : ['--webgl-antialiasing-mode=none'])],
 });
+/// The check of the layout finds each of its faults on a page that has them, and none on one that has not.
+async function layoutCheckWorks() {
+  const page = await browser.newPage({viewport: {width: 360, height: 800}});
+  const faultsOf = async (content) => {
+    await page.setContent(`<!doctype html><body style="margin:0;font:16px sans-serif">${content}`);
+    return (await page.evaluate(layoutFaults)).join('; ');
+  };
+  const tick = (x, text) => `<text x="${x}" y="20" class="tick middle">${text}</text>`;
+  const faulty = {
+    'wide in a window': '<div style="width:500px">wide</div>', 'is broken across lines': '<p style="width:24px;overflow-wrap:anywhere">10.8234</p>',
+    'cover each other': '<p style="margin:0">words</p><p style="margin:-20px 0 0">others</p>', 'stands twice on one axis': `<svg width="300" height="40">${tick(20, '10')}${tick(90, '10')}</svg>`,
+    'is cut at the edge of its drawing': '<svg width="60" height="40"><text x="20" y="20">a long word</text></svg>'};
+  for (const [words, content] of Object.entries(faulty)) {
+    const found = await faultsOf(content);
+    check(found.includes(words), `the check of the layout does not find what ${words}: ${found}`);
+  }
+  const found = await faultsOf(`<p>10.8234 <b>words</b></p><div style="overflow-x:auto;width:200px"><div style="width:500px">scrolls</div></div><svg width="300" height="40">${tick(20, '10')}${tick(90, '20')}</svg>`);
+  check(!found, `the check of the layout finds faults where there are none: ${found}`);
+  await page.close();
+}
+
 const results = [];
 try {
+  if (reports.some((file) => basename(file) === 'sample.html')) await layoutCheckWorks();
   for (const file of reports) results.push(await inspect(browser, file));
 } finally {
   await browser.close();

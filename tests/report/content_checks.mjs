@@ -80,7 +80,7 @@ async function listsOf(page, data, expect) {
   await count('#advice .not-identified > li', data.not_identified?.shown_by?.length ?? 0, 'errors that were not identified');
   await count('#assumptions li', data.assumptions?.length ?? 0, 'assumptions');
   await count('#references li', data.references?.length ?? 0, 'references');
-  await count('#identification .gauge-list > li', data.identification?.gauge?.length ?? 0, 'the gauge');
+  await count('#gauge .gauge-list > li', data.identification?.gauge?.length ?? 0, 'the gauge');
   await count('.overview .warnings li', (data.warnings?.length ?? 0) + (data.summary?.converged === false ? 1 : 0), 'warnings');
   const identification = data.identification;
   if (!identification) return;

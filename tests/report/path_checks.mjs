@@ -22,7 +22,7 @@ async function coverageOf(page, block, expect, parse) {
       expect(shown.get(i) === reason, `coverage: ${shown.get(i)} without a share`);
       continue;
     }
-    const stated = parse(shown.get(i).match(/: (.*?)\u2009%/)[1]);
+    const stated = parse(shown.get(i).match(/: (.*?)\u202f%/)[1]);
     expect(shown.get(i).startsWith(reason) && Math.abs(stated - share) < 0.006 * share, `coverage: ${shown.get(i)} for ${share}`);
   }
 }
@@ -48,8 +48,8 @@ async function pathOf(page, data, expect, shot, parse) {
   if (n > 10) {
     expect(await until(async () => (await inkOf(page, canvas)).sum !== first.sum), 'the tool does not move');
     const words = await page.textContent('#path-words');
-    expect(Math.abs(parse(words.split('\u2009s')[0]) - path.time_s[n - 1]) < 1e-3 * path.time_s[n - 1], `time at the end: ${words}`);
-    const said = (await page.$$eval('#path .note', (all) => all.map((e) => e.textContent).join(' '))).match(/(?:All ([\d\u202f]+) moves|([\d\u202f]+) of ([\d\u202f]+) moves) are drawn/);
+    expect(Math.abs(parse(words.split('\u202fs')[0]) - path.time_s[n - 1]) < 1e-3 * path.time_s[n - 1], `time at the end: ${words}`);
+    const said = (await page.$$eval('#path .note', (all) => all.map((e) => e.textContent).join(' '))).match(/(?:All ([\d\u202f]+) (?:moves|readings)|([\d\u202f]+) of ([\d\u202f]+) (?:moves|readings)) are drawn/);
     const [drawn, moves] = [parse(said?.[1] ?? said?.[2] ?? 'none'), parse(said?.[1] ?? said?.[3] ?? 'none')];
     expect(drawn === n && moves === (path.moves ?? n), `${drawn} of ${moves} moves said to be drawn, ${n} of ${path.moves ?? n} are`);
     // Rapid moves can be hidden: where there are many, they hide the part.
@@ -95,7 +95,7 @@ async function sectionsOf(page, block, at, expect, shot, parse) {
     const caption = await box.locator('figcaption').textContent();
     expect(caption.startsWith(`Section ${one.name}`), `caption of section ${one.name}: ${caption}`);
     if (one.error_um === undefined) expect(caption.includes(`not evaluated: ${one.not_evaluated}`), `section ${one.name} is not evaluated: ${caption}`);
-    else expect(Math.abs(parse(caption.match(/contour error (.*?)\u2009µm/)[1]) - one.error_um) <= 6e-4 * Math.abs(one.error_um), `caption of section ${one.name}: ${caption}`);
+    else expect(Math.abs(parse(caption.match(/contour error (.*?)\u202fµm/)[1]) - one.error_um) <= 6e-4 * Math.abs(one.error_um), `caption of section ${one.name}: ${caption}`);
     const drawn = await box.locator('svg.plot').evaluate((root) => {
       const places = (d) => [...d.matchAll(/[ML](-?[\d.]+) (-?[\d.]+)/g)].map((m) => [Number(m[1]), Number(m[2])]);
       const path = (selector) => places(root.querySelector(selector)?.getAttribute('d') ?? '');
@@ -138,7 +138,7 @@ async function contoursOf(page, blocks, expect, shot, parse) {
     const meanOf = (of) => of.reduce((a, b) => a + b, 0) / of.length;
     const mean = block.mean_um ?? meanOf(values.map(Math.abs)), bias = block.bias_um ?? meanOf(values);
     const largest = block.largest_um ?? Math.max(...values.map(Math.abs));
-    const stated = figures[i].caption.match(/mean amount (.*?)\u2009µm, largest amount (.*?)\u2009µm.*mean with signs (.*?)\u2009µm/);
+    const stated = figures[i].caption.match(/mean amount (.*?)\u202fµm, largest amount (.*?)\u202fµm.*mean with signs (.*?)\u202fµm/);
     expect(stated && Math.abs(parse(stated[1]) - mean) <= 6e-4 * Math.abs(mean) && Math.abs(parse(stated[2]) - largest) <= 6e-4 * largest &&
       Math.abs(parse(stated[3]) - bias) <= 6e-4 * Math.abs(bias) + 1e-9, `contour: ${figures[i].caption} for ${mean}, ${largest}, ${bias}`);
     if (values.length <= 200) expect(figures[i].dots === values.length, `contour: ${figures[i].dots} dots for ${values.length} points`);

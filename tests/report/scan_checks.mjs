@@ -56,7 +56,7 @@ async function figuresOf(page, evaluation, expect, parse) {
 
 /// "+12.5 µm at (1, 2, 3) mm, ..."
 const readingOf = (text, parse) => {
-  const match = text.match(/^(?:beyond )?([+\u2212]?[\d.\u202f]+)\u2009µm at \(([^)]*)\)\u2009mm/);
+  const match = text.match(/^(?:beyond )?([+\u2212]?[\d.\u202f]+)\u202fµm at \(([^)]*)\)\u202fmm/);
   return match && {value: parse(match[1].replace('+', '')), at: match[2].split(', ').map(parse)};
 };
 
@@ -193,7 +193,7 @@ async function sectionOf(page, block, expect, shot, parse) {
     await page.selectOption('#section-direction', axis);
     await settled(page);
     const words = await page.textContent('#section figcaption');
-    const offset = parse(words.match(/ at ([^ ]*?)\u2009mm/)[1]);
+    const offset = parse(words.match(/ at ([^ ]*?)\u202fmm/)[1]);
     const drawn = await page.$eval('.section-drawing', (e) => ({scale: Number(e.dataset.scale), path: e.querySelector('.outline').getAttribute('d'),
       dots: [...e.querySelectorAll('.dots')].reduce((n, d) => n + (d.getAttribute('d') ?? '').split('M').length - 1, 0)}));
     // Length of the outline: cut once more here. The position on the page is rounded, so the length is that of a range.

@@ -54,11 +54,32 @@ const tests = {
     assert.equal(fromCounts([0, 1, 2], [1, 1], 0, 10).median, 2);
     assert.equal(fromCounts([0, 1, 2], [2, 2], 6, 2).share[0], 100 / 6);
   },
+  async 'a logarithmic axis names each power of ten once'() {
+    const {logScale} = await load('scale');
+    for (const range of [[3e3, 3e6], [1e4, 1e7], [2e5, 9e5], [1e-5, 1e-3], [1, 1e9]]) {
+      const scale = logScale(range, [0, 200], 9);
+      const labels = scale.ticks.map((tick) => scale.label(tick)).filter(Boolean);
+      assert.ok(labels.length > 0, `no label on ${range}`);
+      assert.equal(new Set(labels).size, labels.length, `${labels} on ${range}`);
+      assert.ok(!labels.some((label) => label === '10\u2076') || scale.ticks.some((tick) => Math.abs(tick / 1e6 - 1) < 1e-9));
+    }
+  },
+  async 'tables wider than a sheet are printed in parts, each with the first column'() {
+    const {columnsOnPaper} = await load('table');
+    const columns = Array.from({length: 20}, (_, i) => `column${i}`);
+    const row = columns.map(() => '-1234.5678');
+    const groups = columnsOnPaper(columns, [row]);
+    assert.ok(groups.length > 1);
+    assert.ok(groups.every((group) => group[0] === 0 && group.length > 2));
+    assert.deepEqual(groups.flatMap((group) => group.slice(1)), columns.map((_, i) => i).slice(1));
+    assert.deepEqual(columnsOnPaper(['a', 'b'], [['1', 'many words that may stand on several lines of a narrow column']]), [[0, 1]]);
+    assert.deepEqual(columnsOnPaper(['a'], []), [[0]]);
+  },
   async 'numbers have a real minus sign, none at zero, and thousands apart'() {
     const {fixed, number, withUncertainty} = await load('format');
     assert.equal(fixed(-0.0004, 3), '0.000');
     assert.equal(fixed(-12345.678, 1), '\u221212\u202f345.7');
-    assert.equal(number(-0.00012), '\u22121.20\u2009\u00b7\u200910\u207b\u2074');
+    assert.equal(number(-0.00012), '\u22121.20\u202f\u00b7\u202f10\u207b\u2074');
     assert.deepEqual(withUncertainty(-1.23456, 0.0123), ['\u22121.235', '0.012']);
   },
 };

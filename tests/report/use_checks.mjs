@@ -1,4 +1,5 @@
 // The page on paper, with a keyboard and for a screen reader.
+import {layoutFaults} from './layout_checks.mjs';
 import {settled} from './until.mjs';
 
 const kSheetWidth = 680;
@@ -37,6 +38,7 @@ export async function paperOf(page, data, expect) {
   expect(sheet.shrunk === 0, `${sheet.shrunk} drawings not made for the sheet`);
   expect(sheet.background === 'rgb(255, 255, 255)', `paper is ${sheet.background}`);
   expect(sheet.closed === 0, `${sheet.closed} closed parts on paper`);
+  for (const fault of await page.evaluate(layoutFaults)) expect(false, `on paper: ${fault}`);
   await page.evaluate(() => window.dispatchEvent(new Event('afterprint')));
   await page.emulateMedia({media: null});
   await page.setViewportSize({width: 1280, height: 900});

@@ -4,8 +4,8 @@
 A folder of src/abbe includes only itself and folders above it in ORDER; `identify` and `compensate` do not see each
 other; only `formats`, `report` and the programs (`apps`, `papers`, `step`) touch files; `src` and `apps` include nothing
 from `papers` and `step`; headers have `#pragma once`; nothing is included twice; no file is longer than MAX_LINES; no
-folder has a name that says nothing; no two headers of the library declare a type of one name. Every violation is one
-line: file:line: message.
+folder has a name that says nothing; no two headers of the library declare a type of one name; pages come from
+web/src/template.html alone, which holds the content security policy. Every violation is one line: file:line: message.
 """
 import os
 import re
@@ -22,6 +22,8 @@ PLACES = ["src", "apps", "papers", "step", "linuxcnc", "tests", "fuzz", "benchma
 OTHER_PROGRAMS = ("papers", "step")
 SOURCES = (".h", ".cpp", ".py", ".ts", ".js", ".mjs", ".css", ".cmake")
 SKIP = {"node_modules", "build", "dist", "__pycache__"}
+PAGE = re.compile(r"<!doctype html|<html[ >]", re.IGNORECASE)
+POLICY = '<meta http-equiv="Content-Security-Policy"'
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -112,6 +114,15 @@ def repeated_types(root):
                         where[match.group(1)] = path
 
 
+def check_page(path, text):
+    """A page written by anything but the template would have no content security policy."""
+    if path.endswith(("_test.cpp", "_test.py")) or path.startswith("tests/"):
+        return
+    for number, line in enumerate(text.splitlines(), 1):
+        if PAGE.search(line):
+            yield number, "a page of its own; all pages come from web/src/template.html"
+
+
 def violations(root):
     """All violations as (path, line, message)."""
     library = os.path.join(root, "src", "abbe")
@@ -119,6 +130,11 @@ def violations(root):
         if os.path.isdir(os.path.join(library, name)) and name not in ORDER:
             yield f"src/abbe/{name}", 1, f"folder is not in the order {' '.join(ORDER)}"
     yield from repeated_types(root)
+    template = os.path.join(root, "web", "src", "template.html")
+    if os.path.exists(template):
+        with open(template, encoding="utf-8") as stream:
+            if POLICY not in stream.read():
+                yield "web/src/template.html", 1, "no content security policy"
     for place in PLACES:
         for folder, files in files_below(root, place):
             if os.path.basename(folder).lower() in MEANINGLESS:
@@ -132,6 +148,8 @@ def violations(root):
                 lines = text.count("\n")
                 if lines > MAX_LINES:
                     yield path, MAX_LINES, f"{lines} lines; at most {MAX_LINES}"
+                for number, message in check_page(path, text):
+                    yield path, number, message
                 if name.endswith((".h", ".cpp")):
                     for number, message in check_cpp(root, path, text):
                         yield path, number, message

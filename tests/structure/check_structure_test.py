@@ -35,6 +35,11 @@ class CheckStructure(unittest.TestCase):
                          "src/abbe/geometry/a.cpp": '#include <cmath>\n#include "abbe/machine/axis.h"\n'},
                         "src/abbe/geometry/a.cpp:2:", "below it")
 
+    def test_a_page_of_its_own_and_a_template_without_policy_are_found(self):
+        self.assert_one({"apps/a.cpp": 'const char* text =\n    "<!doctype html>";\n'}, "apps/a.cpp:2:", "a page of its own")
+        self.assertEqual(self.found({"apps/a_test.cpp": '"<!doctype html>"\n'}), [])
+        self.assert_one({"web/src/template.html": "<html lang=en>\n"}, "web/src/template.html:1:", "no content security policy")
+
     def test_one_name_for_two_types_is_found(self):
         self.assert_one({"src/abbe/errors/a.h": "#pragma once\nstruct Motion {\n};\nstruct Other;\n",
                          "src/abbe/verify/b.h": "#pragma once\nstruct Other;\nclass Motion : public X {\n};\n"},

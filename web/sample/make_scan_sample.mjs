@@ -71,7 +71,30 @@ const edge = {format: 'abbe-report/1', title: 'One triangle, no point near it', 
     {s_mm: [], error_um: [], counted: 'section', joined: false, also: [], sections: [{name: 'one', across_um: [3], height_um: [2], not_evaluated: 'fewer than 20 points'}]}],
   path: {time_s: [0], working: [1], commands: {X_mm: [0]}, point_mm: {x: [0], y: [0], z: [0]}, direction: {x: [0], y: [0], z: [1]}}};
 
+// A plan of readings: a drawing of the producer too, with letters near its edges.
+const m = 90;
+const stops = {title: 'The chosen poses on the machine', moves: m, stops: true, time_s: [], working: [], axes: path.axes, commands: {C_deg: [], X_mm: [], Z_mm: []}, travel: path.travel,
+  point_mm: {x: [], y: [], z: []}, direction: {x: [], y: [], z: []}, tool: {kind: 'tool'}, note: 'Made up.'};
+const taken = [];
+for (let i = 0; i < m; ++i) {
+  const at = [(40 * i) % 360, [-50, 0, 50][(i * i) % 3], [0, 30, 60][i % 3]];
+  stops.time_s.push(4.3 * (i + 1)); stops.working.push(0);
+  ['C_deg', 'X_mm', 'Z_mm'].forEach((key, k) => stops.commands[key].push(at[k]));
+  stops.point_mm.x.push(at[1]); stops.point_mm.y.push(20 * Math.sin(i)); stops.point_mm.z.push(at[2]);
+  stops.direction.x.push(0); stops.direction.y.push(0); stops.direction.z.push(1);
+  taken.push([String(i + 1), (0.0717 * (i + 1)).toFixed(1), ...at.map((v) => v.toFixed(3)), 'table', `S${1 + (i % 3)}`]);
+}
+const numbers = [24, 30, 38, 48, 60, 75, 90, 120];
+const plan = {format: 'abbe-report/1', title: 'Planned measurement: a sample', subtitle: 'table-and-column machine', summary: {verdict: '90 readings in 6 min: predicted volumetric standard uncertainty 1.268 um.'},
+  evaluation: {kind: 'plan', facts: [{name: 'goal', text: 'smallest predicted volumetric uncertainty'}], figures: [{symbol: 'u', name: 'predicted volumetric standard uncertainty, root mean square', value_um: 1.268, decimals: 3},
+    {symbol: 'time', name: 'of the whole measurement', value_min: 6.4, decimals: 1}, {symbol: 'a_very_long_symbol_of_a_figure', name: 'words', value: 2.5, decimals: 2, expanded_uncertainty: 0.2, tolerance: 2, verdict: 'exceeded, not proven'}]},
+  plan: {curve: {readings: numbers, uncertainty_um: numbers.map((v, i) => (i ? 12 / Math.sqrt(v) : null)), grid_readings: numbers.map((v, i) => (i > 2 ? v + 5 : null)), grid_uncertainty_um: numbers.map((v, i) => (i > 2 ? 21 / Math.sqrt(v) : null)), enough: 3},
+    enough_words: 'from 48 readings on, more readings average noise', open: ['12 of the 66 combinations of parameters change no reading of any candidate.'],
+    readings: {columns: ['reading', 'time / min', 'C / °', 'X / mm', 'Z / mm', 'station', 'reflector'], rows: taken}},
+  path: stops, tables: [{title: 'A table wider than a sheet', columns: Array.from({length: 20}, (_, i) => `quantity ${i}`), rows: [0, 1, 2].map((k) => Array.from({length: 20}, (_, i) => (k - 1.5) * 1234.5678 * (i + 1)))}],
+  assumptions: ['Made up.']};
+
 const [, , pageFile, templateFile] = process.argv;
 const template = readFileSync(templateFile, 'utf8');
-for (const [name, content] of [['', scan], ['-edge', edge]])
+for (const [name, content] of [['', scan], ['-edge', edge], ['-plan', plan]])
   writeFileSync(pageFile.replace(/\.html$/, `${name}.html`), template.replace('@@ABBE_DATA@@', () => JSON.stringify(content).replace(/</g, '\\u003c')));

@@ -35,7 +35,7 @@ export function travelText(axis: Axis): string {
   const from = angle ? axis.travel_min_deg : axis.travel_min_mm;
   const to = angle ? axis.travel_max_deg : axis.travel_max_mm;
   if (from === undefined || to === undefined) return '';
-  return `${plain(from)} … ${plain(to)}${angle ? '°' : '\u2009mm'}`;
+  return `${plain(from)} … ${plain(to)}${angle ? '°' : '\u202fmm'}`;
 }
 
 function bodies(machine: Machine): string[] {
@@ -64,9 +64,12 @@ function ground(x: number, y: number, width: number): SVGGElement {
 function draw(machine: Machine, width: number): Element {
   const axes = machine.axes ?? [];
   const names = bodies(machine);
-  const vertical = width < axes.length * 158 + 110;
+  // Side by side where names, joints and what stands under the joints have room; on paper that is so for five axes.
+  const kJoint = 46;
+  const needed = Math.max(...names.map((name) => 7.2 * name.length + 8), ...axes.map((axis) => 6.4 * travelText(axis).length + 8 - kJoint));
+  const vertical = width < axes.length * kJoint + (axes.length + 1) * needed + 4;
   const root = svg('svg', {class: 'chain', role: 'img', 'aria-label': `Kinematic chain ${machine.chain ?? ''}`});
-  const bodyWidth = vertical ? 132 : Math.min(118, (width - axes.length * 70) / (axes.length + 1));
+  const bodyWidth = vertical ? 132 : Math.min(118, Math.max(needed, (width - axes.length * 70) / (axes.length + 1)));
   const gap = vertical ? 58 : (width - 4 - bodyWidth * (axes.length + 1)) / Math.max(1, axes.length);
   const height = vertical ? (axes.length + 1) * kBodyHeight + axes.length * gap + 20 : 132;
   const top = vertical ? 4 : 34;
@@ -135,6 +138,6 @@ export function machineSection(machine: Machine): HTMLElement | undefined {
     ['Workpiece origin', vector(machine.workpiece_origin_mm)],
   ];
   const stated = places.filter(([, text]) => text);
-  if (stated.length) details.append(html('p', {class: 'note'}, stated.map(([name, text]) => `${name} (${text})\u2009mm`).join(' · ')));
+  if (stated.length) details.append(html('p', {class: 'note'}, stated.map(([name, text]) => `${name} (${text})\u202fmm`).join(' · ')));
   return part;
 }

@@ -64,8 +64,8 @@ export function contourSection(all: ContourBlock | ContourBlock[] | undefined): 
       const beyond = block.limits_um?.length === 2 ? block.error_um.filter((e) => e < block.limits_um![0] || e > block.limits_um![1]).length : undefined;
       const words = `${block.title ? `${block.title}. ` : ''}${count(block.points ?? block.error_um.length)} ${block.sections ? 'sections' : 'points'}` +
         `${block.points && block.points > block.error_um.length ? `, ${count(block.error_um.length)} drawn` : ''}: ` +
-        `mean amount ${number(stated.mean, 4)}\u2009µm, largest amount ${number(stated.largest, 4)}\u2009µm` +
-        `${stated.deviation === undefined ? '' : `, standard deviation of the amounts ${number(stated.deviation, 4)}\u2009µm`}; mean with signs ${number(stated.bias, 4)}\u2009µm.` +
+        `mean amount ${number(stated.mean, 4)}\u202fµm, largest amount ${number(stated.largest, 4)}\u202fµm` +
+        `${stated.deviation === undefined ? '' : `, standard deviation of the amounts ${number(stated.deviation, 4)}\u202fµm`}; mean with signs ${number(stated.bias, 4)}\u202fµm.` +
         `${block.u_um ? ' Band: expanded uncertainty, k = 2.' : ''}${beyond === undefined ? '' : ` ${beyond ? count(beyond) : 'None'} of the points drawn beyond the limits.`}`;
       const box = figure(words, drawing(block));
       const colours = legend(block);

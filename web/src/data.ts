@@ -1,6 +1,7 @@
 // Data of a report, as docs/report-data.md describes it. Everything but format and title is optional.
 
 import {PathBlock} from './path_data';
+import {PlanBlock} from './plan_data';
 import {SurfaceBlock} from './surface_data';
 import {VerificationBlock} from './verification_data';
 
@@ -293,6 +294,7 @@ export interface Report {
   evaluation?: Evaluation;
   surface?: SurfaceBlock;
   path?: PathBlock;
+  plan?: PlanBlock;
   contour?: ContourBlock | ContourBlock[];
   verification?: VerificationBlock;
   generator?: string;
@@ -343,6 +345,7 @@ const kUnits: [string, string][] = [
   ['_deg', '°'],
   ['_arcsec', '″'],
   ['_s', 's'],
+  ['_min', 'min'],
   ['_percent', '%'],
   ['_um_per_m', 'µm/m'],
 ];

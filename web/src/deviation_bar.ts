@@ -10,9 +10,12 @@ export function deviationBar(limit: () => number, hasGaps: boolean): {box: HTMLE
   const box = html('div', {class: 'colour-bar'});
   const redraw = responsive(box, (width) => {
     const end = limit();
+    // Its two notes stand side by side only where there is room.
+    const narrow = width < 520;
+    const height = hasGaps && narrow ? 64 : 48;
     const inner: [number, number] = [74, width - 74];
-    const scale = linearScale([-end, end], inner, 6);
-    const root = svg('svg', {viewBox: `0 0 ${width} 48`, width, height: 48, role: 'img',
+    const scale = linearScale([-end, end], inner, Math.min(6, (inner[1] - inner[0]) / 44));
+    const root = svg('svg', {viewBox: `0 0 ${width} ${height}`, width, height, role: 'img',
       'aria-label': `Colour scale, deviation from ${quantity(-end, 'µm')} to ${quantity(end, 'µm')}; beyond it lighter colours`});
     const stops = svg('linearGradient', {id: 'diverging'});
     for (let i = 0; i <= 20; ++i)
@@ -27,9 +30,9 @@ export function deviationBar(limit: () => number, hasGaps: boolean): {box: HTMLE
       const x = scale(tick);
       root.append(svg('line', {x1: x, x2: x, y1: 14, y2: 18, class: 'mark'}), svg('text', {x, y: 29, class: 'tick middle'}, scale.label(tick)));
     }
-    root.append(svg('text', {x: inner[1], y: 44, class: 'axis-label end'}, 'deviation / µm, positive outside of the material'));
+    root.append(svg('text', {x: narrow ? width - 4 : inner[1], y: 44, class: 'axis-label end'}, 'deviation / µm, positive outside of the material'));
     if (hasGaps)
-      root.append(svg('rect', {x: 2, y: 35, width: 14, height: 10, fill: cssColour(kNothing)}), svg('text', {x: 21, y: 44, class: 'tick'}, 'fewer than 3 points near'));
+      root.append(svg('rect', {x: 2, y: height - 13, width: 14, height: 10, fill: cssColour(kNothing)}), svg('text', {x: 21, y: height - 4, class: 'tick'}, 'fewer than 3 points near'));
     return root;
   });
   return {box, redraw};

@@ -33,6 +33,11 @@ export function svg<K extends keyof SVGElementTagNameMap>(
 
 const redraws: (() => void)[] = [];
 
+/// Drawings are made for a sheet of paper; see print.ts.
+export function isPrinting(): boolean {
+  return document.documentElement.classList.contains('printing');
+}
+
 /// Makes every drawing on the page again for its present width.
 export function redrawAll(): void {
   for (const redraw of redraws) redraw();

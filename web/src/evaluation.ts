@@ -27,20 +27,22 @@ export function evaluationSection(evaluation: Evaluation): HTMLElement {
   const heads = ['', 'Figure', 'Value', uncertainty && 'U (k = 2)', 'Unit', tolerance && 'Tolerance', tolerance && 'Verdict'].filter((name): name is string => name !== false);
   const numeric = new Set(['Value', 'U (k = 2)', 'Tolerance']);
   const text = (figure: EvaluationFigure, value: number | undefined) => (value === undefined ? '' : fixed(value, figure.decimals ?? 3));
-  const number = (figure: EvaluationFigure, name: string) => html('td', {class: 'number'}, text(figure, find(figure, name)?.value));
+  const number = (figure: EvaluationFigure, name: string, style: string) => html('td', {role: 'cell', class: `number ${style}`}, text(figure, find(figure, name)?.value));
+  // Long symbols may break behind their underscores.
+  const symbol = (words: string) => words.split(/(?<=_)/).flatMap((word, i) => (i ? [html('wbr'), word] : [word]));
   const rows = figures.map((figure) => {
     const value = find(figure, 'value');
     const verdict = figure.verdict ?? '';
-    return html('tr', {},
-      html('th', {scope: 'row'}, figure.symbol), html('td', {}, figure.name ?? ''),
-      value ? html('td', {class: 'number'}, html('span', {'data-figure': figure.symbol}, text(figure, value.value)))
-        : html('td', {}, `not evaluated: ${figure.not_evaluated ?? ''}`),
-      uncertainty && number(figure, 'expanded_uncertainty'), html('td', {}, value?.unit ?? ''),
-      tolerance && number(figure, 'tolerance'), tolerance && html('td', {class: kVerdicts[verdict] ?? ''}, verdict));
+    return html('tr', {role: 'row'},
+      html('th', {scope: 'row', role: 'rowheader'}, ...symbol(figure.symbol)), html('td', {role: 'cell', class: 'words'}, figure.name ?? ''),
+      value ? html('td', {role: 'cell', class: 'number'}, html('span', {'data-figure': figure.symbol}, text(figure, value.value)))
+        : html('td', {role: 'cell', class: 'words'}, `not evaluated: ${figure.not_evaluated ?? ''}`),
+      uncertainty && number(figure, 'expanded_uncertainty', 'uncertainty'), html('td', {role: 'cell'}, value?.unit ?? ''),
+      tolerance && number(figure, 'tolerance', 'tolerance'), tolerance && html('td', {role: 'cell', class: `verdict-of ${kVerdicts[verdict] ?? ''}`}, verdict));
   });
   // A page may have drawings and no figures.
   if (figures.length) {
-    part.append(html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Figures'}, html('table', {},
+    part.append(html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Figures'}, html('table', {class: 'figures', role: 'table'},
       html('caption', {class: 'unseen'}, 'Figures'),
       html('thead', {}, html('tr', {}, ...heads.map((name) => html('th', {scope: 'col', class: numeric.has(name) ? 'number' : ''}, name || html('span', {class: 'unseen'}, 'Symbol'))))),
       html('tbody', {}, ...rows))));

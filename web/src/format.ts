@@ -1,6 +1,6 @@
 // Numbers as a metrologist writes them.
 
-const kThin = '\u2009';
+const kThin = '\u202f';
 const kMinus = '\u2212';
 
 /// `digits` significant digits, thousands apart, a real minus sign; powers of ten outside 1e-3 .. 1e6.
@@ -76,5 +76,5 @@ export function alike(value: number | null | undefined, printed: string): string
 
 /// Text of a producer without Greek letters, as people write it.
 export function micro(text: string): string {
-  return text.replace(/(\d) u(m|rad)\b/g, '$1\u2009µ$2');
+  return text.replace(/(\d) u(m|rad)\b/g, '$1\u202fµ$2');
 }

@@ -1,7 +1,7 @@
 // The box about what is drawn in three dimensions, with scales along three of its edges.
 
 import {
-  BoxGeometry, BufferGeometry, CanvasTexture, EdgesGeometry, Float32BufferAttribute, LineBasicMaterial, LineSegments, Sprite,
+  BoxGeometry, BufferGeometry, CanvasTexture, EdgesGeometry, Float32BufferAttribute, LineBasicMaterial, LineSegments, PerspectiveCamera, Sprite,
   SpriteMaterial, SRGBColorSpace, Vector3,
 } from 'three';
 
@@ -54,6 +54,7 @@ export function frameParts(low: Vector3, high: Vector3, size: number, side: {x: 
       parts.push(words);
     }
     const name = label(`${k.toUpperCase()} / mm`, ink, 12);
+    name.userData.first = true;
     const middle = edge.clone();
     middle[k] = (low[k] + high[k]) / 2;
     name.position.copy(middle).addScaledVector(outward, out * (k === 'z' ? 4.4 : 5));
@@ -63,6 +64,19 @@ export function frameParts(low: Vector3, high: Vector3, size: number, side: {x: 
   marks.setAttribute('position', new Float32BufferAttribute(ticks, 3));
   parts.push(new LineSegments(marks, line));
   return parts;
+}
+
+/// Shows the words that have room on a stage of so many pixels: names of the axes, then numbers that cover nothing shown.
+export function keepWordsApart(parts: FramePart[], camera: PerspectiveCamera, width: number, height: number): void {
+  const words = parts.filter((part): part is Sprite => part instanceof Sprite);
+  const taken: {x: number; y: number; width: number; height: number}[] = [];
+  for (const word of [...words.filter((one) => one.userData.first), ...words.filter((one) => !one.userData.first)]) {
+    const at = word.position.clone().project(camera);
+    const box = {x: (at.x * width) / 2, y: (at.y * height) / 2, width: word.userData.height * word.userData.shape, height: 0.8 * word.userData.height};
+    word.visible = taken.every((other) =>
+      Math.abs(box.x - other.x) > (box.width + other.width) / 2 || Math.abs(box.y - other.y) > (box.height + other.height) / 2);
+    if (word.visible) taken.push(box);
+  }
 }
 
 export function disposeFrame(parts: FramePart[]): void {

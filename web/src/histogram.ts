@@ -1,7 +1,7 @@
 // Distributions before and after, on one logarithmic axis so that both can be read.
 
 import {ErrorMap, Histogram, Statistics, Summary, Vectors} from './data';
-import {figure, html, responsive, section, svg} from './dom';
+import {figure, html, isPrinting, responsive, section, svg} from './dom';
 import {count, quantity} from './format';
 import {plot, Plot, rule} from './plot';
 import {statisticsTable} from './statistics';
@@ -72,7 +72,7 @@ function drawing(unit: string, sets: {style: string; name: string; data: Distrib
   responsive(box, (width) => {
     const target = plot({
       width,
-      height: 250,
+      height: isPrinting() ? 200 : 250,
       x: {label: `${quantityName} / ${unit}`, range: [from, to], log},
       y: {label: `share of the ${of} / %`, range: [0, highest * 1.22], nice: false},
       description: sets.map((set) => `${set.name && `${set.name}: `}median ${quantity(set.data.median, unit)}, 95 percent below ${quantity(set.data.p95, unit)}`).join('; '),
@@ -135,10 +135,11 @@ function one(entry: Histogram): HTMLElement | undefined {
     }
     if (edges && entry.counts) return signedCounts(entry, edges, unit);
     if (!sets.length || sets.some((set) => set.data.total === 0)) continue;
+    const of = typeof entry.of === 'string' ? entry.of : 'poses';
     const caption = `${entry.title ?? 'Distribution'}. ${sets
-      .map((set) => `${set.name[0].toUpperCase()}${set.name.slice(1)}: 95\u2009% of ${count(set.data.total)} poses below ${quantity(set.data.p95, unit)}`)
+      .map((set) => `${set.name[0].toUpperCase()}${set.name.slice(1)}: 95\u202f% of ${count(set.data.total)} ${of} below ${quantity(set.data.p95, unit)}`)
       .join('. ')}.${log ? ' Logarithmic axis.' : ''}`;
-    return figure(caption, drawing(unit, sets, log, 'length of the error', 'poses'));
+    return figure(caption, drawing(unit, sets, log, typeof entry.quantity === 'string' ? entry.quantity : suffix === 'um' ? 'volumetric error' : 'orientation error', of));
   }
   return undefined;
 }
@@ -146,7 +147,7 @@ function one(entry: Histogram): HTMLElement | undefined {
 export function histogramSection(entries: Histogram[] | undefined, map: ErrorMap | undefined, summary: Summary | undefined): HTMLElement | undefined {
   let list = entries ?? [];
   if (!list.length && map)
-    list = [{title: `${map.quantity ? `Length of the ${map.quantity}` : 'Volumetric error'} at the points of the map`, before_um: lengths(map.before_um), after_um: map.after_um && lengths(map.after_um),
+    list = [{quantity: map.quantity && `length of the ${map.quantity}`, title: `${map.quantity ? `Length of the ${map.quantity}` : 'Volumetric error'} at the points of the map`, before_um: lengths(map.before_um), after_um: map.after_um && lengths(map.after_um),
       before_percentiles_um: summary?.map?.position_before_um, after_percentiles_um: summary?.map?.position_after_um}];
   const figures = list.map(one).filter((f): f is HTMLElement => f !== undefined);
   const table = summary && statisticsTable(summary);

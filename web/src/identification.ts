@@ -1,11 +1,13 @@
 // How well the readings determine the parameters: rank, gauge, convergence, order.
 
 import {Column, Identification, Summary} from './data';
-import {figure, html, responsive, section} from './dom';
+import {figure, html, isPrinting, responsive, section} from './dom';
 import {count, number} from './format';
 import {dots, line, plot, rule} from './plot';
 import {extent} from './scale';
 import {dataTable} from './table';
+
+const heightOf = () => (isPrinting() ? 176 : 250);
 
 function positive(values: (number | null | undefined)[]): number[] {
   return values.filter((v): v is number => typeof v === 'number' && v > 0);
@@ -28,7 +30,7 @@ function singularValues(values: number[], rank: number | undefined, threshold: n
   const cut = rank ?? values.length;
   responsive(drawing, (width) => {
     const target = plot({
-      width, height: 250,
+      width, height: heightOf(),
       x: {label: 'index', range: [0, values.length + 1]},
       y: {label: 'singular value of the scaled Jacobian', range: decades(drawn), log: true},
       description: `Singular values from ${number(largest)} to ${number(values[values.length - 1])}; rank ${cut}`,
@@ -54,7 +56,7 @@ function convergence(history: NonNullable<Identification['history']>): HTMLEleme
   const drawing = html('div', {class: 'drawing'});
   responsive(drawing, (width) => {
     const target = plot({
-      width, height: 250, x: axis,
+      width, height: heightOf(), x: axis,
       y: {label: 'χ²', range: decades(positive(chi), 0.1), log: true},
       description: `Chi-square from ${number(chi[0])} to ${number(chi[chi.length - 1])} in ${iteration.length - 1} iterations`,
     });
@@ -75,7 +77,7 @@ function steps(history: NonNullable<Identification['history']>): HTMLElement | u
   const drawing = html('div', {class: 'drawing'});
   responsive(drawing, (width) => {
     const target = plot({
-      width, height: 250,
+      width, height: heightOf(),
       x: {label: 'iteration', range: [Math.min(...iteration), Math.max(...iteration, 1)]},
       y: {label: 'relative step, damping', range: decades(all, 0.1), log: true},
       description: `Relative step from ${number(positive(step)[0])} to ${number(positive(step)[positive(step).length - 1])}`,
@@ -98,7 +100,7 @@ function orders(selection: NonNullable<Identification['order_selection']>): HTML
   responsive(drawing, (width) => {
     const every = Math.max(1, Math.ceil((labels.length * Math.max(...labels.map((l) => l.length)) * 7) / Math.max(120, width - 90)));
     const target = plot({
-      width, height: 250,
+      width, height: heightOf(),
       x: {label: 'model, in the order tried', range: [-0.4, labels.length - 0.6], ticks: labels.map((label, at) => ({at, label})).filter((_, i) => i % every === 0)},
       y: {label: 'rms of held-out residuals / standard uncertainty', range: decades(all, 0.1), log: true},
       description: `Residual at held-out poses for ${labels.length} models tried${selection.chosen === undefined ? '' : `; chosen: ${labels[selection.chosen]}`}`,
@@ -130,17 +132,20 @@ export function identificationSection(data: Identification, summary: Summary): H
     data.order_selection && orders(data.order_selection),
   ].filter((f): f is HTMLElement => Boolean(f));
   if (figures.length) part.append(html('div', {class: `columns ${figures.length === 3 ? 'three' : ''}`}, ...figures));
-  if (data.gauge?.length) {
-    part.append(html('h3', {}, 'Gauge'), html('p', {class: 'note'}, 'What the readings cannot separate, and the convention that settles it.'),
-      html('ol', {class: 'gauge-list'}, ...data.gauge.map((entry) => html('li', {},
-        html('span', {}, entry.text ?? entry.parameters?.join(', ') ?? ''),
-        entry.convention && html('em', {}, entry.by_convention === false ? `No convention fits, fixed by: ${entry.convention}` : entry.convention),
-        entry.text && !!entry.parameters?.length && html('code', {}, entry.parameters.join('  '))))));
-  }
   if (data.stages?.length)
     part.append(dataTable('Stages of the identification', ['Stage', 'Status', 'Parameters', 'Residuals', 'Degrees of freedom', 'χ²'],
       data.stages.map((s, i) => [String(i + 1), s.status ?? '', s.parameters ?? null, s.residuals ?? null, s.degrees_of_freedom ?? null, s.chi_square ?? null])));
   if (part.children.length < 2) return undefined;
+  return part;
+}
+
+export function gaugeSection(gauge: Identification['gauge']): HTMLElement | undefined {
+  if (!gauge?.length) return undefined;
+  const part = section('gauge', 'Gauge', 'What the readings cannot separate, and the convention that settles it.');
+  part.append(html('ol', {class: 'gauge-list'}, ...gauge.map((entry) => html('li', {},
+    html('span', {}, entry.text ?? entry.parameters?.join(', ') ?? ''),
+    entry.convention && html('em', {}, entry.by_convention === false ? `No convention fits, fixed by: ${entry.convention}` : entry.convention),
+    entry.text && !!entry.parameters?.length && html('code', {}, entry.parameters.join('  '))))));
   return part;
 }
 

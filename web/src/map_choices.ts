@@ -65,7 +65,7 @@ export function range(values: number[]): {low: number; high: number} {
 
 /// "× 200" for a displacement; a rotation has no length of its own: "100 µrad drawn as 40 mm".
 export function exaggeration(kind: Quantity, factor: number): string {
-  return kind.id === 'displacement' ? `× ${count(factor)}` : `100\u2009µrad = ${quantity(factor * 0.1, 'mm', 2)}`;
+  return kind.id === 'displacement' ? `× ${count(factor)}` : `100\u202fµrad = ${quantity(factor * 0.1, 'mm', 2)}`;
 }
 
 /// Mean, 95 % and maximum over all poses of the map, from the summary; absent where it does not have them.
@@ -86,7 +86,7 @@ export function statisticsTable(kind: Quantity, hasUncertainty: boolean, summary
     html('td', {class: 'number'}, value === undefined ? '\u2013' : html('span', {'data-key': path}, number(value)));
   return html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Statistics of the map'}, html('table', {class: 'map-statistics'},
     html('caption', {}, `${kind.id === 'displacement' ? 'Length' : 'Angle'} of the ${kind.label}${summary.poses ? ` over all ${count(summary.poses)} poses` : ''}`),
-    html('thead', {}, html('tr', {}, ...['', 'mean', '95\u2009% below', 'max', ''].map((name, i) =>
+    html('thead', {}, html('tr', {}, ...['', 'mean', '95\u202f% below', 'max', ''].map((name, i) =>
       html('th', {scope: 'col', class: i > 0 && i < 4 ? 'number' : ''}, name)))),
     html('tbody', {}, ...present.map(({name, key, unit, statistics}) => html('tr', {},
       html('th', {scope: 'row'}, name), cell(statistics.mean, `map.${key}.mean`), cell(statistics.p95, `map.${key}.p95`),

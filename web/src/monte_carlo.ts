@@ -79,7 +79,7 @@ function intervals(p: Parameters, index: number[]): HTMLElement | undefined {
     readout(target, place, (k) => `${p.name[index[k]]}: ${number(low[k])} … ${number(high[k])}`);
     return target.root;
   });
-  return figure('Ends of the simulated 95\u2009% intervals (dots) against those of the covariance (dashed).', drawing);
+  return figure('Ends of the simulated 95\u202f% intervals (dots) against those of the covariance (dashed).', drawing);
 }
 
 export function monteCarloSection(p: Parameters | undefined, figures: MonteCarlo | undefined): HTMLElement | undefined {

@@ -63,7 +63,8 @@ function small(curve: Curve, range: () => [number, number], title: string): {box
   const redraw = responsive(drawing, (width) => {
     const target = plot({
       width,
-      height: 168,
+      // Narrow on paper, where thirty of them are to fit on two sheets.
+      height: width < 240 ? 104 : 168,
       compact: true,
       zeroLine: true,
       x: {label: `${motion.axis} / ${curve.positionUnit}`, range: extent(position), angle: curve.positionUnit === '°'},
@@ -75,7 +76,7 @@ function small(curve: Curve, range: () => [number, number], title: string): {box
     if (position.length === 1) dots(target, position, value, 'determined');
     if (truth) line(target, position, truth, 'truth');
     readout(target, position, (i) =>
-      `${number(position[i], 4)}${curve.positionUnit === '°' ? '°' : '\u2009' + curve.positionUnit}: ${number(value[i])}${half ? ` ± ${number(half[i], 2)}` : ''}\u2009${unit}`);
+      `${number(position[i], 4)}${curve.positionUnit === '°' ? '°' : '\u202f' + curve.positionUnit}: ${number(value[i])}${half ? ` ± ${number(half[i], 2)}` : ''}\u202f${unit}`);
     return target.root;
   });
   const box = html('figure', {class: 'motion'},
@@ -93,7 +94,7 @@ function legend(curves: Curve[]): HTMLElement {
     return mark;
   })(), text);
   return html('div', {class: 'legend'}, item('value', 'error motion'),
-    curves.some((c) => c.half) && item('band', '95\u2009% band (k = 2)'),
+    curves.some((c) => c.half) && item('band', '95\u202f% band (k = 2)'),
     curves.some((c) => c.truth) && item('truth', 'truth'));
 }
 
@@ -115,7 +116,7 @@ export function motionSection(motions: ErrorMotion[], machine?: Machine): HTMLEl
     const mine = curves.filter((c) => c.motion.axis === name);
     const common = new Map<string, [number, number]>();
     for (const unit of new Set(mine.map((c) => c.unit))) common.set(unit, extent(mine.filter((c) => c.unit === unit).flatMap(rangeOf)));
-    const grid = html('div', {class: 'multiples'});
+    const grid = html('div', {class: `multiples ${mine.length % 3 === 0 ? 'of-six' : ''}`});
     for (const curve of mine) {
       const range = () => (own.checked ? rangeOf(curve) : common.get(curve.unit) ?? rangeOf(curve));
       const {box, redraw} = small(curve, range, meaning(curve.motion, rotary, isLetter));

@@ -58,13 +58,13 @@ function pairTile(label: string, unit: string, sides: Side[]): HTMLElement | und
       'div',
       {class: `side ${style}`},
       html('span', {class: 'state'}, name),
-      html('span', {class: 'figure'}, html('span', {'data-key': `${key}.mean`}, number(statistics.mean)), html('small', {}, `\u2009${unit}`)),
+      html('span', {class: 'figure'}, html('span', {'data-key': `${key}.mean`}, number(statistics.mean)), html('small', {}, `\u202f${unit}`)),
       html(
         'span',
         {class: 'note'},
-        statistics.p95 !== undefined && html('span', {}, '95\u2009% below ', html('b', {'data-key': `${key}.p95`}, number(statistics.p95))),
+        statistics.p95 !== undefined && html('span', {class: 'together'}, '95\u202f% below ', html('b', {'data-key': `${key}.p95`}, number(statistics.p95))),
         statistics.p95 !== undefined && statistics.max !== undefined && ' · ',
-        statistics.max !== undefined && html('span', {}, 'max ', html('b', {'data-key': `${key}.max`}, number(statistics.max))),
+        statistics.max !== undefined && html('span', {class: 'together'}, 'max ', html('b', {'data-key': `${key}.max`}, number(statistics.max))),
       ),
     );
   return html('div', {class: 'tile pair'}, html('h3', {}, label), html('div', {class: 'sides'}, ...sides.map(side)));
@@ -120,7 +120,7 @@ function smallTiles(summary: Summary, errors: PoseErrors | undefined, key: strin
     else add('Remaining error', `${key}.remaining_percent`, errors.remaining_percent, 3, '%', 'of the mean before');
     add(errors.quantity?.startsWith('residual') ? 'Uncertainty of the model there' : 'Predicted uncertainty', `${key}.predicted_expanded_uncertainty_um.mean`, errors.predicted_expanded_uncertainty_um?.mean, 3, 'µm',
         [errors.uncertainty_covers && `of the ${errors.uncertainty_covers}`, 'k = 2, mean',
-          errors.coverage_percent !== undefined && `covers ${number(errors.coverage_percent)}\u2009% of the coordinates`].filter(Boolean).join('; '));
+          errors.coverage_percent !== undefined && `covers ${number(errors.coverage_percent)}\u202f% of the coordinates`].filter(Boolean).join('; '));
   }
   const monte = summary.monte_carlo;
   if (monte?.samples) add('Monte Carlo', 'monte_carlo.samples', monte.samples, 0, '',
@@ -200,7 +200,7 @@ export function overview(report: Report): HTMLElement {
         'div',
         {class: 'tile'},
         html('h3', {}, tile.label),
-        html('div', {class: 'figure'}, html('span', {'data-key': tile.key}, tile.value), tile.unit && html('small', {}, `\u2009${tile.unit}`)),
+        html('div', {class: 'figure'}, html('span', {'data-key': tile.key}, tile.value), tile.unit && html('small', {}, `\u202f${tile.unit}`)),
         tile.note && html('div', {class: 'note'}, tile.note),
       ),
     );

@@ -33,9 +33,11 @@ function axisTable(path: PathBlock): {table: HTMLElement; show: (value: (column:
     const travel = path.travel?.[key];
     let [low, high] = travel ?? [Infinity, -Infinity];
     if (!travel) for (const v of column) [low, high] = [Math.min(low, v), Math.max(high, v)];
+    // As positions are written: rounding is no range.
+    const end = (at: number) => plain(Math.round(at * 1e3) / 1e3);
     const cell = html('td', {class: 'number', 'data-axis': key});
     const meter = html('meter', {min: low, max: high > low ? high : low + 1, 'aria-label': `${name} within its ${travel ? 'travel' : 'range'}`});
-    const row = html('tr', {}, html('th', {scope: 'row'}, name), cell, html('td', {}, unit), html('td', {class: 'number'}, plain(low)), html('td', {}, meter), html('td', {class: 'number'}, plain(high)));
+    const row = html('tr', {}, html('th', {scope: 'row'}, name), cell, html('td', {}, unit), html('td', {class: 'number'}, end(low)), html('td', {}, meter), html('td', {class: 'number'}, end(high)));
     return {row, column, cell, meter};
   });
   const table = html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Axis positions'}, html('table', {class: 'axis-positions'},
@@ -59,8 +61,8 @@ function coverageLegend(block: SurfaceBlock, surface: Surface): HTMLElement | un
   // Shares of the area are the producer's; triangles are only what is drawn.
   const shares = block.coverage?.percent;
   const words = (i: number) => {
-    if (!shares) return `: ${number((100 * counts[i]) / block.triangle_count)}\u2009% of the triangles`;
-    return shares[i] === undefined ? '' : `: ${number(shares[i])}\u2009% of the area`;
+    if (!shares) return `: ${number((100 * counts[i]) / block.triangle_count)}\u202f% of the triangles`;
+    return shares[i] === undefined ? '' : `: ${number(shares[i])}\u202f% of the area`;
   };
   return html('p', {class: 'legend coverage'}, ...coverage.reasons.flatMap((reason, i) => counts[i] || (shares?.[i] ?? 0) > 0
     ? [html('span', {class: 'key', 'data-reason': i}, html('span', {class: 'dot', style: `background: ${cssColour(coverageColour(i, coverage.colours))}`}),
@@ -72,7 +74,7 @@ export function pathSection(report: Report): HTMLElement | undefined {
   if (!path?.time_s?.length) return undefined;
   const n = path.time_s.length;
   const surface = report.surface && unpackSurface(report.surface);
-  const part = section('path', path.title ?? 'Path', `The tool on its path, seen from the workpiece. Path at work: done ${surface?.coverage ? 'pale' : 'in colour'}, ahead in black; rapid moves paler.`);
+  const part = section('path', path.title ?? 'Path', path.stops ? 'The tool at each reading, seen from the workpiece, in the order in which readings are taken: done in colour, ahead in black; ways between paler.' : `The tool on its path, seen from the workpiece. Path at work: done ${surface?.coverage ? 'pale' : 'in colour'}, ahead in black; rapid moves paler.`);
   const camera = cameraOf(path, surface);
   const view = new PathView('Path', path, surface, camera);
   camera.onChange(() => view.render());
@@ -97,7 +99,7 @@ export function pathSection(report: Report): HTMLElement | undefined {
     view.moveTo(moment);
     axes.show((column) => valueAt(column, moment));
     const feed = path.feed_mm_per_min?.[moment.move];
-    words.textContent = [`${quantity(moment.time, 's', 4)} of ${quantity(path.time_s[n - 1], 's', 4)}`, path.working[moment.move] ? 'at work' : 'rapid',
+    words.textContent = [`${quantity(moment.time, 's', 4)} of ${quantity(path.time_s[n - 1], 's', 4)}`, path.stops ? `reading ${count(moment.move + (moment.share > 0.5 ? 1 : 0))} of ${count(path.moves ?? n)}` : path.working[moment.move] ? 'at work' : 'rapid',
       feed ? `feed ${quantity(feed, 'mm/min', 4)}` : '', path.length_mm ? `${quantity(valueAt(path.length_mm, moment), 'mm', 5)} done` : ''].filter(Boolean).join(', ');
     slider.setAttribute('aria-valuetext', words.textContent);
     view.caption.textContent = words.textContent;
@@ -135,13 +137,14 @@ export function pathSection(report: Report): HTMLElement | undefined {
     view.update('points', 1, 0);
     show();
   });
-  view.describe(`tool path of ${count(path.moves ?? n)} moves on the part`);
+  view.describe(path.stops ? `the tool at ${count(path.moves ?? n)} readings` : `tool path of ${count(path.moves ?? n)} moves on the part`);
+  const kind = path.stops ? 'readings' : 'moves';
 
-  const drawn = `${(path.moves ?? n) > n ? `${count(n)} of ${count(path.moves)} moves are drawn; between them the tool goes straight.` : `All ${count(n)} moves are drawn.`}` +
+  const drawn = `${(path.moves ?? n) > n ? `${count(n)} of ${count(path.moves)} ${kind} are drawn${path.stops ? '' : '; between them the tool goes straight'}.` : `All ${count(n)} ${kind} are drawn.`}` +
     (report.surface ? ` ${thinningWords(report.surface)}` : '');
   part.append(
     html('div', {class: 'views one'}, view.box),
-    html('div', {class: 'controls'}, play, field('Position', slider), words, field('Speed', speed), ...(view.hasRapid ? [html('label', {}, rapid, ' rapid moves')] : []), reset),
+    html('div', {class: 'controls'}, play, field('Position', slider), words, field('Speed', speed), ...(view.hasRapid ? [html('label', {}, rapid, path.stops ? ' ways between' : ' rapid moves')] : []), reset),
     ...[report.surface && surface && coverageLegend(report.surface, surface)].filter((e): e is HTMLElement => Boolean(e)),
     axes.table,
     html('p', {class: 'note'}, drawn, path.note && ` ${path.note}`),

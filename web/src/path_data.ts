@@ -18,6 +18,8 @@ export interface PathBlock {
   feed_mm_per_min?: number[];
   length_mm?: number[];
   tool?: {kind?: 'beam' | 'probe' | 'tool'; radius_mm?: number; length_mm?: number; working_distance_mm?: number};
+  /// The machine stands still at each pose and a reading is taken there; the ways between are drawn pale.
+  stops?: boolean;
   note?: string;
 }
 

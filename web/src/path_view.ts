@@ -1,7 +1,7 @@
 // Part, path and tool in three dimensions.
 
 import {
-  BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, Quaternion, Vector3,
+  BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshLambertMaterial, Points, PointsMaterial, Quaternion, Vector3,
 } from 'three';
 
 import {Camera} from './camera';
@@ -27,6 +27,8 @@ export class PathView extends SurfaceView {
   private readonly done = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   private readonly ahead = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
   private readonly rapid = new LineSegments(new BufferGeometry(), new LineBasicMaterial({transparent: true, opacity: 0.45}));
+  private readonly taken = new Points(new BufferGeometry(), new PointsMaterial({size: 5, sizeAttenuation: false}));
+  private readonly toTake = new Points(new BufferGeometry(), new PointsMaterial({size: 3, sizeAttenuation: false}));
   private readonly beam: LineSegments<BufferGeometry, LineBasicMaterial>;
   private reasonOfVertex: Uint8Array | undefined;
   private readonly colours: string[] | undefined;
@@ -46,6 +48,15 @@ export class PathView extends SurfaceView {
     for (const line of [this.done, this.ahead, this.rapid]) line.frustumCulled = false;
     this.layLines();
     this.scene.add(this.tool, this.done, this.ahead, this.rapid);
+    if (path.stops) {
+      const places = new BufferAttribute(new Float32Array(path.time_s.flatMap((_, i) => this.point(i))), 3);
+      for (const marks of [this.taken, this.toTake]) {
+        marks.geometry.setAttribute('position', places);
+        marks.frustumCulled = false;
+        this.scene.add(marks);
+      }
+      (this.rapid.material as LineBasicMaterial).opacity = 0.22;
+    }
     this.update('points', 1, 0);
   }
 
@@ -101,6 +112,8 @@ export class PathView extends SurfaceView {
     for (let i = 1; i < moment.move; ++i) if (this.path.working[i]) ++count;
     this.done.geometry.setDrawRange(0, 2 * count);
     this.ahead.geometry.setDrawRange(2 * count, Infinity);
+    this.taken.geometry.setDrawRange(0, moment.move);
+    this.toTake.geometry.setDrawRange(moment.move, Infinity);
     this.beam.visible = Boolean(this.path.working[moment.move]) || this.path.tool?.kind !== 'beam';
     this.render();
   }
@@ -126,6 +139,8 @@ export class PathView extends SurfaceView {
     (this.done.material as LineBasicMaterial).color.set(onColours ? 0xfff2a8 : dark ? 0x5cc3c9 : 0x0b6e75);
     (this.ahead.material as LineBasicMaterial).color.set(dark && !onColours ? 0xe6eaed : 0x1a2127);
     (this.rapid.material as LineBasicMaterial).color.set(dark ? 0xe9965b : 0xb4551d);
+    (this.taken.material as PointsMaterial).color.set(dark ? 0x5cc3c9 : 0x0b6e75);
+    (this.toTake.material as PointsMaterial).color.set(dark ? 0xe6eaed : 0x1a2127);
     this.beam.material.color.set(dark ? 0xff8a80 : 0xb3261e);
   }
 }

@@ -68,7 +68,10 @@ export function plot(options: PlotOptions): Plot {
   for (const tick of xTicks) {
     const at = x(tick.at);
     grid.append(svg('line', {x1: at, x2: at, y1: bottom, y2: bottom + 4, class: 'mark'}));
-    grid.append(svg('text', {x: at, y: bottom + 16, class: 'tick middle'}, tick.label));
+    // Long names at an end stay inside of the drawing.
+    const half = 3.2 * tick.label.length;
+    const [place, style] = at + half > width ? [width, 'tick end'] : at - half < 0 ? [0, 'tick'] : [at, 'tick middle'];
+    grid.append(svg('text', {x: place, y: bottom + 16, class: style}, tick.label));
   }
   grid.append(svg('line', {x1: left, x2: right, y1: bottom, y2: bottom, class: 'mark'}));
   if (options.zeroLine && y.from < 0 && y.to > 0)
@@ -134,7 +137,8 @@ export function rule(target: Plot, at: number, direction: 'x' | 'y', style: stri
     target.root.append(svg('line', {x1: x, x2: x, y1: top + 14 * row, y2: bottom, class: `rule ${style}`}));
     if (label) {
       // Over a curve that rises the room is before the line, or else under it behind the line.
-      const atEnd = (before && x - left > 150) || x > (left + right) / 2 + (right - left) / 4;
+      const needed = 6.1 * label.length + 5;
+      const atEnd = (before && x - left > 150) || x > (left + right) / 2 + (right - left) / 4 || (x + needed > right + 16 && x - needed > 0);
       const under = before && !atEnd;
       target.root.append(
         svg('text', {x: x + (atEnd ? -5 : 5), y: (under ? (top + bottom) / 2 + 20 : top + 9) + 14 * row, class: `rule-label ${style} ${atEnd ? 'end' : ''}`}, label),

@@ -100,9 +100,10 @@ export function logScale([from, to]: [number, number], [start, end]: [number, nu
   const small = low >= -3.01 && high <= 5;
   scale.label = (value) => {
     if (small) return grouped(String(Number(value.toPrecision(3))));
-    const exponent = Math.round(Math.log10(value));
+    // A tick a hair below its power of ten belongs to it; 5e5 does not belong to 1e6.
+    const exponent = Math.floor(Math.log10(value) + 1e-9);
     const mantissa = Math.round(value / Math.pow(10, exponent));
-    return mantissa === 1 ? `10${superscript(exponent)}` : '';
+    return mantissa === 1 ? `10${superscript(exponent)}` : factors.length > 3 ? `${mantissa}\u202f·\u202f10${superscript(exponent)}` : '';
   };
   scale.from = from;
   scale.to = to;

@@ -97,7 +97,7 @@ export function sectionPlot(surface: Surface, radius: number, showCut: (ends: Fl
     const found = drawing.nearest((event.clientX - frame.left) * scale, (event.clientY - frame.top) * scale);
     const feet = surface.points.feet;
     reading.textContent = found
-      ? `${signed(found.value, surface)} at (${[0, 1, 2].map((k) => plain(feet[3 * found.index + k])).join(', ')})\u2009mm` : '\u2013';
+      ? `${signed(found.value, surface)} at (${[0, 1, 2].map((k) => plain(feet[3 * found.index + k])).join(', ')})\u202fmm` : '\u2013';
   };
   box.addEventListener('pointermove', read);
   box.addEventListener('click', read);

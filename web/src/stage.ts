@@ -6,7 +6,7 @@ import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {Camera} from './camera';
 import {isDark} from './colour';
 import {html} from './dom';
-import {disposeFrame, FramePart, frameParts} from './frame';
+import {disposeFrame, FramePart, frameParts, keepWordsApart} from './frame';
 
 export abstract class Stage {
   readonly box: HTMLElement;
@@ -113,6 +113,8 @@ export abstract class Stage {
     const unit = (2 * Math.tan((camera.fov * Math.PI) / 360)) / stage.clientHeight;
     for (const part of this.frame?.parts ?? [])
       if (part instanceof Sprite) part.scale.set(unit * part.userData.height * part.userData.shape, unit * part.userData.height, 1);
+    camera.updateMatrixWorld();
+    keepWordsApart(this.frame?.parts ?? [], camera, stage.clientWidth, stage.clientHeight);
     this.prepare();
     this.renderer.render(this.scene, camera);
   }

@@ -5,7 +5,7 @@ import {html} from './dom';
 import {number} from './format';
 
 const kColumns: [keyof Statistics, string][] = [
-  ['mean', 'mean'], ['rms', 'rms'], ['median', 'median'], ['p90', '90\u2009%'], ['p95', '95\u2009%'], ['p99', '99\u2009%'], ['max', 'max'],
+  ['mean', 'mean'], ['rms', 'rms'], ['median', 'median'], ['p90', '90\u202f%'], ['p95', '95\u202f%'], ['p99', '99\u202f%'], ['max', 'max'],
 ];
 
 function rowsOf(summary: Summary): {name: string; key: string; unit: string; statistics: Statistics}[] {

@@ -82,7 +82,7 @@ export function surfaceSections(report: Report): HTMLElement[] {
   onThemeChange(update);
   view.onPointer((found) => {
     reading.textContent = found
-      ? `${signed(found.value, surface)} at (${found.at.map((v) => plain(Number(v.toPrecision(5)))).join(', ')})\u2009mm, ${found.isPoint ? 'a point of the scan' : 'mean of the points near'}`
+      ? `${signed(found.value, surface)} at (${found.at.map((v) => plain(Number(v.toPrecision(5)))).join(', ')})\u202fmm, ${found.isPoint ? 'a point of the scan' : 'mean of the points near'}`
       : '\u2013';
   });
   part.append(

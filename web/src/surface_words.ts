@@ -10,5 +10,5 @@ export function signed(value: number, surface: Surface): string {
   const text = Math.abs(value).toFixed(decimals);
   const sign = Number(text) === 0 ? '' : value < 0 ? '\u2212' : '+';
   const beyond = Math.abs(value) >= 32766.5 * surface.step ? 'beyond ' : '';
-  return `${beyond}${sign}${grouped(text)}\u2009µm`;
+  return `${beyond}${sign}${grouped(text)}\u202fµm`;
 }

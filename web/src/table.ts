@@ -4,28 +4,42 @@ import {DataTable, Parameters, unitText} from './data';
 import {field, html, section} from './dom';
 import {alike, count, micro, number, withUncertainty} from './format';
 
-export function dataTable(caption: string, columns: string[], rows: (string | number | boolean | null)[][]): HTMLElement {
+type Cell = string | number | boolean | null;
+
+const kSheet = 670;
+
+/// Groups of columns, each as wide as a sheet of paper, with the first column in all of them; one group where all fit.
+/// Letters of tables on paper are 5.3 pixels wide; words and numbers do not break.
+export function columnsOnPaper(columns: string[], rows: string[][]): number[][] {
+  const longest = (text: string) => Math.max(0, ...text.split(/[ \u00ad-]+/).map((word) => word.length));
+  const width = columns.map((name, i) => 8 + 5.3 * Math.max(longest(name), ...rows.map((row) => longest(row[i] ?? ''))));
+  const groups: number[][] = [];
+  let used = Infinity;
+  for (let i = 1; i < columns.length; ++i) {
+    if (used + width[i] > kSheet) {
+      groups.push([0]);
+      used = width[0];
+    }
+    groups[groups.length - 1].push(i);
+    used += width[i];
+  }
+  return groups.length ? groups : [[0]];
+}
+
+export function dataTable(caption: string, columns: string[], rows: Cell[][]): HTMLElement {
   const isNumeric = (cell: unknown) => typeof cell === 'number' || (typeof cell === 'string' && /^-?\d[\d.]*(e[-+]?\d+)?$/.test(cell));
   const isMissing = (cell: unknown) => cell === null || cell === '';
   const isNumber = columns.map((_, i) => rows.some((row) => typeof row[i] === 'number') || (rows.some((row) => isNumeric(row[i])) && rows.every((row) => isNumeric(row[i]) || isMissing(row[i]))));
-  return html(
-    'div',
-    {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption},
-    html(
-      'table',
-      {},
-      html('caption', {}, caption),
-      html('thead', {}, html('tr', {}, ...columns.map((name, i) => html('th', {scope: 'col', class: isNumber[i] ? 'number' : ''}, name)))),
-      html(
-        'tbody',
-        {},
-        ...rows.map((row) =>
-          html('tr', {}, ...row.map((cell, i) =>
-            html('td', {class: isNumber[i] ? 'number' : ''}, typeof cell === 'number' ? (Number.isInteger(cell) ? count(cell) : number(cell, 5)) : cell === null ? '\u2013' : isNumber[i] ? cell.toString().replace('-', '\u2212') : String(cell)))),
-        ),
-      ),
-    ),
-  );
+  const written = rows.map((row) => row.map((cell, i) =>
+    typeof cell === 'number' ? (Number.isInteger(cell) ? count(cell) : number(cell, 5)) : cell === null ? '\u2013' : isNumber[i] ? cell.toString().replace('-', '\u2212') : String(cell)));
+  const table = (kept: number[], name: string, style: string) => html('table', {class: style},
+    html('caption', {}, name),
+    html('thead', {}, html('tr', {}, ...kept.map((i) => html('th', {scope: 'col', class: isNumber[i] ? 'number' : ''}, columns[i])))),
+    html('tbody', {}, ...written.map((row) => html('tr', {}, ...kept.map((i) => html('td', {class: isNumber[i] ? 'number' : ''}, row[i]))))));
+  const all = columns.map((_, i) => i);
+  const groups = columnsOnPaper(columns, written);
+  return html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption}, table(all, caption, groups.length > 1 ? 'screen-only' : ''),
+    ...(groups.length > 1 ? groups.map((kept, i) => table(kept, `${caption} (${i + 1} of ${groups.length})`, 'paper-only')) : []));
 }
 
 export function tablesSection(tables: DataTable[], title: string): HTMLElement {

@@ -137,7 +137,7 @@ export function verificationSections(block: VerificationBlock | undefined): HTML
     const part = section('unseen', 'Errors at unseen poses');
     const data = block.distribution;
     part.append(key([['of-before', 'before'], ['of-after', 'after'], ...(data.predicted_um ? [['of-predicted', 'after, as its uncertainty predicts'] as [string, string]] : [])]),
-      figure(`${block.poses ? `${count(block.poses)} random poses: ` : ''}95\u2009% of them below ${quantity(at(data, data.before_um, 95), 'µm')} before and ${quantity(at(data, data.after_um, 95), 'µm')} after` +
+      figure(`${block.poses ? `${count(block.poses)} random poses: ` : ''}95\u202f% of them below ${quantity(at(data, data.before_um, 95), 'µm')} before and ${quantity(at(data, data.after_um, 95), 'µm')} after` +
         `${data.predicted_um ? `; predicted: ${quantity(at(data, data.predicted_um, 95), 'µm')}` : ''}. Logarithmic axis.`, cumulative(data)));
     if (block.wanted?.length) part.append(html('ul', {class: 'plain'}, ...block.wanted.map((one) => html('li', {class: one.met ? 'agrees' : 'exceeded'}, micro(one.text)))));
     sections.push(part);

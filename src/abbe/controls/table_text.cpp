@@ -85,9 +85,9 @@ std::string table_text(const TableReport& report) {
   if (!format.unverified.empty()) text += fmt::format("EXPERIMENTAL, not verified: {}\n", format.unverified);
   const std::vector<TableFigures>& tables = made.tables;
   if (std::any_of(tables.begin(), tables.end(), [](const TableFigures& table) { return table.nodes > 1; })) {
-    text +=
-        fmt::format("nodes: evenly spaced, so many that straight lines between them stay within {:g} um and {:g} urad\n",
-                    in_um(made.tolerance_mm), in_micro(made.tolerance_rad));
+    text += fmt::format(
+        "nodes: evenly spaced, so many that straight lines between them stay within {:g} um and {:g} urad\n",
+        in_um(made.tolerance_mm), in_micro(made.tolerance_rad));
   }
   for (const TableFigures& table : tables) {
     text += fmt::format("  {:<10} {:>5} {}", table.name, table.nodes, table.nodes == 1 ? "value" : "nodes");

@@ -27,7 +27,8 @@ class PlannedPosesReader {
     const PoseList all = take_poses(text_, file_, machine_, table_, true);
     const std::size_t named = table_.columns[target].present ? target : target + 1;
     if (table_.columns[target].present && table_.columns[target + 1].present) {
-      throw InputError({file_, 0, 0, "target"}, "is given together with " + table_.columns[target].header, "only one of them");
+      throw InputError({file_, 0, 0, "target"}, "is given together with " + table_.columns[target].header,
+                       "only one of them");
     }
 
     const std::vector<std::string> stations = setup_.device->station_names(), targets = setup_.device->target_names();

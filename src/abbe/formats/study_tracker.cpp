@@ -105,7 +105,8 @@ TrackerNoise read_tracker_noise(TomlTable table) {
   table.finish();
   const std::string expected = "xyz_um with xyz_um_per_m, or range_um with range_um_per_m and angle_arcsec";
   if (isotropic) {
-    if (range > 0 || range_slope > 0 || angle > 0) table.fail("", "xyz is given together with range or angle", expected);
+    if (range > 0 || range_slope > 0 || angle > 0)
+      table.fail("", "xyz is given together with range or angle", expected);
     if (xyz <= 0) table.fail_quantity("xyz", Quantity::length, "is not above zero", "a standard deviation");
     return TrackerNoise::isotropic(xyz * kMicrometresPerMillimetre, xyz_slope * kMicrometresPerMetre);
   }

@@ -58,7 +58,7 @@ struct EvaluationReport {
   std::vector<EvaluationPlot> plots;
   std::vector<std::string> notes;  ///< what a reader must know to judge the figures
   nlohmann::ordered_json details;  ///< for programs, beside the figures; units in the keys; an object or null
-  nlohmann::json page;  ///< more sections of the interactive page (docs/report-data.md), or null: a page without script
+  nlohmann::json page;             ///< more sections of the page (docs/report-data.md), or null
 
   bool exceeds_tolerance() const;
 };
@@ -66,7 +66,7 @@ struct EvaluationReport {
 /// Contents of evaluation.json: kind, standard, facts, figures by symbol with units in the keys, notes, details.
 nlohmann::ordered_json evaluation_json(const EvaluationReport& report);
 
-/// A self-contained page with figures, plots, tables and notes; no script, no address to load. Text in the report is
+/// The page of all reports with figures, plots, tables and notes; one file, no address to load. Text in the report is
 /// shown as text, whatever it contains.
 std::string evaluation_page(const EvaluationReport& report);
 

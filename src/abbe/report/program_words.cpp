@@ -246,22 +246,23 @@ std::string program_text(const ProgramWordsRequest& request, const Machine& mach
                         report.not_proven.count == 1 ? "" : "s", lines_text(report.not_proven));
   }
   if (report.tool_changes.count > 0) {
-    text += fmt::format("moves that begin with another tool length in force: {} move{}, {}\n",
-                        report.tool_changes.count, report.tool_changes.count == 1 ? "" : "s",
-                        lines_text(report.tool_changes));
+    text +=
+        fmt::format("moves that begin with another tool length in force: {} move{}, {}\n", report.tool_changes.count,
+                    report.tool_changes.count == 1 ? "" : "s", lines_text(report.tool_changes));
   }
   if (report.inverse_time.count > 0) {
     text += fmt::format("inverse time feeds, to keep the durations: {} pieces, {}\n", report.inverse_time.count,
                         lines_text(report.inverse_time));
   }
   if (result.text.uncorrected_moves > 0) {
-    text +=
-        fmt::format("rapid moves not corrected, because the program had not yet moved some axis: {}, first in line {}\n",
-                    result.text.uncorrected_moves, result.text.first_uncorrected_line);
+    text += fmt::format(
+        "rapid moves not corrected, because the program had not yet moved some axis: {}, first in line {}\n",
+        result.text.uncorrected_moves, result.text.first_uncorrected_line);
   }
   if (result.text.first_assumed_offset_line > 0) {
-    text += fmt::format("work offset taken as zero, because neither --parameters nor the program states it: from line {}\n",
-                        result.text.first_assumed_offset_line);
+    text +=
+        fmt::format("work offset taken as zero, because neither --parameters nor the program states it: from line {}\n",
+                    result.text.first_assumed_offset_line);
   }
   if (request.leave_out_factor > 0) text += left_out_text(machine, request.leave_out_factor, result.left_out, "");
   if (!result.refused.empty()) return text;

@@ -58,6 +58,17 @@ TEST(Report, PageIsOneFileWithoutAddressesToLoad) {
   EXPECT_EQ(page.find("url(http"), std::string::npos);
 }
 
+TEST(Report, PageForbidsEverythingButItsOwnScript) {
+  const std::string page = report_page(smallest());
+  const std::size_t policy = page.find("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; ");
+  ASSERT_NE(policy, std::string::npos);
+  EXPECT_LT(policy, page.find("<style")) << "it binds only what comes behind it";
+  const std::string words = page.substr(policy, page.find('>', policy) - policy);
+  EXPECT_THAT(words, testing::HasSubstr("script-src 'sha256-"));
+  EXPECT_THAT(words, testing::HasSubstr("img-src data: blob:;"));
+  EXPECT_EQ(words.find("http:"), std::string::npos);
+}
+
 TEST(Report, EmptyPageLeavesRoomForDataUnderTheSizeLimit) {
   EXPECT_LT(report_page(smallest()).size(), kReportSizeLimit / 3);
 }

@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "abbe/report/svg_polar_plot.h"
 #include "abbe/report/xml_for_test.h"
@@ -177,6 +181,28 @@ TEST(PolarPlot, DrawsAnglesCounterClockwiseAndZeroBetweenCentreAndRim) {
   EXPECT_NEAR(y0, y2, 0.02);
   EXPECT_NEAR(y0 - y1, 250, 0.02) << "the largest value is at the rim";
   EXPECT_GT(x0 - x1, 100) << "zero is well outside the centre";
+}
+
+TEST(PolarPlot, NumbersOfItsCirclesKeepClearOfEachOther) {
+  PolarPlot plot("t", "v");
+  plot.line({{0, 0.31}, {1, -0.62}, {2, 0.6}, {3, 0.1}}, true, {});
+  const std::string svg = plot.svg();
+  std::vector<double> right_to_left;
+  std::size_t widest = 0;
+  for (std::size_t at = svg.find("<text"); at != std::string::npos; at = svg.find("<text", at + 1)) {
+    double x = 0, y = 0, size = 0;
+    if (std::sscanf(svg.c_str() + at, "<text x=\"%lf\" y=\"%lf\" font-size=\"%lf\"", &x, &y, &size) != 3) continue;
+    if (size != 11) continue;
+    right_to_left.push_back(x);
+    const std::size_t from = svg.find('>', at) + 1;
+    widest = std::max(widest, svg.find('<', from) - from);
+  }
+  ASSERT_GE(right_to_left.size(), 3U);
+  for (std::size_t i = 1; i < right_to_left.size(); ++i) {
+    // A minus sign is three bytes and one letter.
+    EXPECT_GT(right_to_left[i] - right_to_left[i - 1], text_width(std::string(widest - 2, '0'), 11) + 3)
+        << "letters of some fonts are wider";
+  }
 }
 
 TEST(PolarPlot, WithoutDataOrDeviationHasAFrame) {

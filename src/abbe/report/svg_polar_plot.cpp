@@ -113,8 +113,15 @@ std::string PolarPlot::svg() const {
     const DrawingPoint name = at(0.75 * std::numbers::pi, radius_of(circle.value));
     drawing.text({name.x - 4, name.y - 4}, circle.label, TextAnchor::end, 12, circle.style.colour);
   }
-  // The scale last, over the lines, between the directions of the axes.
-  for (std::size_t i = 0; i < ticks.values.size(); ++i) {
+  // The scale last, over the lines, between the directions of the axes. Where circles are closer than their numbers are
+  // wide, every n-th has one, counted from zero.
+  double widest = 0;
+  for (const std::string& label : ticks.labels) widest = std::max(widest, text_width(label, 11));
+  const double apart = kRadius * std::cos(std::numbers::pi / 12) / static_cast<double>(ticks.values.size() - 1);
+  const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil((widest + 4) / apart)));
+  const auto zero = std::find(ticks.values.begin(), ticks.values.end(), 0.0);
+  const auto first = static_cast<std::size_t>(zero == ticks.values.end() ? 0 : zero - ticks.values.begin()) % every;
+  for (std::size_t i = first; i < ticks.values.size(); i += every) {
     const DrawingPoint label = at(std::numbers::pi / 12, radius_of(ticks.values[i]));
     drawing.text({label.x + 2, label.y + 4}, ticks.labels[i], TextAnchor::start, 11, PlotColour::soft);
   }

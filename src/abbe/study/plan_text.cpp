@@ -18,22 +18,6 @@ bool has_other_instruments(const Study& study) {
                      [](const Setup& setup) { return !setup.device->measures_points(); });
 }
 
-/// Columns behind those of the axes. A column `target` where the set-ups call their targets differently.
-struct PlanColumns {
-  bool setup = false, station = false;
-  std::string target;
-};
-
-PlanColumns plan_columns(const Study& study) {
-  PlanColumns columns{study.setups.size() > 1, false, {}};
-  for (const Setup& setup : study.setups) {
-    columns.station = columns.station || !setup.device->station_names().empty();
-    const std::string word = setup.device->target_word();
-    columns.target = columns.target.empty() || columns.target == word ? word : "target";
-  }
-  return columns;
-}
-
 nlohmann::ordered_json grid_json(const GridPoint& grid) {
   nlohmann::ordered_json json = {{"made", grid.words},
                                  {"readings", grid.value.readings},
@@ -92,12 +76,13 @@ std::string grids_text(const StudyPlan& result) {
 std::string combinations_text(const StudyPlan& result) {
   std::string text;
   if (result.combinations.empty()) return text;
-  text += fmt::format("\nwhich instruments are worth setting up (uncertainty with prior knowledge of 20 um and 60 urad)\n");
+  text +=
+      fmt::format("\nwhich instruments are worth setting up (uncertainty with prior knowledge of 20 um and 60 urad)\n");
   for (const SetupChoice& choice : result.combinations) {
     const std::string names = fmt::format("{}", fmt::join(choice.setups, ", "));
     if (choice.possible) {
-      text += fmt::format("  {:>8.3f} um  {:>5} readings in {:>4.0f} min  {}\n", 1e3 * choice.with_prior, choice.readings,
-                 choice.time / 60, names);
+      text += fmt::format("  {:>8.3f} um  {:>5} readings in {:>4.0f} min  {}\n", 1e3 * choice.with_prior,
+                          choice.readings, choice.time / 60, names);
     } else {
       text += fmt::format("      open     in the time allowed                {}\n", names);
     }
@@ -118,6 +103,16 @@ std::string setups_text(const Study& study, const StudyPlan& result) {
 }
 
 }  // namespace
+
+PlanColumns plan_columns(const Study& study) {
+  PlanColumns columns{study.setups.size() > 1, false, {}};
+  for (const Setup& setup : study.setups) {
+    columns.station = columns.station || !setup.device->station_names().empty();
+    const std::string word = setup.device->target_word();
+    columns.target = columns.target.empty() || columns.target == word ? word : "target";
+  }
+  return columns;
+}
 
 std::string plan_csv(const Study& study, const StudyPlan& result) {
   const PlanColumns columns = plan_columns(study);

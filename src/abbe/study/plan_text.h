@@ -7,6 +7,14 @@
 
 namespace abbe {
 
+/// Columns of a list of planned readings behind those of the axes.
+struct PlanColumns {
+  bool setup = false, station = false;
+  std::string target;  ///< "reflector", "item"; "target" where the set-ups call theirs differently
+};
+
+PlanColumns plan_columns(const Study& study);
+
 /// The readings of a plan in the order in which they are to be taken, as CSV.
 std::string plan_csv(const Study& study, const StudyPlan& result);
 

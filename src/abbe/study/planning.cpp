@@ -139,17 +139,7 @@ std::vector<CandidateReading> in_order(const Study& study, const std::vector<Can
 }
 
 double total_time(const Study& study, const std::vector<CandidateReading>& readings) {
-  const PlanningStudy& plan = *study.planning;
-  double time = 0;
-  std::set<std::size_t> used;
-  for (std::size_t k = 0; k < readings.size(); ++k) {
-    const std::string& setup = study.setups[readings[k].setup].name;
-    if (used.insert(readings[k].setup).second) time += plan.set_up_of(setup);
-    time += plan.reading_of(setup);
-    if (k > 0 && readings[k].pose == readings[k - 1].pose) continue;
-    time += plan.settle_of(setup) + (k > 0 ? move_time(plan, readings[k - 1].pose, readings[k].pose) : 0);
-  }
-  return time;
+  return readings.empty() ? 0 : reading_times(study, readings).back();
 }
 
 double root_mean_square(const PlanValue& value, const Eigen::MatrixXd& predictions) {
@@ -419,6 +409,24 @@ std::vector<SetupChoice> try_combinations(const Study& study, const std::functio
 }
 
 }  // namespace
+
+std::vector<double> reading_times(const Study& study, const std::vector<CandidateReading>& readings) {
+  const PlanningStudy& plan = *study.planning;
+  std::vector<double> times;
+  times.reserve(readings.size());
+  double time = 0;
+  std::set<std::size_t> used;
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    const std::string& setup = study.setups[readings[k].setup].name;
+    if (used.insert(readings[k].setup).second) time += plan.set_up_of(setup);
+    time += plan.reading_of(setup);
+    if (k == 0 || readings[k].pose != readings[k - 1].pose) {
+      time += plan.settle_of(setup) + (k > 0 ? move_time(plan, readings[k - 1].pose, readings[k].pose) : 0);
+    }
+    times.push_back(time);
+  }
+  return times;
+}
 
 StudyPlan plan_study(const Study& study, const std::function<void(double)>& progress) {
   if (!study.planning) throw InputError({.field = "plan"}, "there is nothing to plan", "a table [plan]");

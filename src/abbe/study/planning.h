@@ -161,6 +161,10 @@ struct StudyPlan {
 /// @param progress  share done, 0 to 1
 StudyPlan plan_study(const Study& study, const std::function<void(double)>& progress = {});
 
+/// When each reading is finished, s from the start: setting up, moves of the slowest axis, settling, reading.
+/// @param readings  in their order
+std::vector<double> reading_times(const Study& study, const std::vector<CandidateReading>& readings);
+
 /// Root mean square of the predicted volumetric uncertainty, mm, of readings with the weak prior.
 double uncertainty_with_prior(const PlanningModel& model, const PlanningCandidates::Rows& rows,
                               const Eigen::MatrixXd& predictions);

@@ -127,9 +127,11 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
     const auto percentiles = [](const SampleStatistics& s) {
       return nlohmann::ordered_json{{"median", 1e3 * s.median}, {"p95", 1e3 * s.p95}};
     };
-    std::string title = quantity_name(unseen.quantity);
+    const std::string quantity = quantity_name(unseen.quantity);
+    std::string title = quantity;
     title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
     json["histograms"] = {{{"title", title + ": " + unseen.description},
+                           {"quantity", quantity},
                            {"before_um", before},
                            {"after_um", after},
                            {"before_percentiles_um", percentiles(unseen.before_statistics)},
