@@ -13,13 +13,15 @@
 #   make bench     speed and accuracy benchmarks
 #   make fuzz      fuzz every reader for FUZZ_SECONDS (default 60) each
 #   make coverage  line coverage of the quick tests
+#   make package   Debian packages and the tarball for any Linux: build/packages
+#   make package-test   install both where nothing else is, and test them: root, network, a quarter of an hour
 #   make install   install to PREFIX (default /usr/local)
 #   make install-linuxcnc   kinematics module into LinuxCNC's folder of modules (linuxcnc/README.md)
 #   make clean     remove build/
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo closed-loop test sanitize unit quick lint format bench fuzz coverage install install-linuxcnc clean
+.PHONY: build demo closed-loop test sanitize unit quick lint format bench fuzz coverage package package-test install install-linuxcnc clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
@@ -125,6 +127,19 @@ coverage:
 	@gcovr --root . --filter src/abbe --exclude '.*_test\.cpp' --html-details build/coverage/report/index.html \
 	  --print-summary build/coverage
 	@echo "Line by line: build/coverage/report/index.html"
+
+package:
+	@.ci/set-up build linuxcnc package
+	@.ci/build --expect $(BUILD_MINUTES) "make $@ builds what goes into the packages" release
+	@.ci/build --target abbe_static release
+	@rm -rf build/packages
+	@cpack --config build/release/CPackConfig.cmake -B build/packages
+	@rm -rf build/packages/_CPack_Packages
+	@cd build/packages && sha256sum *.deb *.tar.gz >SHA256SUMS && ls -sh1
+
+package-test: package
+	@.ci/set-up package-test
+	@tests/package/run
 
 install: build
 	@cmake --install build/release --prefix $(PREFIX)

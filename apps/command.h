@@ -13,10 +13,10 @@ struct CommandLine {
   std::function<int()> run;  ///< returns an ExitCode
 
   CommandLine();
-  /// @param example  shown at the end of --help
-  /// It stands in the section that was begun last.
-  /// Heading in --help of the subcommands that are added from now on.
+  /// Heading in --help of the subcommands that are added from now on; empty: --help does not list them.
   void begin_section(const std::string& heading) { section_ = heading; }
+  /// It stands in the section that was begun last.
+  /// @param example  shown at the end of --help
   Subcommand* add(const std::string& name, const std::string& description, const std::string& example);
 
  private:
@@ -39,5 +39,7 @@ void add_deviate_command(CommandLine& line);
 void add_reproduce_command(CommandLine& line);
 void add_test_piece_command(CommandLine& line);
 void add_verify_command(CommandLine& line);
+void add_completion_command(CommandLine& line);
+void add_man_command(CommandLine& line);
 
 }  // namespace abbe

@@ -33,6 +33,10 @@ void add_subcommands(CommandLine& line) {
   add_fit_command(line);
   add_register_command(line);
   add_deviate_command(line);
+  // For those who make packages, and for shells.
+  line.begin_section("");
+  add_completion_command(line);
+  add_man_command(line);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "abbe/formats/existing_output.h"
 #include "abbe/formats/input_error.h"
@@ -25,7 +26,11 @@ Check in_range(int from, int to) { return check_of(CLI::Range(from, to)); }
 Check in_range(double from, double to) { return check_of(CLI::Range(from, to)); }
 Check positive_number() { return check_of(CLI::PositiveNumber); }
 Check non_negative_number() { return check_of(CLI::NonNegativeNumber); }
-Check one_of(const std::vector<std::string>& words) { return check_of(CLI::IsMember(words)); }
+Check one_of(const std::vector<std::string>& words) {
+  Check check = check_of(CLI::IsMember(words));
+  check.words = words;
+  return check;
+}
 
 Option* Option::required() {
   option_->required();
@@ -35,6 +40,7 @@ Option* Option::required() {
 Option* Option::check(const Check& check) {
   option_->check(
       CLI::Validator([problem = check.problem](std::string& text) { return problem(text); }, check.description));
+  if (!check.words.empty()) words_ = check.words;
   return this;
 }
 
@@ -55,6 +61,11 @@ Option* Option::allow_extra_args(bool allowed) {
 
 Option* Option::capture_default_str() {
   option_->capture_default_str();
+  return this;
+}
+
+Option* Option::suggest(const std::vector<std::string>& words) {
+  words_ = words;
   return this;
 }
 
@@ -80,6 +91,59 @@ Option* Option::needs(const std::string& name) {
 
 std::size_t Option::count() const { return option_->count(); }
 std::string Option::get_name() const { return option_->get_name(); }
+
+namespace {
+
+OptionDescription description_of(const CLI::Option& option) {
+  OptionDescription result;
+  for (const std::string& name : option.get_snames()) result.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) result.names.push_back("--" + name);
+  if (option.get_positional()) result.argument = option.get_name(true);
+  result.description = option.get_description();
+  result.type = option.get_items_expected_max() == 0 ? "" : option.get_type_name();
+  result.default_value = option.get_default_str();
+  result.required = option.get_required();
+  result.repeatable = option.get_expected_max() > 1;
+  return result;
+}
+
+CommandDescription description_of(const CLI::App& app) {
+  CommandDescription result;
+  result.name = app.get_name();
+  result.description = app.get_description();
+  result.section = app.get_group();
+  result.footer = app.get_footer();
+  return result;
+}
+
+void add_description(CommandDescription& command, const OptionDescription& option) {
+  (option.names.empty() ? command.arguments : command.options).push_back(option);
+}
+
+void add_descriptions(CommandDescription& command, const std::vector<std::unique_ptr<Subcommand>>& subcommands) {
+  for (const std::unique_ptr<Subcommand>& one : subcommands) {
+    CommandDescription description = one->describe();
+    if (!description.section.empty()) command.subcommands.push_back(std::move(description));
+  }
+}
+
+}  // namespace
+
+OptionDescription Option::describe() const {
+  OptionDescription result = description_of(*option_);
+  result.words = words_;
+  return result;
+}
+
+CommandDescription Subcommand::describe() const {
+  CommandDescription result = description_of(*app_);
+  for (const CLI::Option* const option : app_->get_options()) {
+    const auto own = std::find_if(options_.begin(), options_.end(), [&](const auto& one) { return one->is(option); });
+    add_description(result, own == options_.end() ? description_of(*option) : (*own)->describe());
+  }
+  add_descriptions(result, subcommands_);
+  return result;
+}
 
 Option* Subcommand::own(CLI::Option& option) { return options_.emplace_back(std::make_unique<Option>(option)).get(); }
 
@@ -266,6 +330,13 @@ void Program::set_version_flag(const std::string& name, const std::string& versi
 
 void Program::set_help_all_flag(const std::string& name, const std::string& description) {
   app_->set_help_all_flag(name, description);
+}
+
+CommandDescription Program::describe() const {
+  CommandDescription result = description_of(*app_);
+  for (const CLI::Option* const option : app_->get_options()) add_description(result, description_of(*option));
+  add_descriptions(result, subcommands_);
+  return result;
 }
 
 namespace {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "command_description.h"
+
 // The parser takes seconds to compile; options.cpp alone includes it.
 namespace CLI {  // NOLINT(readability-identifier-naming): the name is the parser's
 class App;
@@ -19,6 +21,7 @@ namespace abbe {
 struct Check {
   std::function<std::string(const std::string& text)> problem;  ///< what is wrong with a text; empty: nothing
   std::string description;                                      ///< for --help, behind the type: "INT in [0 - 9]"
+  std::vector<std::string> words{};                             ///< all texts that fulfil it, if they can be listed
 };
 
 /// A number from one end to the other, both included, of the type of the ends.
@@ -44,6 +47,8 @@ class Option {
   Option* allow_extra_args(bool allowed);
   /// --help shows what the variable holds now.
   Option* capture_default_str();
+  /// Words that shells offer for its value; others may be right too.
+  Option* suggest(const std::vector<std::string>& words);
   /// In place of TEXT, FLOAT and the like in --help.
   Option* type_name(const std::string& name);
   /// Heading in --help under which it stands.
@@ -57,9 +62,12 @@ class Option {
   std::size_t count() const;
   /// "--output" of "-o,--output"; an argument's name as it is.
   std::string get_name() const;
+  OptionDescription describe() const;
+  bool is(const CLI::Option* option) const { return option == option_; }
 
  private:
   CLI::Option* option_;
+  std::vector<std::string> words_;
 };
 
 /// A command with its options; it belongs to the program, or to the command that it is a part of.
@@ -122,6 +130,7 @@ class Subcommand {
   std::size_t count(const std::string& option) const;
   /// Names of the options and arguments that were given, in the order in which they were added.
   std::vector<std::string> given_options() const;
+  CommandDescription describe() const;
 
   /// For Program, of a command that the command line names: whether outputs may take the names they were given.
   /// @throws InputError
@@ -176,6 +185,8 @@ class Program {
   void set_version_flag(const std::string& name, const std::string& version);
   /// A flag for the help of all subcommands.
   void set_help_all_flag(const std::string& name, const std::string& description);
+  /// What it understands; without the subcommands that --help does not list.
+  CommandDescription describe() const;
 
   /// @throws InputError for an output whose name is not free, and what functions of options throw
   ParseResult parse(int argc, const char* const* argv);

@@ -140,7 +140,9 @@ int run_table(const TableCommand& command) {
 void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   auto options = std::make_shared<TableCommand>();
   std::string formats = "Formats:\n";
+  std::vector<std::string> names;
   for (const TableFormat& format : table_formats()) {
+    names.emplace_back(format.name);
     formats += fmt::format("  {:<16} {}\n", format.name, format.what);
     if (format.unverified.empty()) continue;
     formats += fmt::format("  {:<16} EXPERIMENTAL, not verified: {}\n", "", format.unverified);
@@ -154,7 +156,7 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
                   "Signs, units and sources of every format: docs/controller-tables.md");
   command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
   command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
-  command->add_option("--for", options->format, "Format, see below")->required();
+  command->add_option("--for", options->format, "Format, see below")->required()->suggest(names);
   command->add_output_file_or_folder(
       "-o,--output", options->output,
       "File to write, or a folder (a name without an extension) if there are several files", &options->dry_run);

@@ -180,7 +180,7 @@ const data = {
   format: 'abbe-report/1',
   title: 'Volumetric accuracy of a table-and-column machine',
   subtitle: 'Laser-tracker campaign with 2,000 readings, joint identification of error motions and axis average lines',
-  generator: 'abbe 0.1.0', simulated: true,
+  generator: 'abbe 0.2.0', simulated: true,
   study: {name: 'sample', file: 'sample.study.toml', seed: 20210517},
   machine: {name: 'Table-and-column machine', chain: "w C' X' b Z t", description: 'Rotary table on a slide, vertical column. Reflectors on the spindle, tracker on the table.', axes, tool_reference_mm: [0, 0, 250], tool_offset_mm: [180, 250, -120], tool_direction: [0, 0, 1]},
   summary: {

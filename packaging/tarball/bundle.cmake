@@ -1,0 +1,41 @@
+# Runs while the files of the tarball are installed: OpenCASCADE is there as shared libraries only, so abbe-step takes all
+# the libraries that it is linked with along, the C library and its loader too, and a script that starts it with these.
+# After licences.cmake.
+set(root "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
+set(bundle ${root}/lib/abbe)
+
+function(install_licence_of_file path)
+  # Debian's list of files may know a library below /lib or below /usr/lib.
+  string(REGEX REPLACE "^/usr/lib" "/lib" short ${path})
+  foreach(name IN ITEMS ${path} /usr${short} ${short})
+    execute_process(COMMAND dpkg-query --search ${name} OUTPUT_VARIABLE found RESULT_VARIABLE unknown ERROR_QUIET)
+    if(NOT unknown)
+      string(REGEX REPLACE "^([^:]+):.*$" "\\1" package "${found}")
+      install_licence(${package})
+      return()
+    endif()
+  endforeach()
+  message(FATAL_ERROR "no Debian package has ${path}, so its licence is not known")
+endfunction()
+
+file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${bundle}/abbe-step
+  RESOLVED_DEPENDENCIES_VAR libraries UNRESOLVED_DEPENDENCIES_VAR missing)
+if(missing)
+  message(FATAL_ERROR "abbe-step needs libraries that are not here: ${missing}")
+endif()
+set(ABBE_LOADER "")
+foreach(library IN LISTS libraries)
+  get_filename_component(name ${library} NAME)
+  get_filename_component(file ${library} REALPATH)
+  configure_file(${file} ${bundle}/${name} COPYONLY)
+  if(name MATCHES "^ld-")
+    set(ABBE_LOADER ${name})
+  endif()
+  install_licence_of_file(${file})
+endforeach()
+if(NOT ABBE_LOADER)
+  message(FATAL_ERROR "abbe-step names no loader of shared libraries: ${libraries}")
+endif()
+file(CHMOD ${bundle}/${ABBE_LOADER} PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/abbe-step ${root}/bin/abbe-step @ONLY)
+file(CHMOD ${root}/bin/abbe-step PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
