@@ -20,8 +20,9 @@ void add_plan_command(CommandLine& line) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  Subcommand* command = line.add("plan", "Choose the readings that determine a machine's errors best",
-                                 "  abbe plan examples/trunnion/trunnion.study.toml -o poses.csv --report plan.html");
+  Subcommand* command =
+      line.add("plan", "Choose the readings that determine a machine's errors best",
+               "  abbe plan examples/trunnion/trunnion.study.toml -o poses.csv --report readings.html");
   command->add_option("study", options->study, "Study file (*.study.toml) with tables [plan] and [identify]")
       ->required();
   command->add_output_file("-o,--output", options->output, "Readings to take, ordered for short travel (*.csv)");

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/report/machine_json.h"
+#include "abbe/report/scan_plan_page.h"
 #include "abbe/verify/statistics.h"
 #include "liu/results.h"
-#include "abbe/report/scan_plan_page.h"
 
 namespace abbe {
 namespace {

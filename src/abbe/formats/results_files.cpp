@@ -12,7 +12,7 @@ namespace abbe {
 void require_results(const std::string& results) {
   std::error_code ignored;
   if (results.empty() || std::filesystem::is_directory(results, ignored)) return;
-  throw InputError({.file = results}, "is no folder", "results of abbe run");
+  throw InputError({.file = results}, "is not a folder", "results of abbe run");
 }
 
 std::string file_or_of_results(const std::string& named, const std::string& results, const char* in_results,

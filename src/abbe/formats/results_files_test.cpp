@@ -30,7 +30,7 @@ TEST(ResultsFiles, AreThoseOfTheResultsUnlessOthersAreNamed) {
   EXPECT_EQ(results_summary_text(results), "{}");
   require_results(results);
   require_results("");
-  EXPECT_THAT(message_of([&] { require_results(results + "/machine.toml"); }), HasSubstr("is no folder"));
+  EXPECT_THAT(message_of([&] { require_results(results + "/machine.toml"); }), HasSubstr("is not a folder"));
 }
 
 }  // namespace

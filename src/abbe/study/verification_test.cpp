@@ -109,7 +109,7 @@ TEST(Verification, WhatCannotBeAnsweredIsNamedByItsOption) {
   };
   VerificationRequest request = trunnion();
   request.least_reduction = std::nan("");
-  EXPECT_THAT(problem(request), HasSubstr("--least-reduction: nan is no condition"));
+  EXPECT_THAT(problem(request), HasSubstr("--least-reduction: nan is not a condition"));
   request = trunnion();
   request.ranges.resize(request.machine.axes.size());
   for (std::optional<AxisRange>& range : request.ranges) range = AxisRange::fixed(0);
