@@ -109,7 +109,7 @@ TEST(LaserTracker, FindsItsStationsAndKeepsWhatIsGiven) {
   const std::vector<InstrumentPlace> places = started.instrument->places();
   ASSERT_EQ(places.size(), 1U);  // the other station is not estimated
   EXPECT_EQ(places[0].name, "tracker2");
-  const RigidTransform& expected = truth->setup().stations[1].body_from_tracker;
+  const RigidTransform expected = truth->setup().stations[1].body_from_tracker;
   EXPECT_LT((places[0].position - expected.translation).norm(), 1e-9);
   EXPECT_LT((*places[0].rotation - expected.rotation).norm(), 1e-12);
 }
