@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/number_text.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/number_text.h"
 #include "abbe/machine/axis_unit.h"
 
 namespace abbe {

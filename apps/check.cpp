@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/report/machine_check_words.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/json_text.h"
+#include "abbe/report/words/machine_check_words.h"
 #include "check_frozen.h"
 #include "check_geometry.h"
 #include "command.h"

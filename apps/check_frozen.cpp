@@ -7,9 +7,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/text_file.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/json_text.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/runtime/abbe_runtime.h"
 #include "exit_code.h"

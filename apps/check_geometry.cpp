@@ -6,12 +6,12 @@
 #include <optional>
 #include <string>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/ply_file.h"
-#include "abbe/formats/point_cloud_file.h"
-#include "abbe/formats/text_file.h"
-#include "abbe/report/geometry_check_words.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/shapes/ply_file.h"
+#include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/json_text.h"
+#include "abbe/report/words/geometry_check_words.h"
 #include "exit_code.h"
 
 namespace abbe {

@@ -14,13 +14,13 @@
 #include <system_error>
 #include <vector>
 
-#include "abbe/formats/existing_output.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/interruption.h"
-#include "abbe/formats/kept_inputs.h"
-#include "abbe/formats/mapped_inputs.h"
-#include "abbe/formats/not_finite.h"
-#include "abbe/formats/utf8.h"
+#include "abbe/formats/files/existing_output.h"
+#include "abbe/formats/files/interruption.h"
+#include "abbe/formats/files/kept_inputs.h"
+#include "abbe/formats/files/mapped_inputs.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/not_finite.h"
+#include "abbe/formats/text/utf8.h"
 #include "exit_code.h"
 #include "messages.h"
 #include "nearest_word.h"

@@ -4,12 +4,12 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/ply_file.h"
-#include "abbe/formats/transform_file.h"
-#include "abbe/report/deviation_colours.h"
-#include "abbe/report/deviation_report.h"
-#include "abbe/report/surface_picture.h"
+#include "abbe/formats/machine/transform_file.h"
+#include "abbe/formats/shapes/ply_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/report/drawings/deviation_colours.h"
+#include "abbe/report/drawings/surface_picture.h"
+#include "abbe/report/evaluations/deviation_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"

@@ -1,6 +1,6 @@
 #include "errors_for_use.h"
 
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 #include "messages.h"
 #include "options.h"
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "abbe/formats/errors_file.h"
+#include "abbe/formats/machine/errors_file.h"
 
 namespace abbe {
 

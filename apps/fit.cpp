@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/mesh_file.h"
-#include "abbe/formats/number_text.h"
-#include "abbe/formats/point_cloud_file.h"
-#include "abbe/formats/results_folder.h"
-#include "abbe/report/fit_report.h"
-#include "abbe/report/fit_surface.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/shapes/mesh_file.h"
+#include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/number_text.h"
+#include "abbe/report/drawings/fit_surface.h"
+#include "abbe/report/evaluations/fit_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"

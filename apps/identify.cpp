@@ -2,10 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/existing_output.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/json_text.h"
+#include "abbe/formats/files/existing_output.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/json_text.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/study/report_parameters.h"
 #include "abbe/study/run_study.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/report/version.h"
 #include "command.h"
 #include "exit_code.h"

@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/map_file.h"
-#include "abbe/formats/measurement_file.h"
-#include "abbe/formats/results_folder.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/machine/map_file.h"
+#include "abbe/formats/readings/measurement_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/json_text.h"
 #include "abbe/study/errors_map.h"
 #include "axis_option.h"
 #include "command.h"

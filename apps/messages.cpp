@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <string>
 
-#include "abbe/formats/unfinished_output.h"
-#include "abbe/formats/utf8.h"
+#include "abbe/formats/files/unfinished_output.h"
+#include "abbe/formats/text/utf8.h"
 
 namespace abbe {
 namespace {

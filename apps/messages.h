@@ -7,8 +7,8 @@
 
 namespace abbe {
 
-/// Writes to standard error what a terminal can be shown of it (abbe/formats/utf8.h). If standard error is closed or
-/// full, the text is lost and the command goes on; its exit code still tells.
+/// Writes to standard error what a terminal can be shown of it (abbe/formats/text/utf8.h). If standard error is closed
+/// or full, the text is lost and the command goes on; its exit code still tells.
 void tell_text(std::string_view text);
 
 /// tell_text() of a format.

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/results_folder.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/machine_file.h"
 #include "command.h"
 #include "exit_code.h"
 #include "options.h"

@@ -7,9 +7,9 @@
 #include <system_error>
 #include <utility>
 
-#include "abbe/formats/existing_output.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/results_folder.h"
+#include "abbe/formats/files/existing_output.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/text/input_error.h"
 #include "messages.h"
 #include "nearest_word.h"
 

@@ -99,13 +99,13 @@ class Subcommand {
   Option* add_flag(const std::string& name, bool& value, const std::string& description);
 
   /// The name of a file that the command writes. Adds --force, without which a file that exists is not replaced
-  /// (abbe/formats/existing_output.h); that is checked when the command line was parsed and again by the writer.
+  /// (abbe/formats/files/existing_output.h); that is checked when the command line was parsed and again by the writer.
   /// @param not_written  if it is not null and true then, the file will not be written and its name is not checked
   Option* add_output_file(const std::string& name, std::string& value, const std::string& description,
                           const bool* not_written = nullptr);
   Option* add_output_file(const std::string& name, std::vector<std::string>& value, const std::string& description);
-  /// The name of a folder of results, which may replace older results (abbe/formats/results_folder.h); that is checked
-  /// when the command line was parsed.
+  /// The name of a folder of results, which may replace older results (abbe/formats/files/results_folder.h); that is
+  /// checked when the command line was parsed.
   Option* add_output_folder(const std::string& name, std::string& value, const std::string& description);
   /// add_output_file() or add_output_folder(), by names_folder().
   Option* add_output_file_or_folder(const std::string& name, std::string& value, const std::string& description,

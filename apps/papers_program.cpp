@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "abbe/formats/child_process.h"
-#include "abbe/formats/companion_program.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/files/child_process.h"
+#include "abbe/formats/files/companion_program.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/report/version.h"
 #include "reproduce.h"
 

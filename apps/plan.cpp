@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/results_folder.h"
-#include "abbe/formats/study_file.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/study/study_file.h"
+#include "abbe/formats/text/json_text.h"
 #include "abbe/study/plan_page.h"
 #include "abbe/study/plan_text.h"
 #include "abbe/study/planning.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 #include "options.h"
 
 namespace abbe {

@@ -23,7 +23,7 @@ void add_reproduce_command(CommandLine& line, const std::function<int(const Repr
 
 /// Goes on as abbe-papers (papers/), which is found beside this program or by the environment variable
 /// ABBE_PAPERS_PROGRAM: the process stays, and with it its number, its streams and its exit code. Signals for which
-/// this program waits (abbe/formats/interruption.h) stay blocked until abbe-papers waits for them.
+/// this program waits (abbe/formats/files/interruption.h) stay blocked until abbe-papers waits for them.
 /// @throws InputError if there is no such program or it cannot be started
 int start_papers_program(const ReproduceOptions& options);
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "abbe/formats/results_folder.h"
+#include "abbe/formats/files/results_folder.h"
 #include "abbe/study/results.h"
 #include "abbe/study/run_study.h"
 #include "abbe/study/summary.h"

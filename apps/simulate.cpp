@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/results_folder.h"
-#include "abbe/formats/study_file.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/study/study_file.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/study/campaign.h"
 #include "abbe/study/results.h"
 #include "command.h"

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/step_file.h"
-#include "abbe/report/geometry_facts.h"
+#include "abbe/formats/shapes/step_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/report/words/geometry_facts.h"
 #include "messages.h"
 #include "options.h"
 #include "progress.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "abbe/formats/mesh_file.h"
+#include "abbe/formats/shapes/mesh_file.h"
 
 namespace abbe {
 

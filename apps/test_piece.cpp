@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "abbe/formats/curve_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/results_folder.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/shapes/curve_file.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/study/test_piece_sizes.h"
 #include "command.h"
 #include "exit_code.h"

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/results_folder.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/json_text.h"
 #include "abbe/study/verification.h"
 #include "abbe/study/verification_page.h"
 #include "abbe/study/verification_text.h"

@@ -23,8 +23,8 @@ import time
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 LONGEST = 12
 # A source file of usual length in the middle of the library, and the header of rigid transforms.
-TOUCHED = ["src/abbe/identify/gauge.cpp", "src/abbe/formats/study_level.cpp", "apps/run.cpp",
-           "src/abbe/geometry/rigid_transform.h"]
+TOUCHED = ["src/abbe/identify/gauge.cpp", "src/abbe/formats/study/study_level.cpp", "apps/run.cpp",
+           "include/abbe/geometry/rigid_transform.h"]
 
 
 class Measurement:

@@ -29,6 +29,8 @@ target_compile_options(abbe_common_flags INTERFACE
   $<$<BOOL:${ABBE_WERROR}>:-Werror>
   # GCC starts to collect garbage early, which is a tenth of the time of a batch; batches stay below 2 GB without.
   $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1000000>)
+# Tests see the internal headers too.
+target_include_directories(abbe_test_flags INTERFACE ${PROJECT_SOURCE_DIR}/src)
 # The code of tests is compiled for one run.
 target_compile_options(abbe_test_flags INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O1>)
 # The same for all, so that all can share precompiled headers.

@@ -8,6 +8,7 @@ function(abbe_fuzz reader)
   cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
   add_executable(fuzz_${reader} fuzz_${reader}.cpp)
   target_link_libraries(fuzz_${reader} PRIVATE ${ARG_LINK} fuzz_one_thread abbe_flags)
+  target_include_directories(fuzz_${reader} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_options(fuzz_${reader} PRIVATE -fsanitize=fuzzer)
   add_dependencies(abbe_parts fuzz_${reader})
   add_test(NAME fuzz.${reader}

@@ -39,8 +39,7 @@ install(FILES LICENSE CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT
 include(CMakePackageConfigHelpers)
 get_property(abbe_libraries GLOBAL PROPERTY ABBE_LIBRARIES)
 install(TARGETS ${abbe_libraries} EXPORT abbe-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
-install(DIRECTORY src/abbe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development
-  FILES_MATCHING PATTERN "*.h" PATTERN "*_for_test.h" EXCLUDE PATTERN "*_cases.h" EXCLUDE)
+install(DIRECTORY include/abbe DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(EXPORT abbe-targets NAMESPACE abbe:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/abbe COMPONENT development)
 configure_package_config_file(cmake/abbe-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/abbe-config.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/abbe)

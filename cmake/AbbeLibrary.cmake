@@ -1,7 +1,8 @@
 # abbe_library(NAME SOURCES a.cpp ... DEPENDS geometry ... [LINK lib ...] [PRIVATE_LINK lib ...] [TESTS a_test.cpp ...]
 #   [ALONE b.cpp ...])
 #
-# One static library per folder of src/abbe. DEPENDS names other folders; TESTS are the unit tests that stand beside the
+# One static library per folder of src/abbe. Its public headers are in include/abbe and are installed; those in src/abbe are
+# for the library itself and for tests. DEPENDS names other folders; TESTS are the unit tests that stand beside the
 # sources, built into one program per folder. ALONE are sources or tests that cannot share a unit (cmake/AbbeUnits.cmake).
 include(AbbeUnits)
 include(AbbeFlags)
@@ -18,6 +19,7 @@ function(abbe_library name)
     list(TRANSFORM ARG_PRIVATE_LINK REPLACE "^hwy::hwy$" "$<BUILD_INTERFACE:abbe_highway>;$<INSTALL_INTERFACE:hwy::hwy>")
     target_link_libraries(abbe_${name} PRIVATE $<BUILD_INTERFACE:abbe_flags> ${ARG_PRIVATE_LINK})
     set_target_properties(abbe_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON EXPORT_NAME ${name})
+    target_include_directories(abbe_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   else()
     add_library(abbe_${name} INTERFACE)
     set(scope INTERFACE)
@@ -26,7 +28,7 @@ function(abbe_library name)
   add_library(abbe::${name} ALIAS abbe_${name})
   target_compile_features(abbe_${name} ${scope} cxx_std_20)
   target_include_directories(abbe_${name} ${scope}
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   foreach(dependency IN LISTS ARG_DEPENDS)
     target_link_libraries(abbe_${name} ${scope} abbe::${dependency})
   endforeach()

@@ -9,15 +9,15 @@
 #include <string>
 #include <string_view>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/table_fanuc.h"
-#include "abbe/formats/table_fanuc_lattice.h"
-#include "abbe/formats/table_heidenhain.h"
-#include "abbe/formats/table_lattice.h"
-#include "abbe/formats/table_linuxcnc.h"
-#include "abbe/formats/table_siemens.h"
-#include "abbe/formats/table_skew.h"
-#include "abbe/formats/table_volumetric.h"
+#include "abbe/formats/controls/table_fanuc.h"
+#include "abbe/formats/controls/table_fanuc_lattice.h"
+#include "abbe/formats/controls/table_heidenhain.h"
+#include "abbe/formats/controls/table_lattice.h"
+#include "abbe/formats/controls/table_linuxcnc.h"
+#include "abbe/formats/controls/table_siemens.h"
+#include "abbe/formats/controls/table_skew.h"
+#include "abbe/formats/controls/table_volumetric.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace {
 

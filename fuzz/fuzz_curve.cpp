@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "abbe/formats/curve_file.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/shapes/curve_file.h"
+#include "abbe/formats/text/input_error.h"
 #include "fuzz_machine_data.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/text/input_error.h"
 #include "fuzz_machine_data.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -7,14 +7,14 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "abbe/formats/evaluation_circular_file.h"
-#include "abbe/formats/evaluation_line_file.h"
-#include "abbe/formats/evaluation_positioning.h"
-#include "abbe/formats/evaluation_rotation_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/linkage_file.h"
-#include "abbe/verify/circular_diagnosis.h"
-#include "abbe/verify/squareness.h"
+#include "abbe/formats/evaluations/evaluation_circular_file.h"
+#include "abbe/formats/evaluations/evaluation_line_file.h"
+#include "abbe/formats/evaluations/evaluation_positioning.h"
+#include "abbe/formats/evaluations/evaluation_rotation_file.h"
+#include "abbe/formats/machine/linkage_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/verify/evaluations/circular_diagnosis.h"
+#include "abbe/verify/evaluations/squareness.h"
 
 namespace {
 

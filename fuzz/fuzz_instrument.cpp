@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/instrument_file.h"
+#include "abbe/formats/readings/instrument_file.h"
+#include "abbe/formats/text/input_error.h"
 #include "fuzz_machine_data.h"
 
 namespace {

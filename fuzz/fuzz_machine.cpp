@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/text/input_error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);

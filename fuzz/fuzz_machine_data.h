@@ -1,6 +1,6 @@
 #pragma once
 
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/machine/machine_file.h"
 
 /// Machine whose errors, studies and measurements are fuzzed.
 inline abbe::Machine fuzz_machine() {

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "abbe/compensate/machine_planes.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/nc_program.h"
+#include "abbe/compensate/program/machine_planes.h"
+#include "abbe/formats/nc/nc_program.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/obj_file.h"
+#include "abbe/formats/shapes/obj_file.h"
+#include "abbe/formats/text/input_error.h"
 #include "fuzz_geometry.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -7,11 +7,11 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/planned_poses.h"
-#include "abbe/formats/study_file.h"
-#include "abbe/formats/trace_file.h"
-#include "abbe/instruments/laser_tracker.h"
+#include "abbe/formats/evaluations/trace_file.h"
+#include "abbe/formats/readings/planned_poses.h"
+#include "abbe/formats/study/study_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/instruments/trackers/laser_tracker.h"
 #include "fuzz_machine_data.h"
 
 namespace {

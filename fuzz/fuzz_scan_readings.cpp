@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/scan_file.h"
+#include "abbe/formats/readings/scan_file.h"
+#include "abbe/formats/text/input_error.h"
 #include "fuzz_machine_data.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/scanner_positioning_file.h"
+#include "abbe/formats/readings/scanner_positioning_file.h"
+#include "abbe/formats/text/input_error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view all(reinterpret_cast<const char*>(data), size);

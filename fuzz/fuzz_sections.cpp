@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/section_file.h"
-#include "abbe/verify/edge_section.h"
+#include "abbe/formats/evaluations/section_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/verify/parts/edge_section.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/step_mesh.h"
+#include "abbe/formats/shapes/step_mesh.h"
+#include "abbe/formats/text/input_error.h"
 #include "fuzz_geometry.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

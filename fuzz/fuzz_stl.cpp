@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/stl_file.h"
-#include "abbe/geometry/mesh_check.h"
+#include "abbe/formats/shapes/stl_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/surface/mesh_check.h"
 #include "fuzz_geometry.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

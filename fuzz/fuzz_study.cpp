@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/study_file.h"
+#include "abbe/formats/study/study_file.h"
+#include "abbe/formats/text/input_error.h"
 #include "fuzz_machine_data.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

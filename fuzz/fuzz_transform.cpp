@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/transform_file.h"
+#include "abbe/formats/machine/transform_file.h"
+#include "abbe/formats/text/input_error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view contents(reinterpret_cast<const char*>(data), size);

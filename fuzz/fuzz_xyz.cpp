@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/point_cloud_file.h"
+#include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/formats/text/input_error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view contents(reinterpret_cast<const char*>(data), size);

@@ -6,9 +6,9 @@
 #include <cctype>
 #include <cmath>
 
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/number_text.h"
-#include "abbe/report/evaluation_data.h"
+#include "abbe/formats/text/json_text.h"
+#include "abbe/formats/text/number_text.h"
+#include "abbe/report/pages/evaluation_data.h"
 #include "abbe/report/report.h"
 #include "exit_code.h"
 #include "reproduce_text.h"

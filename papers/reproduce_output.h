@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "abbe/formats/results_folder.h"
-#include "abbe/report/evaluation_report.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/report/evaluations/evaluation_report.h"
 #include "papers.h"
 
 // What `abbe reproduce` says of a paper, the same for all papers: a study fills one Reproduction, and

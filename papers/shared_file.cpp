@@ -4,7 +4,7 @@
 
 #include <system_error>
 
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 

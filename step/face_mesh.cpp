@@ -8,7 +8,7 @@
 #include <gp_Trsf.hxx>
 #include <utility>
 
-#include "abbe/geometry/mesh_check.h"
+#include "abbe/geometry/surface/mesh_check.h"
 
 namespace abbe {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "abbe/geometry/triangle_mesh.h"
-#include "abbe/geometry/vertex_welder.h"
+#include "abbe/geometry/surface/triangle_mesh.h"
+#include "abbe/geometry/surface/vertex_welder.h"
 
 namespace abbe {
 

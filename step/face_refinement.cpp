@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "abbe/geometry/halved_triangle.h"
+#include "abbe/geometry/surface/halved_triangle.h"
 
 namespace abbe {
 namespace {

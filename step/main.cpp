@@ -1,9 +1,9 @@
 // abbe-step FILE CHORD_MM ANGLE_RAD SECONDS all|leave-out: the faces of a STEP file as triangles on standard output,
-// for `abbe` (formats/step_file.h). CHORD_MM 0: by the size of the shape.
+// for `abbe` (formats/shapes/step_file.h). CHORD_MM 0: by the size of the shape.
 //
 // A process of its own, because OpenCASCADE may stop at a damaged file, and because linking it costs every start of
 // `abbe` 28 ms. What went wrong on standard error: a line with the problem, perhaps one with what was expected, after
-// lines of progress (formats/step_mesh.h); exit code 0, 2 for a bad file or tolerance, kStepTimeIsUp.
+// lines of progress (formats/shapes/step_mesh.h); exit code 0, 2 for a bad file or tolerance, kStepTimeIsUp.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/prctl.h>
@@ -23,8 +23,8 @@
 #include <thread>
 #include <utility>
 
-#include "abbe/formats/number_text.h"
-#include "abbe/formats/step_mesh.h"
+#include "abbe/formats/shapes/step_mesh.h"
+#include "abbe/formats/text/number_text.h"
 #include "failure_words.h"
 #include "shape_triangles.h"
 #include "step_shape.h"

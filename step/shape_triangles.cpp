@@ -9,8 +9,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "abbe/formats/list_text.h"
-#include "abbe/geometry/mesh_check.h"
+#include "abbe/formats/text/list_text.h"
+#include "abbe/geometry/surface/mesh_check.h"
 #include "face_deviation.h"
 #include "face_mesh.h"
 

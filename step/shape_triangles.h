@@ -1,6 +1,6 @@
 #pragma once
 
-#include "abbe/formats/step_mesh.h"
+#include "abbe/formats/shapes/step_mesh.h"
 #include "shape_division.h"
 #include "step_shape.h"
 

@@ -16,7 +16,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "abbe/formats/file_extension.h"
+#include "abbe/formats/files/file_extension.h"
 
 namespace abbe {
 namespace {

@@ -28,9 +28,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "abbe/formats/ascii_letters.h"
-#include "abbe/formats/list_text.h"
-#include "abbe/formats/number_text.h"
+#include "abbe/formats/text/ascii_letters.h"
+#include "abbe/formats/text/list_text.h"
+#include "abbe/formats/text/number_text.h"
 #include "step_entities.h"
 
 namespace abbe {

@@ -5,13 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/kept_inputs.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/streamed_file.h"
-#include "abbe/formats/text_file.h"
+#include "abbe/formats/files/kept_inputs.h"
+#include "abbe/formats/files/streamed_file.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/json_text.h"
 #include "abbe/study/corrected_program.h"
 #include "command.h"
 #include "compensate/compensate.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/path_program.h"
+#include "abbe/formats/nc/path_program.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
 #include "axis_option.h"

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "abbe/compensate/program_correction.h"
-#include "abbe/formats/nc_program.h"
+#include "abbe/compensate/program/program_correction.h"
+#include "abbe/formats/nc/nc_program.h"
 #include "abbe/machine/machine.h"
-#include "abbe/report/program_words.h"
+#include "abbe/report/words/program_words.h"
 
 namespace abbe {
 

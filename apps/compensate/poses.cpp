@@ -6,14 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/kept_inputs.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/measurement_file.h"
-#include "abbe/formats/results_folder.h"
-#include "abbe/report/corrected_poses_words.h"
+#include "abbe/formats/files/kept_inputs.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/readings/measurement_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/json_text.h"
+#include "abbe/report/words/corrected_poses_words.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/safety.h"

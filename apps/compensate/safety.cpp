@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "abbe/compensate/correction_uncertainty.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/angle_units.h"
 
 namespace abbe {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "abbe/formats/errors_file.h"
+#include "abbe/formats/machine/errors_file.h"
 
 namespace abbe {
 

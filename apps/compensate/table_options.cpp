@@ -1,6 +1,6 @@
 #include "compensate/table_options.h"
 
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 #include "axis_option.h"
 
 namespace abbe {

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "abbe/formats/evaluation_circular_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/report/circular_report.h"
+#include "abbe/formats/evaluations/evaluation_circular_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/report/evaluations/circular_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"

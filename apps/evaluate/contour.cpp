@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "abbe/formats/curve_file.h"
-#include "abbe/formats/curve_pieces.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/point_cloud_file.h"
-#include "abbe/formats/section_file.h"
-#include "abbe/report/contour_report.h"
-#include "abbe/report/evaluation_text.h"
+#include "abbe/formats/evaluations/section_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/shapes/curve_file.h"
+#include "abbe/formats/shapes/curve_pieces.h"
+#include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/report/evaluations/contour_report.h"
+#include "abbe/report/words/evaluation_text.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"

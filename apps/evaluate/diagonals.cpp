@@ -1,10 +1,10 @@
-#include "abbe/verify/diagonals.h"
+#include "abbe/verify/evaluations/diagonals.h"
 
 #include <filesystem>
 #include <memory>
 
-#include "abbe/formats/evaluation_positioning.h"
-#include "abbe/report/diagonals_report.h"
+#include "abbe/formats/evaluations/evaluation_positioning.h"
+#include "abbe/report/evaluations/diagonals_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "options.h"

@@ -4,11 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/results_folder.h"
-#include "abbe/report/evaluation_data.h"
-#include "abbe/report/evaluation_text.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/text/json_text.h"
+#include "abbe/report/pages/evaluation_data.h"
 #include "abbe/report/report.h"
+#include "abbe/report/words/evaluation_text.h"
 #include "exit_code.h"
 #include "options.h"
 

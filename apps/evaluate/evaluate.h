@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "abbe/report/evaluation_report.h"
+#include "abbe/report/evaluations/evaluation_report.h"
 
 namespace abbe {
 

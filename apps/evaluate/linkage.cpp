@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <optional>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/linkage_file.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/report/linkage_report.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/linkage_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/report/evaluations/linkage_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/number_text.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/number_text.h"
 #include "options.h"
 
 namespace abbe {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "abbe/formats/unit.h"
+#include "abbe/formats/text/unit.h"
 
 namespace abbe {
 

@@ -1,8 +1,8 @@
 
-#include "abbe/formats/evaluation_positioning.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/evaluations/evaluation_positioning.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/report/positioning_report.h"
+#include "abbe/report/evaluations/positioning_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "options.h"

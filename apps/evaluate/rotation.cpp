@@ -1,7 +1,7 @@
 #include <filesystem>
 
-#include "abbe/formats/evaluation_rotation_file.h"
-#include "abbe/report/rotation_report.h"
+#include "abbe/formats/evaluations/evaluation_rotation_file.h"
+#include "abbe/report/evaluations/rotation_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"

@@ -2,9 +2,9 @@
 #include <memory>
 #include <string>
 
-#include "abbe/formats/evaluation_line_file.h"
-#include "abbe/report/straightness_report.h"
-#include "abbe/verify/squareness.h"
+#include "abbe/formats/evaluations/evaluation_line_file.h"
+#include "abbe/report/evaluations/straightness_report.h"
+#include "abbe/verify/evaluations/squareness.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/scan_file.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/readings/scan_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/json_text.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "abbe/formats/mesh_file.h"
-#include "abbe/formats/point_cloud_file.h"
+#include "abbe/formats/shapes/mesh_file.h"
+#include "abbe/formats/shapes/point_cloud_file.h"
 #include "step_reading.h"
 
 namespace abbe {

@@ -1,6 +1,6 @@
 #include "test_piece/sizes.h"
 
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/angle_units.h"
 #include "options.h"
 

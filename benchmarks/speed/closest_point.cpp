@@ -3,7 +3,7 @@
 //   closest_point [points] [triangles] [repetitions]     exit code 1 if one of the targets is missed
 //
 // PCL has no closest point of triangles: what it is timed for is the nearest vertex, an easier problem.
-#include "abbe/geometry/closest_point.h"
+#include "abbe/geometry/surface/closest_point.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

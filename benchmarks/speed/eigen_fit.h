@@ -1,6 +1,6 @@
 #pragma once
 
-#include "abbe/geometry/shapes.h"
+#include "abbe/geometry/fits/shapes.h"
 
 namespace abbe::benchmarks {
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-#include "abbe/geometry/shape_fit.h"
+#include "abbe/geometry/fits/shape_fit.h"
 #include "eigen_fit.h"
 
 namespace abbe::benchmarks {

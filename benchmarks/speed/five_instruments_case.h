@@ -15,9 +15,9 @@
 #include "abbe/instruments/measurement_plan.h"
 #include "abbe/instruments/path_plan.h"
 #include "abbe/instruments/r_test.h"
-#include "abbe/instruments/tracker_observations.h"
-#include "abbe/instruments/tracker_simulation.h"
-#include "abbe/instruments/tracking_interferometer.h"
+#include "abbe/instruments/trackers/tracker_observations.h"
+#include "abbe/instruments/trackers/tracker_simulation.h"
+#include "abbe/instruments/trackers/tracking_interferometer.h"
 
 namespace abbe::benchmark_case {
 

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <string>
 
-#include "abbe/identify/monte_carlo.h"
+#include "abbe/identify/trust/monte_carlo.h"
 #include "ceres_solution.h"
 #include "identification_case.h"
 

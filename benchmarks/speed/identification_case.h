@@ -7,7 +7,7 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/identify/problem.h"
-#include "abbe/instruments/tracker_observations.h"
+#include "abbe/instruments/trackers/tracker_observations.h"
 
 namespace abbe::benchmark_case {
 

@@ -1,7 +1,7 @@
 // An NC program of 1,000,000 blocks through reader, interpreter, a corrector that changes nothing, and writer: blocks
 // per second and memory, beside std::getline, std::istringstream and std::ostream in the same run, which know no modes,
 // no offsets and no errors, and beside LinuxCNC's own interpreter, rs274, which only reads, where it is installed.
-#include "abbe/formats/nc_program.h"
+#include "abbe/formats/nc/nc_program.h"
 
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -18,8 +18,8 @@
 #include <string>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/streamed_file.h"
-#include "abbe/formats/text_file.h"
+#include "abbe/formats/files/streamed_file.h"
+#include "abbe/formats/files/text_file.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 /// Speed of the polygon's ray tracing against rays traced one by one with Eigen, in one run; the exit code is 1 if a
 /// target of docs/performance.md is missed.
 
-#include "abbe/instruments/polygon_trace.h"
+#include "abbe/instruments/polygon/polygon_trace.h"
 
 #include <benchmark/benchmark.h>
 
@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "abbe/instruments/polygon_for_test.h"
+#include "abbe/instruments/polygon/polygon_for_test.h"
 #include "fastest.h"
 
 namespace abbe::benchmarks {

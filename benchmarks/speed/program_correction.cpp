@@ -1,5 +1,5 @@
 // Moves of a dense five-axis program per second: correction and proof, without reading and writing text.
-#include "abbe/compensate/program_correction.h"
+#include "abbe/compensate/program/program_correction.h"
 
 #include <chrono>
 #include <cmath>

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/measurement_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/readings/measurement_file.h"
 
 namespace {
 

@@ -16,9 +16,9 @@
 #include <numbers>
 #include <string>
 
-#include "abbe/formats/mesh_file.h"
-#include "abbe/formats/ply_file.h"
-#include "abbe/formats/stl_file.h"
+#include "abbe/formats/shapes/mesh_file.h"
+#include "abbe/formats/shapes/ply_file.h"
+#include "abbe/formats/shapes/stl_file.h"
 #ifdef BENCHMARK_OPEN3D
 #include "read_mesh_open3d.h"
 #endif

@@ -1,7 +1,7 @@
 // Registration of a scan on a mesh from a start near by: this project, Open3D, PCL, in one run.
 //
 //   registration [points] [triangles] [share of stray points]     exit code 1 if one of the targets is missed
-#include "abbe/geometry/registration.h"
+#include "abbe/geometry/registration/registration.h"
 
 #include <algorithm>
 #include <cmath>

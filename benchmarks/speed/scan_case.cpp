@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "abbe/geometry/numbers_for_test.h"
+#include "abbe/geometry/fits/numbers_for_test.h"
 #include "abbe/geometry/parts_for_test.h"
 #include "abbe/geometry/rotation.h"
 

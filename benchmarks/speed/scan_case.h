@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "abbe/geometry/rigid_transform.h"
-#include "abbe/geometry/triangle_mesh.h"
+#include "abbe/geometry/surface/triangle_mesh.h"
 
 namespace abbe::benchmarks {
 

@@ -18,8 +18,8 @@
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/scan_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/readings/scan_file.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "speed/fastest.h"
 

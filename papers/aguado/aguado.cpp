@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/measurement_file.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/readings/measurement_file.h"
 #include "aguado/study.h"
 #include "aguado/tables.h"
 #include "papers.h"

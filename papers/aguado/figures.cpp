@@ -2,8 +2,8 @@
 #include <numbers>
 
 #include "abbe/instruments/measurement_plan.h"
-#include "abbe/report/svg_map_plot.h"
-#include "abbe/report/svg_plot.h"
+#include "abbe/report/drawings/svg_map_plot.h"
+#include "abbe/report/drawings/svg_plot.h"
 #include "aguado/tables.h"
 
 namespace abbe {

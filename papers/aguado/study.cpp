@@ -3,12 +3,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/measurement_file.h"
+#include "abbe/formats/readings/measurement_file.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/instruments/measurement_plan.h"
-#include "abbe/instruments/tracker_start.h"
+#include "abbe/instruments/trackers/tracker_start.h"
 #include "abbe/verify/unseen_poses.h"
 #include "shared_file.h"
 

@@ -8,9 +8,9 @@
 #include "abbe/errors/error_set.h"
 #include "abbe/identify/identify.h"
 #include "abbe/identify/strategies.h"
-#include "abbe/instruments/tracker_observations.h"
-#include "abbe/instruments/tracker_simulation.h"
-#include "abbe/verify/statistics.h"
+#include "abbe/instruments/trackers/tracker_observations.h"
+#include "abbe/instruments/trackers/tracker_simulation.h"
+#include "abbe/verify/evaluations/statistics.h"
 
 namespace abbe {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "abbe/geometry/angle_units.h"
-#include "abbe/report/svg_map_plot.h"
-#include "abbe/report/svg_plot.h"
+#include "abbe/report/drawings/svg_map_plot.h"
+#include "abbe/report/drawings/svg_plot.h"
 #include "liu/results.h"
 
 namespace abbe {

@@ -4,15 +4,15 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/number_text.h"
-#include "abbe/formats/ply_file.h"
-#include "abbe/formats/results_folder.h"
-#include "abbe/formats/scan_plan_file.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/readings/scan_plan_file.h"
+#include "abbe/formats/shapes/ply_file.h"
+#include "abbe/formats/text/json_text.h"
+#include "abbe/formats/text/number_text.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/report/scan_plan_page.h"
+#include "abbe/report/pages/scan_plan_page.h"
 #include "liu/machine.h"
 
 namespace abbe {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "abbe/formats/results_folder.h"
+#include "abbe/formats/files/results_folder.h"
 #include "liu/results.h"
 
 namespace abbe {

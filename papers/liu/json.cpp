@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "abbe/formats/scan_plan_file.h"
+#include "abbe/formats/readings/scan_plan_file.h"
 #include "abbe/geometry/angle_units.h"
 #include "liu/results.h"
 

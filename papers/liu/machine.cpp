@@ -7,9 +7,9 @@
 #include <string>
 
 #include "abbe/errors/actual_pose.h"
-#include "abbe/formats/csv_reader.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/text_file.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/text/csv_reader.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/instruments/virtual_scan.h"

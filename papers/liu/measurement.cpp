@@ -8,9 +8,9 @@
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/geometry/fine_registration.h"
+#include "abbe/geometry/fits/shape_fit.h"
+#include "abbe/geometry/registration/fine_registration.h"
 #include "abbe/geometry/rotation.h"
-#include "abbe/geometry/shape_fit.h"
 #include "abbe/identify/identify.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/surface_probe.h"

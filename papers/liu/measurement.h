@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "abbe/geometry/closest_point.h"
+#include "abbe/geometry/surface/closest_point.h"
 #include "abbe/instruments/virtual_scan.h"
 #include "liu/machine.h"
 #include "liu/parts.h"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "abbe/report/machine_json.h"
-#include "abbe/report/scan_plan_page.h"
-#include "abbe/verify/statistics.h"
+#include "abbe/report/evaluations/machine_json.h"
+#include "abbe/report/pages/scan_plan_page.h"
+#include "abbe/verify/evaluations/statistics.h"
 #include "liu/results.h"
 
 namespace abbe {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "abbe/geometry/rotation.h"
-#include "abbe/geometry/vertex_welder.h"
+#include "abbe/geometry/surface/vertex_welder.h"
 
 namespace abbe {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "abbe/geometry/triangle_mesh.h"
+#include "abbe/geometry/surface/triangle_mesh.h"
 #include "abbe/plan/scan_plan.h"
 
 namespace abbe {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/scan_plan_file.h"
+#include "abbe/formats/readings/scan_plan_file.h"
 #include "liu/machine.h"
 
 // The planned paths against the parts as formulas, the machine as the closed form of the paper, and the probe against

@@ -8,8 +8,8 @@
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/geometry/decompositions.h"
+#include "abbe/geometry/fits/shape_fit.h"
 #include "abbe/geometry/rotation.h"
-#include "abbe/geometry/shape_fit.h"
 
 namespace abbe {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "abbe/formats/csv_reader.h"
-#include "abbe/formats/text_file.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/text/csv_reader.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "shared_file.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "abbe/geometry/mesh_check.h"
+#include "abbe/geometry/surface/mesh_check.h"
 #include "liu/machine.h"
 #include "liu/measurement.h"
 #include "liu/parts.h"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "abbe/geometry/angle_units.h"
-#include "abbe/report/svg_plot.h"
+#include "abbe/report/drawings/svg_plot.h"
 #include "ma/results.h"
 
 namespace abbe {

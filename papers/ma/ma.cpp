@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/number_text.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/angle_units.h"
 #include "ma/results.h"
 #include "papers.h"

@@ -5,12 +5,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "abbe/formats/csv_reader.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/text_file.h"
-#include "abbe/formats/vector_json.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/text/csv_reader.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/vector_json.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/instruments/polygon_trace.h"
+#include "abbe/instruments/polygon/polygon_trace.h"
 #include "shared_file.h"
 
 namespace abbe {

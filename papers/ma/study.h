@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "abbe/instruments/polygon_campaign.h"
-#include "abbe/instruments/polygon_separation.h"
+#include "abbe/instruments/polygon/polygon_campaign.h"
+#include "abbe/instruments/polygon/polygon_separation.h"
 
 namespace abbe {
 

@@ -15,8 +15,8 @@
 #include "abbe/instruments/ball_bar.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/machine/machine.h"
-#include "abbe/report/svg_polar_plot.h"
-#include "abbe/verify/circular.h"
+#include "abbe/report/drawings/svg_polar_plot.h"
+#include "abbe/verify/evaluations/circular.h"
 
 namespace abbe {
 namespace {

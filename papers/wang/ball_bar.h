@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "abbe/errors/error_set.h"
-#include "abbe/identify/decoupled_errors.h"
+#include "abbe/identify/linkage/decoupled_errors.h"
 #include "wang/study.h"
 
 namespace abbe {

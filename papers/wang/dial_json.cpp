@@ -2,7 +2,7 @@
 #include <string>
 
 #include "abbe/machine/axis_unit.h"
-#include "abbe/verify/statistics.h"
+#include "abbe/verify/evaluations/statistics.h"
 #include "wang/dial_tables.h"
 #include "wang/tables.h"
 

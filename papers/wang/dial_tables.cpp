@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "abbe/machine/axis_unit.h"
-#include "abbe/verify/statistics.h"
+#include "abbe/verify/evaluations/statistics.h"
 #include "wang/tables.h"
 
 namespace abbe {

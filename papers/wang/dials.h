@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "abbe/identify/decoupled_errors.h"
-#include "abbe/identify/dial_grid_as_printed.h"
-#include "abbe/verify/statistics.h"
+#include "abbe/identify/linkage/decoupled_errors.h"
+#include "abbe/identify/linkage/dial_grid_as_printed.h"
+#include "abbe/verify/evaluations/statistics.h"
 
 namespace abbe {
 

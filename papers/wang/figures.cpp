@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "abbe/geometry/angle_units.h"
-#include "abbe/report/svg_plot.h"
+#include "abbe/report/drawings/svg_plot.h"
 #include "wang/tables.h"
 
 namespace abbe {

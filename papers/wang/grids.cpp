@@ -6,14 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/indication_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/results_folder.h"
-#include "abbe/identify/decoupled_errors.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/readings/indication_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/json_text.h"
 #include "abbe/identify/distributions.h"
+#include "abbe/identify/linkage/decoupled_errors.h"
 #include "abbe/machine/axis_unit.h"
 #include "exit_code.h"
 #include "wang/dials.h"

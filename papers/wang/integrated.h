@@ -9,9 +9,9 @@
 #include "abbe/errors/chain_plan.h"
 #include "abbe/errors/error_set.h"
 #include "abbe/errors/poses.h"
-#include "abbe/formats/map_file.h"
+#include "abbe/formats/machine/map_file.h"
 #include "abbe/machine/machine.h"
-#include "abbe/verify/statistics.h"
+#include "abbe/verify/evaluations/statistics.h"
 #include "wang/study.h"
 
 namespace abbe {

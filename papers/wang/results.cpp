@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "abbe/report/statistics_json.h"
+#include "abbe/report/evaluations/statistics_json.h"
 #include "abbe/study/summary.h"
 #include "progress.h"
 #include "wang/tables.h"

@@ -6,7 +6,7 @@
 
 #include "abbe/errors/error_set.h"
 #include "abbe/machine/machine.h"
-#include "abbe/verify/statistics.h"
+#include "abbe/verify/evaluations/statistics.h"
 
 namespace abbe {
 

@@ -5,12 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/indication_file.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/map_file.h"
-#include "abbe/formats/results_folder.h"
-#include "abbe/report/machine_json.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/machine/map_file.h"
+#include "abbe/formats/readings/indication_file.h"
+#include "abbe/report/evaluations/machine_json.h"
 #include "abbe/study/report_data.h"
 #include "wang/integrated.h"
 #include "wang/results.h"

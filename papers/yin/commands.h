@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "abbe/identify/swing_head_linkage.h"
+#include "abbe/identify/linkage/swing_head_linkage.h"
 #include "reproduce_output.h"
 #include "yin/study.h"
 

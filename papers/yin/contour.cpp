@@ -9,7 +9,7 @@
 #include "abbe/instruments/engraved_edge.h"
 #include "abbe/instruments/triangulation.h"
 #include "abbe/verify/covariance_root.h"
-#include "abbe/verify/statistics.h"
+#include "abbe/verify/evaluations/statistics.h"
 #include "yin/constants.h"
 
 namespace abbe {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "abbe/formats/section_file.h"
-#include "abbe/verify/edge_section.h"
+#include "abbe/formats/evaluations/section_file.h"
+#include "abbe/verify/parts/edge_section.h"
 #include "abbe/verify/uncertainty_budget.h"
 #include "yin/study.h"
 

@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "abbe/report/contour_page.h"
-#include "abbe/report/svg_plot.h"
+#include "abbe/report/drawings/svg_plot.h"
+#include "abbe/report/pages/contour_page.h"
 #include "yin/constants.h"
 #include "yin/results.h"
 

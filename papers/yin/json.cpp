@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "abbe/report/positioning_json.h"
+#include "abbe/report/evaluations/positioning_json.h"
 #include "yin/results.h"
 
 namespace abbe {

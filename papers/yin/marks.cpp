@@ -6,8 +6,8 @@
 
 #include "abbe/errors/calibrated_machine.h"
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/study_file.h"
-#include "abbe/identify/prediction.h"
+#include "abbe/formats/study/study_file.h"
+#include "abbe/identify/trust/prediction.h"
 #include "abbe/study/study_steps.h"
 #include "shared_file.h"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "abbe/identify/linkage_steps.h"
+#include "abbe/identify/linkage/linkage_steps.h"
 
 namespace abbe {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "abbe/identify/swing_head_linkage.h"
+#include "abbe/identify/linkage/swing_head_linkage.h"
 
 /// Matrices and formulas of Yin et al. (2021) as the paper has them, right or wrong. For comparison: nothing else uses
 /// them.

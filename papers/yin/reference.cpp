@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "abbe/formats/csv_reader.h"
-#include "abbe/formats/curve_file.h"
-#include "abbe/formats/text_file.h"
-#include "abbe/formats/vector_json.h"
-#include "abbe/verify/contour_error.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/shapes/curve_file.h"
+#include "abbe/formats/text/csv_reader.h"
+#include "abbe/formats/text/vector_json.h"
+#include "abbe/verify/parts/contour_error.h"
 #include "shared_file.h"
 
 namespace abbe {

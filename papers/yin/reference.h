@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "abbe/identify/linkage_steps.h"
-#include "abbe/identify/scanner_positioning.h"
+#include "abbe/identify/linkage/linkage_steps.h"
+#include "abbe/identify/linkage/scanner_positioning.h"
 
 namespace abbe {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "abbe/formats/scanner_positioning_file.h"
+#include "abbe/formats/readings/scanner_positioning_file.h"
 #include "yin/study.h"
 
 namespace abbe {

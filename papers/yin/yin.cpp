@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "abbe/formats/results_folder.h"
+#include "abbe/formats/files/results_folder.h"
 #include "papers.h"
 #include "yin/constants.h"
 #include "yin/results.h"

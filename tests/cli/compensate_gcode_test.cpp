@@ -8,15 +8,15 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "abbe/compensate/machine_planes.h"
 #include "abbe/compensate/machine_with_play_for_test.h"
-#include "abbe/compensate/program_moves_for_test.h"
-#include "abbe/compensate/program_uncertainty.h"
+#include "abbe/compensate/program/machine_planes.h"
+#include "abbe/compensate/program/program_moves_for_test.h"
+#include "abbe/compensate/program/program_uncertainty.h"
 #include "abbe/errors/reversal.h"
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/linuxcnc_for_test.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/nc_program.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/nc/linuxcnc_for_test.h"
+#include "abbe/formats/nc/nc_program.h"
 #include "cli/gcode_for_test.h"
 
 namespace abbe {

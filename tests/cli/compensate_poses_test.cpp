@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "abbe/errors/actual_pose.h"
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
 #include "cli/command_test.h"
 
 namespace abbe {

@@ -7,8 +7,8 @@
 
 #include "abbe/controls/control_table.h"
 #include "abbe/controls/table_format.h"
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
 #include "cli/command_test.h"
 
 namespace abbe {

@@ -5,10 +5,10 @@
 
 #include "abbe/errors/calibrated_machine.h"
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/linkage_file.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/identify/linkage_errors.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/linkage_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/identify/linkage/linkage_errors.h"
 #include "cli/evaluate_for_test.h"
 
 namespace abbe {

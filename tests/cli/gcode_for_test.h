@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "abbe/compensate/program_moves_for_test.h"
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/linuxcnc_for_test.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/nc_program.h"
+#include "abbe/compensate/program/program_moves_for_test.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/nc/linuxcnc_for_test.h"
+#include "abbe/formats/nc/nc_program.h"
 #include "abbe/geometry/angle_units.h"
 #include "cli/command_test.h"
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "abbe/formats/ply_file.h"
-#include "abbe/formats/transform_file.h"
+#include "abbe/formats/machine/transform_file.h"
+#include "abbe/formats/shapes/ply_file.h"
 #include "cli/command_test.h"
 
 namespace abbe {

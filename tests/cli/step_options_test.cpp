@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "abbe/formats/mesh_file.h"
-#include "abbe/formats/placement_file.h"
-#include "abbe/formats/replaced_text_for_test.h"
-#include "abbe/formats/text_file.h"
-#include "abbe/geometry/surface_samples.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/machine/placement_file.h"
+#include "abbe/formats/shapes/mesh_file.h"
+#include "abbe/formats/text/replaced_text_for_test.h"
+#include "abbe/geometry/surface/surface_samples.h"
 #include "cli/command_test.h"
 
 namespace abbe {

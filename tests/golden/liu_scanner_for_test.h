@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/machine/machine_file.h"
 
 namespace abbe {
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "abbe/errors/actual_pose.h"
-#include "abbe/formats/scan_file.h"
-#include "abbe/formats/text_file.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/readings/scan_file.h"
 #include "abbe/geometry/angle_units.h"
 #include "liu_scanner_for_test.h"
 

@@ -13,8 +13,8 @@
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/random_errors.h"
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
 #include "judging.h"
 
 namespace abbe {

@@ -9,7 +9,7 @@
 #include "abbe/compensate/one_pose_for_test.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/random_errors.h"
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/machine/machine_file.h"
 #include "abbe/machine/inverse_kinematics.h"
 #include "abbe/runtime/freeze.h"
 #include "judging.h"

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/machine/machine_file.h"
 #include "abbe/machine/drawing.h"
 #include "abbe/machine/inverse_kinematics.h"
 #include "abbe/machine/machine_check.h"

@@ -15,8 +15,8 @@
 #include "abbe/identify/identify.h"
 #include "abbe/identify/normal_equations.h"
 #include "abbe/instruments/measurement_plan.h"
-#include "abbe/instruments/tracker_observations.h"
-#include "abbe/instruments/tracker_simulation.h"
+#include "abbe/instruments/trackers/tracker_observations.h"
+#include "abbe/instruments/trackers/tracker_simulation.h"
 #include "property/chains_for_test.h"
 
 namespace abbe {

@@ -10,7 +10,7 @@
 #include "abbe/geometry/angle_units.h"
 #include "abbe/identify/distributions.h"
 #include "abbe/identify/identify.h"
-#include "abbe/identify/prediction.h"
+#include "abbe/identify/trust/prediction.h"
 #include "abbe/instruments/autocollimator.h"
 #include "abbe/instruments/board_marks.h"
 #include "abbe/instruments/dial_indicators.h"

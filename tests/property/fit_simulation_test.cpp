@@ -1,7 +1,7 @@
 // Ten thousand small sets of points of every shape, size, noise and place have their shape, and each is an optimum.
 #include <gtest/gtest.h>
 
-#include "abbe/geometry/simulated_fits_for_test.h"
+#include "abbe/geometry/fits/simulated_fits_for_test.h"
 
 namespace abbe {
 namespace {

@@ -6,18 +6,18 @@
 #include <memory>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/machine/machine_file.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/identify/identify.h"
-#include "abbe/identify/prediction.h"
+#include "abbe/identify/trust/prediction.h"
 #include "abbe/instruments/ball_bar.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/instruments/interferometer.h"
 #include "abbe/instruments/measurement_plan.h"
 #include "abbe/instruments/path_plan.h"
-#include "abbe/instruments/tracker_observations.h"
-#include "abbe/instruments/tracker_simulation.h"
+#include "abbe/instruments/trackers/tracker_observations.h"
+#include "abbe/instruments/trackers/tracker_simulation.h"
 #include "abbe/verify/error_map.h"
 
 namespace abbe {

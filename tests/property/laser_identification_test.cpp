@@ -8,12 +8,12 @@
 #include "abbe/errors/random_errors.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/identify/identify.h"
-#include "abbe/identify/prediction.h"
+#include "abbe/identify/trust/prediction.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/instruments/interferometer.h"
 #include "abbe/instruments/measurement_plan.h"
-#include "abbe/instruments/tracking_interferometer.h"
+#include "abbe/instruments/trackers/tracking_interferometer.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {

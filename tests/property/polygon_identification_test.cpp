@@ -8,7 +8,7 @@
 #include "abbe/identify/identify.h"
 #include "abbe/instruments/instrument_observations.h"
 #include "abbe/instruments/instrument_simulation.h"
-#include "abbe/instruments/polygon_gauge.h"
+#include "abbe/instruments/polygon/polygon_gauge.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {

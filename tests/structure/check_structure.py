@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Check that the source tree keeps to the order in which data flows. Usage: check_structure.py ROOT
 
-A folder of src/abbe includes only itself and folders above it in ORDER; `identify` and `compensate` do not see each
-other; only `formats`, `report` and the programs (`apps`, `papers`, `step`) touch files; `src` and `apps` include nothing
+A library (a folder of include/abbe and of src/abbe) includes only itself and those above it in ORDER; `identify` and
+`compensate` do not see each other; public headers (include/abbe) include no internal ones (src/abbe), and nobody but
+their own library, tests, fuzzers and benchmarks includes internal headers; only `formats`, `report` and the programs (`apps`, `papers`, `step`) touch files; `src` and `apps` include nothing
 from `papers` and `step`; headers have `#pragma once`; nothing is included twice; no file is longer than MAX_LINES; no
 folder has a name that says nothing; no two headers of the library declare a type of one name; pages come from
 web/src/template.html alone, which holds the content security policy. Every violation is one line: file:line: message.
@@ -18,8 +19,10 @@ TOUCH_FILES = {"formats", "report"}
 FILE_HEADERS = {"fstream", "cstdio", "stdio.h", "filesystem", "fcntl.h", "unistd.h", "sys/stat.h", "sys/mman.h"}
 MEANINGLESS = {"util", "utils", "common", "core", "helper", "helpers", "misc", "manager", "managers"}
 MAX_LINES = 500
-PLACES = ["src", "apps", "papers", "step", "linuxcnc", "tests", "fuzz", "benchmarks", "python", "web", "cmake", ".ci"]
+PLACES = ["include", "src", "apps", "papers", "step", "linuxcnc", "tests", "fuzz", "benchmarks", "python", "web", "cmake", ".ci"]
 OTHER_PROGRAMS = ("papers", "step")
+# They may include internal headers of any library; linuxcnc compiles sources of the runtime.
+INSIDERS = {"tests", "fuzz", "benchmarks", "linuxcnc"}
 SOURCES = (".h", ".cpp", ".py", ".ts", ".js", ".mjs", ".css", ".cmake")
 SKIP = {"node_modules", "build", "dist", "__pycache__"}
 PAGE = re.compile(r"<!doctype html|<html[ >]", re.IGNORECASE)
@@ -48,6 +51,20 @@ def check_library_include(folder, target, is_test):
     return None
 
 
+def check_internal_include(root, path, target, is_test):
+    """What is wrong with `path` including `target` of the library, or nothing."""
+    if not target.startswith("abbe/") or os.path.exists(os.path.join(root, "include", target)):
+        return None
+    if not os.path.exists(os.path.join(root, "src", target)):
+        return f"'{target}' does not exist"
+    parts = path.split("/")
+    if parts[0] == "include":
+        return f"'{target}' is internal, and this header is public"
+    if parts[0] in INSIDERS or is_test or parts[:3] == ["src", "abbe", target.split("/")[1]]:
+        return None
+    return f"'{target}' is internal to '{target.split('/')[1]}'"
+
+
 def other_program(root, path, target):
     """`papers` or `step` if a file of src/ or apps/ that includes `target` means one from there, or nothing."""
     beside = os.path.normpath(os.path.join(os.path.dirname(path), target)).replace(os.sep, "/")
@@ -60,7 +77,7 @@ def other_program(root, path, target):
 
 def check_cpp(root, path, text):
     parts = path.split("/")
-    folder = parts[2] if parts[:2] == ["src", "abbe"] and len(parts) > 3 else None
+    folder = parts[2] if parts[0] in ("include", "src") and parts[1] == "abbe" and len(parts) > 3 else None
     is_test = path.endswith(("_test.cpp", "_for_test.h", "_for_test.cpp"))
     seen = {}
     guarded = False
@@ -77,11 +94,12 @@ def check_cpp(root, path, text):
         if target in seen:
             yield number, f"'{target}' is included twice (line {seen[target]})"
         seen[target] = number
-        program = other_program(root, path, target) if parts[0] in ("src", "apps") else None
+        program = other_program(root, path, target) if parts[0] in ("include", "src", "apps") else None
         if program:
             yield number, f"'{target}': '{parts[0]}' does without '{program}'"
-        if target.startswith("abbe/") and not os.path.exists(os.path.join(root, "src", target)):
-            yield number, f"'{target}' does not exist"
+        problem = check_internal_include(root, path, target, is_test)
+        if problem:
+            yield number, problem
         if folder is None:
             continue
         if quote == '"' and os.path.exists(os.path.join(root, os.path.dirname(path), target)):
@@ -100,7 +118,7 @@ TYPE = re.compile(r"^(?:struct|class|enum class) (\w+)(?: final)?(?: : [^;]*)?\s
 def repeated_types(root):
     """Types of one name in two headers of the library: one namespace, so each must have a name of its own."""
     where = {}
-    for folder, files in files_below(root, "src"):
+    for folder, files in [*files_below(root, "include"), *files_below(root, "src")]:
         for name in files:
             if not name.endswith(".h") or name.endswith("_for_test.h"):
                 continue
@@ -125,10 +143,11 @@ def check_page(path, text):
 
 def violations(root):
     """All violations as (path, line, message)."""
-    library = os.path.join(root, "src", "abbe")
-    for name in sorted(os.listdir(library)):
-        if os.path.isdir(os.path.join(library, name)) and name not in ORDER:
-            yield f"src/abbe/{name}", 1, f"folder is not in the order {' '.join(ORDER)}"
+    for library in ("include/abbe", "src/abbe"):
+        folders = os.path.join(root, library)
+        for name in sorted(os.listdir(folders)) if os.path.isdir(folders) else []:
+            if os.path.isdir(os.path.join(folders, name)) and name not in ORDER:
+                yield f"{library}/{name}", 1, f"folder is not in the order {' '.join(ORDER)}"
     yield from repeated_types(root)
     template = os.path.join(root, "web", "src", "template.html")
     if os.path.exists(template):

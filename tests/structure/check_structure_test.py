@@ -12,7 +12,7 @@ from check_structure import violations  # noqa: E402
 class CheckStructure(unittest.TestCase):
     def found(self, files):
         with tempfile.TemporaryDirectory() as root:
-            for path, text in {"src/abbe/geometry/line.h": "#pragma once\n", **files}.items():
+            for path, text in {"include/abbe/geometry/line.h": "#pragma once\n", **files}.items():
                 os.makedirs(os.path.dirname(os.path.join(root, path)), exist_ok=True)
                 with open(os.path.join(root, path), "w", encoding="utf-8") as stream:
                     stream.write(text)
@@ -31,9 +31,19 @@ class CheckStructure(unittest.TestCase):
             "apps/main.cpp": '#include <cstdio>\n#include "abbe/geometry/line.h"\n'}), [])
 
     def test_including_a_folder_below_is_found(self):
-        self.assert_one({"src/abbe/machine/axis.h": "#pragma once\n",
+        self.assert_one({"include/abbe/machine/axis.h": "#pragma once\n",
                          "src/abbe/geometry/a.cpp": '#include <cmath>\n#include "abbe/machine/axis.h"\n'},
                         "src/abbe/geometry/a.cpp:2:", "below it")
+
+    def test_internal_headers_are_for_their_own_library(self):
+        internal = {"src/abbe/geometry/tree.h": "#pragma once\n"}
+        include = '#include "abbe/geometry/tree.h"\n'
+        for insider in ("src/abbe/geometry/tree.cpp", "src/abbe/machine/axis_test.cpp", "tests/a.cpp", "benchmarks/a.cpp"):
+            self.assertEqual(self.found({**internal, insider: include}), [])
+        for outsider in ("src/abbe/machine/axis.cpp", "apps/main.cpp", "papers/main.cpp"):
+            self.assert_one({**internal, outsider: include}, f"{outsider}:1:", "internal to 'geometry'")
+        self.assert_one({**internal, "include/abbe/geometry/point.h": "#pragma once\n" + include},
+                        "include/abbe/geometry/point.h:2:", "this header is public")
 
     def test_a_page_of_its_own_and_a_template_without_policy_are_found(self):
         self.assert_one({"apps/a.cpp": 'const char* text =\n    "<!doctype html>";\n'}, "apps/a.cpp:2:", "a page of its own")
@@ -46,7 +56,7 @@ class CheckStructure(unittest.TestCase):
                         "src/abbe/verify/b.h:3:", "'Motion' is also in src/abbe/errors/a.h")
 
     def test_identify_and_compensate_do_not_see_each_other(self):
-        headers = {"src/abbe/identify/a.h": "#pragma once\n", "src/abbe/compensate/b.h": "#pragma once\n"}
+        headers = {"include/abbe/identify/a.h": "#pragma once\n", "include/abbe/compensate/b.h": "#pragma once\n"}
         for source, target in (("identify/x.cpp", "compensate/b.h"), ("compensate/x.cpp", "identify/a.h")):
             self.assert_one({**headers, f"src/abbe/{source}": f'#include "abbe/{target}"\n'},
                             f"src/abbe/{source}:1:", "do not see each other")
@@ -73,7 +83,7 @@ class CheckStructure(unittest.TestCase):
                         "src/abbe/machine/a.cpp:1:", "does not exist")
 
     def test_a_relative_include_is_found(self):
-        self.assert_one({"src/abbe/geometry/a.cpp": '#include "line.h"\n'}, "src/abbe/geometry/a.cpp:1:", "from abbe/")
+        self.assert_one({"src/abbe/geometry/tree.h": "#pragma once\n", "src/abbe/geometry/a.cpp": '#include "tree.h"\n'}, "src/abbe/geometry/a.cpp:1:", "from abbe/")
 
     def test_an_include_written_twice_is_found(self):
         self.assert_one({"src/abbe/geometry/a.cpp": "#include <cmath>\n#include <vector>\n#include <cmath>\n"},

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "abbe/compensate/correction_step.h"
+#include "abbe/compensate/program/correction_step.h"
 #include "abbe/machine/machine_check.h"
 
 namespace abbe {

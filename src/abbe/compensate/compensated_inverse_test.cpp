@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "abbe/compensate/errors_for_test.h"
+#include "abbe/compensate/program/errors_for_test.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machines_for_test.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "abbe/compensate/program_uncertainty.h"
+#include "abbe/compensate/program/program_uncertainty.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/geometry/angle.h"
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "abbe/compensate/program_moves_for_test.h"
-#include "abbe/compensate/program_uncertainty.h"
+#include "abbe/compensate/program/program_moves_for_test.h"
+#include "abbe/compensate/program/program_uncertainty.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/machine/machines_for_test.h"
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "abbe/compensate/program_move.h"
-#include "abbe/compensate/program_moves_for_test.h"
-#include "abbe/compensate/word_axes.h"
+#include "abbe/compensate/program/program_move.h"
+#include "abbe/compensate/program/program_moves_for_test.h"
+#include "abbe/compensate/program/word_axes.h"
 #include "abbe/errors/actual_pose.h"
 #include "abbe/machine/machine.h"
 

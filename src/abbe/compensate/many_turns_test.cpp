@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "abbe/compensate/errors_for_test.h"
 #include "abbe/compensate/one_pose_for_test.h"
+#include "abbe/compensate/program/errors_for_test.h"
 
 namespace abbe {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "abbe/compensate/error_tables.h"
+#include "abbe/compensate/tables/error_tables.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {

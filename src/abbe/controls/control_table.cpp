@@ -14,7 +14,7 @@
 #include "abbe/controls/travel_grid.h"
 #include "abbe/controls/useless_tables.h"
 #include "abbe/controls/writer_request.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/verify/error_map.h"
 
 namespace abbe {

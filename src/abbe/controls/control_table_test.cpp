@@ -7,9 +7,9 @@
 
 #include "abbe/controls/table_format.h"
 #include "abbe/controls/table_map.h"
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {

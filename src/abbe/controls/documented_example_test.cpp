@@ -7,11 +7,11 @@
 #include <string>
 
 #include "abbe/controls/control_table.h"
-#include "abbe/formats/empty_folder_for_test.h"
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/results_folder.h"
-#include "abbe/formats/text_file.h"
+#include "abbe/formats/files/empty_folder_for_test.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
 
 namespace abbe::test {
 namespace {

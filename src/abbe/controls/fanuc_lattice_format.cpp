@@ -4,13 +4,13 @@
 #include <array>
 #include <cmath>
 
-#include "abbe/compensate/anchored_lattice.h"
-#include "abbe/compensate/whole_unit_correction.h"
+#include "abbe/compensate/tables/anchored_lattice.h"
+#include "abbe/compensate/tables/whole_unit_correction.h"
 #include "abbe/controls/lattice_writer.h"
 #include "abbe/controls/lost_motion.h"
 #include "abbe/controls/table_format.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/table_fanuc_lattice.h"
+#include "abbe/formats/controls/table_fanuc_lattice.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {

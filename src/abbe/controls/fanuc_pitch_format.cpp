@@ -2,12 +2,12 @@
 
 #include <numbers>
 
-#include "abbe/compensate/axis_table.h"
+#include "abbe/compensate/tables/axis_table.h"
 #include "abbe/controls/line_writer.h"
 #include "abbe/controls/lost_motion.h"
 #include "abbe/controls/table_format.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/table_fanuc.h"
+#include "abbe/formats/controls/table_fanuc.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/machine/axis_unit.h"
 
 namespace abbe {

@@ -5,7 +5,7 @@
 #include "abbe/controls/line_writer.h"
 #include "abbe/controls/lost_motion.h"
 #include "abbe/controls/table_format.h"
-#include "abbe/formats/table_heidenhain.h"
+#include "abbe/formats/controls/table_heidenhain.h"
 
 namespace abbe {
 namespace {

@@ -1,8 +1,8 @@
-#include "abbe/compensate/correction_lattice.h"
 #include "abbe/compensate/point_correction.h"
+#include "abbe/compensate/tables/correction_lattice.h"
 #include "abbe/controls/lattice_writer.h"
 #include "abbe/controls/table_format.h"
-#include "abbe/formats/table_lattice.h"
+#include "abbe/formats/controls/table_lattice.h"
 
 namespace abbe {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "abbe/compensate/point_correction.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "abbe/compensate/correction_lattice.h"
+#include "abbe/compensate/tables/correction_lattice.h"
 #include "abbe/controls/table_format.h"
 
 namespace abbe {

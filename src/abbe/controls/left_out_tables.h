@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "abbe/compensate/command_correction.h"
+#include "abbe/compensate/program/command_correction.h"
 #include "abbe/controls/table_format.h"
 #include "abbe/errors/error_set.h"
 #include "abbe/errors/poses.h"

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "abbe/compensate/line_tables.h"
 #include "abbe/compensate/point_correction.h"
+#include "abbe/compensate/tables/line_tables.h"
 #include "abbe/controls/lost_motion.h"
 #include "abbe/errors/reversal.h"
-#include "abbe/formats/table_linuxcnc.h"
-#include "abbe/formats/table_siemens.h"
+#include "abbe/formats/controls/table_linuxcnc.h"
+#include "abbe/formats/controls/table_siemens.h"
 
 namespace abbe {
 namespace {

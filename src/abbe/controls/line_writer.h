@@ -1,6 +1,6 @@
 #pragma once
 
-#include "abbe/compensate/line_tables.h"
+#include "abbe/compensate/tables/line_tables.h"
 #include "abbe/controls/table_format.h"
 
 namespace abbe {

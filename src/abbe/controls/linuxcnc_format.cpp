@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include "abbe/compensate/axis_table.h"
+#include "abbe/compensate/tables/axis_table.h"
 #include "abbe/controls/line_writer.h"
 #include "abbe/controls/lost_motion.h"
 #include "abbe/controls/table_format.h"
-#include "abbe/formats/table_linuxcnc.h"
+#include "abbe/formats/controls/table_linuxcnc.h"
 
 namespace abbe {
 namespace {

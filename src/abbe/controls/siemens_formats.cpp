@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "abbe/compensate/axis_table.h"
+#include "abbe/compensate/tables/axis_table.h"
 #include "abbe/controls/line_writer.h"
 #include "abbe/controls/lost_motion.h"
 #include "abbe/controls/table_format.h"
-#include "abbe/formats/table_siemens.h"
+#include "abbe/formats/controls/table_siemens.h"
 
 namespace abbe {
 namespace {

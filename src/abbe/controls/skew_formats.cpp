@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "abbe/compensate/point_correction.h"
-#include "abbe/compensate/skew_factors.h"
+#include "abbe/compensate/tables/skew_factors.h"
 #include "abbe/controls/lost_motion.h"
 #include "abbe/controls/table_format.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/table_skew.h"
+#include "abbe/formats/controls/table_skew.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {

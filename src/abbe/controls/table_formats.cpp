@@ -2,7 +2,7 @@
 #include <cstddef>
 
 #include "abbe/controls/table_format.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 
 // A format is a function that returns its row, in a file of its own, and a line here. The order is that of --help.
 #define ABBE_TABLE_FORMATS(FORMAT) \

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "abbe/compensate/command_correction.h"
+#include "abbe/compensate/program/command_correction.h"
 #include "abbe/controls/control_table.h"
 
 namespace abbe {

@@ -8,8 +8,8 @@
 #include "abbe/controls/table_format.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/report/statistics_json.h"
-#include "abbe/report/volumetric_words.h"
+#include "abbe/report/evaluations/statistics_json.h"
+#include "abbe/report/words/volumetric_words.h"
 
 namespace abbe {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "abbe/controls/writer_request.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "abbe/compensate/error_tables.h"
 #include "abbe/compensate/point_correction.h"
+#include "abbe/compensate/tables/error_tables.h"
 #include "abbe/controls/table_format.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/table_volumetric.h"
+#include "abbe/formats/controls/table_volumetric.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {

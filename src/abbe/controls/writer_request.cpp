@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <set>
 
-#include "abbe/compensate/line_tables.h"
+#include "abbe/compensate/tables/line_tables.h"
 #include "abbe/controls/joint_order.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/machine/axis_unit.h"
 
 namespace abbe {

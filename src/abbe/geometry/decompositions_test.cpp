@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "abbe/geometry/numbers_for_test.h"
+#include "abbe/geometry/fits/numbers_for_test.h"
 
 namespace abbe {
 namespace {

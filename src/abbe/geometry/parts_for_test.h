@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "abbe/geometry/numbers_for_test.h"
-#include "abbe/geometry/triangle_mesh.h"
+#include "abbe/geometry/fits/numbers_for_test.h"
+#include "abbe/geometry/surface/triangle_mesh.h"
 
 /// Parts made in code, closed and oriented outwards unless said otherwise.
 namespace abbe::parts {

@@ -10,9 +10,9 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/identify/function_observations_test.h"
 #include "abbe/identify/identify.h"
-#include "abbe/identify/monte_carlo.h"
+#include "abbe/identify/trust/monte_carlo.h"
 #include "abbe/instruments/aguado_for_test.h"
-#include "abbe/instruments/tracker_observations.h"
+#include "abbe/instruments/trackers/tracker_observations.h"
 
 namespace abbe {
 namespace {

@@ -8,8 +8,8 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/identify/function_observations_test.h"
-#include "abbe/identify/monte_carlo.h"
-#include "abbe/identify/prediction.h"
+#include "abbe/identify/trust/monte_carlo.h"
+#include "abbe/identify/trust/prediction.h"
 
 namespace abbe {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "abbe/geometry/angle_units.h"
-#include "abbe/identify/trust.h"
+#include "abbe/identify/trust/trust.h"
 
 namespace abbe {
 namespace {

@@ -7,7 +7,7 @@
 #include "abbe/errors/random_stream.h"
 #include "abbe/identify/order_selection.h"
 #include "abbe/instruments/aguado_for_test.h"
-#include "abbe/instruments/tracker_observations.h"
+#include "abbe/instruments/trackers/tracker_observations.h"
 
 namespace abbe {
 namespace {

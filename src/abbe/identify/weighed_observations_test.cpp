@@ -6,7 +6,7 @@
 #include "abbe/geometry/rotation.h"
 #include "abbe/identify/normal_equations.h"
 #include "abbe/identify/pose_noise_for_test.h"
-#include "abbe/instruments/tracker_observations.h"
+#include "abbe/instruments/trackers/tracker_observations.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "abbe/geometry/rotation.h"
-#include "abbe/instruments/tracker.h"
+#include "abbe/instruments/trackers/tracker.h"
 
 /// tests/golden/aguado as data of this project: its README says what the files hold.
 namespace abbe::test {

@@ -7,10 +7,10 @@
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/instruments/further_readings.h"
-#include "abbe/instruments/tracker_observations.h"
-#include "abbe/instruments/tracker_residual.h"
-#include "abbe/instruments/tracker_simulation.h"
-#include "abbe/instruments/tracker_whitening.h"
+#include "abbe/instruments/trackers/tracker_observations.h"
+#include "abbe/instruments/trackers/tracker_residual.h"
+#include "abbe/instruments/trackers/tracker_simulation.h"
+#include "abbe/instruments/trackers/tracker_whitening.h"
 
 namespace abbe {
 namespace {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "abbe/geometry/closest_point.h"
-#include "abbe/geometry/ray_tracer.h"
+#include "abbe/geometry/surface/closest_point.h"
+#include "abbe/geometry/surface/ray_tracer.h"
 
 namespace abbe {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "abbe/geometry/triangle_mesh.h"
+#include "abbe/geometry/surface/triangle_mesh.h"
 #include "abbe/plan/scan_plan.h"
 
 namespace abbe {

@@ -9,7 +9,7 @@
 
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/decompositions.h"
-#include "abbe/geometry/revolution_axis.h"
+#include "abbe/geometry/fits/revolution_axis.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/plan/turning_axis.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "abbe/geometry/smooth_surface.h"
-#include "abbe/geometry/triangle_mesh.h"
+#include "abbe/geometry/surface/smooth_surface.h"
+#include "abbe/geometry/surface/triangle_mesh.h"
 #include "abbe/machine/machine.h"
 #include "abbe/plan/scan_plan.h"
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "abbe/geometry/ray_tracer.h"
+#include "abbe/geometry/surface/ray_tracer.h"
 #include "abbe/machine/machine.h"
 #include "abbe/plan/scan_clearance.h"
 #include "abbe/plan/scan_plan.h"

@@ -12,8 +12,8 @@
 
 #include "abbe/geometry/angle.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/geometry/surface_faces.h"
-#include "abbe/geometry/surface_lines.h"
+#include "abbe/geometry/surface/surface_faces.h"
+#include "abbe/geometry/surface/surface_lines.h"
 #include "abbe/plan/scan_clearance.h"
 #include "abbe/plan/scan_coverage.h"
 #include "abbe/plan/scan_face.h"

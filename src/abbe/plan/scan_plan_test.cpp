@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "abbe/geometry/meshes_for_test.h"
+#include "abbe/geometry/surface/meshes_for_test.h"
 #include "abbe/machine/machines_for_test.h"
 
 namespace abbe {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "abbe/geometry/meshes_for_test.h"
+#include "abbe/geometry/surface/meshes_for_test.h"
 
 namespace abbe {
 namespace {

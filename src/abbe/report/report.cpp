@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "abbe/formats/not_finite.h"
-#include "abbe/report/page_template.h"
+#include "abbe/formats/text/not_finite.h"
+#include "abbe/report/pages/page_template.h"
 
 namespace abbe {
 namespace {

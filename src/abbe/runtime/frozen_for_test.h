@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "abbe/compensate/errors_for_test.h"
+#include "abbe/compensate/program/errors_for_test.h"
 #include "abbe/machine/machines_for_test.h"
 #include "abbe/runtime/abbe_runtime.h"
 #include "abbe/runtime/freeze.h"

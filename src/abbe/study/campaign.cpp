@@ -7,9 +7,9 @@
 
 #include "abbe/errors/random_errors.h"
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/study_instrument.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/study/study_instrument.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/study/planned_readings.h"

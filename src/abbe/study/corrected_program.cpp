@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "abbe/compensate/left_out_errors.h"
-#include "abbe/compensate/machine_planes.h"
-#include "abbe/compensate/program_uncertainty.h"
-#include "abbe/compensate/tool_centre_moves.h"
+#include "abbe/compensate/program/machine_planes.h"
+#include "abbe/compensate/program/program_uncertainty.h"
+#include "abbe/compensate/program/tool_centre_moves.h"
 #include "abbe/errors/reversal.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/machine_file.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
 
 namespace abbe {
 namespace {

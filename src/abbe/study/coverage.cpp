@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "abbe/identify/prediction.h"
+#include "abbe/identify/trust/prediction.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/study/study_result.h"
 

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/report/statistics_json.h"
-#include "abbe/report/volumetric_words.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/report/evaluations/statistics_json.h"
+#include "abbe/report/words/volumetric_words.h"
 #include "abbe/study/results.h"
 
 namespace abbe {

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/message_of.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/text/message_of.h"
 
 namespace abbe {
 namespace {

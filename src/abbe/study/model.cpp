@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/study_file.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/study/study_file.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {

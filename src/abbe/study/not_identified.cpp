@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/identify/parameter_words.h"
-#include "abbe/identify/shown_by.h"
+#include "abbe/identify/trust/shown_by.h"
 #include "abbe/study/study_result.h"
 #include "abbe/verify/known_range.h"
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "abbe/machine/axis_unit.h"
-#include "abbe/report/machine_json.h"
-#include "abbe/report/path_data.h"
+#include "abbe/report/evaluations/machine_json.h"
+#include "abbe/report/pages/path_data.h"
 #include "abbe/report/report.h"
 #include "abbe/report/version.h"
 #include "abbe/study/plan_text.h"

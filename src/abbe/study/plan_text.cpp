@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "abbe/formats/csv_reader.h"
+#include "abbe/formats/text/csv_reader.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/report/svg_plot.h"
+#include "abbe/report/drawings/svg_plot.h"
 
 namespace abbe {
 namespace {

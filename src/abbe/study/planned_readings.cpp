@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/planned_poses.h"
+#include "abbe/formats/readings/planned_poses.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/instruments/path_plan.h"
 
 namespace abbe {

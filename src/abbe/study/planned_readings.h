@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "abbe/formats/study.h"
+#include "abbe/formats/study/study.h"
 #include "abbe/instruments/instrument.h"
 
 namespace abbe {

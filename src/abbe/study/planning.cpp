@@ -11,7 +11,7 @@
 #include <set>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/study/campaign.h"
 #include "abbe/study/model.h"
 #include "abbe/study/random_poses.h"

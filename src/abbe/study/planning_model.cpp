@@ -5,13 +5,13 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/study_file.h"
-#include "abbe/formats/study_parts.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/study/study_file.h"
+#include "abbe/formats/study/study_parts.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/identify/normal_equations.h"
-#include "abbe/identify/planning_candidates.h"
+#include "abbe/identify/planning/planning_candidates.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/instruments/path_plan.h"
 #include "abbe/machine/axis_unit.h"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/machine/axis_unit.h"
-#include "abbe/report/machine_json.h"
+#include "abbe/report/evaluations/machine_json.h"
 #include "abbe/report/version.h"
 #include "abbe/study/advice.h"
 #include "abbe/study/report_identification.h"

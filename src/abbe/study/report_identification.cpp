@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "abbe/report/machine_json.h"
+#include "abbe/report/evaluations/machine_json.h"
 #include "abbe/study/coverage.h"
 
 namespace abbe {

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/identify/covariance.h"
-#include "abbe/identify/monte_carlo_comparison.h"
-#include "abbe/identify/prediction.h"
+#include "abbe/identify/trust/monte_carlo_comparison.h"
+#include "abbe/identify/trust/prediction.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/report/machine_json.h"
+#include "abbe/report/evaluations/machine_json.h"
 
 namespace abbe {
 namespace {

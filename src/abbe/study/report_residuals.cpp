@@ -7,7 +7,7 @@
 
 #include "abbe/identify/distributions.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/report/machine_json.h"
+#include "abbe/report/evaluations/machine_json.h"
 
 namespace abbe {
 namespace {

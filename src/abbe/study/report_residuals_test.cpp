@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "abbe/instruments/tracker_observations.h"
+#include "abbe/instruments/trackers/tracker_observations.h"
 
 namespace abbe {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "abbe/report/statistics_json.h"
+#include "abbe/report/evaluations/statistics_json.h"
 #include "abbe/study/study_steps.h"
 #include "abbe/study/summary.h"
 

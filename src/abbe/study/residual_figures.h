@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "abbe/verify/statistics.h"
+#include "abbe/verify/evaluations/statistics.h"
 
 namespace abbe {
 

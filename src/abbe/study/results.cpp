@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "abbe/formats/csv_reader.h"
-#include "abbe/formats/errors_file.h"
-#include "abbe/formats/json_text.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/map_file.h"
-#include "abbe/formats/results_folder.h"
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/machine/map_file.h"
+#include "abbe/formats/text/csv_reader.h"
+#include "abbe/formats/text/json_text.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/report.h"
 #include "abbe/study/report_data.h"

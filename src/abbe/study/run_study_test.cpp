@@ -53,7 +53,7 @@ TEST(RunStudy, StopsInEveryStep) {
 
 TEST(RunStudy, TheExampleOfItsHeaderIsTheConsumerThatIsCompiled) {
   const std::string commented = test::consumer_as_comment("study.cpp");
-  EXPECT_NE(test::text_of_source("src/abbe/study/run_study.h").find(commented), std::string::npos) << commented;
+  EXPECT_NE(test::text_of_source("include/abbe/study/run_study.h").find(commented), std::string::npos) << commented;
 }
 
 }  // namespace

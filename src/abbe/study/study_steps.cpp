@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "abbe/formats/measurement_file.h"
-#include "abbe/identify/prediction.h"
+#include "abbe/formats/readings/measurement_file.h"
+#include "abbe/identify/trust/prediction.h"
 #include "abbe/study/coverage.h"
 #include "abbe/verify/known_range.h"
 #include "abbe/verify/volumetric_figures.h"

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "abbe/report/volumetric_words.h"
+#include "abbe/report/words/volumetric_words.h"
 #include "abbe/study/advice.h"
 #include "abbe/study/coverage.h"
 #include "abbe/study/found_values_words.h"

@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/geometry/rotation.h"
-#include "abbe/identify/monte_carlo_comparison.h"
+#include "abbe/identify/trust/monte_carlo_comparison.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/report/partial_errors.h"
-#include "abbe/report/statistics_json.h"
-#include "abbe/report/volumetric_words.h"
+#include "abbe/report/evaluations/partial_errors.h"
+#include "abbe/report/evaluations/statistics_json.h"
+#include "abbe/report/words/volumetric_words.h"
 #include "abbe/study/advice.h"
 #include "abbe/study/coverage.h"
 #include "abbe/study/found_values_words.h"

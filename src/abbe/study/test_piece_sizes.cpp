@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "abbe/formats/input_error.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "abbe/identify/outlier_clusters.h"
-#include "abbe/identify/prediction.h"
-#include "abbe/identify/repeated_readings.h"
+#include "abbe/identify/trust/outlier_clusters.h"
+#include "abbe/identify/trust/prediction.h"
+#include "abbe/identify/trust/repeated_readings.h"
 #include "abbe/study/study_result.h"
 #include "abbe/study/summary.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "abbe/formats/study_file.h"
+#include "abbe/formats/study/study_file.h"
 #include "abbe/instruments/measurement_plan.h"
 #include "abbe/study/study_steps.h"
 #include "abbe/verify/error_map.h"

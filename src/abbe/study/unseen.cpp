@@ -6,14 +6,14 @@
 #include <cmath>
 
 #include "abbe/identify/identify.h"
-#include "abbe/identify/prediction.h"
+#include "abbe/identify/trust/prediction.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/study/predicted_readings.h"
 #include "abbe/study/random_poses.h"
 #include "abbe/study/study_steps.h"
 #include "abbe/verify/compensated_poses.h"
-#include "abbe/verify/determined_part.h"
 #include "abbe/verify/error_map.h"
+#include "abbe/verify/parts/determined_part.h"
 
 namespace abbe {
 namespace {

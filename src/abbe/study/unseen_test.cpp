@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "abbe/formats/study_file.h"
+#include "abbe/formats/study/study_file.h"
 #include "abbe/study/study_steps.h"
 
 namespace abbe {

@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "abbe/compensate/correction_uncertainty.h"
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/machine_file.h"
-#include "abbe/formats/results_files.h"
+#include "abbe/formats/files/results_files.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/study/random_poses.h"
 #include "abbe/study/test_piece_sizes.h"
 

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "abbe/report/machine_json.h"
+#include "abbe/report/evaluations/machine_json.h"
 #include "abbe/report/report.h"
-#include "abbe/report/volumetric_words.h"
+#include "abbe/report/words/volumetric_words.h"
 #include "abbe/study/verification_text.h"
 
 namespace abbe {

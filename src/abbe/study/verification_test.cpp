@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "abbe/formats/input_error.h"
-#include "abbe/formats/message_of.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/message_of.h"
 #include "abbe/study/header_example_for_test.h"
 #include "abbe/study/verification_page.h"
 #include "abbe/study/verification_text.h"
@@ -127,7 +127,7 @@ TEST(Verification, WhatCannotBeAnsweredIsNamedByItsOption) {
 
 TEST(Verification, TheExampleOfItsHeaderIsTheConsumerThatIsCompiled) {
   const std::string commented = test::consumer_as_comment("verification.cpp");
-  EXPECT_NE(test::text_of_source("src/abbe/study/verification.h").find(commented), std::string::npos) << commented;
+  EXPECT_NE(test::text_of_source("include/abbe/study/verification.h").find(commented), std::string::npos) << commented;
 }
 
 }  // namespace

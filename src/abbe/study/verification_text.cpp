@@ -5,8 +5,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "abbe/report/statistics_json.h"
-#include "abbe/report/volumetric_words.h"
+#include "abbe/report/evaluations/statistics_json.h"
+#include "abbe/report/words/volumetric_words.h"
 #include "abbe/study/not_identified.h"
 #include "abbe/study/summary.h"
 #include "abbe/study/unseen.h"

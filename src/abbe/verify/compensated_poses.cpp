@@ -9,9 +9,9 @@
 #include "abbe/compensate/compensated_inverse.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/angle.h"
-#include "abbe/verify/actual_tool.h"
 #include "abbe/verify/covariance_root.h"
 #include "abbe/verify/displacement_fields.h"
+#include "abbe/verify/parts/actual_tool.h"
 
 namespace abbe {
 namespace {

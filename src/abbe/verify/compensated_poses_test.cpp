@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "abbe/compensate/errors_for_test.h"
+#include "abbe/compensate/program/errors_for_test.h"
 #include "abbe/errors/random_stream.h"
 #include "abbe/machine/machines_for_test.h"
 

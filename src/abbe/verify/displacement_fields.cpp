@@ -7,8 +7,8 @@
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/reversal.h"
 #include "abbe/geometry/decompositions.h"
-#include "abbe/verify/deviation_block.h"
-#include "abbe/verify/deviation_jacobian.h"
+#include "abbe/verify/parts/deviation_block.h"
+#include "abbe/verify/parts/deviation_jacobian.h"
 
 namespace abbe {
 

@@ -7,8 +7,8 @@
 
 #include "abbe/geometry/best_fit_transform.h"
 #include "abbe/geometry/parallel_blocks.h"
-#include "abbe/verify/deviation_block.h"
 #include "abbe/verify/map_uncertainty.h"
+#include "abbe/verify/parts/deviation_block.h"
 
 namespace abbe {
 namespace {

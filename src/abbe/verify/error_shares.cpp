@@ -2,8 +2,8 @@
 #include <stdexcept>
 
 #include "abbe/geometry/parallel_blocks.h"
-#include "abbe/verify/deviation_block.h"
 #include "abbe/verify/error_map.h"
+#include "abbe/verify/parts/deviation_block.h"
 
 namespace abbe {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "abbe/geometry/decompositions.h"
 #include "abbe/verify/covariance_root.h"
-#include "abbe/verify/deviation_jacobian.h"
+#include "abbe/verify/parts/deviation_jacobian.h"
 
 namespace abbe {
 namespace {

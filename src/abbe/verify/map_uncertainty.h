@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "abbe/verify/deviation_block.h"
 #include "abbe/verify/error_map.h"
+#include "abbe/verify/parts/deviation_block.h"
 
 namespace abbe {
 

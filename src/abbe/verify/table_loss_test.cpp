@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "abbe/compensate/line_tables.h"
+#include "abbe/compensate/tables/line_tables.h"
 #include "abbe/errors/random_errors.h"
 #include "abbe/machine/machines_for_test.h"
 #include "abbe/verify/error_map.h"

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "abbe/compensate/tables/anchored_nodes.h"
+#include "abbe/compensate/tables/correction_lattice.h"
+
+namespace abbe {
+
+/// The same function inside the old ends, over nodes of which the outer ones lie further out: cells at the ends are
+/// continued in straight lines as far as the first node outside, and keep its value beyond it.
+/// @param positions  [inputs][nodes] with all the lattice's nodes but those at its ends; at least two old nodes each
+CorrectionLattice continued_lattice(const CorrectionLattice& lattice,
+                                    const std::vector<std::vector<double>>& positions);
+
+struct AnchoredLatticeOptions {
+  /// `most_per_axis` and `most_nodes` count nodes outside the travel too; three per input are taken in any case.
+  LatticeOptions lattice;
+  std::vector<double> anchor;    ///< [inputs] where a node has to be; mm or rad
+  double step_multiple = 0.001;  ///< intervals are whole multiples of it, mm or rad
+};
+
+struct AnchoredLattice {
+  BuiltLattice built;  ///< inside the travel, so that nothing is computed outside
+  CorrectionLattice lattice;
+  std::vector<AnchoredNodes> nodes;  ///< [inputs]
+};
+
+/// Lattice whose nodes are tied to a place along every input, as those of controls are that count them from their
+/// reference position. Where the tie makes the interpolation worse than the tolerance, it is tried with closer nodes.
+AnchoredLattice build_anchored_lattice(const Machine& machine, const ErrorSet& errors,
+                                       const AnchoredLatticeOptions& options);
+
+}  // namespace abbe

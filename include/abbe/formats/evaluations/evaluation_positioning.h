@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "abbe/verify/evaluations/diagonals.h"
+#include "abbe/verify/evaluations/positioning.h"
+
+namespace abbe {
+
+/// Positioning readings of one axis as they stand in a file.
+struct PositioningFile {
+  bool rotary = false;                       ///< targets and deviations are rad, else mm
+  std::vector<PositioningReading> readings;  ///< in the order of the file
+};
+
+/// Reads positioning readings from a CSV: columns `target_mm` (or `_deg` for a rotary axis), `direction` (+ or -),
+/// `deviation_um` (or `_arcsec`) or `actual_mm` (or `_deg`), and optionally `run`, which may hold any name; see
+/// docs/evaluate.md. Every row counts or is an error.
+/// @throws InputError also for a target that one run approaches twice from the same side, and for an actual angle more
+///         than half a turn from its target
+PositioningFile read_positioning(const std::filesystem::path& path);
+/// The same from text. @param file  name for messages
+PositioningFile parse_positioning(std::string_view text, const std::string& file);
+
+/// Reads displacements along diagonals: the same columns in lengths, and `diagonal` with the name of the diagonal.
+/// @return in order of appearance
+std::vector<DiagonalReadings> read_diagonals(const std::filesystem::path& path);
+std::vector<DiagonalReadings> parse_diagonals(std::string_view text, const std::string& file);
+
+}  // namespace abbe

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "abbe/verify/parts/contour_sections.h"
+
+namespace abbe {
+
+/// Reads a CSV of sections: `section` (a name), `across`, `height`; optional `along` and `beam_tilt`, which are the
+/// same on all rows of a section. Sections in order of appearance. @throws InputError
+std::vector<SectionReadings> read_sections(const std::filesystem::path& path);
+/// The same from text. @param file  name for messages
+std::vector<SectionReadings> parse_sections(std::string_view text, const std::string& file);
+
+/// The file; coordinates to a nanometre. What is optional is stated by all sections or by none.
+/// @throws std::invalid_argument where only some of them state it
+std::string sections_csv(const std::vector<SectionReadings>& sections);
+
+}  // namespace abbe

@@ -1,0 +1,18 @@
+#pragma once
+
+// Internal to formats and to the program abbe-step.
+#include <filesystem>
+#include <string>
+
+#include "abbe/formats/text/ascii_letters.h"
+
+namespace abbe {
+
+/// Extension with its point in small letters: ".stl" of "PART.STL".
+inline std::string file_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = lower_case(c);
+  return extension;
+}
+
+}  // namespace abbe

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "abbe/formats/readings/measurement_file.h"
+#include "abbe/formats/text/csv_reader.h"
+#include "abbe/instruments/instrument.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+/// What one file of readings says.
+struct InstrumentFile {
+  std::shared_ptr<const Instrument> device;  ///< with what the file says of it: offsets of reflectors
+  InstrumentReadings readings;
+  std::vector<std::string> contradictions;  ///< in words, where the file and the study differ
+};
+
+/// How the readings of an instrument are read and written.
+struct InstrumentFileForm {
+  /// @param setup            name of the set-up, for messages
+  /// @param noise_from_data  the uncertainties of the file count and have to be there; else they are passed over
+  InstrumentFile (*read)(const std::filesystem::path& path, const Machine& machine,
+                         const std::shared_ptr<const Instrument>& device, const std::string& setup,
+                         bool noise_from_data, const MeasurementOptions& options);
+  std::string (*text)(const Machine& machine, const Instrument& device, const InstrumentReadings& readings);
+  constexpr InstrumentFileForm();
+  constexpr InstrumentFileForm(decltype(read) how, decltype(text) back) : read(how), text(back) {}
+};
+
+/// Reads readings of any instrument from CSV: axis columns (X_mm, C_deg), `item` (not needed if there is one), the
+/// instrument's inputs and components with units (length_mm), optional standard uncertainties u_length_um of all
+/// components, optional time_s. Every row counts or is an error; rows keep their order. @throws InputError
+InstrumentReadings read_instrument_readings(const std::filesystem::path& path, const Machine& machine,
+                                            const Instrument& instrument, const MeasurementOptions& options = {});
+/// The same from text. @param file  name for messages
+InstrumentReadings parse_instrument_readings(std::string_view text, const std::string& file, const Machine& machine,
+                                             const Instrument& instrument, const MeasurementOptions& options = {});
+
+/// CSV text of readings: mm and deg, angles of readings in arcsec, uncertainties in um and arcsec; shortest decimals.
+std::string instrument_readings_text(const Machine& machine, const Instrument& instrument,
+                                     const InstrumentReadings& readings);
+
+/// As InstrumentFileForm::read, of every instrument without a form of its own.
+InstrumentFile read_instrument_file(const std::filesystem::path& path, const Machine& machine,
+                                    const std::shared_ptr<const Instrument>& device, const std::string& setup,
+                                    bool noise_from_data, const MeasurementOptions& options);
+
+constexpr InstrumentFileForm::InstrumentFileForm() : read(read_instrument_file), text(instrument_readings_text) {}
+
+}  // namespace abbe

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "abbe/formats/text/csv_reader.h"
+#include "abbe/formats/text/file_unit.h"
+#include "abbe/geometry/surface/point_cloud.h"
+
+namespace abbe {
+
+struct PointCloudOptions {
+  std::optional<FileLength> unit;  ///< of files that state none; without it mm, which the result says
+  ColumnMapping mapping;           ///< of CSV files that Abbe did not write
+  int threads = 0;                 ///< 0: all
+  bool in_plane = false;           ///< a CSV file need not have z, which is then zero
+};
+
+/// A point cloud as read, and what a reader of the result has to know about it.
+struct PointCloudFile {
+  PointCloud cloud;                  ///< mm
+  std::vector<double> deviation_mm;  ///< [n] of a CSV file with a column deviation_mm, or empty
+  std::string format;                ///< "XYZ", "CSV", "PLY, ascii"
+  FileUnit unit;
+};
+
+/// Reads CSV (.csv: x_mm, y_mm, z_mm, perhaps nx, ny, nz), PLY, OBJ (the vertices) or XYZ: any other file, with three
+/// numbers in a line, or six, of which the last three are a unit normal. See docs/geometry-files.md.
+///
+/// Points keep their order; all of them count or are an error. Normals become unit vectors. @throws InputError
+PointCloudFile read_point_cloud(const std::filesystem::path& path, const PointCloudOptions& options = {});
+
+/// The same from the contents. @param file  name for messages; its extension counts
+PointCloudFile parse_point_cloud(std::string_view contents, const std::string& file,
+                                 const PointCloudOptions& options = {});
+
+/// True for the extensions of point clouds that are no meshes (.xyz .asc .pts .csv, also in capitals).
+bool has_point_cloud_extension(const std::filesystem::path& path);
+
+/// CSV of points in mm: x_mm,y_mm,z_mm, then nx,ny,nz and deviation_mm where there are any; reads back to the same
+/// bits.
+/// @param deviation_mm  [n] or empty
+std::string point_cloud_csv(const PointCloud& cloud, const std::vector<double>& deviation_mm = {});
+
+}  // namespace abbe

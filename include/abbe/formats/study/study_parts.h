@@ -1,0 +1,37 @@
+#pragma once
+
+// Internal to formats: the parts of a study file.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "abbe/formats/study/study.h"
+#include "abbe/formats/text/toml_table.h"
+
+namespace abbe {
+
+/// @param planned  the readings are still to be planned: neither plans nor data are needed
+Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated,
+                 bool planned);
+PlanningStudy read_planning(TomlTable& table, const Machine& machine);
+IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);
+
+/// What a plan may name: targets ("reflectors" of a tracker, "items" of other instruments) and stations (tracker only).
+struct PlanNames {
+  std::string key;  ///< of the targets in the file
+  std::string one;  ///< a single target in words
+  std::vector<std::string> targets;
+  std::vector<std::string> stations;
+};
+
+MeasurementPlan read_plan(TomlTable& table, const std::filesystem::path& folder, const Machine& machine,
+                          const PlanNames& names);
+
+/// Which way ranges of axes may be written.
+enum class RangeOrder { rising, either };
+
+/// Table `axis` with one table per axis: `range` and `count`, or `at`. Axes that are not named stay fixed.
+std::vector<AxisRange> read_axis_ranges(TomlTable& parent, const Machine& machine, bool with_counts,
+                                        RangeOrder order = RangeOrder::rising);
+
+}  // namespace abbe

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "abbe/formats/text/unit.h"
+
+namespace abbe {
+
+/// One figure of an evaluation: a value with its uncertainty and tolerance, or the reason why there is none.
+struct EvaluationFigure {
+  std::string symbol;  ///< "A", "A+", "B_mean"; also what --tolerance calls it
+  std::string name;    ///< "bidirectional accuracy of positioning"
+  Quantity quantity = Quantity::length;
+  std::string unit = "um";            ///< in which it is shown; a unit of the quantity
+  int decimals = 2;                   ///< of the text, in that unit
+  std::optional<double> value;        ///< mm, rad, ...
+  std::string missing;                ///< without a value: why, in words
+  std::optional<double> uncertainty;  ///< expanded, k = 2; like the value
+  std::optional<double> tolerance;    ///< largest permitted magnitude; like the value
+
+  /// The magnitude is larger than the tolerance; a figure that is not known does not satisfy any.
+  bool exceeds_tolerance() const { return tolerance && (!value || std::abs(*value) > *tolerance); }
+  /// Within the uncertainty of its tolerance: neither conformity nor nonconformity is proven (ISO 14253-1).
+  bool is_undecided() const;
+};
+
+/// Text of a value in the unit in which the figure is shown, with its decimals: "12.34".
+std::string figure_text(const EvaluationFigure& figure, double value);
+/// The unit as written for people: "µm", "arcsec".
+std::string unit_symbol(const std::string& unit);
+
+/// Rows of texts under headers.
+struct EvaluationTable {
+  std::string caption;
+  std::vector<std::string> headers;
+  std::vector<std::vector<std::string>> rows;
+};
+
+struct EvaluationPlot {
+  std::string name;     ///< of its file, without ".svg": "plot"
+  std::string caption;  ///< may be empty
+  std::string svg;
+  bool in_page = false;  ///< the interactive page draws it itself, from `page`
+};
+
+/// All that an evaluation by a standard has to say, whatever the standard.
+struct EvaluationReport {
+  std::string kind;                                        ///< "positioning": the subcommand
+  std::string title;                                       ///< "Positioning of x.csv"
+  std::string standard;                                    ///< "ISO 230-2:2014"
+  std::vector<std::pair<std::string, std::string>> facts;  ///< what was measured: name, text
+  std::vector<EvaluationFigure> figures;
+  std::vector<EvaluationTable> tables;
+  std::vector<EvaluationPlot> plots;
+  std::vector<std::string> notes;  ///< what a reader must know to judge the figures
+  nlohmann::ordered_json details;  ///< for programs, beside the figures; units in the keys; an object or null
+  nlohmann::json page;             ///< more sections of the page (docs/report-data.md), or null
+
+  bool exceeds_tolerance() const;
+};
+
+/// Contents of evaluation.json: kind, standard, facts, figures by symbol with units in the keys, notes, details.
+nlohmann::ordered_json evaluation_json(const EvaluationReport& report);
+
+/// The page of all reports with figures, plots, tables and notes; one file, no address to load. Text in the report is
+/// shown as text, whatever it contains.
+std::string evaluation_page(const EvaluationReport& report);
+
+}  // namespace abbe

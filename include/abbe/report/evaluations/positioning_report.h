@@ -1,0 +1,24 @@
+#pragma once
+
+#include "abbe/report/evaluations/evaluation_report.h"
+#include "abbe/verify/evaluations/positioning.h"
+#include "abbe/verify/evaluations/positioning_uncertainty.h"
+
+namespace abbe {
+
+/// A figure of the evaluation as one of the report, with the reason in words if it was not evaluated.
+EvaluationFigure report_figure(const std::string& symbol, const std::string& name, const EvaluatedFigure& figure,
+                               bool rotary = false);
+
+/// Figures, table of the targets, plot and notes of an axis by ISO 230-2.
+/// @param uncertainty  null: none was stated
+EvaluationReport positioning_report(const PositioningEvaluation& evaluation, bool rotary, const std::string& file,
+                                    const PositioningUncertainty* uncertainty);
+
+/// What ISO 230-2 asks of targets and runs and these readings do not have, in words; empty if all is there.
+std::vector<std::string> positioning_notes(const PositioningEvaluation& evaluation, bool rotary);
+
+/// The target positions for programs: one object each, units in the keys.
+nlohmann::ordered_json targets_json(const PositioningEvaluation& evaluation, bool rotary);
+
+}  // namespace abbe

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "abbe/compensate/left_out_errors.h"
+#include "abbe/compensate/program/program_report.h"
+#include "abbe/compensate/program/program_uncertainty.h"
+#include "abbe/formats/nc/nc_program.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+/// What a program may meet and still be written, by its name for --allow.
+struct AllowedProblems {
+  bool not_covered = false, outside_travel = false, held_start = false, position_left = false, not_converged = false;
+  bool not_proven = false;
+};
+
+/// What a corrected program may become and take.
+struct ProgramLimits {
+  double megabytes = 0, minutes = 0;
+};
+
+/// What was asked of a correction, as far as its report says it.
+struct ProgramWordsRequest {
+  std::string program;          ///< name of its file
+  std::string output;           ///< of the corrected program
+  double tolerance_um = 1;      ///< between corrected poses
+  double leave_out_factor = 0;  ///< standard uncertainties below which errors are left out; 0: none
+  bool dry_run = false;
+};
+
+/// What was done to a program, with the uncertainties of the largest corrections.
+struct CorrectedProgram {
+  ProgramReport report;
+  NcProgramResult text;
+  PlaceUncertainty largest;                  ///< at ProgramReport::largest_shift
+  std::vector<PlaceUncertainty> by_axis;     ///< [axes] at ProgramReport::by_axis
+  std::vector<ReversalAxis> reversals;       ///< compensated reversal values
+  std::vector<double> reversal_uncertainty;  ///< [reversals] mm or rad, 0: not stated
+  LeftOutErrors left_out;                    ///< errors below their uncertainty
+  std::vector<std::string> refused;          ///< why nothing is written; empty: it is
+};
+
+/// Why the program was given up, with the place and the option that allows more.
+std::string given_up_words(const std::string& program, const ProgramLimits& limits, const NcProgramResult& text);
+
+/// Reasons not to write the program that are not allowed.
+/// @param limit_um  of corrections, as it was asked for; 0: none
+std::vector<std::string> reasons_to_refuse(double limit_um, const AllowedProblems& allowed, const Machine& machine,
+                                           const ProgramReport& report);
+
+/// What was done, for people; lines with their ends.
+std::string program_text(const ProgramWordsRequest& request, const Machine& machine, const CorrectedProgram& result);
+
+/// The same for programs; units in the keys.
+nlohmann::ordered_json program_json(const ProgramWordsRequest& request, const Machine& machine,
+                                    const CorrectedProgram& result);
+
+}  // namespace abbe

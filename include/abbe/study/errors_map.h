@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/map_file.h"
+#include "abbe/geometry/stopped.h"
+#include "abbe/machine/machine.h"
+#include "abbe/report/evaluations/partial_errors.h"
+#include "abbe/verify/error_map.h"
+#include "abbe/verify/left_out_poses.h"
+#include "abbe/verify/volumetric_figures.h"
+
+// The map of an errors file, as `abbe map` makes it:
+//
+//     abbe::ErrorsMapRequest request;
+//     request.machine = abbe::read_machine("mill.machine.toml");
+//     request.errors = abbe::read_errors("mill.errors.toml", request.machine);
+//     const abbe::ErrorsMap map = abbe::map_errors(request);
+//     std::cout << abbe::errors_map_text(map);
+//     abbe::write_file_atomically("map.csv", abbe::map_csv(abbe::errors_map_data(map)));
+
+namespace abbe {
+
+/// Errors, and where they are mapped; lengths in mm, angles in rad.
+///
+/// Messages name a field by the option of `abbe map` that sets it, given below.
+struct ErrorsMapRequest {
+  Machine machine;
+  ErrorsFile errors;
+  std::optional<ErrorsFile> minus;   ///< --minus: errors that are corrected for
+  std::optional<StatedPoses> poses;  ///< --poses: instead of a grid
+  /// --grid: [axes], or empty; what is not set runs over the range in which all errors are known.
+  std::vector<std::optional<AxisRange>> grid;
+  bool fit_datum = true;  ///< --keep-datum: false; displacements with the workpiece where it is
+};
+
+/// Volumetric error at poses, in the workpiece frame. It needs nothing of the request that it answers.
+struct ErrorsMap {
+  Machine machine;
+  StatedPoses stated;
+  ErrorMap before;                           ///< of the errors, with uncertainties where they are stated
+  std::optional<ErrorMap> after;             ///< with `minus`: what is left after correction for these
+  bool after_is_true = false;                ///< the errors are the truth of a simulation
+  std::optional<VolumetricFigures> figures;  ///< with the datum fitted only: without, they are other quantities
+  PartialErrors partial;                     ///< what the errors do not state
+
+  LeftOutPoses left_out() const { return {.all = stated.poses.count(), .not_covered = before.statistics.excluded}; }
+};
+
+struct ErrorsMapOptions {
+  /// Called while a map is computed, one call at a time but from any thread: poses done of all.
+  std::function<void(std::size_t done, std::size_t total)> progress{};
+  std::stop_token stop{};  ///< looked at there
+};
+
+/// Maps errors over a grid or at given poses, before and after a correction. Opens no file and prints nothing.
+/// @throws InputError for a grid of more than 20,000,000 poses; Stopped where that was asked for
+ErrorsMap map_errors(const ErrorsMapRequest& request, const ErrorsMapOptions& options = {});
+
+/// As map files hold it.
+MapData errors_map_data(const ErrorsMap& map);
+
+/// For people: figures, lines with their ends.
+std::string errors_map_text(const ErrorsMap& map);
+
+/// For programs; units in the keys.
+nlohmann::ordered_json errors_map_json(const ErrorsMap& map);
+
+}  // namespace abbe

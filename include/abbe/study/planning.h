@@ -1,0 +1,176 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "abbe/formats/study/study.h"
+#include "abbe/identify/planning/planning.h"
+#include "abbe/identify/problem.h"
+#include "abbe/instruments/instrument.h"
+#include "abbe/study/not_identified.h"
+
+namespace abbe {
+
+/// One reading that may be taken: where the machine stands, who looks at what.
+struct CandidateReading {
+  std::vector<double> pose;    ///< [axes] mm or rad
+  std::size_t setup = 0;       ///< index into Study::setups
+  std::size_t item = 0;        ///< index into Instrument::items()
+  std::vector<double> inputs;  ///< [Instrument::inputs()]
+  bool operator<(const CandidateReading& other) const {
+    return std::tie(pose, setup, item, inputs) < std::tie(other.pose, other.setup, other.item, other.inputs);
+  }
+};
+
+/// The identification problem of a study as far as it can be set up before anything is measured: all errors zero,
+/// instruments where the study says they stand.
+///
+/// An instrument that can be read anywhere may be read at any pose; one whose points meet follows with the linear axes
+/// (PoseFreedom::together). All others, and those with a [[setup.plan]] that are no trackers, may be read where their
+/// plans say: a bar on its circles, a laser along its lines.
+class PlanningModel {
+ public:
+  /// @param errors  of zero, with the ranges over which they are to be known; null: those of the study
+  /// @throws InputError naming what is missing for a plan
+  explicit PlanningModel(const Study& study, const ErrorSet* errors = nullptr);
+
+  struct Candidates {
+    PlanningCandidates rows;
+    std::vector<CandidateReading> readings;    ///< [rows.count()]
+    std::vector<InstrumentReadings> of_setup;  ///< [setups] the same
+    std::size_t hidden = 0;                    ///< without a line of sight
+    std::size_t forbidden = 0;                 ///< poses in a forbidden box
+  };
+  /// What could be read at poses. Rows over the vector of estimates.
+  /// @param sight  [poses] the one sight used at each, modulo sight_count(); empty: every one
+  Candidates readings_at(const PoseList& poses, const std::vector<std::size_t>& sight = {}) const;
+
+  /// [poses] true where the functional point stands in a forbidden box.
+  std::vector<bool> forbidden(const PoseList& poses) const;
+
+  /// Deviation of the tool's functional point in the workpiece frame, best-fit rigid motion over all poses removed, as
+  /// rows over the vector of estimates: [3 poses, p], mm per mm or rad.
+  Eigen::MatrixXd prediction_rows(const PoseList& poses) const;
+  /// Rows of named parameters in um or urad, for goal = "parameters". @throws InputError if a pattern matches nothing
+  Eigen::MatrixXd parameter_rows() const;
+  /// Knowledge of the kind one always has, [p, p]: every error within 20 um or 60 urad, every number of a set-up within
+  /// a thousand times that.
+  Eigen::MatrixXd weak_prior() const;
+  /// Priors of the study, [rows, p].
+  const Eigen::MatrixXd& known() const { return known_; }
+
+  const Study& study() const { return study_; }
+  const ErrorSet& errors() const { return errors_; }
+  /// Of instruments that may be read at any pose: stations times targets.
+  std::size_t sight_count() const { return sights_.size(); }
+  /// True if those instruments may be read wherever the axes go, so that poses beside a chosen one can be tried.
+  bool sights_stand_anywhere() const { return sights_stand_anywhere_; }
+  /// True if some instrument may be read at the poses of its plans only.
+  bool has_given_readings() const { return !given_.empty(); }
+  std::size_t parameter_count() const { return parameters_.size(); }
+  const std::vector<EstimatedParameter>& parameters() const { return parameters_; }
+
+ private:
+  struct Sight {
+    std::size_t setup, station, target;
+  };
+  Problem problem(const std::vector<InstrumentReadings>& readings) const;
+  void check_setups() const;
+  void add_sights(std::size_t setup);
+  void add_given(std::size_t setup);
+  void see(std::size_t setup, const InstrumentReadings& plan, std::vector<InstrumentReadings>& readings,
+           Candidates& result) const;
+  InstrumentReadings sight_plan(const Sight& sight, const PoseList& poses, Candidates& result) const;
+
+  const Study& study_;
+  ErrorSet errors_;
+  std::vector<std::shared_ptr<const Instrument>> devices_;
+  std::vector<Sight> sights_;
+  bool sights_stand_anywhere_ = true;
+  /// Readings that plans of the study allow, of the set-ups that have no sights.
+  std::vector<std::pair<std::size_t, InstrumentReadings>> given_;
+  std::vector<EstimatedParameter> parameters_;
+  Eigen::MatrixXd known_;
+};
+
+/// Uncertainty that a number of readings would give.
+struct PlanPoint {
+  std::size_t readings = 0;
+  bool determined = false;
+  double uncertainty = 0;  ///< mm, root mean square of the predicted volumetric standard uncertainty; where determined
+  double with_prior = 0;   ///< mm, the same with PlanningModel::weak_prior() added
+};
+
+/// A grid that was compared.
+struct GridPoint {
+  std::string words;  ///< how it is made
+  PlanPoint value;
+  std::size_t open = 0;    ///< directions that the candidates see and it does not
+  std::string open_words;  ///< the errors in them
+};
+
+/// The best grids of at least as many readings (up to a fifth more).
+struct GridsOfANumber {
+  std::size_t tried = 0;
+  std::optional<GridPoint> determined;  ///< the best one that determines everything that the candidates see
+  std::optional<GridPoint> any;         ///< the best one with the weak prior, whether it determines everything or not
+};
+
+/// One combination of the set-ups and what it would be worth.
+struct SetupChoice {
+  std::size_t subset = 0;  ///< bit s: Study::setups[s] takes part
+  std::vector<std::string> setups;
+  std::size_t readings = 0;
+  double time = 0;        ///< s
+  double with_prior = 0;  ///< mm, as PlanPoint
+  bool possible = false;  ///< false: no time is left for readings, or too few to determine what they can see
+};
+
+/// A plan of readings and what it is worth.
+struct StudyPlan {
+  ReadingPlan plan;
+  std::vector<CandidateReading> readings;  ///< in the order in which they are to be taken
+  double time = 0;                         ///< s
+  double uncertainty = 0;                  ///< mm, as PlanPoint
+  std::size_t candidates = 0, hidden = 0, forbidden = 0;
+  std::size_t parameters = 0, seen = 0;
+  int refinements = 0;     ///< rounds in which poses beside the chosen ones were tried
+  double unseen_part = 0;  ///< largest part of a prediction that lies in directions no candidate sees, 0..1
+  std::vector<PlanPoint> curve;
+  std::size_t enough = 0;  ///< index into curve; its size: not reached
+  std::string enough_words;
+  double with_prior = 0;                    ///< mm, of the plan with the weak prior
+  std::vector<GridsOfANumber> curve_grids;  ///< [curve]
+  GridsOfANumber same_number;               ///< of as many readings as the plan has
+  std::size_t grids_tried = 0;              ///< in all
+  std::optional<GridPoint> equal_grid;      ///< smallest determined grid found that is as good as the plan
+  std::size_t random_tried = 0;
+  std::optional<PlanPoint> random_poses;  ///< median of choices of as many candidates at random
+  std::vector<SetupChoice> combinations;  ///< those that were compared; empty where setting up costs nothing
+  NotIdentified not_identified;           ///< errors of the machine that no predicted uncertainty covers
+};
+
+/// Chooses readings for a study with a [plan] table. Where setting an instrument up takes time, every combination of up
+/// to six set-ups is tried, and the best one is planned. @throws InputError
+/// @param progress  share done, 0 to 1
+StudyPlan plan_study(const Study& study, const std::function<void(double)>& progress = {});
+
+/// When each reading is finished, s from the start: setting up, moves of the slowest axis, settling, reading.
+/// @param readings  in their order
+std::vector<double> reading_times(const Study& study, const std::vector<CandidateReading>& readings);
+
+/// Root mean square of the predicted volumetric uncertainty, mm, of readings with the weak prior.
+double uncertainty_with_prior(const PlanningModel& model, const PlanningCandidates::Rows& rows,
+                              const Eigen::MatrixXd& predictions);
+
+/// Looks for the grids that one would really take: for every number of the curve, for the plan's and for larger ones.
+void compare_with_grids(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
+                        StudyPlan& result);
+
+}  // namespace abbe

@@ -1,0 +1,50 @@
+#pragma once
+
+// Internal to formats: the columns of axis commands in a CSV file.
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "abbe/errors/poses.h"
+#include "abbe/formats/text/csv_reader.h"
+#include "abbe/machine/machine.h"
+
+namespace abbe {
+
+/// One required column per axis, chain order.
+std::vector<CsvColumn> axis_columns(const Machine& machine);
+
+/// The first of an axis's commands (mm or rad) that lies outside its travel, in words for an InputError.
+struct OutsideTravel {
+  std::size_t row;
+  std::string problem, expected;
+};
+std::optional<OutsideTravel> first_outside_travel(const Axis& axis, std::span<const double> commands);
+
+/// Takes the axis commands from the first columns of a table that was read with axis_columns().
+/// @throws InputError for a command outside its axis's travel, if that is checked
+PoseList take_poses(std::string_view text, const std::string& file, const Machine& machine, CsvTable& table,
+                    bool check_travel);
+
+/// Optional column "point": what the input calls the point of a reading.
+CsvColumn point_column();
+
+/// Optional columns "X_approach": from which side the axis came, +1, -1 or 0 (not known).
+/// @returns index of the first of them; one per axis, chain order
+std::size_t add_approach_columns(const Machine& machine, std::vector<CsvColumn>& columns);
+
+/// Sides of approach for poses that were taken from the table; empty if there is no such column.
+/// @throws InputError for any other number
+std::vector<std::vector<std::int8_t>> take_approach(std::string_view text, const std::string& file,
+                                                    const Machine& machine, const CsvTable& table, std::size_t first);
+
+/// The sides of one axis as numbers for a column.
+std::vector<double> approach_numbers(const std::vector<std::int8_t>& sides);
+/// "X_approach"
+std::string approach_header(const Axis& axis);
+
+}  // namespace abbe

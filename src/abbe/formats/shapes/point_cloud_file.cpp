@@ -1,0 +1,129 @@
+#include "abbe/formats/shapes/point_cloud_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cassert>
+
+#include "abbe/formats/files/file_extension.h"
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/shapes/obj_file.h"
+#include "abbe/formats/shapes/ply_file.h"
+#include "abbe/formats/shapes/point_normals.h"
+#include "abbe/formats/shapes/stl_file.h"
+#include "abbe/formats/shapes/xyz_text.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/number_text.h"
+
+namespace abbe {
+namespace {
+
+PointCloudFile parse_csv_cloud(std::string_view contents, const std::string& file, const PointCloudOptions& options) {
+  std::vector<CsvColumn> wanted;
+  for (const char* name : {"x", "y"}) wanted.push_back({name, Quantity::length});
+  wanted.push_back({"z", Quantity::length, false, !options.in_plane});
+  for (const char* name : {"nx", "ny", "nz"}) wanted.push_back({name, Quantity::dimensionless, false, false});
+  wanted.push_back({"deviation", Quantity::length, false, false});
+  CsvTable table = read_csv(contents, file, wanted, options.mapping, options.threads);
+  std::size_t normals = 0;
+  for (std::size_t k = 3; k < 6; ++k) normals += table.columns[k].present ? 1U : 0U;
+  if (normals != 0 && normals != 3) {
+    throw InputError({file, 0, 0, "nx"}, "a normal without all of its components",
+                     "columns nx, ny, nz or none of them");
+  }
+  PointCloudFile result;
+  result.format = "CSV";
+  // The header has the unit of each column.
+  result.unit = {FileLength::millimetre, UnitSource::stated};
+  const auto rows = static_cast<Eigen::Index>(table.rows);
+  result.cloud.points.resize(3, rows);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!table.columns[k].present) {
+      result.cloud.points.row(static_cast<Eigen::Index>(k)).setZero();
+      continue;
+    }
+    result.cloud.points.row(static_cast<Eigen::Index>(k)) =
+        Eigen::Map<const Eigen::RowVectorXd>(table.columns[k].numbers.data(), rows);
+  }
+  if (normals == 3) {
+    result.cloud.normals.resize(3, rows);
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.cloud.normals.row(static_cast<Eigen::Index>(k)) =
+          Eigen::Map<const Eigen::RowVectorXd>(table.columns[3 + k].numbers.data(), rows);
+    }
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      if (make_unit(result.cloud.normals.col(i))) continue;
+      throw InputError({file, csv_line(contents, static_cast<std::size_t>(i)), 0, "nx, ny, nz"},
+                       "the normal has no direction", "a vector with a length");
+    }
+  }
+  if (table.columns[6].present) result.deviation_mm = std::move(table.columns[6].numbers);
+  return result;
+}
+
+}  // namespace
+
+PointCloudFile parse_point_cloud(std::string_view contents, const std::string& file, const PointCloudOptions& options) {
+  const std::string extension = file_extension(file);
+  PointCloudFile result;
+  if (is_ply(contents)) {
+    PlyContents ply = parse_ply(contents, file, options.unit);
+    result.cloud = {std::move(ply.points), std::move(ply.normals)};
+    result.format = ply.format;
+    result.unit = ply.unit;
+    return result;
+  }
+  if (extension == ".obj") {
+    ObjContents obj = parse_obj(contents, file, options.unit, options.threads);
+    result.cloud = {std::move(obj.points), std::move(obj.normals)};
+    result.format = "OBJ";
+    result.unit = obj.unit;
+    return result;
+  }
+  if (extension == ".csv") {
+    if (options.unit) {
+      throw InputError({file, 0, 0, "unit"}, "a CSV file states the unit of each column in its header", "no unit");
+    }
+    return parse_csv_cloud(contents, file, options);
+  }
+  if (extension == ".stl" || is_binary_stl(contents)) {
+    throw InputError({file, 0, 0, ""}, "this is an STL file, a mesh", "a point cloud: XYZ, CSV, PLY or OBJ");
+  }
+  if (extension == ".ply") throw InputError({file, 1, 0, ""}, "this is not a PLY file", "a first line 'ply'");
+  result.unit = agreed_unit(std::nullopt, options.unit, file);
+  const double factor = millimetres(result.unit.length);
+  result.cloud = parse_xyz(contents, file, kLargestInput / factor, options.threads);
+  result.cloud.points *= factor;
+  result.format = "XYZ";
+  return result;
+}
+
+PointCloudFile read_point_cloud(const std::filesystem::path& path, const PointCloudOptions& options) {
+  const MappedFile file(path);
+  return parse_point_cloud(file.text(), path.string(), options);
+}
+
+bool has_point_cloud_extension(const std::filesystem::path& path) {
+  const std::string extension = file_extension(path);
+  return extension == ".xyz" || extension == ".asc" || extension == ".pts" || extension == ".csv";
+}
+
+std::string point_cloud_csv(const PointCloud& cloud, const std::vector<double>& deviation_mm) {
+  assert(deviation_mm.empty() || deviation_mm.size() == static_cast<std::size_t>(cloud.size()));
+  std::string text = "x_mm,y_mm,z_mm";
+  if (cloud.has_normals()) text += ",nx,ny,nz";
+  if (!deviation_mm.empty()) text += ",deviation_mm";
+  text += '\n';
+  for (Eigen::Index i = 0; i < cloud.size(); ++i) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      if (k > 0) text += ',';
+      text += shortest_text(cloud.points(k, i));
+    }
+    for (Eigen::Index k = 0; cloud.has_normals() && k < 3; ++k) text += ',' + shortest_text(cloud.normals(k, i));
+    if (!deviation_mm.empty()) text += ',' + shortest_text(deviation_mm[static_cast<std::size_t>(i)]);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace abbe

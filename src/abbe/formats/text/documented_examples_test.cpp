@@ -1,0 +1,61 @@
+// The examples of docs/formats.md are files that the readers accept.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/readings/measurement_file.h"
+#include "abbe/formats/study/study_file.h"
+
+namespace abbe {
+namespace {
+
+std::vector<std::string> blocks(const std::string& kind) {
+  const std::string text = read_text_file(std::filesystem::path(ABBE_DOCS) / "formats.md");
+  const std::string begin = "```" + kind + "\n";
+  std::vector<std::string> found;
+  for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at)) {
+    at += begin.size();
+    const std::size_t end = text.find("```", at);
+    found.push_back(text.substr(at, end - at));
+    at = end;
+  }
+  return found;
+}
+
+TEST(DocumentedExamples, AreAccepted) {
+  const std::vector<std::string> toml = blocks("toml"), csv = blocks("csv");
+  ASSERT_EQ(toml.size(), 5U);
+  ASSERT_EQ(csv.size(), 2U);
+  const Machine machine = parse_machine(toml[0], "machine");
+  EXPECT_EQ(machine.chain(), "w C' X' b Z t");
+
+  const auto folder = std::filesystem::path(testing::TempDir()) / "abbe_documented";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "ebx.csv") << "X_mm,EBX_urad,remark\n0,1,a\n1400,2,b\n";
+  std::string errors = toml[1];
+  const std::string covariance = "covariance = \"a.covariance.csv\"";
+  ASSERT_NE(errors.find(covariance), std::string::npos);
+  errors.erase(errors.find(covariance), covariance.size());
+  const ErrorsFile contents = parse_errors(errors, folder / "a.errors.toml", machine);
+  EXPECT_EQ(contents.errors.motions.size(), 5U);
+  EXPECT_EQ(contents.errors.motions[4].basis.nodes.size(), 2U);
+
+  EXPECT_EQ(parse_measurements(csv[0], "csv", machine).readings.count(), 2U);
+  EXPECT_EQ(parse_measurements(csv[1], "csv", machine).readings.stated, StatedUncertainty::covariance);
+
+  const Study simulated = parse_study(toml[2], "a.study.toml", machine);
+  EXPECT_EQ(simulated.setups[0].plans.size(), 4U);
+  EXPECT_EQ(simulated.identification->motions.size(), 12U);
+  const Study measured = parse_study(toml[3], "b.study.toml", machine);
+  EXPECT_TRUE(measured.setups[0].noise_from_data);
+  const Study bar = parse_study(toml[4], "c.study.toml", machine);
+  EXPECT_EQ(bar.setups[0].plans.size(), 2U);
+}
+
+}  // namespace
+}  // namespace abbe

@@ -1,0 +1,356 @@
+#include "abbe/geometry/registration/fine_registration.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "abbe/geometry/decompositions.h"
+#include "abbe/geometry/parallel_blocks.h"
+#include "abbe/geometry/rotation.h"
+#include "abbe/geometry/singular_values.h"
+#include "abbe/geometry/surface/hilbert_order.h"
+
+namespace abbe {
+namespace {
+
+using Eigen::Matrix3Xd;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+
+constexpr double kMadToDeviation = 1.482602218505602;
+/// Share of the information of the best seen motion below which a motion counts as not seen.
+constexpr double kUnseen = 1e-5;
+/// Points from which the seen motions are told.
+constexpr Eigen::Index kPointsForRank = 20000;
+constexpr double kFarAway = 0.002;  ///< of the extent: nearer, a curved surface is its tangent plane
+
+/// Weight and slope of the influence function at a distance.
+struct Weight {
+  double weight = 1, slope = 1;
+};
+Weight weight_at(RegistrationLoss loss, double distance, double scale) {
+  if (loss == RegistrationLoss::least_squares) return {};
+  const double u = distance / (scale * (loss == RegistrationLoss::welsch ? kWelschTuning : kTukeyTuning)),
+               square = u * u;
+  if (loss == RegistrationLoss::welsch) {
+    const double weight = std::exp(-square);
+    return {weight, weight * (1 - 2 * square)};
+  }
+  if (square >= 1) return {0, 0};
+  return {(1 - square) * (1 - square), (1 - square) * (1 - 5 * square)};
+}
+
+/// Sums over some points; rotations are scaled by the extent, so that all six parameters are lengths.
+struct WeightedSums {
+  Matrix6d hessian = Matrix6d::Zero(), slope = Matrix6d::Zero(), square = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  double weighted_square = 0, weight = 0;
+  Eigen::Index used = 0, beyond_border = 0;
+
+  void operator+=(const WeightedSums& other) {
+    hessian += other.hessian;
+    slope += other.slope;
+    square += other.square;
+    gradient += other.gradient;
+    weighted_square += other.weighted_square;
+    weight += other.weight;
+    used += other.used;
+    beyond_border += other.beyond_border;
+  }
+};
+
+class Fit {
+ public:
+  Fit(const Matrix3Xd& points, const ClosestPointFinder& surface, const SmoothSurface& smooth,
+      const FineRegistrationOptions& options)
+      : points_(in_order(points, options.threads)),
+        surface_(surface),
+        smooth_(smooth),
+        options_(options),
+        distances_(static_cast<std::size_t>(points.cols())),
+        hints_(static_cast<std::size_t>(points.cols()), ClosestPointFinder::kNoHint) {
+    middle_ = points.rowwise().mean();
+    extent_ = std::sqrt((points.colwise() - middle_).squaredNorm() / static_cast<double>(points.cols()));
+  }
+
+  double extent() const { return extent_; }
+  Vector3d reference(const RigidTransform& pose) const { return pose * middle_; }
+
+  /// One pass over all points: distances, and the sums at this scale.
+  WeightedSums pass(const RigidTransform& pose, double scale) {
+    constexpr Eigen::Index kBlock = ClosestPointFinder::kBlock;
+    const std::size_t blocks = static_cast<std::size_t>((points_.cols() + kBlock - 1) / kBlock);
+    std::vector<WeightedSums> sums(blocks);
+    for_each_block(blocks, options_.threads, [&](std::size_t block) {
+      const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
+      const Eigen::Index count = std::min(kBlock, points_.cols() - first);
+      const Matrix3Xd moved = (pose.rotation * points_.middleCols(first, count)).colwise() + pose.translation;
+      std::vector<SurfacePoint> found(static_cast<std::size_t>(count));
+      surface_.closest_block(moved, found.data(), hints_.data() + first);
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const SurfacePoint& at = found[static_cast<std::size_t>(i)];
+        distances_[static_cast<std::size_t>(first + i)] = at.on_border ? kNothing : std::abs(at.distance);
+        if (at.on_border) {
+          ++sums[block].beyond_border;
+        } else {
+          add(at, moved.col(i), moved.col(i) - reference(pose), scale, &sums[block]);
+        }
+      }
+    });
+    // In the order of the blocks, so that the sum does not depend on the threads.
+    WeightedSums all;
+    for (const WeightedSums& some : sums) all += some;
+    return all;
+  }
+
+  /// Robust standard deviation of the distances of the last pass.
+  double scale() const {
+    std::vector<double> sorted;
+    sorted.reserve(distances_.size());
+    for (const double d : distances_) {
+      if (d != kNothing) sorted.push_back(d);
+    }
+    if (sorted.empty()) return 0;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    return kMadToDeviation * *middle;
+  }
+
+  /// Motions that move the points across the surface, as columns; the others move them along it.
+  struct Seen {
+    MatrixXd seen, unseen;  ///< [6, k], orthonormal in the scaled parameters
+  };
+  Seen seen_motions(const RigidTransform& pose, double scale) const {
+    const Eigen::Index stride = std::max<Eigen::Index>(1, points_.cols() / kPointsForRank);
+    Matrix6d information = Matrix6d::Zero();
+    SurfacePoint at;
+    for (Eigen::Index i = 0; i < points_.cols(); i += stride) {
+      const Vector3d moved = pose * Vector3d(points_.col(i));
+      std::uint32_t hint = hints_[static_cast<std::size_t>(i)];
+      surface_.closest_block(moved, &at, &hint);
+      if (at.on_border) continue;
+      // The part's own normal at the foot: facets would tell about turns of a cylinder that the part does not show.
+      const Vector6d row = gradient_of(smooth_.normal(at.triangle, at.point), at.point - reference(pose));
+      information += weight_at(options_.loss, at.distance, scale).weight * row * row.transpose();
+    }
+    const SymmetricEigen<6> solver(information);
+    Eigen::Index unseen = 0;
+    while (unseen < 6 && !(solver.eigenvalues()[unseen] > kUnseen * solver.eigenvalues()[5])) ++unseen;
+    return {solver.eigenvectors().rightCols(6 - unseen), solver.eigenvectors().leftCols(unseen)};
+  }
+
+  Vector6d unscaled(Vector6d motion) const {
+    motion.head<3>() /= extent_;
+    return motion;
+  }
+
+ private:
+  static constexpr double kNothing = -1;
+
+  Vector6d gradient_of(const Vector3d& direction, const Vector3d& arm) const {
+    Vector6d row;
+    row << arm.cross(direction) / extent_, direction;
+    return row;
+  }
+
+  void add(const SurfacePoint& at, const Vector3d& point, const Vector3d& arm, double scale, WeightedSums* sums) const {
+    const Weight w = weight_at(options_.loss, at.distance, scale);
+    sums->weight += w.weight;
+    sums->weighted_square += w.weight * at.distance * at.distance;
+    if (w.weight < 1e-6) return;
+    if (w.weight > 0.01) ++sums->used;
+    const bool edge = at.feature != SurfaceFeature::face;
+    const double distance = std::abs(at.distance);
+    // The gradient of the distance; at an edge it is the line to it, not a normal of a face.
+    Vector3d direction = at.normal;
+    if (edge && distance > 1e-9 * extent_) direction = (point - at.point) / at.distance;
+    const Vector6d row = gradient_of(direction, arm);
+    const Matrix6d product = row * row.transpose();
+    sums->gradient += w.weight * at.distance * row;
+    sums->hessian += w.weight * product;
+    sums->slope += w.slope * product;
+    sums->square += w.weight * w.weight *
+                    (options_.noise_mm > 0 ? options_.noise_mm * options_.noise_mm : at.distance * at.distance) *
+                    product;
+    if (options_.adaptive_distance && distance > kFarAway * extent_)
+      add_curvature(at, arm, w.weight, edge, direction, sums);
+  }
+
+  /// The part of the second derivative of half the squared distance that lies in the tangent plane: d / (d - rho) along
+  /// each principal direction, kept positive.
+  void add_curvature(const SurfacePoint& at, const Vector3d& arm, double weight, bool edge, const Vector3d& direction,
+                     WeightedSums* sums) const {
+    if (edge) {
+      // Across an edge the radius is zero. Along it nothing is lost by counting it in too: steps are shorter only.
+      for (int k = 0; k < 3; ++k) {
+        const Vector3d axis = Vector3d::Unit(k) - direction[k] * direction;
+        const Vector6d row = gradient_of(axis, arm);
+        sums->hessian += weight * row * row.transpose();
+      }
+      return;
+    }
+    const SmoothSurface::Curvature curvature = smooth_.curvature(at.triangle);
+    for (int k = 0; k < 2; ++k) {
+      const double bend = at.distance * curvature.value[k];
+      if (!(bend > 0)) continue;
+      const Vector6d row = gradient_of(curvature.direction[k], arm);
+      sums->hessian += weight * bend / (1 + bend) * row * row.transpose();
+    }
+  }
+
+  /// Neighbours follow each other, which the search for closest points is fastest with; a motion changes nothing in it.
+  static Matrix3Xd in_order(const Matrix3Xd& points, int threads) {
+    if (points.cols() <= ClosestPointFinder::kBlock || points.cols() > Eigen::Index{0xffffffff}) return points;
+    const std::vector<std::uint32_t> order =
+        hilbert_order(points, points.rowwise().minCoeff(), points.rowwise().maxCoeff(), threads);
+    Matrix3Xd ordered(3, points.cols());
+    for (Eigen::Index i = 0; i < points.cols(); ++i) ordered.col(i) = points.col(order[static_cast<std::size_t>(i)]);
+    return ordered;
+  }
+
+  Matrix3Xd points_;
+  const ClosestPointFinder& surface_;
+  const SmoothSurface& smooth_;
+  FineRegistrationOptions options_;
+  std::vector<double> distances_;
+  std::vector<std::uint32_t> hints_;
+  Vector3d middle_;
+  double extent_ = 0;
+};
+
+/// Robust standard deviation of the distances at the start; some of very many points tell it.
+double start_scale(const Matrix3Xd& points, const ClosestPointFinder& surface, const SmoothSurface& smooth,
+                   const RigidTransform& pose, const FineRegistrationOptions& options, double extent) {
+  const Eigen::Index stride = std::max<Eigen::Index>(1, points.cols() / kPointsForRank);
+  Matrix3Xd some(3, (points.cols() + stride - 1) / stride);
+  for (Eigen::Index i = 0; i < some.cols(); ++i) some.col(i) = points.col(i * stride);
+  Fit fit(some, surface, smooth, options);
+  fit.pass(pose, extent);
+  return fit.scale();
+}
+
+/// Names the unseen motions: first pure translations, then rotations about lines.
+std::vector<UndeterminedMotion> named(const MatrixXd& unseen, double extent, const Vector3d& reference) {
+  std::vector<UndeterminedMotion> motions;
+  if (unseen.cols() == 0) return motions;
+  // Combinations in the order of how much they turn.
+  const RightSingular turning = right_singular(unseen.topRows(3));
+  MatrixXd translations(3, 0);
+  for (Eigen::Index k = unseen.cols(); k-- > 0;) {
+    const Vector6d motion = unseen * turning.vectors.col(k);
+    const double turn = motion.head<3>().norm();
+    UndeterminedMotion named;
+    if (turn < 0.02) {
+      named.direction = motion.tail<3>().normalized();
+      translations.conservativeResize(3, translations.cols() + 1);
+      translations.rightCols(1) = named.direction;
+    } else {
+      const Vector3d omega = motion.head<3>() / extent;
+      Vector3d shift = motion.tail<3>();
+      shift -= translations * (translations.transpose() * shift);
+      named.rotation = true;
+      named.direction = omega.normalized();
+      named.point = reference + omega.cross(shift) / omega.squaredNorm();
+      named.pitch_mm = omega.dot(shift) / omega.squaredNorm();
+      if (std::abs(named.pitch_mm) < 0.01 * extent) named.pitch_mm = 0;
+    }
+    Eigen::Index largest = 0;
+    named.direction.cwiseAbs().maxCoeff(&largest);
+    if (named.direction[largest] < 0) named.direction = -named.direction;
+    motions.push_back(named);
+  }
+  return motions;
+}
+
+}  // namespace
+
+RigidTransform small_motion(const Vector6d& motion, const Vector3d& reference) {
+  const Eigen::Matrix3d rotation = rotation_from_vector(motion.head<3>());
+  return {rotation, reference - rotation * reference + motion.tail<3>()};
+}
+
+FineRegistration register_finely(const Matrix3Xd& points, const ClosestPointFinder& surface,
+                                 const SmoothSurface& smooth, const RigidTransform& mesh_from_scan,
+                                 const FineRegistrationOptions& options) {
+  FineRegistration result;
+  result.mesh_from_scan = mesh_from_scan;
+  if (points.cols() < 6) {
+    result.status = FineRegistrationStatus::too_few_points;
+    return result;
+  }
+  Fit fit(points, surface, smooth, options);
+  const double extent = fit.extent(), movement = options.movement_mm > 0 ? options.movement_mm : 1e-9 * extent;
+  if (!(extent > 0)) {
+    result.status = FineRegistrationStatus::too_few_points;
+    return result;
+  }
+  RigidTransform& pose = result.mesh_from_scan;
+  // A scale below what ends the iteration would only follow roundings.
+  double scale = std::max(start_scale(points, surface, smooth, pose, options, extent), movement);
+  if (options.largest_scale_mm > 0) scale = std::min(scale, options.largest_scale_mm);
+  Fit::Seen seen = fit.seen_motions(pose, scale);
+  bool converged = false;
+  WeightedSums sums;
+  for (; result.iterations < options.iterations && !converged; ++result.iterations) {
+    sums = fit.pass(pose, scale);
+    if (sums.used < 6 || seen.seen.cols() == 0) break;
+    const MatrixXd hessian = seen.seen.transpose() * sums.hessian * seen.seen;
+    const Ldlt<> solver(hessian);
+    Vector6d step = -(seen.seen * solver.solve(seen.seen.transpose() * sums.gradient));
+    if (!step.allFinite()) break;
+    // Beyond half a radian the tangent planes say nothing.
+    step *= std::min(1.0, 0.5 * extent / std::max(step.norm(), 1e-300));
+    pose = small_motion(fit.unscaled(step), fit.reference(pose)) * pose;
+    const double narrower = std::min(scale, std::max(fit.scale(), movement));
+    const bool settled = narrower > 0.999 * scale;
+    converged = settled && step.norm() < movement;
+    // A scale that goes on creeping down would keep the pose creeping after it.
+    if (!settled || result.iterations < 20) scale = narrower;
+    if (result.iterations % 5 == 4) seen = fit.seen_motions(pose, scale);
+  }
+  // Products of many rotations drift from orthogonality.
+  pose.rotation = Eigen::Quaterniond(pose.rotation).normalized().toRotationMatrix();
+  // After a last step that moved nothing the sums are those of the pose.
+  if (!converged) sums = fit.pass(pose, scale);
+  seen = fit.seen_motions(pose, scale);
+  result.scale_mm = fit.scale();
+  result.used = sums.used;
+  result.beyond_border = sums.beyond_border;
+  result.weight_sum = sums.weight;
+  result.rms_mm = sums.weight > 0 ? std::sqrt(sums.weighted_square / sums.weight) : 0;
+  result.reference = fit.reference(pose);
+  result.undetermined = named(seen.unseen, extent, result.reference);
+  const MatrixXd slope = seen.seen.transpose() * sums.slope * seen.seen;
+  const Ldlt<> solver(slope);
+  if (seen.seen.cols() > 0 && sums.used > 6 && solver.is_positive()) {
+    Matrix6d scaling = Matrix6d::Identity();
+    scaling.topLeftCorner<3, 3>() /= extent;
+    const MatrixXd bread = seen.seen * solver.solve_columns(seen.seen.transpose());
+    const double freedom =
+        options.noise_mm > 0 ? 1 : static_cast<double>(sums.used) / static_cast<double>(sums.used - seen.seen.cols());
+    result.covariance = freedom * scaling * bread * sums.square * bread.transpose() * scaling;
+  }
+  result.status = sums.used < 6                  ? FineRegistrationStatus::too_few_points
+                  : !converged                   ? FineRegistrationStatus::not_converged
+                  : !result.undetermined.empty() ? FineRegistrationStatus::undetermined
+                                                 : FineRegistrationStatus::ok;
+  return result;
+}
+
+const char* registration_status_name(FineRegistrationStatus status) {
+  switch (status) {
+    case FineRegistrationStatus::not_run:
+      return "not run";
+    case FineRegistrationStatus::ok:
+      return "ok";
+    case FineRegistrationStatus::too_few_points:
+      return "too few points";
+    case FineRegistrationStatus::not_converged:
+      return "not converged";
+    case FineRegistrationStatus::undetermined:
+      return "the scan does not determine the pose";
+  }
+  return "";
+}
+
+}  // namespace abbe

@@ -1,0 +1,67 @@
+#include "abbe/instruments/trackers/tracking_interferometer.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "abbe/instruments/equation_instrument_inline.h"
+#include "abbe/instruments/trackers/tracking_interferometer_start.h"
+
+namespace abbe {
+
+TrackingInterferometer::TrackingInterferometer(const TrackingInterferometerSetup& setup)
+    : EquationInstrument(setup.name), setup_(setup) {
+  if (setup.runs.empty()) throw std::invalid_argument(setup.name + ": no run");
+  components_ = {{"length", false}};
+  SetupQuantity scale = quantity(setup.name + ".length_scale", false, setup.length_scale);
+  scale.scale = 1e-6;
+  const std::size_t scale_index = add(std::move(scale));
+  std::vector<std::array<std::size_t, 3>> stations, reflectors;
+  for (const auto& station : setup.stations) stations.push_back(add(station.name, station.position));
+  for (const auto& reflector : setup.reflectors) reflectors.push_back(add(reflector.name, reflector.offset));
+  for (const TrackingInterferometerSetup::Run& run : setup.runs) {
+    if (run.station >= stations.size()) throw std::invalid_argument(run.name + ": no such station");
+    if (run.reflector >= reflectors.size()) throw std::invalid_argument(run.name + ": no such reflector");
+    const Body from = setup.reflectors[run.reflector].body, to = setup.stations[run.station].body;
+    if (from == to) throw std::invalid_argument(run.name + ": station and reflector are on one body");
+    const std::array<std::size_t, 3>& r = reflectors[run.reflector];
+    const std::array<std::size_t, 3>& p = stations[run.station];
+    const std::size_t dead_path = add(quantity(run.name + ".dead_path", false, run.dead_path));
+    add(InstrumentItem{run.name, from, to, {r[0], r[1], r[2], p[0], p[1], p[2], dead_path, scale_index}});
+  }
+}
+
+double TrackingInterferometer::standard_uncertainty(const InstrumentReadings& readings, std::size_t reading,
+                                                    std::size_t) const {
+  const std::size_t dead_path = items_[readings.item[reading]].quantities[kDeadPath];
+  const double length = readings.measured[0][reading] + quantities_[dead_path].value;
+  return setup_.noise + setup_.noise_per_length * std::abs(length);
+}
+
+std::vector<double> TrackingInterferometer::start_values(const Machine& machine, const InstrumentReadings& readings,
+                                                         std::vector<std::string>& notes) const {
+  const TrackingStart start = find_tracking_start(machine, ErrorSet{}, *this, readings);
+  notes.insert(notes.end(), start.messages.begin(), start.messages.end());
+  return start.values;
+}
+
+std::optional<MeetingPoints> TrackingInterferometer::meeting_points(std::size_t item) const {
+  const auto at = [&](std::size_t first) -> Eigen::Vector3d {
+    const std::vector<std::size_t>& q = items_[item].quantities;
+    return {quantities_[q[first]].value, quantities_[q[first + 1]].value, quantities_[q[first + 2]].value};
+  };
+  return MeetingPoints{at(kReflector), at(kStation)};
+}
+
+template <typename S>
+void TrackingInterferometer::equation(std::size_t, const SeenBody<S>& seen, const S* quantities, const double*,
+                                      S* reading) const {
+  using std::sqrt;
+  const Eigen::Matrix<S, 3, 1> reflector(quantities[0], quantities[1], quantities[2]);
+  const Eigen::Matrix<S, 3, 1> station(quantities[3], quantities[4], quantities[5]);
+  const Eigen::Matrix<S, 3, 1> sight = seen.point(reflector) - station;
+  reading[0] = (S(1) + quantities[7]) * (sqrt(sight.dot(sight)) - quantities[6]);
+}
+
+template class EquationInstrument<TrackingInterferometer, 8, 1>;
+
+}  // namespace abbe

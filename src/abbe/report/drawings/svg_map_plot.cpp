@@ -1,0 +1,100 @@
+#include "abbe/report/drawings/svg_map_plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "abbe/report/drawings/svg_drawing.h"
+
+namespace abbe {
+namespace {
+
+constexpr double kMapWidth = 860, kMapGap = 78, kMapLeft = 66, kMapTitle = 44, kMapLabels = 50, kScaleHeight = 58;
+constexpr double kFaintest = 0.04;
+constexpr std::size_t kPanelsPerRow = 2;
+
+DrawingPoint shifted(DrawingPoint at, double dx, double dy) { return {at.x + dx, at.y + dy}; }
+
+void draw_cell(SvgDrawing& drawing, DrawingPoint corner, double width, double height, double share) {
+  const std::array<DrawingPoint, 4> corners = {corner, shifted(corner, width, 0), shifted(corner, width, height),
+                                               shifted(corner, 0, height)};
+  const double opacity = kFaintest + (1 - kFaintest) * std::abs(share);
+  drawing.area(corners, {share < 0 ? PlotColour::second : PlotColour::first, 1, false, opacity});
+}
+
+}  // namespace
+
+MapPlot::MapPlot(std::string title, Axis x, Axis y, std::string value_label)
+    : title_(std::move(title)), value_label_(std::move(value_label)), x_(std::move(x)), y_(std::move(y)) {
+  assert(x_.count >= 2 && y_.count >= 2);
+}
+
+void MapPlot::add(MapPanel panel) {
+  assert(panel.values.size() == x_.count * y_.count);
+  panels_.push_back(std::move(panel));
+}
+
+std::string MapPlot::svg() const {
+  const std::size_t in_row = std::clamp<std::size_t>(panels_.size(), 1, kPanelsPerRow);
+  const std::size_t rows = (panels_.size() + kPanelsPerRow - 1) / kPanelsPerRow;
+  const double share = (kMapWidth - kMapLeft - 20) / static_cast<double>(in_row) - (in_row > 1 ? kMapGap / 2 : 0);
+  // Whole pixels, so that no seams show between cells.
+  const double cell = std::max(1.0, std::floor(share / static_cast<double>(x_.count)));
+  const double width = cell * static_cast<double>(x_.count);
+  const double tall = std::max(1.0, std::floor(0.62 * width / static_cast<double>(y_.count)));
+  const double height = tall * static_cast<double>(y_.count);
+  const double panel_height = 24 + height + kMapLabels + kScaleHeight;
+  SvgDrawing drawing(kMapWidth, kMapTitle + panel_height * static_cast<double>(rows), title_);
+  drawing.text({kMapLeft, 27}, title_, TextAnchor::start, 16, PlotColour::ink, true);
+  const auto tick = [](double value) { return fmt::format("{:.4g}", value); };
+  for (std::size_t k = 0; k < panels_.size(); ++k) {
+    const MapPanel& panel = panels_[k];
+    const double left = kMapLeft + static_cast<double>(k % kPanelsPerRow) * (width + kMapGap);
+    const double top = kMapTitle + 20 + static_cast<double>(k / kPanelsPerRow) * panel_height;
+    const double bottom = top + height;
+    drawing.text({left, top - 7}, panel.title, TextAnchor::start, 13, PlotColour::ink, true);
+    double largest = 0;
+    bool negative = false;
+    for (const double value : panel.values) {
+      if (!std::isfinite(value)) continue;
+      largest = std::max(largest, std::abs(value));
+      negative = negative || value < 0;
+    }
+    for (std::size_t j = 0; j < y_.count; ++j) {
+      for (std::size_t i = 0; i < x_.count; ++i) {
+        const double value = panel.values[j * x_.count + i];
+        if (!std::isfinite(value)) continue;
+        draw_cell(drawing, {left + cell * static_cast<double>(i), bottom - tall * static_cast<double>(j + 1)}, cell,
+                  tall, largest > 0 ? value / largest : 0);
+      }
+    }
+    for (const double end : {0.0, 0.5, 1.0}) {
+      const double across = left + cell / 2 + end * (width - cell), up = bottom - tall / 2 - end * (height - tall);
+      drawing.line({across, bottom}, {across, bottom + 4}, {PlotColour::soft, 1});
+      drawing.text({across, bottom + 18}, tick(x_.from + end * (x_.to - x_.from)), TextAnchor::middle, 12,
+                   PlotColour::soft);
+      drawing.line({left - 4, up}, {left, up}, {PlotColour::soft, 1});
+      drawing.text({left - 8, up + 4}, tick(y_.from + end * (y_.to - y_.from)), TextAnchor::end, 12, PlotColour::soft);
+    }
+    drawing.text({left + width / 2, bottom + 36}, x_.label, TextAnchor::middle, 12);
+    if (k % kPanelsPerRow == 0) {
+      drawing.text({16, (top + bottom) / 2}, y_.label, TextAnchor::middle, 12, PlotColour::ink, false, -90);
+    }
+    constexpr int kSteps = 20;
+    const double scale_top = bottom + kMapLabels, step = std::floor(0.7 * width / kSteps);
+    const double from = negative ? -1 : 0;
+    for (int s = 0; s < kSteps; ++s) {
+      draw_cell(drawing, {left + step * s, scale_top}, step, 12, from + (1 - from) * (s + 0.5) / kSteps);
+    }
+    drawing.text({left, scale_top + 26}, tick(from * largest), TextAnchor::start, 11, PlotColour::soft);
+    drawing.text({left + step * kSteps, scale_top + 26}, tick(largest), TextAnchor::end, 11, PlotColour::soft);
+    drawing.text({left + step * kSteps + 8, scale_top + 11}, value_label_, TextAnchor::start, 11);
+  }
+  return drawing.svg();
+}
+
+}  // namespace abbe

@@ -1,0 +1,182 @@
+#include "abbe/report/evaluations/positioning_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "abbe/geometry/angle_units.h"
+#include "abbe/report/drawings/positioning_plot.h"
+
+namespace abbe {
+namespace {
+
+/// um or arcsec, without the digits that the conversion makes up.
+double shown_deviation(double value, bool rotary) {
+  return std::round(value * (rotary ? 3600 / kDegree : 1e3) * 1e9) / 1e9;
+}
+
+double rounded_position(double value, bool rotary) {
+  return std::round(value * (rotary ? 1 / kDegree : 1) * 1e9) / 1e9;
+}
+
+std::vector<EvaluationFigure> figures(const PositioningEvaluation& e, bool rotary, const PositioningUncertainty* u) {
+  std::vector<EvaluationFigure> all;
+  const auto add = [&](const char* symbol, const char* name, const EvaluatedFigure& figure, double uncertainty) {
+    all.push_back(report_figure(symbol, name, figure, rotary));
+    if (u != nullptr && figure.is_evaluated()) all.back().uncertainty = uncertainty;
+  };
+  const PositioningUncertainty none;
+  const PositioningUncertainty& v = u != nullptr ? *u : none;
+  add("A", "bidirectional accuracy", e.accuracy.figure, v.accuracy);
+  add("A+", "unidirectional accuracy, positive approach", e.unidirectional_accuracy[0].figure, v.accuracy);
+  add("A-", "unidirectional accuracy, negative approach", e.unidirectional_accuracy[1].figure, v.accuracy);
+  add("E", "bidirectional systematic deviation", e.systematic.figure, v.systematic);
+  add("E+", "systematic deviation, positive approach", e.unidirectional_systematic[0].figure, v.systematic);
+  add("E-", "systematic deviation, negative approach", e.unidirectional_systematic[1].figure, v.systematic);
+  add("M", "range of the mean bidirectional deviation", e.mean_bidirectional.figure, v.mean_bidirectional);
+  add("R", "bidirectional repeatability", e.repeatability.figure, v.repeatability);
+  add("R+", "repeatability, positive approach", e.unidirectional_repeatability[0], v.unidirectional_repeatability);
+  add("R-", "repeatability, negative approach", e.unidirectional_repeatability[1], v.unidirectional_repeatability);
+  add("B", "reversal, largest", e.reversal, v.reversal);
+  add("B_mean", "reversal, mean", e.mean_reversal, v.reversal);
+  return all;
+}
+
+EvaluationTable targets_table(const PositioningEvaluation& evaluation, bool rotary) {
+  const char* const unit = rotary ? "arcsec" : "\xC2\xB5m";
+  EvaluationTable table;
+  table.caption = fmt::format("Target positions in {}, all else in {}", rotary ? "\xC2\xB0" : "mm", unit);
+  table.headers = {
+      "target", "n+", "n\xE2\x88\x92", "mean+", "mean\xE2\x88\x92", "s+", "s\xE2\x88\x92", "R+", "R\xE2\x88\x92",
+      "B",      "R",  "mean"};
+  for (const PositioningTarget& target : evaluation.targets) {
+    const auto text = [&](double value) { return fmt::format("{:.2f}", shown_deviation(value, rotary)); };
+    const auto figure = [&](const EvaluatedFigure& f) { return f.is_evaluated() ? text(f.value) : std::string("-"); };
+    const auto mean = [&](std::size_t k) { return target.runs[k] > 0 ? text(target.mean[k]) : std::string("-"); };
+    const auto s = [&](std::size_t k) { return target.runs[k] > 1 ? text(target.deviation[k]) : std::string("-"); };
+    table.rows.push_back({fmt::format("{:.6g}", rounded_position(target.position, rotary)),
+                          std::to_string(target.runs[0]), std::to_string(target.runs[1]), mean(0), mean(1), s(0), s(1),
+                          figure(target.repeatability[0]), figure(target.repeatability[1]), figure(target.reversal),
+                          figure(target.bidirectional_repeatability), figure(target.mean_bidirectional)});
+  }
+  return table;
+}
+
+/// True if three or more targets stand at the same distance from each other.
+bool equally_spaced(const std::vector<PositioningTarget>& targets) {
+  if (targets.size() < 3) return false;
+  const double step = targets[1].position - targets[0].position;
+  for (std::size_t i = 2; i < targets.size(); ++i) {
+    if (std::abs(targets[i].position - targets[i - 1].position - step) > 1e-6 * step) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+EvaluationFigure report_figure(const std::string& symbol, const std::string& name, const EvaluatedFigure& figure,
+                               bool rotary) {
+  EvaluationFigure result;
+  result.symbol = symbol;
+  result.name = name;
+  result.quantity = rotary ? Quantity::angle : Quantity::length;
+  result.unit = rotary ? "arcsec" : "um";
+  if (figure.is_evaluated()) {
+    result.value = figure.value;
+  } else {
+    result.missing = std::string(figure_status_words(figure.status));
+  }
+  return result;
+}
+
+std::vector<std::string> positioning_notes(const PositioningEvaluation& evaluation, bool rotary) {
+  std::vector<std::string> notes;
+  const double span = rounded_position(evaluation.span(), rotary);
+  if ((rotary || span <= 2000) && evaluation.fewest_runs < 5) {
+    notes.push_back(fmt::format("ISO 230-2 asks for at least five runs from each side; the fewest here is {}",
+                                evaluation.fewest_runs));
+  }
+  if (evaluation.fewest_runs != evaluation.most_runs) {
+    notes.push_back(fmt::format("the number of readings from one side differs between positions: {} to {}",
+                                evaluation.fewest_runs, evaluation.most_runs));
+  }
+  std::size_t wanted = 0;
+  if (rotary) {
+    wanted = span <= 90 ? 3 : span <= 180 ? 5 : 8;
+  } else if (span <= 2000) {
+    wanted = std::max<std::size_t>(5, static_cast<std::size_t>(std::ceil(5 * span / 1000)));
+  }
+  if (evaluation.targets.size() < wanted) {
+    notes.push_back(
+        fmt::format("ISO 230-2 asks for at least {} target positions on a travel of {:.6g} {}; there are {}", wanted,
+                    span, rotary ? "\xC2\xB0" : "mm", evaluation.targets.size()));
+  }
+  if (equally_spaced(evaluation.targets)) {
+    notes.push_back(
+        "the targets are equally spaced: deviations that repeat with their distance or a whole fraction of it (pitch "
+        "of a screw, of a scale) do not show");
+  }
+  return notes;
+}
+
+nlohmann::ordered_json targets_json(const PositioningEvaluation& evaluation, bool rotary) {
+  const std::string unit = rotary ? "_arcsec" : "_um";
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const PositioningTarget& target : evaluation.targets) {
+    nlohmann::ordered_json entry;
+    entry[rotary ? "position_deg" : "position_mm"] = rounded_position(target.position, rotary);
+    for (const std::size_t k : {0U, 1U}) {
+      const std::string side = k == 0 ? "positive" : "negative";
+      entry["runs_" + side] = target.runs[k];
+      if (target.runs[k] > 0) entry["mean_" + side + unit] = shown_deviation(target.mean[k], rotary);
+      if (target.runs[k] > 1) entry["s_" + side + unit] = shown_deviation(target.deviation[k], rotary);
+    }
+    const auto add = [&](const char* key, const EvaluatedFigure& figure) {
+      if (figure.is_evaluated()) entry[key + unit] = shown_deviation(figure.value, rotary);
+    };
+    add("reversal", target.reversal);
+    add("mean_bidirectional", target.mean_bidirectional);
+    add("repeatability", target.bidirectional_repeatability);
+    all.push_back(std::move(entry));
+  }
+  return all;
+}
+
+EvaluationReport positioning_report(const PositioningEvaluation& evaluation, bool rotary, const std::string& file,
+                                    const PositioningUncertainty* uncertainty) {
+  EvaluationReport report;
+  report.kind = "positioning";
+  report.title = "Positioning: " + std::filesystem::path(file).filename().string();
+  report.standard = "ISO 230-2:2014";
+  const auto& targets = evaluation.targets;
+  report.facts = {
+      {"axis", rotary ? "rotary" : "linear"},
+      {"targets",
+       fmt::format("{} from {:.6g} to {:.6g} {}", targets.size(), rounded_position(targets.front().position, rotary),
+                   rounded_position(targets.back().position, rotary), rotary ? "\xC2\xB0" : "mm")},
+      {"runs from one side", evaluation.fewest_runs == evaluation.most_runs
+                                 ? std::to_string(evaluation.most_runs)
+                                 : fmt::format("{} to {}", evaluation.fewest_runs, evaluation.most_runs)}};
+  report.figures = figures(evaluation, rotary, uncertainty);
+  report.notes = positioning_notes(evaluation, rotary);
+  report.tables.push_back(targets_table(evaluation, rotary));
+  report.plots.push_back({"plot", "", positioning_plot(evaluation, rotary, report.title)});
+  report.details["targets"] = targets_json(evaluation, rotary);
+  if (uncertainty == nullptr) return report;
+  const std::string unit = rotary ? "arcsec" : "um";
+  EvaluationTable table{"Contributions to the measurement uncertainty, expanded (k = 2)", {"contribution", unit}, {}};
+  nlohmann::ordered_json contributions = nlohmann::ordered_json::array();
+  for (const auto& contribution : uncertainty->contributions) {
+    const double shown = shown_deviation(contribution.expanded, rotary);
+    table.rows.push_back({contribution.name, fmt::format("{:.2f}", shown)});
+    contributions.push_back({{"name", contribution.name}, {"expanded_uncertainty_" + unit, shown}});
+  }
+  report.tables.push_back(std::move(table));
+  report.details["uncertainty_contributions"] = std::move(contributions);
+  return report;
+}
+
+}  // namespace abbe

@@ -1,0 +1,108 @@
+#include "abbe/report/words/evaluation_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/number_text.h"
+
+namespace abbe {
+namespace {
+
+std::string joined_symbols(const EvaluationReport& report) {
+  std::string text;
+  for (const EvaluationFigure& figure : report.figures) {
+    if (!text.empty()) text += ", ";
+    text += figure.symbol + (figure.unit.empty() ? "" : "_" + figure.unit);
+  }
+  return text;
+}
+
+/// Columns on the screen: letters, not bytes.
+std::size_t letters(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(width - std::min(width, letters(text)), ' ');
+}
+
+}  // namespace
+
+std::string evaluation_text(const EvaluationReport& report) {
+  std::string text;
+  text += fmt::format("{}\n{}\n", report.title, report.standard);
+  for (const auto& [name, fact] : report.facts) text += fmt::format("  {}: {}\n", name, fact);
+  text += "\n";
+  std::size_t symbol_width = 0, name_width = 0;
+  for (const EvaluationFigure& figure : report.figures) {
+    symbol_width = std::max(symbol_width, letters(figure.symbol));
+    name_width = std::max(name_width, letters(figure.name));
+  }
+  for (const EvaluationFigure& figure : report.figures) {
+    text += fmt::format("  {}  {}", padded(figure.symbol, symbol_width), padded(figure.name, name_width));
+    if (figure.value) {
+      text += fmt::format("  {:>9}", figure_text(figure, *figure.value));
+      if (figure.uncertainty) text += fmt::format(" \xC2\xB1 {}", figure_text(figure, *figure.uncertainty));
+      text += fmt::format(" {}", unit_symbol(figure.unit));
+    } else {
+      text += fmt::format("          -  {}", figure.missing);
+    }
+    if (figure.tolerance) {
+      const std::string limit = fmt::format("{} {}", figure_text(figure, *figure.tolerance), unit_symbol(figure.unit));
+      const char* const words = !figure.value                ? "cannot be judged, tolerance"
+                                : figure.exceeds_tolerance() ? "EXCEEDS the tolerance"
+                                                             : "within the tolerance";
+      text += fmt::format("   {} {}", words, limit);
+      if (figure.is_undecided()) text += ", not proven: closer to it than the uncertainty";
+    }
+    text += "\n";
+  }
+  if (std::any_of(report.figures.begin(), report.figures.end(),
+                  [](const EvaluationFigure& figure) { return figure.uncertainty.has_value(); })) {
+    text += "\n  \xC2\xB1: expanded measurement uncertainty, k = 2\n";
+  }
+  if (!report.notes.empty()) text += "\n";
+  for (const std::string& note : report.notes) text += fmt::format("note: {}\n", note);
+  return text;
+}
+
+void apply_tolerances(const std::vector<std::string>& tolerances, EvaluationReport& report) {
+  for (const std::string& text : tolerances) {
+    const InputError::Place place{.field = "--tolerance " + text};
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos) {
+      throw InputError(place, "there is no '='", "FIGURE_unit=value, with one of " + joined_symbols(report));
+    }
+    const std::string name = text.substr(0, equals);
+    EvaluationFigure* found = nullptr;
+    const Unit* unit = nullptr;
+    for (EvaluationFigure& figure : report.figures) {
+      unit = unit_of_name(name, figure.symbol, figure.quantity);
+      if (unit == nullptr && name == figure.symbol) {
+        throw InputError(place, "the unit is missing", accepted_names(figure.symbol, figure.quantity));
+      }
+      if (unit == nullptr && name.starts_with(figure.symbol + "_") && without_unit(name) == figure.symbol) {
+        throw InputError(place,
+                         fmt::format("'{}' is not a unit of {}", name.substr(figure.symbol.size() + 1),
+                                     quantity_words(figure.quantity)),
+                         accepted_names(figure.symbol, figure.quantity));
+      }
+      if (unit == nullptr) continue;
+      found = &figure;
+      break;
+    }
+    if (found == nullptr) throw InputError(place, "there is no such figure", "one of " + joined_symbols(report));
+    double value = 0;
+    if (parse_quantity(std::string_view(text).substr(equals + 1), *unit, value) != NumberProblem::none || value <= 0) {
+      throw InputError(place, fmt::format("'{}' is not a number above zero", text.substr(equals + 1)),
+                       name + "=10, with a decimal point");
+    }
+    if (found->tolerance) throw InputError(place, "this figure has two tolerances", "one");
+    found->tolerance = value;
+  }
+}
+
+}  // namespace abbe
