@@ -85,7 +85,8 @@ void remove_from(const ResultsMarker& marker, const fs::path& older, const std::
 }  // namespace
 
 std::string ResultsMarker::text(const std::set<std::string>& files) {
-  std::string result = std::string(kFirstLine) + "\n";
+  std::string result(kFirstLine);
+  result += '\n';
   for (const std::string& file : files) result += file + "\n";
   return result;
 }

@@ -16,13 +16,13 @@ using test::kFitLength;
 using test::Numbers;
 using test::PatchOptions;
 
-struct Case {
+struct FaintShape {
   ShapeKind kind;
   double arc_deg, far;
 };
 
-std::vector<Case> cases() {
-  std::vector<Case> all;
+std::vector<FaintShape> cases() {
+  std::vector<FaintShape> all;
   for (const ShapeKind kind : {ShapeKind::line3, ShapeKind::circle3, ShapeKind::cylinder, ShapeKind::cone}) {
     for (const double arc : {360., 90., 40., 20.}) {
       if (kind == ShapeKind::line3 && arc < 360) continue;
@@ -42,7 +42,7 @@ Matrix3Xd rough(const test::Patch& patch, double arc, double radius, Numbers& nu
   return points;
 }
 
-PatchOptions options_of(const Case& one) {
+PatchOptions options_of(const FaintShape& one) {
   PatchOptions options;
   options.points = 120;
   options.arc = one.arc_deg * std::numbers::pi / 180;
@@ -60,7 +60,7 @@ test::ExtendedShape disturbed(const test::ExtendedShape& shape, Numbers& numbers
 
 TEST(ExtendedFit, LeastSquaresAgreesWithASecondSolverOnShortArcsFarFromTheOrigin) {
   Numbers numbers(31);
-  for (const Case& one : cases()) {
+  for (const FaintShape& one : cases()) {
     const PatchOptions options = options_of(one);
     const test::Patch patch = test::patch(one.kind, options, numbers);
     const Matrix3Xd points = rough(patch, options.arc, options.radius, numbers);
