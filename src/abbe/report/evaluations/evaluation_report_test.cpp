@@ -71,14 +71,14 @@ TEST(EvaluationReport, JsonHasTheFiguresBySymbolWithTheirUnit) {
   report.figures.push_back(length("R", 0));
   report.figures[1].value.reset();
   report.figures[1].missing = "a single run";
-  const nlohmann::ordered_json json = evaluation_json(report);
-  EXPECT_EQ(json["figures"]["A"]["value_um"], 12.3456);
-  EXPECT_EQ(json["figures"]["A"]["tolerance_um"], 10.0);
-  EXPECT_EQ(json["figures"]["A"]["verdict"], "exceeded");
-  EXPECT_FALSE(json["figures"]["R"].contains("value_um"));
-  EXPECT_EQ(json["figures"]["R"]["not_evaluated"], "a single run");
-  EXPECT_EQ(json["within_tolerance"], false);
-  EXPECT_EQ(json["targets"], (nlohmann::ordered_json{1, 2}));
+  const nlohmann::ordered_json written = evaluation_json(report);
+  EXPECT_EQ(written["figures"]["A"]["value_um"], 12.3456);
+  EXPECT_EQ(written["figures"]["A"]["tolerance_um"], 10.0);
+  EXPECT_EQ(written["figures"]["A"]["verdict"], "exceeded");
+  EXPECT_FALSE(written["figures"]["R"].contains("value_um"));
+  EXPECT_EQ(written["figures"]["R"]["not_evaluated"], "a single run");
+  EXPECT_EQ(written["within_tolerance"], false);
+  EXPECT_EQ(written["targets"], (nlohmann::ordered_json{1, 2}));
 }
 
 TEST(EvaluationReport, PageIsThatOfAllReportsAndTextInItStaysText) {
