@@ -18,7 +18,7 @@
 #include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
-#include "abbe/plan/wanted_area.h"
+#include "abbe/plan/scans/wanted_area.h"
 #include "abbe/report/pages/scan_plan_page.h"
 #include "abbe/report/words/scan_plan_words.h"
 #include "command.h"

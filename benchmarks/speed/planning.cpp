@@ -1,7 +1,7 @@
 // Time to choose 300 readings from 10,000: random rows, and laser tracker readings on a five-axis trunnion machine.
 //
 //   planning [candidates] [chosen]     exit code 1 if one of the plans needs 20 s or more
-#include "abbe/identify/planning/planning.h"
+#include "abbe/plan/readings/planning.h"
 
 #include <chrono>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <cstdlib>
 
 #include "abbe/geometry/rotation.h"
-#include "abbe/identify/planning/planning_candidates.h"
+#include "abbe/identify/planning_candidates.h"
 #include "abbe/instruments/measurement_plan.h"
 #include "abbe/instruments/trackers/tracker_observations.h"
 #include "abbe/instruments/trackers/tracker_simulation.h"

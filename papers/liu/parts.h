@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "abbe/geometry/surface/triangle_mesh.h"
-#include "abbe/plan/scan_plan.h"
+#include "abbe/plan/scans/scan_plan.h"
 
 namespace abbe {
 

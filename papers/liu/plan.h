@@ -1,7 +1,7 @@
 #pragma once
 
 #include "abbe/errors/poses.h"
-#include "abbe/plan/scan_plan.h"
+#include "abbe/plan/scans/scan_plan.h"
 #include "liu/parts.h"
 
 namespace abbe {

@@ -12,7 +12,7 @@ import os
 import re
 import sys
 
-ORDER = ["geometry", "machine", "errors", "instruments", "plan", "identify", "compensate", "verify", "formats",
+ORDER = ["geometry", "machine", "errors", "instruments", "identify", "plan", "compensate", "verify", "formats",
          "report", "controls", "study", "runtime"]
 STRANGERS = {("identify", "compensate"), ("compensate", "identify")}
 TOUCH_FILES = {"formats", "report"}

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "abbe/formats/study/study.h"
-#include "abbe/identify/planning/planning.h"
 #include "abbe/identify/problem.h"
 #include "abbe/instruments/instrument.h"
+#include "abbe/plan/readings/planning.h"
 #include "abbe/study/not_identified.h"
 
 namespace abbe {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "abbe/identify/planning/trial_readings.h"
+#include "abbe/identify/trust/trial_readings.h"
 
 namespace abbe {
 

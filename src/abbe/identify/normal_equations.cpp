@@ -5,9 +5,9 @@
 #include <cstring>
 #include <mutex>
 
+#include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/parallel_blocks.h"
-#include "abbe/identify/cross_products.h"
 
 namespace abbe {
 namespace {

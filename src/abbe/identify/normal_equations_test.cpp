@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/identify/cross_products.h"
+#include "abbe/geometry/cross_products.h"
 #include "abbe/identify/function_observations_test.h"
 #include "abbe/identify/identify.h"
 

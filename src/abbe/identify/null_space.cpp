@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "abbe/geometry/column_norms.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/singular_values.h"
-#include "abbe/identify/column_norms.h"
 #include "abbe/identify/gauge.h"
 
 namespace abbe {

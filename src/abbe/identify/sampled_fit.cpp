@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/identify/cross_products.h"
+#include "abbe/geometry/cross_products.h"
 
 namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
 constexpr int kMostRobustSteps = 60;
-constexpr double kSettled = 1e-6;  // square of a step, in standard uncertainties
+constexpr double kSampleSettled = 1e-6;  // square of a step, in standard uncertainties
 // Directions of outliers come from streams of their own: a changed list of outliers changes no other draw.
 constexpr std::uint64_t kOutlierSeed = 0x9e3779b97f4a7c15U;
 
@@ -208,10 +208,10 @@ std::size_t SampledFit::fit(const double* residuals, std::size_t count, Eigen::R
     for (Index k = 0; k < used; ++k) weigh(weighted.col(k).data());
     const Eigen::MatrixXd change = step(weighted.data(), count, decrements);
     y += change;
-    if (decrements.maxCoeff() < kSettled) return 0;
+    if (decrements.maxCoeff() < kSampleSettled) return 0;
     present.leftCols(used).noalias() -= jacobian * change;
   }
-  return static_cast<std::size_t>((decrements.array() >= kSettled).count());
+  return static_cast<std::size_t>((decrements.array() >= kSampleSettled).count());
 }
 
 void SampledFit::model_residuals(const Eigen::VectorXd& estimates, double* out) const {

@@ -9,10 +9,10 @@
 namespace abbe {
 namespace {
 
-constexpr double kSettled = 1e-12;      // square of the step in standard uncertainties
-constexpr double kLeastStep = 0.1;      // a variance falls to no less than this part of itself at once
-constexpr double kNoVariance = 0.01;    // standard uncertainties of a variance that is falling to zero
-constexpr double kNotSeparable = 1e-3;  // 1 - square of the correlation of the two estimates
+constexpr double kComponentsSettled = 1e-12;  // square of the step in standard uncertainties
+constexpr double kLeastStep = 0.1;            // a variance falls to no less than this part of itself at once
+constexpr double kNoVariance = 0.01;          // standard uncertainties of a variance that is falling to zero
+constexpr double kNotSeparable = 1e-3;        // 1 - square of the correlation of the two estimates
 
 /// Step of Fisher scoring over the variances that are free, and its square in their standard uncertainties.
 struct Scoring {
@@ -83,7 +83,7 @@ class VarianceEstimation {
       const bool pose = choice_.pose_noise && (variance.pose > 0 || at.score[1] > 0);
       const Scoring now = scoring(at, choice_.variance_factor, pose);
       if (!now.solved) return fail(IdentifyStatus::rank_deficient, kInseparable);
-      if (now.decrement <= kSettled) return settle(at);
+      if (now.decrement <= kComponentsSettled) return settle(at);
       if (components.iterations >= choice_.max_iterations)
         return fail(IdentifyStatus::no_convergence,
                     fmt::format("the variances of the readings have not settled after {} identifications",

@@ -11,7 +11,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/identify/normal_equations.h"
-#include "abbe/identify/planning/planning_candidates.h"
+#include "abbe/identify/planning_candidates.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/instruments/path_plan.h"
 #include "abbe/machine/axis_unit.h"

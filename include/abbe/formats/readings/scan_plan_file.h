@@ -6,7 +6,7 @@
 #include <string>
 
 #include "abbe/formats/nc/path_program.h"
-#include "abbe/plan/scan_plan.h"
+#include "abbe/plan/scans/scan_plan.h"
 
 namespace abbe {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "abbe/identify/identify.h"
-#include "abbe/identify/planning/planning_space.h"
+#include "abbe/identify/planning_candidates.h"
 #include "abbe/identify/problem.h"
 
 namespace abbe {

@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "abbe/plan/scan_plan.h"
+#include "abbe/plan/scans/scan_plan.h"
 #include "abbe/report/pages/path_data.h"
 
 namespace abbe {

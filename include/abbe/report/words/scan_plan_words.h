@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "abbe/plan/scan_plan.h"
+#include "abbe/plan/scans/scan_plan.h"
 
 namespace abbe {
 

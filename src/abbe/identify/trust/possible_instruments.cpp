@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "abbe/errors/random_stream.h"
-#include "abbe/identify/planning/trial_readings.h"
+#include "abbe/identify/trust/trial_readings.h"
 #include "abbe/instruments/ball_bar.h"
 #include "abbe/instruments/electronic_level.h"
 #include "abbe/instruments/instrument_observations.h"

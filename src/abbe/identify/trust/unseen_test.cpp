@@ -10,7 +10,7 @@
 #include "abbe/geometry/singular_values.h"
 #include "abbe/identify/identify.h"
 #include "abbe/identify/parameter_words.h"
-#include "abbe/identify/planning/planning_candidates.h"
+#include "abbe/identify/planning_candidates.h"
 #include "abbe/instruments/autocollimator.h"
 #include "abbe/instruments/ball_bar.h"
 #include "abbe/instruments/board_marks.h"

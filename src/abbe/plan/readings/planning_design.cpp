@@ -1,0 +1,306 @@
+#include "abbe/plan/readings/planning_design.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "abbe/geometry/cross_products.h"
+#include "abbe/geometry/decompositions.h"
+#include "abbe/geometry/parallel_blocks.h"
+#include "abbe/plan/readings/planning_small.h"
+
+namespace abbe {
+namespace {
+
+using Index = Eigen::Index;
+using planning::factorise;
+using planning::log_determinant;
+using planning::Small;
+using planning::trace_of_quotient;
+using RowsMap = Eigen::Map<const PlanningCandidates::Rows, 0, Eigen::OuterStride<>>;
+using ColumnsMap = Eigen::Map<Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+constexpr std::size_t kBlockRows = 192;
+
+// Below this much work in one pass a second thread costs more than it brings.
+constexpr double kWorthThreads = 2e5;
+
+}  // namespace
+
+PlanDesign::PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functionals, int threads)
+    : space_(space), threads_(threads), by_variance_(functionals.rows() > 0), v_(space.dimension()) {
+  const std::size_t n = space.count();
+  if (by_variance_) weight_ = functionals.transpose() * functionals;
+  times_.assign(n, 0);
+  square_.assign(n + 1, 0);
+  blocks_.push_back(0);
+  std::size_t most = 1;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t rows = space.row_count(i);
+    most = std::max(most, rows);
+    square_[i + 1] = square_[i] + rows * rows;
+    if (space.first_row(i) + rows - space.first_row(blocks_.back()) > kBlockRows) blocks_.push_back(i);
+  }
+  if (blocks_.back() != n) blocks_.push_back(n);
+  w_.assign(square_[n], 0);
+  if (by_variance_) g_.assign(square_[n], 0);
+  gain_.assign(n, 0);
+  size_.assign(n, 0);
+  const std::size_t columns = padded(2 * most * (by_variance_ ? 2 : 1), kColumnMultiple);
+  const std::size_t scored = padded(most, kColumnMultiple) + columns;  // of best_in_block()
+  factors_.assign(columns * space.stride(), 0);
+  scratch_.resize(static_cast<Index>(v_), static_cast<Index>(most));
+  ahead_factors_.assign(padded(kMostAhead * most, kColumnMultiple) * space.stride(), 0);
+  pending_.reserve(2);
+  x_stride_ = padded(kBlockRows + most, kColumnMultiple);
+  x_.resize(block_count());
+  ahead_x_.resize(block_count());
+  best_.resize(block_count());
+  for (std::vector<double>& x : x_) x.resize(scored * x_stride_);
+  if (static_cast<double>(space.first_row(n)) * static_cast<double>(v_) < kWorthThreads) threads_ = 1;
+}
+
+bool PlanDesign::rebuild(const std::vector<std::size_t>& chosen, double ridge) {
+  std::vector<std::size_t> kept = chosen;  // may be our own list
+  chosen_.swap(kept);
+  std::fill(times_.begin(), times_.end(), std::size_t{0});
+  cost_ = 0;
+  Eigen::MatrixXd information = space_.known_information();
+  information.diagonal().array() += ridge;
+  for (const std::size_t candidate : chosen_) {
+    ++times_[candidate];
+    cost_ += space_.cost(candidate);
+    const RowsMap rows(space_.row(space_.first_row(candidate)), static_cast<Index>(space_.row_count(candidate)),
+                       static_cast<Index>(v_), Eigen::OuterStride<>(static_cast<Index>(space_.stride())));
+    information.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  }
+  const Cholesky factor(information);
+  updates_ = 0;
+  ahead_.clear();
+  if (factor.info() != Eigen::Success) return false;
+  const Eigen::VectorXd diagonal = factor.diagonal();
+  if (v_ > 0 && !(diagonal.minCoeff() > std::max(1e-7, space_.determined()) * diagonal.maxCoeff())) return false;
+  inverse_ = factor.solve_columns(Eigen::MatrixXd::Identity(static_cast<Index>(v_), static_cast<Index>(v_)));
+  inverse_ = (0.5 * (inverse_ + inverse_.transpose())).eval();
+  objective_ = by_variance_ ? weight_.cwiseProduct(inverse_).sum() : -2 * diagonal.array().log().sum();
+  refresh_all();
+  return true;
+}
+
+void PlanDesign::refresh_all() {
+  for_each_block(block_count(), threads_, [this](std::size_t block) {
+    const std::size_t first = space_.first_row(blocks_[block]);
+    const std::size_t rows = space_.first_row(blocks_[block + 1]) - first;
+    const RowsMap a(space_.row(first), static_cast<Index>(rows), static_cast<Index>(v_),
+                    Eigen::OuterStride<>(static_cast<Index>(space_.stride())));
+    const Eigen::MatrixXd z = a * inverse_;
+    const Eigen::MatrixXd zc = by_variance_ ? Eigen::MatrixXd(z * weight_) : Eigen::MatrixXd();
+    for (std::size_t i = blocks_[block]; i < blocks_[block + 1]; ++i) {
+      const Index n = static_cast<Index>(space_.row_count(i)), at = static_cast<Index>(space_.first_row(i) - first);
+      Eigen::Map<Eigen::MatrixXd>(w_.data() + square_[i], n, n).noalias() =
+          z.middleRows(at, n) * a.middleRows(at, n).transpose();
+      if (by_variance_)
+        Eigen::Map<Eigen::MatrixXd>(g_.data() + square_[i], n, n).noalias() =
+            zc.middleRows(at, n) * z.middleRows(at, n).transpose();
+      measure(i);
+    }
+  });
+}
+
+// Columns T and, for variances, M^-1 C T behind them. Nothing of the design changes before commit(1).
+bool PlanDesign::make_update(std::size_t candidate, double sign) {
+  const Index v = static_cast<Index>(v_), n = static_cast<Index>(space_.row_count(candidate));
+  const std::size_t rows = static_cast<std::size_t>(n), stride = space_.stride();
+  const RowsMap a(space_.row(space_.first_row(candidate)), n, v, Eigen::OuterStride<>(static_cast<Index>(stride)));
+  auto solved = scratch_.leftCols(n);
+  solved.noalias() = inverse_ * a.transpose();
+  Small w, lower;
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j < n; ++j) w[static_cast<std::size_t>(i * n + j)] = a.row(i).dot(solved.col(j));
+  if (!factorise(w.data(), rows, sign, lower)) return false;
+
+  Update update;
+  update.rows = rows;
+  update.sign = sign;
+  update.first = pending_.empty() ? 0 : pending_.back().end;
+  update.end = update.first + rows * (by_variance_ ? 2 : 1);
+  ColumnsMap t(&factors_[update.first * stride], v, n, Eigen::OuterStride<>(static_cast<Index>(stride)));
+  for (Index c = 0; c < n; ++c) {
+    t.col(c) = solved.col(c);
+    for (Index k = 0; k < c; ++k) t.col(c) -= lower[static_cast<std::size_t>(c * n + k)] * t.col(k);
+    t.col(c) /= lower[static_cast<std::size_t>(c * n + c)];
+  }
+  if (by_variance_) {
+    auto weighted = scratch_.leftCols(n);
+    weighted.noalias() = weight_ * t;
+    for (std::size_t i = 0; i < rows; ++i) {
+      for (std::size_t j = 0; j < rows; ++j)
+        update.middle[i * rows + j] = t.col(static_cast<Index>(i)).dot(weighted.col(static_cast<Index>(j)));
+      update.change -= sign * update.middle[i * rows + i];
+    }
+    ColumnsMap behind(&factors_[(update.first + rows) * stride], v, n,
+                      Eigen::OuterStride<>(static_cast<Index>(stride)));
+    behind.noalias() = inverse_ * weighted;
+  } else {
+    update.change = -log_determinant(lower, rows);
+  }
+  pending_.push_back(update);
+  return true;
+}
+
+void PlanDesign::commit(double direction) {
+  const Update& update = pending_.back();
+  ColumnsMap t(&factors_[update.first * space_.stride()], static_cast<Index>(v_), static_cast<Index>(update.rows),
+               Eigen::OuterStride<>(static_cast<Index>(space_.stride())));
+  inverse_.noalias() -= direction * update.sign * t * t.transpose();
+  objective_ += direction * update.change;
+  ++updates_;
+  ahead_.clear();
+}
+
+double* PlanDesign::products(std::size_t block, std::size_t end) {
+  double* x = x_[block].data();
+  const std::size_t columns = padded(end, kColumnMultiple);
+  const std::size_t first = space_.first_row(blocks_[block]);
+  const std::size_t rows = padded(space_.first_row(blocks_[block + 1]) - first, kColumnMultiple);
+  std::fill(x, x + columns * x_stride_, 0.0);
+  add_cross_products(space_.row(first), rows, space_.stride(), factors_.data(), columns, space_.stride(),
+                     space_.stride(), x, x_stride_);
+  return x;
+}
+
+// One candidate's W and G after an update; x: its first row in the products.
+void PlanDesign::change_squares(const Update& update, const double* x, std::size_t n, double* w, double* g) const {
+  const double* xs = x + update.first * x_stride_;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      double sum = 0;
+      for (std::size_t c = 0; c < update.rows; ++c) sum += xs[i + c * x_stride_] * xs[j + c * x_stride_];
+      w[i * n + j] -= update.sign * sum;
+      w[j * n + i] = w[i * n + j];
+    }
+  if (!by_variance_) return;
+  const double* ys = xs + update.rows * x_stride_;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      double mixed = 0, square = 0;
+      for (std::size_t c = 0; c < update.rows; ++c) {
+        mixed += xs[i + c * x_stride_] * ys[j + c * x_stride_] + ys[i + c * x_stride_] * xs[j + c * x_stride_];
+        double inner = 0;
+        for (std::size_t d = 0; d < update.rows; ++d)
+          inner += update.middle[c * update.rows + d] * xs[j + d * x_stride_];
+        square += xs[i + c * x_stride_] * inner;
+      }
+      g[i * n + j] += square - update.sign * mixed;
+      g[j * n + i] = g[i * n + j];
+    }
+}
+
+void PlanDesign::pass() {
+  for_each_block(block_count(), threads_, [this](std::size_t block) {
+    const double* x = products(block, pending_.back().end);
+    const std::size_t first = space_.first_row(blocks_[block]);
+    for (std::size_t i = blocks_[block]; i < blocks_[block + 1]; ++i) {
+      for (const Update& update : pending_)
+        change_squares(update, x + (space_.first_row(i) - first), space_.row_count(i), &w_[square_[i]],
+                       by_variance_ ? &g_[square_[i]] : nullptr);
+      measure(i);
+    }
+  });
+  pending_.clear();
+}
+
+void PlanDesign::add(std::size_t candidate) {
+  make_update(candidate, 1);
+  commit(1);
+  pass();
+  chosen_.push_back(candidate);
+  ++times_[candidate];
+  cost_ += space_.cost(candidate);
+}
+
+bool PlanDesign::remove(std::size_t place) {
+  const std::size_t candidate = chosen_[place];
+  if (!make_update(candidate, -1)) return false;
+  commit(1);
+  pass();
+  chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(place));
+  --times_[candidate];
+  cost_ -= space_.cost(candidate);
+  return true;
+}
+
+bool PlanDesign::exchange(std::size_t place, std::size_t candidate) {
+  const std::size_t before = chosen_[place];
+  // Adding first: a choice without a reading to spare determines nothing once one is taken out.
+  make_update(candidate, 1);
+  commit(1);
+  if (!make_update(before, -1)) {
+    commit(-1);
+    pending_.clear();
+    return false;
+  }
+  commit(1);
+  pass();
+  chosen_[place] = candidate;
+  --times_[before];
+  ++times_[candidate];
+  cost_ += space_.cost(candidate) - space_.cost(before);
+  return true;
+}
+
+double PlanDesign::change_by_adding(const double* w, const double* g, std::size_t n) const {
+  Small lower;
+  if (!factorise(w, n, 1, lower)) return kImpossible;
+  return by_variance_ ? -trace_of_quotient(lower, g, n) : -log_determinant(lower, n);
+}
+
+double PlanDesign::gain(std::size_t candidate) const { return gain_[candidate]; }
+
+void PlanDesign::measure(std::size_t candidate) {
+  const std::size_t n = space_.row_count(candidate);
+  const double* w = &w_[square_[candidate]];
+  gain_[candidate] = change_by_adding(w, by_variance_ ? &g_[square_[candidate]] : nullptr, n);
+  double trace = 0;
+  for (std::size_t k = 0; k < n; ++k) trace += w[k * n + k];
+  size_[candidate] = trace;
+}
+
+double PlanDesign::loss(std::size_t place) const {
+  const std::size_t candidate = chosen_[place], n = space_.row_count(candidate);
+  Small lower;
+  if (!factorise(&w_[square_[candidate]], n, -1, lower)) return kImpossible;
+  return by_variance_ ? trace_of_quotient(lower, &g_[square_[candidate]], n) : -log_determinant(lower, n);
+}
+
+bool PlanDesign::allowed(std::size_t candidate, const Allowed& rules) const {
+  return (!rules.eligible || rules.eligible->empty() || (*rules.eligible)[candidate] != 0) &&
+         times_[candidate] < rules.repeats && space_.cost(candidate) <= rules.most_cost;
+}
+
+void PlanDesign::keep_better(std::size_t candidate, double change, const Allowed& rules, Best& best) const {
+  const double unit = rules.per_cost ? space_.cost(candidate) : 1.0, score = change / unit;
+  if (score < best.score - tie() / unit) best = {candidate, change, score, tie() / unit};
+}
+
+PlanDesign::Best PlanDesign::best_of_blocks() const {
+  Best best;
+  for (const Best& one : best_)
+    if (one.score < best.score - one.tie) best = one;
+  return best;
+}
+
+PlanDesign::Best PlanDesign::best_to_add(const Allowed& rules) {
+  struct {
+    PlanDesign& design;
+    const Allowed& rules;
+  } here{*this, rules};
+  for_each_block(block_count(), threads_, [&here](std::size_t block) {
+    PlanDesign& design = here.design;
+    design.best_[block] = {};
+    for (std::size_t i = design.blocks_[block]; i < design.blocks_[block + 1]; ++i)
+      if (design.allowed(i, here.rules)) design.keep_better(i, design.gain(i), here.rules, design.best_[block]);
+  });
+  return best_of_blocks();
+}
+
+}  // namespace abbe

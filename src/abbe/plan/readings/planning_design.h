@@ -1,0 +1,158 @@
+#pragma once
+
+// Internal to identify: a choice of readings that can be changed one reading at a time.
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "abbe/plan/readings/planning_space.h"
+
+namespace abbe {
+
+/// Information M = known + sum of A_i'A_i of a choice in seen coordinates, with what each candidate would change.
+///
+/// Kept for every candidate: W_i = A_i M^-1 A_i' and, for a criterion tr(C M^-1), G_i = A_i M^-1 C M^-1 A_i'. Adding
+/// changes M^-1 by -T T', T = M^-1 A' L^-T with L L' = I + W; taking out by +T T' with L L' = I - W (Sherman, Morrison
+/// and Woodbury). With X_i = A_i T, Y_i = A_i M^-1 C T and H = T'C T: W_i -= s X X', G_i -= s (X Y' + Y X') - X H X',
+/// s = 1 for adding and -1 for taking out. One pass over the candidates serves several changes.
+/// Source: Fedorov, Theory of Optimal Experiments (1972), sections 2.5, 2.9 and 3.2; the forms for several rows follow
+/// by the matrix inversion lemma.
+class PlanDesign {
+ public:
+  static constexpr std::size_t kMostRows = PlanningCandidates::kMostRows;
+  static constexpr double kImpossible = std::numeric_limits<double>::infinity();
+
+  /// @param functionals  [m, v]: minimise the sum of their variances; without rows: minimise -log det M
+  PlanDesign(const PlanningSpace& space, const Eigen::MatrixXd& functionals, int threads);
+
+  /// The choice, with repetitions, in the order in which it was made.
+  const std::vector<std::size_t>& chosen() const { return chosen_; }
+  std::size_t times(std::size_t candidate) const { return times_[candidate]; }
+  double cost() const { return cost_; }
+  /// To be minimised: -log det M, or the sum of variances.
+  double objective() const { return objective_; }
+  /// Changes of the objective that differ by less are equal: rounding must not choose between readings that are worth
+  /// the same, as those of mirrored poses are, or every processor would have a plan of its own.
+  double tie() const { return by_variance_ ? kTie * std::abs(objective_) : kTie; }
+  /// Changes since the last factorisation.
+  std::size_t updates() const { return updates_; }
+
+  /// Takes a choice and factorises its information plus `ridge` times the unit matrix.
+  /// @return false, and nothing else is to be called, if that is not positive definite
+  bool rebuild(const std::vector<std::size_t>& chosen, double ridge);
+  void add(std::size_t candidate);
+  /// @param place  index into chosen()
+  /// @return false, and nothing is changed, if the rest would not determine everything
+  bool remove(std::size_t place);
+  bool exchange(std::size_t place, std::size_t candidate);
+
+  /// Change of the objective by adding; at most 0.
+  double gain(std::size_t candidate) const;
+  /// Change of the objective by taking out; kImpossible if the rest would not determine everything.
+  double loss(std::size_t place) const;
+
+  struct Best {
+    std::size_t candidate = static_cast<std::size_t>(-1);
+    double change = kImpossible;  ///< of the objective
+    double score = kImpossible;   ///< change, divided by the cost where `per_cost`
+    double tie = 0;               ///< this one takes the place of another if its score is lower by more
+  };
+  /// Which candidates are allowed: not more than `repeats` times, of a cost up to `most_cost`, eligible.
+  struct Allowed {
+    const std::vector<unsigned char>* eligible = nullptr;  ///< null: all
+    std::size_t repeats = 1;
+    double most_cost = std::numeric_limits<double>::infinity();
+    bool per_cost = false;
+    double ceiling = kImpossible;  ///< of the change: candidates that cannot come below it need not be looked at
+  };
+  /// The candidate whose adding lowers the objective most; the first of equal ones.
+  Best best_to_add(const Allowed& rules);
+  /// Of best_instead() for so many places, what needs the rows of all candidates, in one pass over them. It is used as
+  /// long as nothing changes; results are the same without.
+  static constexpr std::size_t kMostAhead = 8;
+  void look_ahead(std::span<const std::size_t> places);
+  bool looked_ahead(std::size_t place) const;
+
+  /// The candidate that lowers the objective most in the place of a chosen one, with the change by the whole exchange.
+  ///
+  /// Most candidates are passed over by a bound. With loss_j of the chosen one, gain_i of the other and lambda_j the
+  /// largest eigenvalue of W_j, the change is at least
+  ///     determinant   loss_j - gain_i - n log(1 + q / n),   n the smaller number of rows
+  ///     variance      loss_j - (sqrt(gain_i) + sqrt(q loss_j))^2,   q = |W_ij|^2 / (1 - lambda_j), Frobenius norm
+  /// (docs/planning.md), and q itself is at most lambda_j trace(W_i) / (1 - lambda_j), which needs no products at all.
+  Best best_instead(std::size_t place, const Allowed& rules);
+
+ private:
+  struct Update {
+    std::size_t rows = 0;
+    double sign = 1;        // 1: added, -1: taken out
+    double change = 0;      // of the objective
+    std::size_t first = 0;  // columns of factors_: T from here, then M^-1 C T
+    std::size_t end = 0;
+    std::array<double, kMostRows * kMostRows> middle{};  // H, [rows, rows]
+  };
+
+  bool make_update(std::size_t candidate, double sign);
+  void commit(double direction);
+  void pass();
+  double* products(std::size_t block, std::size_t end);
+  /// Products of one candidate's rows with the factors, at the start of the block's array.
+  const double* products_of(std::size_t block, std::size_t candidate, std::size_t end);
+  void measure(std::size_t candidate);
+  void best_in_block(std::size_t block, std::size_t before, std::size_t end, const Allowed& rules);
+  bool may_be_better(std::size_t candidate, double square, double limit) const;
+  void change_squares(const Update& update, const double* x, std::size_t n, double* w, double* g) const;
+  void refresh_all();
+  double change_by_exchange(std::size_t before, std::size_t candidate, const double* x) const;
+  double change_by_adding(const double* w, const double* g, std::size_t n) const;
+  bool allowed(std::size_t candidate, const Allowed& rules) const;
+  void keep_better(std::size_t candidate, double change, const Allowed& rules, Best& best) const;
+  Best best_of_blocks() const;
+  std::size_t block_count() const { return blocks_.size() - 1; }
+
+  // Far above rounding, below what counts as a gain (PlanningOptions::smallest_gain); of the logarithm of the
+  // determinant, or relative.
+  static constexpr double kTie = 1e-8;
+
+  const PlanningSpace& space_;
+  int threads_;
+  bool by_variance_;
+  std::size_t v_;
+  Eigen::MatrixXd weight_;   // C, [v, v]
+  Eigen::MatrixXd inverse_;  // M^-1
+  Eigen::MatrixXd scratch_;  // [v, rows of one candidate]
+  std::vector<std::size_t> chosen_, times_;
+  double cost_ = 0, objective_ = 0;
+  std::size_t updates_ = 0;
+  std::vector<std::size_t> blocks_;  // first candidate of each block
+  std::vector<std::size_t> square_;  // [candidates + 1] where W_i and G_i start
+  std::vector<double> w_, g_;
+  std::vector<double> gain_;  // [candidates] change of the objective by adding
+  std::vector<double> size_;  // [candidates] trace of W_i
+  struct Ahead {
+    std::size_t place, first;  // first column of its products
+  };
+  static constexpr std::size_t kNotAhead = static_cast<std::size_t>(-1);
+  std::vector<Ahead> ahead_;
+  std::size_t ahead_at_ = kNotAhead;
+  std::vector<double> ahead_factors_;         // M^-1 A_j', columns, each [stride]
+  std::vector<std::vector<double>> ahead_x_;  // A_i times these, per block
+  struct Leaving {
+    double loss = 0, root_loss = 0;
+    double stretch = 0;  // 1 / (1 - lambda_j)
+    double size = 0;     // lambda_j / (1 - lambda_j)
+    std::size_t rows = 0;
+    bool bounded = false;
+  } leaving_;                           // of the chosen reading that is to be exchanged
+  std::vector<double> factors_;         // columns, each [stride]
+  std::vector<Update> pending_;         // at most two
+  std::vector<std::vector<double>> x_;  // A_i times the columns, per block
+  std::size_t x_stride_ = 0;
+  std::vector<Best> best_;  // per block
+};
+
+}  // namespace abbe
