@@ -100,6 +100,7 @@ lint:
 	@.ci/set-up lint
 	@.ci/format --check
 	@python3 tests/structure/check_structure.py .
+	@python3 tests/structure/check_documents.py .
 	@.ci/build --configure tidy
 	@.ci/lint --jobs $(JOBS)
 
