@@ -1,5 +1,43 @@
 #pragma once
 
+// Commands at which the tool of a mill out of square is where it should be:
+//
+//   #include <abbe/compensate/compensated_inverse.h>
+//   #include <abbe/machine/chain.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     const abbe::Machine mill = abbe::parse_chain("w X' Y' b Z t").machine;
+//     abbe::ErrorSet errors;  // squareness of Y to X: 20 um/m
+//     errors.locations.push_back({.axis = mill.find_axis("Y"), .component = abbe::Component::C, .value = 20e-6});
+//     const abbe::CompensatedInverse inverse(mill, errors);
+//
+//     double x[] = {0, 100, 200}, y[] = {0, 100, 200}, z[] = {0, 0, 50};  // mm, commands of three poses
+//     const double* nominal[] = {x, y, z};
+//     double* corrected[] = {x, y, z};  // the same memory: they are corrected in place
+//     abbe::CorrectionStatus status[3];
+//     inverse.correct({nominal, 3}, {corrected, status});
+//     for (int k = 0; k < 3; ++k) {
+//       std::printf("X %.4f Y %.4f Z %.4f mm: %s\n", x[k], y[k], z[k], abbe::correction_status_text(status[k]));
+//       if (!abbe::reaches_point(status[k])) return 1;
+//     }
+//     return 0;
+//   }
+//
+// It prints:
+//
+//   X 0.0000 Y 0.0000 Z 0.0000 mm: reached
+//   X 100.0020 Y 100.0000 Z 0.0000 mm: reached
+//   X 200.0040 Y 200.0000 Z 50.0000 mm: reached
+//
+// compensate holds corrections of commands:
+//   compensated_inverse.h               poses of any number, from commands or from targets
+//   corrected_poses.h                   the same with uncertainties and figures for people
+//   program/program_correction.h        moves of a program, proven to stay within a tolerance
+//   tables/correction_lattice.h         corrections at the nodes of tables: axis_table.h, error_tables.h beside it
+//   left_out_errors.h                   errors that are smaller than their uncertainty
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>

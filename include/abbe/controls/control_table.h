@@ -1,5 +1,44 @@
 #pragma once
 
+// A table for LinuxCNC as text, from the known errors of a mill:
+//
+//   #include <abbe/controls/control_table.h>
+//   #include <abbe/formats/machine/errors_file.h>
+//   #include <abbe/formats/machine/machine_file.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     abbe::ControlTableRequest request;
+//     request.format = "linuxcnc";
+//     request.machine = abbe::read_machine("examples/machines/three-axis-mill.machine.toml");
+//     request.errors = abbe::read_errors("examples/compensate/mill.errors.toml", request.machine).errors;
+//     request.axes = {"Y"};
+//     request.most_nodes = 5;
+//     request.tolerance_mm = 2e-3;
+//     request.limit_mm = 0.1;
+//     const abbe::ControlTables made = abbe::make_control_tables(request);
+//     for (const std::string& why : made.refused) std::printf("refused: %s\n", why.c_str());
+//     for (const abbe::ControlFile& file : made.files) std::printf("%s:\n%s", file.name.c_str(), file.text.c_str());
+//     return made.says_no() ? 1 : 0;
+//   }
+//
+// It prints:
+//
+//   Y.comp:
+//   0.0000000 0.0184585 0.0184585
+//   110.0000000 0.0080193 0.0080193
+//   220.0000000 -0.0019999 -0.0019999
+//   330.0000000 -0.0078502 -0.0078502
+//   440.0000000 -0.0057812 -0.0057812
+//
+// controls holds correction tables:
+//   control_table.h                     what is asked for, and tables with what they do and do not carry
+//   table_format.h                      the formats, and what each takes
+//   table_text.h, table_map.h           results for people; maps of what a table leaves
+//   lost_motion.h                       where reversal values go
+// How tables are made and judged: docs/controller-tables.md.
+
 #include <Eigen/Core>
 #include <cstddef>
 #include <limits>
@@ -15,19 +54,6 @@
 #include "abbe/verify/volumetric_figures.h"
 
 namespace abbe {
-
-// Correction tables of a control, from the known errors of a machine:
-//
-//     abbe::ControlTableRequest request;
-//     request.format = "siemens-cec";
-//     request.machine = abbe::read_machine("mill.machine.toml");
-//     request.errors = abbe::read_errors("mill.errors.toml", request.machine).errors;
-//     request.limit_mm = 0.1;
-//     const abbe::ControlTables made = abbe::make_control_tables(request);
-//     for (const std::string& why : made.refused) std::cerr << why << '\n';
-//     for (const abbe::ControlFile& file : made.files) abbe::write_file_atomically(file.name, file.text);
-//
-// What the formats are, and what each takes: table_format.h. How tables are made and judged: docs/controller-tables.md.
 
 struct TableFormat;
 

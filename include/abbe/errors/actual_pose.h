@@ -1,5 +1,43 @@
 #pragma once
 
+// Where the tool of a mill with errors really is:
+//
+//   #include <abbe/errors/actual_pose.h>
+//   #include <abbe/machine/chain.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     const abbe::Machine mill = abbe::parse_chain("w X' Y' b Z t").machine;
+//     abbe::ErrorSet errors;
+//     // EC0Y, squareness of Y to X: 20 um/m. EAX, roll of X: 0 at X -250 mm, growing to 50 urad at X 250 mm.
+//     errors.locations.push_back({.axis = mill.find_axis("Y"), .component = abbe::Component::C, .value = 20e-6});
+//     abbe::ErrorMotion roll;
+//     roll.axis = mill.find_axis("X");
+//     roll.component = abbe::Component::A;
+//     roll.basis = {.kind = abbe::BasisKind::legendre, .order = 1, .from = -250, .to = 250};  // mm
+//     roll.coefficients = {25e-6, 25e-6};                                                     // rad
+//     errors.motions.push_back(roll);
+//
+//     abbe::Deviation deviation;  // mm and rad, actual less nominal, in the frame of the workpiece
+//     if (abbe::tool_deviation(mill, errors, {250, 200, 100}, deviation) != abbe::PoseStatus::ok) return 1;
+//     std::printf("tool off by %.1f %.1f %.1f um\n", 1e3 * deviation[0], 1e3 * deviation[1], 1e3 * deviation[2]);
+//     std::printf("and turned by %.0f %.0f %.0f urad\n", 1e6 * deviation[3], 1e6 * deviation[4], 1e6 * deviation[5]);
+//     return 0;
+//   }
+//
+// It prints:
+//
+//   tool off by -4.0 5.0 -10.0 um
+//   and turned by -50 0 0 urad
+//
+// errors holds what is wrong with a machine, and what it does to the tool:
+//   error_set.h, basis.h                error motions, location errors, reversal values and their names
+//   poses.h                             many poses: lists, grids, sources
+//   chain_plan.h                        actual poses and derivatives of millions of poses
+//   reversal.h, calibrated_machine.h    lost motion; a machine with its constant errors put into its geometry
+//   random_errors.h                     errors for simulations, of a size that is asked for
+
 #include <Eigen/Core>
 #include <vector>
 

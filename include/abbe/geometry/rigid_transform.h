@@ -1,5 +1,43 @@
 #pragma once
 
+// Where a part stands that was probed at three balls:
+//
+//   #include <abbe/geometry/best_fit_transform.h>
+//   #include <abbe/geometry/rigid_transform.h>
+//   #include <abbe/geometry/rotation.h>
+//
+//   #include <cstdio>
+//   #include <vector>
+//
+//   int main() {
+//     const std::vector<Eigen::Vector3d> drawn{{0, 0, 0}, {200, 0, 0}, {0, 150, 0}};  // mm, in the frame of the part
+//     const std::vector<Eigen::Vector3d> probed{{120, 80, 50}, {320, 80.2, 50.01}, {119.854, 230, 50}};
+//     const abbe::BestFitTransform fit = abbe::best_fit_transform(drawn, probed);
+//     if (fit.status != abbe::BestFitStatus::ok) return 1;
+//
+//     const abbe::RigidTransform machine_from_part = fit.target_from_source;
+//     const Eigen::Vector3d bore = machine_from_part * Eigen::Vector3d(100, 75, 20);
+//     const Eigen::Vector3d turn_mrad = 1e3 * abbe::rotation_vector(machine_from_part.rotation);
+//     std::printf("bore in the machine: %.3f %.3f %.3f mm\n", bore.x(), bore.y(), bore.z());
+//     std::printf("part turned by %.3f mrad about Z, tilted by %.3f about Y\n", turn_mrad.z(), turn_mrad.y());
+//     std::printf("balls off by %.1f um rms\n", fit.rms * 1e3);
+//     return 0;
+//   }
+//
+// It prints:
+//
+//   bore in the machine: 219.926 155.100 70.005 mm
+//   part turned by 0.990 mrad about Z, tilted by -0.050 about Y
+//   balls off by 1.5 um rms
+//
+// geometry holds, without any machine:
+//   rotation.h, angle_units.h           rotations, error angles, rotation vectors
+//   best_fit_transform.h                the rigid motion between two sets of points, also with outliers
+//   fits/shape_fit.h                    lines, planes, circles, spheres, cylinders and cones through points
+//   surface/triangle_mesh.h             surfaces: closest_point.h, ray_tracer.h, mesh_check.h beside it
+//   registration/registration.h         scans on surfaces from any pose; fine_registration.h from near by
+//   decompositions.h                    Eigen's decompositions, compiled once
+
 #include <Eigen/Core>
 #include <Eigen/LU>
 

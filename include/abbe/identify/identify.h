@@ -1,5 +1,50 @@
 #pragma once
 
+// Three squareness errors from eight readings of a ball bar:
+//
+//   #include <abbe/identify/identify.h>
+//   #include <abbe/instruments/ball_bar.h>
+//   #include <abbe/instruments/instrument_simulation.h>
+//   #include <abbe/machine/chain.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     const abbe::Machine mill = abbe::parse_chain("w X' Y' b Z t").machine;
+//     using enum abbe::Component;
+//     abbe::ErrorSet errors;  // squareness of Y (axis 1) and Z (axis 2): EC0Y, EA0Z, EB0Z in um/m
+//     errors.locations = {{1, C, 30e-6}, {2, A, -20e-6}, {2, B, 50e-6}};
+//     abbe::BallBarSetup setup;  // calibrated, noise of 0.1 um; its ball in the middle of the table
+//     setup.balls = {{"table", abbe::SetupPoint::exact({0, 0, 0})}};
+//     const auto bar = std::make_shared<const abbe::BallBar>(setup);
+//     abbe::InstrumentReadings plan;  // mm: eight poses above the ball
+//     for (const double x : {-100, -40, 40, 100}) plan.append({x, 60, 100}, 0), plan.append({x, -80, 100}, 0);
+//     const abbe::InstrumentReadings read = abbe::simulate_instrument(mill, errors, bar, plan, {}).readings;
+//
+//     errors.set_parameters({0, 0, 0, 0, 0, 0});  // three location errors, three coordinates of the tool offset
+//     abbe::Problem problem = abbe::estimate_everything(mill, errors, {bar->observations(mill, errors, read)});
+//     problem.machine_parameters = {0, 1, 2};  // the tool offset is known
+//     const abbe::Identification found = abbe::identify(problem);
+//     for (int i = 0; i < 3; ++i)
+//       std::printf("%s %+.1f um/m, standard uncertainty %.1f um/m\n", found.parameters[i].name.c_str(),
+//                   1e6 * found.estimates[i], 1e6 * found.standard_uncertainties[i]);
+//     return found.status == abbe::IdentifyStatus::converged ? 0 : 1;
+//   }
+//
+// It prints:
+//
+//   EC0Y +28.9 um/m, standard uncertainty 1.0 um/m
+//   EA0Z -20.6 um/m, standard uncertainty 0.7 um/m
+//   EB0Z +51.0 um/m, standard uncertainty 0.7 um/m
+//
+// identify holds the way from readings to errors:
+//   problem.h                           what is to be identified from what, and what is known before
+//   strategies.h, order_selection.h     stages; degrees and harmonics that the readings justify
+//   gauge.h, covariance.h               what readings cannot tell apart; uncertainty, correlation, observability
+//   trust/trust.h                       whether a result may be used; Monte Carlo and outliers beside it
+//   planning/planning.h                 which readings to take
+//   linkage/linkage_steps.h             dials, laser engravers and scanners, step by step without a model of all errors
+
 #include <Eigen/Core>
 #include <string>
 #include <vector>

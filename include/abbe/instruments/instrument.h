@@ -1,5 +1,50 @@
 #pragma once
 
+// What a ball bar reads on a mill that is out of square:
+//
+//   #include <abbe/geometry/angle_units.h>
+//   #include <abbe/instruments/ball_bar.h>
+//   #include <abbe/instruments/instrument.h>
+//   #include <abbe/instruments/instrument_simulation.h>
+//   #include <abbe/machine/chain.h>
+//
+//   #include <cmath>
+//   #include <cstdio>
+//
+//   int main() {
+//     const abbe::Machine mill = abbe::parse_chain("w X' Y' b Z t").machine;
+//     abbe::ErrorSet errors;  // squareness of Y to X: 20 um/m
+//     errors.locations.push_back({.axis = mill.find_axis("Y"), .component = abbe::Component::C, .value = 20e-6});
+//     abbe::BallBarSetup setup;
+//     setup.balls = {{"table", abbe::SetupPoint::exact({0, 0, 0})}};  // mm, in the frame of the workpiece
+//     const auto bar = std::make_shared<const abbe::BallBar>(setup);
+//
+//     abbe::InstrumentReadings plan;  // a circle of 150 mm in eight poses
+//     for (int k = 0; k < 8; ++k)
+//       plan.append({150 * std::cos(k * abbe::kTurn / 8), 150 * std::sin(k * abbe::kTurn / 8), 0}, 0);
+//     abbe::InstrumentSimulationOptions options;
+//     options.noise_factor = 0;
+//     const abbe::InstrumentReadings read = bar->simulate(mill, errors, plan, options).readings;
+//     for (std::size_t k = 0; k < 4; ++k)
+//       std::printf("%3zu deg %+.2f um\n", 45 * k, 1e3 * (read.measured[0][k] - 150));
+//     return 0;
+//   }
+//
+// It prints:
+//
+//     0 deg +0.00 um
+//    45 deg -1.50 um
+//    90 deg +0.00 um
+//   135 deg +1.50 um
+//
+// instruments holds measurement equations and what the identification sees of them:
+//   ball_bar.h, interferometer.h, ...   a header for each instrument; trackers/ and polygon/ have several each
+//   equation_instrument.h               what they derive from: one equation, derivatives follow
+//   measurement_plan.h                  poses of a measurement: grids, lines, diagonals, spirals
+//   instrument_simulation.h             readings of a machine with errors, with noise and outliers
+//   observations.h                      readings as weighted residuals
+//   point_scan.h, virtual_scan.h        displacement probes that scan a part
+
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>

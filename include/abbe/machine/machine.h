@@ -1,5 +1,44 @@
 #pragma once
 
+// Commands of a five-axis mill for a tilted tool, both ways:
+//
+//   #include <abbe/geometry/angle_units.h>
+//   #include <abbe/machine/chain.h>
+//   #include <abbe/machine/inverse_kinematics.h>
+//   #include <abbe/machine/machine.h>
+//
+//   #include <cmath>
+//   #include <cstdio>
+//
+//   int main() {
+//     abbe::Machine mill = abbe::parse_chain("w C' A' Y' b X Z t").machine;  // table C on cradle A; travels by default
+//     mill.axes[mill.find_axis("A")].point = {0, 0, -50};                    // mm, A turns 50 mm below the table
+//     const abbe::InverseKinematics inverse(mill);
+//     const auto target = abbe::PoseTarget::at({60, 0, 20}, {0, 0.5, std::sqrt(0.75)});  // mm; tool tilted by 30 deg
+//     const abbe::InverseResult result = inverse.solve(target);
+//     for (const abbe::InverseSolution& found : result.solutions) {
+//       const auto& q = found.position;  // in the order of the chain, rad and mm
+//       std::printf("C %.0f A %.0f deg, Y %.3f X %.3f Z %.3f mm\n", q[0] / abbe::kDegree, q[1] / abbe::kDegree, q[2],
+//                   q[3], q[4]);
+//     }
+//     const std::vector<double> zero(mill.axes.size(), 0.0);
+//     const Eigen::Vector3d tool = abbe::nominal_workpiece_from_tool(mill, zero).translation;
+//     std::printf("all axes at zero: tool at %.0f %.0f %.0f mm\n", tool.x(), tool.y(), tool.z());
+//     return result.status == abbe::InverseStatus::solved ? 0 : 1;
+//   }
+//
+// It prints:
+//
+//   C 0 A -30 deg, Y -35.000 X 60.000 Z 10.622 mm
+//   C 180 A 30 deg, Y 35.000 X -60.000 Z 10.622 mm
+//   all axes at zero: tool at 0 0 0 mm
+//
+// machine holds machines without errors:
+//   chain.h, machine_check.h            a machine from "w C' A' Y' b X Z t"; what makes one unusable
+//   inverse_kinematics.h                all commands for a pose, singular poses, unreachable ones
+//   path.h, tool_path.h                 commands along a path; curves that a beam follows on a workpiece
+//   placement.h, test_piece.h           where a workpiece stands; cone frustum and S shape
+
 #include <Eigen/Core>
 #include <cstddef>
 #include <span>

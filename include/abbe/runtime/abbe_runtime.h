@@ -1,5 +1,40 @@
 #pragma once
 
+// Compensated joints of a mill, from a frozen compensation; C99:
+//
+//   #include <abbe/runtime/abbe_runtime.h>
+//   #include <stdio.h>
+//
+//   int main(void) {
+//     static unsigned char bytes[1 << 20];
+//     FILE* file = fopen("mill.abbec", "rb"); // of: abbe compensate freeze ... -o mill.abbec
+//     const size_t size = file ? fread(bytes, 1, sizeof bytes, file) : 0;
+//     abbe_runtime* runtime = NULL;
+//     abbe_runtime_state state;
+//     const double nominal[3] = {600, 400, -100}; // mm: X Y Z, in the order of the chain
+//     double joints[3], uncertainty_mm;
+//     char text[ABBE_RUNTIME_TEXT];
+//     if (file) fclose(file);
+//     if (abbe_runtime_load(bytes, size, text, sizeof text, &runtime) != ABBE_OK) return puts(text), 1;
+//
+//     abbe_runtime_start(&state);
+//     const int result = abbe_runtime_correct(runtime, &state, nominal, NULL, 1.0, joints);
+//     printf("X %.4f Y %.4f Z %.4f mm: %s\n", joints[0], joints[1], joints[2], abbe_runtime_text(result));
+//     if (abbe_runtime_uncertainty(runtime, nominal, NULL, &uncertainty_mm) == ABBE_OK)
+//       printf("standard uncertainty of the correction %.1f um\n", 1e3 * uncertainty_mm);
+//     abbe_runtime_free(runtime);
+//     return result == ABBE_OK ? 0 : 1;
+//   }
+//
+// It prints:
+//
+//   X 600.0341 Y 399.9836 Z -100.0124 mm: ok
+//   standard uncertainty of the correction 1.7 um
+//
+// runtime holds what a controller runs, and what makes its file:
+//   abbe_runtime.h                      the C interface: joints from points and from nominal joints, and back
+//   freeze.h                            C++: a machine and its errors compiled into a file, tried all over the travel
+
 /* Compensation in real time: a C interface (C99 and later) over a frozen compensation, docs/runtime.md.
  *
  * The host reads the file and gives its bytes to abbe_runtime_load(), which allocates once. No other call allocates,

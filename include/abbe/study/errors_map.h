@@ -1,5 +1,29 @@
 #pragma once
 
+// The map of an errors file, as `abbe map` makes it:
+//
+//   #include <abbe/formats/files/results_folder.h>
+//   #include <abbe/formats/machine/machine_file.h>
+//   #include <abbe/study/errors_map.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     abbe::ErrorsMapRequest request;
+//     request.machine = abbe::read_machine("examples/machines/three-axis-mill.machine.toml");
+//     request.errors = abbe::read_errors("examples/compensate/mill.errors.toml", request.machine);
+//     const abbe::ErrorsMap map = abbe::map_errors(request);
+//     const abbe::SampleStatistics& size = map.before.statistics;
+//     std::printf("%zu poses: mean %.1f um, largest %.1f um\n", map.before.count(), 1e3 * size.mean,
+//                 1e3 * size.maximum);
+//     abbe::write_file_atomically("map.csv", abbe::map_csv(abbe::errors_map_data(map)));
+//     return 0;
+//   }
+//
+// It prints:
+//
+//   729 poses: mean 20.0 um, largest 46.5 um
+
 #include <cstddef>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -16,15 +40,6 @@
 #include "abbe/verify/error_map.h"
 #include "abbe/verify/left_out_poses.h"
 #include "abbe/verify/volumetric_figures.h"
-
-// The map of an errors file, as `abbe map` makes it:
-//
-//     abbe::ErrorsMapRequest request;
-//     request.machine = abbe::read_machine("mill.machine.toml");
-//     request.errors = abbe::read_errors("mill.errors.toml", request.machine);
-//     const abbe::ErrorsMap map = abbe::map_errors(request);
-//     std::cout << abbe::errors_map_text(map);
-//     abbe::write_file_atomically("map.csv", abbe::map_csv(abbe::errors_map_data(map)));
 
 namespace abbe {
 

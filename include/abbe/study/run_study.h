@@ -1,5 +1,39 @@
 #pragma once
 
+// A whole study, as `abbe run` does it:
+//
+//   #include <abbe/study/run_study.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     abbe::Study study = abbe::read_study("examples/three_axis/interferometer.study.toml");
+//     study.output = "results";
+//     const abbe::StudyResult result = abbe::run_study(study);
+//     abbe::write_results(study, result);          // errors.toml, report.html and more
+//     if (abbe::says_no(study, result)) return 1;  // abbe::study_text() says why
+//
+//     std::printf("%zu readings: %s\n", result.campaign.reading_count(), result.identification.message.c_str());
+//     const abbe::VolumetricFigures& volumetric = result.volumetric.value();
+//     std::printf("mean volumetric error over %s:\n", volumetric.poses_words.c_str());
+//     std::printf("%.2f um before, %.2f um after correction (k = 2)\n", 1e3 * volumetric.predicted_before->mean,
+//                 1e3 * volumetric.predicted_after->mean);
+//     return 0;
+//   }
+//
+// It prints:
+//
+//   486 readings: converged
+//   mean volumetric error over 9 x 9 x 9 poses over X 0 to 760 mm, Y 0 to 440 mm, Z -460 to 0 mm:
+//   6.82 um before, 0.81 um after correction (k = 2)
+//
+// study holds whole jobs, each a function from a request to a result:
+//   run_study.h, study_result.h         readings to errors to maps; study_steps.h has the steps
+//   results.h, study_text.h, trust.h    the results folder, the result for people, whether it may be used
+//   planning.h, plan_text.h             `abbe plan`: which readings to take
+//   verification.h, errors_map.h        `abbe verify`, `abbe map`
+//   corrected_program.h                 `abbe compensate gcode`
+
 #include <cstddef>
 #include <functional>
 #include <stop_token>
@@ -10,21 +44,6 @@
 #include "abbe/study/study_result.h"
 #include "abbe/study/study_text.h"
 #include "abbe/study/trust.h"
-
-// A whole study, as `abbe run` does it; tests/install/consumer/study.cpp compiles this program:
-//
-//   #include <abbe/study/run_study.h>
-//
-//   #include <cstdio>
-//
-//   int main(int /*argc*/, char** arguments) {
-//     abbe::Study study = abbe::read_study(arguments[1]);
-//     study.output = arguments[2];
-//     const abbe::StudyResult result = abbe::run_study(study);
-//     abbe::write_results(study, result);
-//     std::fputs(abbe::study_text(study, result, nullptr).c_str(), stdout);
-//     return abbe::says_no(study, result) ? 1 : 0;
-//   }
 
 namespace abbe {
 

@@ -1,5 +1,45 @@
 #pragma once
 
+// Volumetric error of a mill that is out of square:
+//
+//   #include <abbe/machine/chain.h>
+//   #include <abbe/verify/error_map.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     const abbe::Machine mill = abbe::parse_chain("w X' Y' b Z t").machine;
+//     abbe::ErrorSet errors;  // EC0Y, squareness of Y to X: 20 um/m; EA0Z, of Z to Y: -30 um/m
+//     errors.locations.push_back({.axis = mill.find_axis("Y"), .component = abbe::Component::C, .value = 20e-6});
+//     errors.locations.push_back({.axis = mill.find_axis("Z"), .component = abbe::Component::A, .value = -30e-6});
+//
+//     const std::vector<double> positions = abbe::evenly_spaced(-200, 200, 9);  // mm
+//     const abbe::PoseSource poses = abbe::pose_source(abbe::PoseGrid{{positions, positions, positions}});
+//     abbe::ErrorMapOptions options;
+//     options.remove_rigid_motion = true;  // the datum of the workpiece is set where it fits best
+//     const abbe::ErrorMap map = abbe::error_map(mill, errors, nullptr, poses, options);
+//     std::printf("volumetric error of %zu poses: mean %.2f um, 95 %% below %.2f um, largest %.2f um\n", map.count(),
+//                 1e3 * map.statistics.mean, 1e3 * map.statistics.p95, 1e3 * map.statistics.maximum);
+//     for (const abbe::ErrorShare& part : abbe::shares_by_axis(mill, errors, poses)) {
+//       std::printf("%s alone: mean %.2f um\n", part.name.c_str(), 1e3 * part.mean);
+//     }
+//     return map.statistics.excluded == 0 ? 0 : 1;
+//   }
+//
+// It prints:
+//
+//   volumetric error of 729 poses: mean 3.04 um, 95 % below 5.04 um, largest 6.16 um
+//   X alone: mean 0.00 um
+//   Y alone: mean 2.22 um
+//   Z alone: mean 3.33 um
+//
+// verify holds judgements:
+//   error_map.h, volumetric_figures.h   deviations over a volume; the figures that all commands state
+//   evaluations/positioning.h           ISO 230-2; circular.h, straightness.h, diagonals.h and others beside it
+//   compensated_poses.h, table_loss.h   what a compensation, or a control with a table, leaves
+//   parts/contour_error.h               test pieces, contours and scans against what they should be
+//   uncertainty_budget.h                budgets by sensitivities and by drawing
+
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>

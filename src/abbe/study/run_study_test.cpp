@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "abbe/study/header_example_for_test.h"
-
 namespace abbe {
 namespace {
 
@@ -49,11 +47,6 @@ TEST(RunStudy, StopsInEveryStep) {
     };
     EXPECT_THROW(run_study(study, options), Stopped) << step_words(study, last);
   }
-}
-
-TEST(RunStudy, TheExampleOfItsHeaderIsTheConsumerThatIsCompiled) {
-  const std::string commented = test::consumer_as_comment("study.cpp");
-  EXPECT_NE(test::text_of_source("include/abbe/study/run_study.h").find(commented), std::string::npos) << commented;
 }
 
 }  // namespace

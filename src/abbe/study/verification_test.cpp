@@ -10,7 +10,6 @@
 
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/message_of.h"
-#include "abbe/study/header_example_for_test.h"
 #include "abbe/study/verification_page.h"
 #include "abbe/study/verification_text.h"
 
@@ -123,11 +122,6 @@ TEST(Verification, WhatCannotBeAnsweredIsNamedByItsOption) {
   std::get<ConeFrustum>(request.pieces[0].sizes).height = 1e4;
   EXPECT_THAT(problem(request), HasSubstr("cone frustum: these sizes make no test piece"));
   EXPECT_THAT(message_of([] { read_verification({}); }), HasSubstr("--machine: is missing"));
-}
-
-TEST(Verification, TheExampleOfItsHeaderIsTheConsumerThatIsCompiled) {
-  const std::string commented = test::consumer_as_comment("verification.cpp");
-  EXPECT_NE(test::text_of_source("include/abbe/study/verification.h").find(commented), std::string::npos) << commented;
 }
 
 }  // namespace

@@ -1,5 +1,43 @@
 #pragma once
 
+// A pyramid scanned by a probe that looks down:
+//
+//   #include <abbe/machine/chain.h>
+//   #include <abbe/plan/scan_plan.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     const abbe::Machine scanner = abbe::parse_chain("w C' A' b X Y Z t").machine;  // its beam along Z
+//     abbe::TriangleMesh part;  // a flat pyramid, mm: corners of its base, then its tip
+//     part.vertices.resize(3, 4);
+//     part.vertices << -30, 30, 0, 0, -20, -20, 40, 0, 0, 0, 0, 8;
+//     part.triangles.resize(3, 4);
+//     part.triangles << 0, 0, 1, 2, 2, 1, 2, 0, 1, 3, 3, 3;
+//     abbe::ScanPlanOptions options;
+//     options.workpiece_from_part = abbe::RigidTransform::translate({0, 0, 5});
+//     options.wanted = {{.normal = Eigen::Vector3d::UnitZ(), .offset = 0.5}};  // nothing below 0.5 mm
+//     options.along = options.between = 1;                                     // mm
+//
+//     const abbe::ScanPlan plan = abbe::plan_scan(scanner, part, options);
+//     std::printf("%.0f mm^2 in %zu faces: %.0f %% covered by %zu points in %.0f s\n", plan.area(), plan.faces.size(),
+//                 100 * plan.covered_share(), plan.points(), plan.time);
+//     if (plan.points() == 0 || plan.blocked_links > 0) return 1;
+//     const std::vector<double> q = plan.positions.pose(0);  // in the order of the chain, rad and mm
+//     std::printf("it begins at C %.3f A %.3f rad, X %.3f Y %.3f Z %.3f mm\n", q[0], q[1], q[2], q[3], q[4]);
+//     return 0;
+//   }
+//
+// It prints:
+//
+//   1728 mm^2 in 4 faces: 100 % covered by 1836 points in 213 s
+//   it begins at C 0.000 A 0.381 rad, X 27.413 Y -15.213 Z 12.070 mm
+//
+// plan holds paths over parts:
+//   scan_plan.h                         faces, lines and points of a scan, its time, its coverage, what is in the way
+//   wanted_area.h                       how much of a surface is asked for
+// Poses for other instruments: abbe/instruments/measurement_plan.h and abbe/identify/planning/planning.h.
+
 #include <array>
 #include <cstddef>
 #include <cstdint>

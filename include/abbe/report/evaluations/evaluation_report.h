@@ -1,5 +1,48 @@
 #pragma once
 
+// Positioning of an axis after ISO 230-2, as text and as a page:
+//
+//   #include <abbe/report/evaluations/evaluation_report.h>
+//   #include <abbe/report/evaluations/positioning_report.h>
+//   #include <abbe/report/report.h>
+//   #include <abbe/report/words/evaluation_text.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     std::vector<abbe::PositioningReading> readings;  // mm: lost motion of 3 um, a scale error of 10 um/m, two runs
+//     for (const double target : {0.0, 100.0, 200.0, 300.0, 400.0})
+//       for (const double noise : {-0.5e-3, 0.5e-3}) {
+//         readings.push_back({target, 1e-5 * target + 1.5e-3 + noise, abbe::ApproachDirection::positive});
+//         readings.push_back({target, 1e-5 * target - 1.5e-3 + noise, abbe::ApproachDirection::negative});
+//       }
+//     const abbe::PositioningEvaluation evaluation = abbe::evaluate_positioning(readings);
+//     abbe::EvaluationReport report = abbe::positioning_report(evaluation, false, "X axis", nullptr);
+//     abbe::apply_tolerances({"A_um=10", "B_um=2.5"}, report);
+//     for (const abbe::EvaluationFigure& figure : report.figures) {
+//       if (!figure.value || figure.symbol.size() > 1) continue;
+//       std::printf("%s %s: %s %s%s\n", figure.symbol.c_str(), figure.name.c_str(),
+//                   abbe::figure_text(figure, *figure.value).c_str(), figure.unit.c_str(),
+//                   figure.exceeds_tolerance() ? ", out of tolerance" : "");
+//     }
+//     return abbe::evaluation_page(report).size() < abbe::kReportSizeLimit ? 0 : 1;
+//   }
+//
+// It prints:
+//
+//   A bidirectional accuracy: 9.83 um
+//   E bidirectional systematic deviation: 7.00 um
+//   M range of the mean bidirectional deviation: 4.00 um
+//   R bidirectional repeatability: 5.83 um
+//   B reversal, largest: 3.00 um, out of tolerance
+//
+// report holds results as people and programs read them; it computes nothing:
+//   report.h                            the page of a study, from its data
+//   evaluations/                        evaluations by a standard: positioning_report.h, circular_report.h and others
+//   words/evaluation_text.h             texts: a file for each kind of result
+//   pages/path_page.h                   pages of tool paths, contours, scans
+//   drawings/svg_plot.h                 plots and maps as SVG, the same bytes on every machine
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
