@@ -101,6 +101,7 @@ lint:
 	@.ci/format --check
 	@python3 tests/structure/check_structure.py .
 	@python3 tests/structure/check_documents.py .
+	@python3 tests/structure/check_headers.py .
 	@.ci/build --configure tidy
 	@.ci/lint --jobs $(JOBS)
 

@@ -12,10 +12,10 @@
 namespace abbe::test {
 namespace {
 
-/// A folder with what examples find where they run: examples/ as they are in the sources, and what
+/// A folder of that name with what examples find where they run: examples/ as they are in the sources, and what
 /// `abbe compensate freeze` makes of a mill.
-std::filesystem::path folder_of_examples() {
-  const std::filesystem::path source = ABBE_SOURCE_DIR, folder = empty_folder("abbe_header_examples");
+std::filesystem::path folder_for_example(const std::string& name) {
+  const std::filesystem::path source = ABBE_SOURCE_DIR, folder = empty_folder(name.c_str());
   std::filesystem::create_directory_symlink(source / "examples", folder / "examples");
   const Machine mill = read_machine(source / "examples/machines/three-axis-mill.machine.toml");
   const ErrorsFile errors = read_errors(source / "examples/compensate/mill.errors.toml", mill);
@@ -29,8 +29,9 @@ std::filesystem::path folder_of_examples() {
 }
 
 /// What a program of one function prints where it finds its files; its exit code is checked.
-std::string printed_by(int (*example)()) {
-  const std::filesystem::path folder = folder_of_examples(), here = std::filesystem::current_path();
+std::string printed_by(int (*example)(), const std::string& name) {
+  const std::filesystem::path folder = folder_for_example("abbe_example_" + name);
+  const std::filesystem::path here = std::filesystem::current_path();
   std::filesystem::current_path(folder);
   testing::internal::CaptureStdout();
   EXPECT_EQ(example(), 0);
@@ -43,7 +44,7 @@ std::string printed_by(int (*example)()) {
 
 #define EXAMPLE(name, prints)      \
   extern "C" int example_##name(); \
-  TEST(HeaderExample, name) { EXPECT_EQ(printed_by(example_##name), prints); }
+  TEST(HeaderExample, name) { EXPECT_EQ(printed_by(example_##name, #name), prints); }
 #include "examples.inc"
 #undef EXAMPLE
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <numbers>
+#include <vector>
 
 #include "abbe/errors/random_stream.h"
 #include "abbe/geometry/rigid_transform.h"
