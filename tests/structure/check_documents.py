@@ -5,7 +5,8 @@ In every *.md but CHANGELOG.md, which tells of the past: a path in code (between
 a folder of the source tree exists; so does "abbe/LIBRARY/x.h" below include/ or src/; so does a file named between
 back-ticks alone, "x.h" or "x.cpp", anywhere. `*` stands for any text, and a word in capitals for a name. The table of
 docs/architecture.md names one header for each library, which exists and is among those whose examples are run
-(tests/header_examples). Every violation is one line: file:line: message.
+(tests/header_examples); the headers that these name in their first comment exist, "x.h" somewhere in their library,
+"room/x.h" there. Every violation is one line: file:line: message.
 """
 import glob
 import os
@@ -14,12 +15,15 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "header_examples"))
 from check_structure import ORDER, files_below  # noqa: E402
+from write_examples import first_comment  # noqa: E402
 
 FOLDERS = ["src", "include", "apps", "papers", "step", "tests", "fuzz", "benchmarks", "cmake", "examples", "docs", "web",
            "linuxcnc", "packaging", "abbe"]
 PATH = re.compile(r"(?<![\w./~$*-])(?:" + "|".join(FOLDERS) + r")/[\w./*-]*\w\*?")
 FILE = re.compile(r"(?<![\w./*-])[\w*-]+\.(?:h|cpp)(?![\w.])")
+HEADER = re.compile(r"[\w-]+(?:/[\w-]+)*\.h\b(?!>)")
 CODE = re.compile(r"`([^`]+)`")
 PLACEHOLDER = re.compile(r"(?<![A-Za-z])[A-Z]{3,}(?![A-Za-z])")
 ROW = re.compile(r"^\| `(\w+)` \|.*\| ([^|]*) \|$")
@@ -66,14 +70,32 @@ def wrong_lead_headers(root, text):
             if (match := ROW.match(line)) and match.group(1) in ORDER]
     if [library for _, library, _ in rows] != ORDER:
         yield 1, f"expected a table of the libraries {' '.join(ORDER)}"
-    with open(os.path.join(root, EXAMPLES), encoding="utf-8") as stream:
-        run = set(re.findall(r"[\w/]+\.h", stream.read()))
+    run = examples(root)
     for number, library, cell in rows:
         headers = CODE.findall(cell)
         if len(headers) != 1:
             yield number, f"'{library}': expected one header to open first, found {len(headers)}"
         elif f"{library}/{headers[0]}" not in run:
             yield number, f"'{library}/{headers[0]}' is not among the examples of {EXAMPLES}"
+
+
+def missing_headers(root, path):
+    """Headers that the first comment of the header `path` names and that do not exist."""
+    library = os.path.join(root, "include", *path.split("/")[:2])
+    known = {os.path.relpath(f"{folder}/{name}", library) for folder, _, names in os.walk(library) for name in names}
+    known |= {os.path.basename(each) for each in known}
+    with open(os.path.join(root, "include", path), encoding="utf-8") as stream:
+        comment = first_comment(stream.read())
+    for number, line in comment:
+        for header in HEADER.findall(line):
+            if header not in known and not os.path.exists(os.path.join(root, "include", header)):
+                yield number, f"no header is called '{header}'"
+
+
+def examples(root):
+    """Headers that begin with an example: "machine/machine.h"."""
+    with open(os.path.join(root, EXAMPLES), encoding="utf-8") as stream:
+        return set(re.findall(r"^\s*(\w+/[\w/]+\.h)", stream.read(), re.MULTILINE))
 
 
 def violations(root):
@@ -91,6 +113,9 @@ def violations(root):
         if path == ARCHITECTURE:
             for number, message in wrong_lead_headers(root, text):
                 yield path, number, message
+    for header in sorted(examples(root)):
+        for number, message in missing_headers(root, f"abbe/{header}"):
+            yield f"include/abbe/{header}", number, message
 
 
 def main():

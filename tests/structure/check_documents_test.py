@@ -17,7 +17,7 @@ def table(**changed):
 
 class CheckDocuments(unittest.TestCase):
     def found(self, files):
-        headers = " ".join(f"{library}/{library}.h" for library in ORDER)
+        headers = "\n  ".join(f"{library}/{library}.h" for library in ORDER)
         with tempfile.TemporaryDirectory() as root:
             for path, text in {**{f"include/abbe/{library}/{library}.h": "" for library in ORDER}, "include/abbe/machine/axis.h": "", "src/abbe/machine/axis_test.cpp": "", "fuzz/fuzz_nc.cpp": "",
                                "tests/header_examples/CMakeLists.txt": headers, **files}.items():
@@ -39,6 +39,15 @@ class CheckDocuments(unittest.TestCase):
             self.assertEqual(len(found), 1, (code, found))
             self.assertIn("gone", found[0])
             self.assertTrue(found[0].startswith("docs/page.md:"), found)
+
+    def test_headers_that_a_header_with_an_example_names_exist(self):
+        comment = "#pragma once\n\n// machine:\n//   machine.h, axis.h, room/far.h, abbe/plan/plan.h  <stdio.h>\n"
+        far = {"include/abbe/machine/room/far.h": ""}
+        self.assertEqual(self.found({**far, "include/abbe/machine/machine.h": comment}), [])
+        for old, new in (("axis.h", "gone.h"), ("room/far.h", "axis/far.h"), ("plan/plan.h", "plan/gone.h")):
+            found = self.found({**far, "include/abbe/machine/machine.h": comment.replace(old, new)})
+            self.assertEqual(len(found), 1, found)
+            self.assertTrue(found[0].startswith("include/abbe/machine/machine.h:4: no header is called"), found)
 
     def test_every_library_has_one_header_that_is_run(self):
         for cell, words in (("`machine.h`, `axis.h`", "found 2"), ("see there", "found 0"), ("`axis.h`", "not among the examples")):

@@ -42,7 +42,6 @@
 //   strategies.h, order_selection.h     stages; degrees and harmonics that the readings justify
 //   gauge.h, covariance.h               what readings cannot tell apart; uncertainty, correlation, observability
 //   trust/trust.h                       whether a result may be used; Monte Carlo and outliers beside it
-//   planning/planning.h                 which readings to take
 //   linkage/linkage_steps.h             dials, laser engravers and scanners, step by step without a model of all errors
 
 #include <Eigen/Core>

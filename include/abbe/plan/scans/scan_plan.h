@@ -3,7 +3,7 @@
 // A pyramid scanned by a probe that looks down:
 //
 //   #include <abbe/machine/chain.h>
-//   #include <abbe/plan/scan_plan.h>
+//   #include <abbe/plan/scans/scan_plan.h>
 //
 //   #include <cstdio>
 //
@@ -33,10 +33,11 @@
 //   1728 mm^2 in 4 faces: 100 % covered by 1836 points in 213 s
 //   it begins at C 0.000 A 0.381 rad, X 27.413 Y -15.213 Z 12.070 mm
 //
-// plan holds paths over parts:
-//   scan_plan.h                         faces, lines and points of a scan, its time, its coverage, what is in the way
-//   wanted_area.h                       how much of a surface is asked for
-// Poses for other instruments: abbe/instruments/measurement_plan.h and abbe/identify/planning/planning.h.
+// plan holds what is decided before anything is measured:
+//   scans/scan_plan.h                   faces, lines and points of a scan, its time, its coverage, what is in the way
+//   scans/wanted_area.h                 how much of a surface is asked for
+//   readings/planning.h                 which readings of other instruments to take, and how many are enough
+// Grids, lines and other given poses: abbe/instruments/measurement_plan.h.
 
 #include <array>
 #include <cstddef>
