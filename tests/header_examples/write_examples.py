@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Turn the examples with which public headers begin into sources. Usage: write_examples.py ROOT OUT HEADER=LIBRARIES ...
+"""Turn examples at the beginning of public headers into sources. Usage: write_examples.py ROOT OUT HEADER=LIBRARIES ...
 
 HEADER is a path below ROOT/include/abbe; LIBRARIES, with commas, are those that its example may use. The first comment
 of the header holds a title, a program and what it prints:
@@ -17,8 +17,9 @@ of the header holds a title, a program and what it prints:
     //   w X' Y' b Z t
 
 The program includes its header, and only headers of LIBRARIES and of the language; it is one function, `main`, with
-at most MOST_LINES lines that are not empty, the includes among them. OUT gets a source for each header, in which the function is called
-example_LIBRARY_HEADER and the lines are those of the header, and examples.inc, a line EXAMPLE(NAME, PRINTS) for each.
+at most MOST_LINES lines that are not empty, the includes among them. OUT gets a source for each header, in which the
+function is called example_LIBRARY_HEADER and the lines are those of the header, and examples.inc, a line
+EXAMPLE(NAME, PRINTS) for each.
 A program with `int main(void)` is C.
 """
 import json

@@ -19,8 +19,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 from check_structure import ORDER, files_below  # noqa: E402
 from write_examples import first_comment  # noqa: E402
 
-FOLDERS = ["src", "include", "apps", "papers", "step", "tests", "fuzz", "benchmarks", "cmake", "examples", "docs", "web",
-           "linuxcnc", "packaging", "abbe"]
+FOLDERS = ["src", "include", "apps", "papers", "step", "tests", "fuzz", "benchmarks", "cmake", "examples", "docs",
+           "web", "linuxcnc", "packaging", "abbe"]
 PATH = re.compile(r"(?<![\w./~$*-])(?:" + "|".join(FOLDERS) + r")/[\w./*-]*\w\*?")
 FILE = re.compile(r"(?<![\w./*-])[\w*-]+\.(?:h|cpp)(?![\w.])")
 HEADER = re.compile(r"[\w-]+(?:/[\w-]+)*\.h\b(?!>)")
@@ -48,7 +48,8 @@ def exists(root, path):
     pattern = PLACEHOLDER.sub("*", path)
     if path.startswith("abbe/"):
         # The command is called abbe too: only headers of the library are meant.
-        return not path.endswith(".h") or any(glob.glob(os.path.join(root, place, pattern)) for place in ("include", "src"))
+        places = [os.path.join(root, place, pattern) for place in ("include", "src")]
+        return not path.endswith(".h") or any(glob.glob(place) for place in places)
     # A program may be named for its source.
     return any(glob.glob(os.path.join(root, pattern + ending)) for ending in ("", ".cpp"))
 
@@ -104,7 +105,8 @@ def violations(root):
         if folder.startswith(".git"):
             continue
         names.update(files)
-        documents += [os.path.normpath(f"{folder}/{name}") for name in files if name.endswith(".md") and name != "CHANGELOG.md"]
+        documents += [os.path.normpath(f"{folder}/{name}") for name in files
+                      if name.endswith(".md") and name != "CHANGELOG.md"]
     for path in documents:
         with open(os.path.join(root, path), encoding="utf-8") as stream:
             text = stream.read()
