@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to formats and to the command: a program that is run to its end.
+// For formats and the command: a program that is run to its end.
 #include <cstddef>
 #include <functional>
 #include <string>

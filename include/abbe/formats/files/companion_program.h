@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to formats and to the command: programs that come with this one, such as abbe-step.
+// For formats and the command: programs that come with this one, such as abbe-step.
 #include <filesystem>
 
 #include "abbe/formats/text/input_error.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to formats and to the program abbe-step.
+// For formats and the program abbe-step.
 #include <filesystem>
 #include <string>
 

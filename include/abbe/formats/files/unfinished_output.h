@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to formats: files and folders that are being written.
+// For formats and the command: files and folders that are being written.
 #include <filesystem>
 #include <functional>
 #include <optional>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to formats and to the program abbe-step: how the one hands its triangles to the other.
+// For formats and the program abbe-step: how the one hands its triangles to the other.
 #include <cstddef>
 #include <cstdint>
 #include <optional>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to formats: instruments of a study file, one reader each.
+// For formats and study: instruments of a study file, one reader each.
 #include <memory>
 #include <string>
 #include <string_view>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to formats: the parts of a study file.
+// For formats and study: the parts of a study file.
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to formats and to the program abbe-step: letters and digits of ASCII, whatever the locale.
+// For formats and the program abbe-step: letters and digits of ASCII, whatever the locale.
 
 namespace abbe {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to formats and to the programs: counts and lists in messages.
+// For formats and the programs: counts and lists in messages.
 #include <cstddef>
 #include <string>
 #include <string_view>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to geometry and to the program abbe-step: triangles divided where their sides were halved.
+// For geometry and the program abbe-step: triangles divided where their sides were halved.
 #include <algorithm>
 #include <array>
 #include <cstddef>
