@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "abbe/formats/files/kept_inputs.h"
+#include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/text/input_error.h"
 
 namespace abbe {
@@ -19,8 +20,9 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     throw InputError(
         place, error == ENOENT ? "there is no such file" : "cannot be read: " + std::generic_category().message(error));
   };
+  const std::filesystem::path opened = path_to_open(path);
   // Not to wait for the other end of a pipe before it is known to be one.
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  const int file = ::open(opened.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) fail(errno);
   struct stat status {};
   const int problem = ::fstat(file, &status) == 0 ? 0 : errno;
@@ -33,7 +35,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     ::madvise(memory, size_, MADV_WILLNEED);
     data_ = static_cast<const char*>(memory);
     named_.emplace(data_, size_, path.string());
-    note_input(path);
+    note_input(opened);
     return;
   }
   ::close(file);

@@ -5,7 +5,9 @@
 #include <cassert>
 #include <cmath>
 
+#include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/text/csv_reader.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
@@ -77,10 +79,11 @@ std::string curve_csv(const Curve& curve) {
 }
 
 Curve read_curve(const std::filesystem::path& path, const Machine& machine) {
-  const std::string extension = path.extension().string();
   const MappedFile file(path);
+  const std::string extension = std::filesystem::path(with_ending(path.string(), file.text())).extension().string();
   if (extension == ".csv") return parse_curve(file.text(), path.string(), machine);
-  if (extension == ".ngc" || extension == ".nc" || extension == ".tap" || extension == ".mpf") {
+  const bool is_unnamed = path == kStandardInput;  // what is no table is a program
+  if (is_unnamed || extension == ".ngc" || extension == ".nc" || extension == ".tap" || extension == ".mpf") {
     return parse_curve_program(file.text(), path.string(), machine);
   }
   throw InputError({.file = path.string()}, "unknown kind of curve file",

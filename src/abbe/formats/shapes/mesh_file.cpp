@@ -4,7 +4,9 @@
 
 #include "abbe/formats/files/file_extension.h"
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/shapes/obj_file.h"
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/shapes/step_file.h"
@@ -48,7 +50,7 @@ MeshFile mesh_of_obj(std::string_view contents, const std::string& file, const M
 }  // namespace
 
 MeshFile parse_mesh(std::string_view contents, const std::string& file, const MeshFileOptions& options) {
-  const std::string extension = file_extension(file);
+  const std::string extension = file_extension(with_ending(file, contents));
   if (is_step(contents)) {
     throw InputError({file, 0, 0, ""}, "a STEP file is read from the disk only", "STL, PLY or OBJ");
   }
@@ -60,6 +62,10 @@ MeshFile parse_mesh(std::string_view contents, const std::string& file, const Me
   if (extension == ".obj") return mesh_of_obj(contents, file, options);
   if (extension == ".ply") throw InputError({file, 1, 0, ""}, "this is not a PLY file", "a first line 'ply'");
   if (is_ascii_stl(contents)) return parse_stl(contents, file, options);
+  if (file == kStandardInput) {
+    throw InputError({.file = file}, "of what kind it is cannot be told from its contents",
+                     fmt::format("{}, or the name of a file with its ending", kFormats));
+  }
   throw InputError({file, 0, 0, ""}, fmt::format("files with the extension '{}' are not known", extension), kFormats);
 }
 

@@ -7,6 +7,7 @@
 
 #include "abbe/formats/files/file_extension.h"
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/shapes/obj_file.h"
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/shapes/point_normals.h"
@@ -64,7 +65,7 @@ PointCloudFile parse_csv_cloud(std::string_view contents, const std::string& fil
 }  // namespace
 
 PointCloudFile parse_point_cloud(std::string_view contents, const std::string& file, const PointCloudOptions& options) {
-  const std::string extension = file_extension(file);
+  const std::string extension = file_extension(with_ending(file, contents));
   PointCloudFile result;
   if (is_ply(contents)) {
     PlyContents ply = parse_ply(contents, file, options.unit);

@@ -10,6 +10,7 @@
 
 #include "abbe/formats/files/child_process.h"
 #include "abbe/formats/files/companion_program.h"
+#include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/shapes/step_mesh.h"
 #include "abbe/formats/text/input_error.h"
@@ -111,9 +112,9 @@ MeshFile read_step(const std::filesystem::path& path, const MeshFileOptions& opt
     if (progress && options.step.progress) options.step.progress(progress->what, progress->done, progress->total);
   };
   // It gives up by itself (kStepTimeIsUp), but not inside of some functions of OpenCASCADE.
-  const ChildProcess child({program.string(), path.string(), shortest_text(options.step.chord_mm.value_or(0)),
-                            shortest_text(options.step.angle_rad), shortest_text(seconds),
-                            options.step.leave_out_faces ? "leave-out" : "all"},
+  const ChildProcess child({program.string(), path_to_open(path).string(),
+                            shortest_text(options.step.chord_mm.value_or(0)), shortest_text(options.step.angle_rad),
+                            shortest_text(seconds), options.step.leave_out_faces ? "leave-out" : "all"},
                            1.1 * seconds + 1, listen);
   if (child.timed_out() || child.signal() != 0 || child.exit_code() != 0) refuse(place, child, seconds);
   StepMesh read = parse_step_mesh(child.output(), path.string());

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/error_fields.h"
 #include "abbe/formats/machine/machine_file.h"
@@ -109,6 +110,7 @@ ReportOptions read_report(TomlTable& table) {
 
 /// "xcfz" of "xcfz.study.toml".
 std::string bare_name(const std::filesystem::path& path) {
+  if (path == kStandardInput) return "stdin";
   const std::string name = path.filename().string();
   return name.substr(0, name.find('.'));
 }
