@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/input_error.h"
@@ -12,6 +13,7 @@
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
+#include "machine_options.h"
 #include "options.h"
 
 namespace abbe {
@@ -25,33 +27,37 @@ void refuse_if_given(const Option* option, const char* why) {
 
 void add_check_command(CommandLine& line) {
   struct Options {
-    std::string file, errors;
+    std::string file, machine, errors;
     bool json = false;
     GeometryCheckOptions geometry;
   };
   auto options = std::make_shared<Options>();
   Subcommand* command = line.add(
       "check", "Validate a machine file, a frozen compensation, a mesh or a point cloud, and show its contents",
-      "  abbe check examples/machines/trunnion-mill.machine.toml\n"
-      "  abbe check examples/machines/aguado.machine.toml --errors examples/aguado/results/aguado/errors.toml\n"
+      "  abbe check --machine examples/machines/trunnion-mill.machine.toml\n"
+      "  abbe check --machine examples/machines/aguado.machine.toml --errors "
+      "examples/aguado/results/aguado/errors.toml\n"
       "  abbe check examples/parts/wedge.stl --unit mm\n"
       "A frozen compensation (abbe compensate freeze) is refused here as a controller would refuse it.\n"
       "Exit code 1: the inside and outside of a mesh cannot be told apart everywhere (turned or branching edges,\n"
       "duplicate triangles, inside out), or faces were left out. Holes are counted; they are not an error.");
-  command
-      ->add_option("file", options->file,
-                   "Machine file (*.machine.toml), frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or "
-                   "point cloud (.xyz .asc .pts .csv .ply)")
-      ->required();
-  const Option* errors_option =
-      command->add_option("--errors", options->errors, "Also validate an errors file of this machine (*.errors.toml)");
+  command->add_input_file("file", options->file,
+                          "Frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or point cloud (.xyz .asc "
+                          ".pts .csv .ply)");
+  const Option* const machine_option = add_machine(*command, options->machine);
+  const Option* const errors_option =
+      add_errors(*command, options->errors, "Also validate an errors file of this machine (*.errors.toml)");
   command->add_flag("--json", options->json, "Print JSON for programs");
   const Option* unit =
       command->add_option("--unit", options->geometry.unit,
                           "Unit of a mesh or point cloud whose file states none: mm (default), m or inch");
   options->geometry.step.add_to(command);
-  command->callback([&line, options, errors_option, unit] {
-    line.run = [options, errors_option, unit]() -> int {
+  command->callback([&line, options, machine_option, errors_option, unit] {
+    line.run = [options, machine_option, errors_option, unit]() -> int {
+      if (options->file.empty() && options->machine.empty()) {
+        throw InputError({.field = "file"}, "missing", "the name of a file, or --machine with a machine file");
+      }
+      if (!options->file.empty()) refuse_if_given(machine_option, "another file is to be checked");
       if (is_geometry_file(options->file)) {
         refuse_if_given(errors_option, "a mesh or a point cloud has no error parameters");
         options->geometry.file = options->file;
@@ -66,7 +72,11 @@ void add_check_command(CommandLine& line) {
       }
       refuse_if_given(unit, "a machine file states its units");
       options->geometry.step.refuse("a machine file has no faces");
-      const Machine machine = read_machine(options->file);
+      if (options->machine.empty()) {
+        tell_old_form("--machine " + (options->file == kStandardInput ? "-" : options->file));
+        options->machine = options->file;
+      }
+      const Machine machine = read_machine(options->machine);
       nlohmann::ordered_json json = machine_check_json(machine);
       std::size_t coefficients = 0, terms = 0;
       if (!options->errors.empty()) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
@@ -101,7 +102,13 @@ nlohmann::ordered_json frozen_json(const abbe_runtime_information& about) {
 
 }  // namespace
 
-bool is_frozen_file(const std::string& file) { return std::filesystem::path(file).extension() == ".abbec"; }
+bool is_frozen_file(const std::string& file) {
+  if (file == kStandardInput)
+    return MappedFile(file).text().starts_with(
+        "\x89"
+        "ABBEC");
+  return std::filesystem::path(file).extension() == ".abbec";
+}
 
 int check_frozen(const std::string& file, bool json) {
   const Runtime runtime = load(file);

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/input_error.h"
@@ -34,12 +36,15 @@ bool has_points_only(const std::string& file) {
 
 }  // namespace
 
-bool is_geometry_file(const std::string& file) { return has_mesh_extension(file) || has_point_cloud_extension(file); }
+bool is_geometry_file(const std::string& file) {
+  const std::string name = with_ending(std::filesystem::path(file));
+  return has_mesh_extension(name) || has_point_cloud_extension(name);
+}
 
 int check_geometry(const GeometryCheckOptions& options) {
   const std::optional<FileLength> unit = unit_of(options);
   options.step.require_step_among({options.file});
-  if (has_point_cloud_extension(options.file) || has_points_only(options.file)) {
+  if (has_point_cloud_extension(with_ending(std::filesystem::path(options.file))) || has_points_only(options.file)) {
     PointCloudOptions reading;
     reading.unit = unit;
     const CheckedCloud cloud = checked_cloud(read_point_cloud(options.file, reading));

@@ -11,12 +11,12 @@ void add_compensate_command(CommandLine& line) {
       "  abbe compensate gcode examples/compensate/cone.ngc --machine "
       "examples/machines/trunnion-mill.machine.toml --errors "
       "examples/compensate/trunnion.errors.toml -o cone-corrected.ngc\n"
-      "  abbe compensate table examples/machines/three-axis-mill.machine.toml "
+      "  abbe compensate table --machine examples/machines/three-axis-mill.machine.toml --errors "
       "examples/compensate/mill.errors.toml --for linuxcnc -o comp\n"
-      "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml "
+      "  abbe compensate freeze --machine examples/machines/trunnion-mill.machine.toml --errors "
       "examples/trunnion/table.errors.toml -o mill.abbec\n"
-      "  abbe compensate poses examples/machines/trunnion-mill.machine.toml "
-      "examples/compensate/trunnion.errors.toml examples/compensate/poses.csv --dry-run\n\n"
+      "  abbe compensate poses examples/compensate/poses.csv --machine examples/machines/trunnion-mill.machine.toml "
+      "--errors examples/compensate/trunnion.errors.toml --dry-run\n\n"
       "abbe compensate gcode --help explains what X, Y and Z mean; abbe compensate table --help lists the controls.");
   command->require_subcommand(1);
   add_compensate_freeze(*command, line);

@@ -1,9 +1,8 @@
 #include "completion/completion.h"
 
-#include <fmt/format.h>
-
 #include "command.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 
 namespace abbe {
@@ -16,9 +15,9 @@ void add_completion_command(CommandLine& line) {
   command->callback([&line, shell] {
     line.run = [&line, shell]() -> int {
       const CommandDescription program = line.program.describe();
-      fmt::print("{}", *shell == "bash"  ? bash_completion(program)
-                       : *shell == "zsh" ? zsh_completion(program)
-                                         : fish_completion(program));
+      print_file(*shell == "bash"  ? bash_completion(program)
+                 : *shell == "zsh" ? zsh_completion(program)
+                                   : fish_completion(program));
       return kDone;
     };
   });

@@ -102,8 +102,8 @@ void add_deviate_command(CommandLine& line) {
       "examples/scan/bracket-transform.csv --largest-mm 0.3 --faces-deg 30 --tolerance p95_um=60 -o "
       "results/deviation");
   add_scan_files(app, command->files);
-  app->add_option("--transform", command->transform,
-                  "Pose of the scan on the part: transform.csv of abbe register (default: as it stands)");
+  app->add_input_file("--transform", command->transform,
+                      "Pose of the scan on the part: transform.csv of abbe register (default: as it stands)");
   add_number(app, "--largest-mm", Quantity::length, "mm", {0, 1e9}, command->largest_mm,
              "Points farther away are left out (default 0: all count)");
   add_number(app, "--lower-um", Quantity::length, "um", {-1e9, 1e9}, command->lower_mm,

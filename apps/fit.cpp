@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/shapes/mesh_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/input_error.h"
@@ -100,7 +101,7 @@ struct Read {
 Read read_points(const FitCommand& command, const std::string& file, bool in_plane = false) {
   std::optional<FileLength> unit;
   if (!command.unit.empty()) unit = file_length_named(command.unit);
-  const std::string extension = std::filesystem::path(file).extension().string();
+  const std::string extension = std::filesystem::path(with_ending(std::filesystem::path(file))).extension().string();
   if (extension == ".stl" || extension == ".STL") {
     MeshFile mesh = read_mesh(file, {unit, command.threads});
     return {{std::move(mesh.mesh.vertices), Eigen::Matrix3Xd(3, 0)}, mesh.format + ", corners", unit_words(mesh.unit)};
@@ -237,7 +238,7 @@ void add_fit_command(CommandLine& line) {
       "Files: csv (x_mm,y_mm,z_mm), xyz, ply, obj, stl (corners). docs/fits.md says what the figures mean.");
   std::vector<std::string> known = names(shapes());
   known.emplace_back("coaxial-circles");
-  app->add_option("file", command->files, "Points; one file per circle for coaxial circles")->required();
+  app->add_input_file("file", command->files, "Points; one file per circle for coaxial circles")->required();
   app->add_option("--shape", command->shape,
                   "line2, circle2 (in x, y), line, plane, circle, sphere, cylinder, cone, coaxial-circles")
       ->required()

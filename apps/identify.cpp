@@ -26,7 +26,7 @@ void add_identify_command(CommandLine& line) {
   Subcommand* command = line.add("identify", "Identify the errors of a study's machine, without maps and report",
                                  "  abbe identify examples/aguado/aguado.study.toml -o aguado.errors.toml\n"
                                  "  abbe identify examples/aguado/aguado.study.toml --parameters");
-  command->add_option("study", options->study, "Study file (*.study.toml) with an [identify] table")->required();
+  command->add_input_file("study", options->study, "Study file (*.study.toml) with an [identify] table")->required();
   command->add_output_file("-o,--output", options->output,
                            "Errors file to write (*.errors.toml), covariance beside it");
   command->add_flag("--parameters", options->parameters, "List every parameter with its standard uncertainty");

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "abbe/formats/text/input_error.h"
@@ -7,6 +5,7 @@
 #include "command.h"
 #include "exit_code.h"
 #include "man/man_page.h"
+#include "messages.h"
 #include "options.h"
 
 namespace abbe {
@@ -26,7 +25,7 @@ void add_man_command(CommandLine& line) {
     line.run = [&line, options]() -> int {
       const std::vector<ManPage> pages = man_pages(line.program.describe(), version_text(), release_date_text());
       if (options->list) {
-        for (const ManPage& page : pages) fmt::print("{}\n", page.name);
+        for (const ManPage& page : pages) print_file(page.name + "\n");
         return kDone;
       }
       std::string name = "abbe", typed;
@@ -38,7 +37,7 @@ void add_man_command(CommandLine& line) {
       if (page == pages.end()) {
         throw InputError({.field = typed}, "is no command that has a page", "one that abbe man --list names");
       }
-      fmt::print("{}", page->text);
+      print_file(page->text);
       return kDone;
     };
   });

@@ -17,6 +17,7 @@
 #include "axis_option.h"
 #include "command.h"
 #include "errors_for_use.h"
+#include "machine_options.h"
 #include "options.h"
 #include "progress.h"
 #include "uncovered_poses.h"
@@ -93,21 +94,22 @@ int run_map(const MapOptions& options) {
 
 void add_map_command(CommandLine& line) {
   auto options = std::make_shared<MapOptions>();
-  Subcommand* command = line.add("map", "Compute the volumetric error over a grid or at given poses, with uncertainty",
-                                 "  abbe map examples/machines/aguado.machine.toml "
-                                 "examples/aguado/results/aguado/errors.toml --grid C_deg=0:315:8 -o "
-                                 "map.csv -o map.vts\n"
-                                 "  abbe map examples/machines/aguado.machine.toml readings/truth.errors.toml --minus "
-                                 "examples/aguado/results/aguado/errors.toml\n\n"
-                                 "The examples of run and simulate write these files. docs/conventions.md defines the\n"
-                                 "figures. Without --grid, every axis runs over the range in which its errors are\n"
-                                 "known.");
-  command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
-  command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
-  command->add_option("--minus", options->reference,
-                      "Errors that are corrected (*.errors.toml): adds the error that remains");
+  Subcommand* command =
+      line.add("map", "Compute the volumetric error over a grid or at given poses, with uncertainty",
+               "  abbe map --machine examples/machines/aguado.machine.toml --errors "
+               "examples/aguado/results/aguado/errors.toml --grid C_deg=0:315:8 -o "
+               "map.csv -o map.vts\n"
+               "  abbe map --machine examples/machines/aguado.machine.toml --errors readings/truth.errors.toml --minus "
+               "examples/aguado/results/aguado/errors.toml\n\n"
+               "The examples of run and simulate write these files. docs/conventions.md defines the\n"
+               "figures. Without --grid, every axis runs over the range in which its errors are\n"
+               "known.");
+  add_machine_and_errors(*command, options->machine, options->errors);
+  command->add_input_file("--minus", options->reference,
+                          "Errors that are corrected (*.errors.toml): adds the error that remains");
   command->add_option("--grid", options->grid, "AXIS_unit=from:to:count or AXIS_unit=position; repeat per axis");
-  command->add_option("--poses", options->poses, "CSV with one column per axis (X_mm, C_deg, ...) instead of a grid")
+  command
+      ->add_input_file("--poses", options->poses, "CSV with one column per axis (X_mm, C_deg, ...) instead of a grid")
       ->excludes("--grid");
   command->add_flag("--keep-datum", options->keep_datum,
                     "Keep the workpiece datum where it is: gives displacements, not the volumetric error");

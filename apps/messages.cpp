@@ -13,6 +13,8 @@
 namespace abbe {
 namespace {
 
+bool quiet = false, without_text = false;
+
 /// Never destroyed: streams are flushed after everything else at the end of the process.
 PrintableText& standard_output_text() {
   static auto* const text = new PrintableText;
@@ -21,6 +23,7 @@ PrintableText& standard_output_text() {
 
 /// The write function of a stream. @returns `size`, or 0 and errno
 ssize_t write_printable(void* /*stream*/, const char* data, std::size_t size) {
+  if (without_text) return static_cast<ssize_t>(size);
   const std::string shown = standard_output_text().next({data, size});
   errno = write_all(STDOUT_FILENO, shown);
   return errno == 0 ? static_cast<ssize_t>(size) : 0;
@@ -33,6 +36,22 @@ void tell_text(std::string_view text) { draw(printable(text, text.size())); }
 void draw(std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
+}
+
+void be_quiet(bool without_text_too) {
+  quiet = true;
+  without_text = without_text_too;
+}
+
+bool is_quiet() { return quiet; }
+
+void print_file(std::string_view contents) {
+  const bool before = without_text;
+  std::fflush(stdout);
+  without_text = false;
+  std::fwrite(contents.data(), 1, contents.size(), stdout);
+  std::fflush(stdout);
+  without_text = before;
 }
 
 void keep_numbers_of_standard_streams() {

@@ -20,6 +20,13 @@ void tell(fmt::format_string<Values...> format, Values&&... values) {
 /// Writes to standard error as it is, for what a terminal is to obey: progress that is drawn over.
 void draw(std::string_view text);
 
+/// From now on there is no progress. @param without_text  nor what is printed on `stdout`, except by print_file()
+void be_quiet(bool without_text);
+bool is_quiet();
+
+/// Prints on `stdout` what would otherwise be written to a file, also where text is not wanted.
+void print_file(std::string_view contents);
+
 /// For the start of main(): opens /dev/null in place of closed standard streams. Otherwise a file of the command would
 /// get the number of one, and messages would be written into it. Writing to such a stream still fails.
 void keep_numbers_of_standard_streams();

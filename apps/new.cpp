@@ -4,6 +4,7 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "command.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 
 namespace abbe {
@@ -24,11 +25,11 @@ void add_new_command(CommandLine& line) {
     line.run = [options]() -> int {
       const std::string text = commented_machine_file(options->chain);
       if (options->output.empty()) {
-        fmt::print("{}", text);
+        print_file(text);
         return kDone;
       }
       write_file_atomically(options->output, text);
-      fmt::print("{} written; edit it, then: abbe check {}\n", options->output, options->output);
+      fmt::print("{} written; edit it, then: abbe check --machine {}\n", options->output, options->output);
       return kDone;
     };
   });

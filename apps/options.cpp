@@ -1,14 +1,13 @@
 #include "options.h"
 
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <sstream>
-#include <system_error>
 #include <utility>
 
-#include "abbe/formats/files/existing_output.h"
-#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/text/input_error.h"
 #include "messages.h"
 #include "nearest_word.h"
@@ -19,6 +18,8 @@ namespace {
 Check check_of(const CLI::Validator& validator) {
   return {[validator](const std::string& text) { return validator(text); }, validator.get_description()};
 }
+
+constexpr const char* kQuietWords = "No progress and no text; --json and files on standard output are still written";
 
 }  // namespace
 
@@ -145,59 +146,27 @@ CommandDescription Subcommand::describe() const {
   return result;
 }
 
+Subcommand::Subcommand(CLI::App& app) : app_(&app) { add_flag("-q,--quiet", quiet_, kQuietWords); }
+
 Option* Subcommand::own(CLI::Option& option) { return options_.emplace_back(std::make_unique<Option>(option)).get(); }
 
 template <typename Value>
-Option* Subcommand::add(const std::string& name, Value& value, const std::string& description) {
+Option* Subcommand::add_option(const std::string& name, Value& value, const std::string& description) {
   return own(*app_->add_option(name, value, description));
 }
 
-Option* Subcommand::add_option(const std::string& name, std::string& value, const std::string& description) {
-  return add(name, value, description);
-}
-
-Option* Subcommand::add_option(const std::string& name, double& value, const std::string& description) {
-  return add(name, value, description);
-}
-
-Option* Subcommand::add_option(const std::string& name, int& value, const std::string& description) {
-  return add(name, value, description);
-}
-
-Option* Subcommand::add_option(const std::string& name, unsigned& value, const std::string& description) {
-  return add(name, value, description);
-}
-
-Option* Subcommand::add_option(const std::string& name, unsigned long& value, const std::string& description) {
-  return add(name, value, description);
-}
-
-Option* Subcommand::add_option(const std::string& name, unsigned long long& value, const std::string& description) {
-  return add(name, value, description);
-}
-
-Option* Subcommand::add_option(const std::string& name, std::optional<double>& value, const std::string& description) {
-  return add(name, value, description);
-}
-
-Option* Subcommand::add_option(const std::string& name, std::optional<std::size_t>& value,
-                               const std::string& description) {
-  return add(name, value, description);
-}
-
-Option* Subcommand::add_option(const std::string& name, std::vector<std::string>& value,
-                               const std::string& description) {
-  return add(name, value, description);
-}
-
-Option* Subcommand::add_option(const std::string& name, std::vector<double>& value, const std::string& description) {
-  return add(name, value, description);
-}
-
-Option* Subcommand::add_option(const std::string& name, std::vector<std::vector<double>>& value,
-                               const std::string& description) {
-  return add(name, value, description);
-}
+template Option* Subcommand::add_option(const std::string&, std::string&, const std::string&);
+template Option* Subcommand::add_option(const std::string&, double&, const std::string&);
+template Option* Subcommand::add_option(const std::string&, int&, const std::string&);
+// Two of these are std::size_t and std::uint64_t, which of them depends on the system.
+template Option* Subcommand::add_option(const std::string&, unsigned&, const std::string&);
+template Option* Subcommand::add_option(const std::string&, unsigned long&, const std::string&);
+template Option* Subcommand::add_option(const std::string&, unsigned long long&, const std::string&);
+template Option* Subcommand::add_option(const std::string&, std::optional<double>&, const std::string&);
+template Option* Subcommand::add_option(const std::string&, std::optional<std::size_t>&, const std::string&);
+template Option* Subcommand::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option* Subcommand::add_option(const std::string&, std::vector<double>&, const std::string&);
+template Option* Subcommand::add_option(const std::string&, std::vector<std::vector<double>>&, const std::string&);
 
 Option* Subcommand::add_option_function(const std::string& name,
                                         const std::function<void(const std::string& text)>& take,
@@ -209,73 +178,36 @@ Option* Subcommand::add_flag(const std::string& name, bool& value, const std::st
   return own(*app_->add_flag(name, value, description));
 }
 
-void Subcommand::add_force() {
-  if (has_force_) return;
-  has_force_ = true;
-  add_flag("--force", force_, "Replace files that exist");
-}
-
-Option* Subcommand::add_output(const std::string& name, std::string& value, const std::string& description,
-                               OutputKind kind, const bool* not_written) {
-  Option* const option = add_option(name, value, description);
-  if (kind != OutputKind::folder) add_force();
-  outputs_.push_back({kind, [&value] { return std::vector<std::string>{value}; }, not_written});
-  return option;
-}
-
-Option* Subcommand::add_output_file(const std::string& name, std::string& value, const std::string& description,
-                                    const bool* not_written) {
-  return add_output(name, value, description, OutputKind::file, not_written);
-}
-
-Option* Subcommand::add_output_file(const std::string& name, std::vector<std::string>& value,
-                                    const std::string& description) {
-  Option* const option = add_option(name, value, description);
-  add_force();
-  outputs_.push_back({OutputKind::file, [&value] { return value; }, nullptr});
-  return option;
-}
-
-Option* Subcommand::add_output_folder(const std::string& name, std::string& value, const std::string& description) {
-  return add_output(name, value, description, OutputKind::folder, nullptr);
-}
-
-Option* Subcommand::add_output_file_or_folder(const std::string& name, std::string& value,
-                                              const std::string& description, const bool* not_written) {
-  return add_output(name, value, description, OutputKind::file_or_folder, not_written);
-}
-
-bool names_folder(const std::string& name) {
-  std::error_code ignored;
-  return name.ends_with('/') || std::filesystem::is_directory(name, ignored) ||
-         !std::filesystem::path(name).has_extension();
-}
-
-void Subcommand::check_outputs() const {
-  if (force_) replace_existing_outputs();
-  std::vector<std::filesystem::path> all, folders;
-  for (const Output& output : outputs_) {
-    if (output.not_written != nullptr && *output.not_written) continue;
-    for (const std::string& name : output.names()) {
-      if (name.empty()) continue;
-      const std::filesystem::path place = std::filesystem::weakly_canonical(std::filesystem::absolute(name));
-      if (output.kind == OutputKind::folder || (output.kind == OutputKind::file_or_folder && names_folder(name))) {
-        check_results_folder(name);
-        folders.push_back(place.filename().empty() ? place.parent_path() : place);
-      } else if (std::find(folders.begin(), folders.end(), place.parent_path()) != folders.end()) {
-        refuse_existing_output(name);  // its folder is made by this command
-      } else {
-        check_output_file(name);
-      }
-      if (std::find(all.begin(), all.end(), place) != all.end()) {
-        throw InputError({.file = name}, "is the name of two outputs", "another name for one of them");
-      }
-      all.push_back(place);
+void Subcommand::take_from_arguments(const std::vector<Option*>& options) {
+  std::vector<CLI::Option*> all;  // in the order in which the old form has them
+  for (const Option* const option : options) all.push_back(option->option_);
+  for (CLI::Option* const option : app_->get_options()) {
+    if (option->get_positional()) all.push_back(option);
+  }
+  // In a group without a name, so that no help shows it. It gets the words that are left over.
+  CLI::App* const group = app_->add_option_group("");
+  group->add_option_function<std::vector<std::string>>("arguments", [=, this](std::vector<std::string> rest) {
+    if (rest.size() != options.size()) return;  // unexpected_words() names them
+    std::vector<std::string> words;
+    for (CLI::Option* const option : app_->get_options()) {
+      if (!option->get_positional()) continue;
+      words.insert(words.end(), option->results().begin(), option->results().end());
+      option->clear();
     }
-  }
-  for (const std::unique_ptr<Subcommand>& subcommand : subcommands_) {
-    if (subcommand->parsed()) subcommand->check_outputs();
-  }
+    words.insert(words.end(), rest.begin(), rest.end());
+    for (std::size_t k = 0; k < std::min(all.size(), words.size()); ++k) {
+      if (k < options.size()) old_form_ += fmt::format("{}{} {}", k > 0 ? " " : "", all[k]->get_name(), words[k]);
+      all[k]->add_result(words[k])->run_callback();
+    }
+    group->get_option("arguments")->clear();
+  });
+}
+
+bool Subcommand::has_flag(const std::string& name) const {
+  const CLI::Option* const flag = app_->get_option_no_throw(name);
+  if (flag != nullptr && flag->count() > 0) return true;
+  return std::any_of(subcommands_.begin(), subcommands_.end(),
+                     [&](const auto& one) { return one->parsed() && one->has_flag(name); });
 }
 
 Subcommand* Subcommand::add_subcommand(const std::string& name, const std::string& description) {
@@ -300,7 +232,9 @@ std::vector<std::string> Subcommand::given_options() const {
 }
 
 Program::Program(const std::string& description, const std::string& name)
-    : app_(std::make_unique<CLI::App>(description, name)) {}
+    : app_(std::make_unique<CLI::App>(description, name)) {
+  app_->add_flag("-q,--quiet", quiet_, kQuietWords);
+}
 Program::~Program() = default;
 
 Subcommand* Program::add_subcommand(const std::string& name, const std::string& description) {
@@ -311,7 +245,7 @@ namespace {
 
 std::vector<std::string> subcommand_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* const one : app.get_subcommands([](const CLI::App* /*any*/) { return true; })) {
+  for (const CLI::App* const one : app.get_subcommands([](const CLI::App* sub) { return !sub->get_name().empty(); })) {
     names.push_back(one->get_name());
   }
   return names;
@@ -361,20 +295,47 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// Words that cannot be placed, also those that are not as many as an old form has (Subcommand::take_from_arguments()).
+std::vector<std::string> extra_words(const CLI::App& program) {
+  std::vector<std::string> words = program.remaining(true);
+  for (const CLI::App* const group :
+       innermost_command(program).get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); })) {
+    const std::vector<std::string>& more = group->get_option("arguments")->results();
+    words.insert(words.end(), more.begin(), more.end());
+  }
+  return words;
+}
+
 /// What cannot be placed, and what may have been meant.
-std::string unexpected_words(const CLI::App& program) {
+std::string unexpected_words(const CLI::App& program, const std::vector<std::string>& extras) {
   const CLI::App& command = innermost_command(program);
-  const std::vector<std::string> extras = program.remaining(true);
   std::string text;
   for (const std::string& word : extras) {
     const bool is_option = word.starts_with('-') && word.size() > 1;
     const std::string name = is_option ? word.substr(0, word.find('=')) : word;
     const std::optional<std::string> meant =
         nearest_word(name, is_option ? option_names(command) : subcommand_names(command));
-    text += fmt::format("abbe: '{}' is {} {}{}\n", name, is_option ? "not an option of" : "not expected by",
-                        words_of(command), meant ? "; did you mean " + *meant + "?" : "");
+    const bool is_misplaced = meant == name;
+    text += fmt::format("abbe: '{}' is {} {}{}\n", name,
+                        is_misplaced ? "expected behind"
+                        : is_option  ? "not an option of"
+                                     : "not expected by",
+                        words_of(command), meant && !is_misplaced ? "; did you mean " + *meant + "?" : "");
   }
   return text + fmt::format("abbe: {} --help lists what there is\n", words_of(command));
+}
+
+/// What is done before a command runs, whatever it does.
+void begin(Subcommand& command, bool quiet) {
+  std::vector<std::string> from_standard_input;
+  command.take_inputs(from_standard_input);
+  if (from_standard_input.size() > 1) {
+    throw InputError({.field = fmt::format("{}", fmt::join(from_standard_input, ", "))},
+                     "more than one file is standard input", "- for one of them at most");
+  }
+  if (!from_standard_input.empty()) accept_standard_input();
+  command.check_outputs();
+  if (quiet || command.has_flag("--quiet")) be_quiet(!command.has_flag("--json"));
 }
 
 }  // namespace
@@ -384,9 +345,10 @@ ParseResult Program::parse(int argc, const char* const* argv) {
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     // What is missing is often there, but misspelled.
+    const std::vector<std::string> extras = extra_words(*app_);
     const bool is_lack = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
-    if ((is_lack || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) && app_->remaining_size(true) > 0) {
-      tell_text(unexpected_words(*app_));
+    if ((is_lack || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) && !extras.empty()) {
+      tell_text(unexpected_words(*app_, extras));
       return ParseResult::refused;
     }
     // Help and version come this way too, with code 0.
@@ -396,8 +358,12 @@ ParseResult Program::parse(int argc, const char* const* argv) {
     tell_text(problem.str().empty() ? "" : "abbe: " + problem.str());
     return code == 0 ? ParseResult::shown : ParseResult::refused;
   }
+  if (const std::vector<std::string> extras = extra_words(*app_); !extras.empty()) {
+    tell_text(unexpected_words(*app_, extras));
+    return ParseResult::refused;
+  }
   for (const std::unique_ptr<Subcommand>& subcommand : subcommands_) {
-    if (subcommand->parsed()) subcommand->check_outputs();
+    if (subcommand->parsed()) begin(*subcommand, quiet_);
   }
   return ParseResult::command;
 }

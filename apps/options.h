@@ -34,6 +34,8 @@ Check one_of(const std::vector<std::string>& words);
 
 /// An option or a positional argument; it belongs to its subcommand. What changes it returns it, so that calls chain.
 class Option {
+  friend class Subcommand;
+
  public:
   explicit Option(CLI::Option& option) : option_(&option) {}
 
@@ -73,30 +75,29 @@ class Option {
 /// A command with its options; it belongs to the program, or to the command that it is a part of.
 class Subcommand {
  public:
-  explicit Subcommand(CLI::App& app) : app_(&app) {}
+  /// Adds --quiet, which every command has.
+  explicit Subcommand(CLI::App& app);
   Subcommand(const Subcommand&) = delete;
   Subcommand& operator=(const Subcommand&) = delete;
 
   /// An option ("-o,--output") or a positional argument ("file").
   /// @param value  written when the command line is parsed, stays as it is if the option is not given; has to live on
-  Option* add_option(const std::string& name, std::string& value, const std::string& description);
-  Option* add_option(const std::string& name, double& value, const std::string& description);
-  Option* add_option(const std::string& name, int& value, const std::string& description);
-  // Two of these are std::size_t and std::uint64_t, which of them depends on the system.
-  Option* add_option(const std::string& name, unsigned& value, const std::string& description);
-  Option* add_option(const std::string& name, unsigned long& value, const std::string& description);
-  Option* add_option(const std::string& name, unsigned long long& value, const std::string& description);
-  Option* add_option(const std::string& name, std::optional<double>& value, const std::string& description);
-  Option* add_option(const std::string& name, std::optional<std::size_t>& value, const std::string& description);
-  Option* add_option(const std::string& name, std::vector<std::string>& value, const std::string& description);
-  Option* add_option(const std::string& name, std::vector<double>& value, const std::string& description);
-  Option* add_option(const std::string& name, std::vector<std::vector<double>>& value, const std::string& description);
+  template <typename Value>  // one of those that options.cpp has
+  Option* add_option(const std::string& name, Value& value, const std::string& description);
   /// @param take  is called with the text while the command line is parsed; what it throws comes out of
   /// Program::parse()
   Option* add_option_function(const std::string& name, const std::function<void(const std::string& text)>& take,
                               const std::string& description);
   /// An option without a value.
   Option* add_flag(const std::string& name, bool& value, const std::string& description);
+
+  /// The name of a file that the command reads, or "-": standard input (abbe/formats/files/standard_input.h), whose
+  /// name is in `value` when the command runs. Of all such names one at most may be "-".
+  Option* add_input_file(const std::string& name, std::string& value, const std::string& description);
+  Option* add_input_file(const std::string& name, std::vector<std::string>& value, const std::string& description);
+  /// These options were arguments once, in front of all others. Where the command line has as many words, that is still
+  /// understood; the new form is told.
+  void take_from_arguments(const std::vector<Option*>& options);
 
   /// The name of a file that the command writes. Adds --force, without which a file that exists is not replaced
   /// (abbe/formats/files/existing_output.h); that is checked when the command line was parsed and again by the writer.
@@ -135,6 +136,11 @@ class Subcommand {
   /// For Program, of a command that the command line names: whether outputs may take the names they were given.
   /// @throws InputError
   void check_outputs() const;
+  /// For Program as well: old forms are told, and standard input gets its name where a file is "-".
+  /// @param options  those that name standard input are added
+  void take_inputs(std::vector<std::string>& options);
+  /// Whether --quiet is given, here or of a part of the command; and the same of --json.
+  bool has_flag(const std::string& name) const;
 
  private:
   enum class OutputKind { file, folder, file_or_folder };
@@ -143,19 +149,26 @@ class Subcommand {
     std::function<std::vector<std::string>()> names;
     const bool* not_written;
   };
+  struct Input {
+    const Option* option;
+    std::function<std::vector<std::string*>()> names;
+  };
   Option* add_output(const std::string& name, std::string& value, const std::string& description, OutputKind kind,
                      const bool* not_written);
   void add_force();
-  template <typename Value>
-  Option* add(const std::string& name, Value& value, const std::string& description);
   Option* own(CLI::Option& option);
 
   CLI::App* app_;
   std::vector<std::unique_ptr<Option>> options_;
   std::vector<std::unique_ptr<Subcommand>> subcommands_;
   std::vector<Output> outputs_;
-  bool has_force_ = false, force_ = false;
+  std::vector<Input> inputs_;
+  std::string old_form_;  ///< what should have been written
+  bool has_force_ = false, force_ = false, quiet_ = false;
 };
+
+/// Tells that something is given in an old form. @param written  what should have been written: "--machine m.toml"
+void tell_old_form(const std::string& written);
 
 /// Whether the name of an output that may be a file or a folder is that of a folder: it ends in a slash, is a folder or
 /// has no ending.
@@ -193,6 +206,7 @@ class Program {
 
  private:
   std::unique_ptr<CLI::App> app_;
+  bool quiet_ = false;
   std::vector<std::unique_ptr<Subcommand>> subcommands_;
 };
 

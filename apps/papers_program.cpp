@@ -12,6 +12,7 @@
 #include "abbe/formats/files/companion_program.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/version.h"
+#include "messages.h"
 #include "reproduce.h"
 
 namespace abbe {
@@ -50,6 +51,7 @@ std::vector<std::string> words_of(const ReproduceOptions& options) {
   if (!options.grids.empty()) words.push_back("--grids=" + options.grids);
   if (options.threads != 0) words.push_back(fmt::format("--threads={}", options.threads));
   if (options.json) words.emplace_back("--json");
+  if (is_quiet()) words.emplace_back("--quiet");
   return words;
 }
 

@@ -27,6 +27,7 @@
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
+#include "machine_options.h"
 #include "messages.h"
 #include "options.h"
 #include "step_reading.h"
@@ -176,18 +177,20 @@ void add_path_command(CommandLine& line) {
   auto options = std::make_shared<PathCommand>();
   Subcommand* command = line.add(
       "path", "Turn a curve on the workpiece into axis commands and an NC program for the calibrated machine",
-      "  abbe path examples/machines/yin-engraver-u.machine.toml examples/laser_engraver/table-a4.csv --placement "
+      "  abbe path examples/laser_engraver/table-a4.csv --machine examples/machines/yin-engraver-u.machine.toml "
+      "--placement "
       "examples/laser_engraver/part.placement.toml -o program.ngc -o commands.csv --report path.html\n"
-      "  abbe path examples/machines/yin-engraver-u.machine.toml examples/laser_engraver/regions.ngc --errors "
+      "  abbe path examples/laser_engraver/regions.ngc --machine examples/machines/yin-engraver-u.machine.toml "
+      "--errors "
       "examples/laser_engraver/linkage.errors.toml --retract-mm 20 --tolerance-um 1 --word C1=C --word C2=B\n\n"
       "The curve: CSV with x_mm, y_mm, z_mm, i, j, k (direction from the tool to the spindle or source), optional\n"
       "feed_mm_per_min, pierce_s, beam and axes set beforehand (C2_deg); or a program with G0, G1, X Y Z I J K, F, G4, "
       "M3.");
-  command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
-  command->add_option("curve", options->curve, "Curve (.csv, .ngc, .nc, .tap, .mpf) in workpiece coordinates")
+  command->add_input_file("curve", options->curve, "Curve (.csv, .ngc, .nc, .tap, .mpf) in workpiece coordinates")
       ->required();
-  command->add_option("--errors", options->errors, "Identified location errors and tool offset (*.errors.toml)");
-  command->add_option("--placement", options->placement, "Where the workpiece is clamped (*.placement.toml)");
+  command->take_from_arguments({add_machine(*command, options->machine)->required()});
+  add_errors(*command, options->errors, "Identified location errors and tool offset (*.errors.toml)");
+  command->add_input_file("--placement", options->placement, "Where the workpiece is clamped (*.placement.toml)");
   command->add_option("--hold", options->hold, "Axis kept at a command, AXIS_unit=position; repeatable");
   command->add_option(
       "--start", options->start,
@@ -211,7 +214,7 @@ void add_path_command(CommandLine& line) {
   command->add_output_file("-o,--output", options->outputs, "File to write: .ngc, .nc, .tap, .mpf or .csv; repeatable");
   command->add_output_file("--report", options->report,
                            "Page to write (.html): an animation of the tool on its path over the part");
-  command->add_option("--part", options->part, "Mesh of the workpiece for that page (.stl .ply .obj .step), mm")
+  command->add_input_file("--part", options->part, "Mesh of the workpiece for that page (.stl .ply .obj .step), mm")
       ->needs("--report");
   options->step.add_to(command);
   add_accept_misfit(*command, options->accept_misfit);

@@ -23,7 +23,7 @@ void add_plan_command(CommandLine& line) {
   Subcommand* command =
       line.add("plan", "Choose the readings that determine a machine's errors best",
                "  abbe plan examples/trunnion/trunnion.study.toml -o poses.csv --report readings.html");
-  command->add_option("study", options->study, "Study file (*.study.toml) with tables [plan] and [identify]")
+  command->add_input_file("study", options->study, "Study file (*.study.toml) with tables [plan] and [identify]")
       ->required();
   command->add_output_file("-o,--output", options->output, "Readings to take, ordered for short travel (*.csv)");
   command->add_output_file("--svg", options->plot, "Plot of uncertainty against number of readings (*.svg)");

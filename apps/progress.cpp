@@ -16,7 +16,8 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 
 }  // namespace
 
-Progress::Progress(std::string what) : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) == 1), start_(now()) {}
+Progress::Progress(std::string what)
+    : what_(std::move(what)), terminal_(!is_quiet() && isatty(STDERR_FILENO) == 1), start_(now()) {}
 
 Progress::~Progress() {
   if (drawn_) draw("\r\x1b[K");

@@ -123,8 +123,8 @@ void add_register_command(CommandLine& line) {
       "Exit code 1: the scan does not fix one pose (ambiguous, undetermined), or none was found; the output says "
       "which.");
   add_scan_files(app, command->files);
-  app->add_option("--start", command->start,
-                  "Where to begin: global (any pose, the default), identity, or a transform file (transform.csv)");
+  app->add_input_file("--start", command->start,
+                      "Where to begin: global (any pose, the default), identity, or a transform file (transform.csv)");
   app->add_option("--loss", command->loss,
                   "welsch, tukey: robust weights with steps to tangent planes; adf (default): Welsch weights with "
                   "second-order steps (adaptive distance function)")

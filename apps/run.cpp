@@ -23,7 +23,7 @@ void add_run_command(CommandLine& line) {
       line.add("run", "Run a whole study: simulate or read, identify, verify, map, report",
                "  abbe run examples/aguado/aguado.study.toml\n"
                "  abbe run examples/three_axis/level-and-autocollimator.study.toml -o results/level --json");
-  command->add_option("study", options->study, "Study file (*.study.toml)")->required();
+  command->add_input_file("study", options->study, "Study file (*.study.toml)")->required();
   command->add_output_folder("-o,--output", options->output, "Results folder (default: as in the study)");
   command->add_flag("--accept-uncovered", options->accept_uncovered, kAcceptUncoveredWords);
   command->add_flag("--all-values", options->all_values,

@@ -22,7 +22,7 @@ void add_simulate_command(CommandLine& line) {
       line.add("simulate", "Simulate the readings of a study and write them as measurement files",
                "  abbe simulate examples/aguado/aguado.study.toml -o readings\n\n"
                "Writes SETUP.csv for every set-up and truth.errors.toml with the errors behind them.");
-  command->add_option("study", options->study, "Study file (*.study.toml) with a [simulate]")->required();
+  command->add_input_file("study", options->study, "Study file (*.study.toml) with a [simulate]")->required();
   command->add_output_folder("-o,--output", options->output, "Folder to write")->required();
   command->callback([&line, options] {
     line.run = [options]() -> int {

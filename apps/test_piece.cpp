@@ -11,6 +11,7 @@
 #include "abbe/study/test_piece_sizes.h"
 #include "command.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "test_piece/sizes.h"
 
@@ -31,12 +32,12 @@ int write_piece(const TestPieceOptions& options, const char* what, const std::st
   std::string text = fmt::format("# {}: {}\n# tool of {} mm diameter\n", what, from, options.sizes.tool_diameter_mm);
   text += curve_csv(piece.curve);
   if (options.output.empty()) {
-    fmt::print("{}", text);
+    print_file(text);
     return kDone;
   }
   write_file_atomically(options.output, text);
-  fmt::print("{}: {} points written; axis commands and program: abbe path MACHINE {} -o program.ngc\n", options.output,
-             piece.curve.points.size(), options.output);
+  fmt::print("{}: {} points written; axis commands and program: abbe path {} --machine MACHINE -o program.ngc\n",
+             options.output, piece.curve.points.size(), options.output);
   return kDone;
 }
 
@@ -60,7 +61,7 @@ void add_test_piece_command(CommandLine& line) {
       line.add("test-piece", "Write tool paths of five-axis test pieces, milled with the flank of the tool",
                "  abbe test-piece cone-frustum -o cone.csv\n"
                "  abbe test-piece s-shape --centre-mm 0 0 30 -o s.csv\n\n"
-               "Axis commands and a program: abbe path MACHINE cone.csv -o cone.ngc. "
+               "Axis commands and a program: abbe path cone.csv --machine MACHINE -o cone.ngc. "
                "docs/test-pieces.md explains the sizes and\n"
                "what is measured on the pieces.");
   command->require_subcommand(1);

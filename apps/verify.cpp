@@ -15,6 +15,7 @@
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
+#include "machine_options.h"
 #include "options.h"
 #include "progress.h"
 #include "test_piece/sizes.h"
@@ -114,8 +115,8 @@ Subcommand* add_piece(Subcommand& command, const char* name, const char* descrip
                       PieceOptions& piece) {
   Subcommand* app = command.add_subcommand(name, description);
   app->fallthrough();
-  app->add_option("--before", piece.before, "Trace of the program as it was (*.csv)")->required();
-  app->add_option("--after", piece.after, "Trace with the compensation (*.csv)")->required();
+  app->add_input_file("--before", piece.before, "Trace of the program as it was (*.csv)")->required();
+  app->add_input_file("--after", piece.after, "Trace with the compensation (*.csv)")->required();
   app->footer(std::string("Sizes as in abbe test-piece ") + name +
               ".\nExample:\n  abbe verify --machine examples/machines/trunnion-mill.machine.toml --errors "
               "examples/compensate/trunnion.errors.toml --truth examples/verify/truth.errors.toml " +
@@ -146,9 +147,9 @@ void add_verify_command(CommandLine& line) {
       "Y_mm, Z_mm, A_deg, C_deg. Method and figures: docs/verify.md.");
   command->add_option("results", options.files.results,
                       "Results folder of abbe run, of a study with simulated readings");
-  command->add_option("--machine", options.files.machine, "Machine file (default: machine.toml of the results)");
-  command->add_option("--errors", options.files.errors, "Identified errors (default: errors.toml of the results)");
-  command->add_option("--truth", options.files.truth, "True errors (default: truth.errors.toml of the results)");
+  add_machine(*command, options.files.machine, "Machine file (default: machine.toml of the results)");
+  add_errors(*command, options.files.errors, "Identified errors (default: errors.toml of the results)");
+  command->add_input_file("--truth", options.files.truth, "True errors (default: truth.errors.toml of the results)");
   command->add_option("--poses", options.poses, "Number of random poses")
       ->check(in_range(10, 10000))
       ->capture_default_str();

@@ -30,6 +30,7 @@
 #include "compensate/safety.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
+#include "machine_options.h"
 #include "messages.h"
 #include "options.h"
 
@@ -244,12 +245,13 @@ void add_compensate_freeze(Subcommand& compensate, CommandLine& line) {
       "tried at thousands of poses before it is written; the printed figures come from there. It does not contain\n"
       "reversal values: the lines for LinuxCNC's own BACKLASH are printed instead.\n\n"
       "Example:\n"
-      "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml examples/trunnion/table.errors.toml -o "
+      "  abbe compensate freeze --machine examples/machines/trunnion-mill.machine.toml --errors "
+      "examples/trunnion/table.errors.toml -o "
       "mill.abbec\n"
-      "  abbe compensate freeze examples/machines/trunnion-mill.machine.toml examples/trunnion/table.errors.toml -o "
+      "  abbe compensate freeze --machine examples/machines/trunnion-mill.machine.toml --errors "
+      "examples/trunnion/table.errors.toml -o "
       "long-tools.abbec --tool-length-mm 60 220 --limit-um 500");
-  command->add_option("machine", arguments->machine, "Machine file (*.machine.toml)")->required();
-  command->add_option("errors", arguments->errors, "Errors file (*.errors.toml)")->required();
+  add_machine_and_errors(*command, arguments->machine, arguments->errors);
   command->add_output_file("-o,--output", arguments->output, "File to write (*.abbec)", &arguments->dry_run);
   command->add_flag("--dry-run", arguments->dry_run,
                     "Report only: the largest corrections and where they are; write nothing");

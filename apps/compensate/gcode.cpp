@@ -19,6 +19,7 @@
 #include "compensate/safety.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
+#include "machine_options.h"
 #include "messages.h"
 #include "options.h"
 #include "progress.h"
@@ -93,9 +94,9 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
       "motion of its own wherever it reverses. Leave the control's own backlash compensation as it was when the "
       "errors\n"
       "were measured. See docs/programs.md.");
-  command->add_option("program", options->program, "NC program (RS274/NGC, ISO 6983)")->required();
-  command->add_option("--machine", options->machine, "Machine file (*.machine.toml)")->required();
-  command->add_option("--errors", options->errors, "Errors file of the machine (*.errors.toml)")->required();
+  command->add_input_file("program", options->program, "NC program (RS274/NGC, ISO 6983)")->required();
+  add_machine(*command, options->machine)->required();
+  add_errors(*command, options->errors)->required();
   command->add_output_file("-o,--output", options->output, "Corrected program to write", &options->dry_run);
   command
       ->add_option("--tolerance-um", options->tolerance_um,
@@ -123,11 +124,11 @@ void add_compensate_gcode(Subcommand& compensate, CommandLine& line) {
       ->capture_default_str();
   command->add_option("--word", options->words, "Word of an axis in the program: C1=C");
   command->add_option("--start", options->start, "Where an axis stands when the program begins: X_mm=0, C_deg=30");
-  command->add_option("--tool-table", options->tool_table, "Tool table of LinuxCNC, for G43 H");
+  command->add_input_file("--tool-table", options->tool_table, "Tool table of LinuxCNC, for G43 H");
   command->add_flag("--tool-table-in-inches", options->tool_table_in_inches,
                     "The lengths of the tool table are in inches");
   command->add_option("--tool", options->tool, "Number of the tool in the spindle");
-  command->add_option("--parameters", options->parameters, "Parameter file of LinuxCNC (.var), for work offsets");
+  command->add_input_file("--parameters", options->parameters, "Parameter file of LinuxCNC (.var), for work offsets");
   command->add_flag("--parameters-in-inches", options->parameters_in_inches,
                     "The offsets of the parameter file are in inches");
   command->add_flag("--tool-centre", options->tool_centre,

@@ -19,6 +19,7 @@
 #include "compensate/safety.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
+#include "machine_options.h"
 #include "messages.h"
 #include "options.h"
 
@@ -94,16 +95,16 @@ void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
       "poses", "Correct single poses: axis commands that bring the actual tool to where the nominal machine has it");
   command->footer(
       "Example:\n"
-      "  abbe compensate poses examples/machines/trunnion-mill.machine.toml examples/compensate/trunnion.errors.toml "
-      "examples/compensate/poses.csv -o corrected.csv\n\n"
+      "  abbe compensate poses examples/compensate/poses.csv --machine "
+      "examples/machines/trunnion-mill.machine.toml --errors examples/compensate/trunnion.errors.toml -o "
+      "corrected.csv\n\n"
       "Every row of the output has a status: reached; orientation left or turn limited (the point is exact, and the\n"
       "remaining orientation error is stated); position left, outside travel, not covered or not converged (exit code "
       "1).\n"
       "See docs/compensation.md.");
-  command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
-  command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
-  command->add_option("poses", options->poses, "CSV with one column of commands per axis (X_mm, C_deg, ...)")
+  command->add_input_file("poses", options->poses, "CSV with one column of commands per axis (X_mm, C_deg, ...)")
       ->required();
+  add_machine_and_errors(*command, options->machine, options->errors);
   command->add_output_file("-o,--output", options->output, "CSV to write: corrected commands, status, what is left",
                            &options->dry_run);
   command->add_option("--hold", options->hold, "Axis that keeps its commands; repeatable");

@@ -22,6 +22,7 @@
 #include "compensate/table_options.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
+#include "machine_options.h"
 #include "messages.h"
 #include "options.h"
 
@@ -151,11 +152,10 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
       compensate.add_subcommand("table", "Write tables for a control, and report what they cannot carry");
   command->footer(formats +
                   "\nExample:\n"
-                  "  abbe compensate table examples/machines/three-axis-mill.machine.toml "
+                  "  abbe compensate table --machine examples/machines/three-axis-mill.machine.toml --errors "
                   "examples/compensate/mill.errors.toml --for linuxcnc --limit-um 100 -o comp\n"
                   "Signs, units and sources of every format: docs/controller-tables.md");
-  command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
-  command->add_option("errors", options->errors, "Errors file (*.errors.toml)")->required();
+  add_machine_and_errors(*command, options->machine, options->errors);
   command->add_option("--for", options->format, "Format, see below")->required()->suggest(names);
   command->add_output_file_or_folder(
       "-o,--output", options->output,

@@ -19,6 +19,7 @@
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
+#include "machine_options.h"
 #include "options.h"
 
 namespace abbe {
@@ -155,10 +156,10 @@ void add_evaluate_contour(Subcommand& evaluate, CommandLine& line) {
              "Standard uncertainty of a point along `height`");
   add_number(app, "--u-origin-um", Quantity::length, "um", {0, 1e6}, command->sections.origin_uncertainty,
              "Standard uncertainty of the position relative to the commanded curve, common to all sections or points");
-  app->add_option("--curve", command->curve, "Commanded curve (as for abbe path): the file holds points instead");
+  app->add_input_file("--curve", command->curve, "Commanded curve (as for abbe path): the file holds points instead");
   app->add_flag("--closed", command->closed, "The last point of the curve is followed by the first");
-  app->add_option("--machine", command->machine,
-                  "Machine file (*.machine.toml) whose axes the curve sets beforehand; needed where it names them");
+  add_machine(*app, command->machine,
+              "Machine file (*.machine.toml) whose axes the curve sets beforehand; needed where it names them");
   app->callback([&line, app, command] {
     command->given = app->given_options();
     line.run = [command] { return run(*command); };

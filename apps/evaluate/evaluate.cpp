@@ -31,7 +31,7 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
                            const std::string& columns, const std::string& example, EvaluationOptions& options) {
   Subcommand* command = evaluate.add_subcommand(kind, description);
   command->footer("Columns of the file:\n" + columns + "\n\nExample:\n" + example);
-  command->add_option("file", options.file, "Readings (*.csv)")->required();
+  command->add_input_file("file", options.file, "Readings (*.csv)")->required();
   command->add_output_folder("-o,--output", options.output,
                              "Results folder to write: evaluation.json, plot.svg, report.html; default: print only");
   command

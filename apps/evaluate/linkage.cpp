@@ -13,6 +13,7 @@
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
+#include "machine_options.h"
 #include "options.h"
 
 namespace abbe {
@@ -135,8 +136,8 @@ void add_evaluate_linkage(Subcommand& evaluate, CommandLine& line) {
       ->required();
   add_number(app, "--board-mm", Quantity::length, "mm", {0, 1e5}, command->board, "h: thickness of the board")
       ->required();
-  app->add_option("--machine", command->machine,
-                  "Machine file (*.machine.toml): its errors are found; -o writes them as errors.toml");
+  add_machine(*app, command->machine,
+              "Machine file (*.machine.toml): its errors are found; -o writes them as errors.toml");
   app->add_option("--convention", command->convention,
                   "Without --machine: table-moves (default, X and Y carry the table) or head-moves")
       ->check(one_of({"table-moves", "head-moves"}));

@@ -23,6 +23,7 @@
 #include "abbe/report/words/scan_plan_words.h"
 #include "command.h"
 #include "exit_code.h"
+#include "machine_options.h"
 #include "options.h"
 #include "progress.h"
 #include "scan/scan.h"
@@ -142,10 +143,10 @@ void add_scan_plan(Subcommand& scan, CommandLine& line) {
       "  abbe scan plan examples/cradle_scanner/pyramid.stl --machine examples/machines/liu-scanner.machine.toml "
       "--beyond-plane-mm 0 1 0 -0.8");
   command
-      ->add_option("part", options->part,
-                   "Closed mesh (.stl .ply .obj) or CAD file (.step .stp), mm, frame of the part")
+      ->add_input_file("part", options->part,
+                       "Closed mesh (.stl .ply .obj) or CAD file (.step .stp), mm, frame of the part")
       ->required();
-  command->add_option("--machine", options->machine, "Machine file (*.machine.toml)")->required();
+  add_machine(*command, options->machine)->required();
   command->add_output_file("-o,--output", options->output, "Path as CSV");
   command->add_output_file("--program", options->program, "Path as NC program (G1, inverse time feed)");
   command->add_option("--word", options->words, "Word of an axis in the program, such as C1=C");
@@ -160,7 +161,7 @@ void add_scan_plan(Subcommand& scan, CommandLine& line) {
       ->type_name("NX NY NZ D");
   command->add_option("--position-mm", options->position, "Where the part stands in the workpiece frame")->expected(3);
   command->add_option("--turn-deg", options->turn, "How the part is turned: about x, then y, then z")->expected(3);
-  command->add_option("--stage", options->stage, "Mesh of the stage that turns with the part, workpiece frame");
+  command->add_input_file("--stage", options->stage, "Mesh of the stage that turns with the part, workpiece frame");
   options->step.add_to(command);
   const auto ranged = [&](const std::string& name, double& value, double low, double high, const char* words) {
     command->add_option(name, value, words)->check(within(low, high, unit_in(name)))->capture_default_str();

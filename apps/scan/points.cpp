@@ -14,6 +14,7 @@
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
+#include "machine_options.h"
 #include "messages.h"
 #include "options.h"
 #include "progress.h"
@@ -124,13 +125,14 @@ void add_scan_points(Subcommand& scan, CommandLine& line) {
       "the probe. Points are in the workpiece frame, in the order of the readings. Files of any length: neither the\n"
       "readings nor the points are kept in memory.\n\n"
       "Example:\n"
-      "  abbe scan points examples/machines/liu-scanner.machine.toml examples/cradle_scanner/readings.csv -o "
+      "  abbe scan points examples/cradle_scanner/readings.csv --machine examples/machines/liu-scanner.machine.toml -o "
       "points.csv\n"
-      "  abbe scan points examples/machines/liu-scanner.machine.toml examples/cradle_scanner/readings.csv --errors "
+      "  abbe scan points examples/cradle_scanner/readings.csv --machine examples/machines/liu-scanner.machine.toml "
+      "--errors "
       "examples/cradle_scanner/stages.errors.toml --indication-range-mm -0.2 0.2 -o points.ply");
-  command->add_option("machine", options->machine, "Machine file (*.machine.toml)")->required();
-  command->add_option("readings", options->readings, "CSV of axis positions and indications")->required();
-  command->add_option("--errors", options->errors, "Errors file (*.errors.toml): calibrated axes and all other errors");
+  command->add_input_file("readings", options->readings, "CSV of axis positions and indications")->required();
+  command->take_from_arguments({add_machine(*command, options->machine)->required()});
+  add_errors(*command, options->errors, "Errors file (*.errors.toml): calibrated axes and all other errors");
   command->add_output_file("-o,--output", options->output, "Points: .csv (x_mm,y_mm,z_mm) or .ply (binary, double)")
       ->required();
   command

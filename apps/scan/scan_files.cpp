@@ -31,9 +31,9 @@ MeshFile ScanFiles::read_part() const {
 }
 
 void add_scan_files(Subcommand* command, ScanFiles& files) {
-  command->add_option("scan", files.scan, "Points of the scan (.csv .xyz .ply .obj; docs/geometry-files.md)")
+  command->add_input_file("scan", files.scan, "Points of the scan (.csv .xyz .ply .obj; docs/geometry-files.md)")
       ->required();
-  command->add_option("part", files.part, "Surface of the part (.stl .ply .obj .step)")->required();
+  command->add_input_file("part", files.part, "Surface of the part (.stl .ply .obj .step)")->required();
   const Check units = one_of({"mm", "m", "inch"});
   command->add_option("--scan-unit", files.scan_unit, "Unit of a scan file that states none (mm)")->check(units);
   command->add_option("--part-unit", files.part_unit, "Unit of a part file that states none (mm)")->check(units);

@@ -27,7 +27,7 @@ class BadInput : public CommandTest {
     std::string text = kEndlessTable;
     ASSERT_NE(text.find(from), std::string::npos);
     folder.write("m.toml", text.replace(text.find(from), from.size(), to));
-    expect_refused({"check", "m.toml"}, message);
+    expect_refused({"check", "--machine", "m.toml"}, message);
   }
 };
 
@@ -48,9 +48,9 @@ TEST_F(BadInput, NamesFileLineFieldAndUnit) {
 TEST_F(BadInput, ControlCharactersOfNamesAndArgumentsAreRefused) {
   expect_machine_refused("\"m\"", R"("m\u001b[2J\nall is well")",
                          "m.toml:1:8: name: has control characters in it; expected a text on one line");
-  expect_refused({"check", "a\nb\x1b[31m.toml"},
+  expect_refused({"check", "--machine", "a\nb\x1b[31m.toml"},
                  "a\\x0ab\\x1b[31m.toml: has control characters in it; expected a name or an option on one line");
-  expect_refused({"check", "a\xff\u202e.toml"}, "a\\xff\\xe2\\x80\\xae.toml: there is no such file");
+  expect_refused({"check", "--machine", "a\xff\u202e.toml"}, "a\\xff\\xe2\\x80\\xae.toml: there is no such file");
 }
 
 TEST_F(BadInput, WhatATerminalWouldObeyIsShownAsNumbersAndReadsBackFromJson) {
@@ -59,11 +59,11 @@ TEST_F(BadInput, WhatATerminalWouldObeyIsShownAsNumbersAndReadsBackFromJson) {
   text.replace(text.find("\"m\""), 3, "\"mill \\u202e\u00fc\"");
   const std::string name = "m\xff.toml";
   folder.write(name, text);
-  const CommandResult people = abbe({"check", name});
+  const CommandResult people = abbe({"check", "--machine", name});
   EXPECT_EQ(people.exit_code, ExitCode::done) << people.err;
   EXPECT_THAT(people.out, testing::HasSubstr("mill \\xe2\\x80\\xae\u00fc"));
   EXPECT_THAT(people.out, testing::Not(testing::HasSubstr("\u202e")));
-  const CommandResult programs = abbe({"check", name, "--json"});
+  const CommandResult programs = abbe({"check", "--machine", name, "--json"});
   EXPECT_THAT(programs.out, testing::HasSubstr("mill \\u202e\u00fc"));
   EXPECT_EQ(nlohmann::json::parse(programs.out).at("name"), "mill \u202e\u00fc");
   // Escape codes of a table of points come to the message of what is wrong with them, and of a file's name to the
@@ -101,9 +101,9 @@ TEST_F(BadInput, TrueErrorsThatNoMachineHasOrThatLeaveNothingToReadAreNamed) {
 
 TEST_F(BadInput, EmptyAndMissingFiles) {
   folder.write("empty.toml", "");
-  expect_refused({"check", "empty.toml"}, "empty.toml: the file is empty");
-  expect_refused({"check", "none.toml"}, "none.toml: there is no such file");
-  expect_refused({"check", "."}, ".: is a folder; expected a file");
+  expect_refused({"check", "--machine", "empty.toml"}, "empty.toml: the file is empty");
+  expect_refused({"check", "--machine", "none.toml"}, "none.toml: there is no such file");
+  expect_refused({"check", "--machine", "."}, ".: is a folder; expected a file");
 }
 
 TEST_F(BadInput, FilesOfAnotherKindAreToldByTheirNames) {
@@ -111,8 +111,8 @@ TEST_F(BadInput, FilesOfAnotherKindAreToldByTheirNames) {
   const std::string machine = examples + "machines/three-axis-mill.machine.toml";
   const std::string errors = examples + "compensate/mill.errors.toml", study = examples + "aguado/aguado.study.toml";
   const std::string problem = ": has the name of another kind of file; expected a file named *";
-  expect_refused({"map", errors, machine}, errors + problem + ".machine.toml");
-  expect_refused({"map", machine, study}, study + problem + ".errors.toml");
+  expect_refused({"map", "--machine", errors, "--errors", machine}, errors + problem + ".machine.toml");
+  expect_refused({"map", "--machine", machine, "--errors", study}, study + problem + ".errors.toml");
   expect_refused({"run", machine}, machine + problem + ".study.toml");
   folder.write("errors.toml", "chain = \"w b X Y Z t\"\n");
   expect_refused({"run", "errors.toml"}, "errors.toml" + problem + ".study.toml");
@@ -122,7 +122,7 @@ TEST_F(BadInput, FilesOfAnotherKindAreToldByTheirNames) {
 TEST_F(BadInput, ErrorsOfAnotherMachine) {
   folder.write("m.toml", kEndlessTable);
   folder.write("e.toml", "chain = \"w b X Y Z t\"\n");
-  expect_refused({"check", "m.toml", "--errors", "e.toml"},
+  expect_refused({"check", "--machine", "m.toml", "--errors", "e.toml"},
                  "e.toml:1:1: chain: the errors belong to \"w b X Y Z t\"; expected \"w C' X' b Z t\"");
 }
 
@@ -130,7 +130,7 @@ TEST_F(BadInput, ByteOrderMarkAndCarriageReturnsAreGoodInput) {
   std::string text = "\xEF\xBB\xBF";
   for (const char* at = kEndlessTable; *at != 0; ++at) text += *at == '\n' ? std::string("\r\n") : std::string(1, *at);
   folder.write("m.toml", text);
-  const CommandResult result = abbe({"check", "m.toml"});
+  const CommandResult result = abbe({"check", "--machine", "m.toml"});
   EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
 }
 

@@ -111,7 +111,8 @@ TEST_F(CheckGeometry, DamagedFilesAndOptionsThatDoNotFitAreRefused) {
   EXPECT_THAT(abbe({"check", "whole.stl", "--unit", "cubit"}).err, HasSubstr("--unit: 'cubit' is not a unit"));
   EXPECT_THAT(abbe({"check", "whole.stl", "--errors", "e.toml"}).err,
               HasSubstr("--errors: a mesh or a point cloud has no"));
-  EXPECT_THAT(abbe({"check", "m.toml", "--unit", "mm"}).err, HasSubstr("--unit: a machine file states its units"));
+  EXPECT_THAT(abbe({"check", "--machine", "m.toml", "--unit", "mm"}).err,
+              HasSubstr("--unit: a machine file states its units"));
 }
 
 }  // namespace

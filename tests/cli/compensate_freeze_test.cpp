@@ -17,7 +17,8 @@ class CompensateFreezeTest : public CommandTest {
 };
 
 TEST_F(CompensateFreezeTest, WritesAFileAndSaysWhatItDoes) {
-  const CommandResult result = abbe({"compensate", "freeze", machine, errors, "-o", output, "--json"});
+  const CommandResult result =
+      abbe({"compensate", "freeze", "--machine", machine, "--errors", errors, "-o", output, "--json"});
   ASSERT_EQ(result.exit_code, done) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_EQ(json["bytes"].get<std::size_t>(), std::filesystem::file_size(output));
@@ -26,7 +27,8 @@ TEST_F(CompensateFreezeTest, WritesAFileAndSaysWhatItDoes) {
   EXPECT_GT(json["largest_correction_um"].get<double>(), 1);
   EXPECT_LT(json["accuracy_mm"].get<double>(), 1e-9);
   EXPECT_GE(json["worst_iterations"].get<int>(), 2);
-  const CommandResult again = abbe({"compensate", "freeze", machine, errors, "--force", "-o", output});
+  const CommandResult again =
+      abbe({"compensate", "freeze", "--machine", machine, "--errors", errors, "--force", "-o", output});
   EXPECT_NE(again.out.find(json["checksum"].get<std::string>()), std::string::npos);
   EXPECT_NE(again.out.find("largest correction of the tool: "), std::string::npos);
 }
@@ -44,22 +46,23 @@ TEST_F(CompensateFreezeTest, AnArmIsRefusedAsNothingIsKnownOfWhatRemains) {
                         "[tool]\nreference_mm = [374, 0, 630]\ndirection = [-1, 0, 0]\n";
   std::ofstream(arm_errors) << "[[motion]]\nname = \"EZB1\"\nbasis = \"legendre\"\norder = 1\n"
                                "coefficients_um = [20, 30]\n";
-  const CommandResult result = abbe({"compensate", "freeze", arm, arm_errors, "-o", output});
+  const CommandResult result = abbe({"compensate", "freeze", "--machine", arm, "--errors", arm_errors, "-o", output});
   EXPECT_EQ(result.exit_code, 1) << result.err;
   EXPECT_NE(result.err.find("at none of 12000 poses"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("has no such axes"), std::string::npos) << result.err;
   EXPECT_NE(result.out.find("not known"), std::string::npos) << result.out;
   EXPECT_EQ(result.out.find("0.0e+00 mm"), std::string::npos) << result.out;
   EXPECT_FALSE(std::filesystem::exists(output));
-  const CommandResult as_json = abbe({"compensate", "freeze", arm, arm_errors, "--dry-run", "--json"});
+  const CommandResult as_json =
+      abbe({"compensate", "freeze", "--machine", arm, "--errors", arm_errors, "--dry-run", "--json"});
   EXPECT_EQ(as_json.exit_code, 1);
   EXPECT_TRUE(nlohmann::json::parse(as_json.out)["accuracy_mm"].is_null());
 }
 
 TEST_F(CompensateFreezeTest, TheFileCarriesTheUncertaintyOfTheErrors) {
   const std::string uncertain = std::string(ABBE_SOURCE_DIR "/examples/compensate/trunnion.errors.toml");
-  const CommandResult result =
-      abbe({"compensate", "freeze", machine, uncertain, "-o", output, "--leave-out-below-uncertainty", "2", "--json"});
+  const CommandResult result = abbe({"compensate", "freeze", "--machine", machine, "--errors", uncertain, "-o", output,
+                                     "--leave-out-below-uncertainty", "2", "--json"});
   ASSERT_EQ(result.exit_code, done) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_GT(json["mean_standard_uncertainty_um"].get<double>(), 0.5);
@@ -71,20 +74,23 @@ TEST_F(CompensateFreezeTest, TheFileCarriesTheUncertaintyOfTheErrors) {
   const auto left_out = json["left_out"].get<std::vector<std::string>>();
   EXPECT_NE(std::find(left_out.begin(), left_out.end(), "EAX"), left_out.end());
   // The machine has what is left out, and the file names the errors that it comes from.
-  const nlohmann::json all = nlohmann::json::parse(
-      abbe({"compensate", "freeze", machine, uncertain, "-o", (folder.path() / "all.abbec").string(), "--json"}).out);
+  const nlohmann::json all =
+      nlohmann::json::parse(abbe({"compensate", "freeze", "--machine", machine, "--errors", uncertain, "-o",
+                                  (folder.path() / "all.abbec").string(), "--json"})
+                                .out);
   EXPECT_LT(all["accuracy_mm"].get<double>(), 1e-9);
   EXPECT_GT(json["accuracy_mm"].get<double>(), 1e-4);
   EXPECT_LT(json["difference_by_freezing_mm"].get<double>(), 1e-9);
   EXPECT_EQ(json["source_checksum"], all["source_checksum"]);
   EXPECT_NE(json["checksum"], all["checksum"]);
-  const CommandResult without = abbe({"compensate", "freeze", machine, errors, "--force", "-o", output});
+  const CommandResult without =
+      abbe({"compensate", "freeze", "--machine", machine, "--errors", errors, "--force", "-o", output});
   EXPECT_NE(without.out.find("not stated by the errors file"), std::string::npos) << without.out;
 }
 
 TEST_F(CompensateFreezeTest, CheckSaysWhatIsInAFileAndRefusesADamagedOne) {
-  const nlohmann::json made =
-      nlohmann::json::parse(abbe({"compensate", "freeze", machine, errors, "-o", output, "--json"}).out);
+  const nlohmann::json made = nlohmann::json::parse(
+      abbe({"compensate", "freeze", "--machine", machine, "--errors", errors, "-o", output, "--json"}).out);
   const CommandResult whole = abbe({"check", output, "--json"});
   ASSERT_EQ(whole.exit_code, done) << whole.err;
   const nlohmann::json json = nlohmann::json::parse(whole.out);
@@ -106,7 +112,8 @@ TEST_F(CompensateFreezeTest, CheckSaysWhatIsInAFileAndRefusesADamagedOne) {
 }
 
 TEST_F(CompensateFreezeTest, ACorrectionAboveTheLimitIsRefusedWithItsPlace) {
-  const CommandResult result = abbe({"compensate", "freeze", machine, errors, "-o", output, "--limit-um", "1"});
+  const CommandResult result =
+      abbe({"compensate", "freeze", "--machine", machine, "--errors", errors, "-o", output, "--limit-um", "1"});
   EXPECT_EQ(result.exit_code, computation_says_no);
   EXPECT_NE(result.err.find("above --limit-um 1, at C "), std::string::npos) << result.err;
   EXPECT_FALSE(std::filesystem::exists(output));
@@ -122,13 +129,13 @@ TEST_F(CompensateFreezeTest, TheLargestCorrectionIsThatOfTheCornerWhereErrorsAdd
   }
   text += "[[motion]]\nname = \"EXC\"\nbasis = \"fourier\"\norder = 1\ncoefficients_um = [-30, -30, 0]\n";
   folder.write("corner.errors.toml", text);
-  const CommandResult result = abbe(
-      {"compensate", "freeze", machine, "corner.errors.toml", "--dry-run", "--json", "--tool-length-mm", "100", "100"});
+  const CommandResult result = abbe({"compensate", "freeze", "--machine", machine, "--errors", "corner.errors.toml",
+                                     "--dry-run", "--json", "--tool-length-mm", "100", "100"});
   ASSERT_EQ(result.exit_code, done) << result.err;
   EXPECT_NEAR(nlohmann::json::parse(result.out)["largest_correction_um"].get<double>(), 300, 1e-3);
   // The limit goes by it; what is refused is reported all the same.
-  const CommandResult above =
-      abbe({"compensate", "freeze", machine, "corner.errors.toml", "-o", output, "--json", "--limit-um", "299.99"});
+  const CommandResult above = abbe({"compensate", "freeze", "--machine", machine, "--errors", "corner.errors.toml",
+                                    "-o", output, "--json", "--limit-um", "299.99"});
   EXPECT_EQ(above.exit_code, computation_says_no);
   const nlohmann::json json = nlohmann::json::parse(above.out);
   EXPECT_EQ(json["written"], false);
@@ -137,7 +144,7 @@ TEST_F(CompensateFreezeTest, TheLargestCorrectionIsThatOfTheCornerWhereErrorsAdd
 }
 
 TEST_F(CompensateFreezeTest, ADryRunSaysWhereEveryJointIsCorrectedMostAndWritesNothing) {
-  const CommandResult result = abbe({"compensate", "freeze", machine, errors, "--dry-run"});
+  const CommandResult result = abbe({"compensate", "freeze", "--machine", machine, "--errors", errors, "--dry-run"});
   ASSERT_EQ(result.exit_code, done) << result.err;
   EXPECT_NE(result.out.find("dry run, nothing written"), std::string::npos) << result.out;
   for (const std::string joint : {"C", "A", "Y", "X", "Z"}) {
@@ -145,9 +152,11 @@ TEST_F(CompensateFreezeTest, ADryRunSaysWhereEveryJointIsCorrectedMostAndWritesN
     ASSERT_NE(at, std::string::npos) << joint;
     EXPECT_NE(result.out.substr(at, result.out.find('\n', at) - at).find(" at C "), std::string::npos) << joint;
   }
-  EXPECT_EQ(abbe({"compensate", "freeze", machine, errors, "--dry-run", "-o", output}).exit_code, done);
+  EXPECT_EQ(
+      abbe({"compensate", "freeze", "--machine", machine, "--errors", errors, "--dry-run", "-o", output}).exit_code,
+      done);
   EXPECT_FALSE(std::filesystem::exists(output));
-  EXPECT_EQ(abbe({"compensate", "freeze", machine, errors}).exit_code, bad_input);
+  EXPECT_EQ(abbe({"compensate", "freeze", "--machine", machine, "--errors", errors}).exit_code, bad_input);
 }
 
 TEST_F(CompensateFreezeTest, InputsAreNeverWrittenOver) {
@@ -155,7 +164,8 @@ TEST_F(CompensateFreezeTest, InputsAreNeverWrittenOver) {
   std::filesystem::create_symlink("mine.errors.toml", folder.path() / "link.abbec");
   const std::string before = folder.read("mine.errors.toml");
   for (const std::string name : {"mine.errors.toml", "./mine.errors.toml", "link.abbec"}) {
-    const CommandResult result = abbe({"compensate", "freeze", machine, "mine.errors.toml", "--force", "-o", name});
+    const CommandResult result =
+        abbe({"compensate", "freeze", "--machine", machine, "--errors", "mine.errors.toml", "--force", "-o", name});
     EXPECT_EQ(result.exit_code, bad_input);
     EXPECT_NE(result.err.find("is an input of the command"), std::string::npos) << result.err;
     EXPECT_EQ(folder.read("mine.errors.toml"), before);
@@ -164,7 +174,7 @@ TEST_F(CompensateFreezeTest, InputsAreNeverWrittenOver) {
 
 TEST_F(CompensateFreezeTest, BadOptionsAreNamed) {
   const auto refused = [&](std::vector<std::string> options, const std::string& name) {
-    std::vector<std::string> arguments{"compensate", "freeze", machine, errors, "-o", output};
+    std::vector<std::string> arguments{"compensate", "freeze", "--machine", machine, "--errors", errors, "-o", output};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const CommandResult result = abbe(arguments);
     EXPECT_EQ(result.exit_code, bad_input);
@@ -186,13 +196,15 @@ TEST_F(CompensateFreezeTest, ReversalValuesAreLinesForTheControlsOwnBacklash) {
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   std::ofstream(folder.path() / "r.errors.toml") << text << "\n[[reversal]]\naxis = \"Y\"\nvalue_um = -12\n"
                                                  << "[[reversal]]\naxis = \"C\"\nvalue_urad = 35\n";
-  const CommandResult result = abbe({"compensate", "freeze", machine, "r.errors.toml", "-o", output});
+  const CommandResult result =
+      abbe({"compensate", "freeze", "--machine", machine, "--errors", "r.errors.toml", "-o", output});
   ASSERT_EQ(result.exit_code, done) << result.err;
   EXPECT_EQ(result.err, "");
   EXPECT_NE(result.out.find("[JOINT_1]BACKLASH = 0.0120000    (Y, mm"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("[JOINT_4]BACKLASH    0.0020054 deg less"), std::string::npos) << result.out;
-  const nlohmann::json json = nlohmann::json::parse(
-      abbe({"compensate", "freeze", machine, "r.errors.toml", "--force", "-o", output, "--json"}).out);
+  const nlohmann::json json = nlohmann::json::parse(abbe({"compensate", "freeze", "--machine", machine, "--errors",
+                                                          "r.errors.toml", "--force", "-o", output, "--json"})
+                                                        .out);
   ASSERT_EQ(json["backlash"].size(), 2U);
   EXPECT_EQ(json["backlash"][0]["axis"], "Y");
   EXPECT_NEAR(json["backlash"][0]["lost_motion_mm"].get<double>(), 0.012, 1e-12);
@@ -226,7 +238,8 @@ axis = "U"
 value_um = -12
 )")
                                .string();
-  const CommandResult result = abbe({"compensate", "freeze", axes, play, "-o", output, "--json"});
+  const CommandResult result =
+      abbe({"compensate", "freeze", "--machine", axes, "--errors", play, "-o", output, "--json"});
   ASSERT_EQ(result.exit_code, done) << result.err;
   const nlohmann::json backlash = nlohmann::json::parse(result.out)["backlash"];
   ASSERT_EQ(backlash.size(), 2U);
@@ -234,7 +247,8 @@ value_um = -12
   EXPECT_EQ(backlash[0]["setting"], "[JOINT_3]BACKLASH");
   EXPECT_EQ(backlash[1]["axis"], "C1");
   EXPECT_EQ(backlash[1]["setting"], "[JOINT_4]BACKLASH");
-  const CommandResult table = abbe({"compensate", "table", axes, play, "--for", "linuxcnc", "--dry-run", "--json"});
+  const CommandResult table =
+      abbe({"compensate", "table", "--machine", axes, "--errors", play, "--for", "linuxcnc", "--dry-run", "--json"});
   const nlohmann::json tables = nlohmann::json::parse(table.out, nullptr, false);
   ASSERT_TRUE(tables.is_object()) << table.err;
   for (const nlohmann::json& error : tables["errors"]) {

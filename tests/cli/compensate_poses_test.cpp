@@ -55,7 +55,7 @@ class CompensatePoses : public CommandTest {
   const ErrorSet known = read_errors(errors, machine).errors;
 
   CommandResult poses(const std::string& file, const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"compensate", "poses", mill, errors, file};
+    std::vector<std::string> arguments = {"compensate", "poses", file, "--machine", mill, "--errors", errors};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return abbe(arguments);
   }
@@ -109,7 +109,8 @@ TEST_F(CompensatePoses, WhatIsNotReachedIsInItsRowAndInTheExitCode) {
                "[[motion]]\nname = \"EXX\"\nbasis = \"legendre\"\norder = 0\nfrom_mm = -50\nto_mm = "
                "300\ncoefficients_um = [-30]\n");
   folder.write("poses.csv", "C_deg,A_deg,Y_mm,X_mm,Z_mm\n0,-30,0,0,-100\n0,-30,0,-200,-100\n0,-30,0,300,-100\n");
-  const CommandResult result = abbe({"compensate", "poses", mill, "part.errors.toml", "poses.csv", "-o", "out.csv"});
+  const CommandResult result =
+      abbe({"compensate", "poses", "poses.csv", "--machine", mill, "--errors", "part.errors.toml", "-o", "out.csv"});
   EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
   EXPECT_THAT(result.err, HasSubstr("not brought to 2 of 3 poses"));
   EXPECT_THAT(result.out, HasSubstr("not covered: 1, first in row 2"));
@@ -142,8 +143,8 @@ TEST_F(CompensatePoses, LimitsAndInputsAreKept) {
   // What only the errors file names is an input too.
   folder.write("t.errors.toml", "[[motion]]\nname = \"EXX\"\nbasis = \"table-linear\"\ntable = \"exx.csv\"\n");
   folder.write("exx.csv", "X_mm,EXX_um\n-300,4\n300,-4\n");
-  const CommandResult beside =
-      abbe({"compensate", "poses", mill, "t.errors.toml", "poses.csv", "--force", "-o", "exx.csv"});
+  const CommandResult beside = abbe(
+      {"compensate", "poses", "poses.csv", "--machine", mill, "--errors", "t.errors.toml", "--force", "-o", "exx.csv"});
   EXPECT_EQ(beside.exit_code, ExitCode::bad_input);
   EXPECT_THAT(beside.err, HasSubstr("exx.csv: is an input"));
   EXPECT_THAT(folder.read("exx.csv"), HasSubstr("300,-4"));
@@ -171,8 +172,9 @@ TEST_F(CompensatePoses, WhatIsLeftOutIsSmallTogetherAndInWhatIsLeft) {
   folder.write("poses.csv", "C_deg,A_deg,Y_mm,X_mm,Z_mm\n30,-40,20,100,-200\n200,25,0,-150,-80\n");
   const auto run = [&](double correlation) {
     folder.write("c.csv", two_in_one(correlation));
-    const CommandResult result = abbe({"compensate", "poses", mill, "two.errors.toml", "poses.csv", "--force", "-o",
-                                       "out.csv", "--leave-out-below-uncertainty", "1", "--json"});
+    const CommandResult result =
+        abbe({"compensate", "poses", "poses.csv", "--machine", mill, "--errors", "two.errors.toml", "--force", "-o",
+              "out.csv", "--leave-out-below-uncertainty", "1", "--json"});
     EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
     return nlohmann::json::parse(result.out);
   };

@@ -24,7 +24,8 @@ class CompensateTable : public CommandTest {
   const std::string errors = (source / "examples/compensate/mill.errors.toml").string();
 
   CommandResult table(const std::string& format, const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"compensate", "table", mill, errors, "--for", format};
+    std::vector<std::string> arguments = {"compensate", "table", "--machine", mill,
+                                          "--errors",   errors,  "--for",     format};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return abbe(arguments);
   }
@@ -90,8 +91,8 @@ TEST_F(CompensateTable, TablesThatCorrectNextToNothingAreRefusedWithTheWayThatWo
   folder.write("square.errors.toml",
                "[[location]]\nname = \"EC0Y\"\nvalue_urad = 80\n[[location]]\nname = \"EB0Z\"\nvalue_urad = -60\n");
   const auto of = [&](const std::string& format, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"compensate", "table", mill, "square.errors.toml",
-                                          "--for",      format,  "-o", "out-" + format};
+    std::vector<std::string> arguments = {"compensate",         "table", "--machine", mill, "--errors",
+                                          "square.errors.toml", "--for", format,      "-o", "out-" + format};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return abbe(arguments);
   };
@@ -111,7 +112,9 @@ TEST_F(CompensateTable, TablesThatCorrectNextToNothingAreRefusedWithTheWayThatWo
   folder.write("scale.errors.toml",
                "[[motion]]\nname = \"EXX\"\nbasis = \"legendre\"\norder = 1\ncoefficients_um = [0, 3]\n"
                "[[location]]\nname = \"EC0Y\"\nvalue_urad = 300\n");
-  EXPECT_EQ(abbe({"compensate", "table", mill, "scale.errors.toml", "--for", "linuxcnc", "-o", "scale"}).exit_code,
+  EXPECT_EQ(abbe({"compensate", "table", "--machine", mill, "--errors", "scale.errors.toml", "--for", "linuxcnc", "-o",
+                  "scale"})
+                .exit_code,
             ExitCode::done);
 }
 
@@ -265,8 +268,9 @@ TEST_F(CompensateTable, PrintersGetAnglesOnly) {
 TEST_F(CompensateTable, TablesThatWouldMakeTheErrorLargerAreRefused) {
   // Two tables that turn: corrections of X, Y, Z alone hold only near the pose in which the others stand.
   const CommandResult result =
-      abbe({"compensate", "table", (source / "examples/machines/yin-engraver-u.machine.toml").string(),
-            (source / "examples/laser_engraver/linkage.errors.toml").string(), "--for", "lattice-vtk", "-o", "l.vtk"});
+      abbe({"compensate", "table", "--machine", (source / "examples/machines/yin-engraver-u.machine.toml").string(),
+            "--errors", (source / "examples/laser_engraver/linkage.errors.toml").string(), "--for", "lattice-vtk", "-o",
+            "l.vtk"});
   EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
   EXPECT_THAT(result.err, HasSubstr("would grow"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "l.vtk"));
@@ -313,8 +317,8 @@ TEST_F(CompensateTable, TablesThatAreWellKnownTogetherStay) {
     folder.write("c.csv", "parameter,unit,EXX[P0],EXY[P0],tool_X,tool_Y,tool_Z\nEXX[P0],um,400," + both +
                               ",0,0,0\nEXY[P0],um," + both +
                               ",400,0,0,0\ntool_X,um,0,0,0,0,0\ntool_Y,um,0,0,0,0,0\ntool_Z,um,0,0,0,0,0\n");
-    return json_of(abbe({"compensate", "table", mill, "two.errors.toml", "--for", "beckhoff-isg", "--dry-run", "--json",
-                         "--leave-out-below-uncertainty", "1"}));
+    return json_of(abbe({"compensate", "table", "--machine", mill, "--errors", "two.errors.toml", "--for",
+                         "beckhoff-isg", "--dry-run", "--json", "--leave-out-below-uncertainty", "1"}));
   };
   const nlohmann::json apart = run(0), correlated = run(-0.99);
   EXPECT_EQ(apart["left_out"].size(), 2U);
@@ -335,8 +339,8 @@ TEST_F(CompensateTable, MapHasTheErrorBeforeAfterAndIdeal) {
 TEST_F(CompensateTable, InputsAreNeverWrittenOverAndWrongOptionsAreNamed) {
   std::filesystem::copy(errors, folder.path() / "mine.errors.toml");
   const std::string before = folder.read("mine.errors.toml");
-  const CommandResult over = abbe(
-      {"compensate", "table", mill, "mine.errors.toml", "--for", "siemens-cec", "--force", "-o", "mine.errors.toml"});
+  const CommandResult over = abbe({"compensate", "table", "--machine", mill, "--errors", "mine.errors.toml", "--for",
+                                   "siemens-cec", "--force", "-o", "mine.errors.toml"});
   EXPECT_EQ(over.exit_code, ExitCode::bad_input);
   EXPECT_THAT(over.err, HasSubstr("is an input of the command"));
   EXPECT_EQ(folder.read("mine.errors.toml"), before);
@@ -384,8 +388,8 @@ TEST_F(CompensateTable, OptionsThatWouldChangeNothingAreRefused) {
 TEST_F(CompensateTable, ATableOfAnAxisGetsNodesWhereItsKinksAre) {
   const auto mill5 = (source / "examples/machines/trunnion-mill.machine.toml").string();
   const auto errors5 = (source / "examples/compensate/trunnion.errors.toml").string();
-  const nlohmann::json json =
-      json_of(abbe({"compensate", "table", mill5, errors5, "--for", "linuxcnc", "-o", "comp", "--json"}));
+  const nlohmann::json json = json_of(abbe(
+      {"compensate", "table", "--machine", mill5, "--errors", errors5, "--for", "linuxcnc", "-o", "comp", "--json"}));
   ASSERT_EQ(json["files"].size(), 5U);
   // EAA is a table every 15 degrees.
   EXPECT_EQ(json["tables"][1]["name"], "A");
@@ -407,13 +411,13 @@ TEST_F(CompensateTable, AFolderOfResultsWithAnInputInItIsNotReplaced) {
   std::ofstream(results / ".abbe-results")
       << "Results of abbe: the next ones written here replace the files below and leave "
          "others alone.\nerrors.toml\n";
-  const CommandResult over =
-      abbe({"compensate", "table", mill, "results/errors.toml", "--for", "linuxcnc", "-o", "results"});
+  const CommandResult over = abbe({"compensate", "table", "--machine", mill, "--errors", "results/errors.toml", "--for",
+                                   "linuxcnc", "-o", "results"});
   EXPECT_EQ(over.exit_code, ExitCode::bad_input);
   EXPECT_THAT(over.err, HasSubstr("results/errors.toml lies in it"));
   EXPECT_TRUE(std::filesystem::exists(results / "errors.toml"));
-  const CommandResult beside =
-      abbe({"compensate", "table", mill, "results/errors.toml", "--for", "linuxcnc", "-o", "results/comp"});
+  const CommandResult beside = abbe({"compensate", "table", "--machine", mill, "--errors", "results/errors.toml",
+                                     "--for", "linuxcnc", "-o", "results/comp"});
   EXPECT_EQ(beside.exit_code, ExitCode::done) << beside.err;
 }
 
@@ -431,7 +435,8 @@ value_um = -1
 standard_uncertainty_um = 0.8
 )";
   const auto with_play = [&](const std::string& format, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"compensate", "table", mill, "r.errors.toml", "--for", format, "--json"};
+    std::vector<std::string> arguments = {"compensate",    "table", "--machine", mill,    "--errors",
+                                          "r.errors.toml", "--for", format,      "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const CommandResult result = abbe(arguments);
     EXPECT_EQ(result.err, "");

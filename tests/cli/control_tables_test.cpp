@@ -54,8 +54,9 @@ TEST_F(ControlTablesOfTheCommand, AreThoseOfTheLibrary) {
       {"marlin", {}, [](ControlTableRequest&) {}},
   };
   for (const SameRequest& one : all) {
-    std::vector<std::string> arguments = {"compensate", "table", machine,    errors,        "--for", one.format,
-                                          "--json",     "-o",    one.format, "--positions", "3"};
+    std::vector<std::string> arguments = {"compensate", "table",       "--machine", machine,  "--errors",
+                                          errors,       "--for",       one.format,  "--json", "-o",
+                                          one.format,   "--positions", "3"};
     arguments.insert(arguments.end(), one.options.begin(), one.options.end());
     const CommandResult result = abbe(arguments);
     ASSERT_EQ(result.exit_code, ExitCode::done) << one.format << ": " << result.err;

@@ -45,7 +45,8 @@ TEST_F(DialGrids, WholeMachineExampleIsWrittenWithItsCovariance) {
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   EXPECT_THAT(result.out, HasSubstr("EAA is not seen; it takes a polygon with autocollimator"));
   // The written machine ends where the readings end, so that a map of it is no extrapolation.
-  std::vector<std::string> arguments = {"map", "found/machine.machine.toml", "found/decoupled.errors.toml", "--json"};
+  std::vector<std::string> arguments = {
+      "map", "--machine", "found/machine.machine.toml", "--errors", "found/decoupled.errors.toml", "--json"};
   for (const char* range :
        {"X_mm=0:400:2", "Y_mm=0:200:2", "Z_mm=0:400:2", "A_deg=60", "B_deg=-45:30:2", "C_deg=300"}) {
     arguments.insert(arguments.end(), {"--grid", range});
@@ -57,7 +58,8 @@ TEST_F(DialGrids, WholeMachineExampleIsWrittenWithItsCovariance) {
   EXPECT_GT(json["standard_uncertainty_um"]["mean"].get<double>(), 0.3);
   EXPECT_LT(json["standard_uncertainty_um"]["mean"].get<double>(), 10);
   EXPECT_THAT(folder.read("found/decoupled_B.csv"), HasSubstr("B_deg,EXB_um,u_EXB_um"));
-  const CommandResult check = abbe({"check", "found/machine.machine.toml", "--errors", "found/decoupled.errors.toml"});
+  const CommandResult check =
+      abbe({"check", "--machine", "found/machine.machine.toml", "--errors", "found/decoupled.errors.toml"});
   EXPECT_EQ(check.exit_code, ExitCode::done) << check.err;
 }
 

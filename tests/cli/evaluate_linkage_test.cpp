@@ -95,10 +95,11 @@ TEST_F(EvaluateLinkage, NoisyReadingsGiveTheErrorsWithinTheirUncertaintyAndAnErr
   const ErrorsFile file = read_errors((folder.path() / "found/errors.toml").string(), machine);
   EXPECT_EQ(parameter_names(machine, file.errors), names);
   EXPECT_EQ(file.covariance.rows(), 7);
-  EXPECT_EQ(abbe({"map", machine_file(convention), "found/errors.toml", "--grid", "X_mm=0:10:2", "--grid", "Y_mm=0",
-                  "--grid", "Z_mm=0", "--grid", "A_deg=0", "--grid", "C1_deg=0", "--grid", "C2_deg=0"})
-                .exit_code,
-            ExitCode::done);
+  EXPECT_EQ(
+      abbe({"map", "--machine", machine_file(convention), "--errors", "found/errors.toml", "--grid", "X_mm=0:10:2",
+            "--grid", "Y_mm=0", "--grid", "Z_mm=0", "--grid", "A_deg=0", "--grid", "C1_deg=0", "--grid", "C2_deg=0"})
+          .exit_code,
+      ExitCode::done);
   EXPECT_THAT(folder.read("found/report.html"), HasSubstr("EX0C1"));
   EXPECT_THAT(folder.read("found/plot.svg"), HasSubstr("<svg"));
 }

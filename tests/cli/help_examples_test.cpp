@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "cli/all_commands.h"
 #include "cli/command_test.h"
 
 namespace abbe {
@@ -44,41 +45,21 @@ std::vector<std::string> example_lines(const std::string& help) {
   return lines;
 }
 
-/// Headings of subcommands in helps.
-const std::set<std::string> kSections = {"Subcommands:", "Whole studies:", "Machines:", "Measure:", "Identify:",
-                                         "Evaluate:",    "Compensate:",    "Verify:",   "Shapes:"};
-
 class HelpExamples : public CommandTest {
  protected:
   HelpExamples() {
     std::filesystem::copy(std::filesystem::path(ABBE_SOURCE_DIR) / "examples", folder.path() / "examples",
                           std::filesystem::copy_options::recursive);
   }
-
-  /// The helps of the command, its subcommands and theirs, by what is typed.
-  void collect(const std::vector<std::string>& command, std::vector<std::string>& lines) const {
-    std::vector<std::string> arguments = command;
-    arguments.emplace_back("--help");
-    const CommandResult help = abbe(arguments);
-    ASSERT_EQ(help.exit_code, ExitCode::done) << help.err;
-    const std::vector<std::string> here = example_lines(help.out);
-    EXPECT_FALSE(here.empty()) << "no example in the help of abbe " << testing::PrintToString(command);
-    lines.insert(lines.end(), here.begin(), here.end());
-    std::istringstream stream(help.out);
-    bool below = false;
-    for (std::string line; std::getline(stream, line);) {
-      if (line.empty() || line[0] != ' ') below = kSections.contains(line);
-      if (!below || line.size() < 3 || line[2] == ' ' || line[0] != ' ') continue;
-      std::vector<std::string> deeper = command;
-      deeper.push_back(line.substr(2, line.find(' ', 2) - 2));
-      collect(deeper, lines);
-    }
-  }
 };
 
 TEST_F(HelpExamples, RunFromTheRepositoryAsTheyStand) {
   std::vector<std::string> lines;
-  collect({}, lines);
+  for (const CommandWithHelp& one : all_commands([this](const auto& words) { return abbe(words); })) {
+    const std::vector<std::string> here = example_lines(one.help);
+    EXPECT_FALSE(here.empty()) << "no example in the help of abbe " << testing::PrintToString(one.words);
+    lines.insert(lines.end(), here.begin(), here.end());
+  }
   ASSERT_GT(lines.size(), 20U) << "the helps were not understood";
   std::set<std::string> once(lines.begin(), lines.end());
   // Minutes of computation; published_test runs them.
@@ -99,6 +80,7 @@ TEST_F(HelpExamples, RunFromTheRepositoryAsTheyStand) {
     EXPECT_TRUE(result.exit_code == ExitCode::done || result.exit_code == ExitCode::computation_says_no)
         << line << "\n"
         << result.exit_code << " " << result.err;
+    EXPECT_EQ(result.err.find("old form"), std::string::npos) << line;
     ++run;
   }
   EXPECT_GT(run, 15);

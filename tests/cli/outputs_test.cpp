@@ -68,12 +68,12 @@ struct FileOutput {
 
 /// All of them. What they read does not exist: outputs are looked at first.
 std::vector<FileOutput> file_outputs() {
-  const std::vector<std::string> path{"path", "machine", "table"},
-      table{"compensate", "table", "machine", "errors", "--for", "siemens-eec"};
+  const std::vector<std::string> path{"path", "table", "--machine", "machine"},
+      table{"compensate", "table", "--machine", "machine", "--errors", "errors", "--for", "siemens-eec"};
   const std::vector<std::string> scan{"scan", "plan", "part.stl", "--machine", "machine"};
   return {{{"new", "w X b Z t"}, "-o"},
           {{"test-piece", "s-shape"}, "-o"},
-          {{"map", "machine", "errors"}, "-o"},
+          {{"map", "--machine", "machine", "--errors", "errors"}, "-o"},
           {{"identify", "study"}, "-o"},
           {{"plan", "study"}, "-o"},
           {{"plan", "study"}, "--svg"},
@@ -86,11 +86,11 @@ std::vector<FileOutput> file_outputs() {
           {scan, "--program"},
           {scan, "--coverage"},
           {scan, "--report"},
-          {{"scan", "points", "machine", "readings"}, "-o"},
+          {{"scan", "points", "readings", "--machine", "machine"}, "-o"},
           {{"verify", "results"}, "-o"},
           {{"compensate", "gcode", "program", "--machine", "machine", "--errors", "errors"}, "-o"},
-          {{"compensate", "freeze", "machine", "errors"}, "-o"},
-          {{"compensate", "poses", "machine", "errors", "poses"}, "-o"},
+          {{"compensate", "freeze", "--machine", "machine", "--errors", "errors"}, "-o"},
+          {{"compensate", "poses", "poses", "--machine", "machine", "--errors", "errors"}, "-o"},
           {table, "-o"},
           {table, "--map"}};
 }
@@ -104,7 +104,7 @@ std::vector<std::vector<std::string>> folder_outputs() {
           {"evaluate", "positioning", "readings", "-o"},
           {"register", "scan.csv", "part.stl", "-o"},
           {"deviate", "scan.csv", "part.stl", "-o"},
-          {"compensate", "table", "machine", "errors", "--for", "siemens-cec", "-o"}};
+          {"compensate", "table", "--machine", "machine", "--errors", "errors", "--for", "siemens-cec", "-o"}};
 }
 
 TEST_F(Outputs, NoCommandReplacesAFileUnasked) {
@@ -139,8 +139,8 @@ TEST_F(Outputs, APlaceThatCannotBeWrittenToIsFoundBeforeAnythingIsRead) {
     expect_refused_for(command, "mine/keep.txt/results", "Not a directory");
   }
   // Tables and a map in the folder that is made for them.
-  EXPECT_THAT(abbe({"compensate", "table", "machine", "errors", "--for", "siemens-cec", "-o", "tables", "--map",
-                    "tables/map.csv"})
+  EXPECT_THAT(abbe({"compensate", "table", "--machine", "machine", "--errors", "errors", "--for", "siemens-cec", "-o",
+                    "tables", "--map", "tables/map.csv"})
                   .err,
               HasSubstr("machine: "));
 }
@@ -149,7 +149,7 @@ TEST_F(Outputs, AFolderWithoutPermissionIsFoundBeforeAnythingIsRead) {
   if (::geteuid() == 0) GTEST_SKIP() << "everything is permitted to root";
   fs::permissions(folder.path() / "mine", fs::perms::owner_read | fs::perms::owner_exec);
   for (const std::vector<std::string>& command :
-       {std::vector<std::string>{"map", "machine", "errors", "-o", "mine/x.csv"},
+       {std::vector<std::string>{"map", "--machine", "machine", "--errors", "errors", "-o", "mine/x.csv"},
         std::vector<std::string>{"run", "study", "-o", "mine/a/b"}}) {
     const CommandResult result = abbe(command);
     EXPECT_EQ(result.exit_code, ExitCode::bad_input);
@@ -160,7 +160,9 @@ TEST_F(Outputs, AFolderWithoutPermissionIsFoundBeforeAnythingIsRead) {
 
 TEST_F(Outputs, AFileThatExistsIsReplacedWhereThatIsAskedFor) {
   const std::vector<std::string> map{"map",
+                                     "--machine",
                                      ABBE_SOURCE_DIR "/examples/machines/trunnion-mill.machine.toml",
+                                     "--errors",
                                      ABBE_SOURCE_DIR "/examples/compensate/trunnion.errors.toml",
                                      "--grid",
                                      "X_mm=0",

@@ -83,16 +83,11 @@ TEST_F(Path, TableA4EqualsTheReferenceInBothConventionsReadingsBranchesAndTableA
                    number(row, "C2_deg") == std::stod(c2);
           });
           ASSERT_NE(first, reference.end());
-          std::vector<std::string> arguments = {"path",
-                                                machine,
-                                                u ? a4 : "inward.csv",
-                                                "--placement",
-                                                reading[1] == 'B' ? placement : "other.placement.toml",
-                                                "--hold",
-                                                "C2_deg=" + c2,
-                                                "--force",
-                                                "-o",
-                                                "commands.csv"};
+          std::vector<std::string> arguments = {
+              "path",   u ? a4 : "inward.csv", "--machine",
+              machine,  "--placement",         reading[1] == 'B' ? placement : "other.placement.toml",
+              "--hold", "C2_deg=" + c2,        "--force",
+              "-o",     "commands.csv"};
           for (const char* axis : {"X", "Y", "Z", "A_deg", "C1_deg"}) {
             const std::string unit = axis[1] == 0 ? "_mm" : "";
             arguments.insert(arguments.end(), {"--start", axis + unit + "=" + first->at(std::string(branch) + axis)});
@@ -128,8 +123,8 @@ TEST_F(Path, WarningsOfThePlacementAreRepeated) {
   std::ifstream file(placement);
   write("part.placement.toml", std::string(std::istreambuf_iterator<char>(file), {}) +
                                    "warnings = [\"the part is incomplete: 1 face is left out\"]\n");
-  const CommandResult result =
-      abbe({"path", u_machine, a4, "--placement", "part.placement.toml", "--report", "page.html", "--json"});
+  const CommandResult result = abbe(
+      {"path", a4, "--machine", u_machine, "--placement", "part.placement.toml", "--report", "page.html", "--json"});
   EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
   EXPECT_EQ(result.err, "abbe: warning: part.placement.toml: the part is incomplete: 1 face is left out\n");
   EXPECT_EQ(nlohmann::json::parse(result.out).at("warnings").at(0), "the part is incomplete: 1 face is left out");
@@ -138,8 +133,8 @@ TEST_F(Path, WarningsOfThePlacementAreRepeated) {
 
 TEST_F(Path, ProgramBringsTheToolAlongTheCurveWithItsFeedAndPierce) {
   const CommandResult result =
-      abbe({"path", u_machine, a4, "--placement", placement, "--tolerance-um", "1", "--decimals", "9", "--word", "C1=C",
-            "--word", "C2=B", "-o", "part.ngc", "-o", "part.csv", "--json"});
+      abbe({"path", a4, "--machine", u_machine, "--placement", placement, "--tolerance-um", "1", "--decimals", "9",
+            "--word", "C1=C", "--word", "C2=B", "-o", "part.ngc", "-o", "part.csv", "--json"});
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   const nlohmann::json json = nlohmann::json::parse(result.out);
   EXPECT_LE(json["largest_deviation_um"].get<double>(), 1);
@@ -171,12 +166,13 @@ TEST_F(Path, ProgramBringsTheToolAlongTheCurveWithItsFeedAndPierce) {
 TEST_F(Path, RegionsAndIdentifiedErrorsChangeTheCommands) {
   const std::string curve = (source / "examples/laser_engraver/regions.ngc").string();
   const std::string errors = (source / "examples/laser_engraver/linkage.errors.toml").string();
-  const CommandResult without = abbe({"path", u_machine, curve});
+  const CommandResult without = abbe({"path", curve, "--machine", u_machine});
   EXPECT_EQ(without.exit_code, ExitCode::bad_input);
   EXPECT_THAT(without.err, HasSubstr("--retract-mm"));
-  ASSERT_EQ(abbe({"path", u_machine, curve, "--retract-mm", "20", "-o", "nominal.csv"}).exit_code, ExitCode::done);
-  const CommandResult result =
-      abbe({"path", u_machine, curve, "--errors", errors, "--retract-mm", "20", "-o", "true.csv", "-o", "true.mpf"});
+  ASSERT_EQ(abbe({"path", curve, "--machine", u_machine, "--retract-mm", "20", "-o", "nominal.csv"}).exit_code,
+            ExitCode::done);
+  const CommandResult result = abbe({"path", curve, "--machine", u_machine, "--errors", errors, "--retract-mm", "20",
+                                     "-o", "true.csv", "-o", "true.mpf"});
   ASSERT_EQ(result.exit_code, ExitCode::done) << result.err;
   EXPECT_THAT(result.out, HasSubstr("2 regions"));
   const std::vector<CsvRow> nominal = csv_rows(folder.path() / "nominal.csv"),
@@ -196,8 +192,8 @@ TEST_F(Path, TheStartCountsByTheAxesThatItNames) {
     return at.at("conv") == "U" && at.at("eq8_means") == "DBW" && number(at, "C2_deg") == 0;
   });
   ASSERT_NE(row, reference.end());
-  const std::vector<std::string> path = {"path",   u_machine,  a4,   "--placement", placement,
-                                         "--hold", "C2_deg=0", "-o", "out.csv",     "--force"};
+  const std::vector<std::string> path = {"path",   a4,         "--machine", u_machine, "--placement", placement,
+                                         "--hold", "C2_deg=0", "-o",        "out.csv", "--force"};
   for (const std::string branch : {"pos_", "neg_"}) {
     for (const std::string axis : {"A_deg", "C1_deg"}) {
       std::vector<std::string> arguments = path;
@@ -219,19 +215,21 @@ TEST_F(Path, TheStartCountsByTheAxesThatItNames) {
 
 TEST_F(Path, WhatCannotBeDoneIsSaid) {
   write("curve.csv", "x_mm,y_mm,z_mm,i,j,k\n0,0,0,0,0,1\n5000,0,0,0,0,1\n");
-  const CommandResult feed = abbe({"path", u_machine, "curve.csv"});
+  const CommandResult feed = abbe({"path", "curve.csv", "--machine", u_machine});
   EXPECT_EQ(feed.exit_code, ExitCode::bad_input);
   EXPECT_THAT(feed.err, HasSubstr("--feed-mm-per-min"));
-  const CommandResult travel = abbe({"path", u_machine, "curve.csv", "--feed-mm-per-min", "100", "-o", "out.ngc"});
+  const CommandResult travel =
+      abbe({"path", "curve.csv", "--machine", u_machine, "--feed-mm-per-min", "100", "-o", "out.ngc"});
   EXPECT_EQ(travel.exit_code, ExitCode::computation_says_no);
   EXPECT_THAT(travel.err, HasSubstr("point 2"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "out.ngc"));
-  const CommandResult hold = abbe({"path", u_machine, a4, "--hold", "Q_deg=1"});
+  const CommandResult hold = abbe({"path", a4, "--machine", u_machine, "--hold", "Q_deg=1"});
   EXPECT_EQ(hold.exit_code, ExitCode::bad_input);
   EXPECT_THAT(hold.err, HasSubstr("no axis 'Q'"));
-  const CommandResult kind = abbe({"path", u_machine, a4, "-o", "out.txt"});
+  const CommandResult kind = abbe({"path", a4, "--machine", u_machine, "-o", "out.txt"});
   EXPECT_EQ(kind.exit_code, ExitCode::bad_input);
-  const CommandResult words = abbe({"path", u_machine, a4, "--word", "C1=C", "--word", "C2=C", "-o", "out.ngc"});
+  const CommandResult words =
+      abbe({"path", a4, "--machine", u_machine, "--word", "C1=C", "--word", "C2=C", "-o", "out.ngc"});
   EXPECT_EQ(words.exit_code, ExitCode::bad_input);
   EXPECT_THAT(words.err, HasSubstr("two axes have the word C"));
 }

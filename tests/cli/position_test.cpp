@@ -100,8 +100,8 @@ TEST_F(PositionTest, ThePlacementIsWhatAPathTakes) {
   ASSERT_EQ(found.exit_code, done) << found.err;
   EXPECT_NE(found.out.find("p_workpiece = D p_table (BCS to WCS)"), std::string::npos);
   const CommandResult path =
-      abbe({"path", std::string(ABBE_SOURCE_DIR "/examples/machines/yin-engraver-u.machine.toml"),
-            engraver + "table-a4.csv", "--placement", placement});
+      abbe({"path", engraver + "table-a4.csv", "--machine",
+            std::string(ABBE_SOURCE_DIR "/examples/machines/yin-engraver-u.machine.toml"), "--placement", placement});
   EXPECT_EQ(path.exit_code, done) << path.err;
 }
 

@@ -57,7 +57,7 @@ class Bash(InAFolder):
 
     def test_options_of_the_command_that_is_typed(self):
         self.assertEqual(self.complete("abbe run --al"), ["--all-values"])
-        self.assertEqual(self.complete("abbe compensate table a.toml --detection"), ["--detection-unit-um"])
+        self.assertEqual(self.complete("abbe compensate table --machine a.toml --detection"), ["--detection-unit-um"])
         self.assertEqual(self.complete("abbe --ver"), ["--version"])
         self.assertEqual(self.complete("abbe map --al"), [])
 

@@ -29,8 +29,8 @@ class StepOptionsCommand : public CommandTest {
             {"register", "scan.csv", mesh},
             {"deviate", "scan.csv", mesh},
             {"position", "mesh.positioning.toml"},
-            {"path", examples + "machines/yin-engraver-u.machine.toml", examples + "laser_engraver/table-a4.csv",
-             "--report", "page.html", "--part", mesh},
+            {"path", examples + "laser_engraver/table-a4.csv", "--machine",
+             examples + "machines/yin-engraver-u.machine.toml", "--report", "page.html", "--part", mesh},
             {"scan", "plan", mesh, "--machine", examples + "machines/liu-scanner.machine.toml"}};
   }
 
@@ -81,9 +81,10 @@ TEST_F(StepOptionsCommand, AreRefusedWithAMeshThatIsNoStepFile) {
 
 TEST_F(StepOptionsCommand, AreRefusedWhereNoMeshIsRead) {
   const std::string examples = ABBE_SOURCE_DIR "/examples/";
-  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
-           {"position", examples + "laser_engraver/scanner.positioning.toml"},
-           {"path", examples + "machines/yin-engraver-u.machine.toml", examples + "laser_engraver/table-a4.csv"}}) {
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{"position", examples + "laser_engraver/scanner.positioning.toml"},
+                                             {"path", examples + "laser_engraver/table-a4.csv", "--machine",
+                                              examples + "machines/yin-engraver-u.machine.toml"}}) {
     const CommandResult result = abbe_with(command, {"--chord-mm", "0.1"});
     EXPECT_EQ(result.exit_code, ExitCode::bad_input) << command[0];
     EXPECT_THAT(result.err, HasSubstr("--chord-mm: no mesh is read")) << command[0];

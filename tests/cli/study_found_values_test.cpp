@@ -125,14 +125,16 @@ TEST_F(StudyFoundValues, FiguresOfAPartOfTheErrorsSaySo) {
   EXPECT_EQ(summary["errors_known"], 2);
   EXPECT_EQ(summary["errors_of_machine"], 10);
   EXPECT_THAT(summary["verdict"].get<std::string>(), HasSubstr("2 of the "));
-  const CommandResult map = abbe({"map", "m.toml", "out/errors.toml"});
+  const CommandResult map = abbe({"map", "--machine", "m.toml", "--errors", "out/errors.toml"});
   EXPECT_THAT(map.out, HasSubstr("; known are 2 of the "));
   EXPECT_THAT(map.out, HasSubstr("caution: 2 of the "));
-  const nlohmann::json json = nlohmann::json::parse(abbe({"map", "m.toml", "out/errors.toml", "--json"}).out);
+  const nlohmann::json json =
+      nlohmann::json::parse(abbe({"map", "--machine", "m.toml", "--errors", "out/errors.toml", "--json"}).out);
   EXPECT_EQ(json["errors_known"], 2);
   EXPECT_TRUE(json.contains("caution"));
   // What a simulation does not state is zero.
-  EXPECT_THAT(abbe({"map", "m.toml", "out/truth.errors.toml"}).out, testing::Not(HasSubstr("caution")));
+  EXPECT_THAT(abbe({"map", "--machine", "m.toml", "--errors", "out/truth.errors.toml"}).out,
+              testing::Not(HasSubstr("caution")));
 }
 
 }  // namespace

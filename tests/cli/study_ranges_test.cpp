@@ -98,7 +98,8 @@ TEST_F(StudyRanges, WithoutAMarginPosesAtTheEndsAreLeftOutAndTheExitCodeSaysSo) 
   EXPECT_EQ(summary["map"]["ranges"][0]["axis"], "X");
   EXPECT_FALSE(summary["map"]["ranges"][0].contains("positions")) << "a list of poses";
   EXPECT_EQ(abbe({"run", "s.study.toml", "--accept-uncovered"}).exit_code, ExitCode::done);
-  const std::vector<std::string> map = {"map", "m.toml", "out/errors.toml", "--poses", "poses.csv"};
+  const std::vector<std::string> map = {"map",     "--machine", "m.toml", "--errors", "out/errors.toml",
+                                        "--poses", "poses.csv"};
   EXPECT_EQ(abbe(map).exit_code, ExitCode::computation_says_no);
   std::vector<std::string> accepted = map;
   accepted.emplace_back("--accept-uncovered");

@@ -367,14 +367,16 @@ TEST_F(Studies, ASwappedReflectorIsNamed) {
 TEST_F(Studies, MapOfAnErrorsFileSaysWhatLiesOutsideItsRange) {
   write_study();
   ASSERT_EQ(abbe({"run", "s.study.toml"}).exit_code, ExitCode::done);
-  const CommandResult inside =
-      abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=100:1300:5", "-o", "map.csv", "-o", "map.vts"});
+  const CommandResult inside = abbe({"map", "--machine", "m.machine.toml", "--errors", "out/errors.toml", "--grid",
+                                     "X_mm=100:1300:5", "-o", "map.csv", "-o", "map.vts"});
   EXPECT_EQ(inside.exit_code, ExitCode::done) << inside.err;
   EXPECT_THAT(inside.out, HasSubstr("standard uncertainty"));
-  const CommandResult outside = abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=0:2000:5"});
+  const CommandResult outside =
+      abbe({"map", "--machine", "m.machine.toml", "--errors", "out/errors.toml", "--grid", "X_mm=0:2000:5"});
   EXPECT_EQ(outside.exit_code, ExitCode::computation_says_no);
   EXPECT_THAT(outside.err, HasSubstr("outside the range"));
-  const CommandResult wrong = abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_deg=0:2000:5"});
+  const CommandResult wrong =
+      abbe({"map", "--machine", "m.machine.toml", "--errors", "out/errors.toml", "--grid", "X_deg=0:2000:5"});
   EXPECT_EQ(wrong.exit_code, ExitCode::bad_input);
   EXPECT_THAT(wrong.err, HasSubstr("unit 'deg' for a linear axis"));
 }
@@ -384,11 +386,13 @@ TEST_F(Studies, AMapWithoutKnownPosesStatesNoFigures) {
   ASSERT_EQ(abbe({"run", "s.study.toml", "--accept-uncovered"}).exit_code, ExitCode::done);
   const std::string machine = std::regex_replace(folder.read("m.machine.toml"), std::regex("1400"), "5000");
   folder.write("m.machine.toml", machine);
-  const CommandResult text = abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=3000:4000:5"});
+  const CommandResult text =
+      abbe({"map", "--machine", "m.machine.toml", "--errors", "out/errors.toml", "--grid", "X_mm=3000:4000:5"});
   EXPECT_EQ(text.exit_code, ExitCode::computation_says_no);
   EXPECT_THAT(text.out, HasSubstr("0 poses"));
   EXPECT_THAT(text.out, Not(HasSubstr("mean")));
-  const CommandResult program = abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=3000", "--json"});
+  const CommandResult program =
+      abbe({"map", "--machine", "m.machine.toml", "--errors", "out/errors.toml", "--grid", "X_mm=3000", "--json"});
   const nlohmann::json json = nlohmann::json::parse(program.out);
   EXPECT_EQ(json["poses"], 0);
   EXPECT_GT(json["outside_range"], 0);
@@ -398,8 +402,8 @@ TEST_F(Studies, AMapWithoutKnownPosesStatesNoFigures) {
 TEST_F(Studies, AMapAfterCorrectionKeepsToWhereTheCorrectionIsKnown) {
   write_study({{"axis.X = {}", "axis.X = { range_mm = [100, 1300] }"}});
   ASSERT_EQ(abbe({"run", "s.study.toml"}).exit_code, ExitCode::done);
-  const std::vector<std::string> arguments = {"map", "m.machine.toml", "out/truth.errors.toml", "--minus",
-                                              "out/errors.toml"};
+  const std::vector<std::string> arguments = {
+      "map", "--machine", "m.machine.toml", "--errors", "out/truth.errors.toml", "--minus", "out/errors.toml"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), arguments.begin(), arguments.end());
     return abbe(more);
@@ -421,19 +425,19 @@ TEST_F(Studies, AMapAfterCorrectionKeepsToWhereTheCorrectionIsKnown) {
 TEST_F(Studies, AnAxisOfAMapIsGivenOnce) {
   write_study();
   ASSERT_EQ(abbe({"run", "s.study.toml"}).exit_code, ExitCode::done);
-  const CommandResult twice =
-      abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=100:200:3", "--grid", "X_mm=300"});
+  const CommandResult twice = abbe({"map", "--machine", "m.machine.toml", "--errors", "out/errors.toml", "--grid",
+                                    "X_mm=100:200:3", "--grid", "X_mm=300"});
   EXPECT_EQ(twice.exit_code, ExitCode::bad_input);
   EXPECT_THAT(twice.err, HasSubstr("axis X was given before"));
   folder.write("poses.csv", "X_mm,Z_mm,C_deg\n100,100,10\n");
-  const CommandResult both =
-      abbe({"map", "m.machine.toml", "out/errors.toml", "--grid", "X_mm=300", "--poses", "poses.csv"});
+  const CommandResult both = abbe({"map", "--machine", "m.machine.toml", "--errors", "out/errors.toml", "--grid",
+                                   "X_mm=300", "--poses", "poses.csv"});
   EXPECT_EQ(both.exit_code, ExitCode::bad_input);
 }
 
 TEST_F(Studies, NewMachinesAreValidAndExistingFilesAreKept) {
   ASSERT_EQ(abbe({"new", "w C' A' Y' b X Z t", "-o", "mill.machine.toml"}).exit_code, ExitCode::done);
-  const CommandResult check = abbe({"check", "mill.machine.toml"});
+  const CommandResult check = abbe({"check", "--machine", "mill.machine.toml"});
   EXPECT_EQ(check.exit_code, ExitCode::done) << check.err;
   EXPECT_THAT(check.out, HasSubstr("EXC"));
   const CommandResult again = abbe({"new", "w X' b t", "-o", "mill.machine.toml"});

@@ -21,7 +21,7 @@ TEST_F(TestPieceCommand, BothPiecesBecomeProgramsForATrunnionMill) {
     const std::string csv = (folder.path() / (piece + ".csv")).string();
     const std::string program = (folder.path() / (piece + ".ngc")).string();
     EXPECT_EQ(abbe({"test-piece", piece, "-o", csv}).exit_code, 0);
-    const CommandResult path = abbe({"path", machine, csv, "-o", program});
+    const CommandResult path = abbe({"path", csv, "--machine", machine, "-o", program});
     EXPECT_EQ(path.exit_code, 0) << path.err;
     std::ifstream file(program);
     const std::string text{std::istreambuf_iterator<char>(file), {}};

@@ -100,7 +100,8 @@ TEST_F(TrustOfResults, AGoodOneIsTrusted) {
   EXPECT_EQ(summary()["trusted"], true);
   EXPECT_FALSE(summary().contains("distrusted"));
   EXPECT_THAT(folder.read("out/errors.toml"), Not(HasSubstr("distrusted")));
-  EXPECT_EQ(abbe({"compensate", "freeze", "m.toml", "out/errors.toml", "--dry-run"}).err.find("trusted"),
+  EXPECT_EQ(abbe({"compensate", "freeze", "--machine", "m.toml", "--errors", "out/errors.toml", "--dry-run"})
+                .err.find("trusted"),
             std::string::npos);
 }
 
@@ -124,9 +125,9 @@ TEST_F(TrustOfResults, AReflectorOneMillimetreOffIsRefusedEverywhere) {
   folder.write("p.csv", "X_mm,Z_mm\n100,100\n");
   folder.write("p.ngc", "G21 G90 G0 X0 Z0\nG1 F100 X100 Z100\nM2\n");
   const std::vector<std::vector<std::string>> uses = {
-      {"compensate", "freeze", "m.toml", "out/errors.toml", "-o", "m.abbec"},
-      {"compensate", "poses", "m.toml", "out/errors.toml", "p.csv", "-o", "c.csv"},
-      {"compensate", "table", "m.toml", "out/errors.toml", "--for", "linuxcnc", "-o", "comp"},
+      {"compensate", "freeze", "--machine", "m.toml", "--errors", "out/errors.toml", "-o", "m.abbec"},
+      {"compensate", "poses", "p.csv", "--machine", "m.toml", "--errors", "out/errors.toml", "-o", "c.csv"},
+      {"compensate", "table", "--machine", "m.toml", "--errors", "out/errors.toml", "--for", "linuxcnc", "-o", "comp"},
       {"compensate", "gcode", "p.ngc", "--machine", "m.toml", "--errors", "out/errors.toml", "-o", "c.ngc"}};
   for (std::vector<std::string> use : uses) {
     const CommandResult refused = abbe(use);
@@ -139,7 +140,7 @@ TEST_F(TrustOfResults, AReflectorOneMillimetreOffIsRefusedEverywhere) {
     EXPECT_NE(accepted.exit_code, bad_input) << use[1] << accepted.err;
     EXPECT_THAT(accepted.err, HasSubstr("used although marked as not to be trusted")) << use[1];
   }
-  const CommandResult map = abbe({"map", "m.toml", "out/errors.toml"});
+  const CommandResult map = abbe({"map", "--machine", "m.toml", "--errors", "out/errors.toml"});
   EXPECT_EQ(map.exit_code, done);
   EXPECT_THAT(map.err, HasSubstr("marked as not to be trusted"));
 }
@@ -154,7 +155,8 @@ TEST_F(TrustOfResults, AcceptedItIsUsedButStaysMarked) {
   EXPECT_EQ(summary()["trusted"], false);
   EXPECT_EQ(summary()["misfit_accepted"], true);
   EXPECT_THAT(folder.read("out/errors.toml"), HasSubstr("misfit_accepted = true\n"));
-  const CommandResult freeze = abbe({"compensate", "freeze", "m.toml", "out/errors.toml", "--dry-run"});
+  const CommandResult freeze =
+      abbe({"compensate", "freeze", "--machine", "m.toml", "--errors", "out/errors.toml", "--dry-run"});
   EXPECT_NE(freeze.exit_code, bad_input) << freeze.err;
   EXPECT_THAT(freeze.err, HasSubstr("used although marked"));
 }

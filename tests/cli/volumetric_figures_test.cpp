@@ -46,11 +46,12 @@ TEST_F(VolumetricFigures, HaveTheSameNumbersUnderTheSameNamesInEveryCommand) {
   const std::string study = ABBE_SOURCE_DIR "/examples/three_axis/six-component-laser.study.toml";
   const nlohmann::json run = json_of({"run", study, "-o", "results"});
   const std::string machine = "results/machine.toml", errors = "results/errors.toml";
-  const nlohmann::json map = json_of({"map", machine, errors});
-  const nlohmann::json table =
-      json_of({"compensate", "table", machine, errors, "--for", "siemens-cec", "--limit-um", "1000", "--dry-run"});
+  const nlohmann::json map = json_of({"map", "--machine", machine, "--errors", errors});
+  const nlohmann::json table = json_of({"compensate", "table", "--machine", machine, "--errors", errors, "--for",
+                                        "siemens-cec", "--limit-um", "1000", "--dry-run"});
   const nlohmann::json verify = json_of({"verify", "results"});
-  const nlohmann::json truth = json_of({"map", machine, "results/truth.errors.toml", "--minus", errors});
+  const nlohmann::json truth =
+      json_of({"map", "--machine", machine, "--errors", "results/truth.errors.toml", "--minus", errors});
   const std::string predicted = "predicted_volumetric_error", known = "true_volumetric_error";
   expect_equal(run[predicted], map[predicted], "map");
   expect_equal(run[predicted], table[predicted], "table");
@@ -120,12 +121,12 @@ TEST_F(VolumetricFigures, OfMeasuredReadingsAreThosePredictedAndResidualsAreCall
 TEST_F(VolumetricFigures, WithoutAFittedDatumIsCalledADisplacement) {
   const std::string machine = ABBE_SOURCE_DIR "/examples/machines/three-axis-mill.machine.toml";
   const std::string errors = ABBE_SOURCE_DIR "/examples/compensate/mill.errors.toml";
-  const nlohmann::json kept = json_of({"map", machine, errors, "--keep-datum"});
+  const nlohmann::json kept = json_of({"map", "--machine", machine, "--errors", errors, "--keep-datum"});
   EXPECT_FALSE(kept.contains("predicted_volumetric_error"));
-  const nlohmann::json fitted = json_of({"map", machine, errors});
+  const nlohmann::json fitted = json_of({"map", "--machine", machine, "--errors", errors});
   EXPECT_LT(fitted["predicted_volumetric_error"]["before_um"]["rms"].get<double>(),
             kept["displacement_before_um"]["rms"].get<double>());
-  EXPECT_EQ(fitted, json_of({"map", machine, errors, "--fit-datum"}));
+  EXPECT_EQ(fitted, json_of({"map", "--machine", machine, "--errors", errors, "--fit-datum"}));
 }
 
 }  // namespace

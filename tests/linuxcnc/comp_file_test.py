@@ -28,7 +28,8 @@ def test(case, run_program, abbe, machine, folder):
     run(case, "prepare", folder)
     for kind in (1, 0):
         tables = folder / f"type-{kind}"
-        run(abbe, "compensate", "table", machine, folder / "identified.errors.toml", "--for", "linuxcnc", "--type", kind,
+        run(abbe, "compensate", "table", "--machine", machine, "--errors", folder / "identified.errors.toml", "--for",
+            "linuxcnc", "--type", kind,
             "--interpolation-um", 0.2, "--interpolation-urad", 0.2, "-o", tables)
         words = [word for axis in AXES for word in ("--comp", f"{axis}={tables / (axis + '.comp')}")]
         traces = [folder / f"{name}-{kind}.csv" for name in ("poses", "circle")]
