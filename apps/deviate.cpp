@@ -1,15 +1,7 @@
-#include <fmt/format.h>
-
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "abbe/formats/machine/transform_file.h"
-#include "abbe/formats/shapes/ply_file.h"
-#include "abbe/formats/text/input_error.h"
-#include "abbe/report/drawings/deviation_colours.h"
-#include "abbe/report/drawings/surface_picture.h"
-#include "abbe/report/evaluations/deviation_report.h"
+#include "abbe/study/scan_deviations.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
@@ -28,67 +20,29 @@ struct DeviateCommand {
   bool faces_of_file = false;
 };
 
-/// The transform, refused where the registration that wrote it found no pose.
-TransformFile pose_of(const DeviateCommand& command) {
-  if (command.transform.empty()) return {};
-  TransformFile pose = read_transform_file(command.transform);
-  if (!pose.status.empty() && pose.status != "ok" && pose.status != "ambiguous" && pose.status != "undetermined") {
-    throw InputError({.file = command.transform, .field = "status"},
-                     fmt::format("the registration that wrote this transform says {}", pose.status),
-                     "the transform of a registration that found a pose (ok, ambiguous or undetermined)");
-  }
-  return pose;
-}
-
-SurfaceFaces faces_of(const DeviateCommand& command, const MeshFile& part) {
-  if (!command.faces_of_file) {
-    return command.crease > 0 ? surface_faces(part.mesh, command.crease, command.files.threads) : SurfaceFaces();
-  }
-  if (part.faces == 0) {
-    throw InputError({command.files.part, 0, 0, ""}, "the file states no faces",
-                     "a STEP file, or an OBJ file with o, g or usemtl; --faces-deg finds faces by their edges");
-  }
-  return stated_faces(part.mesh, part.face_of_triangle, part.faces);
-}
-
 int run_deviate(DeviateCommand command) {
-  const TransformFile pose = pose_of(command);
-  if (command.lower_mm > command.upper_mm) {
-    throw InputError({.field = "--lower-um"}, "lies above --upper-um", "a band from lower to upper");
-  }
-  const PointCloudFile scan = command.files.read_scan();
-  const MeshFile part = command.files.read_part();
-  const Eigen::Matrix3Xd points = (pose.transform.rotation * scan.cloud.points).colwise() + pose.transform.translation;
-  ScanComparisonOptions options;
-  options.largest_mm = command.largest_mm;
-  options.threads = command.files.threads;
+  ScanDeviationsRequest request;
+  request.transform_file = command.transform;
+  if (!command.transform.empty()) request.pose = read_transform_file(command.transform);
   if (command.lower_mm != 0 || command.upper_mm != 0) {
-    options.tolerance = DeviationTolerance{command.lower_mm, command.upper_mm};
+    request.tolerance = DeviationTolerance{command.lower_mm, command.upper_mm};
   }
-  const ClosestPointFinder surface(part.mesh, command.files.threads);
-  options.faces = faces_of(command, part);
-  const ScanComparison compared = compare_scan(surface, points, options);
-  DeviationRequest request{.scan = command.files.scan,
-                           .part = command.files.part,
-                           .transform = command.transform,
-                           .status = pose.status,
-                           .tolerance = options.tolerance,
-                           .largest_mm = command.largest_mm,
-                           .colour_mm = command.colour_mm};
-  if (command.faces_of_file) request.face_names = part.face_names;
-  EvaluationReport report = deviation_report(request, scan, part, compared);
-  if (!command.options.output.empty()) {
-    const double range = deviation_colour_range(request, compared);
-    command.options.files.emplace_back("deviation.csv",
-                                       point_cloud_csv({compared.counted_points, {}}, compared.counted_mm));
-    command.options.files.emplace_back("deviation.ply",
-                                       ply_bytes({.points = compared.counted_points,
-                                                  .colours = deviation_colours(compared.counted_mm, range),
-                                                  .deviation = compared.counted_mm}));
-    report.page = deviation_page(part.mesh, compared.closest, compared.deviation, range, command.files.threads);
-  }
-  const int code = finish_evaluation(report, command.options);
-  return compared.counted_mm.empty() ? kNegative : code;
+  request.scan_file = command.files.scan;
+  request.part_file = command.files.part;
+  request.scan = command.files.read_scan();
+  request.part = command.files.read_part();
+  request.largest_mm = command.largest_mm;
+  request.colour_mm = command.colour_mm;
+  request.faces = command.faces_of_file ? DeviationFaces::of_file
+                  : command.crease > 0  ? DeviationFaces::by_edges
+                                        : DeviationFaces::none;
+  request.crease = command.crease;
+  request.threads = command.files.threads;
+  request.page = !command.options.output.empty();
+  ScanDeviations result = find_deviations(request);
+  if (!command.options.output.empty()) command.options.files = deviation_files(result);
+  const int code = finish_evaluation(result.report, command.options);
+  return result.has_points() ? code : static_cast<int>(kNegative);
 }
 
 }  // namespace

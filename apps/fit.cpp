@@ -1,19 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "abbe/formats/files/results_folder.h"
-#include "abbe/formats/shapes/ending.h"
-#include "abbe/formats/shapes/mesh_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
-#include "abbe/report/drawings/fit_surface.h"
-#include "abbe/report/evaluations/fit_report.h"
+#include "abbe/study/fitted_points.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
@@ -31,23 +30,6 @@ struct FitCommand {
   double half_angle = 0, sigma = 0;
   int threads = 0;
 };
-
-const std::map<std::string, ShapeKind>& shapes() {
-  static const std::map<std::string, ShapeKind> all = {
-      {"line2", ShapeKind::line2},       {"line", ShapeKind::line3},     {"plane", ShapeKind::plane},
-      {"circle2", ShapeKind::circle2},   {"circle", ShapeKind::circle3}, {"sphere", ShapeKind::sphere},
-      {"cylinder", ShapeKind::cylinder}, {"cone", ShapeKind::cone}};
-  return all;
-}
-
-const std::map<std::string, FitMethod>& methods() {
-  static const std::map<std::string, FitMethod> all = {{"least-squares", FitMethod::least_squares},
-                                                       {"minimum-zone", FitMethod::minimum_zone},
-                                                       {"circumscribed", FitMethod::circumscribed},
-                                                       {"inscribed", FitMethod::inscribed},
-                                                       {"robust", FitMethod::robust}};
-  return all;
-}
 
 template <class Value>
 std::vector<std::string> names(const std::map<std::string, Value>& all) {
@@ -93,24 +75,14 @@ std::vector<double> held_radii(const FitCommand& command, std::size_t count) {
   return radii;
 }
 
-struct Read {
-  PointCloud cloud;
-  std::string format, unit;
-};
-
-Read read_points(const FitCommand& command, const std::string& file, bool in_plane = false) {
-  std::optional<FileLength> unit;
-  if (!command.unit.empty()) unit = file_length_named(command.unit);
-  const std::string extension = std::filesystem::path(with_ending(std::filesystem::path(file))).extension().string();
-  if (extension == ".stl" || extension == ".STL") {
-    MeshFile mesh = read_mesh(file, {unit, command.threads});
-    return {{std::move(mesh.mesh.vertices), Eigen::Matrix3Xd(3, 0)}, mesh.format + ", corners", unit_words(mesh.unit)};
-  }
-  PointCloudFile read = read_point_cloud(file, {unit, {}, command.threads, in_plane});
-  return {std::move(read.cloud), read.format, unit_words(read.unit)};
+PointCloudOptions reading_options(const FitCommand& command) {
+  PointCloudOptions options;
+  if (!command.unit.empty()) options.unit = file_length_named(command.unit);
+  options.threads = command.threads;
+  return options;
 }
 
-int run_coaxial(const FitCommand& command, FitRequest request) {
+int run_coaxial(const FitCommand& command) {
   if (command.method != "least-squares") {
     throw InputError({.field = "--method " + command.method}, "coaxial circles are fitted by least squares only",
                      "--method least-squares");
@@ -118,109 +90,51 @@ int run_coaxial(const FitCommand& command, FitRequest request) {
   if (!command.residuals.empty()) {
     throw InputError({.field = "--residuals"}, "coaxial circles have none", "one shape");
   }
-  std::vector<Eigen::Matrix3Xd> circles;
-  std::vector<std::string> circle_names;
+  CirclesFitRequest request;
   for (const std::string& file : command.files) {
-    Read read = read_points(command, file);
-    circle_names.push_back(std::filesystem::path(file).filename().string());
-    request.facts.emplace_back(circle_names.back(), read.format + ", " + read.unit);
-    circles.push_back(std::move(read.cloud.points));
+    request.circles.push_back(read_points_to_fit(file, reading_options(command)));
   }
-  CoaxialOptions options;
-  options.direction = held_direction(command);
-  options.radii = held_radii(command, command.files.size());
-  options.sigma = command.sigma;
-  request.title = "Coaxial circles";
-  const CoaxialCircles fit = coaxial_circles_fit(circles, options);
-  EvaluationReport report = coaxial_report(request, fit, options, circle_names);
-  const int code = finish_evaluation(report, command.options);
-  return fit.ok() ? code : static_cast<int>(kNegative);
+  request.options.direction = held_direction(command);
+  request.options.radii = held_radii(command, command.files.size());
+  request.options.sigma = command.sigma;
+  FittedCircles fitted = fit_circles(std::move(request));
+  const int code = finish_evaluation(fitted.report, command.options);
+  return fitted.is_ok() ? code : static_cast<int>(kNegative);
 }
 
-void check_request(const FitCommand& command, const FitRequest& request) {
-  const ShapeKind kind = request.choice.kind;
-  const FitConstraints& held = request.choice.options.constraints;
-  const bool has_radius = kind >= ShapeKind::circle2 && kind != ShapeKind::cone;
-  const std::string words = " of " + command.shape;
-  if (held.radius && !has_radius) {
-    throw InputError({.field = "--fixed-radius-mm"}, "there is no radius" + words + " to hold",
-                     "it with a circle, sphere or cylinder");
-  }
-  if (held.direction && (kind == ShapeKind::sphere || kind == ShapeKind::circle2)) {
-    throw InputError({.field = "--fixed-direction"}, "there is no direction" + words + " to hold",
-                     "it with a line, plane, circle in space, cylinder or cone");
-  }
-  if (held.direction && kind == ShapeKind::line2 && held.direction->head<2>().norm() == 0) {
-    throw InputError({.field = "--fixed-direction"}, "it has no part in x, y", "a direction in the plane");
-  }
-  if (held.half_angle && kind != ShapeKind::cone) {
-    throw InputError({.field = "--fixed-half-angle-deg"}, "there is no half angle" + words + " to hold",
-                     "it with a cone");
-  }
-  const bool one_sided =
-      request.choice.method == FitMethod::circumscribed || request.choice.method == FitMethod::inscribed;
-  const bool encloses = kind == ShapeKind::circle2 || kind == ShapeKind::sphere || kind == ShapeKind::cylinder;
-  if (one_sided && (!encloses || held.radius)) {
-    throw InputError({.field = "--method " + command.method},
-                     "there is none" + words + (held.radius ? " with its radius held" : ""),
-                     "circle2, sphere or cylinder with a free radius");
-  }
+FitChoice choice_of(const FitCommand& command) {
+  FitChoice choice;
+  choice.kind = shapes_by_name().at(command.shape);
+  choice.method = fit_methods_by_name().at(command.method);
+  choice.robust.kind = command.loss == "huber"    ? RobustKind::huber
+                       : command.loss == "welsch" ? RobustKind::welsch
+                                                  : RobustKind::tukey;
+  choice.options.sigma = command.sigma;
+  choice.options.threads = command.threads;
+  choice.options.constraints.direction = held_direction(command);
+  const std::vector<double> radii = held_radii(command, 1);
+  if (!radii.empty()) choice.options.constraints.radius = radii[0];
+  if (command.half_angle > 0) choice.options.constraints.half_angle = command.half_angle;
+  return choice;
 }
 
 int run_fit(const FitCommand& command) {
-  FitRequest request;
-  request.choice.options.sigma = command.sigma;
-  request.choice.options.threads = command.threads;
-  if (command.shape == "coaxial-circles") return run_coaxial(command, request);
+  if (command.shape == "coaxial-circles") return run_coaxial(command);
   if (command.files.size() != 1) {
     throw InputError({.field = "FILE"}, fmt::format("there are {} files", command.files.size()),
                      "one; several are for --shape coaxial-circles");
   }
-  request.choice.kind = shapes().at(command.shape);
-  request.choice.method = methods().at(command.method);
-  request.choice.robust.kind = command.loss == "huber"    ? RobustKind::huber
-                               : command.loss == "welsch" ? RobustKind::welsch
-                                                          : RobustKind::tukey;
-  request.choice.options.constraints.direction = held_direction(command);
-  const std::vector<double> radii = held_radii(command, 1);
-  if (!radii.empty()) request.choice.options.constraints.radius = radii[0];
-  if (command.half_angle > 0) request.choice.options.constraints.half_angle = command.half_angle;
-  check_request(command, request);
-  const std::string& file = command.files[0];
-  const bool in_plane = request.choice.kind == ShapeKind::line2 || request.choice.kind == ShapeKind::circle2;
-  Read read = read_points(command, file, in_plane);
-  request.title = "Fit of " + std::filesystem::path(file).filename().string();
-  request.facts = {{"file", read.format + ", " + read.unit}};
-  Eigen::Matrix3Xd flat;
-  std::string note;
-  if (in_plane) {
-    flat = read.cloud.points;
-    const double low = flat.row(2).minCoeff(), high = flat.row(2).maxCoeff();
-    if (low < high) note = fmt::format("Fitted in x and y: z, from {:g} to {:g} mm, was left out.", low, high);
-    flat.row(2).setZero();
-  }
-  const Eigen::Matrix3Xd& points = in_plane ? flat : read.cloud.points;
-  const ShapeFit fit = fit_shape(request.choice, points);
-  std::vector<double> deviations;
-  if (fit.ok()) {
-    deviations.resize(fit.points);
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-      deviations[static_cast<std::size_t>(i)] = distance(fit.shape, points.col(i));
-    }
-  }
-  EvaluationReport report = fit_report(request, fit, points, deviations);
-  if (!note.empty()) report.notes.push_back(note);
-  if (fit.ok() && !command.options.output.empty()) {
-    std::vector<std::uint8_t> counted(deviations.size(), 1);
-    for (std::size_t i = 0; i < fit.weights.size(); ++i) counted[i] = fit.weights[i] < 1e-3 ? 0 : 1;
-    const nlohmann::json page = fit_page(fit.shape, points, deviations, counted, command.threads);
-    if (!page.empty()) report.page = page;
-  }
-  const int code = finish_evaluation(report, command.options);
-  if (fit.ok() && !command.residuals.empty()) {
-    write_file_atomically(command.residuals, point_cloud_csv(read.cloud, deviations));
-  }
-  return fit.ok() ? code : static_cast<int>(kNegative);
+  ShapeFitRequest request;
+  request.choice = choice_of(command);
+  PointCloudOptions reading = reading_options(command);
+  reading.in_plane = is_plane_shape(request.choice.kind);
+  request.points = read_points_to_fit(command.files[0], reading);
+  request.page = !command.options.output.empty();
+  FittedShape fitted = fit_points(std::move(request));
+  const int code = finish_evaluation(fitted.report, command.options);
+  if (!fitted.is_ok()) return kNegative;
+  if (!command.residuals.empty()) write_file_atomically(command.residuals, fitted_points_csv(fitted));
+  return code;
 }
 
 }  // namespace
@@ -236,7 +150,7 @@ void add_fit_command(CommandLine& line) {
       "  abbe fit examples/fit/scanned-ball.xyz --shape sphere --method robust --fixed-radius-mm 12.7 --unit mm\n"
       "  abbe fit examples/fit/step-1.csv examples/fit/step-2.csv --shape coaxial-circles\n\n"
       "Files: csv (x_mm,y_mm,z_mm), xyz, ply, obj, stl (corners). docs/fits.md says what the figures mean.");
-  std::vector<std::string> known = names(shapes());
+  std::vector<std::string> known = names(shapes_by_name());
   known.emplace_back("coaxial-circles");
   app->add_input_file("file", command->files, "Points; one file per circle for coaxial circles")->required();
   app->add_option("--shape", command->shape,
@@ -245,7 +159,7 @@ void add_fit_command(CommandLine& line) {
       ->check(one_of(known));
   app->add_option("--method", command->method,
                   "least-squares (default), minimum-zone, circumscribed, inscribed, robust (up to 30 % wrong points)")
-      ->check(one_of(names(methods())));
+      ->check(one_of(names(fit_methods_by_name())));
   app->add_option("--loss", command->loss, "Loss of the robust method: tukey (default), huber, welsch")
       ->check(one_of({"tukey", "huber", "welsch"}));
   app->add_option("--fixed-radius-mm", command->radii, "Radius to hold fixed; one per file for coaxial circles: 12,30");

@@ -1,28 +1,15 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <utility>
+#include <string>
+#include <vector>
 
-#include "abbe/errors/calibrated_machine.h"
 #include "abbe/formats/files/results_folder.h"
-#include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
-#include "abbe/formats/machine/placement_file.h"
-#include "abbe/formats/nc/path_program.h"
 #include "abbe/formats/shapes/curve_file.h"
-#include "abbe/formats/shapes/mesh_file.h"
-#include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/machine/tool_path.h"
-#include "abbe/machine/tool_path_miss.h"
-#include "abbe/report/drawings/surface_picture.h"
-#include "abbe/report/pages/path_page.h"
-#include "abbe/report/words/geometry_facts.h"
-#include "abbe/report/words/path_words.h"
+#include "abbe/study/planned_path.h"
 #include "axis_option.h"
 #include "command.h"
 #include "errors_for_use.h"
@@ -49,126 +36,59 @@ PathProgramOptions program_options(const PathCommand& command, const Machine& ma
   options.decimals = command.decimals;
   options.inverse_time = !command.feed_per_minute;
   options.words = axis_words(machine, command.words, "--word");
-  options.comments = {"tool path of " + std::filesystem::path(command.curve).filename().string() + " on " +
-                      machine.name};
   return options;
 }
 
-/// @param warnings  of the placement
-void write_page(const PathCommand& command, const Machine& machine, const ToolPath& path,
-                const std::vector<std::vector<double>>& commands, const std::vector<std::string>& warnings) {
-  std::optional<SurfacePicture> part;
-  std::string incomplete;
-  if (!command.part.empty()) {
-    const MeshFile mesh = command.step.read(command.part);
-    part = part_picture(mesh.mesh, 0, 0);
-    if (!mesh.left_out.empty()) incomplete = "; " + incomplete_words(mesh);
+PathRequest request_of(const PathCommand& command) {
+  PathRequest request;
+  request.machine = read_machine(command.machine);
+  request.errors_file = command.errors;
+  if (!command.errors.empty()) {
+    request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit);
   }
-  const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
-  std::vector<std::pair<std::string, std::string>> facts = path_facts(name(command.curve), path);
-  if (!warnings.empty()) {
-    facts.emplace_back("placement", fmt::format("{}; {}", name(command.placement), fmt::join(warnings, "; ")));
+  request.placement_file = command.placement;
+  if (!command.placement.empty()) {
+    request.placement = read_placement(command.placement);
+    for (const std::string& warning : request.placement->warnings) {
+      tell("abbe: warning: {}: {}\n", command.placement, warning);
+    }
   }
-  if (part) {
-    facts.emplace_back("part",
-                       fmt::format("{}, {} triangles{}", name(command.part), part->triangles_of_part, incomplete));
-  }
-  write_file_atomically(command.report, path_page("Tool path of " + name(command.curve), machine, facts,
-                                                  path_picture(machine, path, commands), part));
+  request.curve_file = command.curve;
+  request.curve = read_curve(command.curve, request.machine);
+  request.feed = command.feed_mm_per_min / 60;
+  request.retract = command.retract_mm;
+  request.tolerance = 1e-3 * command.tolerance_um;
+  for (const std::string& text : command.hold) request.held.push_back(axis_option(request.machine, "--hold", text));
+  for (const std::string& text : command.start) request.start.push_back(axis_option(request.machine, "--start", text));
+  return request;
+}
+
+void write_page(const PathCommand& command, const PlannedPath& planned) {
+  std::optional<MeshFile> part;
+  if (!command.part.empty()) part = command.step.read(command.part);
+  write_file_atomically(command.report, planned_path_page(planned, part ? &*part : nullptr, command.part));
 }
 
 int run_path(const PathCommand& command) {
   command.step.require_step_among({command.part});
-  const Machine nominal = read_machine(command.machine);
-  CalibratedMachine calibrated{nominal, std::vector<double>(nominal.axes.size(), 0.0), {}};
-  if (!command.errors.empty()) {
-    calibrated =
-        calibrated_machine(nominal, read_errors_for_use(command.errors, nominal, command.accept_misfit).errors);
-    if (!calibrated.variable.empty()) {
-      throw InputError({.file = command.errors, .field = calibrated.variable},
-                       "an error motion, which depends on the position of its axis",
-                       "location errors and a tool offset error only: what changes the geometry of the machine once");
+  const PathRequest request = request_of(command);
+  const PathProgramOptions program = program_options(command, request.machine);
+  const PlannedPath planned = plan_path(request);
+  if (planned.has_path()) {
+    for (const std::string& output : command.outputs) {
+      write_file_atomically(output, planned_path_file(planned, output, program));
     }
-  }
-  Machine machine = calibrated.machine;
-  std::vector<std::string> warnings;
-  if (!command.placement.empty()) {
-    PlacementFile file = read_placement(command.placement);
-    machine = with_workpiece(machine, file.placement);
-    warnings = std::move(file.warnings);
-    for (const std::string& warning : warnings) tell("abbe: warning: {}: {}\n", command.placement, warning);
-  }
-  Curve curve = read_curve(command.curve, machine);
-  for (CurvePoint& point : curve.points) {
-    if (!(point.feed > 0)) point.feed = command.feed_mm_per_min / 60;
-    if (point.working && !(point.feed > 0)) {
-      throw InputError({.file = command.curve}, "moves at work without a feed",
-                       "a column feed_mm_per_min, F in a program, or --feed-mm-per-min");
-    }
-    for (std::size_t k = 0; k < curve.indexed.size(); ++k) point.indexed[k] += calibrated.zero[curve.indexed[k]];
-  }
-  ToolPathOptions options;
-  options.retract = command.retract_mm;
-  options.tolerance = 1e-3 * command.tolerance_um;
-  for (const std::string& text : command.hold) {
-    HeldAxis held = axis_option(machine, "--hold", text);
-    if (std::find(curve.indexed.begin(), curve.indexed.end(), held.axis) != curve.indexed.end()) {
-      throw InputError({.field = "--hold " + text}, "the curve gives this axis its commands", "an axis of its own");
-    }
-    held.position += calibrated.zero[held.axis];
-    options.path.inverse.held.push_back(held);
-  }
-  if (!command.start.empty()) {
-    options.path.start.assign(machine.axes.size(), std::numeric_limits<double>::quiet_NaN());
-    for (const std::string& text : command.start) {
-      const HeldAxis at = axis_option(machine, "--start", text);
-      options.path.start[at.axis] = at.position + calibrated.zero[at.axis];
-    }
-  }
-  const PathProgramOptions program = program_options(command, machine);
-
-  const ToolPath path = plan_tool_path(machine, curve, options);
-  if (path.status == ToolPathStatus::no_retract) {
-    throw InputError({.field = "--retract-mm"}, path.message, "a distance above zero");
-  }
-  if (path.status == ToolPathStatus::invalid_options) throw InputError({.file = command.curve}, path.message);
-  if (path.status == ToolPathStatus::start_undecided) throw InputError({.field = "--start"}, path.message);
-  if (path.status != ToolPathStatus::followed && path.status != ToolPathStatus::jumps_while_working) {
-    tell("abbe: point {} of {}: {}\n", path.failed_point + 1, command.curve, path.message);
-    return kNegative;
-  }
-  std::vector<std::vector<double>> commands;
-  for (const ToolPathStep& step : path.steps) {
-    std::vector<double> row(machine.axes.size());
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] = step.command[i] - calibrated.zero[i];
-    commands.push_back(std::move(row));
-  }
-  for (const std::string& output : command.outputs) {
-    const std::string extension = std::filesystem::path(output).extension().string();
-    if (extension == ".csv") {
-      write_file_atomically(output, path_csv(machine, path, commands));
-    } else if (extension == ".ngc" || extension == ".nc" || extension == ".tap" || extension == ".mpf") {
-      write_file_atomically(output, path_program(machine, path, commands, program));
+    if (!command.report.empty()) write_page(command, planned);
+    if (command.json) {
+      fmt::print("{}", json_text(planned_path_json(planned)));
     } else {
-      throw InputError({.file = output}, "unknown kind of program file",
-                       "a name ending in .ngc, .nc, .tap, .mpf or .csv");
+      fmt::print("{}", planned_path_text(planned));
+      for (const std::string& output : command.outputs) fmt::print("{} written\n", output);
     }
   }
-  if (!command.report.empty()) write_page(command, machine, path, commands, warnings);
-  const ToolPathMiss miss = largest_miss(machine, curve, path);
-  if (command.json) {
-    nlohmann::ordered_json json = path_json(machine, path, miss);
-    if (!warnings.empty()) json["warnings"] = warnings;
-    fmt::print("{}", json_text(json));
-  } else {
-    fmt::print("{}", path_text(machine, path, miss));
-    for (const std::string& output : command.outputs) fmt::print("{} written\n", output);
-  }
-  if (path.status == ToolPathStatus::jumps_while_working) {
-    tell("abbe: {}: another start (--start), a held axis, or a cut of the curve there\n", path.message);
-    return kNegative;
-  }
-  return kDone;
+  if (planned.refused.empty()) return kDone;
+  tell("abbe: {}\n", planned.refused);
+  return kNegative;
 }
 
 }  // namespace

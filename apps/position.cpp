@@ -1,19 +1,14 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "abbe/formats/files/results_folder.h"
-#include "abbe/formats/machine/placement_file.h"
-#include "abbe/formats/readings/scanner_positioning_file.h"
-#include "abbe/formats/shapes/mesh_file.h"
-#include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/geometry/registration/registration.h"
-#include "abbe/report/words/geometry_facts.h"
-#include "abbe/report/words/positioning_words.h"
+#include "abbe/study/found_positions.h"
 #include "command.h"
 #include "exit_code.h"
 #include "messages.h"
@@ -30,63 +25,43 @@ struct PositionCommand {
   StepReading step;
 };
 
-PlacedWorkpiece lay_on_workpiece(const WorkpieceScan& workpiece, const StepReading& step) {
-  PlacedWorkpiece result;
-  if (workpiece.part.empty()) {
-    FeatureRegistrationOptions options;
-    options.noise_mm = workpiece.noise;
-    result.fine =
-        register_to_features(workpiece.points, workpiece.features, workpiece.labels, workpiece.start, options);
-    result.ok = result.fine.status == FineRegistrationStatus::ok;
-    result.status = registration_status_name(result.fine.status);
-    return result;
-  }
-  RegistrationOptions options;
-  options.noise_mm = workpiece.noise;
-  const MeshFile part = step.read(workpiece.part);
-  if (!part.left_out.empty()) result.warnings.push_back("the part is " + incomplete_words(part));
-  const PointCloudFile scan = read_point_cloud(workpiece.scan);
-  Progress progress("registering");
-  const Registration found = RegistrationTarget(part.mesh, options).register_scan(scan.cloud, progress.callback());
-  result.fine = found.fine;
-  result.ok = found.status == RegistrationStatus::ok;
-  result.status = registration_status_name(found.status);
-  return result;
-}
-
-int run_position(const PositionCommand& command) {
-  const ScannerPositioningFile file = read_scanner_positioning(command.file);
-  if (!command.output.empty() && !file.workpiece) {
+PositionsRequest request_of(const PositionCommand& command) {
+  PositionsRequest request;
+  request.file = command.file;
+  request.scans = read_scanner_positioning(command.file);
+  const std::optional<WorkpieceScan>& workpiece = request.scans.workpiece;
+  if (!command.output.empty() && !workpiece) {
     throw InputError({.field = "--output"}, "there is no workpiece to be placed",
                      "a table [workpiece] in " + command.file);
   }
   if (command.output.empty() && !command.maps.empty()) {
     throw InputError({.field = "--maps"}, "there is no placement whose matrix maps that way", "with --output");
   }
-  command.step.require_step_among({file.workpiece ? file.workpiece->part : std::filesystem::path()});
-  const ScannerPosition scanner = locate_scanner(file.scans);
-  std::optional<PlacedWorkpiece> placed;
-  if (scanner.status == PositioningStatus::ok && file.workpiece) {
-    placed = lay_on_workpiece(*file.workpiece, command.step);
-    if (placed->ok) placed->placement = locate_workpiece(scanner, placed->fine);
+  command.step.require_step_among({workpiece ? workpiece->part : std::filesystem::path()});
+  if (workpiece && !workpiece->part.empty()) {
+    request.part = command.step.read(workpiece->part);
+    request.scan = read_point_cloud(workpiece->scan);
   }
-  const PlacedWorkpiece* const workpiece = placed ? &*placed : nullptr;
-  const bool found = scanner.status == PositioningStatus::ok && (workpiece == nullptr || workpiece->ok);
-  if (found && !command.output.empty()) {
-    write_file_atomically(command.output, placement_text({workpiece->placement, workpiece->warnings},
-                                                         command.maps != "workpiece-to-table"));
+  return request;
+}
+
+int run_position(const PositionCommand& command) {
+  const PositionsRequest request = request_of(command);
+  FoundPositions found;
+  {
+    Progress progress("registering");
+    found = find_positions(request, {.progress = progress.callback()});
   }
-  if (command.json) fmt::print("{}", json_text(positions_json(command.file, scanner, workpiece)));
-  if (scanner.status != PositioningStatus::ok) {
-    tell("abbe: {}: the scanner's position is not found: {}\n", command.file, scanner.reason);
-    return kNegative;
+  if (found.is_ok() && !command.output.empty()) {
+    write_file_atomically(command.output, found_placement_file(found, command.maps != "workpiece-to-table"));
   }
-  if (placed && !placed->ok) {
-    tell("abbe: {}: the workpiece's position is not found: {}\n", command.file, placed->status);
+  if (command.json) fmt::print("{}", json_text(found_positions_json(found)));
+  if (!found.is_ok()) {
+    tell("abbe: {}\n", found.problem);
     return kNegative;
   }
   if (command.json) return kDone;
-  fmt::print("{}", positions_text(command.file, scanner, workpiece));
+  fmt::print("{}", found_positions_text(found));
   if (!command.output.empty()) fmt::print("{} written\n", command.output);
   return kDone;
 }

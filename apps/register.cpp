@@ -1,20 +1,13 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <utility>
 
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/machine/transform_file.h"
-#include "abbe/formats/shapes/ply_file.h"
-#include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/geometry/registration/registration.h"
-#include "abbe/report/pages/evaluation_data.h"
-#include "abbe/report/pages/registration_page.h"
-#include "abbe/report/report.h"
-#include "abbe/report/words/geometry_facts.h"
 #include "abbe/report/words/registration_words.h"
+#include "abbe/study/scan_registration.h"
 #include "command.h"
 #include "evaluate/number_option.h"
 #include "exit_code.h"
@@ -48,66 +41,34 @@ struct RegisterCommand {
   }
 };
 
-PointCloud moved(const PointCloud& cloud, const RigidTransform& pose) {
-  PointCloud result;
-  result.points = (pose.rotation * cloud.points).colwise() + pose.translation;
-  if (cloud.has_normals()) result.normals = pose.rotation * cloud.normals;
-  return result;
-}
-
 int run_register(const RegisterCommand& command) {
-  const RegistrationOptions options = command.options();
-  const PointCloudFile scan = command.files.read_scan();
-  const MeshFile part = command.files.read_part();
-  Registration result;
-  const RegistrationTarget target(part.mesh, options);
+  ScanRegistrationRequest request;
+  request.options = command.options();
+  request.scan_file = command.files.scan;
+  request.part_file = command.files.part;
+  request.scan = command.files.read_scan();
+  request.part = command.files.read_part();
+  request.compare = !command.output.empty();
+  ScanRegistration result;
   {
     Progress progress("registering");
-    result = target.register_scan(scan.cloud, progress.callback());
+    result = register_scan(std::move(request), {.progress = progress.callback()});
   }
-  nlohmann::ordered_json json;
-  json["scan"] = command.files.scan;
-  json["part"] = command.files.part;
-  for (const auto& [name, text] : facts_of(scan, part)) json["files"][name] = text;
-  json.update(registration_json(result));
   if (!command.output.empty()) {
-    const PointCloud placed = moved(scan.cloud, result.fine.mesh_from_scan);
     ResultsFolder folder(command.output);
-    folder.write("registration.json", json_text(json));
-    if (has_pose(result)) {
-      const bool sure = result.status == RegistrationStatus::ok;
-      folder.write("transform.csv",
-                   transform_csv(result.fine.mesh_from_scan, sure ? "" : registration_status_name(result.status)));
-      folder.write("registered.ply", ply_bytes({.points = placed.points, .normals = placed.normals}));
-    }
-    const auto name = [](const std::string& file) { return std::filesystem::path(file).filename().string(); };
-    std::optional<ScanComparison> compared;
-    if (has_pose(result)) {
-      compared = compare_scan(target.surface(), placed.points,
-                              {.largest_mm = farthest_shown_mm(part.mesh), .threads = command.files.threads});
-    }
-    EvaluationReport page =
-        registration_page(fmt::format("Registration of {} on {}", name(command.files.scan), name(command.files.part)),
-                          result, part.mesh, compared ? &*compared : nullptr, command.files.threads);
-    const auto facts = facts_of(scan, part);
-    page.facts.insert(page.facts.begin(), facts.begin(), facts.end());
-    for (const std::string& note : part.notes) page.notes.push_back(name(command.files.part) + ": " + note);
-    folder.write("report.html", report_page(evaluation_data(page)));
+    for (const auto& [name, contents] : scan_registration_files(result)) folder.write(name, contents);
     folder.commit();
   }
   if (command.json) {
-    fmt::print("{}", json_text(json));
+    fmt::print("{}", json_text(scan_registration_json(result)));
   } else {
-    fmt::print("Registration of {} on {}\n", command.files.scan, command.files.part);
-    for (const auto& [name, text] : facts_of(scan, part)) fmt::print("  {}: {}\n", name, text);
-    fmt::print("\n{}", registration_text(result, scan.cloud.size(), command.uncertainty));
-    for (const std::string& note : part.notes) fmt::print("note: {}: {}\n", command.files.part, note);
+    fmt::print("{}", scan_registration_text(result, command.uncertainty));
     if (!command.output.empty()) {
       fmt::print("\nresults in {}{}\n", command.output,
-                 has_pose(result) ? "" : ", without transform.csv and registered.ply, as there is no pose");
+                 has_pose(result.found) ? "" : ", without transform.csv and registered.ply, as there is no pose");
     }
   }
-  return result.status == RegistrationStatus::ok ? kDone : kNegative;
+  return result.is_ok() ? kDone : kNegative;
 }
 
 }  // namespace

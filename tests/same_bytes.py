@@ -3,10 +3,10 @@
 
     tests/same_bytes.py OLD NEW          paths of two `abbe` commands
 
-Runs the examples of the help texts, the studies of examples/ and the published studies, each in a fresh copy of the
-repository's data, and compares exit code, standard output, standard error and all files. If anything differs, its name is
-printed and the exit code is 1. The commands look for published readings beside their build folder, and for abbe-papers and
-abbe-step beside themselves, so each must be in a build folder of its own.
+Runs the examples of the help texts, those of MORE, the studies of examples/ and the published studies, each in a fresh
+copy of the repository's data, and compares exit code, standard output, standard error and all files. If anything
+differs, its name is printed and the exit code is 1. The commands look for published readings beside their build folder,
+and for abbe-papers and abbe-step beside themselves, so each must be in a build folder of its own.
 """
 import concurrent.futures
 import hashlib
@@ -22,6 +22,53 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DATA = ["examples", "tests/golden"]
 MAIN_STUDY = "abbe run examples/aguado/aguado.study.toml"
+
+
+TRUNNION = "examples/machines/trunnion-mill.machine.toml examples/compensate/trunnion.errors.toml"
+SCANNER = "examples/machines/liu-scanner.machine.toml"
+ENGRAVER = "examples/machines/yin-engraver-u.machine.toml"
+BRACKET = "examples/scan/bracket-scan.csv examples/scan/bracket.stl"
+PIN = "examples/scan/pin-scan.csv examples/scan/pin.stl"
+# What the examples of the help texts do not show: JSON, pages, refusals, messages. Lists of commands that share a copy.
+FREEZE = ["-o a.abbec --leave-out-below-uncertainty 2 --world workpiece --tool-mm 0 0 -120", "--dry-run --limit-um 1",
+          "--dry-run --json --limit-um 1 --leave-out-below-uncertainty 2", "-o b.abbec --limit-um 0",
+          "--dry-run --largest-turn-deg 11", "--dry-run --tool-length-mm 300 0",
+          "--dry-run --leave-out-below-uncertainty -1", ""]
+POSES = ["-o a.csv", "-o b.csv --json --leave-out-below-uncertainty 2", "--dry-run --hold A --hold C",
+         "-o c.csv --limit-um 1", "-o d.csv --limit-um 0", "--dry-run --largest-turn-deg 0", "--dry-run --hold Q", ""]
+FIT = ["cylinder --method robust --loss huber --residuals r.csv -o results", "cylinder --fixed-direction 0,0,1 --json",
+       "cylinder --fixed-radius-mm 12.7 --tolerance form_um=1", "line --fixed-radius-mm 2",
+       "sphere --fixed-direction 0,0,1", "line2 --fixed-direction 0,0,1", "plane --fixed-half-angle-deg 3",
+       "cone --method inscribed", "circle2 --method inscribed --fixed-radius-mm 3", "cylinder --fixed-radius-mm -1",
+       "coaxial-circles --method robust", "coaxial-circles --residuals r2.csv", "plane --fixed-direction 0,0"]
+STEPS = "abbe fit examples/fit/step-1.csv examples/fit/step-2.csv --shape"
+PATH = ["table-a4.csv --placement examples/laser_engraver/part.placement.toml -o a.nc -o a.csv --report a.html --json",
+        "table-a4.csv --report b.html --part examples/parts/wedge.stl --hold C2_deg=10 --start A_deg=20",
+        "table-a4.csv --hold C2_deg=10 --start A_deg=20 --start C1_deg=180 --tolerance-um 1", "table-a4.csv -o d.txt",
+        "table-a4.csv --errors examples/laser_engraver/linkage.errors.toml -o e.csv", "table-a4.csv --hold Z_mm=0",
+        "regions.ngc --retract-mm 20 -o c.mpf --feed-per-minute --decimals 4 --word C1=C", "regions.ngc",
+        "regions.ngc --retract-mm 20 --hold C2_deg=3", "table-a4.csv --start A_deg=0"]
+PLAN = ["--json", "--along-mm 1e-4", "--beyond-plane-mm 0 0 1 1e6", "--position-mm 0 0 500 --along-mm 5 --between-mm 5"]
+MORE = [
+    [f"abbe compensate freeze {TRUNNION} -o a.abbec --json", "abbe check a.abbec", "abbe check a.abbec --json"],
+    [f"abbe compensate freeze {TRUNNION} {options}" for options in FREEZE],
+    [f"abbe compensate poses {TRUNNION} examples/compensate/poses.csv {options}" for options in POSES],
+    [f"abbe fit examples/fit/bore.csv --shape {shape} --json -o results/{shape}"
+     for shape in ("line2", "line", "plane", "circle2", "circle", "sphere", "cylinder", "cone")],
+    [f"abbe fit examples/fit/bore.csv --shape {options}" for options in FIT],
+    ["abbe fit examples/scan/pin.stl --shape cylinder --unit inch", f"{STEPS} plane",
+     f"{STEPS} coaxial-circles --fixed-radius-mm 1 --json", f"{STEPS} coaxial-circles --json -o circles"],
+    [f"abbe register {BRACKET} --json -o results", f"abbe register {BRACKET} --start identity --scan-unit inch",
+     f"abbe deviate {BRACKET} --transform results/transform.csv -o deviation"],
+    [f"abbe register {PIN} -o pin --uncertainty", f"abbe deviate {PIN} --faces",
+     f"abbe deviate {PIN} --largest-mm 1e-9",
+     f"abbe deviate {PIN} --transform pin/transform.csv --json --faces-deg 30 --lower-um -10 --upper-um 10 -o pins",
+     f"abbe deviate {PIN} --lower-um 10 --upper-um -10"],
+    [f"abbe position examples/laser_engraver/scanner.positioning.toml {options}" for options in (
+        "--json -o a.placement.toml", "-o b.placement.toml --maps workpiece-to-table", "--maps workpiece-to-table")],
+    [f"abbe path {ENGRAVER} examples/laser_engraver/{options}" for options in PATH],
+    [f"abbe scan plan examples/cradle_scanner/pyramid.stl --machine {SCANNER} {options}" for options in PLAN],
+]
 
 
 def help_of(abbe, words):
@@ -94,6 +141,7 @@ def main():
     old, new = (os.path.abspath(path) for path in sys.argv[1:])
     # Some examples use the results of the main study.
     jobs = [[MAIN_STUDY, *lines] if any("/results/" in line for line in lines) else lines for lines in examples(old)]
+    jobs += MORE
     studies = sorted(str(path.relative_to(ROOT)) for path in ROOT.glob("examples/*/*.study.toml"))
     jobs += [[f"abbe run {study} -o results"] for study in studies]
     jobs += [[f"abbe reproduce {paper}"] for paper in ("aguado", "liu", "ma", "wang", "yin")]

@@ -9,8 +9,8 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/study/correction_limits.h"
 #include "axis_option.h"
-#include "compensate/safety.h"
 
 namespace abbe {
 namespace {

@@ -1,22 +1,22 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "abbe/formats/files/kept_inputs.h"
 #include "abbe/formats/files/results_folder.h"
-#include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/report/words/corrected_poses_words.h"
+#include "abbe/geometry/angle_units.h"
+#include "abbe/study/corrected_commands.h"
 #include "command.h"
 #include "compensate/compensate.h"
-#include "compensate/safety.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
 #include "machine_options.h"
@@ -49,42 +49,35 @@ std::vector<std::size_t> held_axes(const PosesCommand& command, const Machine& m
 int run_poses(const PosesCommand& command) {
   if (command.output.empty() && !command.dry_run)
     throw InputError({.field = "-o"}, "missing", "a file for the corrected commands (*.csv), or --dry-run");
-  const Machine machine = read_machine(command.machine);
-  const ErrorsFile errors = read_errors_for_use(command.errors, machine, command.accept_misfit);
-  const PoseList poses = read_poses(command.poses, machine);
+  CommandsRequest request;
+  request.machine_file = command.machine;
+  request.errors_file = command.errors;
+  request.machine = read_machine(command.machine);
+  request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit);
+  request.poses = read_poses(command.poses, request.machine);
   if (!command.output.empty()) refuse_input_as_output(command.output);
-  check_leave_out(command.leave_out_factor, errors, command.errors);
-  const double limit_um = refusal_limit("--limit-um", command.limit_um, "um");
-
-  const CorrectedPoses result = corrected_poses(machine, errors.errors, errors.covariance, poses,
-                                                {.largest_turn = largest_turn_option(command.largest_turn_deg),
-                                                 .leave_out_factor = command.leave_out_factor,
-                                                 .held = held_axes(command, machine)});
-  if (!result.problem.empty()) throw InputError({.file = command.machine}, result.problem);
-  const bool refused = !(1e3 * result.largest_shift.value <= limit_um);
-  const bool written = !refused && !command.dry_run;
-  if (written) write_file_atomically(command.output, poses_csv(machine, result));
+  request.leave_out_factor = command.leave_out_factor;
+  request.limit_um = command.limit_um;
+  request.largest_turn = command.largest_turn_deg * kDegree;
+  request.held = held_axes(command, request.machine);
+  const CorrectedCommands result = correct_commands(request);
+  const bool written = result.refused.empty() && !command.dry_run;
+  if (written) write_file_atomically(command.output, corrected_commands_csv(result));
   if (command.json) {
-    fmt::print("{}", json_text(poses_json(machine, poses, result, command.output, written)));
+    fmt::print("{}", json_text(corrected_commands_json(result, command.output, written)));
   } else {
-    fmt::print("{}", poses_text(machine, poses, result, command.leave_out_factor));
-    if (!errors.errors.reversals.empty())
-      fmt::print("reversal values are not in these commands: a pose has no direction of approach\n");
+    fmt::print("{}", corrected_commands_text(result));
     fmt::print("{}", written ? command.output + " written\n" : command.dry_run ? "dry run: nothing written\n" : "");
   }
   std::fflush(stdout);
-  if (refused) {
-    tell("abbe: correction of {:.3f} um above --limit-um {:g}: {}; nothing written\n", 1e3 * result.largest_shift.value,
-         limit_um, pose_words(machine, poses, result.largest_shift.row));
+  if (!result.refused.empty()) {
+    tell("abbe: {}; nothing written\n", result.refused);
     return kNegative;
   }
-  const auto wrong = std::count_if(result.status.begin(), result.status.end(),
-                                   [](CorrectionStatus status) { return !reaches_point(status); });
-  if (wrong > 0) {
-    tell("abbe: the tool is not brought to {} of {} poses; the column status says where and why\n", wrong,
-         poses.count());
-  }
-  return wrong > 0 ? kNegative : kDone;
+  if (result.not_reached == 0) return kDone;
+  tell("abbe: the tool is not brought to {} of {} poses; the column status says where and why\n", result.not_reached,
+       result.poses.count());
+  return kNegative;
 }
 
 }  // namespace

@@ -6,27 +6,12 @@
 
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/report/pages/evaluation_data.h"
-#include "abbe/report/report.h"
+#include "abbe/report/pages/evaluation_files.h"
 #include "abbe/report/words/evaluation_text.h"
 #include "exit_code.h"
 #include "options.h"
 
 namespace abbe {
-namespace {
-
-void write_report(const EvaluationReport& report, const nlohmann::ordered_json& json,
-                  const EvaluationOptions& options) {
-  ResultsFolder folder(options.output);
-  folder.write("evaluation.json", json_text(json));
-  for (const EvaluationPlot& plot : report.plots) folder.write(plot.name + ".svg", plot.svg);
-  folder.write("report.html", report.page.is_object() ? report_page(evaluation_data(report)) : evaluation_page(report));
-  for (const auto& [name, contents] : options.files) folder.write(name, contents);
-  folder.commit();
-}
-
-}  // namespace
-
 Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const std::string& description,
                            const std::string& columns, const std::string& example, EvaluationOptions& options) {
   Subcommand* command = evaluate.add_subcommand(kind, description);
@@ -44,10 +29,14 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
 
 int finish_evaluation(EvaluationReport& report, const EvaluationOptions& options) {
   apply_tolerances(options.tolerances, report);
-  const nlohmann::ordered_json json = evaluation_json(report);
-  if (!options.output.empty()) write_report(report, json, options);
+  if (!options.output.empty()) {
+    ResultsFolder folder(options.output);
+    for (const auto& [name, contents] : evaluation_files(report)) folder.write(name, contents);
+    for (const auto& [name, contents] : options.files) folder.write(name, contents);
+    folder.commit();
+  }
   if (options.json) {
-    fmt::print("{}", json_text(json));
+    fmt::print("{}", json_text(evaluation_json(report)));
   } else {
     fmt::print("{}", evaluation_text(report));
     if (!options.output.empty()) fmt::print("\nresults in {}\n", options.output);

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,16 +10,13 @@
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/readings/scan_plan_file.h"
-#include "abbe/formats/shapes/closed_part.h"
 #include "abbe/formats/shapes/mesh_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
-#include "abbe/plan/scans/wanted_area.h"
-#include "abbe/report/pages/scan_plan_page.h"
-#include "abbe/report/words/scan_plan_words.h"
+#include "abbe/study/planned_scan.h"
 #include "command.h"
 #include "exit_code.h"
 #include "machine_options.h"
@@ -91,39 +87,21 @@ Check within(double low, double high, const std::string& unit) {
 
 int run_plan(const PlanOptions& options) {
   options.step.require_step_among({options.part, options.stage});
-  const Machine machine = read_machine(options.machine);
+  ScanRequest request;
+  request.machine = read_machine(options.machine);
   PathProgramOptions program;
-  program.words = axis_words(machine, options.words, "--word");
-  const TriangleMesh part = closed_part(read_whole(options.part, options.step).mesh, options.part);
-  ScanPlanOptions scan = scan_options(options);
-  const double most = wanted_area(part, scan.wanted) / (scan.along * scan.between);
-  if (most > 5e6) {
-    throw InputError({.field = "--along-mm"}, fmt::format("{:.0f} points", most),
-                     "at most 5,000,000: larger distances, or a part of the surface (--beyond-plane-mm)");
-  }
+  program.words = axis_words(request.machine, options.words, "--word");
+  request.part_file = options.part;
+  request.part = read_whole(options.part, options.step).mesh;
+  request.scan = scan_options(options);
   Progress progress("planning the scan");
-  scan.progress = progress.callback();
-  const ScanPlan plan = plan_scan(machine, part, scan);
-  if (!(plan.area() > 0)) {
-    throw InputError({.field = "--beyond-plane-mm"}, "nothing of the part lies there", "planes that leave some of it");
-  }
-
-  const std::string name = std::filesystem::path(options.part).filename().string();
-  if (!options.output.empty()) write_file_atomically(options.output, scan_plan_csv(machine, plan));
-  if (!options.program.empty()) {
-    write_file_atomically(options.program,
-                          scan_plan_program(machine, plan, "scan of " + name + " on " + machine.name, program));
-  }
-  if (!options.coverage.empty()) write_file_atomically(options.coverage, scan_coverage_ply(plan));
-  if (!options.report.empty()) {
-    write_file_atomically(options.report, scan_plan_page(machine, part, plan, scan, name));
-  }
-  if (options.json) {
-    fmt::print("{}", json_text(scan_plan_summary(machine, plan, name)));
-  } else {
-    fmt::print("{}", scan_plan_text(machine, plan, name));
-  }
-  return plan.missed_places() > 0 || plan.blocked_links > 0 ? kNegative : kDone;
+  const PlannedScan planned = plan_part_scan(request, {.progress = progress.callback()});
+  if (!options.output.empty()) write_file_atomically(options.output, planned_scan_csv(planned));
+  if (!options.program.empty()) write_file_atomically(options.program, planned_scan_program(planned, program));
+  if (!options.coverage.empty()) write_file_atomically(options.coverage, scan_coverage_ply(planned.plan));
+  if (!options.report.empty()) write_file_atomically(options.report, planned_scan_page(planned));
+  fmt::print("{}", options.json ? json_text(planned_scan_json(planned)) : planned_scan_text(planned));
+  return planned.is_complete() ? kDone : kNegative;
 }
 
 }  // namespace

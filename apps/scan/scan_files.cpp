@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "abbe/formats/text/input_error.h"
 #include "options.h"
 
 namespace abbe {
@@ -18,16 +17,12 @@ PointCloudFile ScanFiles::read_scan() const {
   PointCloudOptions options;
   options.unit = unit_of(scan_unit);
   options.threads = threads;
-  PointCloudFile read = read_point_cloud(scan, options);
-  if (read.cloud.size() == 0) throw InputError({.file = scan}, "there is no point", "the points of a scan");
-  return read;
+  return read_point_cloud(scan, options);
 }
 
 MeshFile ScanFiles::read_part() const {
   step.require_step_among({part});
-  MeshFile read = step.read(part, unit_of(part_unit), threads);
-  if (read.mesh.size() == 0) throw InputError({.file = part}, "there is no triangle", "the surface of a part");
-  return read;
+  return step.read(part, unit_of(part_unit), threads);
 }
 
 void add_scan_files(Subcommand* command, ScanFiles& files) {

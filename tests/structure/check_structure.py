@@ -13,7 +13,7 @@ import re
 import sys
 
 ORDER = ["geometry", "machine", "errors", "instruments", "identify", "plan", "compensate", "verify", "formats",
-         "report", "controls", "study", "runtime"]
+         "report", "controls", "runtime", "study"]
 STRANGERS = {("identify", "compensate"), ("compensate", "identify")}
 TOUCH_FILES = {"formats", "report"}
 FILE_HEADERS = {"fstream", "cstdio", "stdio.h", "filesystem", "fcntl.h", "unistd.h", "sys/stat.h", "sys/mman.h"}

@@ -5,14 +5,18 @@
 
 #include "abbe/formats/machine/errors_file.h"
 
+// What may be asked of a correction, whatever is corrected. Messages name a field by the option that sets it.
+
 namespace abbe {
 
-/// Limit above which corrections are refused, in the option's unit; infinite if it was not given.
+/// Limit above which corrections are refused, in its own unit; infinite if there is none.
+/// @param option  "--limit-um"
+/// @param unit    "um"
 /// @throws InputError unless it is a finite number above zero: a limit that cannot be understood is not "no limit"
-double refusal_limit(const char* option, const std::optional<double>& given, const char* unit);
+double refusal_limit(const char* option, const std::optional<double>& limit, const char* unit);
 
-/// How far rotary axes may turn near a singularity, in rad. @throws InputError unless it is above 0 and at most 10 deg
-double largest_turn_option(double degrees);
+/// How far rotary axes may turn near a singularity, rad. @throws InputError unless it is above 0 and at most 10 deg
+void check_largest_turn(double largest_turn);
 
 /// What --leave-out-below-uncertainty needs: a factor of 0 (leave out nothing) to 1000, and stated uncertainties.
 /// @param file  name of the errors file. @throws InputError

@@ -1,4 +1,4 @@
-#include "compensate/safety.h"
+#include "abbe/study/correction_limits.h"
 
 #include <fmt/format.h>
 
@@ -10,19 +10,19 @@
 #include "abbe/geometry/angle_units.h"
 
 namespace abbe {
-double refusal_limit(const char* option, const std::optional<double>& given, const char* unit) {
-  if (!given) return std::numeric_limits<double>::infinity();
-  if (!(*given > 0) || !std::isfinite(*given)) {
-    throw InputError({.field = option}, fmt::format("{:g} is not a limit", *given),
+
+double refusal_limit(const char* option, const std::optional<double>& limit, const char* unit) {
+  if (!limit) return std::numeric_limits<double>::infinity();
+  if (!(*limit > 0) || !std::isfinite(*limit)) {
+    throw InputError({.field = option}, fmt::format("{:g} is not a limit", *limit),
                      fmt::format("a number above zero in {}, or no limit at all", unit));
   }
-  return *given;
+  return *limit;
 }
 
-double largest_turn_option(double degrees) {
-  if (!(degrees > 0 && degrees <= 10))
+void check_largest_turn(double largest_turn) {
+  if (!(largest_turn > 0 && largest_turn <= 10 * kDegree))
     throw InputError({.field = "--largest-turn-deg"}, "out of range", "more than 0 and at most 10 degrees");
-  return degrees * kDegree;
 }
 
 void check_leave_out(double factor, const ErrorsFile& errors, const std::string& file) {

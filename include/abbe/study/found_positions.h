@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "abbe/formats/readings/scanner_positioning_file.h"
+#include "abbe/formats/shapes/mesh_file.h"
+#include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/geometry/stopped.h"
+#include "abbe/identify/linkage/scanner_positioning.h"
+#include "abbe/report/words/positioning_words.h"
+
+// Where a scanner and a workpiece stand in a machine, as `abbe position` finds it:
+//
+//   #include <abbe/formats/files/results_folder.h>
+//   #include <abbe/study/found_positions.h>
+//
+//   #include <cstdio>
+//
+//   int main(int /*argc*/, char** arguments) {
+//     const abbe::PositionsRequest request = abbe::read_positions_request(arguments[1]);
+//     const abbe::FoundPositions found = abbe::find_positions(request);
+//     if (!found.is_ok()) {
+//       std::fputs(found.problem.c_str(), stderr);
+//       return 1;
+//     }
+//     std::fputs(abbe::found_positions_text(found).c_str(), stdout);
+//     if (found.workpiece) abbe::write_file_atomically(arguments[2], abbe::found_placement_file(found));
+//     return 0;
+//   }
+//
+// Formats and method: docs/workpiece-position.md.
+
+namespace abbe {
+
+/// A scanner's view of targets on a table, and of a workpiece.
+struct PositionsRequest {
+  std::string file;  ///< name for texts and messages
+  ScannerPositioningFile scans;
+  std::optional<MeshFile> part;        ///< of a workpiece that is laid on a mesh
+  std::optional<PointCloudFile> scan;  ///< of that workpiece
+};
+
+/// Opens the file, and those that it names. @throws InputError
+PositionsRequest read_positions_request(const std::string& file, const MeshFileOptions& options = {});
+
+/// Where they stand. It needs nothing of the request that it answers.
+struct FoundPositions {
+  std::string file;
+  ScannerPosition scanner;
+  std::optional<PlacedWorkpiece> workpiece;  ///< if there is one, and the scanner has a position
+  std::string problem;                       ///< what has no position and why, in words; empty: all have one
+
+  bool is_ok() const { return problem.empty(); }
+};
+
+struct PositionsOptions {
+  /// Called while a scan is laid on a mesh, by the calling thread: steps done of all.
+  std::function<void(std::size_t done, std::size_t total)> progress{};
+  std::stop_token stop{};  ///< looked at there
+};
+
+/// Finds the position of the scanner and, by it, that of the workpiece. Opens no file and prints nothing.
+/// @throws InputError for a workpiece on a mesh without that mesh or its scan; Stopped where that was asked for
+FoundPositions find_positions(const PositionsRequest& request, const PositionsOptions& options = {});
+
+/// For people, where all have a position; lines with their ends.
+std::string found_positions_text(const FoundPositions& found);
+
+/// For programs; units in the keys. It says so where there is no position.
+nlohmann::ordered_json found_positions_json(const FoundPositions& found);
+
+/// Placement of the workpiece as a file (*.placement.toml) for `abbe path`; the workpiece must have a position.
+std::string found_placement_file(const FoundPositions& found, bool table_to_workpiece = true);
+
+}  // namespace abbe

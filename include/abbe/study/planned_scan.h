@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <stop_token>
+#include <string>
+
+#include "abbe/formats/nc/path_program.h"
+#include "abbe/geometry/stopped.h"
+#include "abbe/geometry/surface/triangle_mesh.h"
+#include "abbe/machine/machine.h"
+#include "abbe/plan/scans/scan_plan.h"
+
+// Paths of a displacement probe over a part, as `abbe scan plan` plans them:
+//
+//   #include <abbe/formats/files/results_folder.h>
+//   #include <abbe/formats/machine/machine_file.h>
+//   #include <abbe/formats/shapes/mesh_file.h>
+//   #include <abbe/study/planned_scan.h>
+//
+//   #include <cstdio>
+//
+//   int main(int /*argc*/, char** arguments) {
+//     abbe::ScanRequest request;
+//     request.machine = abbe::read_machine(arguments[1]);
+//     request.part_file = arguments[2];
+//     request.part = abbe::read_mesh(request.part_file).mesh;
+//     request.scan.range = 0.4;
+//     const abbe::PlannedScan planned = abbe::plan_part_scan(request);
+//     abbe::write_file_atomically(arguments[3], abbe::planned_scan_csv(planned));
+//     std::fputs(abbe::planned_scan_text(planned).c_str(), stdout);
+//     return planned.is_complete() ? 0 : 1;
+//   }
+//
+// Method and figures: docs/scan.md.
+
+namespace abbe {
+
+/// A part that is to be scanned.
+struct ScanRequest {
+  Machine machine;
+  TriangleMesh part;      ///< frame of the part, mm; its vertices need not be shared
+  std::string part_file;  ///< name for texts and messages
+  ScanPlanOptions scan;   ///< its `progress` is set here
+};
+
+/// A planned scan. It needs nothing of the request that it answers.
+struct PlannedScan {
+  Machine machine;
+  TriangleMesh part;  ///< closed, vertices shared
+  std::string name;   ///< of the part's file, without its folder
+  ScanPlanOptions scan;
+  ScanPlan plan;
+
+  /// Whether everything that is wanted is reached, and on a clear way.
+  bool is_complete() const { return plan.missed_places() == 0 && plan.blocked_links == 0; }
+};
+
+struct PlannedScanOptions {
+  /// Called by the calling thread: faces done of all.
+  std::function<void(std::size_t done, std::size_t total)> progress{};
+  std::stop_token stop{};  ///< looked at there
+};
+
+/// Plans paths over all faces of a part. Opens no file and prints nothing.
+/// @throws InputError for a part that encloses no volume, one of which nothing is wanted, and for more than 5,000,000
+///   points; std::invalid_argument as plan_scan(); Stopped where that was asked for
+PlannedScan plan_part_scan(const ScanRequest& request, const PlannedScanOptions& options = {});
+
+/// The path as CSV.
+std::string planned_scan_csv(const PlannedScan& planned);
+/// The path as an NC program.
+std::string planned_scan_program(const PlannedScan& planned, const PathProgramOptions& options = {});
+/// For people; lines with their ends.
+std::string planned_scan_text(const PlannedScan& planned);
+/// For programs; units in the keys.
+nlohmann::ordered_json planned_scan_json(const PlannedScan& planned);
+/// The page that plays the path over the part.
+std::string planned_scan_page(const PlannedScan& planned);
+
+}  // namespace abbe

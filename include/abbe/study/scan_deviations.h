@@ -1,0 +1,84 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "abbe/formats/machine/transform_file.h"
+#include "abbe/formats/shapes/mesh_file.h"
+#include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/report/evaluations/evaluation_report.h"
+#include "abbe/verify/parts/scan_comparison.h"
+#include "abbe/verify/parts/surface_deviation.h"
+
+// How far a scan is from its part, as `abbe deviate` finds it:
+//
+//   #include <abbe/report/words/evaluation_text.h>
+//   #include <abbe/study/scan_deviations.h>
+//
+//   #include <cstdio>
+//
+//   int main(int /*argc*/, char** arguments) {
+//     abbe::ScanDeviationsRequest request;
+//     request.scan_file = arguments[1];
+//     request.part_file = arguments[2];
+//     request.transform_file = arguments[3];
+//     request.scan = abbe::read_point_cloud(request.scan_file);
+//     request.part = abbe::read_mesh(request.part_file);
+//     request.pose = abbe::read_transform_file(request.transform_file);
+//     abbe::ScanDeviations result = abbe::find_deviations(request);
+//     abbe::apply_tolerances({"p95_um=60"}, result.report);
+//     std::fputs(abbe::evaluation_text(result.report).c_str(), stdout);
+//     return result.has_points() && !result.report.exceeds_tolerance() ? 0 : 1;
+//   }
+//
+// The report as JSON: evaluation_json(); as a page: evaluation_files(). Figures: docs/registration.md.
+
+namespace abbe {
+
+/// By what the deviations of a part are stated, beside the part as a whole.
+enum class DeviationFaces {
+  none,
+  by_edges,  ///< faces end at edges sharper than `crease`
+  of_file    ///< as the file of the part states them
+};
+
+/// A scan and its part; lengths in mm, angles in rad.
+///
+/// Messages name a field by the option of `abbe deviate` that sets it, given below.
+struct ScanDeviationsRequest {
+  PointCloudFile scan;
+  MeshFile part;
+  std::string scan_file, part_file;  ///< names for texts and messages
+  TransformFile pose;                ///< --transform: of the scan on the part
+  std::string transform_file;        ///< its name; empty: the scan as it stands
+
+  double largest_mm = 0;                        ///< --largest-mm: points farther away are left out; 0: all count
+  std::optional<DeviationTolerance> tolerance;  ///< --lower-um, --upper-um: a band
+  double colour_mm = 0;                         ///< --colour-um: of the full colour; 0: as it shows most of them
+  DeviationFaces faces = DeviationFaces::none;  ///< --faces-deg, --faces
+  double crease = 0;
+  int threads = 0;    ///< 0: all; no result depends on it
+  bool page = false;  ///< the report is to have the deviations on the part, for its page
+};
+
+/// Deviations of a scan from its part, with their report. They need nothing of the request that they answer.
+struct ScanDeviations {
+  ScanComparison compared;
+  EvaluationReport report;
+  double colour_mm = 0;  ///< of the full colour
+
+  /// Whether any point counts.
+  bool has_points() const { return !compared.counted_mm.empty(); }
+};
+
+/// Compares a scan with its part. Opens no file and prints nothing.
+/// @throws InputError for a scan without points, a part without triangles or without the faces that were asked for, a
+///   transform of a registration that found no pose, and a band whose lower end is above the upper one
+ScanDeviations find_deviations(const ScanDeviationsRequest& request);
+
+/// Files of the points that count, name and contents: deviation.csv and deviation.ply (coloured).
+std::vector<std::pair<std::string, std::string>> deviation_files(const ScanDeviations& result);
+
+}  // namespace abbe

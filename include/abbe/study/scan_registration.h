@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "abbe/formats/shapes/mesh_file.h"
+#include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/geometry/registration/registration.h"
+#include "abbe/geometry/stopped.h"
+#include "abbe/geometry/surface/point_cloud.h"
+#include "abbe/verify/parts/scan_comparison.h"
+
+// A scan laid on its part, as `abbe register` does it:
+//
+//   #include <abbe/study/scan_registration.h>
+//
+//   #include <cstdio>
+//   #include <utility>
+//
+//   int main(int /*argc*/, char** arguments) {
+//     abbe::ScanRegistrationRequest request;
+//     request.scan_file = arguments[1];
+//     request.part_file = arguments[2];
+//     request.scan = abbe::read_point_cloud(request.scan_file);
+//     request.part = abbe::read_mesh(request.part_file);
+//     const abbe::ScanRegistration result = abbe::register_scan(std::move(request));
+//     std::fputs(abbe::scan_registration_text(result).c_str(), stdout);
+//     return result.is_ok() ? 0 : 1;
+//   }
+//
+// Method and figures: docs/registration.md.
+
+namespace abbe {
+
+/// A scan and the part on which it is to be laid.
+struct ScanRegistrationRequest {
+  PointCloudFile scan;
+  MeshFile part;
+  std::string scan_file, part_file;  ///< names for texts and messages
+  RegistrationOptions options;
+  bool compare = false;  ///< find also how far the scan is from the part there, for the page
+};
+
+/// Where a scan lies on its part. It owns all that it needs.
+struct ScanRegistration {
+  std::string scan_file, part_file;
+  PointCloudFile scan;
+  MeshFile part;
+  Registration found;
+  std::optional<ScanComparison> compared;  ///< if asked for and if there is a pose
+  int threads = 0;                         ///< for the page; no result depends on it
+
+  /// Whether there is one pose; a pose that is one of many has another status of `found`.
+  bool is_ok() const { return found.status == RegistrationStatus::ok; }
+};
+
+struct ScanRegistrationOptions {
+  /// Called while it takes long, by the calling thread: steps done of all.
+  std::function<void(std::size_t done, std::size_t total)> progress{};
+  std::stop_token stop{};  ///< looked at there
+};
+
+/// Lays a scan on its part. Opens no file and prints nothing.
+/// @throws InputError for a scan without points and a part without triangles; Stopped where that was asked for
+ScanRegistration register_scan(ScanRegistrationRequest request, const ScanRegistrationOptions& options = {});
+
+/// The scan in the frame of the part.
+PointCloud registered_scan(const ScanRegistration& result);
+
+/// For people; lines with their ends. @param covariance  of the pose: state it too
+std::string scan_registration_text(const ScanRegistration& result, bool covariance = false);
+
+/// For programs; units in the keys.
+nlohmann::ordered_json scan_registration_json(const ScanRegistration& result);
+
+/// The page: pose, what the scan does not fix, and the deviations that are left where they were asked for.
+std::string scan_registration_page(const ScanRegistration& result);
+
+/// The files of a results folder, name and contents: registration.json, report.html and, where there is a pose,
+/// transform.csv and registered.ply.
+std::vector<std::pair<std::string, std::string>> scan_registration_files(const ScanRegistration& result);
+
+}  // namespace abbe

@@ -1,0 +1,54 @@
+#include "abbe/study/corrected_commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "abbe/formats/text/input_error.h"
+#include "abbe/report/words/corrected_poses_words.h"
+#include "abbe/study/correction_limits.h"
+
+namespace abbe {
+
+CorrectedCommands correct_commands(const CommandsRequest& request) {
+  check_leave_out(request.leave_out_factor, request.errors, request.errors_file);
+  const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
+  check_largest_turn(request.largest_turn);
+  CorrectedCommands result;
+  result.machine = request.machine;
+  result.poses = request.poses;
+  result.leave_out_factor = request.leave_out_factor;
+  result.has_reversals = !request.errors.errors.reversals.empty();
+  result.corrected = corrected_poses(
+      request.machine, request.errors.errors, request.errors.covariance, request.poses,
+      {.largest_turn = request.largest_turn, .leave_out_factor = request.leave_out_factor, .held = request.held});
+  const CorrectedPoses& corrected = result.corrected;
+  if (!corrected.problem.empty()) throw InputError({.file = request.machine_file}, corrected.problem);
+  if (!(1e3 * corrected.largest_shift.value <= limit_um)) {
+    result.refused =
+        fmt::format("correction of {:.3f} um above --limit-um {:g}: {}", 1e3 * corrected.largest_shift.value, limit_um,
+                    pose_words(request.machine, request.poses, corrected.largest_shift.row));
+  }
+  result.not_reached =
+      static_cast<std::size_t>(std::count_if(corrected.status.begin(), corrected.status.end(),
+                                             [](CorrectionStatus status) { return !reaches_point(status); }));
+  return result;
+}
+
+std::string corrected_commands_csv(const CorrectedCommands& result) {
+  return poses_csv(result.machine, result.corrected);
+}
+
+std::string corrected_commands_text(const CorrectedCommands& result) {
+  std::string text = poses_text(result.machine, result.poses, result.corrected, result.leave_out_factor);
+  if (result.has_reversals) text += "reversal values are not in these commands: a pose has no direction of approach\n";
+  return text;
+}
+
+nlohmann::ordered_json corrected_commands_json(const CorrectedCommands& result, const std::string& output,
+                                               bool written) {
+  return poses_json(result.machine, result.poses, result.corrected, output, written);
+}
+
+}  // namespace abbe
