@@ -56,7 +56,8 @@ void add_identify_command(CommandLine& line) {
       }
       if (options->json) {
         nlohmann::ordered_json json = study_summary(study, result);
-        if (result.usable()) json["parameter_table"] = report_parameters(study.machine, result, nullptr);
+        if (result.usable())
+          json["parameter_table"] = report_parameters(study.machine, result, nullptr, ScalesIn::mm_and_mrad);
         fmt::print("{}", json_text(json));
         tell_distrust(study, result);
         return study_exit_code(study, result);
@@ -67,10 +68,12 @@ void add_identify_command(CommandLine& line) {
         fmt::print("\n{:<24} {:>16} {:>16}\n", "parameter", "value", "u");
         for (std::size_t p = 0; p < identified.parameters.size(); ++p) {
           const bool angle = identified.parameters[p].is_angle;
-          const double unit = micro_per_unit(angle);
+          const bool pure = identified.parameters[p].is_pure_number;
+          const double unit = pure ? kPurePerUnit : micro_per_unit(angle);
           fmt::print("{:<24} {:>16.4f} {:>16.4f} {}\n", identified.parameters[p].name,
                      unit * identified.estimates[static_cast<Eigen::Index>(p)],
-                     unit * identified.standard_uncertainties[static_cast<Eigen::Index>(p)], micro_unit(angle));
+                     unit * identified.standard_uncertainties[static_cast<Eigen::Index>(p)],
+                     pure ? kPureUnit : micro_unit(angle));
         }
       }
       if (!options->output.empty() && result.usable()) fmt::print("\n{} written\n", options->output);

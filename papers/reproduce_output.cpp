@@ -182,7 +182,7 @@ std::string reproduction_page(const Reproduction& made) {
   // Figures of a paper are shown whatever else the page draws.
   data["evaluation"]["drawings"] = nlohmann::json::array();
   for (const EvaluationPlot& plot : made.figures) {
-    if (!plot.in_page) data["evaluation"]["drawings"].push_back({{"caption", plot.caption}, {"svg", plot.svg}});
+    if (!plot.in_page) data["evaluation"]["drawings"].push_back(drawing_data(plot));
   }
   const ReproducedTable published = published_table(made);
   for (const ReproducedTable* table : with_published(made, published)) data["tables"].push_back(page_table(*table));
@@ -198,7 +198,7 @@ void write_reproduction(const Reproduction& made, const std::filesystem::path& f
   for (const ReproducedTable* table : with_published(made, published)) {
     out.write(tables / (table->name + ".csv"), reproduction_csv(*table));
   }
-  for (const EvaluationPlot& plot : made.figures) out.write(figures / (plot.name + ".svg"), plot.svg);
+  for (const EvaluationPlot& plot : made.figures) out.write(figures / (plot.name + ".svg"), plot.picture.wide);
   if (made.write_study) made.write_study(out);
   out.commit();
 }

@@ -119,7 +119,7 @@ TEST(ReproduceOutput, WhatFailedOrDoesNotAgreeIsNoSuccess) {
 
 TEST(ReproduceOutput, ThePageHoldsFiguresAndTables) {
   Reproduction made = sample_reproduction();
-  made.figures = {{"figure-6", "Histogram", "<svg id=\"here\"></svg>"}};
+  made.figures = {{"figure-6", "Histogram", {"<svg id=\"here\"></svg>", ""}}};
   const std::string page = reproduction_page(made);
   for (const char* words : {"average before / ", "the paper gives no readings", "A note.", "Histogram"}) {
     EXPECT_NE(page.find(words), std::string::npos) << words;

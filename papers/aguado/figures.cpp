@@ -88,9 +88,9 @@ AguadoFigures aguado_figures(const AguadoTruth& truth, const std::vector<AguadoR
   map.add({"compensated: " + third_words, map_over_xz(truth, as_paper.identification.errors, as_paper.setup)});
   map.add({"compensated: " + fourth_words, map_over_xz(truth, complete.identification.errors, complete.setup)});
   figures.plots = {
-      {"figure-6-before", "2,000 random poses that were not measured, first reflector.", uncompensated.svg()},
-      {"figure-6-after", "The same poses after the joint characterisation of Table 3.", compensated.svg()},
-      {"figure-7", "Every map has a scale of its own. The paper prints no numbers with its figures.", map.svg()}};
+      {"figure-6-before", "2,000 random poses that were not measured, first reflector.", uncompensated.picture()},
+      {"figure-6-after", "The same poses after the joint characterisation of Table 3.", compensated.picture()},
+      {"figure-7", "Every map has a scale of its own. The paper prints no numbers with its figures.", map.picture()}};
   return figures;
 }
 

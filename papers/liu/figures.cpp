@@ -28,7 +28,7 @@ EvaluationPlot draw_figure_4b(const LiuFigureStudy& study) {
     plot.line(points, {kLiuColours[i]}, study.clamped[i].words);
   }
   return {"figure-4b", fmt::format("Perfect machine, section {:.0f} mm above the middle.", kLiuClampingHeight),
-          plot.svg()};
+          plot.picture()};
 }
 
 /// The line along the cylinder in the middle of each patch.
@@ -52,7 +52,7 @@ EvaluationPlot draw_figure_6(const LiuPlaces& places, const std::string& stage) 
       "figure-6-" + stage,
       "Middle line of each patch, shifts of Table 3 in um. Circles: measured; lines: virtual, turned about the axis "
       "found; dashed: about the nominal axis.",
-      plot.svg()};
+      plot.picture()};
 }
 
 EvaluationPlot draw_remaining(const LiuPlaces& places, const std::string& name, const std::string& title,
@@ -64,7 +64,7 @@ EvaluationPlot draw_remaining(const LiuPlaces& places, const std::string& name, 
     for (double& value : values) value *= 1e3;
     map.add({fmt::format("{} degrees", 90 * q), std::move(values)});
   }
-  return {name, caption, map.svg()};
+  return {name, caption, map.picture()};
 }
 
 EvaluationPlot draw_figure_9(const LiuFigureStudy& study, bool corrected) {
@@ -88,7 +88,7 @@ EvaluationPlot draw_figure_9(const LiuFigureStudy& study, bool corrected) {
   const std::string caption =
       "Generators at +x (lines) and at -x (dashed), shifts of Table 3 in um: both lean alike on an oblique cylinder, "
       "against each other on a cone.";
-  return {corrected ? "figure-9-after" : "figure-9-before", caption, plot.svg()};
+  return {corrected ? "figure-9-after" : "figure-9-before", caption, plot.picture()};
 }
 
 EvaluationPlot draw_figure_11b(const LiuRepeats& repeats, const std::string& name) {
@@ -105,7 +105,7 @@ EvaluationPlot draw_figure_11b(const LiuRepeats& repeats, const std::string& nam
     plot.line(points, {kLiuColours[run], 1.2}, fmt::format("run {}", run + 1));
   }
   return {name, fmt::format("Line in the middle of the cylinder; correlation of the runs {:.3f}.", repeats.correlation),
-          plot.svg()};
+          plot.picture()};
 }
 
 }  // namespace

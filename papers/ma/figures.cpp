@@ -42,7 +42,8 @@ EvaluationPlot draw_figure_3(const MaResults& r, std::size_t first) {
     plot.line(points, {kMaColours[i]}, kMaMotionNames[first + i]);
   }
   return {first == 0 ? "figure-3a" : "figure-3b",
-          "Corrected formulas, paper order. " + printed_words(r.inversions[0]) + " (tables/figure-3.csv).", plot.svg()};
+          "Corrected formulas, paper order. " + printed_words(r.inversions[0]) + " (tables/figure-3.csv).",
+          plot.picture()};
 }
 
 EvaluationPlot draw_figure_5(const MaTable& t, std::size_t motion) {
@@ -66,7 +67,7 @@ EvaluationPlot draw_figure_5(const MaTable& t, std::size_t motion) {
   plot.line(mean, {PlotColour::first, 1.8}, "mean of the runs");
   plot.points(mean, Marker::circle, {PlotColour::first});
   plot.line(truth, {PlotColour::second, 1.4, true}, "what the simulated table did");
-  return {fmt::format("figure-5-{}", name), "", plot.svg()};
+  return {fmt::format("figure-5-{}", name), "", plot.picture()};
 }
 
 }  // namespace

@@ -159,7 +159,7 @@ double wang_share_within(const WangCircle& circle, const WangCircle& without_noi
   return circle.uncertainty.empty() ? 0 : static_cast<double>(within) / static_cast<double>(circle.uncertainty.size());
 }
 
-std::string wang_circle_svg(const WangCircle& circle, const WangCircle& without_noise) {
+SvgPicture wang_circle_picture(const WangCircle& circle, const WangCircle& without_noise) {
   std::vector<PolarPoint> found, low, high, exact;
   for (std::size_t k = 0; k < circle.deviation.size(); ++k) {
     const double angle = degrees_at(k) * std::numbers::pi / 180, value = 1e3 * circle.deviation[k];
@@ -176,7 +176,7 @@ std::string wang_circle_svg(const WangCircle& circle, const WangCircle& without_
   plot.line(high, true, band);
   plot.line(exact, true, {PlotColour::second, 1.2, false, 1}, "from readings without noise");
   plot.line(found, true, {PlotColour::first, 1.8, false, 1}, "deviation");
-  return plot.svg();
+  return plot.picture();
 }
 
 }  // namespace abbe

@@ -7,6 +7,7 @@
 
 #include "abbe/errors/error_set.h"
 #include "abbe/identify/linkage/decoupled_errors.h"
+#include "abbe/report/drawings/svg_drawing.h"
 #include "wang/study.h"
 
 namespace abbe {
@@ -49,7 +50,7 @@ struct WangBallBarStudy {
 WangBallBarStudy wang_ball_bar_study(const DecoupledErrors& with_noise, const DecoupledErrors& without_noise);
 
 /// Polar plot of a circle beside that without noise as SVG text, the k = 2 band by its two edges.
-std::string wang_circle_svg(const WangCircle& circle, const WangCircle& without_noise);
+SvgPicture wang_circle_picture(const WangCircle& circle, const WangCircle& without_noise);
 /// Share of the angles at which the deviation of `without_noise` lies within k = 2.
 double wang_share_within(const WangCircle& circle, const WangCircle& without_noise);
 

@@ -172,7 +172,7 @@ std::vector<EvaluationPlot> wang_ball_bar_plots(const WangBallBarStudy& bar) {
   std::vector<EvaluationPlot> plots;
   for (std::size_t i = 0; i < bar.with_noise.size(); ++i) {
     const WangCircle& circle = bar.with_noise[i];
-    plots.push_back({"ball-bar-" + circle.plane, "", wang_circle_svg(circle, bar.without_noise[i])});
+    plots.push_back({"ball-bar-" + circle.plane, "", wang_circle_picture(circle, bar.without_noise[i])});
   }
   plots.front().caption = "What the readings of dials and laser predict for a ball bar of 100 mm.";
   return plots;

@@ -138,7 +138,7 @@ TEST(WangBallBar, ThePictureCarriesTheBand) {
   const WangDialStudy study = wang_dial_study(1);
   const WangCircle exact = wang_ball_bar(study.without_noise.errors)[0];
   const WangCircle circle = wang_ball_bar(study.with_noise.errors, &study.with_noise.covariance)[0];
-  const std::string svg = wang_circle_svg(circle, exact);
+  const std::string svg = wang_circle_picture(circle, exact).wide;
   EXPECT_NE(svg.find("expanded uncertainty, k = 2"), std::string::npos);
   EXPECT_GT(wang_share_within(circle, exact), 0.6);
 }

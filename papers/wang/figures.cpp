@@ -248,9 +248,10 @@ std::vector<EvaluationPlot> wang_point_plots(const std::vector<WangPoints>& poin
   }
   degrees.level(1000, "1 mm, the paper's level", {PlotColour::limit, 1, true, 1});
   return {
-      {"figure-13", "The picture in the paper has no coordinates; these are three readings of it.", places.svg()},
-      {"figure-14-degrees", "Integrated error of equation (18) at the 36 points of each reading.", degrees.svg()},
-      {"figure-14-millidegrees", "Lines: angles read as millidegrees. Marks: displacement errors only.", small.svg()}};
+      {"figure-13", "The picture in the paper has no coordinates; these are three readings of it.", places.picture()},
+      {"figure-14-degrees", "Integrated error of equation (18) at the 36 points of each reading.", degrees.picture()},
+      {"figure-14-millidegrees", "Lines: angles read as millidegrees. Marks: displacement errors only.",
+       small.picture()}};
 }
 
 }  // namespace abbe

@@ -43,7 +43,7 @@ EvaluationPlot contour_plot(const YinResults& r) {
   plot.points(found, Marker::circle, {PlotColour::first}, "found from its sections (P2)");
   plot.points(rounding, Marker::cross, {PlotColour::second}, "P1 P2: the rounding");
   return {"contour", "One part, engraved by a machine with errors drawn from the budget, and what its sections show.",
-          plot.svg()};
+          plot.picture()};
 }
 
 EvaluationPlot budget_plot(const UncertaintyBudget& budget) {
@@ -58,7 +58,7 @@ EvaluationPlot budget_plot(const UncertaintyBudget& budget) {
   plot.include_y(0);
   plot.points(linear, Marker::circle, {PlotColour::first, 1.6}, "by sensitivity");
   plot.points(drawn, Marker::cross, {PlotColour::second, 1.6}, "by Monte Carlo");
-  return {"budget", "In the order of the budget table.", plot.svg()};
+  return {"budget", "In the order of the budget table.", plot.picture()};
 }
 
 /// The sections of the simulated part, as `abbe evaluate contour` shows its own.

@@ -61,6 +61,11 @@ async function monteCarloOf(page, data, expect) {
     expect(isNumber(ratio) ? Math.abs(Number(cells[i]) - ratio) <= 0.00501 : cells[i] === '\u2013', `${data.parameters.name[i]}: ratio ${cells[i]} for ${ratio}`));
 }
 
+/// A sentence of the data as the page writes it; the parts of the page are tested by themselves.
+const typeset = (text) => text.replace(/(\d) u(m|rad)\b/g, '$1\u202fµ$2').replace(/(\d) x (?=\d)/g, '$1 × ').replace(/(^|[\s(,])-(?=\d)/g, '$1\u2212')
+  .replace(/(\d)\^(\d+)/g, (_, base, power) => base + [...power].map((d) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[d]).join(''))
+  .replace(/(?<![\w.])\d{5,}(?=(?:\.\d+)?[\u202f ](?:µm|µrad|mm)\b)/g, (digits) => digits.replace(/\B(?=(\d{3})+$)/g, '\u202f'));
+
 /// Lists and figures of the identification, advice, assumptions, warnings: one entry for each in the data.
 async function listsOf(page, data, expect) {
   const count = async (selector, wanted, what) => {
@@ -71,7 +76,7 @@ async function listsOf(page, data, expect) {
   // The page puts what lacks a measurement first; every entry is there once, whole.
   const said = await page.locator('#advice .advice-list > li').allTextContents();
   for (const [i, entry] of (data.advice ?? []).entries()) {
-    const text = entry.text.replace(/(\d) u(m|rad)\b/g, '$1\u202fµ$2');
+    const text = typeset(entry.text);
     const parts = [text, entry.remedy ?? '', ...(entry.parameters ?? [])];
     const at = said.findIndex((shown) => parts.every((part) => shown.includes(part)));
     expect(at >= 0, `advice ${i + 1} is not on the page: ${parts.join(' | ')}`);

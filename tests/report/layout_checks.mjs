@@ -1,7 +1,9 @@
-// What a reader sees of the layout at one width: nothing wider than the window, no text over another, no number broken across lines.
+// What a reader sees of the layout at one width: nothing wider than the window, no text over another, no number broken across lines, no
+// letters of drawings that are too small.
 
 /// Runs in the page. Faults in words; empty if there are none.
 export function layoutFaults() {
+  const kLeastLetters = 9.9;
   const faults = [];
   const name = (text) => `"${text.trim().replace(/\s+/g, ' ').slice(0, 40)}"`;
   const root = document.documentElement;
@@ -38,6 +40,10 @@ export function layoutFaults() {
       lines.push({box, text: node.data, drawing, holder, parent, cut: false});
     }
     if (drawing) {
+      // Drawings are made for their width or scaled; paper has more dots than a screen.
+      const scale = parent.getScreenCTM();
+      const letters = parseFloat(style.fontSize) * Math.hypot(scale.a, scale.b);
+      if (letters < kLeastLetters && !matchMedia('print').matches) faults.push(`${name(node.data)} has letters of ${letters.toFixed(1)} px`);
       const outer = drawing.getBoundingClientRect();
       range.selectNodeContents(node);
       const box = range.getBoundingClientRect();
@@ -73,6 +79,28 @@ export function layoutFaults() {
       faults.push(`${name(first.text)} and ${name(second.text)} cover each other`);
       if (++found === 12) break;
     }
+  }
+  for (const box of document.querySelectorAll('figure .scroll'))
+    if (box.querySelector('svg') && box.scrollWidth > box.clientWidth + 1) faults.push(`the drawing ${name(box.getAttribute('aria-label') ?? '')} is moved sideways`);
+  // A few words on many lines make a row that is mostly empty.
+  for (const cell of document.querySelectorAll('td,th')) {
+    if (closed(cell)) continue;
+    range.selectNodeContents(cell);
+    const lines = new Set([...range.getClientRects()].filter((box) => box.width > 1).map((box) => Math.round(box.bottom / 4))).size;
+    const letters = cell.textContent.trim().length;
+    if (lines > 4 && letters < 9 * lines) faults.push(`the cell ${name(cell.textContent)} has ${letters} letters on ${lines} lines`);
+  }
+  // In a wide window only a table of many columns scrolls.
+  for (const box of document.querySelectorAll('.scroll')) {
+    const columns = box.querySelectorAll('table:first-of-type thead th').length;
+    if (root.clientWidth > 1200 && columns > 0 && columns < 10 && box.scrollWidth > box.clientWidth + 1) faults.push(`the ${columns} columns of ${name(box.getAttribute('aria-label') ?? '')} do not fit`);
+  }
+  // Where a head stays in view while its table scrolls sideways, the names of the rows do as well.
+  for (const table of document.querySelectorAll('.scroll table')) {
+    const sticks = (cell) => cell && getComputedStyle(cell).position === 'sticky' && getComputedStyle(cell).left !== 'auto';
+    const row = table.querySelector('tbody tr');
+    if (row && table.getClientRects().length && sticks(table.querySelector('thead th')) !== sticks(row.firstElementChild))
+      faults.push(`the head and the first cells of ${name(table.caption?.textContent ?? 'a table')} do not stay in view together`);
   }
   // What is divided finer than its numbers are written repeats them.
   for (const drawing of document.querySelectorAll('svg')) {

@@ -50,6 +50,11 @@ async function figuresOf(page, evaluation, expect, parse) {
     const off = Math.abs(parse(shown.get(figure.symbol) ?? 'none') - figure[key]);
     expect(off <= 0.5001 * 10 ** -figure.decimals, `${figure.symbol}: page says ${shown.get(figure.symbol)}, data ${figure[key]}`);
   }
+  const uncertainties = await page.$$eval('#figures td.uncertainty', (all) => all.map((e) => e.textContent));
+  for (const [i, figure] of (evaluation.figures ?? []).entries()) {
+    const key = Object.keys(figure).find((name) => name.startsWith('expanded_uncertainty'));
+    expect(!key || figure[key] !== 0 || uncertainties[i] === '', `${figure.symbol}: no uncertainty is written as ${uncertainties[i]}`);
+  }
   const facts = await page.$$eval('.overview .facts dd', (all) => all.map((e) => e.textContent));
   for (const fact of evaluation.facts ?? []) expect(facts.includes(fact.text), `the fact ${fact.name} is not on the page`);
 }

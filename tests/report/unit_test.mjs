@@ -37,6 +37,11 @@ const tests = {
     const [driven] = keptApart([label('mark', 0, 0)], [[5, -4, 3]]);
     assert.ok(driven.x !== 0 || driven.y !== 0);
   },
+  async 'sentences of the data are written with signs and letters that people print'() {
+    const {prose} = await load('format');
+    assert.equal(prose('mean 10910 um over 9 x 9 x 9 poses, Z -460 to 0 mm, 11^6'), 'mean 10\u202f910\u202fµm over 9 × 9 × 9 poses, Z \u2212460 to 0 mm, 11\u2076');
+    for (const kept of ['ISO 10791-6, seed 87109', 'tables/figure-3.csv', 'EXX[P1] and 1e-5', '0.123456 mm']) assert.equal(prose(kept), kept);
+  },
   async 'quantiles of values are linear between order statistics'() {
     const {fromValues} = await load('histogram');
     const values = [4, 1, 3, 2];
@@ -74,6 +79,11 @@ const tests = {
     assert.deepEqual(groups.flatMap((group) => group.slice(1)), columns.map((_, i) => i).slice(1));
     assert.deepEqual(columnsOnPaper(['a', 'b'], [['1', 'many words that may stand on several lines of a narrow column']]), [[0, 1]]);
     assert.deepEqual(columnsOnPaper(['a'], []), [[0]]);
+    // Where the first column does not tell the rows apart, the next ones are repeated too.
+    const rows = [1, 2, 3].map((n) => columns.map((_, i) => (i === 0 ? 'circle' : i === 1 ? String(n) : '-1234.5678')));
+    const twice = columnsOnPaper(columns, rows);
+    assert.ok(twice.length > 1 && twice.every((group) => group[0] === 0 && group[1] === 1 && group.length > 3), JSON.stringify(twice));
+    assert.deepEqual(twice.flatMap((group) => group.slice(2)), columns.map((_, i) => i).slice(2));
   },
   async 'numbers have a real minus sign, none at zero, and thousands apart'() {
     const {fixed, number, withUncertainty} = await load('format');

@@ -2,7 +2,7 @@
 
 import {Advice, NotIdentified} from './data';
 import {html, section} from './dom';
-import {withUnits} from './format';
+import {prose} from './format';
 
 /// What lacks a measurement first; conventions and matters of the set-up need none.
 const kOrder = ['not measured', 'weak', 'convention', 'datum', 'set-up'];
@@ -14,12 +14,12 @@ export function adviceSection(advice: Advice[], missing?: NotIdentified): HTMLEl
     'tried with simulated readings.');
   const sorted = [...advice].sort((a, b) => kOrder.indexOf(a.kind ?? '') - kOrder.indexOf(b.kind ?? ''));
   if (advice.length) part.append(html('ol', {class: 'advice-list'}, ...sorted.map((entry) => html('li', {},
-    html('p', {}, withUnits(entry.text)),
+    html('p', {}, prose(entry.text)),
     entry.words && html('p', {}, entry.words),
     entry.remedy && html('p', {class: 'remedy'}, html('b', {}, needsNone(entry) ? 'Measurement: ' : 'To see it: '),
       entry.remedy),
     !!entry.parameters?.length && html('code', {}, entry.parameters.join('  '))))));
-  if (missing) part.append(html('h3', {}, 'Errors that were not identified'), html('p', {}, withUnits(missing.text)),
+  if (missing) part.append(html('h3', {}, 'Errors that were not identified'), html('p', {}, prose(missing.text)),
     html('ul', {class: 'plain not-identified'}, ...(missing.shown_by ?? []).map((entry) => html('li', {},
       html('p', {class: 'remedy'}, html('code', {}, entry.errors.join('  ')), html('b', {}, ' To see it: '), entry.remedy)))));
   return part;

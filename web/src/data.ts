@@ -239,7 +239,8 @@ export interface Evaluation {
   kind?: string;
   facts?: {name: string; text: string}[];
   figures?: EvaluationFigure[];
-  drawings?: {caption?: string; svg: string}[];
+  /// `svg_narrow`: the same for a narrow window
+  drawings?: {caption?: string; svg: string; svg_narrow?: string}[];
 }
 
 /// Contour error over the length of a curve; u is the standard uncertainty.

@@ -3,7 +3,7 @@
 import {Evaluation, EvaluationFigure, findQuantity} from './data';
 import {html, section} from './dom';
 import {drawing} from './drawings';
-import {fixed, micro} from './format';
+import {fixed, prose} from './format';
 
 /// As evaluation_report.cpp names them; "not proven": the tolerance lies within the uncertainty.
 const kVerdicts: Record<string, string> = {
@@ -37,7 +37,8 @@ export function evaluationSection(evaluation: Evaluation): HTMLElement {
       html('th', {scope: 'row', role: 'rowheader'}, ...symbol(figure.symbol)), html('td', {role: 'cell', class: 'words'}, figure.name ?? ''),
       value ? html('td', {role: 'cell', class: 'number'}, html('span', {'data-figure': figure.symbol}, text(figure, value.value)))
         : html('td', {role: 'cell', class: 'words'}, `not evaluated: ${figure.not_evaluated ?? ''}`),
-      uncertainty && number(figure, 'expanded_uncertainty', 'uncertainty'), html('td', {role: 'cell'}, value?.unit ?? ''),
+      // An uncertainty to which nothing stated contributes is none: it is not written as a zero.
+      uncertainty && number(find(figure, 'expanded_uncertainty')?.value ? figure : {symbol: ''}, 'expanded_uncertainty', 'uncertainty'), html('td', {role: 'cell'}, value?.unit ?? ''),
       tolerance && number(figure, 'tolerance', 'tolerance'), tolerance && html('td', {role: 'cell', class: `verdict-of ${kVerdicts[verdict] ?? ''}`}, verdict));
   });
   // A page may have drawings and no figures.
@@ -47,9 +48,7 @@ export function evaluationSection(evaluation: Evaluation): HTMLElement {
       html('thead', {}, html('tr', {}, ...heads.map((name) => html('th', {scope: 'col', class: numeric.has(name) ? 'number' : ''}, name || html('span', {class: 'unseen'}, 'Symbol'))))),
       html('tbody', {}, ...rows))));
   }
-  for (const made of evaluation.drawings ?? []) {
-    const shown = drawing(made.svg, made.caption && micro(made.caption));
-    if (shown) part.append(shown);
-  }
+  const drawings = (evaluation.drawings ?? []).map((made) => drawing(made.svg, made.svg_narrow, made.caption && prose(made.caption)));
+  part.append(html('div', {class: 'drawings'}, ...drawings));
   return part;
 }

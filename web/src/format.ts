@@ -36,11 +36,6 @@ export function grouped(text: string): string {
   return fraction === undefined ? grouped : `${grouped}.${fraction}`;
 }
 
-/// Units of a sentence as the page writes them: 18.3 um becomes 18.3 µm.
-export function withUnits(text: string): string {
-  return text.replace(/(\d) u(m|rad)\b/g, '$1\u202fµ$2');
-}
-
 export function superscript(exponent: number): string {
   const digits = '⁰¹²³⁴⁵⁶⁷⁸⁹';
   return (exponent < 0 ? '⁻' : '') + [...String(Math.abs(exponent))].map((d) => digits[Number(d)]).join('');
@@ -74,7 +69,13 @@ export function alike(value: number | null | undefined, printed: string): string
   return fixed(value, decimals);
 }
 
-/// Text of a producer without Greek letters, as people write it.
-export function micro(text: string): string {
-  return text.replace(/(\d) u(m|rad)\b/g, '$1\u202fµ$2');
+/// Text of a producer, who writes without Greek letters and signs, as people print it: 18.3 um becomes 18.3 µm, 9 x 9 becomes 9 × 9,
+/// 11^6 becomes 11⁶, -460 has a minus sign, and lengths and angles of five digits are grouped.
+export function prose(text: string): string {
+  return text
+    .replace(/(\d) u(m|rad)\b/g, '$1\u202fµ$2')
+    .replace(/(\d) x (?=\d)/g, '$1 × ')
+    .replace(/(^|[\s(,])-(?=\d)/g, `$1${kMinus}`)
+    .replace(/(\d)\^(\d+)/g, (_, base, power) => base + superscript(Number(power)))
+    .replace(/(?<![\w.])\d{5,}(?=(?:\.\d+)?[\u202f ](?:µm|µrad|mm)\b)/g, grouped);
 }

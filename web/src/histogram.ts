@@ -2,7 +2,7 @@
 
 import {ErrorMap, Histogram, Statistics, Summary, Vectors} from './data';
 import {figure, html, isPrinting, responsive, section, svg} from './dom';
-import {count, quantity} from './format';
+import {count, prose, quantity} from './format';
 import {plot, Plot, rule} from './plot';
 import {statisticsTable} from './statistics';
 
@@ -105,7 +105,7 @@ function signedCounts(entry: Histogram, edges: number[], unit: string): HTMLElem
   const all = inside + below + above;
   const of = typeof entry.of === 'string' ? entry.of : 'values';
   const data = fromCounts(edges, counts, below, above);
-  const caption = `${entry.title ?? 'Distribution'} of ${count(all)} ${of}.${all > inside ? ` ${count(below)} lie below and ${count(above)} above the classes.` : ''}`;
+  const caption = `${prose(entry.title ?? 'Distribution')} of ${count(all)} ${of}.${all > inside ? ` ${count(below)} lie below and ${count(above)} above the classes.` : ''}`;
   return figure(caption, drawing(unit, [{style: 'after', name: '', data}], false, typeof entry.quantity === 'string' ? entry.quantity : 'value', of));
 }
 
@@ -136,7 +136,7 @@ function one(entry: Histogram): HTMLElement | undefined {
     if (edges && entry.counts) return signedCounts(entry, edges, unit);
     if (!sets.length || sets.some((set) => set.data.total === 0)) continue;
     const of = typeof entry.of === 'string' ? entry.of : 'poses';
-    const caption = `${entry.title ?? 'Distribution'}. ${sets
+    const caption = `${prose(entry.title ?? 'Distribution')}. ${sets
       .map((set) => `${set.name[0].toUpperCase()}${set.name.slice(1)}: 95\u202f% of ${count(set.data.total)} ${of} below ${quantity(set.data.p95, unit)}`)
       .join('. ')}.${log ? ' Logarithmic axis.' : ''}`;
     return figure(caption, drawing(unit, sets, log, typeof entry.quantity === 'string' ? entry.quantity : suffix === 'um' ? 'volumetric error' : 'orientation error', of));

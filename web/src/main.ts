@@ -6,7 +6,7 @@ import {contourSection} from './contour';
 import {Report} from './data';
 import {html, section} from './dom';
 import {evaluationSection} from './evaluation';
-import {micro} from './format';
+import {prose} from './format';
 import {histogramSection} from './histogram';
 import {gaugeSection, identificationSection} from './identification';
 import {mapSection} from './map';
@@ -32,7 +32,7 @@ const kShortEvaluation: Record<string, string> = {tables: 'Details', assumptions
 
 function listSection(id: string, title: string, lines: string[]): HTMLElement {
   const part = section(id, title);
-  part.append(html('ul', {class: 'plain'}, ...lines.map((text) => html('li', {}, micro(text)))));
+  part.append(html('ul', {class: 'plain'}, ...lines.map((text) => html('li', {}, prose(text)))));
   return part;
 }
 

@@ -3,7 +3,7 @@
 import {cssColour, rampColour} from './colour';
 import {ErrorMap, PoseErrors, splitUnit} from './data';
 import {field, html, responsive, section, svg} from './dom';
-import {count, micro, number, quantity as withUnit} from './format';
+import {count, number, prose, quantity as withUnit} from './format';
 import {Colour, colours, exaggeration, quantities, range, statisticsTable} from './map_choices';
 import {Camera} from './camera';
 import {View} from './map_view';
@@ -76,7 +76,7 @@ export function mapSection(map: ErrorMap, summary: PoseErrors | undefined): HTML
   const part = section('map', `Map of the ${map.quantity ?? 'volumetric error'}`,
     `Each arrow stands at its nominal point (${frame}) and shows ${shows}, exaggerated. ` +
     `${shown < total ? `${count(shown)} of ${count(total)} poses drawn` : `${count(total)} ${total === 1 ? 'pose' : 'poses'}`}${map.description ? `: ${map.description}` : ''}.`);
-  if (map.note) part.append(html('p', {class: 'note under'}, micro(map.note)));
+  if (map.note) part.append(html('p', {class: 'note under'}, prose(map.note)));
   const kinds = quantities(map);
   let kind = kinds[0];
   const after = kind.views.length > 1;

@@ -3,7 +3,7 @@
 import {PoseErrors, Report, Statistics, Summary} from './data';
 import {html} from './dom';
 import {evaluationFacts} from './evaluation';
-import {count, micro, number, quantity} from './format';
+import {count, number, prose, quantity} from './format';
 
 /// Errors at poses: at unseen ones if there are any, else over the map.
 function headline(summary: Summary): {errors: PoseErrors; key: 'held_out' | 'map'; where: string} | undefined {
@@ -19,7 +19,7 @@ function headline(summary: Summary): {errors: PoseErrors; key: 'held_out' | 'map
 }
 
 export function verdict(summary: Summary): string {
-  if (summary.verdict) return micro(summary.verdict);
+  if (summary.verdict) return prose(summary.verdict);
   if (summary.converged === false) return 'The identification did not converge; the figures below are no result.';
   const head = headline(summary);
   if (!head) return '';
@@ -168,7 +168,7 @@ export function warnings(report: Report): HTMLElement | undefined {
   for (const entry of entries) {
     const {level, text} = typeof entry === 'string' ? {level: 'warning', text: entry} : {level: entry.level ?? 'warning', text: entry.text};
     const known = ['error', 'warning', 'note'].includes(level) ? level : 'warning';
-    list.append(html('li', {class: `level-${known}`}, html('strong', {}, known[0].toUpperCase() + known.slice(1)), html('span', {}, micro(text))));
+    list.append(html('li', {class: `level-${known}`}, html('strong', {}, known[0].toUpperCase() + known.slice(1)), html('span', {}, prose(text))));
   }
   return list;
 }

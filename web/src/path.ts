@@ -22,7 +22,25 @@ function cameraOf(path: PathBlock, part: Surface | undefined): Camera {
     if (part) for (let i = k; i < part.vertices.length; i += 3) values.push(part.vertices[i]);
     return values;
   };
-  return new Camera({x: column(0), y: column(1), z: column(2)}, 1e-6);
+  const camera = new Camera({x: column(0), y: column(1), z: column(2)}, 1e-6);
+  if (part && !path.stops) camera.lookFrom(...sideOf(path));
+  return camera;
+}
+
+/// The side of the part on which the tool is; where it goes all around, the side on which it leaves the part.
+function sideOf(path: PathBlock): [number, number, number] {
+  const mean = (kept: (i: number) => boolean): [number, number, number] => {
+    const sum = [0, 0, 0];
+    let n = 0;
+    for (let i = 0; i < path.time_s.length; ++i) {
+      if (!kept(i)) continue;
+      (['x', 'y', 'z'] as const).forEach((key, k) => (sum[k] += path.direction[key][i]));
+      ++n;
+    }
+    return sum.map((v) => v / Math.max(n, 1)) as [number, number, number];
+  };
+  const all = mean(() => true);
+  return Math.hypot(...all) > 0.2 || path.working.every(Boolean) ? all : mean((i) => !path.working[i]);
 }
 
 /// A row for each axis: name, position, where it is in its travel.

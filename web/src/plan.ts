@@ -2,7 +2,7 @@
 
 import {Report, splitUnit} from './data';
 import {figure, html, responsive, section} from './dom';
-import {count, micro, number, quantity} from './format';
+import {count, number, prose, quantity} from './format';
 import {PlanBlock} from './plan_data';
 import {dots, line, plot, readout, rule} from './plot';
 import {extent} from './scale';
@@ -11,7 +11,7 @@ import {dataTable} from './table';
 export function planCurveSection(plan: PlanBlock | undefined): HTMLElement | undefined {
   const curve = plan?.curve;
   if (!curve?.readings.length) return undefined;
-  const part = section('curve', 'How many readings are enough', plan!.enough_words && micro(plan!.enough_words));
+  const part = section('curve', 'How many readings are enough', plan!.enough_words && prose(plan!.enough_words));
   const {readings, uncertainty_um: chosen} = curve;
   const gridReadings = curve.grid_readings ?? [];
   const grids = curve.grid_uncertainty_um ?? [];
@@ -70,7 +70,7 @@ export function planPosesSection(report: Report): HTMLElement | undefined {
 export function planOpenSection(plan: PlanBlock | undefined): HTMLElement | undefined {
   if (!plan?.open?.length) return undefined;
   const part = section('open', 'What the plan does not determine');
-  part.append(html('ul', {class: 'plain'}, ...plan.open.map((text) => html('li', {}, micro(text)))));
+  part.append(html('ul', {class: 'plain'}, ...plan.open.map((text) => html('li', {}, prose(text)))));
   return part;
 }
 

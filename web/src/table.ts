@@ -2,51 +2,75 @@
 
 import {DataTable, Parameters, unitText} from './data';
 import {field, html, section} from './dom';
-import {alike, count, micro, number, withUncertainty} from './format';
+import {alike, count, grouped, number, prose, withUncertainty} from './format';
 
 type Cell = string | number | boolean | null;
 
 const kSheet = 670;
+/// Letters of a text that stays on one line.
+const kLongestWord = 24;
+/// Letters of the name of a row.
+const kLongestName = 14;
+/// Rows of a table that is not divided between sheets.
+const kShort = 20;
 
-/// Groups of columns, each as wide as a sheet of paper, with the first column in all of them; one group where all fit.
+/// Leading columns that tell the rows apart: two at most beyond the first, which is always one of them.
+function namingColumns(columns: string[], rows: string[][]): number {
+  for (let n = 1; n <= Math.min(3, columns.length - 1); ++n)
+    if (new Set(rows.map((row) => row.slice(0, n).join('\n'))).size === rows.length) return n;
+  return 1;
+}
+
+/// Groups of columns, each as wide as a sheet of paper, with the columns that name the rows in all of them; one group where all fit.
 /// Letters of tables on paper are 5.3 pixels wide; words and numbers do not break.
 export function columnsOnPaper(columns: string[], rows: string[][]): number[][] {
   const longest = (text: string) => Math.max(0, ...text.split(/[ \u00ad-]+/).map((word) => word.length));
   const width = columns.map((name, i) => 8 + 5.3 * Math.max(longest(name), ...rows.map((row) => longest(row[i] ?? ''))));
   const groups: number[][] = [];
+  const names = columns.map((_, i) => i).slice(0, namingColumns(columns, rows));
   let used = Infinity;
-  for (let i = 1; i < columns.length; ++i) {
+  for (let i = names.length; i < columns.length; ++i) {
     if (used + width[i] > kSheet) {
-      groups.push([0]);
-      used = width[0];
+      groups.push([...names]);
+      used = names.reduce((sum, k) => sum + width[k], 0);
     }
     groups[groups.length - 1].push(i);
     used += width[i];
   }
-  return groups.length ? groups : [[0]];
+  return groups.length ? groups : [names];
 }
+
+/// Head of a column of a producer without Greek letters: "value in um" becomes "value in µm".
+const withGreekUnit = (name: string) => name.replace(/(^| in | \/ |\()u(m|rad)\b/g, '$1µ$2');
 
 export function dataTable(caption: string, columns: string[], rows: Cell[][]): HTMLElement {
   const isNumeric = (cell: unknown) => typeof cell === 'number' || (typeof cell === 'string' && /^-?\d[\d.]*(e[-+]?\d+)?$/.test(cell));
   const isMissing = (cell: unknown) => cell === null || cell === '';
   const isNumber = columns.map((_, i) => rows.some((row) => typeof row[i] === 'number') || (rows.some((row) => isNumeric(row[i])) && rows.every((row) => isNumeric(row[i]) || isMissing(row[i]))));
+  const asPrinted = (text: string) => text.replace('-', '\u2212').replace(/^(\u2212?)([\d.]+)$/, (_, sign, digits) => sign + grouped(digits));
   const written = rows.map((row) => row.map((cell, i) =>
-    typeof cell === 'number' ? (Number.isInteger(cell) ? count(cell) : number(cell, 5)) : cell === null ? '\u2013' : isNumber[i] ? cell.toString().replace('-', '\u2212') : String(cell)));
-  const table = (kept: number[], name: string, style: string) => html('table', {class: style},
+    typeof cell === 'number' ? (Number.isInteger(cell) ? count(cell) : number(cell, 5)) : cell === null ? '\u2013' : isNumber[i] ? asPrinted(String(cell)) : prose(String(cell))));
+  // Sentences stand on several lines, as wide as they need.
+  const wordy = columns.map((_, i) => !isNumber[i] && written.some((row) => row[i].length > kLongestWord));
+  const style = (i: number) => (isNumber[i] ? 'number' : wordy[i] ? 'words' : '');
+  // A short first column names the rows and stays in view beside those that scroll; a long one would hide them.
+  const named = columns.length > 1 && written.every((row) => row[0].length <= kLongestName);
+  const cell = (row: string[], i: number) => (i === 0 && named ? html('th', {scope: 'row', class: style(i)}, row[i]) : html('td', {class: style(i)}, row[i]));
+  const table = (kept: number[], name: string, where: string) => html('table', {class: `data ${where} ${named ? '' : 'unnamed'}`},
     html('caption', {}, name),
-    html('thead', {}, html('tr', {}, ...kept.map((i) => html('th', {scope: 'col', class: isNumber[i] ? 'number' : ''}, columns[i])))),
-    html('tbody', {}, ...written.map((row) => html('tr', {}, ...kept.map((i) => html('td', {class: isNumber[i] ? 'number' : ''}, row[i]))))));
+    html('thead', {}, html('tr', {}, ...kept.map((i) => html('th', {scope: 'col', class: isNumber[i] ? 'number' : ''}, withGreekUnit(columns[i]))))),
+    html('tbody', {}, ...written.map((row) => html('tr', {}, ...kept.map((i) => cell(row, i))))));
   const all = columns.map((_, i) => i);
   const groups = columnsOnPaper(columns, written);
-  return html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': caption}, table(all, caption, groups.length > 1 ? 'screen-only' : ''),
-    ...(groups.length > 1 ? groups.map((kept, i) => table(kept, `${caption} (${i + 1} of ${groups.length})`, 'paper-only')) : []));
+  return html('div', {class: `scroll${rows.length > kShort ? ' long' : ''}`, tabindex: 0, role: 'region', 'aria-label': caption}, table(all, prose(caption), groups.length > 1 ? 'screen-only' : ''),
+    ...(groups.length > 1 ? groups.map((kept, i) => table(kept, `${prose(caption)} (${i + 1} of ${groups.length})`, 'paper-only')) : []));
 }
 
 export function tablesSection(tables: DataTable[], title: string): HTMLElement {
   const part = section('tables', title);
   for (const table of tables) {
     part.append(dataTable(table.title, table.columns, table.rows));
-    if (table.note) part.append(html('p', {class: 'note'}, micro(table.note)));
+    if (table.note) part.append(html('p', {class: 'note'}, prose(table.note)));
   }
   return part;
 }

@@ -1,7 +1,7 @@
 // A compensation before and after: how the errors at unseen poses lie, and what is left on test pieces.
 
 import {html, figure, responsive, section, svg} from './dom';
-import {count, micro, number, quantity} from './format';
+import {count, number, prose, quantity} from './format';
 import {line, plot, rule} from './plot';
 import {extent, roundFactor} from './scale';
 import {CompensationDistribution, PieceEdge, VerificationBlock, VerifiedPiece} from './verification_data';
@@ -139,7 +139,7 @@ export function verificationSections(block: VerificationBlock | undefined): HTML
     part.append(key([['of-before', 'before'], ['of-after', 'after'], ...(data.predicted_um ? [['of-predicted', 'after, as its uncertainty predicts'] as [string, string]] : [])]),
       figure(`${block.poses ? `${count(block.poses)} random poses: ` : ''}95\u202f% of them below ${quantity(at(data, data.before_um, 95), 'µm')} before and ${quantity(at(data, data.after_um, 95), 'µm')} after` +
         `${data.predicted_um ? `; predicted: ${quantity(at(data, data.predicted_um, 95), 'µm')}` : ''}. Logarithmic axis.`, cumulative(data)));
-    if (block.wanted?.length) part.append(html('ul', {class: 'plain'}, ...block.wanted.map((one) => html('li', {class: one.met ? 'agrees' : 'exceeded'}, micro(one.text)))));
+    if (block.wanted?.length) part.append(html('ul', {class: 'plain'}, ...block.wanted.map((one) => html('li', {class: one.met ? 'agrees' : 'exceeded'}, prose(one.text)))));
     sections.push(part);
   }
   (block.pieces ?? []).forEach((piece, i) => sections.push(pieceSection(piece, i)));

@@ -66,6 +66,7 @@ struct EstimatedParameter {
   std::string name;  ///< "EXX[P2]", "tracker1.x"
   bool is_angle = false;
   ParameterId id;
+  bool is_pure_number = false;  ///< of a set-up: a scale
 };
 
 /// A problem in which everything is estimated: all machine parameters and all set-up unknowns, all readings used.

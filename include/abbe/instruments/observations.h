@@ -14,9 +14,10 @@ struct Machine;
 
 /// An unknown of a set-up: the pose of an instrument, an offset of a target.
 struct SetupUnknown {
-  std::string name;       ///< "tracker1.x", "reflector2.offset_z"
-  bool is_angle = false;  ///< rad if true, mm if false
-  double scale = 1;       ///< typical size, mm or rad: only for scaling and finite steps, never for the result
+  std::string name;             ///< "tracker1.x", "reflector2.offset_z"
+  bool is_angle = false;        ///< rad if true, mm if false
+  double scale = 1;             ///< typical size, mm or rad: only for scaling and finite steps, never for the result
+  bool is_pure_number = false;  ///< neither mm nor rad: a scale
 };
 
 /// One number of a reading: "length", "x", "pitch".

@@ -52,14 +52,20 @@ struct NamedPoint {
 
 /// A named number of the set-up: the length of a bar, a coordinate of a ball, the zero of an indication.
 struct SetupQuantity : SetupNumber {
-  std::string name;       ///< with the set-up's name in front: "bar1.length", "table_ball.x"
-  bool is_angle = false;  ///< rad if true; mm if false (or a pure number, where the docstring says so)
-  double scale = 1;       ///< typical size for scaling, > 0
+  std::string name;             ///< with the set-up's name in front: "bar1.length", "table_ball.x"
+  bool is_angle = false;        ///< rad if true; mm if false
+  double scale = 1;             ///< typical size for scaling, > 0
+  bool is_pure_number = false;  ///< neither mm nor rad, whatever `is_angle` says: a scale, written in um/m
 };
 
 /// @param name  with the set-up's name in front
 inline SetupQuantity quantity(std::string name, bool is_angle, const SetupNumber& number) {
-  return {number, std::move(name), is_angle, is_angle ? 1e-3 : 1.0};
+  return {number, std::move(name), is_angle, is_angle ? 1e-3 : 1.0, false};
+}
+
+/// A scale: length per length, or angle per angle.
+inline SetupQuantity pure_number(std::string name, const SetupNumber& number) {
+  return {number, std::move(name), false, 1e-6, true};
 }
 
 }  // namespace abbe

@@ -17,4 +17,8 @@ inline const char* position_suffix(const Axis& axis) { return position_suffix(ax
 inline double micro_per_unit(bool angle) { return angle ? 1e6 : 1e3; }
 inline const char* micro_unit(bool angle) { return angle ? "urad" : "um"; }
 
+/// A scale is a pure number; people state it in um/m.
+constexpr double kPurePerUnit = 1e6;
+constexpr const char* kPureUnit = "um/m";
+
 }  // namespace abbe

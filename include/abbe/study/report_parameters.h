@@ -15,7 +15,12 @@ nlohmann::ordered_json report_error_motions(const Machine& machine, const Identi
 nlohmann::ordered_json report_location_errors(const Machine& machine, const Identification& identification,
                                               const ErrorSet* truth);
 
+/// In um/m, as people state them, or among the lengths and angles in mm and mrad, as in JSON.
+enum class ScalesIn { um_per_m, mm_and_mrad };
+
 /// Columns of the table of all estimated parameters.
-nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResult& result, const ErrorSet* truth);
+/// @param scales_in  how scales of set-ups, which are pure numbers, are written
+nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResult& result, const ErrorSet* truth,
+                                         ScalesIn scales_in);
 
 }  // namespace abbe

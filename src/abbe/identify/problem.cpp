@@ -31,11 +31,11 @@ std::vector<EstimatedParameter> estimated_parameters(const Problem& problem) {
   const std::vector<std::string> names = parameter_names(problem.machine, problem.errors);
   const std::vector<bool> angles = parameters_are_angles(problem.machine, problem.errors);
   for (const std::size_t i : problem.machine_parameters)
-    result.push_back({names[i], angles[i], {ParameterId::kMachine, i}});
+    result.push_back({names[i], angles[i], {ParameterId::kMachine, i}, false});
   for (std::size_t o = 0; o < problem.observations.size(); ++o) {
     const std::vector<SetupUnknown>& unknowns = problem.observations[o].observations->unknowns();
     for (const std::size_t i : problem.observations[o].unknowns)
-      result.push_back({unknowns[i].name, unknowns[i].is_angle, {o, i}});
+      result.push_back({unknowns[i].name, unknowns[i].is_angle, {o, i}, unknowns[i].is_pure_number});
   }
   return result;
 }

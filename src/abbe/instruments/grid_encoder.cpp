@@ -15,9 +15,7 @@ GridEncoder::GridEncoder(const GridEncoderSetup& setup)
   if (!(setup.noise > 0)) throw std::invalid_argument(setup.name + ".noise: not above zero");
   components_ = {{"x", false}, {"y", false}};
   const auto add_scale = [this](const char* which, const SetupNumber& number) {
-    SetupQuantity scale = quantity(name_ + "." + which, false, number);
-    scale.scale = 1e-6;
-    return add(std::move(scale));
+    return add(pure_number(name_ + "." + which, number));
   };
   const std::size_t scale_x = add_scale("scale_x", setup.scale_x), scale_y = add_scale("scale_y", setup.scale_y);
   const std::size_t squareness = add(quantity(name_ + ".squareness", true, setup.squareness));

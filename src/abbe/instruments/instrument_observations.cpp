@@ -260,7 +260,7 @@ InstrumentObservations::InstrumentObservations(const Machine& machine, const Err
     const SetupQuantity& quantity = own.instrument->quantities()[q];
     own.values.push_back(quantity.value);
     if (quantity.knowledge == Knowledge::exact) continue;
-    own.unknowns.push_back({quantity.name, quantity.is_angle, quantity.scale});
+    own.unknowns.push_back({quantity.name, quantity.is_angle, quantity.scale, quantity.is_pure_number});
     own.quantity_of.push_back(q);
     own.unknown_values.push_back(quantity.value);
   }

@@ -35,12 +35,6 @@ bool is_angle(InterferometerComponent component) {
          component == InterferometerComponent::yaw;
 }
 
-SetupQuantity pure_number(std::string name, const SetupNumber& number) {
-  SetupQuantity result = quantity(std::move(name), false, number);
-  result.scale = 1e-6;
-  return result;
-}
-
 /// [x y z]: x along the direction, z in the plane of it and `up`.
 Eigen::Matrix3d axes_of(const InterferometerRun& run) {
   const double length = run.direction.norm();

@@ -19,6 +19,7 @@ TouchProbe::TouchProbe(const TouchProbeSetup& setup)
   const std::size_t tip_radius = add(quantity(setup.name + ".tip_radius", false, setup.tip_radius));
   SetupQuantity stretch = quantity(setup.name + ".scale", true, setup.scale);
   stretch.scale = 1e-5;
+  stretch.is_pure_number = true;
   const std::size_t scale = add(std::move(stretch));
   struct Ball {
     std::array<std::size_t, 3> centre;

@@ -44,7 +44,7 @@ class Estimates {
   }
 
   FoundNumber number(const std::string& name, const ParameterId& id, bool is_angle, double value) const {
-    FoundNumber found{name, {}, is_angle, value, 0, true};
+    FoundNumber found{name, {}, is_angle, value, 0, true, false};
     if (const std::optional<Eigen::Index> entry = find(id)) {
       found.expanded_uncertainty = twice_root(identified_.covariance(*entry, *entry));
       found.is_fixed = !(found.expanded_uncertainty > 0);
@@ -92,6 +92,7 @@ void add_places(const Instrument& start, std::size_t s, const Identification& id
     if (is_of_place[u] != 0) continue;
     const SetupQuantity& quantity = quantities[quantity_of[u]];
     found.numbers.push_back(estimates.number(quantity.name, {s, u}, quantity.is_angle, unknowns[u]));
+    found.numbers.back().is_pure_number = quantity.is_pure_number;
   }
 }
 

@@ -20,6 +20,7 @@ struct FoundNumber {
   double value = 0;
   double expanded_uncertainty = 0;  ///< k = 2; 0: see is_fixed
   bool is_fixed = false;            ///< by a convention of the gauge, not found from the readings
+  bool is_pure_number = false;      ///< of a set-up: a scale
 };
 
 /// A pose, a direction or a place of a set-up as it was found, whole and not as an increment to a nominal one.

@@ -23,13 +23,13 @@ int decimals_for(double uncertainty) {
   return uncertainty > 0 ? decimals : 6;
 }
 
-/// Machine errors are small: um and urad. What is a size of a set-up reads in mm and deg, its uncertainty as the
-/// others.
+/// Machine errors are small: um and urad. What is a size of a set-up reads in mm, its uncertainty as the others. A
+/// scale has um/m.
 std::string number_text(const FoundNumber& number, bool is_machine) {
   std::string text;
-  const char* const small = micro_unit(number.is_angle);
-  const double to_small = micro_per_unit(number.is_angle);
-  const bool in_small = is_machine || number.is_angle;
+  const char* const small = number.is_pure_number ? kPureUnit : micro_unit(number.is_angle);
+  const double to_small = number.is_pure_number ? kPurePerUnit : micro_per_unit(number.is_angle);
+  const bool in_small = is_machine || number.is_angle || number.is_pure_number;
   const double unit = in_small ? to_small : 1;
   const char* const unit_name = in_small ? small : "mm";
   const int decimals = in_small ? 3 : 6;

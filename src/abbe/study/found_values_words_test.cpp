@@ -35,6 +35,19 @@ TEST(FoundValuesWords, WhatWasNotEstimatedHasNoUncertainty) {
   }
 }
 
+TEST(FoundValuesWords, AScaleIsWrittenInMicrometresPerMetreAndKeepsItsFieldsInJson) {
+  FoundValues found;
+  FoundNumber scale{.name = "grid.scale_x", .words = {}, .value = -4.5e-6, .expanded_uncertainty = 2e-7};
+  scale.is_pure_number = true;
+  found.setups.push_back({"grid", "grid-encoder", {}, {scale}});
+  EXPECT_THAT(printed(found), testing::ContainsRegex("grid.scale_x +-4.500 um/m +0.2 um/m"));
+  scale.is_angle = true;
+  found.setups[0].numbers = {scale};
+  EXPECT_THAT(printed(found), testing::ContainsRegex("grid.scale_x +-4.500 um/m +0.2 um/m"));
+  found.setups[0].numbers[0].is_angle = false;
+  EXPECT_TRUE(found_values_json(found)["setups"][0]["values"][0].contains("value_mm"));
+}
+
 TEST(FoundValuesWords, WhereNumbersAreCutTheOptionOfTheCommandIsNamed) {
   FoundValues found;
   found.setups.push_back(

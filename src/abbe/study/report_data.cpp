@@ -141,7 +141,7 @@ nlohmann::ordered_json study_report_data(const Study& study, const StudyResult& 
     const std::optional<ErrorSet> truth = truth_in_gauge(study, result);
     json["error_motions"] = report_error_motions(study.machine, result.identification, truth ? &*truth : nullptr);
     json["location_errors"] = report_location_errors(study.machine, result.identification, truth ? &*truth : nullptr);
-    json["parameters"] = report_parameters(study.machine, result, truth ? &*truth : nullptr);
+    json["parameters"] = report_parameters(study.machine, result, truth ? &*truth : nullptr, ScalesIn::um_per_m);
     json["residuals"] = report_residuals(study.machine, result);
     json["identification"] = report_identification(study, result);
   }

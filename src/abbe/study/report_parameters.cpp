@@ -58,6 +58,18 @@ void add_monte_carlo(const StudyResult& result, const std::vector<double>& scale
   json["monte_carlo_high"] = high;
 }
 
+struct ShownUnit {
+  std::string name;
+  double scale = 1;  ///< over mm or rad
+};
+
+/// Set-up unknowns are large: mm and mrad read better than um and urad.
+ShownUnit unit_of(const EstimatedParameter& parameter, ScalesIn scales_in) {
+  if (parameter.is_pure_number && scales_in == ScalesIn::um_per_m) return {"um_per_m", kPurePerUnit};
+  if (parameter.id.is_machine()) return {micro_unit(parameter.is_angle), micro_per_unit(parameter.is_angle)};
+  return parameter.is_angle ? ShownUnit{"mrad", 1e3} : ShownUnit{"mm", 1};
+}
+
 }  // namespace
 
 nlohmann::ordered_json report_error_motions(const Machine& machine, const Identification& identification,
@@ -136,7 +148,8 @@ nlohmann::ordered_json report_location_errors(const Machine& machine, const Iden
   return list;
 }
 
-nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResult& result, const ErrorSet* truth) {
+nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResult& result, const ErrorSet* truth,
+                                         ScalesIn scales_in) {
   const Identification& identified = result.identification;
   const std::vector<std::vector<Correlation>> correlations = largest_correlations(identified.covariance, 1);
   const std::vector<double> true_values = truth != nullptr ? truth->parameters() : std::vector<double>();
@@ -157,13 +170,12 @@ nlohmann::ordered_json report_parameters(const Machine& machine, const StudyResu
     const EstimatedParameter& parameter = identified.parameters[p];
     const Eigen::Index i = static_cast<Eigen::Index>(p);
     const bool is_machine = parameter.id.is_machine();
-    // Set-up unknowns are large: mm and mrad read better than um and urad.
-    const double unit = is_machine ? micro_per_unit(parameter.is_angle) : (parameter.is_angle ? 1e3 : 1);
+    const auto [unit_name, unit] = unit_of(parameter, scales_in);
     names.push_back(parameter.name);
     groups.push_back(is_machine ? machine_groups[parameter.id.index]
                                 : result.campaign.setups[parameter.id.observations].name);
     scales.push_back(unit);
-    units.emplace_back(is_machine ? micro_unit(parameter.is_angle) : (parameter.is_angle ? "mrad" : "mm"));
+    units.push_back(unit_name);
     values.push_back(unit * identified.estimates[i]);
     const double u = identified.standard_uncertainties[i];
     if (u > 0) {

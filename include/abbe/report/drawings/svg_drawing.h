@@ -56,12 +56,24 @@ class SvgDrawing {
   std::string title_, elements_;
 };
 
+/// One drawing in two layouts.
+struct SvgPicture {
+  std::string wide;    ///< for a file, for paper and for a wide window
+  std::string narrow;  ///< the same, kNarrowWidth px wide, for the window of a telephone
+};
+
+/// Of the narrow layout, px: what a page leaves of a window of 360 px.
+constexpr double kNarrowWidth = 320;
+
 /// Text for XML: the five special characters as entities, control characters dropped, bytes that are no UTF-8 replaced
 /// by U+FFFD.
 std::string xml_text(std::string_view text);
 
 /// About how wide a text will be, px; the font of the reader is not known.
 double text_width(std::string_view text, double size);
+
+/// A text in lines of at most this width, broken at spaces; a longer word has a line of its own.
+std::vector<std::string> text_lines(std::string_view text, double width, double size);
 
 /// Round numbers at which an axis is divided.
 struct AxisTicks {
@@ -75,5 +87,7 @@ struct AxisTicks {
 /// range is widened; a range that is not finite is taken as 0..1.
 /// @param degrees  steps of 15, 30, 45, 90, ... as well, where a power of ten would be coarser than 10
 AxisTicks nice_ticks(double low, double high, std::size_t count, bool degrees = false);
+/// The same with as many divisions, `count` at most, as leave room for the numbers below an axis of this length, px.
+AxisTicks fitting_ticks(double low, double high, std::size_t count, bool degrees, double length);
 
 }  // namespace abbe

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "abbe/report/drawings/svg_drawing.h"
+
 namespace abbe {
 
 /// One rectangle of coloured cells.
@@ -29,9 +31,15 @@ class MapPlot {
   /// @param panel  x.count * y.count values
   void add(MapPanel panel);
 
+  /// For a file.
   std::string svg() const;
+  /// For a page.
+  SvgPicture picture() const;
 
  private:
+  struct Layout;
+  std::string drawn(const Layout& layout) const;
+
   std::string title_, value_label_;
   Axis x_, y_;
   std::vector<MapPanel> panels_;

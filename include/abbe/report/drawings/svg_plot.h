@@ -41,9 +41,13 @@ class XyPlot {
   /// A dimension arrow to the right of the plot, one column each, with extension lines from the points that it spans.
   void outer_dimension(PlotPoint low, PlotPoint high, std::string label, PlotStyle style);
 
+  /// For a file.
   std::string svg() const;
+  /// For a page.
+  SvgPicture picture() const;
 
  private:
+  struct Layout;
   enum class Kind { line, points, band };
   struct Series {
     Kind kind = Kind::line;
@@ -66,7 +70,9 @@ class XyPlot {
   };
   struct Frame;
 
-  Frame frame() const;
+  Frame frame(const Layout& layout) const;
+  std::string drawn(const Layout& layout) const;
+  void draw_names(SvgDrawing& drawing, const Frame& frame) const;
   void draw_axes(SvgDrawing& drawing, const Frame& frame) const;
   void draw_dimensions(SvgDrawing& drawing, const Frame& frame) const;
 
@@ -89,5 +95,10 @@ struct LegendEntry {
 
 /// Draws entries in rows from `at` on within a width. @return height used, px; 0 without entries
 double draw_legend(SvgDrawing* drawing, DrawingPoint at, double width, std::span<const LegendEntry> entries);
+/// The same with texts in several lines where they are longer than the width.
+double draw_narrow_legend(SvgDrawing* drawing, DrawingPoint at, double width, std::span<const LegendEntry> entries);
+
+/// Title of a narrow drawing, in lines. @return y below it, px
+double draw_narrow_title(SvgDrawing* drawing, const std::string& title);
 
 }  // namespace abbe

@@ -34,9 +34,13 @@ class PolarPlot {
   /// A circle about the centre of the plot at a value, named where it meets the upper left diagonal.
   void circle(double value, std::string label, PlotStyle style);
 
+  /// For a file.
   std::string svg() const;
+  /// For a page.
+  SvgPicture picture() const;
 
  private:
+  struct Layout;
   struct Series {
     bool is_line = true, closed = false;
     std::vector<PolarPoint> points;
@@ -49,7 +53,8 @@ class PolarPlot {
     std::string label;
     PlotStyle style;
   };
-  AxisTicks ticks() const;
+  AxisTicks ticks(std::size_t count) const;
+  std::string drawn(const Layout& layout) const;
 
   std::string title_, value_label_;
   std::string names_[4] = {"0\xC2\xB0", "90\xC2\xB0", "180\xC2\xB0", "270\xC2\xB0"};

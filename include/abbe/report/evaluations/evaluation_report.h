@@ -50,6 +50,7 @@
 #include <vector>
 
 #include "abbe/formats/text/unit.h"
+#include "abbe/report/drawings/svg_drawing.h"
 
 namespace abbe {
 
@@ -86,7 +87,7 @@ struct EvaluationTable {
 struct EvaluationPlot {
   std::string name;     ///< of its file, without ".svg": "plot"
   std::string caption;  ///< may be empty
-  std::string svg;
+  SvgPicture picture;
   bool in_page = false;  ///< the interactive page draws it itself, from `page`
 };
 

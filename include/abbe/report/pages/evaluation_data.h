@@ -10,4 +10,7 @@ namespace abbe {
 /// plots, notes as assumptions, tables; what `report.page` holds is added at the top level.
 nlohmann::json evaluation_data(const EvaluationReport& report);
 
+/// An entry of the drawings of that block.
+nlohmann::json drawing_data(const EvaluationPlot& plot);
+
 }  // namespace abbe

@@ -12,9 +12,7 @@ TrackingInterferometer::TrackingInterferometer(const TrackingInterferometerSetup
     : EquationInstrument(setup.name), setup_(setup) {
   if (setup.runs.empty()) throw std::invalid_argument(setup.name + ": no run");
   components_ = {{"length", false}};
-  SetupQuantity scale = quantity(setup.name + ".length_scale", false, setup.length_scale);
-  scale.scale = 1e-6;
-  const std::size_t scale_index = add(std::move(scale));
+  const std::size_t scale_index = add(pure_number(setup.name + ".length_scale", setup.length_scale));
   std::vector<std::array<std::size_t, 3>> stations, reflectors;
   for (const auto& station : setup.stations) stations.push_back(add(station.name, station.position));
   for (const auto& reflector : setup.reflectors) reflectors.push_back(add(reflector.name, reflector.offset));

@@ -78,7 +78,7 @@ EvaluationPlot fit_plot(const FitRequest& request, const ShapeFit& fit, const Fi
     if (!touching.empty()) plot.points(touching, Marker::cross, {PlotColour::second, 2}, "touching");
     plot.circle(1e3 * fit.largest, "", {PlotColour::soft, 1, true, 1});
     plot.circle(1e3 * fit.smallest, "", {PlotColour::soft, 1, true, 1});
-    return {"plot", "", plot.svg()};
+    return {"plot", "", plot.picture()};
   }
   XyPlot plot(request.title, label, value_label);
   std::vector<PlotPoint> all, touching;
@@ -90,7 +90,7 @@ EvaluationPlot fit_plot(const FitRequest& request, const ShapeFit& fit, const Fi
   if (!touching.empty()) plot.points(touching, Marker::cross, {PlotColour::second, 2}, "touching");
   plot.level(1e3 * fit.largest, "", {PlotColour::soft, 1, true, 1});
   plot.level(1e3 * fit.smallest, "", {PlotColour::soft, 1, true, 1});
-  return {"plot", "", plot.svg()};
+  return {"plot", "", plot.picture()};
 }
 
 }  // namespace abbe

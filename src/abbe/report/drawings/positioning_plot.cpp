@@ -42,7 +42,7 @@ void draw_side(XyPlot& plot, const PositioningEvaluation& evaluation, std::size_
 
 }  // namespace
 
-std::string positioning_plot(const PositioningEvaluation& evaluation, bool rotary, const std::string& title) {
+SvgPicture positioning_plot(const PositioningEvaluation& evaluation, bool rotary, const std::string& title) {
   const Scale scale(rotary);
   XyPlot plot(title, rotary ? "target position in \xC2\xB0" : "target position in mm",
               rotary ? "deviation in arcsec" : "deviation in \xC2\xB5m");
@@ -77,10 +77,10 @@ std::string positioning_plot(const PositioningEvaluation& evaluation, bool rotar
     const double middle = evaluation.targets.front().position + evaluation.span() / 2;
     plot.dimension(first.x, first.y, target.mean[1] * scale.deviation, "B", ink, target.position > middle ? -22 : 22);
   }
-  return plot.svg();
+  return plot.picture();
 }
 
-std::string diagonals_plot(const DiagonalsEvaluation& evaluation, const std::string& title) {
+SvgPicture diagonals_plot(const DiagonalsEvaluation& evaluation, const std::string& title) {
   constexpr PlotColour kColours[] = {PlotColour::first,  PlotColour::second, PlotColour::third,
                                      PlotColour::fourth, PlotColour::fifth,  PlotColour::sixth};
   const Scale scale(false);
@@ -94,7 +94,7 @@ std::string diagonals_plot(const DiagonalsEvaluation& evaluation, const std::str
       plot.points(points, side == 0 ? Marker::up : Marker::down, {colour});
     }
   }
-  return plot.svg();
+  return plot.picture();
 }
 
 }  // namespace abbe

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "abbe/report/drawings/svg_drawing.h"
 #include "abbe/verify/evaluations/diagonals.h"
 #include "abbe/verify/evaluations/positioning.h"
 
@@ -9,9 +10,9 @@ namespace abbe {
 
 /// Mean deviations over the target positions from both sides with mean +- 2 s as bands, and A, E, R and B where they
 /// come from. What was not evaluated is not drawn. mm and um, or degrees and arcsec.
-std::string positioning_plot(const PositioningEvaluation& evaluation, bool rotary, const std::string& title);
+SvgPicture positioning_plot(const PositioningEvaluation& evaluation, bool rotary, const std::string& title);
 
 /// Mean deviations of all diagonals over the distance along them, one colour each, from both sides.
-std::string diagonals_plot(const DiagonalsEvaluation& evaluation, const std::string& title);
+SvgPicture diagonals_plot(const DiagonalsEvaluation& evaluation, const std::string& title);
 
 }  // namespace abbe

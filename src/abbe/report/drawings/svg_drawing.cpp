@@ -101,6 +101,21 @@ double text_width(std::string_view text, double size) {
   return 0.56 * size * static_cast<double>(letters);
 }
 
+std::vector<std::string> text_lines(std::string_view text, double width, double size) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word(text.substr(at, end - at));
+    if (!lines.empty() && text_width(lines.back() + ' ' + word, size) <= width) {
+      lines.back() += ' ' + word;
+    } else {
+      lines.push_back(word);
+    }
+    at = end + 1;
+  }
+  return lines;
+}
+
 AxisTicks nice_ticks(double low, double high, std::size_t count, bool degrees) {
   if (!std::isfinite(high - low) || low > high) {
     low = 0;
@@ -133,6 +148,15 @@ AxisTicks nice_ticks(double low, double high, std::size_t count, bool degrees) {
     ticks.labels.push_back(tick_label(value, step));
   }
   return ticks;
+}
+
+AxisTicks fitting_ticks(double low, double high, std::size_t count, bool degrees, double length) {
+  for (;; --count) {
+    AxisTicks ticks = nice_ticks(low, high, count, degrees);
+    double widest = 0;
+    for (const std::string& label : ticks.labels) widest = std::max(widest, text_width(label, 12));
+    if (count <= 1 || (1.15 * widest + 8) * static_cast<double>(ticks.values.size() - 1) <= length) return ticks;
+  }
 }
 
 SvgDrawing::SvgDrawing(double width, double height, std::string_view title)

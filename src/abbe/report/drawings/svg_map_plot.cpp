@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "abbe/report/drawings/svg_drawing.h"
+#include "abbe/report/drawings/svg_plot.h"
 
 namespace abbe {
 namespace {
 
 constexpr double kMapWidth = 860, kMapGap = 78, kMapLeft = 66, kMapTitle = 44, kMapLabels = 50, kScaleHeight = 58;
 constexpr double kFaintest = 0.04;
-constexpr std::size_t kPanelsPerRow = 2;
 
 DrawingPoint shifted(DrawingPoint at, double dx, double dy) { return {at.x + dx, at.y + dy}; }
 
@@ -28,6 +28,12 @@ void draw_cell(SvgDrawing& drawing, DrawingPoint corner, double width, double he
 
 }  // namespace
 
+struct MapPlot::Layout {
+  bool is_narrow = false;
+  double width = kMapWidth, left = kMapLeft, right = 20, scale_size = 11;
+  std::size_t panels_per_row = 2;
+};
+
 MapPlot::MapPlot(std::string title, Axis x, Axis y, std::string value_label)
     : title_(std::move(title)), value_label_(std::move(value_label)), x_(std::move(x)), y_(std::move(y)) {
   assert(x_.count >= 2 && y_.count >= 2);
@@ -38,25 +44,39 @@ void MapPlot::add(MapPanel panel) {
   panels_.push_back(std::move(panel));
 }
 
-std::string MapPlot::svg() const {
-  const std::size_t in_row = std::clamp<std::size_t>(panels_.size(), 1, kPanelsPerRow);
-  const std::size_t rows = (panels_.size() + kPanelsPerRow - 1) / kPanelsPerRow;
-  const double share = (kMapWidth - kMapLeft - 20) / static_cast<double>(in_row) - (in_row > 1 ? kMapGap / 2 : 0);
-  // Whole pixels, so that no seams show between cells.
-  const double cell = std::max(1.0, std::floor(share / static_cast<double>(x_.count)));
+std::string MapPlot::svg() const { return drawn({}); }
+
+SvgPicture MapPlot::picture() const { return {svg(), drawn({true, kNarrowWidth, 54, 14, 12, 1})}; }
+
+std::string MapPlot::drawn(const Layout& layout) const {
+  const std::size_t in_row = std::clamp<std::size_t>(panels_.size(), 1, layout.panels_per_row);
+  const std::size_t rows = (panels_.size() + layout.panels_per_row - 1) / layout.panels_per_row;
+  const double share =
+      (layout.width - layout.left - layout.right) / static_cast<double>(in_row) - (in_row > 1 ? kMapGap / 2 : 0);
+  // Whole pixels, so that no seams show between cells; a narrow drawing may have fewer pixels than cells.
+  const double whole = std::floor(share / static_cast<double>(x_.count));
+  const double cell = whole < 1 && layout.is_narrow ? share / static_cast<double>(x_.count) : std::max(1.0, whole);
   const double width = cell * static_cast<double>(x_.count);
   const double tall = std::max(1.0, std::floor(0.62 * width / static_cast<double>(y_.count)));
   const double height = tall * static_cast<double>(y_.count);
-  const double panel_height = 24 + height + kMapLabels + kScaleHeight;
-  SvgDrawing drawing(kMapWidth, kMapTitle + panel_height * static_cast<double>(rows), title_);
-  drawing.text({kMapLeft, 27}, title_, TextAnchor::start, 16, PlotColour::ink, true);
+  // Narrow: the name of the second axis is above the panel, that of the values below their scale.
+  const double above = layout.is_narrow ? 40 : 24, below = layout.is_narrow ? kScaleHeight + 2 : kScaleHeight;
+  const double title = layout.is_narrow ? draw_narrow_title(nullptr, title_) + 8 : kMapTitle;
+  const double panel_height = above + height + kMapLabels + below;
+  SvgDrawing drawing(layout.width, title + panel_height * static_cast<double>(rows), title_);
+  if (layout.is_narrow) {
+    draw_narrow_title(&drawing, title_);
+  } else {
+    drawing.text({kMapLeft, 27}, title_, TextAnchor::start, 16, PlotColour::ink, true);
+  }
   const auto tick = [](double value) { return fmt::format("{:.4g}", value); };
   for (std::size_t k = 0; k < panels_.size(); ++k) {
     const MapPanel& panel = panels_[k];
-    const double left = kMapLeft + static_cast<double>(k % kPanelsPerRow) * (width + kMapGap);
-    const double top = kMapTitle + 20 + static_cast<double>(k / kPanelsPerRow) * panel_height;
+    const double left = layout.left + static_cast<double>(k % layout.panels_per_row) * (width + kMapGap);
+    const double top = title + (above - 4) + static_cast<double>(k / layout.panels_per_row) * panel_height;
     const double bottom = top + height;
-    drawing.text({left, top - 7}, panel.title, TextAnchor::start, 13, PlotColour::ink, true);
+    drawing.text({layout.is_narrow ? 0 : left, top - above + 17}, panel.title, TextAnchor::start, 13, PlotColour::ink,
+                 true);
     double largest = 0;
     bool negative = false;
     for (const double value : panel.values) {
@@ -81,7 +101,9 @@ std::string MapPlot::svg() const {
       drawing.text({left - 8, up + 4}, tick(y_.from + end * (y_.to - y_.from)), TextAnchor::end, 12, PlotColour::soft);
     }
     drawing.text({left + width / 2, bottom + 36}, x_.label, TextAnchor::middle, 12);
-    if (k % kPanelsPerRow == 0) {
+    if (layout.is_narrow) {
+      drawing.text({0, top - 8}, y_.label);
+    } else if (k % layout.panels_per_row == 0) {
       drawing.text({16, (top + bottom) / 2}, y_.label, TextAnchor::middle, 12, PlotColour::ink, false, -90);
     }
     constexpr int kSteps = 20;
@@ -90,9 +112,12 @@ std::string MapPlot::svg() const {
     for (int s = 0; s < kSteps; ++s) {
       draw_cell(drawing, {left + step * s, scale_top}, step, 12, from + (1 - from) * (s + 0.5) / kSteps);
     }
-    drawing.text({left, scale_top + 26}, tick(from * largest), TextAnchor::start, 11, PlotColour::soft);
-    drawing.text({left + step * kSteps, scale_top + 26}, tick(largest), TextAnchor::end, 11, PlotColour::soft);
-    drawing.text({left + step * kSteps + 8, scale_top + 11}, value_label_, TextAnchor::start, 11);
+    drawing.text({left, scale_top + 26}, tick(from * largest), TextAnchor::start, layout.scale_size, PlotColour::soft);
+    drawing.text({left + step * kSteps, scale_top + 26}, tick(largest), TextAnchor::end, layout.scale_size,
+                 PlotColour::soft);
+    const DrawingPoint name =
+        layout.is_narrow ? DrawingPoint{left, scale_top + 43} : DrawingPoint{left + step * kSteps + 8, scale_top + 11};
+    drawing.text(name, value_label_, TextAnchor::start, layout.scale_size);
   }
   return drawing.svg();
 }

@@ -213,6 +213,67 @@ TEST(PolarPlot, WithoutDataOrDeviationHasAFrame) {
   EXPECT_EQ(xml_problem(plot.svg()), "");
 }
 
+/// Sizes of the letters of a drawing, px, with the ends of every text that is not turned.
+struct WrittenText {
+  double left, right, size;
+};
+
+std::vector<WrittenText> texts_of(const std::string& svg) {
+  std::vector<WrittenText> texts;
+  for (std::size_t at = svg.find("<text"); at != std::string::npos; at = svg.find("<text", at + 1)) {
+    double x = 0, y = 0, size = 0;
+    if (std::sscanf(svg.c_str() + at, "<text x=\"%lf\" y=\"%lf\" font-size=\"%lf\"", &x, &y, &size) != 3) continue;
+    const std::size_t from = svg.find('>', at) + 1;
+    const std::string tag = svg.substr(at, from - at), words = svg.substr(from, svg.find('<', from) - from);
+    if (tag.find("rotate") != std::string::npos) continue;
+    const double width = text_width(words, size);
+    const double left = x - (tag.find("\"end\"") != std::string::npos      ? width
+                             : tag.find("\"middle\"") != std::string::npos ? width / 2
+                                                                           : 0);
+    texts.push_back({left, left + width, size});
+  }
+  return texts;
+}
+
+TEST(NarrowPicture, HasLettersOfTwelvePixelsWithinItsWidth) {
+  const std::string words = "a long name of many words that does not fit on one line of the narrow drawing, not at all";
+  XyPlot plot(words, "first axis: " + words, "second axis: " + words);
+  plot.line({{0, -1234.5}, {100000, 2000}, {250000, 3000}}, {PlotColour::first}, "first line: " + words);
+  plot.points({{0, 1}, {100000, 2}}, Marker::up, {PlotColour::second}, "points");
+  plot.level(4, words, {PlotColour::limit, 1, true});
+  plot.outer_dimension({0, -2}, {200, 3}, "A", {PlotColour::ink});
+  PolarPlot polar(words, "deviation in \xC2\xB5m");
+  polar.line({{0, 0.31}, {1, -0.62}, {2, 0.6}, {3, 0.1}}, true, {}, words);
+  polar.circle(0.5, "0.50", {});
+  for (const SvgPicture& picture : {plot.picture(), polar.picture()}) {
+    EXPECT_EQ(xml_problem(picture.narrow), "");
+    EXPECT_THAT(picture.narrow, HasSubstr("viewBox=\"0 0 320.00 "));
+    EXPECT_GE(texts_of(picture.narrow).size(), 10U);
+    for (const WrittenText& text : texts_of(picture.narrow)) {
+      EXPECT_GE(text.size, 12);
+      EXPECT_GE(text.left, 0);
+      EXPECT_LE(text.right, kNarrowWidth);
+    }
+  }
+  EXPECT_EQ(plot.picture().wide, plot.svg());
+  EXPECT_EQ(polar.picture().wide, polar.svg());
+}
+
+TEST(NarrowPicture, NumbersBelowTheAxisKeepClearOfEachOther) {
+  for (const double reach : {1.0, 1234.5678, 9.9e6}) {
+    const AxisTicks ticks = fitting_ticks(0.123 * reach, reach, 5, false, 250);
+    double widest = 0;
+    for (const std::string& label : ticks.labels) widest = std::max(widest, text_width(label, 12));
+    EXPECT_GE(250 / static_cast<double>(ticks.values.size() - 1), widest + 8) << reach;
+  }
+}
+
+TEST(TextLines, BreakAtSpaces) {
+  EXPECT_THAT(text_lines("one two three", 56, 10), ElementsAre("one two", "three"));
+  EXPECT_THAT(text_lines("wonderfully long", 10, 10), ElementsAre("wonderfully", "long"));
+  EXPECT_THAT(text_lines("", 10, 10), testing::IsEmpty());
+}
+
 TEST(SvgDrawing, TheSameElementsGiveTheSameBytes) { EXPECT_EQ(every_element().svg(), every_element().svg()); }
 
 }  // namespace

@@ -8,10 +8,17 @@ namespace abbe {
 namespace {
 
 constexpr double kPolarWidth = 620, kSideMargin = 24, kMargin = 52, kRadius = 250;
+constexpr double kNarrowRadius = 115;
 const PlotStyle kPolarGrid{PlotColour::soft, 1, false, 0.25};
 const PlotStyle kZero{PlotColour::soft, 1.4};
 
 }  // namespace
+
+struct PolarPlot::Layout {
+  bool is_narrow = false;
+  double width = kPolarWidth, radius = kRadius, scale_size = 11;
+  std::size_t divisions = 8;
+};
 
 PolarPlot::PolarPlot(std::string title, std::string value_label)
     : title_(std::move(title)), value_label_(std::move(value_label)) {}
@@ -41,7 +48,7 @@ void PolarPlot::circle(double value, std::string label, PlotStyle style) {
   circles_.push_back({value, std::move(label), style});
 }
 
-AxisTicks PolarPlot::ticks() const {
+AxisTicks PolarPlot::ticks(std::size_t count) const {
   double low = 0, high = 0;
   const auto add = [&](double value) {
     if (!std::isfinite(value)) return;
@@ -56,35 +63,49 @@ AxisTicks PolarPlot::ticks() const {
     // Never so narrow that a point would lie on the wrong side of the centre or outside the rim.
     add(range_->first);
     add(range_->second);
-    return nice_ticks(low, high, 8);
+    return nice_ticks(low, high, count);
   }
   const double reach = std::max(-low, high);
   if (reach == 0) return nice_ticks(-1, 1, 4);
   // Room at the centre, where lines would crowd.
-  return nice_ticks(std::min(-reach, 1.5 * low), reach, 8);
+  return nice_ticks(std::min(-reach, 1.5 * low), reach, count);
 }
 
-std::string PolarPlot::svg() const {
+std::string PolarPlot::svg() const { return drawn({}); }
+
+SvgPicture PolarPlot::picture() const { return {svg(), drawn({true, kNarrowWidth, kNarrowRadius, 12, 5})}; }
+
+std::string PolarPlot::drawn(const Layout& layout) const {
   std::vector<LegendEntry> legend;
   for (const Series& series : series_) {
     if (!series.legend.empty()) legend.push_back({series.legend, series.style, series.is_line, false, series.marker});
   }
-  const double legend_height = draw_legend(nullptr, {kSideMargin, 0}, kPolarWidth - 2 * kSideMargin, legend);
-  const DrawingPoint centre{kPolarWidth / 2, 50 + legend_height + 16 + kRadius};
-  SvgDrawing drawing(kPolarWidth, centre.y + kRadius + kMargin, title_);
-  drawing.text({kSideMargin, 27}, title_, TextAnchor::start, 16, PlotColour::ink, true);
-  draw_legend(&drawing, {kSideMargin, 50}, kPolarWidth - 2 * kSideMargin, legend);
+  const double legend_y = layout.is_narrow ? draw_narrow_title(nullptr, title_) + 12 : 50;
+  const double legend_height = layout.is_narrow
+                                   ? draw_narrow_legend(nullptr, {0, 0}, layout.width, legend)
+                                   : draw_legend(nullptr, {kSideMargin, 0}, layout.width - 2 * kSideMargin, legend);
+  const DrawingPoint centre{layout.width / 2, legend_y + legend_height + (layout.is_narrow ? 20 : 16) + layout.radius};
+  SvgDrawing drawing(layout.width, centre.y + layout.radius + kMargin, title_);
+  if (layout.is_narrow) {
+    draw_narrow_title(&drawing, title_);
+    draw_narrow_legend(&drawing, {0, legend_y}, layout.width, legend);
+  } else {
+    drawing.text({kSideMargin, 27}, title_, TextAnchor::start, 16, PlotColour::ink, true);
+    draw_legend(&drawing, {kSideMargin, legend_y}, layout.width - 2 * kSideMargin, legend);
+  }
 
-  const AxisTicks ticks = this->ticks();
-  const auto radius_of = [&](double value) { return kRadius * (value - ticks.from()) / (ticks.to() - ticks.from()); };
+  const AxisTicks ticks = this->ticks(layout.divisions);
+  const auto radius_of = [&](double value) {
+    return layout.radius * (value - ticks.from()) / (ticks.to() - ticks.from());
+  };
   const auto at = [&](double angle, double radius) {
     return DrawingPoint{centre.x + radius * std::cos(angle), centre.y - radius * std::sin(angle)};
   };
   for (int i = 0; i < 12; ++i) {
     const double angle = i * std::numbers::pi / 6;
-    drawing.line(centre, at(angle, kRadius), kPolarGrid);
+    drawing.line(centre, at(angle, layout.radius), kPolarGrid);
     if (i % 3 != 0) continue;
-    const DrawingPoint name = at(angle, kRadius + 16);
+    const DrawingPoint name = at(angle, layout.radius + 16);
     const TextAnchor anchor = i == 0 ? TextAnchor::start : i == 6 ? TextAnchor::end : TextAnchor::middle;
     drawing.text({name.x + (i == 0   ? -6
                             : i == 6 ? 6
@@ -92,7 +113,7 @@ std::string PolarPlot::svg() const {
                   name.y + (i == 9   ? 8
                             : i == 3 ? 2
                                      : 4)},
-                 names_[i / 3], anchor, 13);
+                 names_[i / 3], anchor, layout.is_narrow ? 12 : 13);
   }
   for (const double value : ticks.values) {
     drawing.circle(centre, radius_of(value), value == 0 ? kZero : kPolarGrid);
@@ -116,16 +137,16 @@ std::string PolarPlot::svg() const {
   // The scale last, over the lines, between the directions of the axes. Where circles are closer than their numbers are
   // wide, every n-th has one, counted from zero.
   double widest = 0;
-  for (const std::string& label : ticks.labels) widest = std::max(widest, text_width(label, 11));
-  const double apart = kRadius * std::cos(std::numbers::pi / 12) / static_cast<double>(ticks.values.size() - 1);
+  for (const std::string& label : ticks.labels) widest = std::max(widest, text_width(label, layout.scale_size));
+  const double apart = layout.radius * std::cos(std::numbers::pi / 12) / static_cast<double>(ticks.values.size() - 1);
   const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil((widest + 4) / apart)));
   const auto zero = std::find(ticks.values.begin(), ticks.values.end(), 0.0);
   const auto first = static_cast<std::size_t>(zero == ticks.values.end() ? 0 : zero - ticks.values.begin()) % every;
   for (std::size_t i = first; i < ticks.values.size(); i += every) {
     const DrawingPoint label = at(std::numbers::pi / 12, radius_of(ticks.values[i]));
-    drawing.text({label.x + 2, label.y + 4}, ticks.labels[i], TextAnchor::start, 11, PlotColour::soft);
+    drawing.text({label.x + 2, label.y + 4}, ticks.labels[i], TextAnchor::start, layout.scale_size, PlotColour::soft);
   }
-  drawing.text({centre.x, centre.y + kRadius + 42}, value_label_, TextAnchor::middle, 13);
+  drawing.text({centre.x, centre.y + layout.radius + 42}, value_label_, TextAnchor::middle, layout.is_narrow ? 12 : 13);
   return drawing.svg();
 }
 

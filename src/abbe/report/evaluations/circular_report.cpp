@@ -215,7 +215,7 @@ EvaluationPlot deviation_plot(const CircularRequest& request, const CircularResu
   return {"plot",
           "Dashed: the concentric circles that hold " +
               std::string(result.both.status == CircleStatus::done ? "both paths." : "the path."),
-          plot.svg()};
+          plot.picture()};
 }
 
 EvaluationPlot diagnosis_plot(const CircularRequest& request, const std::array<CircularReadings, 2>& paths,
@@ -243,7 +243,7 @@ EvaluationPlot diagnosis_plot(const CircularRequest& request, const std::array<C
     plot.line(modelled, {colours[k], 2, true, 1}, std::string(kPathNames[k]) + ", fitted causes");
   }
   return {"causes", "Measured deviations without the part of the centre, and the sum of the fitted causes.",
-          plot.svg()};
+          plot.picture()};
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ EvaluationReport contour_points_report(const std::string& title, const std::vect
     plot.level(0, "", {PlotColour::soft, 1});
     plot.points(plotted, Marker::circle, {PlotColour::first}, "across the curve");
     plot.points(height, Marker::cross, {PlotColour::second}, "out of the surface");
-    report.plots.push_back({"plot", "", plot.svg(), true});
+    report.plots.push_back({"plot", "", plot.picture(), true});
     report.page = {{"contour", contour_points_block(evaluated, pieces.size() == 1)}};
   }
   return report;

@@ -58,7 +58,7 @@ EvaluationReport section_report(const std::string& title, const SectionOptions& 
     plot.line(along_error, {PlotColour::first, 1}, "");
     plot.points(along_error, Marker::circle, {PlotColour::first}, "contour error, across the curve");
     plot.points(along_rounding, Marker::cross, {PlotColour::second}, "rounding P1 P2");
-    report.plots.push_back({"plot", "", plot.svg(), true});
+    report.plots.push_back({"plot", "", plot.picture(), true});
     report.plots.push_back(section_plot(options, sections[evaluated.largest], evaluated.answers[evaluated.largest]));
   }
   report.page = {{"contour", contour_sections_block(options, sections, evaluated.answers)}};

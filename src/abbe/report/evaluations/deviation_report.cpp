@@ -70,7 +70,7 @@ EvaluationPlot distribution(const std::vector<double>& counted, double range_mm,
   if (classes.below + classes.above > 0) {
     caption = fmt::format("{} points lie below and {} above this range.", classes.below, classes.above);
   }
-  return {"plot", caption, plot.svg()};
+  return {"plot", caption, plot.picture()};
 }
 
 /// @param names  of the faces, or empty

@@ -29,7 +29,7 @@ EvaluationReport small() {
   report.figures = {length("A", 0.0123456)};
   report.notes = {"</li><script>alert(1)</script>"};
   report.tables = {{"targets", {"target", "B"}, {{"<100>", "1.0"}}}};
-  report.plots = {{"plot", "all & everything", "<svg></svg>"}};
+  report.plots = {{"plot", "all & everything", {"<svg></svg>", ""}}};
   report.details["targets"] = {1, 2};
   return report;
 }

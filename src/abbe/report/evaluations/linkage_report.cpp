@@ -69,7 +69,7 @@ EvaluationPlot focus_plot(const LinkageReadings& readings, const LinkageEvaluati
   plot.points(widths, Marker::circle, {PlotColour::second, 1.4}, "readings");
   plot.points({{found.focus_z, 1e3 * found.waist}}, Marker::cross, {PlotColour::ink, 2}, "focus z2");
   return {"plot", "The lowest point of the parabola through the squared widths is the focus, not the thinnest line.",
-          plot.svg()};
+          plot.picture()};
 }
 
 EvaluationTable printed_table(const LinkageEvaluation& found) {

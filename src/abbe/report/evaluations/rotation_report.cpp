@@ -110,7 +110,7 @@ EvaluationPlot plot_of(const RotationResult& result, const AxisErrorMotion& moti
   plot.circle(unit * *low, fmt::format("{:.2f}", unit * *low), {PlotColour::soft, 1, true, 1});
   const char* const taken_out = fundamental_is_removed(motion.kind) ? "mean and once-per-turn part" : "mean";
   return {name.symbol, fmt::format("{} taken out. Dashed: circles that hold the total error motion.", taken_out),
-          plot.svg()};
+          plot.picture()};
 }
 
 void add_notes(const RotationResult& result, const RotationOptions& options, EvaluationReport& report) {

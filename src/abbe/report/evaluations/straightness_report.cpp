@@ -36,7 +36,7 @@ EvaluationPlot zone_plot(const LineReadings& line, const Straightness& result, c
   plot.outer_dimension({line.positions[result.smallest_at], 1e3 * result.smallest},
                        {line.positions[result.largest_at], 1e3 * result.largest},
                        fmt::format("{:.2f} \xC2\xB5m", 1e3 * result.value), {PlotColour::ink, 1});
-  return {name, "", plot.svg()};
+  return {name, "", plot.picture()};
 }
 
 EvaluationFigure straightness_figure(const std::string& symbol, const std::string& name, const Straightness& result,

@@ -144,7 +144,7 @@ EvaluationPlot section_plot(const SectionOptions& options, const SectionReadings
     plot.points({edge.corner}, Marker::cross, {PlotColour::limit, 2}, first ? "P2" : "");
   }
   plot.points({{0, 0}}, Marker::circle, {PlotColour::ink, 2}, "commanded curve");
-  return {"section", "The section with the largest contour error.", plot.svg(), true};
+  return {"section", "The section with the largest contour error.", plot.picture(), true};
 }
 
 }  // namespace abbe

@@ -4,6 +4,10 @@
 
 namespace abbe {
 
+nlohmann::json drawing_data(const EvaluationPlot& plot) {
+  return {{"caption", plot.caption}, {"svg", plot.picture.wide}, {"svg_narrow", plot.picture.narrow}};
+}
+
 nlohmann::json evaluation_data(const EvaluationReport& report) {
   const nlohmann::ordered_json whole = evaluation_json(report);
   nlohmann::json data;
@@ -25,7 +29,7 @@ nlohmann::json evaluation_data(const EvaluationReport& report) {
   if (!report.page.is_object() || !report.page.contains("histograms")) {
     for (const EvaluationPlot& plot : report.plots) {
       if (plot.in_page && report.page.is_object()) continue;
-      evaluation["drawings"].push_back({{"caption", plot.caption}, {"svg", plot.svg}});
+      evaluation["drawings"].push_back(drawing_data(plot));
     }
   }
   data["assumptions"] = report.notes;

@@ -27,7 +27,7 @@ EvaluationReport small_report() {
   report.figures = {rms, mean};
   report.tables = {{"By faces", {"face", "rms"}, {{"1", "12.50"}}}};
   report.notes = {"a note"};
-  report.plots = {{"plot", "by angle", "<svg/>"}};
+  report.plots = {{"plot", "by angle", {"<svg/>", "<svg width=\"320\"/>"}}};
   report.page = {{"surface", {{"frame", "part"}}}};
   return report;
 }
@@ -49,6 +49,7 @@ TEST(EvaluationData, HoldsTheFiguresOfTheEvaluationInTheirOrder) {
   EXPECT_EQ(rms.at("verdict"), "exceeded");
   EXPECT_EQ(evaluation.at("figures").at(1).at("not_evaluated"), "no point counts");
   EXPECT_EQ(evaluation.at("drawings").at(0).at("svg"), "<svg/>");
+  EXPECT_EQ(evaluation.at("drawings").at(0).at("svg_narrow"), "<svg width=\"320\"/>");
   EXPECT_NO_THROW(report_page(data));
   EvaluationReport other = report;
   other.page["histograms"] = nlohmann::json::array();
