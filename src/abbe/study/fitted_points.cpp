@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -93,7 +92,7 @@ const std::map<std::string, FitMethod>& fit_methods_by_name() {
 }
 
 PointsToFit read_points_to_fit(const std::string& file, const PointCloudOptions& options) {
-  if (file_extension(with_ending(std::filesystem::path(file))) == ".stl") {
+  if (file_extension(with_ending(file)) == ".stl") {
     MeshFile mesh = read_mesh(file, {options.unit, options.threads});
     return {file,
             {std::move(mesh.mesh.vertices), Eigen::Matrix3Xd(3, 0)},
