@@ -54,6 +54,14 @@ void NcBlock::fail(const NcWord& word, const std::string& problem, const std::st
   place.fail(word.begin, problem, expected);
 }
 
+void NcBlock::fail_at_begin(const std::string& problem, const std::string& expected) const {
+  NcCursor place = cursor;
+  place.at = place.begin;
+  place.skip_blanks();
+  const char* const first = place.at;
+  place.fail(first, problem, expected);
+}
+
 void NcBlockReader::begin(NcBlock& block) {
   block.is_deleted = block.is_percent = block.is_computed = false;
   block.number = {};

@@ -79,6 +79,8 @@ struct NcBlock {
   [[noreturn]] void fail(char letter, const std::string& problem, const std::string& expected = "") const {
     fail(word(letter), problem, expected);
   }
+  /// Names what the block begins with.
+  [[noreturn]] void fail_at_begin(const std::string& problem, const std::string& expected = "") const;
 };
 
 /// Reads lines of a program into blocks. Values are computed with the parameters as they are before the block.

@@ -1,10 +1,9 @@
-// Canned cycles of an NC program, expanded into moves.
+#include "abbe/formats/nc/nc_cycles.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "abbe/formats/nc/nc_interpreter.h"
 
 namespace abbe {
 namespace {
@@ -13,144 +12,168 @@ namespace {
 constexpr double kPeckClearance_mm = 0.254;
 constexpr std::size_t kMostPecks = 100'000;
 
+bool pecks(NcCode motion) { return motion == 730 || motion == 830; }
+bool taps(NcCode motion) { return motion == 740 || motion == 840; }
+bool dwells(NcCode motion) { return motion == 820 || motion == 860 || motion == 890; }
+
 }  // namespace
 
-void NcInterpreter::cycle(NcCode motion) {
-  const NcWord& word = codes_.has(NcGroup::motion) ? codes_.word(block_, NcGroup::motion) : block_.words[0];
-  if (modes_.tool_centre) block_.fail(word, "a canned cycle while tool centre control is on", "G49 before it");
-  if (codes_[NcGroup::non_modal] == 530) block_.fail(word, "a canned cycle with G53");
-  if (codes_.axes == 0) block_.fail(word, "a canned cycle without axis words");
-  if ((codes_.axes & ~std::uint32_t{7}) != 0) block_.fail(word, "a canned cycle with words other than X, Y, Z");
-  if (modes_.feed_mode == FeedMode::inverse_time) block_.fail(word, "a canned cycle with inverse time", "G94");
-  check_feed("a canned cycle");
-  const std::size_t depth = modes_.plane == ArcPlane::XY ? 2 : modes_.plane == ArcPlane::ZX ? 1 : 0;
-  const std::size_t first = (depth + 1) % 3, second = (depth + 2) % 3;
-  const bool goes_on = modes_.motion == motion && cycle_.code == motion;
-  const char depth_letter = "xyz"[depth];
-  const auto take = [&](char letter, double& stored, bool known) {
-    if (block_.has(letter)) {
-      stored = block_.value(letter);
-    } else if (!known) {
-      block_.fail(word, fmt::format("{} is missing in this cycle", static_cast<char>(letter - 'a' + 'A')));
+void NcCycles::check(const NcCodedBlock& block) const {
+  const NcWord& word = block.motion_word();
+  if (state_.offsets.tool_centre()) {
+    block.fail(word, "a canned cycle while tool centre control is on", "G49 before it");
+  }
+  if (block.code(NcGroup::non_modal) == 530) block.fail(word, "a canned cycle with G53");
+  if (block.axes == 0) block.fail(word, "a canned cycle without axis words");
+  if ((block.axes & ~kXyzWords) != 0) block.fail(word, "a canned cycle with words other than X, Y, Z");
+  if (state_.modes.feed_mode == FeedMode::inverse_time) {
+    block.fail(word, "a canned cycle with inverse time", "G94");
+  }
+  moves_.check_feed(block, "a canned cycle");
+}
+
+void NcCycles::take_words(const NcCodedBlock& block, NcCode motion, std::size_t depth) {
+  const NcWord& word = block.motion_word();
+  const bool goes_on = state_.modes.motion == motion && code_ == motion;
+  const auto take = [&](char letter, double& stored) {
+    if (block.has(letter)) {
+      stored = block.value(letter);
+    } else if (!goes_on) {
+      block.fail(word, fmt::format("{} is missing in this cycle", static_cast<char>(letter - 'a' + 'A')));
     }
   };
-  take('r', cycle_.r, goes_on);
-  take(depth_letter, cycle_.bottom, goes_on);
-  if (motion == 820 || motion == 860 || motion == 890) {
-    take('p', cycle_.dwell, goes_on);
-    if (cycle_.dwell < 0) block_.fail(word, "the time of the dwell is negative");
+  take('r', r_);
+  take(kAxisLetters[depth], bottom_);
+  if (dwells(motion)) take('p', dwell_);
+  // Without P that of the cycle before it, as in LinuxCNC 2.9; none in the beginning.
+  if (taps(motion) && block.has('p')) dwell_ = block.value('p');
+  if ((dwells(motion) || taps(motion)) && dwell_ < 0) block.fail(word, "the time of the dwell is negative");
+  const int direction = state_.spindle.direction();
+  if (taps(motion) && direction != (motion == 840 ? 3 : 4)) {
+    block.fail(word, "the spindle does not turn as this cycle needs it", motion == 840 ? "M3" : "M4");
   }
-  if (motion == 740 || motion == 840) {
-    // Without P that of the cycle before it, as in LinuxCNC 2.9; none in the beginning.
-    if (block_.has('p')) cycle_.dwell = block_.value('p');
-    if (cycle_.dwell < 0) block_.fail(word, "the time of the dwell is negative");
-    if (spindle_ != (motion == 840 ? 3 : 4)) {
-      block_.fail(word, "the spindle does not turn as this cycle needs it", motion == 840 ? "M3" : "M4");
-    }
+  if (pecks(motion)) {
+    take('q', step_);
+    if (!(step_ > 0)) block.fail(word, "the step Q is not positive");
   }
-  if (motion == 730 || motion == 830) {
-    take('q', cycle_.step, goes_on);
-    if (!(cycle_.step > 0)) block_.fail(word, "the step Q is not positive");
+  if (motion == 860 && direction == 0) {
+    block.fail(word, "the spindle does not turn, which this cycle stops", "M3 or M4");
   }
-  if (motion == 860 && spindle_ == 0)
-    block_.fail(word, "the spindle does not turn, which this cycle stops", "M3 or M4");
-  cycle_.code = motion;
+  code_ = motion;
   // The level before the first of several cycles: they return to it, and incremental R counts from it.
-  if (modes_.motion < 730 || modes_.motion == 800) cycle_.level = position_[depth];
-  const double repeats = block_.has('l') ? block_.value('l') : 1;
-  if (!(repeats >= 1 && repeats <= 1e6) || std::abs(repeats - std::round(repeats)) > 1e-4) {
-    block_.fail('l', "is not a number of repeats", "a whole number from 1");
-  }
-  const std::uint32_t needed = modes_.absolute ? std::uint32_t{1} << depth : 7;
-  if ((needed & ~known_) != 0) fail_unknown(needed & ~known_, "the cycle begins there");
+  if (state_.modes.motion < 730 || state_.modes.motion == 800) level_ = state_.position.values()[depth];
+}
 
-  const double length = unit(depth);
-  const double r = modes_.absolute ? cycle_.r * length + offset_[depth] : cycle_.level + cycle_.r * length;
-  const double bottom = modes_.absolute ? cycle_.bottom * length + offset_[depth] : r + cycle_.bottom * length;
-  if (!(bottom <= r)) block_.fail(word, "R is below the bottom of the hole", "R above it");
-  const double clear = modes_.retract_to_r ? r : std::max(r, cycle_.level);
+NcCycles::Heights NcCycles::heights(const NcCodedBlock& block, std::size_t depth) const {
+  const NcModes& modes = state_.modes;
+  const double length = modes.unit(depth), zero = state_.position.zero()[depth];
+  const double r = modes.absolute ? r_ * length + zero : level_ + r_ * length;
+  const double bottom = modes.absolute ? bottom_ * length + zero : r + bottom_ * length;
+  if (!(bottom <= r)) block.fail(block.motion_word(), "R is below the bottom of the hole", "R above it");
+  return {depth, r, bottom, modes.retract_to_r ? r : std::max(r, level_)};
+}
+
+NcPlace NcCycles::above_next_hole(const NcCodedBlock& block, const Heights& heights) const {
+  const NcPosition& position = state_.position;
+  NcPlace above = position.here();
+  for_axes(block.axes & ~axis_bit(heights.axis), [&](std::size_t k) {
+    const double value = state_.modes.length(block, k);
+    above.values[k] = state_.modes.absolute ? value + position.zero()[k] : position.values()[k] + value;
+    above.known |= axis_bit(k);
+  });
+  // From above R at the height where it stands, though it be below that to which G98 has it return again.
+  if (!(position.values()[heights.axis] > heights.r)) above.values[heights.axis] = heights.clear;
+  return above;
+}
+
+void NcCycles::rapid_to(const NcCodedBlock& block, const Heights& heights, double height) {
+  NcPlace to = state_.position.here();
+  to.values[heights.axis] = height;
+  moves_.rapid(block, to);
+}
+
+void NcCycles::straight_to(const NcCodedBlock& block, const Heights& heights, double height, SpindleMove spindle) {
+  NcPlace to = state_.position.here();
+  to.values[heights.axis] = height;
+  moves_.straight(block, to, spindle);
+}
+
+void NcCycles::run(const NcCodedBlock& block, NcCode motion) {
+  const NcModes& modes = state_.modes;
+  check(block);
+  const std::size_t depth = modes.plane == ArcPlane::XY ? 2 : modes.plane == ArcPlane::ZX ? 1 : 0;
+  take_words(block, motion, depth);
+  const double repeats = block.has('l') ? block.value('l') : 1;
+  if (!(repeats >= 1 && repeats <= 1e6) || std::abs(repeats - std::round(repeats)) > 1e-4) {
+    block.fail('l', "is not a number of repeats", "a whole number from 1");
+  }
+  state_.position.require(modes.absolute ? axis_bit(depth) : kXyzWords, block, "the cycle begins there");
+  const Heights to = heights(block, depth);
 
   // Source: LinuxCNC 2.9, measured: up to R first where the level is below it, and between the holes at the height to
   // which the cycle returns.
-  if (cycle_.level < r) {
-    Words up = position_;
-    up[depth] = r;
-    rapid(up, known_);
-  }
-  const std::string path = modes_.exact_path ? "" : path_words_.empty() ? "G64" : path_words_;
+  if (level_ < to.r) rapid_to(block, to, to.r);
+  const std::string path = state_.path.block();
   if (!path.empty()) writer_.line("G61");
   writer_.set_path("");
   for (long i = 0; i < std::lround(repeats); ++i) {
-    Words above = position_;
-    std::uint32_t known = known_;
-    for (const std::size_t k : {first, second}) {
-      if (!block_.has("xyz"[k])) continue;
-      const double value = block_.value("xyz"[k]) * unit(k);
-      above[k] = modes_.absolute ? value + offset_[k] : position_[k] + value;
-      known |= std::uint32_t{1} << k;
-    }
-    // From above R at the height where it stands, though it be below that to which G98 has it return again.
-    if (!(position_[depth] > r)) above[depth] = clear;
-    rapid(above, known);
-    if (position_[depth] != r) {
-      above[depth] = r;
-      rapid(above, known_);
-    }
-    drill(motion, above, bottom, clear, depth);
+    moves_.rapid(block, above_next_hole(block, to));
+    if (state_.position.values()[depth] != to.r) rapid_to(block, to, to.r);
+    drill(block, motion, to);
   }
   if (!path.empty()) writer_.line(path);
-  writer_.set_path(modes_.stops_in_corners ? "" : path);
+  writer_.set_path(state_.path.rounding_block());
 }
 
-void NcInterpreter::drill(NcCode motion, const Words& above, double bottom, double clear, std::size_t depth) {
-  const auto to = [&](double height) {
-    Words end = above;
-    end[depth] = height;
-    return end;
-  };
-  const double r = above[depth];
-  if (motion == 730 || motion == 830) {
-    const double step = cycle_.step * unit(depth);
-    if (!((r - bottom) / step <= static_cast<double>(kMostPecks))) {
-      block_.fail(block_.words[0], fmt::format("the hole takes more than {} pecks", kMostPecks), "a larger Q");
-    }
-    for (double height = r - step; height > bottom; height -= step) {
-      straight(to(height), known_);
-      if (motion == 830) rapid(to(r), known_);
-      rapid(to(height + kPeckClearance_mm), known_);
-    }
+void NcCycles::peck(const NcCodedBlock& block, NcCode motion, const Heights& heights) {
+  const double step = step_ * state_.modes.unit(heights.axis);
+  if (!((heights.r - heights.bottom) / step <= static_cast<double>(kMostPecks))) {
+    block.fail(block.words[0], fmt::format("the hole takes more than {} pecks", kMostPecks), "a larger Q");
   }
-  if (motion == 740 || motion == 840) {
-    // Source: LinuxCNC 2.9, measured. At the feed, so the tap holder must give way; overrides would spoil the thread.
-    const bool right = motion == 840;
-    if (overrides_) writer_.line("M49");
-    straight(to(bottom), known_, SpindleMove::tapping);
-    writer_.line("M5");
-    writer_.line(right ? "M4" : "M3");
-    if (cycle_.dwell > 0) writer_.line(fmt::format("G4 P{}", cycle_.dwell));
-    straight(to(clear), known_, SpindleMove::tapping);
-    writer_.line("M5");
-    writer_.line(right ? "M3" : "M4");
-    if (overrides_) writer_.line("M48");
+  for (double height = heights.r - step; height > heights.bottom; height -= step) {
+    straight_to(block, heights, height);
+    if (motion == 830) rapid_to(block, heights, heights.r);
+    rapid_to(block, heights, height + kPeckClearance_mm);
+  }
+}
+
+void NcCycles::tap(const NcCodedBlock& block, NcCode motion, const Heights& heights) {
+  // Source: LinuxCNC 2.9, measured. At the feed, so the tap holder must give way; overrides would spoil the thread.
+  const bool right = motion == 840, overrides = state_.spindle.has_overrides();
+  if (overrides) writer_.line("M49");
+  straight_to(block, heights, heights.bottom, SpindleMove::tapping);
+  writer_.line("M5");
+  writer_.line(right ? "M4" : "M3");
+  if (dwell_ > 0) writer_.line(fmt::format("G4 P{}", dwell_));
+  straight_to(block, heights, heights.clear, SpindleMove::tapping);
+  writer_.line("M5");
+  writer_.line(right ? "M3" : "M4");
+  if (overrides) writer_.line("M48");
+}
+
+void NcCycles::drill(const NcCodedBlock& block, NcCode motion, const Heights& heights) {
+  if (taps(motion)) {
+    tap(block, motion, heights);
     return;
   }
-  straight(to(bottom), known_);
-  if (motion == 820 || motion == 860 || motion == 890) writer_.line(fmt::format("G4 P{}", cycle_.dwell));
+  if (pecks(motion)) peck(block, motion, heights);
+  straight_to(block, heights, heights.bottom);
+  if (dwells(motion)) writer_.line(fmt::format("G4 P{}", dwell_));
   if (motion == 860) {
     writer_.line("M5");
-    rapid(to(clear), known_);
-    writer_.line(spindle_ == 3 ? "M3" : "M4");
+    rapid_to(block, heights, heights.clear);
+    writer_.line(state_.spindle.direction() == 3 ? "M3" : "M4");
     return;
   }
   if (motion == 890) {
-    straight(to(clear), known_);
+    straight_to(block, heights, heights.clear);
     return;
   }
   if (motion == 850) {
-    straight(to(r), known_);
-    if (clear == r) return;
+    straight_to(block, heights, heights.r);
+    if (heights.clear == heights.r) return;
   }
-  rapid(to(clear), known_);
+  rapid_to(block, heights, heights.clear);
 }
 
 }  // namespace abbe

@@ -3,9 +3,9 @@
 #include <numbers>
 
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/nc/nc_codes.h"
 #include "abbe/formats/nc/nc_cursor.h"
 #include "abbe/formats/nc/nc_expression.h"
-#include "abbe/formats/nc/nc_modes.h"
 #include "abbe/formats/nc/nc_program.h"
 #include "abbe/formats/text/number_text.h"
 

@@ -10,7 +10,6 @@
 namespace abbe {
 
 inline constexpr double kLargestUnits = 9e15;
-inline constexpr std::uint32_t kRotaryWords = 0b111000;  ///< bits of A, B and C
 
 /// Half away from zero; a number that no word has if it is too large.
 inline std::int64_t rounded_units(double units) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "abbe/formats/text/toml_document.h"
@@ -386,6 +387,24 @@ void TomlTable::fail_quantity(std::string_view base, Quantity quantity, const st
     if (unit_of_name(key.str(), base, quantity) != nullptr) fail(key.str(), problem, expected);
   }
   fail(base, problem, expected);
+}
+
+std::string TomlTable::file_name(std::string_view key) {
+  constexpr std::size_t kLongest = 100;
+  std::string name = text(key);
+  const bool is_plain = name.find_first_of("/\t") == std::string::npos;
+  if (name.empty() || name.size() > kLongest || name.front() == '.' || !is_plain) {
+    fail(key, "cannot be the name of a file", "1 to 100 bytes without \"/\" and control characters, no dot in front");
+  }
+  return name;
+}
+
+std::filesystem::path TomlTable::file(std::string_view key, const std::filesystem::path& folder,
+                                      const std::string& expected) {
+  std::filesystem::path path = folder / text(key);
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) fail(key, fmt::format("there is no file {}", path.string()), expected);
+  return path;
 }
 
 }  // namespace abbe

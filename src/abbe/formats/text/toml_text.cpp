@@ -1,28 +1,8 @@
 #include <fmt/format.h>
 
-#include <system_error>
-
 #include "abbe/formats/text/toml_table.h"
 
 namespace abbe {
-
-std::string TomlTable::file_name(std::string_view key) {
-  constexpr std::size_t kLongest = 100;
-  std::string name = text(key);
-  const bool is_plain = name.find_first_of("/\t") == std::string::npos;
-  if (name.empty() || name.size() > kLongest || name.front() == '.' || !is_plain) {
-    fail(key, "cannot be the name of a file", "1 to 100 bytes without \"/\" and control characters, no dot in front");
-  }
-  return name;
-}
-
-std::filesystem::path TomlTable::file(std::string_view key, const std::filesystem::path& folder,
-                                      const std::string& expected) {
-  std::filesystem::path path = folder / text(key);
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) fail(key, fmt::format("there is no file {}", path.string()), expected);
-  return path;
-}
 
 std::string toml_string(std::string_view text) {
   std::string quoted = "\"";
