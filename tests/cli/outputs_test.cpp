@@ -195,8 +195,9 @@ TEST_F(Outputs, WhereSomethingFailsTheMessageSaysWhatIsComplete) {
             "abbe: complete before that: cone.csv\n");
   EXPECT_THAT(folder.read("cone.csv"), HasSubstr("# cone frustum"));
   // There is room for the first file, not for the second, which is larger: half way between them, in blocks of 512.
-  const std::string map = "map " ABBE_SOURCE_DIR "/examples/machines/trunnion-mill.machine.toml " ABBE_SOURCE_DIR
-                          "/examples/compensate/trunnion.errors.toml --grid X_mm=0 -o ";
+  const std::string map =
+      "map --machine " ABBE_SOURCE_DIR "/examples/machines/trunnion-mill.machine.toml --errors " ABBE_SOURCE_DIR
+      "/examples/compensate/trunnion.errors.toml --grid X_mm=0 -o ";
   ASSERT_EQ(shell(map + "whole.vtu -o whole.csv").exit_code, ExitCode::done);
   const auto first_size = fs::file_size(folder.path() / "whole.vtu"),
              second_size = fs::file_size(folder.path() / "whole.csv");
@@ -208,7 +209,7 @@ TEST_F(Outputs, WhereSomethingFailsTheMessageSaysWhatIsComplete) {
   EXPECT_EQ(second.exit_code, ExitCode::bad_input);
   EXPECT_THAT(second.err, HasSubstr("map.csv: cannot be written: File too large"));
   EXPECT_THAT(second.err, HasSubstr("\nabbe: complete before that: map.vtu\n"));
-  EXPECT_THAT(shell("check nothing.machine.toml").err, testing::Not(HasSubstr("complete")));
+  EXPECT_THAT(shell("check --machine nothing.machine.toml").err, testing::Not(HasSubstr("complete")));
 }
 
 TEST_F(Outputs, TheCovarianceBesideAnErrorsFileIsNotReplacedEither) {
@@ -226,7 +227,7 @@ TEST_F(Outputs, WhereNothingCanBeSaidTheExitCodeStillTells) {
     return run_program("/bin/sh", {"-c", ABBE_COMMAND " " + words}, folder.path()).exit_code;
   };
   for (const std::string silent : {"2>&-", "2>/dev/full", "0<&- 1>&- 2>&-"}) {
-    EXPECT_EQ(shell("check nothing.machine.toml " + silent), ExitCode::bad_input) << silent;
+    EXPECT_EQ(shell("check --machine nothing.machine.toml " + silent), ExitCode::bad_input) << silent;
     EXPECT_EQ(shell("no-command " + silent), ExitCode::bad_input) << silent;
     EXPECT_EQ(shell("fit --no-option " + silent), ExitCode::bad_input) << silent;
   }
