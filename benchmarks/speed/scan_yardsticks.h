@@ -14,6 +14,15 @@ Outcome open3d_distances(const TriangleMesh& mesh, const Eigen::Matrix3Xd& point
 /// @param reach_mm  farthest correspondence
 Outcome open3d_registration(const ScanCase& data, double reach_mm);
 
+/// Embree: its tree in single precision, by its point query, whose callback measures triangles in double precision. All
+/// distances without sign.
+Outcome embree_distances(const TriangleMesh& mesh, const Eigen::Matrix3Xd& points, std::vector<double>* distances);
+
+/// The same with what this project does too: the points along a Hilbert curve, each starting from the triangle of the
+/// one before.
+Outcome embree_sorted_distances(const TriangleMesh& mesh, const Eigen::Matrix3Xd& points,
+                                std::vector<double>* distances);
+
 /// PCL: distance to the nearest vertex, for it has no closest point of triangles.
 Outcome pcl_distances(const TriangleMesh& mesh, const Eigen::Matrix3Xd& points, std::vector<double>* distances);
 

@@ -1,5 +1,5 @@
 # Runs while the files of the tarball are installed: the licences of what is linked into its programs, in
-# share/doc/abbe/licences.
+# share/doc/abbe/licences. That of Boost asks for none beside programs.
 set(root "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
 
 function(install_licence package)

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/instruments/measurement_plan.h"
 
 namespace abbe {
@@ -29,8 +29,8 @@ PoseList linear_grid(double c, std::size_t count) {
 
 /// One point of X and Z at C from 0 to 355 degrees in steps of 5 degrees, as the paper's Table 1.
 PoseList rotary_circle(double x, double z) {
-  const double step = 5 * std::numbers::pi / 180;
-  return grid_plan(aguado_machine(), {{0, 71 * step, 72, 0}, AxisRange::fixed(x), AxisRange::fixed(z)});
+  constexpr double kStep = 5 * kDegree;
+  return grid_plan(aguado_machine(), {{0, 71 * kStep, 72, 0}, AxisRange::fixed(x), AxisRange::fixed(z)});
 }
 
 /// Fits models to readings; every experiment has its own noise, all models of one experiment the same readings.

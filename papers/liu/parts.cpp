@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/surface/vertex_welder.h"
 
@@ -208,7 +209,7 @@ LiuPart liu_sphere(double share) {
 }
 
 LiuPart liu_blade() {
-  constexpr double kLong = 7, kShort = 1.5, kHalf = 12, kTwist = 40 * pi / 180;
+  constexpr double kLong = 7, kShort = 1.5, kHalf = 12, kTwist = 40 * kDegree;
   const auto point = [](double angle, double y, double size) {
     const double turned = kTwist * y / (2 * kHalf);
     const double a = size * kLong * std::cos(angle), b = size * kShort * std::sin(angle);

@@ -11,6 +11,7 @@
 
 #include "abbe/errors/actual_pose.h"
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/instruments/ball_bar.h"
 #include "abbe/instruments/instrument_observations.h"
@@ -162,7 +163,7 @@ double wang_share_within(const WangCircle& circle, const WangCircle& without_noi
 SvgPicture wang_circle_picture(const WangCircle& circle, const WangCircle& without_noise) {
   std::vector<PolarPoint> found, low, high, exact;
   for (std::size_t k = 0; k < circle.deviation.size(); ++k) {
-    const double angle = degrees_at(k) * std::numbers::pi / 180, value = 1e3 * circle.deviation[k];
+    const double angle = degrees_at(k) * kDegree, value = 1e3 * circle.deviation[k];
     const double band = 2e3 * circle.uncertainty[k];
     found.push_back({angle, value});
     low.push_back({angle, value - band});

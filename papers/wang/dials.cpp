@@ -15,7 +15,7 @@ namespace abbe {
 namespace {
 
 constexpr double kMillidegree = 1e-3 * kDegree;
-constexpr double kAngleStandardUncertainty = 0.5 / 3600 * kDegree;
+constexpr double kAngleStandardUncertainty = 0.5 * kArcsec;
 constexpr std::size_t kMeasuredRows = 11;
 
 /// [rows, 6] mm, rad of one table.

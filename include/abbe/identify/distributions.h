@@ -1,18 +1,17 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 
 namespace abbe {
 
-/// Regularised incomplete gamma function Q(a, x) = Gamma(a, x) / Gamma(a); a > 0, x >= 0.
-///
-/// Series for x < a + 1, continued fraction (modified Lentz) beyond. Source: DLMF 8.11.4, 8.9.2.
-double incomplete_gamma_upper(double a, double x);
+/// Probabilities and quantiles, by Boost.Math in double precision. Nothing throws. Degrees of freedom are above 0 and
+/// need not be whole; what is not, or a probability outside its range, gives NaN.
 
-/// Regularised incomplete beta function I_x(a, b); a, b > 0, 0 <= x <= 1. Source: DLMF 8.17.22 (continued fraction).
+/// Regularised incomplete beta function I_x(a, b); a, b > 0; 0 for x <= 0, 1 for x >= 1.
 double incomplete_beta(double a, double b, double x);
 
-/// Probability that a chi-square variable of `degrees_of_freedom` exceeds `value`.
+/// Probability that a chi-square variable of `degrees_of_freedom` exceeds `value`; 1 unless value > 0.
 double chi_square_exceedance(double value, double degrees_of_freedom);
 
 /// Value that a chi-square variable exceeds with this probability, 0 < exceedance < 1.
@@ -29,5 +28,9 @@ double student_exceedance(double t, double degrees_of_freedom);
 /// Probability that independent values have so large a sum by chance if their expected sum is `expected` or less:
 /// Student's t of their mean, one-sided, with the scatter that they show. 1 for fewer than three values.
 double sum_exceedance(std::span<const double> values, double expected);
+
+/// Probability of `marked_drawn` or more marked items in a draw of `drawn` without replacement from `all` items of
+/// which `marked` are marked.
+double hypergeometric_exceedance(std::size_t all, std::size_t marked, std::size_t drawn, std::size_t marked_drawn);
 
 }  // namespace abbe

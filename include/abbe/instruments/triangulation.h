@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <numbers>
 #include <vector>
 
 #include "abbe/errors/random_stream.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rigid_transform.h"
 #include "abbe/geometry/surface/ray_tracer.h"
 
@@ -23,14 +23,14 @@ bool seen_from(const RayTracer& surface, const Eigen::Vector3d& point, const Eig
 ///
 /// Its frame: origin in the middle of the range, the fan in the plane y = 0, z from the part towards the scanner.
 struct LineScanner {
-  Eigen::Vector3d laser = {0, 0, 57.5};                ///< mm, where the fan comes from
-  Eigen::Vector3d camera = {0, 30, 49};                ///< mm, centre of projection
-  double width = 1.3;                                  ///< mm, of the fan at z = 0
-  int points = 1280;                                   ///< rays over the width
-  double range = 8;                                    ///< mm, of z, half of it to either side of 0
-  double largest_angle = 85 * std::numbers::pi / 180;  ///< rad, of light or view against the normal
-  double height_noise = 0;                             ///< mm, standard deviation of z of a point
-  double across_noise = 0;                             ///< mm, of x
+  Eigen::Vector3d laser = {0, 0, 57.5};  ///< mm, where the fan comes from
+  Eigen::Vector3d camera = {0, 30, 49};  ///< mm, centre of projection
+  double width = 1.3;                    ///< mm, of the fan at z = 0
+  int points = 1280;                     ///< rays over the width
+  double range = 8;                      ///< mm, of z, half of it to either side of 0
+  double largest_angle = 85 * kDegree;   ///< rad, of light or view against the normal
+  double height_noise = 0;               ///< mm, standard deviation of z of a point
+  double across_noise = 0;               ///< mm, of x
   /// Largest systematic deviation of z, mm; one slow wave over the range, whose phase is drawn for each section.
   double linearity = 0;
 
@@ -55,9 +55,9 @@ ScannedSection scan_section(const LineScanner& scanner, const RayTracer& part, c
 ///
 /// Its frame: origin midway between projector and camera, x from the projector to the camera, z towards the scene.
 struct AreaScanner {
-  double baseline = 240;                               ///< mm, between projector and camera
-  double largest_angle = 70 * std::numbers::pi / 180;  ///< rad, of light or view against the normal
-  double noise = 0;                                    ///< mm, standard deviation of each coordinate of a point
+  double baseline = 240;                ///< mm, between projector and camera
+  double largest_angle = 70 * kDegree;  ///< rad, of light or view against the normal
+  double noise = 0;                     ///< mm, standard deviation of each coordinate of a point
 
   Eigen::Vector3d projector() const { return {-baseline / 2, 0, 0}; }
   Eigen::Vector3d camera() const { return {baseline / 2, 0, 0}; }

@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include "abbe/errors/poses.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rigid_transform.h"
 #include "abbe/geometry/surface/ray_tracer.h"
 #include "abbe/instruments/point_scan.h"
@@ -19,10 +19,10 @@ struct VirtualScanSetup {
   RigidTransform workpiece_from_part;  ///< where the part is clamped, with its clamping errors
   double lowest = -0.2;                ///< mm, range of the indication
   double highest = 0.2;
-  double working_distance = 10;                        ///< mm, from the probe to the zero of the indication
-  double largest_angle = 28 * std::numbers::pi / 180;  ///< rad, between the beam and the normal of the surface
-  double linear_noise = 0, rotary_noise = 0;           ///< mm, rad: standard deviation of an axis from its command
-  double probe_noise = 0;                              ///< mm, standard deviation of an indication
+  double working_distance = 10;               ///< mm, from the probe to the zero of the indication
+  double largest_angle = 28 * kDegree;        ///< rad, between the beam and the normal of the surface
+  double linear_noise = 0, rotary_noise = 0;  ///< mm, rad: standard deviation of an axis from its command
+  double probe_noise = 0;                     ///< mm, standard deviation of an indication
   /// Linear axis that follows the surface, or npos: after an indication h its command is shifted so that the next one
   /// would be zero on a surface without slope; where the surface is lost it searches for it.
   std::size_t following_axis = Machine::npos;

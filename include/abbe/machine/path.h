@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/inverse_kinematics.h"
 
 namespace abbe {
@@ -18,7 +18,7 @@ struct PathOptions {
   /// Moves of rotary axes count as this many mm per rad beside those of linear axes.
   double mm_per_radian = 100;
   /// A rotary axis that turns more than this (rad) and more than three times the tool in one step makes a jump.
-  double largest_turn = 20 * std::numbers::pi / 180;
+  double largest_turn = 20 * kDegree;
 };
 
 enum class PathStatus {

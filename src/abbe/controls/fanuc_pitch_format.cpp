@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "abbe/compensate/tables/axis_table.h"
 #include "abbe/controls/line_writer.h"
 #include "abbe/controls/lost_motion.h"
@@ -16,9 +14,7 @@ namespace {
 WrittenTables make_fanuc(const TableFormat& format, const Machine& machine, const ErrorSet& errors,
                          const WriterRequest& request) {
   WrittenTables made;
-  const auto unit_of = [&](std::size_t axis) {
-    return machine.axes[axis].kind == AxisKind::rotary ? request.unit_mm * std::numbers::pi / 180 : request.unit_mm;
-  };
+  const auto unit_of = [&](std::size_t axis) { return request.unit_mm * position_unit(machine.axes[axis]); };
   std::vector<FanucPitch> pitches;
   std::vector<double> constants;  // of the tables at their reference positions, where the data are zero
   std::size_t first_point = 0;
@@ -40,7 +36,7 @@ WrittenTables make_fanuc(const TableFormat& format, const Machine& machine, cons
         "1240, machine coordinate {:g} {} of the machine file; --reference-position says where else it is), "
         "which has to be shifted by {:.2f} {} (the figures above take it that it is)",
         machine.axes[table.input].name, micro_per_unit(rotary) * unit * pitch.magnification, micro_unit(rotary),
-        reference * (rotary ? 180 / std::numbers::pi : 1), rotary ? "deg" : "mm",
+        reference / position_unit(machine.axes[table.input]), position_suffix(machine.axes[table.input]),
         micro_per_unit(rotary) * constants.back(), micro_unit(rotary)));
   }
   std::vector<AxisTable> read;

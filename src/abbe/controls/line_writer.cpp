@@ -11,12 +11,13 @@
 #include "abbe/errors/reversal.h"
 #include "abbe/formats/controls/table_linuxcnc.h"
 #include "abbe/formats/controls/table_siemens.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
 
 constexpr double kDecimalStep_mm = 1e-3;
-constexpr double kDecimalStep_rad = 3.14159265358979323846 / 180 * 1e-3;
+constexpr double kDecimalStep_rad = 1e-3 * kDegree;
 
 std::string table_name(const Machine& machine, const AxisTable& table) {
   const std::string& input = machine.axes[table.input].name;

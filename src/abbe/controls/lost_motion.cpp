@@ -3,16 +3,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "abbe/controls/joint_order.h"
+#include "abbe/machine/axis_unit.h"
 
 namespace abbe {
 namespace {
 
 /// Digits of a position in mm or degrees: "0.012000".
 std::string number_in_units(double value, bool rotary) {
-  return rotary ? fmt::format("{:.7f}", value * 180 / std::numbers::pi) : fmt::format("{:.6f}", value);
+  return rotary ? fmt::format("{:.7f}", value / kDegree) : fmt::format("{:.6f}", value);
 }
 
 }  // namespace
@@ -30,8 +30,8 @@ std::vector<JointBacklash> linuxcnc_backlash(const Machine& machine, const Error
       if (reversal.axis != order[joint] || reversal.value == 0) continue;
       const Axis& axis = machine.axes[reversal.axis];
       const bool rotary = axis.kind == AxisKind::rotary;
-      all.push_back({axis.name, fmt::format("[JOINT_{}]BACKLASH", joint),
-                     -reversal.value * (rotary ? 180 / std::numbers::pi : 1), rotary});
+      all.push_back(
+          {axis.name, fmt::format("[JOINT_{}]BACKLASH", joint), -reversal.value * (1 / position_unit(axis)), rotary});
     }
   }
   return all;

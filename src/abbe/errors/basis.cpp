@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/geometry/angle_units.h"
+
 namespace abbe {
 namespace {
 
@@ -256,7 +258,7 @@ std::string Basis::function_name(std::size_t index, bool rotary) const {
       return fmt::format("B{}", index);
     case BasisKind::table_linear:
     case BasisKind::table_monotone:
-      return fmt::format("@{:.10g}", rotary ? nodes[index] * 180.0 / std::numbers::pi : nodes[index]);
+      return fmt::format("@{:.10g}", rotary ? nodes[index] / kDegree : nodes[index]);
   }
   return {};
 }

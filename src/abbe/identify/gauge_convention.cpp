@@ -9,6 +9,8 @@
 #include <functional>
 #include <numbers>
 
+#include "abbe/geometry/angle_units.h"
+
 namespace abbe {
 namespace {
 
@@ -114,7 +116,7 @@ class AxisFunctionals {
 };
 
 std::string position_text(double position, bool rotary) {
-  return rotary ? fmt::format("{:.6g} deg", position * 180 / kPi) : fmt::format("{:.6g} mm", position);
+  return rotary ? fmt::format("{:.6g} deg", position / kDegree) : fmt::format("{:.6g} mm", position);
 }
 
 void add_candidate(std::vector<GaugeCandidate>& list, std::string words, std::string quantity,

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/decompositions.h"
 
 namespace abbe {
@@ -24,8 +24,7 @@ std::string pose_text(const Machine& machine, const std::vector<double>& positio
   std::string text;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (machine.axes[i].kind != AxisKind::rotary) continue;
-    text += fmt::format("{}{} = {:.6g} deg", text.empty() ? "" : ", ", machine.axes[i].name,
-                        positions[i] * 180 / std::numbers::pi);
+    text += fmt::format("{}{} = {:.6g} deg", text.empty() ? "" : ", ", machine.axes[i].name, positions[i] / kDegree);
   }
   return text.empty() ? "the plan" : text;
 }
@@ -79,7 +78,7 @@ PoseList circle_plan(const Machine& machine, const std::vector<double>& position
     const auto pose = meet(machine, positions, from, to, points, displacement);
     if (!pose) {
       throw std::invalid_argument(
-          fmt::format("the circle is out of reach of the linear axes at {:.6g} deg", t * 180 / std::numbers::pi));
+          fmt::format("the circle is out of reach of the linear axes at {:.6g} deg", t / kDegree));
     }
     poses.append(*pose);
   }

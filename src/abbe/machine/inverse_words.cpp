@@ -1,8 +1,8 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/inverse_kinematics.h"
 
 namespace abbe {
@@ -10,7 +10,7 @@ namespace {
 
 std::string number(double value, const char* unit) { return fmt::format("{:.6g} {}", value, unit); }
 
-std::string angle(double radians) { return number(radians * 180 / std::numbers::pi, "deg"); }
+std::string angle(double radians) { return number(radians / kDegree, "deg"); }
 
 std::string command(const Axis& axis, double position) {
   return axis.kind == AxisKind::rotary ? angle(position) : number(position, "mm");

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "abbe/geometry/angle.h"
 #include "abbe/geometry/angle_units.h"
@@ -365,10 +364,9 @@ std::string describe(const Machine& machine, const PathResult& result) {
       (result.jumps.empty() ? std::string("no jump") : std::to_string(result.jumps.size()) + " with a jump");
   for (const PathJump& jump : result.jumps) {
     text += "\npose " + std::to_string(jump.pose) + ": " + machine.axes[jump.axis].name + " turns " +
-            four_digits(jump.turn * 180 / std::numbers::pi) + " deg" +
-            (jump.leaves_singular_pose ? " in a singular pose" : "") + ", linear axes move up to " +
-            four_digits(jump.largest_linear_move) + " mm, tool " + four_digits(jump.point_deviation) +
-            " mm off half way";
+            four_digits(jump.turn / kDegree) + " deg" + (jump.leaves_singular_pose ? " in a singular pose" : "") +
+            ", linear axes move up to " + four_digits(jump.largest_linear_move) + " mm, tool " +
+            four_digits(jump.point_deviation) + " mm off half way";
   }
   return text;
 }

@@ -137,7 +137,7 @@ std::string found_values_text(const FoundValues& found, const char* shows_all) {
   std::string text;
   const bool of_machine = !found.locations.empty() || !found.reversals.empty() || !found.tool.empty();
   if (!of_machine && found.setups.empty()) return text;
-  text += fmt::format("\nidentified values, U: expanded uncertainty (k = 2)\n");
+  text += "\nidentified values, U: expanded uncertainty (k = 2)\n";
   if (of_machine) {
     text += fmt::format("  machine                  {:>19}       {}\n", "value", "U");
     for (const auto* list : {&found.locations, &found.reversals, &found.tool}) {
@@ -185,7 +185,7 @@ std::string gauge_table_text(const Identification& identified) {
   if (constraints.empty()) return text;
   std::size_t width = 0;
   for (const GaugeConstraint& constraint : constraints) width = std::max(width, constraint.words.size());
-  text += fmt::format("\nwhat the readings cannot tell apart, and what was assumed instead\n");
+  text += "\nwhat the readings cannot tell apart, and what was assumed instead\n";
   text += fmt::format("  {:<{}}  {}\n", "assumed", width, "because these are not separable");
   for (const GaugeConstraint& constraint : constraints) {
     text += fmt::format("  {:<{}}  {}\n", constraint.words, width, names_of(identified, constraint));

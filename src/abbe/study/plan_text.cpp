@@ -76,8 +76,7 @@ std::string grids_text(const StudyPlan& result) {
 std::string combinations_text(const StudyPlan& result) {
   std::string text;
   if (result.combinations.empty()) return text;
-  text +=
-      fmt::format("\nwhich instruments are worth setting up (uncertainty with prior knowledge of 20 um and 60 urad)\n");
+  text += "\nwhich instruments are worth setting up (uncertainty with prior knowledge of 20 um and 60 urad)\n";
   for (const SetupChoice& choice : result.combinations) {
     const std::string names = fmt::format("{}", fmt::join(choice.setups, ", "));
     if (choice.possible) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/machine/errors_file.h"
@@ -91,8 +90,7 @@ std::string residuals_csv(const Study& study, const StudyResult& result) {
       if (!points.empty() && !points[k].empty()) start += csv_field(points[k]);
       const std::vector<double> positions = observations.positions(k);
       for (std::size_t i = 0; i < positions.size(); ++i) {
-        const bool rotary = machine.axes[i].kind == AxisKind::rotary;
-        start += fmt::format(",{:.9g}", positions[i] * (rotary ? 180 / std::numbers::pi : 1));
+        start += fmt::format(",{:.9g}", positions[i] * (1 / position_unit(machine.axes[i])));
       }
       const auto outlier = weights.find(k);
       start += fmt::format(",{},{:.4g}", use.empty() || use[k] != 0 ? 1 : 0,

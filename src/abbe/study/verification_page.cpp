@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "abbe/identify/distributions.h"
 #include "abbe/report/evaluations/machine_json.h"
 #include "abbe/report/report.h"
 #include "abbe/report/words/volumetric_words.h"
@@ -22,10 +23,8 @@ using Eigen::Vector3d;
 constexpr std::size_t kPlaces = 480;     // along a piece, as it is drawn
 constexpr std::size_t kQuantiles = 120;  // of a distribution
 
-/// Share of a length of three coordinates of equal standard deviation that lies below x of them (Maxwell).
-double maxwell(double x) {
-  return std::erf(x / std::numbers::sqrt2) - std::sqrt(2 / std::numbers::pi) * x * std::exp(-0.5 * x * x);
-}
+/// Share of a length of three coordinates of equal standard deviation that lies below x of them.
+double share_below(double x) { return 1 - chi_square_exceedance(x * x, 3); }
 
 /// Quantiles that errors with the predicted uncertainties would have, as if the coordinates of a pose were alike.
 std::vector<double> predicted_quantiles(const std::vector<double>& uncertainty, const std::vector<double>& shares) {
@@ -36,7 +35,7 @@ std::vector<double> predicted_quantiles(const std::vector<double>& uncertainty, 
     for (int step = 0; step < 50 && high > 0; ++step) {
       const double middle = (low + high) / 2;
       double sum = 0;
-      for (const double u : uncertainty) sum += u > 0 ? maxwell(middle * std::numbers::sqrt3 / u) : 1;
+      for (const double u : uncertainty) sum += u > 0 ? share_below(middle * std::numbers::sqrt3 / u) : 1;
       (sum < share * static_cast<double>(uncertainty.size()) ? low : high) = middle;
     }
     quantiles.push_back((low + high) / 2);

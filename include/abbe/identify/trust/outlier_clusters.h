@@ -35,8 +35,4 @@ std::vector<OutlierCluster> outlier_clusters(const Problem& problem, const std::
 /// "107 of 110 readings with B from -90 to -51 deg are outliers, 3 of the 890 others".
 std::string cluster_text(const OutlierCluster& cluster);
 
-/// Probability of `marked_drawn` or more marked items in a draw of `drawn` without replacement from `all` items of
-/// which `marked` are marked.
-double hypergeometric_exceedance(std::size_t all, std::size_t marked, std::size_t drawn, std::size_t marked_drawn);
-
 }  // namespace abbe

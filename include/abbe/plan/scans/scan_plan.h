@@ -50,6 +50,7 @@
 #include <vector>
 
 #include "abbe/errors/poses.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rigid_transform.h"
 #include "abbe/geometry/surface/triangle_mesh.h"
 #include "abbe/machine/machine.h"
@@ -65,26 +66,26 @@ struct HalfSpace {
 };
 
 /// Kept from the largest angle where directions are chosen, rad: normals of a mesh are not those of the part.
-inline constexpr double kScanAngleMargin = 1 * std::numbers::pi / 180;
+inline constexpr double kScanAngleMargin = kDegree;
 /// Range of ScanPlanOptions::largest_angle: less leaves nothing beside the margin, and along the surface nothing is
 /// seen.
-inline constexpr double kSmallestScanAngle = 2 * kScanAngleMargin, kLargestScanAngle = 85 * std::numbers::pi / 180;
+inline constexpr double kSmallestScanAngle = 2 * kScanAngleMargin, kLargestScanAngle = 85 * kDegree;
 /// Range of ScanPlanOptions::crease_angle.
-inline constexpr double kSmallestCrease = 1 * std::numbers::pi / 180, kLargestCrease = 90 * std::numbers::pi / 180;
+inline constexpr double kSmallestCrease = kDegree, kLargestCrease = 90 * kDegree;
 
 /// What the probe and the axes can do, and how densely the part is to be seen.
 struct ScanPlanOptions {
-  RigidTransform workpiece_from_part;                  ///< where the part stands
-  std::vector<HalfSpace> wanted;                       ///< frame of the part: only what lies in all of them is scanned
-  double along = 0.5, between = 0.5;                   ///< mm, distance of points along a line and of lines
-  double largest_turn = 10 * std::numbers::pi / 180;   ///< rad, of the normal from point to point along a line
-  double crease_angle = 30 * std::numbers::pi / 180;   ///< rad, faces end where triangles meet at more
-  double largest_angle = 28 * std::numbers::pi / 180;  ///< rad, between the beam and the normal: n.m >= cos
-  double range = 0.4;                                  ///< mm, of the indication, about its middle
-  double working_distance = 10;                        ///< mm, from the measured point to the probe
-  double probe_radius = 5, probe_length = 60;          ///< mm, a round rod behind the working distance
-  double clearance = 0.5;                              ///< mm, kept between the probe and everything else
-  std::optional<TriangleMesh> stage;                   ///< what else turns with the workpiece, workpiece frame, mm
+  RigidTransform workpiece_from_part;          ///< where the part stands
+  std::vector<HalfSpace> wanted;               ///< frame of the part: only what lies in all of them is scanned
+  double along = 0.5, between = 0.5;           ///< mm, distance of points along a line and of lines
+  double largest_turn = 10 * kDegree;          ///< rad, of the normal from point to point along a line
+  double crease_angle = 30 * kDegree;          ///< rad, faces end where triangles meet at more
+  double largest_angle = 28 * kDegree;         ///< rad, between the beam and the normal: n.m >= cos
+  double range = 0.4;                          ///< mm, of the indication, about its middle
+  double working_distance = 10;                ///< mm, from the measured point to the probe
+  double probe_radius = 5, probe_length = 60;  ///< mm, a round rod behind the working distance
+  double clearance = 0.5;                      ///< mm, kept between the probe and everything else
+  std::optional<TriangleMesh> stage;           ///< what else turns with the workpiece, workpiece frame, mm
   double linear_speed = 10, rotary_speed = std::numbers::pi / 6;  ///< mm/s, rad/s
   double readings_per_second = 100;
   std::function<void(std::size_t done, std::size_t total)> progress;  ///< in faces

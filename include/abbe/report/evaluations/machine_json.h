@@ -9,6 +9,9 @@ namespace abbe {
 /// A machine as pages hold it: the `machine` section of docs/report-data.md, units in the keys.
 nlohmann::ordered_json report_machine(const Machine& machine);
 
+/// What every description of an axis begins with: name, kind, side, sense, direction and point; units in the keys.
+nlohmann::ordered_json axis_json(const Axis& axis);
+
 /// Four significant digits, for numbers that are only drawn; 0 for what is not finite.
 double for_drawing(double value);
 

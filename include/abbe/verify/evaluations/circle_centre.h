@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "abbe/geometry/angle_units.h"
+
 namespace abbe {
 
 /// What the angle of a reading on a circular path is.
@@ -23,7 +25,7 @@ struct CircularReadings {
 
 /// Largest angle between neighbouring readings over which a circle is still centred, rad: an arc of 200 degrees. The
 /// standard centres on full circles only; see `partial` in CircularDeviation.
-inline constexpr double kLargestGapForCentre = 160 * 3.14159265358979323846 / 180;
+inline constexpr double kLargestGapForCentre = 160 * kDegree;
 
 enum class CircleStatus {
   not_run,

@@ -12,6 +12,7 @@
 #include "abbe/formats/text/table_numbers.h"
 #include "abbe/formats/text/text_cursor.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/machine/axis_unit.h"
 
 namespace abbe {
 namespace {
@@ -19,15 +20,13 @@ namespace {
 constexpr int kCorrectionDecimals = 4;
 constexpr std::size_t kMostNodes = 20'000'000;
 
-double scale_of(bool rotary) { return rotary ? 1e6 : 1e3; }
-
 std::string input_title(const TableAxisName& axis) { return axis.name + (axis.rotary ? "_deg" : "_mm"); }
 std::string output_title(const TableAxisName& axis) {
   return "correction_" + axis.name + (axis.rotary ? "_urad" : "_um");
 }
 
 std::string correction_text(double value, bool rotary) {
-  return fixed_number(scale_of(rotary) * value, kCorrectionDecimals);
+  return fixed_number(micro_per_unit(rotary) * value, kCorrectionDecimals);
 }
 
 /// Different values in increasing order.
@@ -234,7 +233,7 @@ CorrectionLattice parse_lattice_vtk(std::string_view text, const std::string& fi
     }
     for (const char* word : {"double", "1", "LOOKUP_TABLE", "default"}) take(cursor, word);
     std::vector<double> values;
-    for (std::size_t k = 0; k < count; ++k) values.push_back(cursor.number("SCALARS") / scale_of(axis->rotary));
+    for (std::size_t k = 0; k < count; ++k) values.push_back(cursor.number("SCALARS") / micro_per_unit(axis->rotary));
     lattice.outputs.push_back(axis->axis);
     lattice.corrections.push_back(std::move(values));
   }

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <iterator>
-#include <numbers>
 #include <stdexcept>
 
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/text/csv_reader.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
@@ -85,7 +85,7 @@ std::string sections_csv(const std::vector<SectionReadings>& sections) {
   for (const SectionReadings& section : sections) {
     std::string common;
     if (along) common += fmt::format(",{:.6f}", *section.along);
-    if (tilt) common += fmt::format(",{:.9f}", *section.beam_tilt * 180 / std::numbers::pi);
+    if (tilt) common += fmt::format(",{:.9f}", *section.beam_tilt / kDegree);
     for (Eigen::Index i = 0; i < section.points.cols(); ++i) {
       fmt::format_to(std::back_inserter(text), "{},{:.6f},{:.6f}{}\n", csv_field(section.name), section.points(0, i),
                      section.points(1, i), common);

@@ -10,6 +10,7 @@
 #include "abbe/formats/machine/error_fields.h"
 #include "abbe/formats/text/toml_table.h"
 #include "abbe/formats/text/toml_vector.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/machine/chain.h"
 #include "abbe/machine/machine_check.h"
@@ -176,10 +177,9 @@ chain = {}
                           shortest_text(axis.travel_max));
       text += "point_mm = [0, 0, 0]    # reference point: where this axis's angular errors turn\n";
     } else {
-      text += axis.endless
-                  ? "endless = true          # or travel_deg = [smallest, largest]\n"
-                  : fmt::format("travel_deg = [{:g}, {:g}]  # or endless = true\n",
-                                axis.travel_min * 180 / std::numbers::pi, axis.travel_max * 180 / std::numbers::pi);
+      text += axis.endless ? "endless = true          # or travel_deg = [smallest, largest]\n"
+                           : fmt::format("travel_deg = [{:g}, {:g}]  # or endless = true\n", axis.travel_min / kDegree,
+                                         axis.travel_max / kDegree);
       text += "point_mm = [0, 0, 0]    # any point on the axis\n";
       text += "# setting = true         # set beforehand, not interpolated with the others\n";
     }

@@ -1,6 +1,5 @@
 // Parameter files and tool tables of LinuxCNC.
 #include <cmath>
-#include <numbers>
 
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/nc/nc_codes.h"
@@ -8,6 +7,7 @@
 #include "abbe/formats/nc/nc_expression.h"
 #include "abbe/formats/nc/nc_program.h"
 #include "abbe/formats/text/number_text.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
@@ -80,7 +80,7 @@ NcToolTable parse_nc_tools(std::string_view text, const std::string& file, bool 
       } else if (axis < kAxisWords) {
         const bool is_rotary = axis >= 3 && axis <= 5;
         const double value = table_number(cursor, "an offset in mm or degrees");
-        offset[axis] = is_rotary ? value * std::numbers::pi / 180 : in_inches ? value * 25.4 : value;
+        offset[axis] = is_rotary ? value * kDegree : in_inches ? value * 25.4 : value;
       } else if (c == 'p' || c == 'd' || c == 'i' || c == 'j' || c == 'q') {
         table_number(cursor, "a number");
       } else {

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "abbe/formats/study/study_parts.h"
+#include "abbe/machine/axis_unit.h"
 
 namespace abbe {
 namespace {
@@ -17,8 +16,8 @@ std::vector<double> read_speeds(TomlTable& parent, const Machine& machine) {
   auto table = parent.optional_table("speed");
   for (const Axis& axis : machine.axes) {
     const bool rotary = axis.kind == AxisKind::rotary;
-    const double unit = rotary ? std::numbers::pi / 180 / 60 : 1.0 / 60;  // of mm or degrees per minute
-    const std::string key = axis.name + (rotary ? "_deg_per_min" : "_mm_per_min");
+    const double unit = position_unit(axis) / 60;  // of mm or degrees per minute
+    const std::string key = axis.name + "_" + position_suffix(axis) + "_per_min";
     const double otherwise = rotary ? 3600 : 6000;
     const double speed = table ? table->number_or(key, Quantity::dimensionless, otherwise) : otherwise;
     if (speed <= 0) table->fail(key, "is not above zero", "a speed");

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "abbe/formats/nc/program_text.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
 #include "abbe/formats/text/text_cursor.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 
@@ -20,8 +20,8 @@ std::string trimmed_decimals(double value, int decimals) {
   return text;
 }
 
-double shown_position(double value, bool rotary) { return rotary ? value * (180 / std::numbers::pi) : value; }
-double inside_position(double value, bool rotary) { return rotary ? value * (std::numbers::pi / 180) : value; }
+double shown_position(double value, bool rotary) { return rotary ? value * (1 / kDegree) : value; }
+double inside_position(double value, bool rotary) { return rotary ? value * kDegree : value; }
 
 std::string shown_position_text(double value, bool rotary) {
   return trimmed_decimals(shown_position(value, rotary), 9);

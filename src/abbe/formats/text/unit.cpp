@@ -14,18 +14,17 @@ namespace {
 constexpr std::array<Unit, 1> kDimensionless = {{{"", 0, 1}}};
 constexpr std::array<Unit, 3> kLength = {{{"mm", 0, 1}, {"um", -3, 1}, {"m", 3, 1}}};
 constexpr std::array<Unit, 5> kAngle = {
-    {{"rad", 0, 1}, {"mrad", -3, 1}, {"urad", -6, 1}, {"deg", 0, kDegree}, {"arcsec", 0, kDegree / 3600}}};
+    {{"rad", 0, 1}, {"mrad", -3, 1}, {"urad", -6, 1}, {"deg", 0, kDegree}, {"arcsec", 0, kArcsec}}};
 constexpr std::array<Unit, 2> kLengthPerLength = {{{"mm_per_m", -3, 1}, {"um_per_m", -6, 1}}};
 constexpr std::array<Unit, 2> kTime = {{{"s", 0, 1}, {"ms", -3, 1}}};
 constexpr std::array<Unit, 2> kLengthSquared = {{{"mm2", 0, 1}, {"um2", -6, 1}}};
-constexpr double kArcsecond = kDegree / 3600;
 constexpr std::array<Unit, 5> kAngleSquared = {{{"rad2", 0, 1},
                                                 {"mrad2", -6, 1},
                                                 {"urad2", -12, 1},
                                                 {"deg2", 0, kDegree* kDegree},
-                                                {"arcsec2", 0, kArcsecond* kArcsecond}}};
+                                                {"arcsec2", 0, kArcsec* kArcsec}}};
 constexpr std::array<Unit, 4> kLengthAngle = {
-    {{"mm_rad", 0, 1}, {"um_urad", -9, 1}, {"um_arcsec", -3, kArcsecond}, {"mm_arcsec", 0, kArcsecond}}};
+    {{"mm_rad", 0, 1}, {"um_urad", -9, 1}, {"um_arcsec", -3, kArcsec}, {"mm_arcsec", 0, kArcsec}}};
 constexpr std::array<Quantity, 8> kQuantities = {
     Quantity::dimensionless, Quantity::length,         Quantity::angle,         Quantity::length_per_length,
     Quantity::time,          Quantity::length_squared, Quantity::angle_squared, Quantity::length_angle};

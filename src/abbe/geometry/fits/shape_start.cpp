@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/decompositions.h"
 
 namespace abbe::fits {
@@ -86,7 +87,7 @@ std::vector<Vector3d> axis_candidates(ShapeKind kind, const Survey& survey) {
     candidates.push_back(generator);
     if (kind == ShapeKind::cone) {
       for (const double angle : {2., 5., 10., 15., 20., 27., 35., 45., 55., 65., 75., 85.}) {
-        const double a = angle * std::numbers::pi / 180;
+        const double a = angle * kDegree;
         candidates.push_back(std::cos(a) * generator + std::sin(a) * normal);
         candidates.push_back(std::cos(a) * generator - std::sin(a) * normal);
       }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/singular_values.h"
@@ -312,7 +313,7 @@ Decoupling decouple_indications(const AxisIndications& readings, AngleDatum datu
   if (!linear && span < std::numbers::pi) {
     result.notes.push_back(fmt::format(
         "over {:.0f} deg of travel the eccentricity of the mandrel takes part of the slow error motion with it",
-        span * 180 / std::numbers::pi));
+        span / kDegree));
   }
   result.status = DecouplingStatus::ok;
   return result;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/best_fit_transform.h"
 #include "abbe/geometry/rotation.h"
 
@@ -109,7 +110,7 @@ ScannerPosition locate_scanner(const PositioningScans& scans) {
   correlation.row(2) = normal.normalized().transpose();
   const Matrix3 r = rotation_from_correlation(correlation);
   const Eigen::Vector3d axis_in_table = r * result.axis_direction;
-  if (!(axis_in_table.z() > std::cos(std::numbers::pi / 180))) {
+  if (!(axis_in_table.z() > std::cos(kDegree))) {
     return refused(PositioningStatus::inconsistent,
                    "the table's axis is more than a degree from X cross Y, or the table turned the other way");
   }

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <numeric>
 
 #include "abbe/geometry/angle_units.h"
+#include "abbe/identify/distributions.h"
 
 namespace abbe {
 namespace {
@@ -233,40 +233,6 @@ std::vector<OutlierCluster> outlier_clusters(const Problem& problem, const std::
 std::string cluster_text(const OutlierCluster& cluster) {
   return fmt::format("{} of the {} readings {} are outliers, {} of the {} others", cluster.outliers, cluster.readings,
                      cluster.where, cluster.outliers_elsewhere, cluster.readings_elsewhere);
-}
-
-double hypergeometric_exceedance(std::size_t all, std::size_t marked, std::size_t drawn, std::size_t marked_drawn) {
-  const std::size_t least = drawn + marked > all ? drawn + marked - all : 0, most = std::min(drawn, marked);
-  if (marked_drawn <= least) return 1;
-  if (marked_drawn > most) return 0;
-  const auto log_choose = [](std::size_t n, std::size_t k) {
-    return std::lgamma(static_cast<double>(n) + 1) - std::lgamma(static_cast<double>(k) + 1) -
-           std::lgamma(static_cast<double>(n - k) + 1);
-  };
-  const auto log_term = [&](std::size_t k) {
-    return log_choose(marked, k) + log_choose(all - marked, drawn - k) - log_choose(all, drawn);
-  };
-  // The terms rise to the mode and fall beyond it: the smaller side is summed, away from the mode.
-  const double mode =
-      (static_cast<double>(drawn) + 1) * (static_cast<double>(marked) + 1) / (static_cast<double>(all) + 2);
-  const bool upper = static_cast<double>(marked_drawn) > mode;
-  double sum = 0;
-  double term = std::exp(log_term(upper ? marked_drawn : marked_drawn - 1));
-  for (std::size_t k = upper ? marked_drawn : marked_drawn - 1;;) {
-    sum += term;
-    if (k == (upper ? most : least) || term < 1e-17 * sum) break;
-    // Ratio of neighbouring terms.
-    const double n = static_cast<double>(k), m = static_cast<double>(marked), d = static_cast<double>(drawn),
-                 rest = static_cast<double>(all) - m - d;
-    if (upper) {
-      term *= (m - n) * (d - n) / ((n + 1) * (rest + n + 1));
-      ++k;
-    } else {
-      term *= n * (rest + n) / ((m - n + 1) * (d - n + 1));
-      --k;
-    }
-  }
-  return std::clamp(upper ? sum : 1 - sum, 0.0, 1.0);
 }
 
 }  // namespace abbe

@@ -59,21 +59,6 @@ PlacedReadings placed_readings(std::size_t poses, std::uint64_t seed) {
   return placed;
 }
 
-TEST(OutlierClusters, HypergeometricExceedance) {
-  // Of 10 with 4 marked, 5 are drawn: (C(4,3) C(6,2) + C(4,4) C(6,1)) / C(10,5).
-  EXPECT_NEAR(hypergeometric_exceedance(10, 4, 5, 3), 66.0 / 252, 1e-14);
-  EXPECT_NEAR(hypergeometric_exceedance(10, 4, 5, 1), 1 - 6.0 / 252, 1e-14);
-  EXPECT_EQ(hypergeometric_exceedance(10, 4, 5, 0), 1);
-  EXPECT_EQ(hypergeometric_exceedance(10, 4, 5, 5), 0);
-  // All draws beyond what is not marked are marked.
-  EXPECT_EQ(hypergeometric_exceedance(10, 8, 5, 3), 1);
-  EXPECT_NEAR(hypergeometric_exceedance(1000, 4, 4, 4) * 41417124750, 1, 1e-9);
-  for (std::size_t k = 1; k < 50; ++k) {
-    const double down = hypergeometric_exceedance(400, 60, 130, k), up = hypergeometric_exceedance(400, 60, 130, k + 1);
-    EXPECT_LE(up, down) << k;
-  }
-}
-
 TEST(OutlierClusters, OutliersAnywhereAreNone) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const PlacedReadings placed = placed_readings(150, seed);

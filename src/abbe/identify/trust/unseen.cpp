@@ -9,6 +9,7 @@
 #include "abbe/identify/measurements_together.h"
 #include "abbe/identify/normal_equations.h"
 #include "abbe/identify/parameter_words.h"
+#include "abbe/machine/axis_unit.h"
 
 namespace abbe {
 namespace {
@@ -187,7 +188,7 @@ class Adviser {
         "{}{} {}: standard uncertainty of {} {:.3g} {}", advice.parameters.size() > 1 ? "a combination of " : "",
         names(parameters_, advice.parameters),
         weak.by_prior ? "is not seen by the readings and rests on prior knowledge alone" : "is seen only weakly",
-        first.name, (first.is_angle ? 1e6 : 1e3) * size, first.is_angle ? "urad" : "um");
+        first.name, micro_per_unit(first.is_angle) * size, micro_unit(first.is_angle));
     found.push_back(std::move(weak));
   }
 

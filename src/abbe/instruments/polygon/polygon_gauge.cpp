@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "abbe/geometry/angle_units.h"
@@ -19,7 +18,6 @@ using Face = PolygonGaugeSetup::Face;
 using Mount = PolygonGaugeSetup::Mount;
 using Step = PolygonGaugeSetup::Step;
 
-constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr const char* kSix[] = {"tilt_x", "tilt_y", "turn", "x", "y", "z"};
 
 /// Name of a component that several steps have in common.
@@ -173,7 +171,7 @@ std::size_t PolygonGauge::item_at(const Machine& machine, std::size_t target, st
   // A few minutes of arc are the range of an autocollimator; what is beyond a tenth of a face is another position.
   if (miss > 0.1 * step) {
     refuse(fmt::format("the nearest face looks {:.3g} deg aside of the sensors, expected a face every {:.6g} deg",
-                       miss * kDegrees, step * kDegrees));
+                       miss / kDegree, step / kDegree));
   }
   for (const PolygonReading reading : setup_.steps[target % steps()].measured) {
     const PolygonSensor& sensor = setup_.bench.sensor(reading);

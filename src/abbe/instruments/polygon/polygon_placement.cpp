@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "abbe/geometry/angle_units.h"
+
 namespace abbe {
 namespace {
 
@@ -40,8 +42,7 @@ void place_polygon(const Machine& machine, const PolygonPlacement& placement, Po
   const double along = z.dot(placement.top.normalized());
   if (std::abs(along) < kAlong) {
     throw std::invalid_argument(fmt::format("the top looks {:.3g} deg aside of the line of {}",
-                                            std::acos(std::min(std::abs(along), 1.0)) * 180 / std::numbers::pi,
-                                            axis.name));
+                                            std::acos(std::min(std::abs(along), 1.0)) / kDegree, axis.name));
   }
   if (along < 0) z = -z;
   Eigen::Vector3d x = placement.toward_x.normalized();

@@ -11,7 +11,7 @@ const char* const kSides[] = {"positive approach", "negative approach"};
 /// From inside units to those drawn.
 struct Scale {
   double position = 1, deviation = 1e3;
-  explicit Scale(bool rotary) : position(rotary ? 1 / kDegree : 1), deviation(rotary ? 3600 / kDegree : 1e3) {}
+  explicit Scale(bool rotary) : position(rotary ? 1 / kDegree : 1), deviation(rotary ? 1 / kArcsec : 1e3) {}
 };
 
 std::vector<PlotPoint> means(const PositioningEvaluation& evaluation, std::size_t side, const Scale& scale) {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <numeric>
 
+#include "abbe/geometry/angle_units.h"
 #include "abbe/geometry/surface/mesh_refinement.h"
 #include "abbe/geometry/surface/mesh_thinning.h"
 #include "abbe/verify/evaluations/statistics.h"
@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kCrease = 30 * std::numbers::pi / 180;
+constexpr double kCrease = 30 * kDegree;
 
 SurfaceReadings counted_readings(std::span<const SurfacePoint> closest, const SurfaceDeviation& deviation) {
   SurfaceReadings readings;

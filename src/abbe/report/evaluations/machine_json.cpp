@@ -14,6 +14,17 @@ double for_drawing(double value) {
   return std::isfinite(digits) && digits > 0 ? std::round(value * digits) / digits : value;
 }
 
+nlohmann::ordered_json axis_json(const Axis& axis) {
+  nlohmann::ordered_json json;
+  json["name"] = axis.name;
+  json["kind"] = axis.kind == AxisKind::rotary ? "rotary" : "linear";
+  json["side"] = axis.side == ChainSide::workpiece ? "workpiece" : "tool";
+  json["primed"] = axis.primed;
+  json["direction"] = vector_json(axis.direction);
+  json["point_mm"] = vector_json(axis.point);
+  return json;
+}
+
 nlohmann::ordered_json report_machine(const Machine& machine) {
   nlohmann::ordered_json json;
   json["name"] = machine.name;
@@ -25,18 +36,11 @@ nlohmann::ordered_json report_machine(const Machine& machine) {
   json["workpiece_origin_mm"] = vector_json(machine.bed_from_workpiece.translation);
   json["axes"] = nlohmann::ordered_json::array();
   for (const Axis& axis : machine.axes) {
-    const bool rotary = axis.kind == AxisKind::rotary;
-    nlohmann::ordered_json entry;
-    entry["name"] = axis.name;
-    entry["kind"] = rotary ? "rotary" : "linear";
-    entry["side"] = axis.side == ChainSide::workpiece ? "workpiece" : "tool";
-    entry["primed"] = axis.primed;
-    entry["direction"] = vector_json(axis.direction);
-    entry["point_mm"] = vector_json(axis.point);
+    nlohmann::ordered_json entry = axis_json(axis);
     const double unit = position_unit(axis);
     entry[std::string("travel_min_") + position_suffix(axis)] = axis.travel_min / unit;
     entry[std::string("travel_max_") + position_suffix(axis)] = axis.travel_max / unit;
-    if (rotary) entry["endless"] = axis.endless;
+    if (axis.kind == AxisKind::rotary) entry["endless"] = axis.endless;
     json["axes"].push_back(entry);
   }
   return json;

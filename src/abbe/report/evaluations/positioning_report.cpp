@@ -15,7 +15,7 @@ namespace {
 
 /// um or arcsec, without the digits that the conversion makes up.
 double shown_deviation(double value, bool rotary) {
-  return std::round(value * (rotary ? 3600 / kDegree : 1e3) * 1e9) / 1e9;
+  return std::round(value * (rotary ? 1 / kArcsec : 1e3) * 1e9) / 1e9;
 }
 
 double rounded_position(double value, bool rotary) {

@@ -6,7 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
-#include <numbers>
+
+#include "abbe/machine/axis_unit.h"
 
 namespace abbe {
 namespace {
@@ -49,9 +50,8 @@ nlohmann::json path_data(const Machine& machine, const PathPicture& path, std::s
   json["axes"] = nlohmann::json::array();
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const Axis& axis = machine.axes[i];
-    const bool rotary = axis.kind == AxisKind::rotary;
-    const double unit = rotary ? 180 / std::numbers::pi : 1;
-    const std::string key = axis.name + (rotary ? "_deg" : "_mm");
+    const double unit = 1 / position_unit(axis);
+    const std::string key = axis.name + "_" + position_suffix(axis);
     json["axes"].push_back(key);
     json["commands"][key] = column([&](const DrawnMove& move) { return unit * move.command[i]; });
     if (!axis.endless) json["travel"][key] = {drawn(unit * axis.travel_min), drawn(unit * axis.travel_max)};

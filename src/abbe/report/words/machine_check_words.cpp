@@ -9,6 +9,7 @@
 #include "abbe/machine/axis_unit.h"
 #include "abbe/machine/drawing.h"
 #include "abbe/machine/machine_check.h"
+#include "abbe/report/evaluations/machine_json.h"
 
 namespace abbe {
 namespace {
@@ -52,14 +53,7 @@ nlohmann::ordered_json machine_check_json(const Machine& machine) {
   json["chain"] = machine.chain();
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const Axis& axis = machine.axes[i];
-    const bool rotary = axis.kind == AxisKind::rotary;
-    nlohmann::ordered_json entry;
-    entry["name"] = axis.name;
-    entry["kind"] = rotary ? "rotary" : "linear";
-    entry["side"] = axis.side == ChainSide::workpiece ? "workpiece" : "tool";
-    entry["primed"] = axis.primed;
-    entry["direction"] = {axis.direction.x(), axis.direction.y(), axis.direction.z()};
-    entry["point_mm"] = {axis.point.x(), axis.point.y(), axis.point.z()};
+    nlohmann::ordered_json entry = axis_json(axis);
     entry["endless"] = axis.endless;
     if (!axis.endless) {
       const double unit = position_unit(axis);
