@@ -26,4 +26,7 @@ void add_cross_products(const double* a, std::size_t a_count, std::size_t a_stri
                         std::size_t b_count, std::size_t b_stride, std::size_t length, double* sums,
                         std::size_t sums_stride);
 
+/// Name of the vector instructions that these functions use on this processor: "AVX2", "NEON".
+const char* vector_instructions();
+
 }  // namespace abbe

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -10,6 +11,16 @@
 #include "abbe/identify/robust_loss.h"
 
 namespace abbe {
+
+/// One iteration, for the convergence history.
+struct IterationRecord {
+  double cost = 0;      ///< half the sum of squares (or of losses)
+  double damping = 0;   ///< Levenberg-Marquardt parameter, relative; 0 for a chord iteration
+  double step = 0;      ///< |D dx| / |D x|
+  double gradient = 0;  ///< largest cosine between residuals and a column
+  bool accepted = false;
+  bool chord = false;  ///< factor kept from an earlier iteration
+};
 
 enum class IdentifyStatus {
   not_run,
@@ -32,17 +43,9 @@ struct SolverOptions {
   double least_damping = 0;      ///< above 0: directions may be open without a gauge, and the rank is not judged
   bool chord_iterations = true;  ///< keep the factor while it still lowers the gradient well
   int threads = 0;               ///< 0: all; the result does not depend on it
-  std::stop_token stop{};        ///< looked at in every iteration: solve() then throws Stopped
-};
-
-/// One iteration, for the convergence history.
-struct IterationRecord {
-  double cost = 0;      ///< half the sum of squares (or of losses)
-  double damping = 0;   ///< Levenberg-Marquardt parameter, relative; 0 for a chord iteration
-  double step = 0;      ///< |D dx| / |D x|
-  double gradient = 0;  ///< largest cosine between residuals and a column
-  bool accepted = false;
-  bool chord = false;  ///< factor kept from an earlier iteration
+  std::stop_token stop{};        ///< looked at before every piece of a sum: solve() then throws Stopped
+  Summation summation{};         ///< who sums the readings; empty: this process. The result does not depend on it
+  std::function<void(const IterationRecord&)> progress{};  ///< called after every iteration
 };
 
 /// x = particular + directions * y for all y: the solutions of the gauge's equations C x = d.

@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 #include "abbe/identify/problem.h"
 #include "abbe/identify/robust_loss.h"
+#include "abbe/identify/sums/sum_of_readings.h"
 
 namespace abbe {
 
@@ -35,15 +37,18 @@ struct ResidualBlock {
 
 /// Streams over the readings in blocks of at most Observations::kBlockSize; J is never stored.
 ///
-/// Blocks are gathered into pieces whose number depends on the readings only; every piece has its own sums, which are
-/// added in order. The result is therefore the same, bit by bit, for every number of threads.
+/// Blocks are gathered into pieces (divide_readings()); every piece has its own sums, which are added in order. The
+/// result is therefore the same, bit by bit, for every number of threads, and for every number of processes.
 class ReadingStream {
  public:
-  /// @param threads  0: all
-  ReadingStream(const Problem& problem, int threads);
+  /// @param threads    0: all
+  /// @param summation  empty: this process sums all pieces
+  /// @param stop       looked at before every piece
+  ReadingStream(const Problem& problem, int threads, Summation summation = {}, std::stop_token stop = {});
   ~ReadingStream();
 
   /// Sums at `estimates`; leaves the observations there.
+  /// @throws SumError if what the summation gives is refused; Stopped if that was asked for; so do the two below
   NormalEquations sums(const Eigen::VectorXd& estimates, const Loss& loss, Wanted wanted) const;
 
   /// Norms of all readings at `estimates`, in order of observations and readings; not used: negative.
@@ -52,15 +57,29 @@ class ReadingStream {
   /// Factor R, [p, p] upper triangular, of the orthogonal factorisation of J with priors and weights at `estimates`.
   Eigen::MatrixXd orthogonal_factor(const Eigen::VectorXd& estimates, const Loss& loss) const;
 
-  /// Calls work(piece, block) for all blocks of a piece in order; pieces run in parallel.
+  /// Values of all pieces of poses at `estimates`, see SumKind::poses. All observations are WeighedObservations.
+  /// @param covariance  [p, p] of the estimates
+  std::vector<std::vector<double>> pose_sums(const Eigen::VectorXd& estimates, const Eigen::MatrixXd& covariance) const;
+
+  /// Values of some pieces at the present point of the observations, see SumKind; in this process.
+  /// @param covariance  [p * p], only for SumKind::poses
+  /// @throws Stopped
+  std::vector<std::vector<double>> sum_pieces(SumKind kind, const Loss& loss, const std::vector<double>& covariance,
+                                              PieceRange range, const SumOptions& options) const;
+
+  /// Calls work(piece, block) for all blocks of a piece in order; pieces run in parallel. In this process.
   void for_each(bool jacobian, const Loss& loss,
                 const std::function<void(std::size_t piece, const ResidualBlock& block, double cost)>& work) const;
   std::size_t piece_count() const;
+  /// Where the columns of some observations stand among the estimates.
+  const std::vector<std::size_t>& columns_of(std::size_t observations) const;
   std::size_t parameter_count() const;
   std::size_t residual_count() const;  ///< used ones, priors not counted
 
  private:
   struct Implementation;
+  std::vector<std::vector<double>> all_pieces(const Eigen::VectorXd& estimates, SumKind kind, const Loss& loss,
+                                              const std::vector<double>& covariance) const;
   std::unique_ptr<Implementation> implementation_;
 };
 

@@ -85,6 +85,17 @@ std::size_t estimated_count(const Problem& problem);
 /// Present values: from Problem::errors and Observations::unknown_values(); mm or rad.
 Eigen::VectorXd present_values(const Problem& problem);
 
+/// A point at which readings are evaluated: all values, estimated or not.
+struct ReadingPoint {
+  std::vector<double> machine;              ///< of ErrorSet::parameters(), mm or rad
+  std::vector<std::vector<double>> setups;  ///< per observations: of Observations::unknowns(), mm or rad
+  bool operator==(const ReadingPoint&) const = default;
+};
+
+/// The point of these estimates; the rest as in the problem.
+ReadingPoint reading_point(const Problem& problem, const Eigen::VectorXd& estimates);
+void set_observations(const Problem& problem, const ReadingPoint& point);
+
 /// Sets all observations to these estimates (the rest as in the problem). Does not change problem.errors.
 void set_observations(const Problem& problem, const Eigen::VectorXd& estimates);
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
 
 #include "abbe/identify/identify.h"
 #include "abbe/identify/weighed_observations.h"
@@ -26,11 +25,10 @@ struct RestrictedLikelihood {
 };
 
 /// Streams over the poses; no matrix of the size of the readings is formed.
-/// @param problem         with the observations as stated, at the estimates
-/// @param poses           of each of the observations
-/// @param identification  of the problem weighted with `variance`
-RestrictedLikelihood restricted_likelihood(const Problem& problem, std::span<const PoseGroups* const> poses,
-                                           const Identification& identification, const ReadingVariance& variance,
-                                           int threads = 0);
+/// @param problem         what the identification solved, at the estimates: all observations are WeighedObservations
+///                        with the same variances
+/// @param solver          threads, summation and stop
+RestrictedLikelihood restricted_likelihood(const Problem& problem, const Identification& identification,
+                                           const SolverOptions& solver = {});
 
 }  // namespace abbe

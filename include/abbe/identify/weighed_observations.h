@@ -11,6 +11,16 @@ namespace abbe {
 struct ReadingVariance {
   double factor = 1;  ///< variance factor: multiplies the stated covariance of every reading
   double pose = 0;    ///< mm^2, of each coordinate of a displacement common to all readings at one pose
+  bool operator==(const ReadingVariance&) const = default;
+};
+
+/// Variances, and the point at which the derivatives by the common displacement are taken that belong to them.
+struct WeighingPoint {
+  ReadingVariance variance;
+  bool is_known = false;        ///< the point; it counts for nothing without pose variance
+  std::vector<double> machine;  ///< of ErrorSet::parameters(), mm or rad
+  std::vector<double> setup;    ///< of Observations::unknowns(), mm or rad
+  bool operator==(const WeighingPoint&) const = default;
 };
 
 /// Other observations, weighted with the covariance factor S + pose Z Z' of all readings at one pose.
@@ -31,7 +41,13 @@ class WeighedObservations : public Observations {
   /// Sets the variances, and z at the present point.
   /// @param variance  factor > 0, pose >= 0
   void weigh(const ReadingVariance& variance);
+  /// The same after a move to that point, if it is known.
+  void weigh_at(const WeighingPoint& at);
+  /// What weigh() was given last, and where; known if set_parameters() was called before.
+  const WeighingPoint& weights() const { return weights_; }
   const PoseGroups& poses() const { return poses_; }
+  /// The observations as stated.
+  const std::shared_ptr<Observations>& stated() const { return observations_; }
 
   std::string name() const override { return observations_->name(); }
   std::size_t reading_count() const override { return observations_->reading_count(); }
@@ -41,9 +57,7 @@ class WeighedObservations : public Observations {
   std::vector<double> unknown_values() const override { return observations_->unknown_values(); }
   std::vector<double> positions(std::size_t reading) const override { return observations_->positions(reading); }
   std::vector<double> deviation(std::size_t reading) const override { return observations_->deviation(reading); }
-  void set_parameters(std::span<const double> machine, std::span<const double> setup) override {
-    observations_->set_parameters(machine, setup);
-  }
+  void set_parameters(std::span<const double> machine, std::span<const double> setup) override;
   void evaluate(std::size_t first, std::size_t count, std::span<const std::size_t> machine_parameters,
                 std::span<const std::size_t> setup_parameters, double* residuals, double* jacobian,
                 std::size_t stride) const override;
@@ -51,7 +65,9 @@ class WeighedObservations : public Observations {
  private:
   std::shared_ptr<Observations> observations_;
   PoseGroups poses_;
-  ReadingVariance variance_;
+  bool point_is_known_ = false;
+  std::vector<double> machine_, setup_;  // the present point
+  WeighingPoint weights_;
   std::vector<Eigen::Matrix3d> taken_;  ///< per group: U diag(...) U'
 };
 

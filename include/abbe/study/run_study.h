@@ -60,6 +60,9 @@ struct RunOptions {
   /// Called at the beginning of every step and during it, one call at a time but from any thread: done of total.
   std::function<void(StudyStep step, std::size_t done, std::size_t total)> progress{};
   std::stop_token stop{};  ///< looked at during every step
+  /// Who sums the readings for the identification; empty: this process. Trials of orders, whose models are others, and
+  /// everything after the identification are computed in this process.
+  Summation summation{};
 };
 
 /// Reads or simulates the readings of a study, identifies, validates at poses that were not used, judges whether the

@@ -96,6 +96,8 @@ void add_cross_products_here(const double* a, std::size_t a_count, std::size_t a
   }
 }
 
+const char* vector_instructions_here() { return hwy::TargetName(HWY_TARGET); }
+
 }  // namespace HWY_NAMESPACE
 }  // namespace abbe
 HWY_AFTER_NAMESPACE();
@@ -105,6 +107,7 @@ namespace abbe {
 
 HWY_EXPORT(add_self_products_here);
 HWY_EXPORT(add_cross_products_here);
+HWY_EXPORT(vector_instructions_here);
 
 void add_self_products(const double* a, std::size_t count, std::size_t stride, std::size_t length, double* sums,
                        std::size_t sums_stride) {
@@ -116,6 +119,8 @@ void add_cross_products(const double* a, std::size_t a_count, std::size_t a_stri
                         std::size_t sums_stride) {
   HWY_DYNAMIC_DISPATCH(add_cross_products_here)(a, a_count, a_stride, b, b_count, b_stride, length, sums, sums_stride);
 }
+
+const char* vector_instructions() { return HWY_DYNAMIC_DISPATCH(vector_instructions_here)(); }
 
 }  // namespace abbe
 #endif

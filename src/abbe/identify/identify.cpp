@@ -57,7 +57,7 @@ class Run {
       : problem_(problem),
         options_(options),
         solver_(options.solver),
-        stream_(problem, options.solver.threads),
+        stream_(problem, options.solver.threads, options.solver.summation, options.solver.stop),
         start_(present_values(problem)) {}
 
   Identification run() {

@@ -60,6 +60,11 @@ class Minimiser {
   }
 
  private:
+  void keep(const IterationRecord& record, SolverResult& result) const {
+    result.history.push_back(record);
+    if (options_.progress) options_.progress(record);
+  }
+
   void take_normal(const Eigen::MatrixXd& normal) {
     normal_ = normal;
     reduced_ = space_ ? Eigen::MatrixXd(space_->directions.transpose() * (normal * space_->directions)) : normal;
@@ -131,7 +136,7 @@ class Minimiser {
       record.cost = sums_.cost;
       record.gradient = residual_norm > 0 ? gradient.cwiseAbs().maxCoeff() / residual_norm : 0;
       const auto finish = [&] {
-        result.history.push_back(record);
+        keep(record, result);
         result.status = IdentifyStatus::converged;
       };
       if (record.gradient <= options_.gradient && is_stationary(gradient)) return finish();
@@ -169,7 +174,7 @@ class Minimiser {
           continue;
         }
         if (record.step <= options_.step && factor_damping_ > 1e-2) {
-          result.history.push_back(record);
+          keep(record, result);
           break;
         }
       }
@@ -181,7 +186,7 @@ class Minimiser {
       NormalEquations next = stream_.sums(trial, loss_, expect_chord ? Wanted::gradient : Wanted::normal);
       const double ratio = next.finite && predicted > 0 ? (sums_.cost - next.cost) / predicted : -1;
       record.accepted = ratio > 0;
-      result.history.push_back(record);
+      keep(record, result);
       if (next.finite && predicted <= kCostResolution * sums_.cost) {
         // The cost no longer resolves the step; the gradient does. Go on while it falls.
         const Eigen::VectorXd free =
@@ -279,7 +284,7 @@ const char* status_text(IdentifyStatus status) {
 
 SolverResult solve(const Problem& problem, const Eigen::VectorXd& start, const ConstrainedSpace* space,
                    const Loss& loss, const SolverOptions& options) {
-  const ReadingStream stream(problem, options.threads);
+  const ReadingStream stream(problem, options.threads, options.summation, options.stop);
   return solve(stream, start, space, loss, options, nullptr);
 }
 

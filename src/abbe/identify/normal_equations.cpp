@@ -2,44 +2,59 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <mutex>
+#include <utility>
 
 #include "abbe/geometry/cross_products.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/parallel_blocks.h"
+#include "abbe/geometry/stopped.h"
+#include "abbe/identify/sums/pose_sums.h"
+#include "abbe/identify/sums/reading_fingerprints.h"
+#include "abbe/identify/sums/sum_check.h"
 
 namespace abbe {
 namespace {
 
 using Index = Eigen::Index;
-// More pieces than this cost more memory and reduction than they gain in balance.
-constexpr std::size_t kMostPieces = 48;
-
-struct Piece {
-  std::size_t observations = 0;
-  std::size_t first = 0;  // reading
-  std::size_t last = 0;   // one past the last reading
-};
 
 struct Buffer {
   std::vector<double> values;
   double* aligned = nullptr;
 };
 
+/// Takes more rows into a factor, which has no more rows than columns.
+void append_to_factor(Eigen::MatrixXd& factor, const Eigen::MatrixXd& rows) {
+  const Index p = factor.cols();
+  Eigen::MatrixXd stacked(factor.rows() + rows.rows(), p);
+  stacked << factor, rows;
+  if (stacked.rows() <= p) {
+    factor = std::move(stacked);
+    return;
+  }
+  factor = Qr(stacked).upper(p);
+}
+
 }  // namespace
 
 struct ReadingStream::Implementation {
+  using Work = std::function<void(std::size_t piece, const ResidualBlock& block, double cost)>;
+
   const Problem& problem;
   int threads;
+  Summation summation;
+  std::stop_token stop;
   std::size_t parameters = 0;
-  std::vector<Piece> pieces;
-  std::vector<std::vector<std::size_t>> columns;  // per observations: where its columns stand among the estimates
+  std::vector<ReadingPiece> pieces;
+  std::vector<std::vector<std::size_t>> columns_of;  // per observations: where its columns stand among the estimates
   std::size_t buffer_size = 0;
   std::mutex mutex;
   std::vector<std::unique_ptr<Buffer>> idle;
+  ReadingPoint reference;                   // only with a summation
+  std::vector<std::uint64_t> fingerprints;  // [pieces] there
 
-  Implementation(const Problem& p, int t) : problem(p), threads(t) {}
+  Implementation(const Problem& p, int t, Summation s, std::stop_token k)
+      : problem(p), threads(t), summation(std::move(s)), stop(std::move(k)) {}
 
   std::unique_ptr<Buffer> take() {
     {
@@ -61,48 +76,14 @@ struct ReadingStream::Implementation {
     const std::lock_guard lock(mutex);
     idle.push_back(std::move(buffer));
   }
-};
 
-ReadingStream::ReadingStream(const Problem& problem, int threads)
-    : implementation_(std::make_unique<Implementation>(problem, threads)) {
-  Implementation& self = *implementation_;
-  self.parameters = estimated_count(problem);
-  std::size_t blocks = 0;
-  for (const SelectedObservations& selected : problem.observations)
-    blocks += (selected.observations->reading_count() + Observations::kBlockSize - 1) / Observations::kBlockSize;
-  const std::size_t readings_per_piece =
-      Observations::kBlockSize * std::max<std::size_t>(1, (blocks + kMostPieces - 1) / kMostPieces);
-  std::size_t next = problem.machine_parameters.size();
-  for (std::size_t o = 0; o < problem.observations.size(); ++o) {
-    const SelectedObservations& selected = problem.observations[o];
-    const std::size_t count = selected.observations->reading_count();
-    for (std::size_t first = 0; first < count; first += readings_per_piece)
-      self.pieces.push_back({o, first, std::min(count, first + readings_per_piece)});
-    std::vector<std::size_t> columns;
-    for (std::size_t i = 0; i < problem.machine_parameters.size(); ++i) columns.push_back(i);
-    for (std::size_t i = 0; i < selected.unknowns.size(); ++i) columns.push_back(next++);
-    const std::size_t length =
-        padded(Observations::kBlockSize * static_cast<std::size_t>(selected.observations->rows()), kLengthMultiple);
-    self.buffer_size = std::max(self.buffer_size, length * (padded(columns.size(), kColumnMultiple) + kColumnMultiple));
-    self.columns.push_back(std::move(columns));
-  }
-}
-
-ReadingStream::~ReadingStream() = default;
-std::size_t ReadingStream::piece_count() const { return implementation_->pieces.size(); }
-std::size_t ReadingStream::parameter_count() const { return implementation_->parameters; }
-std::size_t ReadingStream::residual_count() const { return used_residual_count(implementation_->problem); }
-
-void ReadingStream::for_each(bool jacobian, const Loss& loss,
-                             const std::function<void(std::size_t, const ResidualBlock&, double)>& work) const {
-  Implementation& self = *implementation_;
-  const auto run_piece = [&](std::size_t index) {
-    const Piece& piece = self.pieces[index];
-    const SelectedObservations& selected = self.problem.observations[piece.observations];
-    const std::vector<std::size_t>& columns = self.columns[piece.observations];
+  void run_piece(std::size_t index, bool jacobian, const Loss& loss, const Work& work) {
+    const ReadingPiece& piece = pieces[index];
+    const SelectedObservations& selected = problem.observations[piece.observations];
+    const std::vector<std::size_t>& columns = columns_of[piece.observations];
     const std::size_t rows = static_cast<std::size_t>(selected.observations->rows());
     const std::size_t residual_column = padded(columns.size(), kColumnMultiple);
-    std::unique_ptr<Buffer> buffer = self.take();
+    std::unique_ptr<Buffer> buffer = take();
     double* values = buffer->aligned;
     std::vector<double> weight_root(Observations::kBlockSize);
     for (std::size_t first = piece.first; first < piece.last; first += Observations::kBlockSize) {
@@ -112,7 +93,7 @@ void ReadingStream::for_each(bool jacobian, const Loss& loss,
       const std::size_t length = rows * count;
       const std::size_t stride = padded(length, kLengthMultiple);
       double* residuals = values + residual_column * stride;
-      selected.observations->evaluate(first, count, self.problem.machine_parameters, selected.unknowns, residuals,
+      selected.observations->evaluate(first, count, problem.machine_parameters, selected.unknowns, residuals,
                                       jacobian ? values : nullptr, stride);
       double cost = 0;
       bool weighted = false;
@@ -155,51 +136,234 @@ void ReadingStream::for_each(bool jacobian, const Loss& loss,
             &columns},
            cost);
     }
-    self.give_back(std::move(buffer));
-  };
-  for_each_block(self.pieces.size(), self.threads, run_piece);
+    give_back(std::move(buffer));
+  }
+
+  /// Cost, gradient and normal equations of one piece.
+  std::vector<double> products_of_piece(std::size_t index, SumKind kind, const Loss& loss) {
+    const std::size_t c = columns_of[pieces[index].observations].size();
+    const std::size_t residual_column = padded(c, kColumnMultiple), size = residual_column + kColumnMultiple;
+    double total = 0;
+    std::vector<double> products;
+    run_piece(index, kind != SumKind::cost, loss, [&](std::size_t, const ResidualBlock& block, double cost) {
+      total += cost;
+      if (kind == SumKind::cost) return;
+      if (products.empty()) products.assign(size * (kind == SumKind::normal ? size : kColumnMultiple), 0.0);
+      if (kind == SumKind::normal)
+        add_self_products(block.jacobian, size, block.stride, block.stride, products.data(), size);
+      else
+        add_cross_products(block.jacobian, residual_column, block.stride, block.residuals, kColumnMultiple,
+                           block.stride, block.stride, products.data(), size);
+    });
+    std::vector<double> values = {total};
+    if (products.empty()) return values;
+    values.reserve(1 + c + (kind == SumKind::normal ? c * (c + 1) / 2 : 0));
+    for (std::size_t i = 0; i < c; ++i)
+      values.push_back(kind == SumKind::normal ? products[residual_column + i * size] : products[i]);
+    if (kind == SumKind::normal)
+      for (std::size_t i = 0; i < c; ++i)
+        values.insert(values.end(), products.data() + i + i * size, products.data() + c + i * size);
+    return values;
+  }
+
+  std::vector<double> norms_of_piece(std::size_t index) {
+    const ReadingPiece& piece = pieces[index];
+    const std::vector<std::uint8_t>& use = problem.observations[piece.observations].use;
+    std::vector<double> norms(piece.last - piece.first, -1.0);
+    run_piece(index, false, Loss{}, [&](std::size_t, const ResidualBlock& block, double) {
+      for (std::size_t k = 0; k < block.count; ++k) {
+        if (!use.empty() && !use[block.first + k]) continue;
+        double square = 0;
+        for (std::size_t r = 0; r < static_cast<std::size_t>(block.rows); ++r) {
+          const double residual = block.residuals[r * block.count + k];
+          square += residual * residual;
+        }
+        norms[block.first - piece.first + k] = std::sqrt(square);
+      }
+    });
+    return norms;
+  }
+
+  std::vector<double> factor_of_piece(std::size_t index, const Loss& loss) {
+    const Index p = static_cast<Index>(parameters);
+    Eigen::MatrixXd factor(0, p);
+    run_piece(index, true, loss, [&](std::size_t, const ResidualBlock& block, double) {
+      const Index length = static_cast<Index>(block.count) * block.rows;
+      Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(length, p);
+      for (std::size_t c = 0; c < block.estimates->size(); ++c)
+        rows.col(static_cast<Index>((*block.estimates)[c])) =
+            Eigen::Map<const Eigen::VectorXd>(block.jacobian + c * block.stride, length);
+      append_to_factor(factor, rows);
+    });
+    return {factor.data(), factor.data() + factor.size()};
+  }
+
+  void take_fingerprints_of_readings() {
+    const Problem stated = as_stated(problem);
+    std::vector<std::vector<double>> setups;
+    for (const SelectedObservations& selected : stated.observations)
+      setups.push_back(selected.observations->unknown_values());
+    reference = reference_point(stated);
+    set_observations(stated, reference);
+    fingerprints.resize(pieces.size());
+    take_fingerprints(stated, pieces, {0, pieces.size()}, threads, fingerprints);
+    set_observations(problem, ReadingPoint{problem.errors.parameters(), setups});
+  }
+
+  /// Pieces of readings, or for sums over poses pieces of these.
+  std::vector<ReadingPiece> pieces_for(SumKind kind) const {
+    return kind == SumKind::poses ? divide_poses(weighed_observations(problem)) : pieces;
+  }
+
+  std::function<std::vector<double>(std::size_t index)> sum_of_poses(const std::vector<double>& covariance) const {
+    const Index p = static_cast<Index>(parameters);
+    const Eigen::Map<const Eigen::MatrixXd> whole(covariance.data(), p, p);
+    std::vector<Eigen::MatrixXd> parts;  // per observations
+    for (const std::vector<std::size_t>& own : columns_of) {
+      const std::vector<Index> at(own.begin(), own.end());
+      parts.emplace_back(whole(at, at));
+    }
+    const Problem stated = as_stated(problem);
+    const std::vector<const WeighedObservations*> weighed = weighed_observations(problem);
+    return [parts, stated, weighed, all = divide_poses(weighed)](std::size_t index) {
+      const std::size_t o = all[index].observations;
+      return sum_poses(stated.observations[o], stated.machine_parameters, weighed[o]->poses(), all[index], parts[o],
+                       weighed[o]->weights().variance);
+    };
+  }
+
+  SumRequest request(const ReadingPoint& point, SumKind kind, const Loss& loss,
+                     const std::vector<double>& covariance) const {
+    SumRequest result;
+    result.kind = kind;
+    result.pieces = pieces_for(kind).size();
+    result.covariance = covariance;
+    result.loss = loss;
+    result.point = point;
+    result.machine_parameters = problem.machine_parameters;
+    result.reference = reference;
+    for (const SelectedObservations& selected : problem.observations) {
+      SetupSelection setup{selected.unknowns, selected.use, false, {}};
+      const auto weighed = std::dynamic_pointer_cast<const WeighedObservations>(selected.observations);
+      if (weighed && (kind == SumKind::poses || !(weighed->weights().variance == ReadingVariance{}))) {
+        setup.weighed = true;
+        setup.weights = weighed->weights();
+        const bool counts = kind == SumKind::poses || setup.weights.variance.pose > 0;
+        if (counts && !setup.weights.is_known)
+          throw SumError("the point at which the weights of " + weighed->name() + " were taken is not known");
+        if (!counts) setup.weights = {setup.weights.variance, false, {}, {}};
+      }
+      result.setups.push_back(std::move(setup));
+    }
+    return result;
+  }
+};
+
+ReadingStream::ReadingStream(const Problem& problem, int threads, Summation summation, std::stop_token stop)
+    : implementation_(std::make_unique<Implementation>(problem, threads, std::move(summation), std::move(stop))) {
+  Implementation& self = *implementation_;
+  self.parameters = estimated_count(problem);
+  self.pieces = divide_readings(problem);
+  std::size_t next = problem.machine_parameters.size();
+  for (std::size_t o = 0; o < problem.observations.size(); ++o) {
+    const SelectedObservations& selected = problem.observations[o];
+    std::vector<std::size_t> columns;
+    for (std::size_t i = 0; i < problem.machine_parameters.size(); ++i) columns.push_back(i);
+    for (std::size_t i = 0; i < selected.unknowns.size(); ++i) columns.push_back(next++);
+    const std::size_t length =
+        padded(Observations::kBlockSize * static_cast<std::size_t>(selected.observations->rows()), kLengthMultiple);
+    self.buffer_size = std::max(self.buffer_size, length * (padded(columns.size(), kColumnMultiple) + kColumnMultiple));
+    self.columns_of.push_back(std::move(columns));
+  }
+  if (self.summation) self.take_fingerprints_of_readings();
+}
+
+ReadingStream::~ReadingStream() = default;
+std::size_t ReadingStream::piece_count() const { return implementation_->pieces.size(); }
+const std::vector<std::size_t>& ReadingStream::columns_of(std::size_t observations) const {
+  return implementation_->columns_of[observations];
+}
+std::size_t ReadingStream::parameter_count() const { return implementation_->parameters; }
+std::size_t ReadingStream::residual_count() const { return used_residual_count(implementation_->problem); }
+
+void ReadingStream::for_each(bool jacobian, const Loss& loss,
+                             const std::function<void(std::size_t, const ResidualBlock&, double)>& work) const {
+  Implementation& self = *implementation_;
+  for_each_block(self.pieces.size(), self.threads,
+                 [&](std::size_t index) { self.run_piece(index, jacobian, loss, work); });
+}
+
+std::vector<std::vector<double>> ReadingStream::sum_pieces(SumKind kind, const Loss& loss,
+                                                           const std::vector<double>& covariance, PieceRange range,
+                                                           const SumOptions& options) const {
+  Implementation& self = *implementation_;
+  std::function<std::vector<double>(std::size_t)> poses;
+  if (kind == SumKind::poses) poses = self.sum_of_poses(covariance);
+  std::vector<std::vector<double>> values(range.count());
+  std::mutex progress;
+  std::size_t done = 0;
+  for_each_block(range.count(), options.threads, [&](std::size_t i) {
+    stop_if_asked(options.stop);
+    const std::size_t index = range.first + i;
+    if (kind == SumKind::poses)
+      values[i] = poses(index);
+    else if (kind == SumKind::norms)
+      values[i] = self.norms_of_piece(index);
+    else if (kind == SumKind::factor)
+      values[i] = self.factor_of_piece(index, loss);
+    else
+      values[i] = self.products_of_piece(index, kind, loss);
+    if (!options.progress) return;
+    const std::lock_guard lock(progress);
+    options.progress(++done, range.count());
+  });
+  return values;
+}
+
+std::vector<std::vector<double>> ReadingStream::all_pieces(const Eigen::VectorXd& estimates, SumKind kind,
+                                                           const Loss& loss,
+                                                           const std::vector<double>& covariance) const {
+  Implementation& self = *implementation_;
+  const ReadingPoint point = reading_point(self.problem, estimates);
+  if (!self.summation) {
+    set_observations(self.problem, point);
+    return sum_pieces(kind, loss, covariance, {0, self.pieces_for(kind).size()}, {self.threads, self.stop, {}});
+  }
+  stop_if_asked(self.stop);
+  const SumRequest request = self.request(point, kind, loss, covariance);
+  SumOfReadings sum = self.summation(request, self.stop);
+  const std::vector<ReadingPiece> pieces = self.pieces_for(kind);
+  check_sum(sum, request, self.problem, pieces,
+            kind == SumKind::poses ? fingerprints_of_poses(pieces, self.pieces, self.fingerprints) : self.fingerprints);
+  set_observations(self.problem, point);
+  return std::move(sum.values);
+}
+
+std::vector<std::vector<double>> ReadingStream::pose_sums(const Eigen::VectorXd& estimates,
+                                                          const Eigen::MatrixXd& covariance) const {
+  return all_pieces(estimates, SumKind::poses, Loss{}, {covariance.data(), covariance.data() + covariance.size()});
 }
 
 NormalEquations ReadingStream::sums(const Eigen::VectorXd& estimates, const Loss& loss, Wanted wanted) const {
   Implementation& self = *implementation_;
-  set_observations(self.problem, estimates);
-  struct Partial {
-    std::vector<double> products;
-    double cost = 0;
-  };
-  std::vector<Partial> partial(self.pieces.size());
-  for_each(wanted != Wanted::cost, loss, [&](std::size_t piece, const ResidualBlock& block, double cost) {
-    Partial& mine = partial[piece];
-    mine.cost += cost;
-    if (wanted == Wanted::cost) return;
-    const std::size_t columns = padded(block.estimates->size(), kColumnMultiple);
-    const std::size_t size = columns + kColumnMultiple;
-    if (mine.products.empty()) mine.products.assign(size * (wanted == Wanted::normal ? size : kColumnMultiple), 0.0);
-    if (wanted == Wanted::normal)
-      add_self_products(block.jacobian, size, block.stride, block.stride, mine.products.data(), size);
-    else
-      add_cross_products(block.jacobian, columns, block.stride, block.residuals, kColumnMultiple, block.stride,
-                         block.stride, mine.products.data(), size);
-  });
-
+  const SumKind kind = wanted == Wanted::cost       ? SumKind::cost
+                       : wanted == Wanted::gradient ? SumKind::gradient
+                                                    : SumKind::normal;
+  const std::vector<std::vector<double>> values = all_pieces(estimates, kind, loss, {});
   NormalEquations result;
   const Index p = static_cast<Index>(self.parameters);
   if (wanted != Wanted::cost) result.gradient = Eigen::VectorXd::Zero(p);
   if (wanted == Wanted::normal) result.normal = Eigen::MatrixXd::Zero(p, p);
-  for (std::size_t piece = 0; piece < partial.size(); ++piece) {
-    const Partial& one = partial[piece];
-    result.cost += one.cost;
-    if (one.products.empty()) continue;
-    const std::vector<std::size_t>& columns = self.columns[self.pieces[piece].observations];
-    const std::size_t residual_column = padded(columns.size(), kColumnMultiple);
-    const std::size_t size = residual_column + kColumnMultiple;
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const Index ii = static_cast<Index>(columns[i]);
-      result.gradient[ii] += wanted == Wanted::normal ? one.products[residual_column + i * size] : one.products[i];
-      if (wanted == Wanted::normal)
-        for (std::size_t j = i; j < columns.size(); ++j)
-          result.normal(static_cast<Index>(columns[j]), ii) += one.products[j + i * size];
-    }
+  for (std::size_t piece = 0; piece < values.size(); ++piece) {
+    const double* value = values[piece].data();
+    result.cost += *value++;
+    if (values[piece].size() == 1) continue;  // no reading is used
+    const std::vector<std::size_t>& columns = self.columns_of[self.pieces[piece].observations];
+    for (const std::size_t column : columns) result.gradient[static_cast<Index>(column)] += *value++;
+    if (wanted != Wanted::normal) continue;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      for (std::size_t j = i; j < columns.size(); ++j)
+        result.normal(static_cast<Index>(columns[j]), static_cast<Index>(columns[i])) += *value++;
   }
   if (wanted == Wanted::normal) result.normal.triangularView<Eigen::StrictlyUpper>() = result.normal.transpose();
   add_priors(self.problem, estimates, result);
@@ -208,54 +372,25 @@ NormalEquations ReadingStream::sums(const Eigen::VectorXd& estimates, const Loss
 }
 
 std::vector<std::vector<double>> ReadingStream::norms(const Eigen::VectorXd& estimates) const {
-  const Problem& problem = implementation_->problem;
-  set_observations(problem, estimates);
-  std::vector<std::vector<double>> result;
-  for (const SelectedObservations& selected : problem.observations)
-    result.emplace_back(selected.observations->reading_count(), -1.0);
-  for_each(false, Loss{}, [&](std::size_t, const ResidualBlock& block, double) {
-    const std::vector<std::uint8_t>& use = problem.observations[block.observations].use;
-    for (std::size_t k = 0; k < block.count; ++k) {
-      if (!use.empty() && !use[block.first + k]) continue;
-      double square = 0;
-      for (std::size_t r = 0; r < static_cast<std::size_t>(block.rows); ++r) {
-        const double residual = block.residuals[r * block.count + k];
-        square += residual * residual;
-      }
-      result[block.observations][block.first + k] = std::sqrt(square);
-    }
-  });
+  const std::vector<ReadingPiece>& pieces = implementation_->pieces;
+  const std::vector<std::vector<double>> values = all_pieces(estimates, SumKind::norms, Loss{}, {});
+  std::vector<std::vector<double>> result(implementation_->problem.observations.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    std::vector<double>& own = result[pieces[i].observations];
+    own.insert(own.end(), values[i].begin(), values[i].end());
+  }
   return result;
 }
 
 Eigen::MatrixXd ReadingStream::orthogonal_factor(const Eigen::VectorXd& estimates, const Loss& loss) const {
-  Implementation& self = *implementation_;
-  set_observations(self.problem, estimates);
-  const Index p = static_cast<Index>(self.parameters);
-  std::vector<Eigen::MatrixXd> factors(self.pieces.size());
-  const auto append = [p](Eigen::MatrixXd& factor, const Eigen::MatrixXd& rows) {
-    Eigen::MatrixXd stacked(factor.rows() + rows.rows(), p);
-    stacked << factor, rows;
-    if (stacked.rows() <= p) {
-      factor = std::move(stacked);
-      return;
-    }
-    factor = Qr(stacked).upper(p);
-  };
-  for_each(true, loss, [&](std::size_t piece, const ResidualBlock& block, double) {
-    if (factors[piece].cols() == 0) factors[piece].resize(0, p);
-    const Index length = static_cast<Index>(block.count) * block.rows;
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(length, p);
-    for (std::size_t c = 0; c < block.estimates->size(); ++c)
-      rows.col(static_cast<Index>((*block.estimates)[c])) =
-          Eigen::Map<const Eigen::VectorXd>(block.jacobian + c * block.stride, length);
-    append(factors[piece], rows);
-  });
+  const Index p = static_cast<Index>(implementation_->parameters);
   Eigen::MatrixXd result(0, p);
-  for (const Eigen::MatrixXd& factor : factors)
-    if (factor.rows() > 0) append(result, factor);
-  const Eigen::MatrixXd priors = prior_rows(self.problem);
-  if (priors.rows() > 0) append(result, priors);
+  for (const std::vector<double>& piece : all_pieces(estimates, SumKind::factor, loss, {}))
+    if (!piece.empty())
+      append_to_factor(result,
+                       Eigen::Map<const Eigen::MatrixXd>(piece.data(), static_cast<Index>(piece.size()) / p, p));
+  const Eigen::MatrixXd priors = prior_rows(implementation_->problem);
+  if (priors.rows() > 0) append_to_factor(result, priors);
   if (result.rows() < p) {
     Eigen::MatrixXd square = Eigen::MatrixXd::Zero(p, p);
     square.topRows(result.rows()) = result;

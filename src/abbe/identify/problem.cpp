@@ -58,23 +58,31 @@ Eigen::VectorXd present_values(const Problem& problem) {
   return values;
 }
 
-void set_observations(const Problem& problem, const Eigen::VectorXd& estimates) {
-  std::vector<double> machine = problem.errors.parameters();
+ReadingPoint reading_point(const Problem& problem, const Eigen::VectorXd& estimates) {
+  ReadingPoint point;
+  point.machine = problem.errors.parameters();
   Eigen::Index next = 0;
-  for (const std::size_t i : problem.machine_parameters) machine[i] = estimates[next++];
+  for (const std::size_t i : problem.machine_parameters) point.machine[i] = estimates[next++];
   for (const SelectedObservations& selected : problem.observations) {
-    std::vector<double> setup = selected.observations->unknown_values();
-    for (const std::size_t i : selected.unknowns) setup[i] = estimates[next++];
-    selected.observations->set_parameters(machine, setup);
+    point.setups.push_back(selected.observations->unknown_values());
+    for (const std::size_t i : selected.unknowns) point.setups.back()[i] = estimates[next++];
   }
+  return point;
+}
+
+void set_observations(const Problem& problem, const ReadingPoint& point) {
+  for (std::size_t o = 0; o < problem.observations.size(); ++o)
+    problem.observations[o].observations->set_parameters(point.machine, point.setups[o]);
+}
+
+void set_observations(const Problem& problem, const Eigen::VectorXd& estimates) {
+  set_observations(problem, reading_point(problem, estimates));
 }
 
 void keep_estimates(Problem& problem, const Eigen::VectorXd& estimates) {
-  set_observations(problem, estimates);
-  std::vector<double> machine = problem.errors.parameters();
-  Eigen::Index next = 0;
-  for (const std::size_t i : problem.machine_parameters) machine[i] = estimates[next++];
-  problem.errors.set_parameters(machine);
+  const ReadingPoint point = reading_point(problem, estimates);
+  set_observations(problem, point);
+  problem.errors.set_parameters(point.machine);
 }
 
 std::size_t find_estimated(const Problem& problem, const ParameterId& id) {

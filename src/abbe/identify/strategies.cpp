@@ -69,12 +69,13 @@ std::vector<Index> places_in(const Problem& whole, const std::vector<EstimatedPa
 }
 
 // What the readings of a stage say about its parameters: J'J without any gauge.
-JointPrior information_of(const Problem& problem, const Identification& identification, int threads) {
+JointPrior information_of(const Problem& problem, const Identification& identification, const SolverOptions& solver) {
   JointPrior prior;
   for (const EstimatedParameter& parameter : identification.parameters) prior.parameters.push_back(parameter.id);
   prior.value = identification.estimates;
-  prior.information = ReadingStream(problem, threads).sums(identification.estimates, Loss{}, Wanted::normal).normal /
-                      identification.statistics.robust_factor;
+  const ReadingStream stream(problem, solver.threads, solver.summation, solver.stop);
+  prior.information =
+      stream.sums(identification.estimates, Loss{}, Wanted::normal).normal / identification.statistics.robust_factor;
   prior.residual_count = identification.statistics.degrees_of_freedom > 0
                              ? static_cast<double>(identification.statistics.parameter_count)
                              : 0;
@@ -82,8 +83,8 @@ JointPrior information_of(const Problem& problem, const Identification& identifi
 }
 
 // Estimates and covariance of both stages of the independent strategy in the order of the whole problem.
-void merge(const Problem& whole, const Problem& later_problem, const Identification& earlier,
-           const Identification& later, int threads, Identification& total) {
+void carry_forward(const Problem& whole, const Problem& later_problem, const Identification& earlier,
+                   const Identification& later, const SolverOptions& solver, Identification& total) {
   const Index p = static_cast<Index>(estimated_count(whole));
   const std::vector<Index> first = places_in(whole, earlier.parameters), second = places_in(whole, later.parameters);
   total.covariance = Eigen::MatrixXd::Zero(p, p);
@@ -97,7 +98,8 @@ void merge(const Problem& whole, const Problem& later_problem, const Identificat
     mixed.observations[o].use = later_problem.observations[o].use;
   mixed.priors.clear();
   mixed.joint_priors.clear();
-  const Eigen::MatrixXd normal = ReadingStream(mixed, threads).sums(total.estimates, Loss{}, Wanted::normal).normal;
+  const ReadingStream stream(mixed, solver.threads, solver.summation, solver.stop);
+  const Eigen::MatrixXd normal = stream.sums(total.estimates, Loss{}, Wanted::normal).normal;
   const Eigen::MatrixXd cross = normal(second, first);
   const Eigen::MatrixXd unscaled = later.covariance / later.statistics.robust_factor;
   const Eigen::MatrixXd sensitivity = -unscaled * cross;
@@ -197,7 +199,7 @@ StagedIdentification identify_in_stages(Problem& problem, Strategy strategy, con
   for (std::size_t s = 0; s < stages.size(); ++s) {
     Problem staged = problem_of(working, stages[s]);
     if (stages[s].with_joint_prior)
-      staged.joint_priors.push_back(information_of(last, result.stages.back(), options.solver.threads));
+      staged.joint_priors.push_back(information_of(last, result.stages.back(), options.solver));
     result.stages.push_back(identify(staged, options));
     const Identification& now = result.stages.back();
     if (now.estimates.size() == 0) {
@@ -223,7 +225,7 @@ StagedIdentification identify_in_stages(Problem& problem, Strategy strategy, con
     total.gauge.rank_at_solution += later.rank_at_solution;
     total.gauge.constraints.clear();  // they live in the stages' own parameters
     total.gauge.warnings.insert(total.gauge.warnings.end(), later.warnings.begin(), later.warnings.end());
-    merge(problem, last, result.stages.front(), result.stages.back(), options.solver.threads, total);
+    carry_forward(problem, last, result.stages.front(), result.stages.back(), options.solver, total);
     write_uncertainties(problem, total);
   }
   result.total.converged = std::all_of(result.stages.begin(), result.stages.end(),

@@ -59,6 +59,7 @@ class VarianceEstimation {
       selected.observations = result_.observations.back();
       poses_.push_back(&result_.observations.back()->poses());
     }
+    set_observations(result_.problem, start_);
   }
 
   void run() {
@@ -77,8 +78,7 @@ class VarianceEstimation {
       if (!fit()) return;
     }
     for (;;) {
-      const RestrictedLikelihood at =
-          restricted_likelihood(given_, poses_, result_.identification, variance, options_.solver.threads);
+      const RestrictedLikelihood at = restricted_likelihood(result_.problem, result_.identification, options_.solver);
       // At zero the pose noise stays there as long as the likelihood falls from there.
       const bool pose = choice_.pose_noise && (variance.pose > 0 || at.score[1] > 0);
       const Scoring now = scoring(at, choice_.variance_factor, pose);

@@ -69,8 +69,7 @@ TEST(RestrictedLikelihood, agrees_with_whole_matrices_and_its_finite_differences
     problem.observations[0].observations = borrowed(weighed);
     const Identification fit = identify(problem);
     ASSERT_EQ(fit.status, IdentifyStatus::converged);
-    const PoseGroups* const poses = &weighed.poses();
-    const RestrictedLikelihood found = restricted_likelihood(one.problem, {&poses, 1}, fit, variance);
+    const RestrictedLikelihood found = restricted_likelihood(problem, fit);
     one.observations.start({0.5, -0.4, 0.2, 0.9, 0});
 
     const double factor = variance.factor, pose = variance.pose;

@@ -56,8 +56,21 @@ WeighedObservations::WeighedObservations(std::shared_ptr<Observations> observati
   weigh({});
 }
 
+void WeighedObservations::set_parameters(std::span<const double> machine, std::span<const double> setup) {
+  observations_->set_parameters(machine, setup);
+  point_is_known_ = true;
+  machine_.assign(machine.begin(), machine.end());
+  setup_.assign(setup.begin(), setup.end());
+}
+
+void WeighedObservations::weigh_at(const WeighingPoint& at) {
+  if (at.is_known) set_parameters(at.machine, at.setup);
+  weigh(at.variance);
+  weights_ = at;
+}
+
 void WeighedObservations::weigh(const ReadingVariance& variance) {
-  variance_ = variance;
+  weights_ = {variance, point_is_known_, machine_, setup_};
   poses_.update();
   taken_.assign(poses_.groups().size(), Eigen::Matrix3d::Zero());
   for (std::size_t g = 0; g < taken_.size(); ++g) {
@@ -80,7 +93,7 @@ void WeighedObservations::evaluate(std::size_t first, std::size_t count,
   observations_->evaluate(first, count, machine_parameters, setup_parameters, residuals, jacobian, stride);
   const std::size_t rows = poses_.rows();
   const std::size_t columns = jacobian != nullptr ? machine_parameters.size() + setup_parameters.size() : 0;
-  if (variance_.pose > 0) {
+  if (weights_.variance.pose > 0) {
     ReadingsOutside& outside = readings_outside();
     outside.readings.clear();
     const auto inside = [&](std::size_t reading) { return reading >= first && reading < first + count; };
@@ -124,8 +137,8 @@ void WeighedObservations::evaluate(std::size_t first, std::size_t count,
         weigh_column(jacobian + c * stride, outside.jacobian.data() + c * rows * out_count, group, taken_[g]);
     }
   }
-  if (variance_.factor == 1) return;
-  const double scale = 1 / std::sqrt(variance_.factor);
+  if (weights_.variance.factor == 1) return;
+  const double scale = 1 / std::sqrt(weights_.variance.factor);
   for (std::size_t i = 0; i < rows * count; ++i) residuals[i] *= scale;
   for (std::size_t c = 0; c < columns; ++c)
     for (std::size_t i = 0; i < rows * count; ++i) jacobian[c * stride + i] *= scale;

@@ -38,7 +38,7 @@ StudyResult run_study(const Study& study, const RunOptions& options) {
   };
   result.campaign = gather_readings(study, begin(StudyStep::gather));
   if (!study.identification) return result;
-  identify_study(study, result, begin(StudyStep::identify), options.stop);
+  identify_study(study, result, begin(StudyStep::identify), options.stop, options.summation);
   if (!result.usable()) {
     judge_trust(study, result);
     return result;

@@ -33,10 +33,14 @@ void append_length(const Observations& observations, std::size_t reading, std::v
   if (square >= 0) lengths.push_back(std::sqrt(square));
 }
 
-void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress,
-                    const std::stop_token& stop) {
+void prepare_study(const Study& study, StudyResult& result) {
   find_start_values(study.machine, result.campaign);
   result.model = build_model(study, result.campaign);
+}
+
+void identify_study(const Study& study, StudyResult& result, const ProgressCallback& progress,
+                    const std::stop_token& stop, const Summation& summation) {
+  prepare_study(study, result);
   result.warnings = result.campaign.warnings;
   if (!result.model.impossible.empty()) {
     result.identification.status = IdentifyStatus::rank_deficient;
@@ -57,6 +61,7 @@ void identify_study(const Study& study, StudyResult& result, const ProgressCallb
           "orders: no model of the range could be identified with poses held out; the largest orders are used");
     }
   }
+  options.solver.summation = summation;
   const VarianceComponentChoice variances{.variance_factor = plan.estimate_variance_factor,
                                           .pose_noise = plan.estimate_pose_noise};
   if (variances.any()) {

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "abbe/identify/sums/reading_pieces.h"
+#include "abbe/identify/sums/sum_request.h"
+
+namespace abbe {
+
+/// Sums over a range of pieces of the readings of a problem: a value that can be written, read and merged.
+///
+/// The sums of the pieces stay apart, because the order in which rounded numbers are added changes the last bits: the
+/// identification adds all pieces in their order, whoever has summed them, and so gets the bytes of one process.
+struct SumOfReadings {
+  SumKind kind = SumKind::normal;
+  std::uint64_t point = 0;      ///< point_fingerprint() of the request
+  std::uint64_t selection = 0;  ///< selection_fingerprint() of the request
+  std::string processor;        ///< vector instructions that were used: sums of others differ in the last bits
+  std::size_t pieces = 0;       ///< of the whole problem
+  PieceRange range;
+  std::vector<std::uint64_t> readings;      ///< [range.count()]: of all readings of a piece, used or not
+  std::vector<std::vector<double>> values;  ///< [range.count()]: see SumKind; {0} or nothing: no reading is used
+};
+
+/// Both ranges as one; one of them may be empty.
+/// @param second  begins where the first ends
+/// @throws SumError if it does not, or if the sums are of different requests or processors
+SumOfReadings merge(SumOfReadings first, SumOfReadings second);
+
+/// The sum of all pieces from parts that have come in any order.
+/// @throws SumError if pieces are missing or there twice, or as merge()
+SumOfReadings merge_all(std::vector<SumOfReadings> parts);
+
+/// The sum as bytes, as to_bytes() of a request.
+std::vector<std::byte> to_bytes(const SumOfReadings& sum);
+/// @throws SumError if these are not the bytes of a sum, of another version, cut off or changed
+SumOfReadings sum_from_bytes(std::span<const std::byte> bytes);
+
+/// How pieces are summed in this process.
+struct SumOptions {
+  int threads = 0;         ///< 0: all; the result does not depend on it
+  std::stop_token stop{};  ///< looked at before every piece
+  /// Called after every piece, one call at a time but from any thread: done of total.
+  std::function<void(std::size_t done, std::size_t total)> progress{};
+};
+
+/// Sums pieces of the readings of a problem on request: what a process does that works for an identification in
+/// another.
+///
+///     PieceSummer summer(problem);                       // the same study as that of the identification
+///     while (receive(request_bytes, range)) send(to_bytes(summer.sum(request_from_bytes(request_bytes), range)));
+///
+/// Sums are the same for every number of threads and processes, on processors with the same vector instructions.
+class PieceSummer {
+ public:
+  /// @param problem  its machine, structure of errors, and readings; the selection in it counts for nothing
+  explicit PieceSummer(Problem problem);
+
+  std::size_t piece_count() const { return pieces_.size(); }  ///< of the readings
+
+  /// Moves the observations to the request's point.
+  /// @param range  of SumRequest::pieces
+  /// @throws SumError if the request does not fit the problem; Stopped if that was asked for
+  SumOfReadings sum(const SumRequest& request, PieceRange range, const SumOptions& options = {});
+
+ private:
+  void check(const SumRequest& request) const;
+  void select(const SumRequest& request);
+  const std::vector<std::uint64_t>& fingerprints(const ReadingPoint& reference, PieceRange range, int threads);
+
+  Problem stated_;                                             // observations as given
+  Problem selected_;                                           // as the last request has it
+  std::vector<std::shared_ptr<WeighedObservations>> weighed_;  // per observations, null as long as none was asked for
+  std::vector<ReadingPiece> pieces_;
+  std::uint64_t reference_ = 0;              // of the fingerprints that are known
+  std::vector<std::uint64_t> fingerprints_;  // [pieces]
+  std::vector<std::uint8_t> is_known_;       // [pieces]
+};
+
+/// Gives the sum of all pieces for a request. Whoever writes one decides which process sums which pieces.
+///
+/// It may throw, for instance SumError where a process has ended, or Stopped; the identification ends with that. The
+/// sum is checked before it is used: kind, point, selection, all pieces once, their readings, their sizes.
+using Summation = std::function<SumOfReadings(const SumRequest& request, const std::stop_token& stop)>;
+
+}  // namespace abbe
