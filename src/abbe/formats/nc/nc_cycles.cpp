@@ -12,9 +12,9 @@ namespace {
 constexpr double kPeckClearance_mm = 0.254;
 constexpr std::size_t kMostPecks = 100'000;
 
-bool pecks(NcCode motion) { return motion == 730 || motion == 830; }
-bool taps(NcCode motion) { return motion == 740 || motion == 840; }
-bool dwells(NcCode motion) { return motion == 820 || motion == 860 || motion == 890; }
+bool is_pecking(NcCode motion) { return motion == 730 || motion == 830; }
+bool is_tapping(NcCode motion) { return motion == 740 || motion == 840; }
+bool dwells_at_bottom(NcCode motion) { return motion == 820 || motion == 860 || motion == 890; }
 
 }  // namespace
 
@@ -44,15 +44,16 @@ void NcCycles::take_words(const NcCodedBlock& block, NcCode motion, std::size_t 
   };
   take('r', r_);
   take(kAxisLetters[depth], bottom_);
-  if (dwells(motion)) take('p', dwell_);
+  if (dwells_at_bottom(motion)) take('p', dwell_);
   // Without P that of the cycle before it, as in LinuxCNC 2.9; none in the beginning.
-  if (taps(motion) && block.has('p')) dwell_ = block.value('p');
-  if ((dwells(motion) || taps(motion)) && dwell_ < 0) block.fail(word, "the time of the dwell is negative");
+  if (is_tapping(motion) && block.has('p')) dwell_ = block.value('p');
+  if ((dwells_at_bottom(motion) || is_tapping(motion)) && dwell_ < 0)
+    block.fail(word, "the time of the dwell is negative");
   const int direction = state_.spindle.direction();
-  if (taps(motion) && direction != (motion == 840 ? 3 : 4)) {
+  if (is_tapping(motion) && direction != (motion == 840 ? 3 : 4)) {
     block.fail(word, "the spindle does not turn as this cycle needs it", motion == 840 ? "M3" : "M4");
   }
-  if (pecks(motion)) {
+  if (is_pecking(motion)) {
     take('q', step_);
     if (!(step_ > 0)) block.fail(word, "the step Q is not positive");
   }
@@ -152,13 +153,13 @@ void NcCycles::tap(const NcCodedBlock& block, NcCode motion, const Heights& heig
 }
 
 void NcCycles::drill(const NcCodedBlock& block, NcCode motion, const Heights& heights) {
-  if (taps(motion)) {
+  if (is_tapping(motion)) {
     tap(block, motion, heights);
     return;
   }
-  if (pecks(motion)) peck(block, motion, heights);
+  if (is_pecking(motion)) peck(block, motion, heights);
   straight_to(block, heights, heights.bottom);
-  if (dwells(motion)) writer_.line(fmt::format("G4 P{}", dwell_));
+  if (dwells_at_bottom(motion)) writer_.line(fmt::format("G4 P{}", dwell_));
   if (motion == 860) {
     writer_.line("M5");
     rapid_to(block, heights, heights.clear);

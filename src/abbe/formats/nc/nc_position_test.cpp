@@ -13,9 +13,9 @@ namespace {
 constexpr std::uint32_t kSixWords = 0b111111;
 
 /// Turned about Z by a quarter, its origin at X 10.
-const NcTiltedPlane kPlane({10, 0, 0}, {std::acos(0.0), 0, 0});
+const NcTiltedPlane kTurnedPlane({10, 0, 0}, {std::acos(0.0), 0, 0});
 
-NcPosition at(const NcAxisValues& values) {
+NcPosition position_at(const NcAxisValues& values) {
   NcPosition position(kSixWords);
   for_axes(kSixWords, [&](std::size_t k) { position.begin_at(k, values[k]); });
   return position;
@@ -36,11 +36,11 @@ TEST(NcPosition, WhatIsNotKnownIsNamed) {
 }
 
 TEST(NcPosition, ATiltedPlaneCountsFromItsOrigin) {
-  NcPosition position = at({10, 5, 7, 0, 0, 30});
-  position.set_plane(kPlane);
+  NcPosition position = position_at({10, 5, 7, 0, 0, 30});
+  position.set_plane(kTurnedPlane);
   position.count_from({1, 2, 3, 4, 5, 6});
   EXPECT_EQ(position.zero(), (NcAxisValues{0, 0, 0, 4, 5, 6}));
-  position.enter_plane([&](const Eigen::Vector3d& in_plane) { return kPlane.place(in_plane); });
+  position.enter_plane([&](const Eigen::Vector3d& in_plane) { return kTurnedPlane.place(in_plane); });
   EXPECT_NEAR(position.values()[0], 5, 1e-12);
   EXPECT_NEAR(position.values()[1], 0, 1e-12);
   EXPECT_NEAR(position.values()[2], 7, 1e-12);
@@ -62,10 +62,10 @@ TEST(NcPosition, ATiltedPlaneCountsFromItsOrigin) {
 }
 
 TEST(NcPosition, InAPlaneAllOfXyzAreKnownOrNone) {
-  NcPosition position = at({1, 2, 3});
+  NcPosition position = position_at({1, 2, 3});
   position.forget(0b010);
-  position.set_plane(kPlane);
-  position.enter_plane([&](const Eigen::Vector3d& in_plane) { return kPlane.place(in_plane); });
+  position.set_plane(kTurnedPlane);
+  position.enter_plane([&](const Eigen::Vector3d& in_plane) { return kTurnedPlane.place(in_plane); });
   EXPECT_EQ(position.unknown(), kXyzWords);
 }
 
