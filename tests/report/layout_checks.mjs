@@ -99,7 +99,8 @@ export function layoutFaults() {
   for (const table of document.querySelectorAll('.scroll table')) {
     const sticks = (cell) => cell && getComputedStyle(cell).position === 'sticky' && getComputedStyle(cell).left !== 'auto';
     const row = table.querySelector('tbody tr');
-    if (row && table.getClientRects().length && sticks(table.querySelector('thead th')) !== sticks(row.firstElementChild))
+    const head = table.querySelector('thead th');
+    if (row && head?.getClientRects().length && sticks(head) !== sticks(row.firstElementChild))
       faults.push(`the head and the first cells of ${name(table.caption?.textContent ?? 'a table')} do not stay in view together`);
   }
   // What is divided finer than its numbers are written repeats them.

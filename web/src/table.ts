@@ -58,7 +58,7 @@ export function dataTable(caption: string, columns: string[], rows: Cell[][]): H
   const cell = (row: string[], i: number) => (i === 0 && named ? html('th', {scope: 'row', class: style(i)}, row[i]) : html('td', {class: style(i)}, row[i]));
   const table = (kept: number[], name: string, where: string) => html('table', {class: `data ${where} ${named ? '' : 'unnamed'}`},
     html('caption', {}, name),
-    html('thead', {}, html('tr', {}, ...kept.map((i) => html('th', {scope: 'col', class: isNumber[i] ? 'number' : ''}, withGreekUnit(columns[i]))))),
+    html('thead', {}, html('tr', {}, ...kept.map((i) => html('th', {scope: 'col', class: `${isNumber[i] ? 'number' : ''}${columns[i].length > kLongestName ? ' long-head' : ''}`}, withGreekUnit(columns[i]))))),
     html('tbody', {}, ...written.map((row) => html('tr', {}, ...kept.map((i) => cell(row, i))))));
   const all = columns.map((_, i) => i);
   const groups = columnsOnPaper(columns, written);
