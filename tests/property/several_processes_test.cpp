@@ -119,18 +119,11 @@ Study with_variances() {
   return study;
 }
 
-Study in_stages() {
-  Study study = robust_tracker();
-  study.identification->strategy = Strategy::combined;
-  return study;
-}
-
-INSTANTIATE_TEST_SUITE_P(Example, SeveralProcesses,
-                         testing::Values(Case{"PrismAndRTest",
-                                              [] { return example("trunnion/polygon-and-r-test.study.toml"); }},
-                                         Case{"RobustTracker", robust_tracker},
-                                         Case{"VarianceComponents", with_variances}, Case{"Stages", in_stages}),
-                         [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Example, SeveralProcesses,
+    testing::Values(Case{"PrismAndRTest", [] { return example("trunnion/polygon-and-r-test.study.toml"); }},
+                    Case{"RobustTracker", robust_tracker}, Case{"VarianceComponents", with_variances}),
+    [](const auto& one) { return one.param.name; });
 
 /// Fails if the identification gives a number although one of three processes goes wrong.
 class OneOfThreeProcesses : public testing::Test {

@@ -1,5 +1,34 @@
 #pragma once
 
+// Commands of single poses corrected for the errors of a machine, as `abbe compensate poses` does it:
+//
+//   #include <abbe/formats/files/results_folder.h>
+//   #include <abbe/formats/machine/machine_file.h>
+//   #include <abbe/formats/readings/measurement_file.h>
+//   #include <abbe/study/corrected_commands.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     abbe::CommandsRequest request;
+//     request.machine = abbe::read_machine("examples/machines/trunnion-mill.machine.toml");
+//     request.errors = abbe::read_errors("examples/compensate/trunnion.errors.toml", request.machine);
+//     request.poses = abbe::read_poses("examples/compensate/poses.csv", request.machine);
+//     request.limit_um = 500;
+//     const abbe::CorrectedCommands result = abbe::correct_commands(request);
+//     if (!result.refused.empty()) return 1;
+//     abbe::write_file_atomically("corrected.csv", abbe::corrected_commands_csv(result));
+//     std::printf("%zu poses, %zu of them not reached; largest correction %.1f um\n", result.poses.count(),
+//                 result.not_reached, 1e3 * result.corrected.largest_shift.value);
+//     return 0;  // corrected_commands_text() says more
+//   }
+//
+// It prints:
+//
+//   ?
+//
+// Method and status of a pose: docs/compensation.md.
+
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -11,29 +40,6 @@
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machine.h"
-
-// Commands of single poses corrected for the errors of a machine, as `abbe compensate poses` does it:
-//
-//   #include <abbe/formats/files/results_folder.h>
-//   #include <abbe/formats/machine/machine_file.h>
-//   #include <abbe/formats/readings/measurement_file.h>
-//   #include <abbe/study/corrected_commands.h>
-//
-//   #include <cstdio>
-//
-//   int main(int /*argc*/, char** arguments) {
-//     abbe::CommandsRequest request;
-//     request.machine = abbe::read_machine(arguments[1]);
-//     request.errors = abbe::read_errors(arguments[2], request.machine);
-//     request.poses = abbe::read_poses(arguments[3], request.machine);
-//     request.limit_um = 500;
-//     const abbe::CorrectedCommands result = abbe::correct_commands(request);
-//     if (result.refused.empty()) abbe::write_file_atomically(arguments[4], abbe::corrected_commands_csv(result));
-//     std::fputs(abbe::corrected_commands_text(result).c_str(), stdout);
-//     return result.refused.empty() && result.not_reached == 0 ? 0 : 1;
-//   }
-//
-// Method and status of a pose: docs/compensation.md.
 
 namespace abbe {
 

@@ -1,5 +1,30 @@
 #pragma once
 
+// A shape fitted to points, as `abbe fit` does it:
+//
+//   #include <abbe/study/fitted_points.h>
+//
+//   #include <cstdio>
+//   #include <utility>
+//
+//   int main() {
+//     abbe::ShapeFitRequest request;
+//     request.points = abbe::read_points_to_fit("examples/fit/bore.csv");
+//     request.choice.kind = abbe::ShapeKind::cylinder;
+//     request.choice.method = abbe::FitMethod::minimum_zone;
+//     const abbe::FittedShape fitted = abbe::fit_points(std::move(request));
+//     if (!fitted.is_ok()) return 1;
+//     std::printf("radius %.4f mm, cylindricity %.2f um\n", fitted.fit.shape.radius, 1e3 * fitted.fit.form);
+//     return 0;  // evaluation_text(fitted.report) says more
+//   }
+//
+// It prints:
+//
+//   ?
+//
+// The report as JSON: evaluation_json(); as a page: evaluation_files(). Methods and figures: docs/fits.md.
+// Without a report: fit_shape() and coaxial_circles_fit().
+
 #include <map>
 #include <string>
 #include <vector>
@@ -11,28 +36,6 @@
 #include "abbe/geometry/fits/shapes.h"
 #include "abbe/geometry/surface/point_cloud.h"
 #include "abbe/report/evaluations/evaluation_report.h"
-
-// A shape fitted to points, as `abbe fit` does it:
-//
-//   #include <abbe/report/words/evaluation_text.h>
-//   #include <abbe/study/fitted_points.h>
-//
-//   #include <cstdio>
-//   #include <utility>
-//
-//   int main(int /*argc*/, char** arguments) {
-//     abbe::ShapeFitRequest request;
-//     request.points = abbe::read_points_to_fit(arguments[1]);
-//     request.choice.kind = abbe::ShapeKind::cylinder;
-//     request.choice.method = abbe::FitMethod::minimum_zone;
-//     abbe::FittedShape fitted = abbe::fit_points(std::move(request));
-//     abbe::apply_tolerances({"form_um=20"}, fitted.report);
-//     std::fputs(abbe::evaluation_text(fitted.report).c_str(), stdout);
-//     return fitted.is_ok() && !fitted.report.exceeds_tolerance() ? 0 : 1;
-//   }
-//
-// The report as JSON: evaluation_json(); as a page: evaluation_files(). Methods and figures: docs/fits.md.
-// Without a report: fit_shape() and coaxial_circles_fit().
 
 namespace abbe {
 

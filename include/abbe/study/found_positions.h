@@ -1,5 +1,29 @@
 #pragma once
 
+// Where a scanner and a workpiece stand in a machine, as `abbe position` finds it:
+//
+//   #include <abbe/formats/files/results_folder.h>
+//   #include <abbe/study/found_positions.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     const abbe::PositionsRequest request =
+//         abbe::read_positions_request("examples/laser_engraver/scanner.positioning.toml");
+//     const abbe::FoundPositions found = abbe::find_positions(request);
+//     if (!found.is_ok() || !found.workpiece) return 1;
+//     abbe::write_file_atomically("part.placement.toml", abbe::found_placement_file(found));
+//     const Eigen::Vector3d origin = found.workpiece->placement.table_from_workpiece.translation;
+//     std::printf("origin of the workpiece on the table: %.3f, %.3f, %.3f mm\n", origin.x(), origin.y(), origin.z());
+//     return 0;  // found_positions_text() says more
+//   }
+//
+// It prints:
+//
+//   ?
+//
+// Formats and method: docs/workpiece-position.md.
+
 #include <cstddef>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -13,27 +37,6 @@
 #include "abbe/geometry/stopped.h"
 #include "abbe/identify/linkage/scanner_positioning.h"
 #include "abbe/report/words/positioning_words.h"
-
-// Where a scanner and a workpiece stand in a machine, as `abbe position` finds it:
-//
-//   #include <abbe/formats/files/results_folder.h>
-//   #include <abbe/study/found_positions.h>
-//
-//   #include <cstdio>
-//
-//   int main(int /*argc*/, char** arguments) {
-//     const abbe::PositionsRequest request = abbe::read_positions_request(arguments[1]);
-//     const abbe::FoundPositions found = abbe::find_positions(request);
-//     if (!found.is_ok()) {
-//       std::fputs(found.problem.c_str(), stderr);
-//       return 1;
-//     }
-//     std::fputs(abbe::found_positions_text(found).c_str(), stdout);
-//     if (found.workpiece) abbe::write_file_atomically(arguments[2], abbe::found_placement_file(found));
-//     return 0;
-//   }
-//
-// Formats and method: docs/workpiece-position.md.
 
 namespace abbe {
 

@@ -1,5 +1,33 @@
 #pragma once
 
+// Machine and errors as one file that a controller uses in real time, as `abbe compensate freeze` makes it:
+//
+//   #include <abbe/formats/files/results_folder.h>
+//   #include <abbe/formats/machine/machine_file.h>
+//   #include <abbe/study/frozen_errors.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     abbe::FreezeRequest request;
+//     request.machine = abbe::read_machine("examples/machines/three-axis-mill.machine.toml");
+//     request.errors_file = "examples/compensate/mill.errors.toml";
+//     request.errors = abbe::read_errors(request.errors_file, request.machine);
+//     request.limit_um = 500;
+//     const abbe::FrozenErrors result = abbe::freeze_errors(request);
+//     if (!result.refused.empty()) return 1;
+//     abbe::write_file_atomically("frozen.abbec", result.bytes());
+//     std::printf("largest correction %.1f um, standard uncertainty %.2f um on average\n",
+//                 1e3 * result.frozen.largest_correction, 1e3 * result.frozen.mean_uncertainty);
+//     return 0;  // frozen_errors_text() says more
+//   }
+//
+// It prints:
+//
+//   ?
+//
+// What the file is for and what the figures mean: docs/runtime.md.
+
 #include <Eigen/Core>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -12,28 +40,6 @@
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machine.h"
 #include "abbe/runtime/freeze.h"
-
-// Machine and errors as one file that a controller uses in real time, as `abbe compensate freeze` makes it:
-//
-//   #include <abbe/formats/files/results_folder.h>
-//   #include <abbe/formats/machine/machine_file.h>
-//   #include <abbe/study/frozen_errors.h>
-//
-//   #include <cstdio>
-//
-//   int main(int /*argc*/, char** arguments) {
-//     abbe::FreezeRequest request;
-//     request.machine = abbe::read_machine(arguments[1]);
-//     request.errors_file = arguments[2];
-//     request.errors = abbe::read_errors(request.errors_file, request.machine);
-//     request.limit_um = 500;
-//     const abbe::FrozenErrors frozen = abbe::freeze_errors(request);
-//     if (frozen.refused.empty()) abbe::write_file_atomically(arguments[3], frozen.bytes());
-//     std::fputs(abbe::frozen_errors_text(frozen, {.file = arguments[3]}).c_str(), stdout);
-//     return frozen.refused.empty() ? 0 : 1;
-//   }
-//
-// What the file is for and what the figures mean: docs/runtime.md.
 
 namespace abbe {
 

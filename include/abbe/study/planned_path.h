@@ -1,5 +1,33 @@
 #pragma once
 
+// A curve on the workpiece as commands of a calibrated machine, as `abbe path` plans them:
+//
+//   #include <abbe/formats/files/results_folder.h>
+//   #include <abbe/formats/machine/machine_file.h>
+//   #include <abbe/formats/shapes/curve_file.h>
+//   #include <abbe/study/planned_path.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     abbe::PathRequest request;
+//     request.machine = abbe::read_machine("examples/machines/yin-engraver-u.machine.toml");
+//     request.curve_file = "examples/laser_engraver/table-a4.csv";
+//     request.curve = abbe::read_curve(request.curve_file, request.machine);
+//     request.placement = abbe::read_placement("examples/laser_engraver/part.placement.toml");
+//     const abbe::PlannedPath planned = abbe::plan_path(request);
+//     if (!planned.refused.empty()) return 1;
+//     abbe::write_file_atomically("program.ngc", abbe::planned_path_file(planned, "program.ngc"));
+//     std::printf("%zu moves, %.3f mm at work\n", planned.commands.size(), planned.path.working_length);
+//     return 0;  // planned_path_text() says more
+//   }
+//
+// It prints:
+//
+//   ?
+//
+// Formats and method: docs/tool-path.md.
+
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -13,32 +41,6 @@
 #include "abbe/machine/machine.h"
 #include "abbe/machine/tool_path.h"
 #include "abbe/machine/tool_path_miss.h"
-
-// A curve on the workpiece as commands of a calibrated machine, as `abbe path` plans them:
-//
-//   #include <abbe/formats/files/results_folder.h>
-//   #include <abbe/formats/machine/machine_file.h>
-//   #include <abbe/formats/shapes/curve_file.h>
-//   #include <abbe/study/planned_path.h>
-//
-//   #include <cstdio>
-//
-//   int main(int /*argc*/, char** arguments) {
-//     abbe::PathRequest request;
-//     request.machine = abbe::read_machine(arguments[1]);
-//     request.curve_file = arguments[2];
-//     request.curve = abbe::read_curve(request.curve_file, request.machine);
-//     request.placement = abbe::read_placement(arguments[3]);
-//     const abbe::PlannedPath planned = abbe::plan_path(request);
-//     if (planned.has_path()) {
-//       abbe::write_file_atomically("program.ngc", abbe::planned_path_file(planned, "program.ngc"));
-//       std::fputs(abbe::planned_path_text(planned).c_str(), stdout);
-//     }
-//     std::fputs(planned.refused.c_str(), stderr);
-//     return planned.refused.empty() ? 0 : 1;
-//   }
-//
-// Formats and method: docs/tool-path.md.
 
 namespace abbe {
 

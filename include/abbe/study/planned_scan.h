@@ -1,5 +1,33 @@
 #pragma once
 
+// Paths of a displacement probe over a part, as `abbe scan plan` plans them:
+//
+//   #include <abbe/formats/files/results_folder.h>
+//   #include <abbe/formats/machine/machine_file.h>
+//   #include <abbe/formats/shapes/mesh_file.h>
+//   #include <abbe/study/planned_scan.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     abbe::ScanRequest request;
+//     request.machine = abbe::read_machine("examples/machines/liu-scanner.machine.toml");
+//     request.part_file = "examples/cradle_scanner/pyramid.stl";
+//     request.part = abbe::read_mesh(request.part_file).mesh;
+//     request.scan.along = request.scan.between = 1;  // mm
+//     const abbe::PlannedScan planned = abbe::plan_part_scan(request);
+//     abbe::write_file_atomically("path.csv", abbe::planned_scan_csv(planned));
+//     std::printf("%zu points on %zu faces, %.1f %% of the area\n", planned.plan.points(), planned.plan.faces.size(),
+//                 100 * planned.plan.covered_share());
+//     return 0;  // planned_scan_text() says more
+//   }
+//
+// It prints:
+//
+//   ?
+//
+// Method and figures: docs/scan.md.
+
 #include <cstddef>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -11,29 +39,6 @@
 #include "abbe/geometry/surface/triangle_mesh.h"
 #include "abbe/machine/machine.h"
 #include "abbe/plan/scans/scan_plan.h"
-
-// Paths of a displacement probe over a part, as `abbe scan plan` plans them:
-//
-//   #include <abbe/formats/files/results_folder.h>
-//   #include <abbe/formats/machine/machine_file.h>
-//   #include <abbe/formats/shapes/mesh_file.h>
-//   #include <abbe/study/planned_scan.h>
-//
-//   #include <cstdio>
-//
-//   int main(int /*argc*/, char** arguments) {
-//     abbe::ScanRequest request;
-//     request.machine = abbe::read_machine(arguments[1]);
-//     request.part_file = arguments[2];
-//     request.part = abbe::read_mesh(request.part_file).mesh;
-//     request.scan.range = 0.4;
-//     const abbe::PlannedScan planned = abbe::plan_part_scan(request);
-//     abbe::write_file_atomically(arguments[3], abbe::planned_scan_csv(planned));
-//     std::fputs(abbe::planned_scan_text(planned).c_str(), stdout);
-//     return planned.is_complete() ? 0 : 1;
-//   }
-//
-// Method and figures: docs/scan.md.
 
 namespace abbe {
 

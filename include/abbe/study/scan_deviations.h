@@ -1,5 +1,32 @@
 #pragma once
 
+// How far a scan is from its part, as `abbe deviate` finds it:
+//
+//   #include <abbe/study/scan_deviations.h>
+//
+//   #include <cstdio>
+//
+//   int main() {
+//     abbe::ScanDeviationsRequest request;
+//     request.scan_file = "examples/scan/bracket-scan.csv";
+//     request.part_file = "examples/scan/bracket.stl";
+//     request.transform_file = "examples/scan/bracket-transform.csv";
+//     request.scan = abbe::read_point_cloud(request.scan_file);
+//     request.part = abbe::read_mesh(request.part_file);
+//     request.pose = abbe::read_transform_file(request.transform_file);
+//     request.largest_mm = 0.3;
+//     const abbe::ScanDeviations result = abbe::find_deviations(request);
+//     const abbe::SampleStatistics& sample = result.compared.deviation.all.sample;
+//     std::printf("%zu points count: mean %.1f um, rms %.1f um\n", sample.count, 1e3 * sample.mean, 1e3 * sample.rms);
+//     return 0;  // evaluation_text(result.report) says more
+//   }
+//
+// It prints:
+//
+//   ?
+//
+// The report as JSON: evaluation_json(); as a page: evaluation_files(). Figures: docs/registration.md.
+
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,29 +38,6 @@
 #include "abbe/report/evaluations/evaluation_report.h"
 #include "abbe/verify/parts/scan_comparison.h"
 #include "abbe/verify/parts/surface_deviation.h"
-
-// How far a scan is from its part, as `abbe deviate` finds it:
-//
-//   #include <abbe/report/words/evaluation_text.h>
-//   #include <abbe/study/scan_deviations.h>
-//
-//   #include <cstdio>
-//
-//   int main(int /*argc*/, char** arguments) {
-//     abbe::ScanDeviationsRequest request;
-//     request.scan_file = arguments[1];
-//     request.part_file = arguments[2];
-//     request.transform_file = arguments[3];
-//     request.scan = abbe::read_point_cloud(request.scan_file);
-//     request.part = abbe::read_mesh(request.part_file);
-//     request.pose = abbe::read_transform_file(request.transform_file);
-//     abbe::ScanDeviations result = abbe::find_deviations(request);
-//     abbe::apply_tolerances({"p95_um=60"}, result.report);
-//     std::fputs(abbe::evaluation_text(result.report).c_str(), stdout);
-//     return result.has_points() && !result.report.exceeds_tolerance() ? 0 : 1;
-//   }
-//
-// The report as JSON: evaluation_json(); as a page: evaluation_files(). Figures: docs/registration.md.
 
 namespace abbe {
 

@@ -1,5 +1,30 @@
 #pragma once
 
+// A scan laid on its part, as `abbe register` does it:
+//
+//   #include <abbe/study/scan_registration.h>
+//
+//   #include <cstdio>
+//   #include <utility>
+//
+//   int main() {
+//     abbe::ScanRegistrationRequest request;
+//     request.scan_file = "examples/scan/bracket-scan.csv";
+//     request.part_file = "examples/scan/bracket.stl";
+//     request.scan = abbe::read_point_cloud(request.scan_file);
+//     request.part = abbe::read_mesh(request.part_file);
+//     const abbe::ScanRegistration result = abbe::register_scan(std::move(request));
+//     if (!result.is_ok()) return 1;
+//     std::printf("%td points, scatter %.1f um\n", result.scan.cloud.size(), 1e3 * result.found.fine.scale_mm);
+//     return 0;  // scan_registration_text() says more
+//   }
+//
+// It prints:
+//
+//   ?
+//
+// Method and figures: docs/registration.md.
+
 #include <cstddef>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -15,26 +40,6 @@
 #include "abbe/geometry/stopped.h"
 #include "abbe/geometry/surface/point_cloud.h"
 #include "abbe/verify/parts/scan_comparison.h"
-
-// A scan laid on its part, as `abbe register` does it:
-//
-//   #include <abbe/study/scan_registration.h>
-//
-//   #include <cstdio>
-//   #include <utility>
-//
-//   int main(int /*argc*/, char** arguments) {
-//     abbe::ScanRegistrationRequest request;
-//     request.scan_file = arguments[1];
-//     request.part_file = arguments[2];
-//     request.scan = abbe::read_point_cloud(request.scan_file);
-//     request.part = abbe::read_mesh(request.part_file);
-//     const abbe::ScanRegistration result = abbe::register_scan(std::move(request));
-//     std::fputs(abbe::scan_registration_text(result).c_str(), stdout);
-//     return result.is_ok() ? 0 : 1;
-//   }
-//
-// Method and figures: docs/registration.md.
 
 namespace abbe {
 

@@ -18,6 +18,7 @@ constexpr double kTrackerNoise_mm = 0.005;  // mm
 struct Campaign {
   test::AguadoCase given = test::aguado_case();
   ErrorSet truth;  // location errors added, nothing that the gauge would move
+  TrackerReadings readings;
   std::unique_ptr<TrackerObservations> observations;
   Problem problem;
 
@@ -32,7 +33,6 @@ struct Campaign {
       for (std::size_t k = 0; k < motion.coefficients.size(); ++k)
         if (k >= kept || k == 0) motion.coefficients[k] = 0;
     }
-    TrackerReadings readings;
     readings.reserve(3, poses.size() * 3);
     RandomStream random(seed);
     const ChainPlan plan(given.machine, truth, Body::tool, Body::workpiece);
@@ -135,6 +135,43 @@ TEST(Strategies, independent_identifies_each_kind_of_axis_from_its_own_test) {
     larger = larger || result.total.standard_uncertainties[k] > 1.2 * alone;
   }
   EXPECT_TRUE(larger);
+}
+
+SolverOptions summed_by(PieceSummer& summer) {
+  SolverOptions options;
+  options.summation = [&](const SumRequest& request, const std::stop_token&) {
+    std::vector<SumOfReadings> parts;
+    for (const std::size_t process : {2, 0, 1}) {
+      parts.push_back(summer.sum(request, share_of_pieces(request.pieces, process, 3), {.threads = 1}));
+    }
+    return merge_all(std::move(parts));
+  };
+  return options;
+}
+
+TEST(Strategies, have_the_same_bits_where_their_readings_are_summed_elsewhere) {
+  for (const Strategy strategy : {Strategy::joint, Strategy::independent, Strategy::combined}) {
+    const auto poses = two_tests(strategy != Strategy::independent);
+    Campaign here(poses, 5), there(poses, 5);
+    const Campaign elsewhere(poses, 5);
+    PieceSummer summer(elsewhere.problem);
+    const StagedIdentification a = identify_in_stages(here.problem, strategy);
+    const StagedIdentification b = identify_in_stages(there.problem, strategy, {.solver = summed_by(summer)});
+    EXPECT_EQ(a.total.estimates, b.total.estimates);
+    EXPECT_EQ(a.total.covariance, b.total.covariance);
+    EXPECT_EQ(a.total.message, b.total.message);
+    ASSERT_GT(b.total.covariance.size(), 0);
+  }
+}
+
+TEST(Strategies, refuse_sums_of_a_model_that_differs_only_where_there_are_errors) {
+  Campaign here(two_tests(true), 5), elsewhere(two_tests(true), 5);
+  ErrorSet start = elsewhere.problem.errors;
+  start.motions.back().basis.to *= 1.001;
+  TrackerObservations other(elsewhere.given.machine, start, elsewhere.given.setup, elsewhere.readings);
+  elsewhere.problem.observations[0].observations = borrowed(other);
+  PieceSummer summer(elsewhere.problem);
+  EXPECT_THROW(identify_in_stages(here.problem, Strategy::joint, {.solver = summed_by(summer)}), SumError);
 }
 
 TEST(OrderSelection, stops_at_the_orders_of_the_truth) {

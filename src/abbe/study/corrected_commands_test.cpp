@@ -10,7 +10,6 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/formats/text/message_of.h"
-#include "abbe/study/header_example_for_test.h"
 
 namespace abbe {
 namespace {
@@ -70,12 +69,6 @@ TEST(CorrectedCommandsOfPoses, WhatIsOutOfRangeIsNamedByItsOption) {
   EXPECT_THAT(problem([](CommandsRequest& r) { r.limit_um = -1; }), HasSubstr("--limit-um: -1 is not a limit"));
   EXPECT_THAT(problem([](CommandsRequest& r) { r.largest_turn = 0; }), HasSubstr("--largest-turn-deg: out of range"));
   EXPECT_THAT(problem([](CommandsRequest& r) { r.leave_out_factor = 1001; }), HasSubstr("0 to 1000 standard"));
-}
-
-TEST(CorrectedCommandsOfPoses, TheExampleOfTheHeaderIsTheConsumerThatIsCompiled) {
-  const std::string commented = test::consumer_as_comment("poses.cpp");
-  EXPECT_NE(test::text_of_source("include/abbe/study/corrected_commands.h").find(commented), std::string::npos)
-      << commented;
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/report/words/evaluation_text.h"
-#include "abbe/study/header_example_for_test.h"
 
 namespace abbe {
 namespace {
@@ -131,11 +130,6 @@ TEST(FittedPoints, WhatAShapeDoesNotHaveCannotBeHeld) {
     radius(choice);
   };
   EXPECT_THAT(problem(ShapeKind::circle2, held), HasSubstr("there is none of circle2 with its radius held"));
-}
-
-TEST(FittedPoints, TheExampleOfTheHeaderIsTheConsumerThatIsCompiled) {
-  const std::string commented = test::consumer_as_comment("fit.cpp");
-  EXPECT_NE(test::text_of_source("include/abbe/study/fitted_points.h").find(commented), std::string::npos) << commented;
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 
 #include "abbe/formats/machine/placement_file.h"
 #include "abbe/formats/text/message_of.h"
-#include "abbe/study/header_example_for_test.h"
 
 namespace abbe {
 namespace {
@@ -90,12 +89,6 @@ TEST(FoundPositionsOfScans, WhatHasNoPositionIsSaid) {
   request = bracket_positions();
   request.scan.reset();
   EXPECT_THAT(message_of([&] { find_positions(request); }), HasSubstr("workpiece: its part or its scan is missing"));
-}
-
-TEST(FoundPositionsOfScans, TheExampleOfTheHeaderIsTheConsumerThatIsCompiled) {
-  const std::string commented = test::consumer_as_comment("position.cpp");
-  EXPECT_NE(test::text_of_source("include/abbe/study/found_positions.h").find(commented), std::string::npos)
-      << commented;
 }
 
 }  // namespace

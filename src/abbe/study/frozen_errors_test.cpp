@@ -9,7 +9,6 @@
 
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/message_of.h"
-#include "abbe/study/header_example_for_test.h"
 
 namespace abbe {
 namespace {
@@ -81,11 +80,6 @@ TEST(FrozenErrorsOfARequest, WhatIsOutOfRangeIsNamedByItsOption) {
     r.leave_out_factor = 1;
   });
   EXPECT_THAT(unknown, HasSubstr("trunnion.errors.toml: no standard uncertainties are stated"));
-}
-
-TEST(FrozenErrorsOfARequest, TheExampleOfTheHeaderIsTheConsumerThatIsCompiled) {
-  const std::string commented = test::consumer_as_comment("freeze.cpp");
-  EXPECT_NE(test::text_of_source("include/abbe/study/frozen_errors.h").find(commented), std::string::npos) << commented;
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machine.h"
-#include "abbe/study/header_example_for_test.h"
 
 namespace abbe {
 namespace {
@@ -113,11 +112,6 @@ TEST(PlannedPathOfACurve, WhatCannotBeAnsweredIsNamedByItsOption) {
   EXPECT_THAT(problem(request), HasSubstr("EXX: an error motion, which depends on the position of its axis"));
   const PlannedPath planned = plan_path(engraved_table());
   EXPECT_THAT(message_of([&] { planned_path_file(planned, "a.txt"); }), HasSubstr("a.txt: unknown kind of program"));
-}
-
-TEST(PlannedPathOfACurve, TheExampleOfTheHeaderIsTheConsumerThatIsCompiled) {
-  const std::string commented = test::consumer_as_comment("path.cpp");
-  EXPECT_NE(test::text_of_source("include/abbe/study/planned_path.h").find(commented), std::string::npos) << commented;
 }
 
 }  // namespace

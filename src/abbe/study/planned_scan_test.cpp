@@ -9,7 +9,6 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/shapes/mesh_file.h"
 #include "abbe/formats/text/message_of.h"
-#include "abbe/study/header_example_for_test.h"
 
 namespace abbe {
 namespace {
@@ -60,11 +59,6 @@ TEST(PlannedScanOfAPart, WhatCannotBePlannedIsSaid) {
   request = pyramid_to_scan();
   request.part.triangles.conservativeResize(3, request.part.triangles.cols() - 1);
   EXPECT_THAT(problem(request), HasSubstr("parts/pyramid.stl: "));
-}
-
-TEST(PlannedScanOfAPart, TheExampleOfTheHeaderIsTheConsumerThatIsCompiled) {
-  const std::string commented = test::consumer_as_comment("scan.cpp");
-  EXPECT_NE(test::text_of_source("include/abbe/study/planned_scan.h").find(commented), std::string::npos) << commented;
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/report/evaluations/evaluation_report.h"
-#include "abbe/study/header_example_for_test.h"
 
 namespace abbe {
 namespace {
@@ -84,12 +83,6 @@ TEST(ScanDeviationsOfARequest, WhatCannotBeComparedIsSaid) {
               HasSubstr("bracket.stl: the file states no faces"));
   EXPECT_THAT(problem([](Request& r) { r.scan.cloud = {}; }), HasSubstr("bracket-scan.csv: there is no point"));
   EXPECT_THAT(problem([](Request& r) { r.part.mesh = {}; }), HasSubstr("bracket.stl: there is no triangle"));
-}
-
-TEST(ScanDeviationsOfARequest, TheExampleOfTheHeaderIsTheConsumerThatIsCompiled) {
-  const std::string commented = test::consumer_as_comment("deviate.cpp");
-  EXPECT_NE(test::text_of_source("include/abbe/study/scan_deviations.h").find(commented), std::string::npos)
-      << commented;
 }
 
 }  // namespace

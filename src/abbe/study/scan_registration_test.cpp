@@ -8,7 +8,6 @@
 #include <string>
 
 #include "abbe/formats/text/message_of.h"
-#include "abbe/study/header_example_for_test.h"
 
 namespace abbe {
 namespace {
@@ -81,12 +80,6 @@ TEST(ScanRegistrationOfARequest, NothingIsNotRegistered) {
   empty = scan_and_part("pin");
   empty.part.mesh = {};
   EXPECT_THAT(message_of([&] { register_scan(empty); }), HasSubstr("parts/pin.stl: there is no triangle"));
-}
-
-TEST(ScanRegistrationOfARequest, TheExampleOfTheHeaderIsTheConsumerThatIsCompiled) {
-  const std::string commented = test::consumer_as_comment("register.cpp");
-  EXPECT_NE(test::text_of_source("include/abbe/study/scan_registration.h").find(commented), std::string::npos)
-      << commented;
 }
 
 }  // namespace
