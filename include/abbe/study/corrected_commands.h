@@ -25,7 +25,7 @@
 //
 // It prints:
 //
-//   ?
+//   20 poses, 0 of them not reached; largest correction 81.6 um
 //
 // Method and status of a pose: docs/compensation.md.
 

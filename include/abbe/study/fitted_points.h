@@ -20,7 +20,7 @@
 //
 // It prints:
 //
-//   ?
+//   radius 15.0015 mm, cylindricity 11.56 um
 //
 // The report as JSON: evaluation_json(); as a page: evaluation_files(). Methods and figures: docs/fits.md.
 // Without a report: fit_shape() and coaxial_circles_fit().

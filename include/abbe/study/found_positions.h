@@ -20,7 +20,7 @@
 //
 // It prints:
 //
-//   ?
+//   origin of the workpiece on the table: 74.053, -94.747, -33.590 mm
 //
 // Formats and method: docs/workpiece-position.md.
 

@@ -24,7 +24,7 @@
 //
 // It prints:
 //
-//   ?
+//   largest correction 65.0 um, standard uncertainty 1.10 um on average
 //
 // What the file is for and what the figures mean: docs/runtime.md.
 

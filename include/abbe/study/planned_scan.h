@@ -24,7 +24,7 @@
 //
 // It prints:
 //
-//   ?
+//   673 points on 10 faces, 100.0 % of the area
 //
 // Method and figures: docs/scan.md.
 

@@ -23,7 +23,7 @@
 //
 // It prints:
 //
-//   ?
+//   1793 points count: mean 14.4 um, rms 40.5 um
 //
 // The report as JSON: evaluation_json(); as a page: evaluation_files(). Figures: docs/registration.md.
 
