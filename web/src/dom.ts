@@ -31,6 +31,26 @@ export function svg<K extends keyof SVGElementTagNameMap>(
   return element;
 }
 
+/// Letters of the name of an axis, px, in a wide font.
+const kLetter = 6.4;
+
+/// The name of an axis in one line, or in two of about the same length where there is too little room.
+export function axisLabelLines(text: string, room: number): string[] {
+  if (kLetter * text.length <= room) return [text];
+  const spaces = [...text.matchAll(/ /g)].map((match) => match.index!);
+  if (!spaces.length) return [text];
+  const middle = spaces.reduce((best, at) => (Math.abs(at - text.length / 2) < Math.abs(best - text.length / 2) ? at : best));
+  return [text.slice(0, middle + 1), text.slice(middle + 1)];
+}
+
+/// Those lines, the last one at `y`, all ending at `x`.
+export function axisLabel(lines: string[], x: number, y: number): SVGTextElement {
+  return svg('text', {x, y: y - kLine * (lines.length - 1), class: 'axis-label end'}, ...lines.map((line, i) => svg('tspan', {x, dy: i ? kLine : 0}, line)));
+}
+
+/// From line to line of the name of an axis, px.
+export const kLine = 13;
+
 const redraws: (() => void)[] = [];
 
 /// Drawings are made for a sheet of paper; see print.ts.

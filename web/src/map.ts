@@ -2,7 +2,7 @@
 
 import {cssColour, rampColour} from './colour';
 import {ErrorMap, PoseErrors, splitUnit} from './data';
-import {field, html, responsive, section, svg} from './dom';
+import {axisLabel, axisLabelLines, kLine, field, html, responsive, section, svg} from './dom';
 import {count, number, prose, quantity as withUnit} from './format';
 import {Colour, colours, exaggeration, quantities, range, statisticsTable} from './map_choices';
 import {Camera} from './camera';
@@ -28,7 +28,9 @@ function colourBar(scaling: () => Scaling): {box: HTMLElement; redraw: () => voi
     const {low, high, log, colour} = scaling();
     const inner: [number, number] = [10, width - 10];
     const scale = log ? logScale([low, high], inner, 6) : linearScale([0, high], inner, 6);
-    const root = svg('svg', {viewBox: `0 0 ${width} 44`, width, height: 44, role: 'img',
+    const words = axisLabelLines(colour.legend, width - 20);
+    const height = 44 + kLine * (words.length - 1);
+    const root = svg('svg', {viewBox: `0 0 ${width} ${height}`, width, height, role: 'img',
       'aria-label': `Colour scale, ${colour.legend}, from ${number(log ? low : 0)} to ${number(high)}`});
     // Both are there, the style sheet shows one: paper always gets the light one, as the stills do.
     for (const name of ['light', 'dark']) {
@@ -41,7 +43,7 @@ function colourBar(scaling: () => Scaling): {box: HTMLElement; redraw: () => voi
       const x = scale(tick);
       root.append(svg('line', {x1: x, x2: x, y1: 14, y2: 18, class: 'mark'}), svg('text', {x, y: 29, class: 'tick middle'}, scale.label(tick)));
     }
-    root.append(svg('text', {x: inner[1], y: 42, class: 'axis-label end'}, colour.legend));
+    root.append(axisLabel(words, inner[1], height - 2));
     return root;
   });
   return {box, redraw};

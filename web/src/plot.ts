@@ -1,6 +1,6 @@
 // Plots in two dimensions: one frame, few ticks, units on both axes.
 
-import {svg} from './dom';
+import {axisLabel, axisLabelLines, kLine, svg} from './dom';
 import {linearScale, logScale, Scale} from './scale';
 
 export interface AxisOptions {
@@ -41,7 +41,8 @@ function axisScale(options: AxisOptions, pixels: [number, number], wanted: numbe
 
 export function plot(options: PlotOptions): Plot {
   const {width, height} = options;
-  const bottom = height - (options.compact ? 34 : 40);
+  const words = axisLabelLines(options.x.label, width - 24);
+  const bottom = height - (options.compact ? 34 : 40) - kLine * (words.length - 1);
   const top = 18;
   const y = axisScale(options.y, [bottom, top], Math.max(2, (bottom - top) / 22));
   const yTicks = options.y.ticks ?? y.ticks.map((at) => ({at, label: y.label(at)}));
@@ -83,7 +84,7 @@ export function plot(options: PlotOptions): Plot {
   );
   const layer = svg('g', {'clip-path': `url(#${clip})`});
   root.append(layer);
-  root.append(svg('text', {x: right, y: height - 4, class: 'axis-label end'}, options.x.label));
+  root.append(axisLabel(words, right, height - 4));
   root.append(svg('text', {x: 2, y: 9, class: 'axis-label'}, options.y.label));
   return {root, x, y, layer, area: {left, right, top, bottom}};
 }

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "abbe/report/drawings/svg_drawing.h"
 #include "abbe/report/drawings/svg_plot.h"
@@ -60,7 +61,13 @@ std::string MapPlot::drawn(const Layout& layout) const {
   const double tall = std::max(1.0, std::floor(0.62 * width / static_cast<double>(y_.count)));
   const double height = tall * static_cast<double>(y_.count);
   // Narrow: the name of the second axis is above the panel, that of the values below their scale.
-  const double above = layout.is_narrow ? 40 : 24, below = layout.is_narrow ? kScaleHeight + 2 : kScaleHeight;
+  std::size_t title_lines = 1;
+  const auto lines_of_title = [&](const MapPanel& panel) {
+    return layout.is_narrow ? text_lines(panel.title, layout.width / 1.08, 13) : std::vector<std::string>{panel.title};
+  };
+  for (const MapPanel& panel : panels_) title_lines = std::max(title_lines, lines_of_title(panel).size());
+  const double above = layout.is_narrow ? 24 + 16 * static_cast<double>(title_lines) : 24,
+               below = layout.is_narrow ? kScaleHeight + 2 : kScaleHeight;
   const double title = layout.is_narrow ? draw_narrow_title(nullptr, title_) + 8 : kMapTitle;
   const double panel_height = above + height + kMapLabels + below;
   SvgDrawing drawing(layout.width, title + panel_height * static_cast<double>(rows), title_);
@@ -75,8 +82,11 @@ std::string MapPlot::drawn(const Layout& layout) const {
     const double left = layout.left + static_cast<double>(k % layout.panels_per_row) * (width + kMapGap);
     const double top = title + (above - 4) + static_cast<double>(k / layout.panels_per_row) * panel_height;
     const double bottom = top + height;
-    drawing.text({layout.is_narrow ? 0 : left, top - above + 17}, panel.title, TextAnchor::start, 13, PlotColour::ink,
-                 true);
+    double title_y = top - above + 17;
+    for (const std::string& line : lines_of_title(panel)) {
+      drawing.text({layout.is_narrow ? 0 : left, title_y}, line, TextAnchor::start, 13, PlotColour::ink, true);
+      title_y += 16;
+    }
     double largest = 0;
     bool negative = false;
     for (const double value : panel.values) {

@@ -30,6 +30,17 @@ TEST(MapPlot, EveryPanelHasItsOwnScaleAndEmptyCellsAreNotDrawn) {
   EXPECT_THAT(svg, testing::Not(testing::HasSubstr("nan")));
 }
 
+TEST(MapPlot, InTheNarrowLayoutLongNamesOfPanelsHaveSeveralLinesAboveTheCells) {
+  MapPlot plot("Map", {"X in mm", 0, 1400, 3}, {"Z in mm", 0, 600, 2}, "error in um");
+  plot.add({"compensated: order 4, 4 harmonics and a constant for every axis", {0, 1, 2, 3, 4, 5}});
+  const SvgPicture picture = plot.picture();
+  EXPECT_EQ(picture.wide, plot.svg());
+  EXPECT_EQ(xml_problem(picture.narrow), "");
+  EXPECT_THAT(picture.narrow, testing::HasSubstr("viewBox=\"0 0 320.00 "));
+  EXPECT_THAT(picture.narrow, testing::Not(testing::HasSubstr("harmonics and a constant for every axis<")));
+  EXPECT_THAT(picture.narrow, testing::HasSubstr("for every axis<"));
+}
+
 TEST(MapPlot, AMapOfZerosIsDrawn) {
   MapPlot plot("Zero", {"x", 0, 1, 2}, {"y", 0, 1, 2}, "um");
   plot.add({"", {0, 0, 0, 0}});
