@@ -61,9 +61,11 @@ async function monteCarloOf(page, data, expect) {
     expect(isNumber(ratio) ? Math.abs(Number(cells[i]) - ratio) <= 0.00501 : cells[i] === '\u2013', `${data.parameters.name[i]}: ratio ${cells[i]} for ${ratio}`));
 }
 
+const raised = (power) => [...String(Number(power))].map((d) => (d === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[d])).join('');
 /// A sentence of the data as the page writes it; the parts of the page are tested by themselves.
-const typeset = (text) => text.replace(/(\d) u(m|rad)\b/g, '$1\u202fµ$2').replace(/(\d) x (?=\d)/g, '$1 × ').replace(/(^|[\s(,])-(?=\d)/g, '$1\u2212')
-  .replace(/(\d)\^(\d+)/g, (_, base, power) => base + [...power].map((d) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[d]).join(''))
+const typeset = (text) => text.replace(/(\d) u(m|rad)\b/g, '$1\u202fµ$2').replace(/\bin u(m|rad)\b/g, 'in µ$1')
+  .replace(/(?<![\w.])(\d+(?:\.\d+)?)e([-+]?\d+)(?!\w)/g, (_, mantissa, power) => `${mantissa}\u202f·\u202f10${raised(power)}`).replace(/(\d) x (?=\d)/g, '$1 × ').replace(/(^|[\s(,])-(?=\d)/g, '$1\u2212')
+  .replace(/(\d)\^(\d+)/g, (_, base, power) => base + raised(power))
   .replace(/(?<![\w.])\d{5,}(?=(?:\.\d+)?[\u202f ](?:µm|µrad|mm)\b)/g, (digits) => digits.replace(/\B(?=(\d{3})+$)/g, '\u202f'));
 
 /// Lists and figures of the identification, advice, assumptions, warnings: one entry for each in the data.

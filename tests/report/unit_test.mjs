@@ -40,7 +40,8 @@ const tests = {
   async 'sentences of the data are written with signs and letters that people print'() {
     const {prose} = await load('format');
     assert.equal(prose('mean 10910 um over 9 x 9 x 9 poses, Z -460 to 0 mm, 11^6'), 'mean 10\u202f910\u202fµm over 9 × 9 × 9 poses, Z \u2212460 to 0 mm, 11\u2076');
-    for (const kept of ['ISO 10791-6, seed 87109', 'tables/figure-3.csv', 'EXX[P1] and 1e-5', '0.123456 mm']) assert.equal(prose(kept), kept);
+    assert.equal(prose('shifts in um; 5e-11 um at most'), 'shifts in µm; 5\u202f·\u202f10⁻¹¹\u202fµm at most');
+    for (const kept of ['ISO 10791-6, seed 87109', 'tables/figure-3.csv', 'EXX[P1], file1e5', '0.123456 mm']) assert.equal(prose(kept), kept);
   },
   async 'quantiles of values are linear between order statistics'() {
     const {fromValues} = await load('histogram');

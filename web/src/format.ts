@@ -70,10 +70,12 @@ export function alike(value: number | null | undefined, printed: string): string
 }
 
 /// Text of a producer, who writes without Greek letters and signs, as people print it: 18.3 um becomes 18.3 µm, 9 x 9 becomes 9 × 9,
-/// 11^6 becomes 11⁶, -460 has a minus sign, and lengths and angles of five digits are grouped.
+/// 11^6 becomes 11⁶, 5e-11 becomes 5 · 10⁻¹¹, -460 has a minus sign, and lengths and angles of five digits are grouped.
 export function prose(text: string): string {
   return text
     .replace(/(\d) u(m|rad)\b/g, '$1\u202fµ$2')
+    .replace(/\bin u(m|rad)\b/g, 'in µ$1')
+    .replace(/(?<![\w.])(\d+(?:\.\d+)?)e([-+]?\d+)(?!\w)/g, (_, mantissa, power) => `${mantissa}${kThin}·${kThin}10${superscript(Number(power))}`)
     .replace(/(\d) x (?=\d)/g, '$1 × ')
     .replace(/(^|[\s(,])-(?=\d)/g, `$1${kMinus}`)
     .replace(/(\d)\^(\d+)/g, (_, base, power) => base + superscript(Number(power)))
