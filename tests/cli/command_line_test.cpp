@@ -133,8 +133,8 @@ TEST_F(CommandLine, MachineAndErrorsAsArgumentsAreAnOldFormThatStillWorks) {
   const Form forms[] = {
       {{"check", mill, "--errors", errors}, {"check", "--machine", mill, "--errors", errors}},
       {{"map", mill, errors, "--grid", "X_mm=0"}, {"map", "--grid", "X_mm=0", "--errors", errors, "--machine", mill}},
-      {{"compensate", "table", mill, errors, "--for", "linuxcnc", "--dry-run"},
-       {"compensate", "table", "--machine", mill, "--errors", errors, "--for", "linuxcnc", "--dry-run"}},
+      {{"compensate", "table", three_axes, three_errors, "--for", "linuxcnc", "--dry-run"},
+       {"compensate", "table", "--machine", three_axes, "--errors", three_errors, "--for", "linuxcnc", "--dry-run"}},
       {{"compensate", "freeze", three_axes, three_errors, "--dry-run"},
        {"compensate", "freeze", "--machine", three_axes, "--errors", three_errors, "--dry-run"}},
       {{"compensate", "poses", mill, errors, poses, "--dry-run"},
