@@ -24,9 +24,10 @@ DATA = ["examples", "tests/golden"]
 MAIN_STUDY = "abbe run examples/aguado/aguado.study.toml"
 
 
-TRUNNION = "examples/machines/trunnion-mill.machine.toml examples/compensate/trunnion.errors.toml"
+TRUNNION = ("--machine examples/machines/trunnion-mill.machine.toml "
+            "--errors examples/compensate/trunnion.errors.toml")
 SCANNER = "examples/machines/liu-scanner.machine.toml"
-ENGRAVER = "examples/machines/yin-engraver-u.machine.toml"
+ENGRAVER = "--machine examples/machines/yin-engraver-u.machine.toml"
 BRACKET = "examples/scan/bracket-scan.csv examples/scan/bracket.stl"
 PIN = "examples/scan/pin-scan.csv examples/scan/pin.stl"
 # What the examples of the help texts do not show: JSON, pages, refusals, messages. Lists of commands that share a copy.

@@ -18,6 +18,12 @@ WordValues in_radians(const NcAxisValues& words) {
   return radians;
 }
 
+/// As ProgramMove says it.
+double feed_of(const ProgramMove& move, const NcModes& modes) {
+  if (modes.feed_mode == FeedMode::per_minute && moves_only_rotary_axes(move)) return modes.feed * kDegree;
+  return modes.feed_mode != FeedMode::inverse_time && modes.feed_inches ? modes.feed * kInch : modes.feed;
+}
+
 }  // namespace
 
 NcMoves::NcMoves(NcState& state, NcFlow& flow, NcWriter& writer, const std::string& file,
@@ -60,12 +66,6 @@ void NcMoves::check_feed(const NcCodedBlock& block, const char* what) const {
   }
 }
 
-double NcMoves::feed_of(const ProgramMove& move) const {
-  const NcModes& modes = state_.modes;
-  if (modes.feed_mode == FeedMode::per_minute && moves_only_rotary_axes(move)) return modes.feed * kDegree;
-  return modes.feed_mode != FeedMode::inverse_time && modes.feed_inches ? modes.feed * kInch : modes.feed;
-}
-
 void NcMoves::emit(const NcCodedBlock& block, ProgramMove& move, const NcPlace& target) {
   move.line = block.cursor.line;
   move.coordinates = state_.offsets.tool_centre() ? ProgramCoordinates::tool_centre : ProgramCoordinates::axes;
@@ -88,7 +88,7 @@ void NcMoves::emit(const NcCodedBlock& block, ProgramMove& move, const NcPlace& 
   for (std::size_t k = 0; k < 3; ++k) move.tool_length[k] = state_.offsets.tool()[k];
   if (move.kind != MoveKind::rapid) {
     if (unknown != 0) require_known_words(unknown, block, "a move at work begins there");
-    move.feed = feed_of(move);
+    move.feed = feed_of(move, state_.modes);
   }
   if (move.spindle == SpindleMove::thread || move.spindle == SpindleMove::rigid_tapping) {
     move.feed_mode = FeedMode::per_revolution;

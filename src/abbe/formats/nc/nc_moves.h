@@ -45,7 +45,6 @@ class NcMoves {
 
  private:
   void emit(const NcCodedBlock& block, ProgramMove& move, const NcPlace& target);
-  double feed_of(const ProgramMove& move) const;
   bool words_are_points() const { return state_.offsets.tool_centre() || options_.tool_centre; }
 
   NcState& state_;
