@@ -8,11 +8,6 @@
 
 namespace abbe {
 
-/// Standard uncertainty of predicted quantities: root of the diagonal of P Cov P'.
-/// @param rows        P, [quantities, p]: d(quantity)/d(estimate)
-/// @param covariance  [p, p]
-Eigen::VectorXd predicted_uncertainty(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& covariance);
-
 /// The part of an identification that belongs to the machine's errors, over all of ErrorSet::parameters().
 /// Parameters that were not estimated have variance 0.
 Eigen::MatrixXd machine_covariance(const Identification& identification, std::size_t machine_parameter_count);

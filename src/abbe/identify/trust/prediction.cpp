@@ -17,10 +17,6 @@ constexpr double kBeyondCoverage = 0.0455;  // of normal values: outside two sta
 
 }  // namespace
 
-Eigen::VectorXd predicted_uncertainty(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& covariance) {
-  return (rows * covariance).cwiseProduct(rows).rowwise().sum().cwiseMax(0.0).cwiseSqrt();
-}
-
 Eigen::MatrixXd machine_covariance(const Identification& identification, std::size_t machine_parameter_count) {
   const Index n = static_cast<Index>(machine_parameter_count);
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n, n);
