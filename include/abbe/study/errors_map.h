@@ -24,19 +24,16 @@
 //
 //   729 poses: mean 20.0 um, largest 46.5 um
 
-#include <cstddef>
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/map_file.h"
-#include "abbe/geometry/stopped.h"
 #include "abbe/machine/machine.h"
 #include "abbe/report/evaluations/partial_errors.h"
+#include "abbe/study/job_options.h"
 #include "abbe/verify/error_map.h"
 #include "abbe/verify/left_out_poses.h"
 #include "abbe/verify/volumetric_figures.h"
@@ -69,15 +66,10 @@ struct ErrorsMap {
   LeftOutPoses left_out() const { return {.all = stated.poses.count(), .not_covered = before.statistics.excluded}; }
 };
 
-struct ErrorsMapOptions {
-  /// Called while a map is computed, one call at a time but from any thread: poses done of all.
-  std::function<void(std::size_t done, std::size_t total)> progress{};
-  std::stop_token stop{};  ///< looked at there
-};
-
 /// Maps errors over a grid or at given poses, before and after a correction. Opens no file and prints nothing.
+/// @param options  progress: poses done of all, for every map, one call at a time but from any thread
 /// @throws InputError for a grid of more than 20,000,000 poses; Stopped where that was asked for
-ErrorsMap map_errors(const ErrorsMapRequest& request, const ErrorsMapOptions& options = {});
+ErrorsMap map_errors(const ErrorsMapRequest& request, const JobOptions& options = {});
 
 /// As map files hold it.
 MapData errors_map_data(const ErrorsMap& map);

@@ -24,19 +24,16 @@
 //
 // Formats and method: docs/workpiece-position.md.
 
-#include <cstddef>
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <stop_token>
 #include <string>
 
 #include "abbe/formats/readings/scanner_positioning_file.h"
 #include "abbe/formats/shapes/mesh_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
-#include "abbe/geometry/stopped.h"
 #include "abbe/identify/linkage/scanner_positioning.h"
 #include "abbe/report/words/positioning_words.h"
+#include "abbe/study/job_options.h"
 
 namespace abbe {
 
@@ -61,15 +58,10 @@ struct FoundPositions {
   bool is_ok() const { return problem.empty(); }
 };
 
-struct PositionsOptions {
-  /// Called while a scan is laid on a mesh, by the calling thread: steps done of all.
-  std::function<void(std::size_t done, std::size_t total)> progress{};
-  std::stop_token stop{};  ///< looked at there
-};
-
 /// Finds the position of the scanner and, by it, that of the workpiece. Opens no file and prints nothing.
+/// @param options  progress: steps done of all while a scan is laid on a mesh, by the calling thread
 /// @throws InputError for a workpiece on a mesh without that mesh or its scan; Stopped where that was asked for
-FoundPositions find_positions(const PositionsRequest& request, const PositionsOptions& options = {});
+FoundPositions find_positions(const PositionsRequest& request, const JobOptions& options = {});
 
 /// For people, where all have a position; lines with their ends.
 std::string found_positions_text(const FoundPositions& found);

@@ -28,17 +28,14 @@
 //
 // Method and figures: docs/scan.md.
 
-#include <cstddef>
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
-#include <stop_token>
 #include <string>
 
 #include "abbe/formats/nc/path_program.h"
-#include "abbe/geometry/stopped.h"
 #include "abbe/geometry/surface/triangle_mesh.h"
 #include "abbe/machine/machine.h"
 #include "abbe/plan/scans/scan_plan.h"
+#include "abbe/study/job_options.h"
 
 namespace abbe {
 
@@ -62,16 +59,11 @@ struct PlannedScan {
   bool is_complete() const { return plan.missed_places() == 0 && plan.blocked_links == 0; }
 };
 
-struct PlannedScanOptions {
-  /// Called by the calling thread: faces done of all.
-  std::function<void(std::size_t done, std::size_t total)> progress{};
-  std::stop_token stop{};  ///< looked at there
-};
-
 /// Plans paths over all faces of a part. Opens no file and prints nothing.
+/// @param options  progress: faces done of all, by the calling thread
 /// @throws InputError for a part that encloses no volume, one of which nothing is wanted, and for more than 5,000,000
 ///   points; std::invalid_argument as plan_scan(); Stopped where that was asked for
-PlannedScan plan_part_scan(const ScanRequest& request, const PlannedScanOptions& options = {});
+PlannedScan plan_part_scan(const ScanRequest& request, const JobOptions& options = {});
 
 /// The path as CSV.
 std::string planned_scan_csv(const PlannedScan& planned);

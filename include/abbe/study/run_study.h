@@ -33,6 +33,11 @@
 //   planning.h, plan_text.h             `abbe plan`: which readings to take
 //   verification.h, errors_map.h        `abbe verify`, `abbe map`
 //   corrected_program.h                 `abbe compensate gcode`
+//   corrected_commands.h                `abbe compensate poses`; frozen_errors.h: `abbe compensate freeze`
+//   planned_path.h, planned_scan.h      `abbe path`, `abbe scan plan`
+//   found_positions.h                   `abbe position`
+//   scan_registration.h                 `abbe register`; scan_deviations.h: `abbe deviate`
+//   fitted_points.h                     `abbe fit`
 
 #include <cstddef>
 #include <functional>

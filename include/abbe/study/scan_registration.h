@@ -25,11 +25,8 @@
 //
 // Method and figures: docs/registration.md.
 
-#include <cstddef>
-#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,8 +34,8 @@
 #include "abbe/formats/shapes/mesh_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/geometry/registration/registration.h"
-#include "abbe/geometry/stopped.h"
 #include "abbe/geometry/surface/point_cloud.h"
+#include "abbe/study/job_options.h"
 #include "abbe/verify/parts/scan_comparison.h"
 
 namespace abbe {
@@ -65,15 +62,10 @@ struct ScanRegistration {
   bool is_ok() const { return found.status == RegistrationStatus::ok; }
 };
 
-struct ScanRegistrationOptions {
-  /// Called while it takes long, by the calling thread: steps done of all.
-  std::function<void(std::size_t done, std::size_t total)> progress{};
-  std::stop_token stop{};  ///< looked at there
-};
-
 /// Lays a scan on its part. Opens no file and prints nothing.
+/// @param options  progress: steps done of all, by the calling thread
 /// @throws InputError for a scan without points and a part without triangles; Stopped where that was asked for
-ScanRegistration register_scan(ScanRegistrationRequest request, const ScanRegistrationOptions& options = {});
+ScanRegistration register_scan(ScanRegistrationRequest request, const JobOptions& options = {});
 
 /// The scan in the frame of the part.
 PointCloud registered_scan(const ScanRegistration& result);

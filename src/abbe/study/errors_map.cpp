@@ -33,13 +33,10 @@ StatedPoses poses_of(const ErrorsMapRequest& request) {
 /// Maps of one request, over the same poses in the same way.
 class Mapping {
  public:
-  Mapping(const ErrorsMapRequest& request, const ErrorsMapOptions& options, const PoseList& poses)
+  Mapping(const ErrorsMapRequest& request, const JobOptions& options, const PoseList& poses)
       : machine_(request.machine), poses_(poses) {
     options_.remove_rigid_motion = request.fit_datum;
-    options_.progress = [&options](std::size_t done, std::size_t total) {
-      stop_if_asked(options.stop);
-      if (options.progress) options.progress(done, total);
-    };
+    options_.progress = stoppable_progress(options);
   }
 
   ErrorMap with_uncertainty(const ErrorsFile& file) const {
@@ -67,7 +64,7 @@ std::string orientation_line(const char* name, const SampleStatistics& s) {
 
 }  // namespace
 
-ErrorsMap map_errors(const ErrorsMapRequest& request, const ErrorsMapOptions& options) {
+ErrorsMap map_errors(const ErrorsMapRequest& request, const JobOptions& options) {
   ErrorsMap map;
   map.machine = request.machine;
   map.stated = poses_of(request);

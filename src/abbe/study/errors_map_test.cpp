@@ -68,7 +68,7 @@ TEST(ErrorsMapOfAFile, PosesStandForTheGrid) {
 TEST(ErrorsMapOfAFile, IsStoppedAndRefusedForTooManyPoses) {
   ErrorsMapRequest request = trunnion_errors();
   std::stop_source source;
-  ErrorsMapOptions options;
+  JobOptions options;
   options.stop = source.get_token();
   options.progress = [&](std::size_t done, std::size_t total) {
     EXPECT_LE(done, total);

@@ -22,7 +22,7 @@ PlacedWorkpiece lay_on_features(const WorkpieceScan& workpiece) {
   return result;
 }
 
-PlacedWorkpiece lay_on_mesh(const PositionsRequest& request, const PositionsOptions& options) {
+PlacedWorkpiece lay_on_mesh(const PositionsRequest& request, const JobOptions& options) {
   if (!request.part || !request.scan) {
     throw InputError({.file = request.file, .field = "workpiece"}, "its part or its scan is missing",
                      "the mesh of the part and the points of its scan");
@@ -32,10 +32,7 @@ PlacedWorkpiece lay_on_mesh(const PositionsRequest& request, const PositionsOpti
   RegistrationOptions registration;
   registration.noise_mm = request.scans.workpiece->noise;
   const RegistrationTarget target(request.part->mesh, registration);
-  const Registration found = target.register_scan(request.scan->cloud, [&options](std::size_t done, std::size_t total) {
-    stop_if_asked(options.stop);
-    if (options.progress) options.progress(done, total);
-  });
+  const Registration found = target.register_scan(request.scan->cloud, stoppable_progress(options));
   result.fine = found.fine;
   result.ok = found.status == RegistrationStatus::ok;
   result.status = registration_status_name(found.status);
@@ -55,7 +52,7 @@ PositionsRequest read_positions_request(const std::string& file, const MeshFileO
   return request;
 }
 
-FoundPositions find_positions(const PositionsRequest& request, const PositionsOptions& options) {
+FoundPositions find_positions(const PositionsRequest& request, const JobOptions& options) {
   stop_if_asked(options.stop);
   FoundPositions result;
   result.file = request.file;

@@ -14,7 +14,7 @@
 
 namespace abbe {
 
-PlannedScan plan_part_scan(const ScanRequest& request, const PlannedScanOptions& options) {
+PlannedScan plan_part_scan(const ScanRequest& request, const JobOptions& options) {
   PlannedScan result;
   result.part = closed_part(request.part, request.part_file);
   const double most = wanted_area(result.part, request.scan.wanted) / (request.scan.along * request.scan.between);
@@ -26,10 +26,7 @@ PlannedScan plan_part_scan(const ScanRequest& request, const PlannedScanOptions&
   result.name = file_name(request.part_file);
   result.scan = request.scan;
   ScanPlanOptions with_progress = request.scan;
-  with_progress.progress = [&options](std::size_t done, std::size_t total) {
-    stop_if_asked(options.stop);
-    if (options.progress) options.progress(done, total);
-  };
+  with_progress.progress = stoppable_progress(options);
   stop_if_asked(options.stop);
   result.plan = plan_scan(request.machine, result.part, with_progress);
   if (!(result.plan.area() > 0)) {

@@ -17,7 +17,7 @@
 
 namespace abbe {
 
-ScanRegistration register_scan(ScanRegistrationRequest request, const ScanRegistrationOptions& options) {
+ScanRegistration register_scan(ScanRegistrationRequest request, const JobOptions& options) {
   check_scan_and_part(request.scan, request.scan_file, request.part, request.part_file);
   stop_if_asked(options.stop);
   ScanRegistration result;
@@ -27,10 +27,7 @@ ScanRegistration register_scan(ScanRegistrationRequest request, const ScanRegist
   result.part = std::move(request.part);
   result.threads = request.options.threads;
   const RegistrationTarget target(result.part.mesh, request.options);
-  result.found = target.register_scan(result.scan.cloud, [&options](std::size_t done, std::size_t total) {
-    stop_if_asked(options.stop);
-    if (options.progress) options.progress(done, total);
-  });
+  result.found = target.register_scan(result.scan.cloud, stoppable_progress(options));
   if (request.compare && has_pose(result.found)) {
     result.compared =
         compare_scan(target.surface(), registered_scan(result).points,
