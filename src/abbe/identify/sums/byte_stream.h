@@ -4,11 +4,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <span>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "abbe/identify/sums/sum_request.h"
@@ -99,22 +98,13 @@ class ByteReader {
     bytes_ = bytes.first(bytes.size() - 8);
     Digest digest;
     digest.add_bytes(bytes_);
-    const std::size_t at = at_;
-    at_ = bytes_.size();
-    const std::span<const std::byte> body = bytes_;
-    bytes_ = bytes;
-    const std::uint64_t stated = number();
-    bytes_ = body;
-    at_ = at;
-    if (stated != digest.value()) fail("is damaged: its check sum does not fit");
+    if (number_at(bytes, bytes_.size()) != digest.value()) fail("is damaged: its check sum does not fit");
   }
 
   std::uint64_t number() {
-    need(8);
-    std::uint64_t value = 0;
-    for (std::size_t i = 0; i < 8; ++i) value |= static_cast<std::uint64_t>(bytes_[at_ + i]) << (8 * i);
+    if (bytes_.size() - at_ < 8) fail("is cut off");
     at_ += 8;
-    return value;
+    return number_at(bytes_, at_ - 8);
   }
   double real() { return std::bit_cast<double>(number()); }
   std::string text() {
@@ -155,8 +145,10 @@ class ByteReader {
   [[noreturn]] void fail(const std::string& what) const { throw SumError("this " + format_ + " " + what); }
 
  private:
-  void need(std::size_t count) const {
-    if (bytes_.size() - at_ < count) fail("is cut off");
+  static std::uint64_t number_at(std::span<const std::byte> bytes, std::size_t at) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < 8; ++i) value |= static_cast<std::uint64_t>(bytes[at + i]) << (8 * i);
+    return value;
   }
 
   std::span<const std::byte> bytes_;

@@ -28,7 +28,8 @@ void add_to(PoseSums& total, const PoseSums& part);
 std::vector<const WeighedObservations*> weighed_observations(const Problem& problem);
 
 /// Divides the poses of all observations into pieces, first and last of which are groups of PoseGroups: consecutive
-/// ones, the least number above 64 that makes no more than 48 pieces of all.
+/// ones of one set of observations, the least number from 64 on with which the groups of all make no more than 48
+/// pieces; there may be as many more as there are sets, as in divide_readings().
 std::vector<ReadingPiece> divide_poses(const std::vector<const WeighedObservations*>& observations);
 
 /// Values of a piece, SumKind::poses: PoseSums, then the sum of d/lambda^2 g g' by columns, [c, c].
