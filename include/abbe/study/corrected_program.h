@@ -40,8 +40,7 @@ struct ProgramRequest {
 /// @param write    takes the corrected program piece by piece; it is only good if nothing is refused in the end
 /// @param done     told how many bytes of the program are dealt with and not looked at again
 /// @throws InputError for errors that cannot be corrected on this machine, what the program says that is not
-/// understood,
-///   and tool centre moves for which the machine has no solution
+///   understood, and tool centre moves for which the machine has no solution
 CorrectedProgram correct_program(const ProgramRequest& request, std::string_view program,
                                  const std::function<void(std::string_view text)>& write,
                                  const std::function<void(std::size_t end)>& done);

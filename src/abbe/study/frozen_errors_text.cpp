@@ -62,7 +62,7 @@ std::string frozen_errors_text(const FrozenErrors& result, const FrozenOutput& f
         "{:.2f} um\n",
         1e3 * frozen.mean_uncertainty, 1e3 * frozen.largest_uncertainty, 1e3 * frozen.uncertainty_lattice);
   } else {
-    text += fmt::format("  standard uncertainty of the tool's correction: not stated by the errors file\n");
+    text += "  standard uncertainty of the tool's correction: not stated by the errors file\n";
   }
   if (result.leave_out_factor > 0) text += left_out_text(machine, result.leave_out_factor, result.left_out, "  ");
   text += fmt::format("  iterations of one call: at most {}\n", frozen.worst_iterations);

@@ -31,7 +31,7 @@ SurfaceFaces faces_of_part(const ScanDeviationsRequest& request) {
       break;
   }
   if (request.part.faces == 0) {
-    throw InputError({request.part_file, 0, 0, ""}, "the file states no faces",
+    throw InputError({.file = request.part_file}, "the file states no faces",
                      "a STEP file, or an OBJ file with o, g or usemtl; --faces-deg finds faces by their edges");
   }
   return stated_faces(request.part.mesh, request.part.face_of_triangle, request.part.faces);
