@@ -1,8 +1,6 @@
 #include "abbe/identify/restricted_likelihood.h"
 
-#include <algorithm>
 #include <cassert>
-#include <cmath>
 
 #include "abbe/identify/normal_equations.h"
 #include "abbe/identify/sums/pose_sums.h"

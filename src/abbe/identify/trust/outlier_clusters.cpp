@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
-#include <numeric>
 
 #include "abbe/geometry/angle_units.h"
 #include "abbe/identify/distributions.h"
