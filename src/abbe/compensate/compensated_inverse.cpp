@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "abbe/compensate/program/correction_step.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machine_check.h"
 
 namespace abbe {
@@ -30,7 +31,6 @@ AxisPointers pointers(const std::array<Lanes, kMaxAxes>& lanes) {
   return axes;
 }
 
-constexpr double kTurn = 2 * std::numbers::pi;
 /// rad; turns of axes within it cost no digit that matters, beyond it whole turns are set aside.
 constexpr double kFewTurns = 100;
 

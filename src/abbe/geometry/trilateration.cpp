@@ -41,7 +41,7 @@ struct Frame {
   Vector3d out_of(const Vector3d& own) const { return axes * own + middle; }
 };
 
-struct Candidate {
+struct StationPlace {
   Vector3d position;
   std::vector<double> dead_path;
   double scale =
@@ -73,18 +73,18 @@ class PositionSearch {
     explained_ = std::min(data.points.size(), data.points.size() / 2 + (unknowns + 1) / 2);
   }
 
-  double residual(const Candidate& candidate, std::size_t i) const {
+  double residual(const StationPlace& candidate, std::size_t i) const {
     return data_.lengths[i] + candidate.dead_path[data_.run[i]] - (points_[i] - candidate.position).norm();
   }
 
   /// Dead paths by the median, then the scale of what remains.
-  Candidate judged(const Vector3d& position) const {
-    Candidate result{position, medians(data_, points_, position)};
+  StationPlace judged(const Vector3d& position) const {
+    StationPlace result{position, medians(data_, points_, position)};
     result.scale = scale_of(result);
     return result;
   }
 
-  double scale_of(const Candidate& candidate) const {
+  double scale_of(const StationPlace& candidate) const {
     std::vector<double> sizes;
     for (std::size_t i = 0; i < points_.size(); ++i) sizes.push_back(std::abs(residual(candidate, i)));
     const auto quantile = sizes.begin() + static_cast<std::ptrdiff_t>(explained_ - 1);
@@ -129,7 +129,7 @@ class PositionSearch {
   }
 
   /// Gauss-Newton with Tukey's weights; a step that makes the fit worse is shortened.
-  Candidate refined(Candidate now) const {
+  StationPlace refined(StationPlace now) const {
     std::vector<Index> column(data_.dead_path.size(), -1);
     Index unknowns = 3;
     for (std::size_t r = 0; r < column.size(); ++r) {
@@ -158,7 +158,7 @@ class PositionSearch {
       if (!step.allFinite()) return now;
       bool better = false;
       for (double share = 1; share > 1e-3 && !better; share *= 0.5) {
-        Candidate next = now;
+        StationPlace next = now;
         next.position += share * step.head<3>();
         for (std::size_t r = 0; r < column.size(); ++r) {
           if (column[r] >= 0) next.dead_path[r] += share * step[column[r]];
@@ -241,16 +241,16 @@ Trilateration trilaterate(const TrilaterationData& data, const TrilaterationOpti
     return result;
   }
   const PositionSearch search(data, frame);
-  std::vector<Candidate> candidates;
+  std::vector<StationPlace> candidates;
   for (const Vector3d& position : drawn_positions(data, search, options.draws)) {
     candidates.push_back(search.judged(position));
   }
   if (data.near) candidates.push_back(search.judged(frame.into(*data.near)));
   std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.scale < b.scale; });
   if (candidates.size() > 8) candidates.resize(8);
-  Candidate best;
-  for (const Candidate& candidate : candidates) {
-    const Candidate refined = search.refined(candidate);
+  StationPlace best;
+  for (const StationPlace& candidate : candidates) {
+    const StationPlace refined = search.refined(candidate);
     if (refined.scale < best.scale) best = refined;
   }
   if (!(best.scale < options.tolerance)) {
@@ -258,7 +258,7 @@ Trilateration trilaterate(const TrilaterationData& data, const TrilaterationOpti
     return result;
   }
   result.status = TrilaterationStatus::ok;
-  const Candidate other = search.refined(search.judged(best.position.cwiseProduct(Vector3d(1, 1, -1))));
+  const StationPlace other = search.refined(search.judged(best.position.cwiseProduct(Vector3d(1, 1, -1))));
   const double apart = std::abs(other.position.z() - best.position.z());
   if (other.scale < 1.5 * best.scale + search.floor() && apart > 10 * (best.scale + search.floor())) {
     result.status = TrilaterationStatus::mirrored;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kBits = 10;  ///< of one axis, and of one pass of the sort
 constexpr std::uint32_t kCells = 1u << kBits;
-constexpr std::size_t kBlock = 16384;
+constexpr std::size_t kPointsOfBlock = 16384;
 constexpr std::size_t kSome = 128;  ///< points whose places are computed together, in registers
 
 /// Two empty bits behind each of ten bits.
@@ -70,15 +70,17 @@ void sort_bucket(Entry* entries, std::size_t count, Entry* scratch) {
 
 std::vector<std::uint32_t> hilbert_order(const Eigen::Ref<const Eigen::Matrix3Xd>& points, const Eigen::Vector3d& low,
                                          const Eigen::Vector3d& high, int threads) {
-  const std::size_t count = static_cast<std::size_t>(points.cols()), blocks = (count + kBlock - 1) / kBlock;
+  const std::size_t count = static_cast<std::size_t>(points.cols()),
+                    blocks = (count + kPointsOfBlock - 1) / kPointsOfBlock;
   // One step for all axes, so that cells are cubes.
   const double extent = (high - low).maxCoeff(), scale = extent > 0 ? kCells / extent : 0;
-  std::vector<std::uint32_t> place(blocks * kBlock);
+  std::vector<std::uint32_t> place(blocks * kPointsOfBlock);
   std::vector<std::array<std::uint32_t, kCells>> next(blocks);
   for_each_block(blocks, threads, [&](std::size_t block) {
     std::array<std::array<std::uint32_t, kSome>, 3> cells{};
     next[block].fill(0);
-    for (std::size_t from = block * kBlock; from < std::min(count, (block + 1) * kBlock); from += kSome) {
+    for (std::size_t from = block * kPointsOfBlock; from < std::min(count, (block + 1) * kPointsOfBlock);
+         from += kSome) {
       const std::size_t some = std::min(kSome, count - from);
       for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t i = 0; i < some; ++i) {
@@ -105,7 +107,7 @@ std::vector<std::uint32_t> hilbert_order(const Eigen::Ref<const Eigen::Matrix3Xd
   begin[kCells] = sum;
   std::vector<Entry> entries(count), scratch(count);
   for_each_block(blocks, threads, [&](std::size_t block) {
-    for (std::size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
+    for (std::size_t i = block * kPointsOfBlock; i < std::min(count, (block + 1) * kPointsOfBlock); ++i) {
       entries[next[block][place[i] >> 2 * kBits]++] = static_cast<Entry>(place[i]) << 32 | i;
     }
   });

@@ -13,7 +13,7 @@ Coordinates cross(const Coordinates& a, const Coordinates& b) {
 }
 
 /// Square of the height of a triangle over its longest side from which on its normal is as sure as its corners.
-constexpr double kStout = 0.05 * 0.05;
+constexpr double kStoutSquared = 0.05 * 0.05;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ Place nearest_place(const Tree& tree, std::uint32_t triangle, const double* poin
   const bool over = std::min({dot(normal, cross(ab, ap)), dot(normal, cross(ap, ac)), dot(normal, cross(bc, bp))}) >= 0;
   const double longest = std::max({dot(ab, ab), dot(ac, ac), dot(bc, bc)});
   Place place;
-  if (over && !needle && square_of_normal > kStout * longest * longest) {
+  if (over && !needle && square_of_normal > kStoutSquared * longest * longest) {
     const double share = dot(normal, ap) / square_of_normal;
     place.height = share * std::sqrt(square_of_normal);
     place.square = place.height * place.height;
