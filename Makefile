@@ -102,6 +102,7 @@ lint:
 	@python3 tests/structure/check_structure.py .
 	@python3 tests/structure/check_documents.py .
 	@python3 tests/structure/check_headers.py .
+	@python3 tests/structure/check_sources.py .
 	@.ci/build --configure tidy
 	@.ci/lint --jobs $(JOBS)
 

@@ -262,7 +262,7 @@ async function layoutCheckWorks() {
     'cover each other': '<p style="margin:0">words</p><p style="margin:-20px 0 0">others</p>', 'stands twice on one axis': `<svg width="300" height="40">${tick(20, '10')}${tick(90, '10')}</svg>`,
     'has letters of 6.0 px': '<svg width="150" height="20" viewBox="0 0 300 40"><text x="20" y="20" font-size="12" style="font-size:12px">small</text></svg>',
     'do not stay in view together': '<div class="scroll"><table><thead><tr><th style="position:sticky;left:0">a</th></tr></thead><tbody><tr><td>b</td></tr></tbody></table></div>',
-    'letters on 6 lines': '<table><tr><td style="width:20px">a few words on many lines</td><td>b</td></tr></table>',
+    'letters on 6 lines': '<table><tr><td>a <br>few <br>words <br>on <br>many <br>lines</td><td>b</td></tr></table>',
     'is moved sideways': '<figure><div class="scroll" aria-label="plot" style="overflow-x:auto;width:200px"><svg width="300" height="20"></svg></div></figure>',
     'is cut at the edge of its drawing': '<svg width="60" height="40"><text x="20" y="20">a long word</text></svg>'};
   for (const [words, content] of Object.entries(faulty)) {

@@ -17,6 +17,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "header_examples"))
 from check_structure import ORDER, files_below  # noqa: E402
+from violations_report import report  # noqa: E402
 from write_examples import first_comment  # noqa: E402
 
 FOLDERS = ["src", "include", "apps", "papers", "step", "tests", "fuzz", "benchmarks", "cmake", "examples", "docs",
@@ -120,16 +121,5 @@ def violations(root):
             yield f"include/abbe/{header}", number, message
 
 
-def main():
-    if len(sys.argv) != 2:
-        print(__doc__, file=sys.stderr)
-        return 2
-    found = list(violations(sys.argv[1]))
-    for path, number, message in found:
-        print(f"{path}:{number}: {message}")
-    print(f"documents: {len(found)} violations")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(report("documents", __doc__, violations))

@@ -12,6 +12,7 @@ import sys
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from check_structure import files_below  # noqa: E402
+from violations_report import report  # noqa: E402
 
 STANDARD = {
     "algorithm": "all_of any_of clamp count fill find find_if lower_bound max max_element min min_element sort transform",
@@ -94,16 +95,5 @@ def violations(root):
             yield f"include/{path}", number, message
 
 
-def main():
-    if len(sys.argv) != 2:
-        print(__doc__, file=sys.stderr)
-        return 2
-    found = list(violations(sys.argv[1]))
-    for path, number, message in found:
-        print(f"{path}:{number}: {message}")
-    print(f"headers: {len(found)} violations")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(report("headers", __doc__, violations))

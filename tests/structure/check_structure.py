@@ -3,14 +3,19 @@
 
 A library (a folder of include/abbe and of src/abbe) includes only itself and those above it in ORDER; `identify` and
 `compensate` do not see each other; public headers (include/abbe) include no internal ones (src/abbe), and nobody but
-their own library, tests, fuzzers and benchmarks includes internal headers; only `formats`, `report` and the programs (`apps`, `papers`, `step`) touch files; `src` and `apps` include nothing
-from `papers` and `step`; headers have `#pragma once`; nothing is included twice; no file is longer than MAX_LINES; no
-folder has a name that says nothing; no two headers of the library declare a type of one name; pages come from
-web/src/template.html alone, which holds the content security policy. Every violation is one line: file:line: message.
+their own library, tests, fuzzers and benchmarks includes internal headers; only `formats`, `report` and the programs
+(`apps`, `papers`, `step`) touch files; `src` and `apps` include nothing from `papers` and `step`; headers have
+`#pragma once`; nothing is included twice; no file is longer than MAX_LINES; no folder has a name that says nothing; no
+two headers of the library declare a type of one name; pages come from web/src/template.html alone, which holds the
+content security policy. Every violation is one line: file:line: message.
 """
 import os
 import re
 import sys
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from violations_report import report  # noqa: E402
 
 ORDER = ["geometry", "machine", "errors", "instruments", "identify", "plan", "compensate", "verify", "formats",
          "report", "controls", "runtime", "study"]
@@ -174,16 +179,5 @@ def violations(root):
                         yield path, number, message
 
 
-def main():
-    if len(sys.argv) != 2:
-        print(__doc__, file=sys.stderr)
-        return 2
-    found = list(violations(sys.argv[1]))
-    for path, number, message in found:
-        print(f"{path}:{number}: {message}")
-    print(f"structure: {len(found)} violations")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(report("structure", __doc__, violations))
