@@ -20,7 +20,7 @@ struct DeviateCommand {
   bool faces_of_file = false;
 };
 
-int run_deviate(DeviateCommand command) {
+int run_deviate(const DeviateCommand& command) {
   ScanDeviationsRequest request;
   request.transform_file = command.transform;
   if (!command.transform.empty()) request.pose = read_transform_file(command.transform);
@@ -38,10 +38,12 @@ int run_deviate(DeviateCommand command) {
                                         : DeviationFaces::none;
   request.crease = command.crease;
   request.threads = command.files.threads;
+  request.tolerances = command.options.tolerances;
   request.page = !command.options.output.empty();
-  ScanDeviations result = find_deviations(request);
-  if (!command.options.output.empty()) command.options.files = deviation_files(result);
-  const int code = finish_evaluation(result.report, command.options);
+  const ScanDeviations result = find_deviations(request);
+  std::vector<std::pair<std::string, std::string>> files;
+  if (!command.options.output.empty()) files = deviation_files(result);
+  const int code = finish_evaluation(result.report, command.options, files);
   return result.has_points() ? code : static_cast<int>(kNegative);
 }
 

@@ -97,7 +97,8 @@ int run_coaxial(const FitCommand& command) {
   request.options.direction = held_direction(command);
   request.options.radii = held_radii(command, command.files.size());
   request.options.sigma = command.sigma;
-  FittedCircles fitted = fit_circles(std::move(request));
+  request.tolerances = command.options.tolerances;
+  const FittedCircles fitted = fit_circles(std::move(request));
   const int code = finish_evaluation(fitted.report, command.options);
   return fitted.is_ok() ? code : static_cast<int>(kNegative);
 }
@@ -129,8 +130,9 @@ int run_fit(const FitCommand& command) {
   PointCloudOptions reading = reading_options(command);
   reading.in_plane = is_plane_shape(request.choice.kind);
   request.points = read_points_to_fit(command.files[0], reading);
+  request.tolerances = command.options.tolerances;
   request.page = !command.options.output.empty();
-  FittedShape fitted = fit_points(std::move(request));
+  const FittedShape fitted = fit_points(std::move(request));
   const int code = finish_evaluation(fitted.report, command.options);
   if (!fitted.is_ok()) return kNegative;
   if (!command.residuals.empty()) write_file_atomically(command.residuals, fitted_points_csv(fitted));

@@ -1,12 +1,6 @@
-#include <algorithm>
-
-#include "abbe/formats/evaluations/evaluation_circular_file.h"
-#include "abbe/formats/text/input_error.h"
-#include "abbe/report/evaluations/circular_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
-#include "exit_code.h"
 #include "options.h"
 
 namespace abbe {
@@ -14,35 +8,21 @@ namespace {
 
 struct CircularCommand {
   EvaluationOptions options;
-  std::string plane, centre = "least-squares";
-  double radius_mm = 0, reading_mm = 0, length_mm = 0, feed_mm = 0, reversal_rad = 0;
+  CircularTest test;
+  std::string centre = "least-squares";
+  double feed_mm = 0;
   bool length_unknown = false;
 };
 
 int run(const CircularCommand& command) {
-  const CircularFile file = read_circular(command.options.file, command.radius_mm);
-  CircularRequest request;
-  request.file = command.options.file;
-  request.circular.nominal_radius = request.diagnosis.nominal_radius = command.radius_mm;
-  request.circular.centre = command.centre == "instrument"     ? CircularCentre::instrument
-                            : command.centre == "minimum-zone" ? CircularCentre::minimum_zone
-                                                               : CircularCentre::least_squares;
-  request.circular.reading_uncertainty = command.reading_mm;
-  request.circular.length_uncertainty = request.diagnosis.length_uncertainty = command.length_mm;
-  request.diagnosis.length_calibrated = !command.length_unknown;
-  request.diagnosis.reversal_margin = command.reversal_rad;
-  request.feed_mm_s = command.feed_mm / 60;
-  if (!file.plane.empty() && !command.plane.empty() && file.plane != command.plane) {
-    throw InputError({.file = command.options.file, .field = "--plane " + command.plane},
-                     "the coordinates of the file are those of " + file.plane, "--plane only for files of a ball bar");
-  }
-  if (!file.plane.empty()) request.plane = file.plane;
-  if (!command.plane.empty()) request.plane = command.plane;
-  EvaluationReport report = circular_report(request, file.paths, circular_deviations(file.paths, request.circular),
-                                            circular_diagnosis(file.paths, request.diagnosis));
-  const int code = finish_evaluation(report, command.options);
-  const auto misses = [](const EvaluationFigure& figure) { return !figure.value && figure.symbol.starts_with("G_"); };
-  return std::any_of(report.figures.begin(), report.figures.end(), misses) ? kNegative : code;
+  CircularTest test = command.test;
+  test.readings = read_circular(command.options.file, test.nominal_radius);
+  test.centre = command.centre == "instrument"     ? CircularCentre::instrument
+                : command.centre == "minimum-zone" ? CircularCentre::minimum_zone
+                                                   : CircularCentre::least_squares;
+  test.length_calibrated = !command.length_unknown;
+  test.feed = command.feed_mm / 60;
+  return run_evaluation(std::move(test), command.options);
 }
 
 }  // namespace
@@ -59,20 +39,20 @@ void add_evaluate_circular(Subcommand& evaluate, CommandLine& line) {
                      "--skip-reversal-deg 6 "
                      "--output results/circular --tolerance G_b_um=15",
                      command->options);
-  add_number(app, "--radius-mm", Quantity::length, "mm", {0.001, 1e6}, command->radius_mm, "Nominal radius")
+  add_number(app, "--radius-mm", Quantity::length, "mm", {0.001, 1e6}, command->test.nominal_radius, "Nominal radius")
       ->required();
-  app->add_option("--plane", command->plane,
+  app->add_option("--plane", command->test.plane,
                   "Axes of a ball bar test, angles run from the first to the second (default XY)")
       ->check(one_of({"XY", "YZ", "ZX"}));
   app->add_option("--centre", command->centre, "Centre from which radii are measured (default least-squares)")
       ->check(one_of({"least-squares", "minimum-zone", "instrument"}));
-  add_number(app, "--u-reading-um", Quantity::length, "um", {0, 1e6}, command->reading_mm,
+  add_number(app, "--u-reading-um", Quantity::length, "um", {0, 1e6}, command->test.reading_uncertainty,
              "Standard uncertainty of one reading");
-  add_number(app, "--u-length-um", Quantity::length, "um", {0, 1e6}, command->length_mm,
+  add_number(app, "--u-length-um", Quantity::length, "um", {0, 1e6}, command->test.length_uncertainty,
              "Standard uncertainty of the length that all readings share (calibration, temperature)");
   app->add_flag("--length-not-calibrated", command->length_unknown,
                 "The length is not calibrated: it shows the difference of the scales, not the scales");
-  add_number(app, "--skip-reversal-deg", Quantity::angle, "deg", {0, 40}, command->reversal_rad,
+  add_number(app, "--skip-reversal-deg", Quantity::angle, "deg", {0, 40}, command->test.reversal_margin,
              "Readings nearer than this to a reversal of an axis are left out of the fit of causes (default 0)");
   add_number(app, "--feed-mm-min", Quantity::length, "mm", {0.001, 1e6}, command->feed_mm,
              "Feed along the path: also gives the servo mismatch as a time constant");

@@ -1,24 +1,10 @@
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <filesystem>
 #include <initializer_list>
-#include <regex>
-#include <string>
-#include <vector>
 
-#include "abbe/formats/evaluations/section_file.h"
-#include "abbe/formats/machine/machine_file.h"
-#include "abbe/formats/shapes/curve_file.h"
-#include "abbe/formats/shapes/curve_pieces.h"
-#include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/input_error.h"
-#include "abbe/report/evaluations/contour_report.h"
-#include "abbe/report/words/evaluation_text.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
-#include "exit_code.h"
 #include "machine_options.h"
 #include "options.h"
 
@@ -29,7 +15,7 @@ struct ContourCommand {
   EvaluationOptions options;
   std::string feature = "edge", surface = "left", curve, machine;
   SectionOptions sections;
-  double surface_radius = 0;
+  double beam_tilt = 0, surface_radius = 0;
   bool closed = false;
   std::vector<std::string> given;  ///< options of the command line: "--curve"
 
@@ -41,23 +27,6 @@ struct ContourCommand {
     }
   }
 };
-
-/// "C2=12", "C30", "C2_deg": a command of an axis in a program or a column of one.
-bool names_axis(const std::string& field) {
-  static const std::regex axis("[A-EQ-RU-W][0-9]*([=_.+-].*)?");
-  return std::regex_match(field, axis);
-}
-
-Curve commanded_curve(const ContourCommand& command) {
-  if (!command.machine.empty()) return read_curve(command.curve, read_machine(command.machine));
-  try {
-    return read_curve(command.curve, Machine{});
-  } catch (const InputError& error) {
-    if (!names_axis(error.place().field)) throw;
-    throw InputError(error.place(), "the command of an axis, and no machine is given",
-                     "--machine with the machine file");
-  }
-}
 
 void refuse_without_effect(const ContourCommand& command) {
   if (command.has("--curve")) {
@@ -72,51 +41,23 @@ void refuse_without_effect(const ContourCommand& command) {
   }
 }
 
-std::vector<SectionReadings> stated_sections(const ContourCommand& command) {
-  std::vector<SectionReadings> sections = read_sections(command.options.file);
-  if (std::all_of(sections.begin(), sections.end(), [](const SectionReadings& s) { return s.beam_tilt.has_value(); })) {
-    command.refuse({"--beam-tilt-deg"}, "has no effect: the file states the beam's tilt of every section",
-                   "a file without the column beam_tilt");
-  }
-  return sections;
-}
-
-/// The tolerance of the largest contour error as lines in the page's drawing.
-void add_limits(EvaluationReport& report, const EvaluationOptions& options) {
-  if (!report.page.is_object()) return;
-  EvaluationReport judged = report;
-  apply_tolerances(options.tolerances, judged);
-  for (const EvaluationFigure& figure : judged.figures) {
-    if (figure.symbol != "contour_max" || !figure.tolerance) continue;
-    const double limit = 1e3 * *figure.tolerance;
-    report.page["contour"]["limits_um"] = {-limit, limit};
-  }
-}
-
 int run(const ContourCommand& command) {
   refuse_without_effect(command);
-  const std::string title = "Contour error of " + std::filesystem::path(command.options.file).filename().string();
   if (command.has("--curve")) {
-    const std::vector<CommandPiece> pieces =
-        commanded_pieces(commanded_curve(command), command.curve, command.closed ? "--closed" : "");
-    const PointCloudFile measured = read_point_cloud(command.options.file);
-    EvaluationReport report = contour_points_report(
-        title, pieces, evaluate_contour_points(pieces, measured.cloud.points, command.sections.origin_uncertainty));
-    report.facts.front().second += fmt::format(", {}, {}", measured.format, unit_words(measured.unit));
-    add_limits(report, command.options);
-    return finish_evaluation(report, command.options);
+    ContourPointsTest test;
+    test.pieces = read_commanded_pieces(command.curve, command.machine, command.closed);
+    test.readings = read_point_cloud(command.options.file);
+    test.origin_uncertainty = command.sections.origin_uncertainty;
+    return run_evaluation(std::move(test), command.options);
   }
-  SectionOptions options = command.sections;
-  options.groove = command.feature == "groove";
-  options.edge.surface = command.surface == "right" ? EdgeSide::right : EdgeSide::left;
-  options.edge.surface_curvature = command.surface_radius == 0 ? 0 : 1 / command.surface_radius;
-  const std::vector<SectionReadings> sections = stated_sections(command);
-  const SectionsEvaluation evaluated = evaluate_sections(sections, options);
-  EvaluationReport report = section_report(title, options, sections, evaluated);
-  add_limits(report, command.options);
-  const int code = finish_evaluation(report, command.options);
-  // A mean that some of the sections have no part in is not the one that was asked for.
-  return evaluated.refused > 0 ? std::max<int>(code, kNegative) : code;
+  SectionsTest test;
+  test.options = command.sections;
+  test.options.groove = command.feature == "groove";
+  test.options.edge.surface = command.surface == "right" ? EdgeSide::right : EdgeSide::left;
+  test.options.edge.surface_curvature = command.surface_radius == 0 ? 0 : 1 / command.surface_radius;
+  if (command.has("--beam-tilt-deg")) test.beam_tilt = command.beam_tilt;
+  test.readings = read_sections(command.options.file);
+  return run_evaluation(std::move(test), command.options);
 }
 
 }  // namespace
@@ -144,7 +85,7 @@ void add_evaluate_contour(Subcommand& evaluate, CommandLine& line) {
   app->add_option("--surface", command->surface,
                   "Side of an edge on which the surface remains: left (default, at smaller `across`) or right")
       ->check(one_of({"left", "right"}));
-  add_number(app, "--beam-tilt-deg", Quantity::angle, "deg", {-30, 30}, command->sections.edge.beam_tilt,
+  add_number(app, "--beam-tilt-deg", Quantity::angle, "deg", {-30, 30}, command->beam_tilt,
              "Direction of the laser where the file has none (default 0)");
   app->add_flag("--free-wall", command->sections.edge.free_wall,
                 "The wall need not be parallel to the laser: found from the points");

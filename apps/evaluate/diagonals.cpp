@@ -1,10 +1,3 @@
-#include "abbe/verify/evaluations/diagonals.h"
-
-#include <filesystem>
-#include <memory>
-
-#include "abbe/formats/evaluations/evaluation_positioning.h"
-#include "abbe/report/evaluations/diagonals_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "options.h"
@@ -21,11 +14,7 @@ void add_evaluate_diagonals(Subcommand& evaluate, CommandLine& line) {
       "  run             optional: number or name of the run",
       "  abbe evaluate diagonals examples/evaluate/diagonals.csv --tolerance E_d_um=30 -o results/diagonals", *options);
   command->callback([&line, options] {
-    line.run = [options]() -> int {
-      EvaluationReport report = diagonals_report(evaluate_diagonals(read_diagonals(options->file)),
-                                                 std::filesystem::path(options->file).filename().string());
-      return finish_evaluation(report, *options);
-    };
+    line.run = [options] { return run_evaluation(DiagonalsTest{read_diagonals(options->file)}, *options); };
   });
 }
 

@@ -27,12 +27,12 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
   return command;
 }
 
-int finish_evaluation(EvaluationReport& report, const EvaluationOptions& options) {
-  apply_tolerances(options.tolerances, report);
+int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& options,
+                      const std::vector<std::pair<std::string, std::string>>& files) {
   if (!options.output.empty()) {
     ResultsFolder folder(options.output);
     for (const auto& [name, contents] : evaluation_files(report)) folder.write(name, contents);
-    for (const auto& [name, contents] : options.files) folder.write(name, contents);
+    for (const auto& [name, contents] : files) folder.write(name, contents);
     folder.commit();
   }
   if (options.json) {
@@ -42,6 +42,12 @@ int finish_evaluation(EvaluationReport& report, const EvaluationOptions& options
     if (!options.output.empty()) fmt::print("\nresults in {}\n", options.output);
   }
   return report.exceeds_tolerance() ? kNegative : kDone;
+}
+
+int run_evaluation(TestToEvaluate test, const EvaluationOptions& options) {
+  const Evaluation result = evaluate_readings({options.file, std::move(test), options.tolerances});
+  const int code = finish_evaluation(result.report, options, result.files);
+  return result.refused.empty() ? code : static_cast<int>(kNegative);
 }
 
 }  // namespace abbe

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "abbe/report/evaluations/evaluation_report.h"
+#include "abbe/study/evaluations/evaluation.h"
 
 namespace abbe {
 
@@ -18,7 +18,6 @@ struct EvaluationOptions {
   std::string output;                   ///< results folder; empty: print only
   std::vector<std::string> tolerances;  ///< "A_um=10"
   bool json = false;
-  std::vector<std::pair<std::string, std::string>> files = {};  ///< more for the results folder: name, contents
 };
 
 /// `abbe evaluate KIND`: adds the subcommand with the options of every kind; its own options come behind it.
@@ -29,7 +28,12 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
 
 /// Prints the report for people or programs and writes the results folder: evaluation.json, one SVG file per plot,
 /// report.html. @returns kNegative if a tolerance is exceeded or a figure with one could not be evaluated, else kDone
-int finish_evaluation(EvaluationReport& report, const EvaluationOptions& options);
+/// @param files  more for the results folder: name, contents
+int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& options,
+                      const std::vector<std::pair<std::string, std::string>>& files = {});
+
+/// Evaluates readings and finishes with them. @returns kNegative also if the evaluation is refused
+int run_evaluation(TestToEvaluate test, const EvaluationOptions& options);
 
 // One per kind; each leaves its work in line.run.
 void add_evaluate_positioning(Subcommand& evaluate, CommandLine& line);

@@ -1,11 +1,6 @@
-#include <filesystem>
-
-#include "abbe/formats/evaluations/evaluation_rotation_file.h"
-#include "abbe/report/evaluations/rotation_report.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
-#include "exit_code.h"
 #include "options.h"
 
 namespace abbe {
@@ -15,15 +10,6 @@ struct RotationCommand {
   EvaluationOptions options;
   RotationOptions rotation;
 };
-
-int run(const RotationCommand& command) {
-  const RotationReadings readings = read_rotation(command.options.file);
-  const RotationResult result = rotation_error_motions(readings, command.rotation);
-  EvaluationReport report = rotation_report(std::filesystem::path(command.options.file).filename().string(),
-                                            command.rotation, readings, result);
-  const int code = finish_evaluation(report, command.options);
-  return result.status == RotationStatus::done ? code : kNegative;
-}
 
 }  // namespace
 
@@ -45,7 +31,11 @@ void add_evaluate_rotation(Subcommand& evaluate, CommandLine& line) {
              "Rotating sensitive direction at axis angle zero, from X towards Y (default 0)");
   add_number(app, "--u-reading-um", Quantity::length, "um", {0, 1e6}, command->rotation.reading_uncertainty,
              "Standard uncertainty of one displacement");
-  app->callback([&line, command] { line.run = [command] { return run(*command); }; });
+  app->callback([&line, command] {
+    line.run = [command] {
+      return run_evaluation(RotationTest{read_rotation(command->options.file), command->rotation}, command->options);
+    };
+  });
 }
 
 }  // namespace abbe

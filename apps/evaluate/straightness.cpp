@@ -1,10 +1,3 @@
-#include <filesystem>
-#include <memory>
-#include <string>
-
-#include "abbe/formats/evaluations/evaluation_line_file.h"
-#include "abbe/report/evaluations/straightness_report.h"
-#include "abbe/verify/evaluations/squareness.h"
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "evaluate/number_option.h"
@@ -23,27 +16,16 @@ struct LineCommand {
   }
 };
 
-std::string file_name(const LineCommand& command) {
-  return std::filesystem::path(command.options.file).filename().string();
-}
-
 int run_straightness(const LineCommand& command) {
-  const LineReadings line = read_straightness(command.options.file);
-  const double u = command.squareness.reading_uncertainty;
-  const Straightness least = straightness(line.positions, line.deviations, ReferenceLine::least_squares, u);
-  const Straightness zone = straightness(line.positions, line.deviations, ReferenceLine::minimum_zone, u);
-  EvaluationReport report = straightness_report(file_name(command), line, least, zone, command.line(), u > 0);
-  return finish_evaluation(report, command.options);
+  return run_evaluation(
+      StraightnessTest{read_straightness(command.options.file), command.line(), command.squareness.reading_uncertainty},
+      command.options);
 }
 
 int run_squareness(const LineCommand& command) {
-  const auto lines = read_squareness(command.options.file);
-  SquarenessOptions options = command.squareness;
-  options.reference = command.line();
-  const Squareness result =
-      squareness({lines[0].positions, lines[0].deviations}, {lines[1].positions, lines[1].deviations}, options);
-  EvaluationReport report = squareness_report(file_name(command), lines, result, options);
-  return finish_evaluation(report, command.options);
+  SquarenessTest test{read_squareness(command.options.file), command.squareness};
+  test.options.reference = command.line();
+  return run_evaluation(std::move(test), command.options);
 }
 
 void add_common_options(Subcommand* app, LineCommand& command) {

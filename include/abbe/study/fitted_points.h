@@ -56,7 +56,8 @@ PointsToFit read_points_to_fit(const std::string& file, const PointCloudOptions&
 struct ShapeFitRequest {
   PointsToFit points;
   FitChoice choice;
-  bool page = false;  ///< the report is to have the points on the fitted surface, for its page
+  std::vector<std::string> tolerances;  ///< --tolerance: "form_um=20", as apply_tolerances() takes them
+  bool page = false;                    ///< the report is to have the points on the fitted surface, for its page
 };
 
 /// A fitted shape with its report. It needs nothing of the request that it answers.
@@ -64,13 +65,14 @@ struct FittedShape {
   ShapeFit fit;
   PointCloud points;               ///< of the request
   std::vector<double> deviations;  ///< [points] mm; empty if there is no answer
-  EvaluationReport report;
+  EvaluationReport report;         ///< with the tolerances of the request
 
   bool is_ok() const { return fit.ok(); }
 };
 
 /// Fits a shape. Shapes of the plane are fitted in x and y. Opens no file and prints nothing.
-/// @throws InputError for what the shape does not have and is to be held, and a method that the shape does not have
+/// @throws InputError for what the shape does not have and is to be held, a method that the shape does not have, and as
+///   apply_tolerances()
 FittedShape fit_points(ShapeFitRequest request);
 
 /// CSV of the points with their deviations. The fit must have an answer.
@@ -80,6 +82,7 @@ std::string fitted_points_csv(const FittedShape& fitted);
 struct CirclesFitRequest {
   std::vector<PointsToFit> circles;
   CoaxialOptions options;
+  std::vector<std::string> tolerances;  ///< --tolerance
 };
 
 struct FittedCircles {
@@ -89,7 +92,8 @@ struct FittedCircles {
   bool is_ok() const { return fit.ok(); }
 };
 
-/// @throws InputError for a direction that is none, and radii that are not above zero or not one per circle
+/// @throws InputError for a direction that is none, radii that are not above zero or not one per circle, and as
+///   apply_tolerances()
 FittedCircles fit_circles(CirclesFitRequest request);
 
 /// Whether a shape lies in the plane, so that the z of points does not count.

@@ -63,15 +63,16 @@ struct ScanDeviationsRequest {
   double colour_mm = 0;                         ///< --colour-um: of the full colour; 0: as it shows most of them
   DeviationFaces faces = DeviationFaces::none;  ///< --faces-deg, --faces
   double crease = 0;
-  int threads = 0;    ///< 0: all; no result depends on it
-  bool page = false;  ///< the report is to have the deviations on the part, for its page
+  std::vector<std::string> tolerances;  ///< --tolerance: "maximum_um=50", as apply_tolerances() takes them
+  int threads = 0;                      ///< 0: all; no result depends on it
+  bool page = false;                    ///< the report is to have the deviations on the part, for its page
 };
 
 /// Deviations of a scan from its part, with their report. They need nothing of the request that they answer.
 struct ScanDeviations {
   ScanComparison compared;
-  EvaluationReport report;
-  double colour_mm = 0;  ///< of the full colour
+  EvaluationReport report;  ///< with the tolerances of the request
+  double colour_mm = 0;     ///< of the full colour
 
   /// Whether any point counts.
   bool has_points() const { return !compared.counted_mm.empty(); }
@@ -79,7 +80,8 @@ struct ScanDeviations {
 
 /// Compares a scan with its part. Opens no file and prints nothing.
 /// @throws InputError for a scan without points, a part without triangles or without the faces that were asked for, a
-///   transform of a registration that found no pose, and a band whose lower end is above the upper one
+///   transform of a registration that found no pose, a band whose lower end is above the upper one, and as
+///   apply_tolerances()
 ScanDeviations find_deviations(const ScanDeviationsRequest& request);
 
 /// Files of the points that count, name and contents: deviation.csv and deviation.ply (coloured).

@@ -16,6 +16,7 @@
 #include "abbe/geometry/angle_units.h"
 #include "abbe/report/drawings/fit_surface.h"
 #include "abbe/report/evaluations/fit_report.h"
+#include "abbe/report/words/evaluation_text.h"
 
 namespace abbe {
 namespace {
@@ -129,6 +130,7 @@ FittedShape fit_points(ShapeFitRequest request) {
   }
   result.report = fit_report(asked, result.fit, points, result.deviations);
   if (!note.empty()) result.report.notes.push_back(note);
+  apply_tolerances(request.tolerances, result.report);
   if (result.is_ok() && request.page) {
     std::vector<std::uint8_t> counted(result.deviations.size(), 1);
     for (std::size_t i = 0; i < result.fit.weights.size(); ++i) counted[i] = result.fit.weights[i] < 1e-3 ? 0 : 1;
@@ -160,6 +162,7 @@ FittedCircles fit_circles(CirclesFitRequest request) {
   FittedCircles result;
   result.fit = coaxial_circles_fit(circles, request.options);
   result.report = coaxial_report(asked, result.fit, request.options, names);
+  apply_tolerances(request.tolerances, result.report);
   return result;
 }
 

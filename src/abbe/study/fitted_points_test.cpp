@@ -101,6 +101,20 @@ TEST(FittedPoints, CirclesAboutOneAxis) {
   EXPECT_THAT(message_of([&] { fit_circles(request); }), HasSubstr("--fixed-direction: is not a direction"));
 }
 
+TEST(FittedPoints, FiguresAreJudgedByTheTolerancesOfTheRequest) {
+  ShapeFitRequest request = circle_to_fit();
+  request.points.cloud.points(0, 0) += 0.01;
+  EXPECT_FALSE(fit_points(request).report.exceeds_tolerance());
+  request.tolerances = {"form_um=1"};
+  EXPECT_TRUE(fit_points(request).report.exceeds_tolerance());
+  request.tolerances = {"Q_um=1"};
+  EXPECT_THAT(message_of([&] { fit_points(request); }), HasSubstr("--tolerance Q_um=1: there is no such figure"));
+  CirclesFitRequest circles;
+  circles.circles = {points_of_circle(20, 0), points_of_circle(12, 30)};
+  circles.tolerances = {"Q_um=1"};
+  EXPECT_THAT(message_of([&] { fit_circles(circles); }), HasSubstr("--tolerance Q_um=1: there is no such figure"));
+}
+
 TEST(FittedPoints, WhatAShapeDoesNotHaveCannotBeHeld) {
   const auto problem = [](ShapeKind kind, const auto& change) {
     ShapeFitRequest request = circle_to_fit();

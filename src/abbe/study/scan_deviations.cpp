@@ -7,6 +7,7 @@
 #include "abbe/report/drawings/deviation_colours.h"
 #include "abbe/report/drawings/surface_picture.h"
 #include "abbe/report/evaluations/deviation_report.h"
+#include "abbe/report/words/evaluation_text.h"
 #include "abbe/study/scan_of_part.h"
 
 namespace abbe {
@@ -62,6 +63,7 @@ ScanDeviations find_deviations(const ScanDeviationsRequest& request) {
                          .colour_mm = request.colour_mm};
   if (request.faces == DeviationFaces::of_file) asked.face_names = part.face_names;
   result.report = deviation_report(asked, request.scan, part, result.compared);
+  apply_tolerances(request.tolerances, result.report);
   result.colour_mm = deviation_colour_range(asked, result.compared);
   if (request.page) {
     result.report.page = deviation_page(part.mesh, result.compared.closest, result.compared.deviation, result.colour_mm,

@@ -63,6 +63,15 @@ TEST(ScanDeviationsOfARequest, HaveFacesAndAPageWhereTheyAreAskedFor) {
   EXPECT_EQ(result.colour_mm, 0.05);
 }
 
+TEST(ScanDeviationsOfARequest, AreJudgedByTheTolerancesOfTheRequest) {
+  ScanDeviationsRequest request = bracket_deviations();
+  EXPECT_FALSE(find_deviations(request).report.exceeds_tolerance());
+  request.tolerances = {"maximum_um=1"};
+  EXPECT_TRUE(find_deviations(request).report.exceeds_tolerance());
+  request.tolerances = {"maximum_um=400"};
+  EXPECT_FALSE(find_deviations(request).report.exceeds_tolerance());
+}
+
 TEST(ScanDeviationsOfARequest, WhatCannotBeComparedIsSaid) {
   const auto problem = [](const auto& change) {
     ScanDeviationsRequest request = bracket_deviations();

@@ -1,0 +1,128 @@
+#include "abbe/study/evaluations/axis_tests.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "abbe/formats/files/file_name.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/report/evaluations/circular_report.h"
+#include "abbe/report/evaluations/diagonals_report.h"
+#include "abbe/report/evaluations/positioning_report.h"
+#include "abbe/report/evaluations/rotation_report.h"
+#include "abbe/report/evaluations/straightness_report.h"
+#include "abbe/study/evaluations/evaluated.h"
+
+namespace abbe {
+namespace {
+
+bool has_lengths_or_temperatures(const PositioningUncertaintyInput& input) {
+  return input.instrument_per_length > 0 || input.misalignment_range > 0 || input.machine_temperature_range > 0 ||
+         input.machine_expansion_range > 0 || input.device_temperature_range > 0 || input.device_expansion_range > 0;
+}
+
+/// What is known of the measurement of such an axis.
+const PositioningUncertaintyInput& stated_uncertainty(const PositioningTest& test) {
+  const bool rotary = test.readings.rotary;
+  if (rotary && (!test.linear.is_empty() || has_lengths_or_temperatures(test.rotary))) {
+    throw InputError({}, "an uncertainty in um or by length or temperature was given for a rotary axis",
+                     "--instrument-arcsec, --setup-arcsec, --environment-arcsec");
+  }
+  if (!rotary && !test.rotary.is_empty()) {
+    throw InputError({}, "an uncertainty in arcsec was given for a linear axis",
+                     "--instrument-um, --setup-um, --environment-um");
+  }
+  return rotary ? test.rotary : test.linear;
+}
+
+std::string plane_of(const CircularTest& test, const std::string& file) {
+  const std::string& stated = test.readings.plane;
+  if (!test.plane.empty() && test.plane != "XY" && test.plane != "YZ" && test.plane != "ZX") {
+    throw InputError({.field = "--plane " + test.plane}, "there is no such plane", "XY, YZ or ZX");
+  }
+  if (!stated.empty() && !test.plane.empty() && stated != test.plane) {
+    throw InputError({.file = file, .field = "--plane " + test.plane},
+                     "the coordinates of the file are those of " + stated, "--plane only for files of a ball bar");
+  }
+  return !test.plane.empty() ? test.plane : !stated.empty() ? stated : "XY";
+}
+
+}  // namespace
+
+Evaluation evaluated(const PositioningTest& test, const std::string& file) {
+  require_readings(!test.readings.readings.empty(), file);
+  const PositioningUncertaintyInput& input = stated_uncertainty(test);
+  const bool rotary = test.readings.rotary;
+  const PositioningEvaluation evaluation = evaluate_positioning(test.readings.readings);
+  const PositioningUncertainty uncertainty = positioning_uncertainty(input, evaluation, rotary);
+  Evaluation result;
+  result.report = positioning_report(evaluation, rotary, file, input.is_empty() ? nullptr : &uncertainty);
+  return result;
+}
+
+Evaluation evaluated(const DiagonalsTest& test, const std::string& file) {
+  const auto has_none = [](const DiagonalReadings& diagonal) { return diagonal.readings.empty(); };
+  require_readings(!test.readings.empty() && std::none_of(test.readings.begin(), test.readings.end(), has_none), file);
+  Evaluation result;
+  result.report = diagonals_report(evaluate_diagonals(test.readings), file_name(file));
+  return result;
+}
+
+Evaluation evaluated(const CircularTest& test, const std::string& file) {
+  const auto& paths = test.readings.paths;
+  require_readings(paths[0].count() + paths[1].count() > 0, file);
+  if (!(test.nominal_radius > 0)) {
+    throw InputError({.field = "--radius-mm"}, fmt::format("{:g} is not valid", test.nominal_radius),
+                     "a length in mm above zero");
+  }
+  CircularRequest request;
+  request.file = file;
+  request.plane = plane_of(test, file);
+  request.circular = {test.nominal_radius, test.centre, test.reading_uncertainty, test.length_uncertainty};
+  request.diagnosis = {test.nominal_radius, test.length_calibrated, test.length_uncertainty, test.reversal_margin};
+  request.feed_mm_s = test.feed;
+  Evaluation result;
+  result.report = circular_report(request, paths, circular_deviations(paths, request.circular),
+                                  circular_diagnosis(paths, request.diagnosis));
+  for (const EvaluationFigure& figure : result.report.figures) {
+    if (figure.value || !figure.symbol.starts_with("G_")) continue;
+    result.refused = figure.name + ": " + figure.missing;
+    break;
+  }
+  return result;
+}
+
+Evaluation evaluated(const RotationTest& test, const std::string& file) {
+  require_readings(!test.readings.angle.empty(), file);
+  const RotationResult motions = rotation_error_motions(test.readings, test.options);
+  Evaluation result;
+  result.report = rotation_report(file_name(file), test.options, test.readings, motions);
+  if (motions.status != RotationStatus::done) {
+    const auto& figures = result.report.figures;
+    result.refused = figures.empty() ? "there is no probe" : figures.front().missing;
+  }
+  return result;
+}
+
+Evaluation evaluated(const StraightnessTest& test, const std::string& file) {
+  const LineReadings& line = test.readings;
+  require_readings(!line.positions.empty(), file);
+  const double u = test.reading_uncertainty;
+  const Straightness least = straightness(line.positions, line.deviations, ReferenceLine::least_squares, u);
+  const Straightness zone = straightness(line.positions, line.deviations, ReferenceLine::minimum_zone, u);
+  Evaluation result;
+  result.report = straightness_report(file_name(file), line, least, zone, test.reference, u > 0);
+  return result;
+}
+
+Evaluation evaluated(const SquarenessTest& test, const std::string& file) {
+  const auto& lines = test.readings;
+  require_readings(!lines[0].positions.empty() && !lines[1].positions.empty(), file);
+  const Squareness found =
+      squareness({lines[0].positions, lines[0].deviations}, {lines[1].positions, lines[1].deviations}, test.options);
+  Evaluation result;
+  result.report = squareness_report(file_name(file), lines, found, test.options);
+  return result;
+}
+
+}  // namespace abbe
