@@ -2,9 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/files/file_extension.h"
 #include "abbe/formats/files/standard_input.h"
+#include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/report/words/machine_check_words.h"
@@ -21,6 +24,21 @@ namespace {
 
 void refuse_if_given(const Option* option, const char* why) {
   if (option->count() > 0) throw InputError({.field = option->get_name()}, why, "no such option");
+}
+
+/// What is neither a shape nor a frozen compensation is a machine file if it looks like one. @throws InputError
+void require_machine_file(const std::string& file) {
+  const std::string extension = file_extension(file);
+  if (extension == ".toml") return;
+  const MappedFile contents(file);
+  if (ending_of(contents.text()) == ".toml") return;
+  if (file == kStandardInput) {
+    refuse_contents(file, contents.text(), "a file",
+                    {".toml", ".abbec", ".stl", ".ply", ".obj", ".step", ".csv", ".xyz"});
+  }
+  throw InputError({.file = file}, "its name does not tell of what kind it is",
+                   "a name ending in .abbec, .stl, .ply, .obj, .step, .stp, .xyz, .asc, .pts or .csv, or --machine "
+                   "with a machine file");
 }
 
 }  // namespace
@@ -73,6 +91,7 @@ void add_check_command(CommandLine& line) {
       refuse_if_given(unit, "a machine file states its units");
       options->geometry.step.refuse("a machine file has no faces");
       if (options->machine.empty()) {
+        require_machine_file(options->file);
         tell_old_form("--machine " + (options->file == kStandardInput ? "-" : options->file));
         options->machine = options->file;
       }

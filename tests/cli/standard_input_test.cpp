@@ -76,15 +76,76 @@ TEST_F(StandardInput, KindsOfShapesAndCurvesAreToldFromTheContents) {
   expect_same(frozen, "check");
 }
 
-TEST_F(StandardInput, APartThatCannotBeToldIsRefusedWithWhatToDo) {
-  const std::string text = folder.write("text", "hello\n").string();
-  const CommandResult result =
-      abbe_reads(text, "scan plan - --machine " + kExamples + "machines/liu-scanner.machine.toml");
-  EXPECT_EQ(result.exit_code, ExitCode::bad_input);
-  EXPECT_EQ(
-      result.err,
-      "abbe: <stdin>: of what kind it is cannot be told from its contents; expected a mesh: STL, PLY, OBJ or STEP, "
-      "or the name of a file with its ending\n");
+TEST_F(StandardInput, AFileThatWasCutShortIsStillOfItsKind) {
+  std::filesystem::copy(kExamples + "scan/bracket.stl", folder.path() / "cut.stl");
+  std::filesystem::resize_file(folder.path() / "cut.stl", 1000);
+  const std::string scan = kExamples + "scan/bracket-scan.csv";
+  for (const std::string& words : {std::string("check -"), "register " + scan + " -", "deviate " + scan + " -",
+                                   std::string("fit - --shape plane")}) {
+    const CommandResult result = abbe_reads("cut.stl", words);
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+    EXPECT_EQ(result.err,
+              "abbe: <stdin>: number of triangles: at byte 80: 48 triangles are stated in a file of 1000 bytes; "
+              "expected a file of 2484 bytes: 84 and 50 for each triangle\n")
+        << words;
+  }
+  const auto checked = [&](const std::string& contents) {
+    const CommandResult result = abbe_reads(folder.write("cut", contents).string(), "check -");
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+    return result.err;
+  };
+  EXPECT_THAT(checked("ply\nformat ascii 1.0\nelem"), HasSubstr("<stdin>:3:1: 'elem' in the header"));
+  EXPECT_THAT(checked("ply"), HasSubstr("the header does not end"));
+  EXPECT_THAT(checked("ISO-10303"), HasSubstr("this is not a STEP file"));
+  EXPECT_THAT(checked("solid\n facet normal 0 0"), HasSubstr("<stdin>:2"));
+  EXPECT_THAT(checked("# a machine\nname = \"mill\"\nchain = \"w b"), HasSubstr("write --machine -\nabbe: <stdin>:3"));
+}
+
+TEST_F(StandardInput, ContentsThatCannotBeToldAreRefusedWithWhatToDo) {
+  const std::string text = folder.write("text", "hello\n").string(), scan = kExamples + "scan/bracket-scan.csv",
+                    part = kExamples + "scan/bracket.stl",
+                    engraver = kExamples + "machines/yin-engraver-u.machine.toml",
+                    untold = "abbe: <stdin>: of what kind it is cannot be told from its contents; expected ",
+                    mesh =
+                        "a mesh that begins like an STL file ('solid', or 80 bytes and the number of triangles), a "
+                        "PLY file ('ply'), an OBJ file ('v X Y Z') or a STEP file ('ISO-10303-21;')",
+                    cloud =
+                        "a point cloud that begins like an XYZ file (numbers), a CSV file ('x_mm,y_mm,z_mm'), a "
+                        "PLY file ('ply') or an OBJ file ('v X Y Z')",
+                    named = "; or the name of a file, whose ending tells its kind\n";
+  const auto said = [&](const std::string& file, const std::string& words) {
+    const CommandResult result = abbe_reads(file, words);
+    EXPECT_EQ(result.exit_code, ExitCode::bad_input);
+    return result.err;
+  };
+  EXPECT_EQ(said(text, "check -"),
+            untold +
+                "a file that begins like a machine file ('name = ...'), a frozen compensation (byte 0x89, 'ABBEC'), an "
+                "STL file ('solid', or 80 bytes and the number of triangles), a PLY file ('ply'), an OBJ file ('v X Y "
+                "Z'), a STEP file ('ISO-10303-21;'), a CSV file ('x_mm,y_mm,z_mm') or an XYZ file (numbers)" +
+                named);
+  EXPECT_EQ(said(text, "scan plan - --machine " + kExamples + "machines/liu-scanner.machine.toml"),
+            untold + mesh + named);
+  EXPECT_EQ(said(text, "register " + scan + " -"), untold + mesh + named);
+  EXPECT_EQ(said(text, "register - " + part), untold + cloud + named);
+  EXPECT_EQ(said(text, "deviate - " + part), untold + cloud + named);
+  EXPECT_EQ(said(text, "fit - --shape sphere"), untold + cloud + named);
+  EXPECT_EQ(said(text, "path - --machine " + engraver),
+            untold +
+                "a curve that begins like a CSV file ('x_mm,y_mm,z_mm') or an NC program (a letter and a number, '%' "
+                "or a comment)" +
+                named);
+  // What it is instead, where that is known.
+  EXPECT_EQ(said(scan, "register " + scan + " -"), "abbe: <stdin>: begins like a CSV file; expected " + mesh + named);
+  EXPECT_EQ(said(engraver, "register - " + part),
+            "abbe: <stdin>: begins like a machine file; expected " + cloud + named);
+  EXPECT_THAT(said(part, "path - --machine " + engraver),
+              HasSubstr("<stdin>: begins like an STL file; expected a curve"));
+  // A file has a name, which has to tell.
+  EXPECT_EQ(abbe({"check", "text"}).err,
+            "abbe: text: its name does not tell of what kind it is; expected a name ending in .abbec, .stl, .ply, "
+            ".obj, .step, .stp, .xyz, .asc, .pts or .csv, or --machine with a machine file\n");
+  EXPECT_EQ(abbe({"check", "none"}).err, "abbe: none: there is no such file\n");
 }
 
 TEST_F(StandardInput, AStudyNamesFilesOfTheCurrentFolder) {

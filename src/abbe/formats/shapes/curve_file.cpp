@@ -82,7 +82,10 @@ Curve read_curve(const std::filesystem::path& path, const Machine& machine) {
   const MappedFile file(path);
   const std::string extension = std::filesystem::path(with_ending(path.string(), file.text())).extension().string();
   if (extension == ".csv") return parse_curve(file.text(), path.string(), machine);
-  const bool is_unnamed = path == kStandardInput;  // what is no table is a program
+  const bool is_unnamed = path == kStandardInput;
+  if (is_unnamed && !can_be_program(file.text())) {
+    refuse_contents(path.string(), file.text(), "a curve", {".csv", ".ngc"});
+  }
   if (is_unnamed || extension == ".ngc" || extension == ".nc" || extension == ".tap" || extension == ".mpf") {
     return parse_curve_program(file.text(), path.string(), machine);
   }

@@ -62,10 +62,7 @@ MeshFile parse_mesh(std::string_view contents, const std::string& file, const Me
   if (extension == ".obj") return mesh_of_obj(contents, file, options);
   if (extension == ".ply") throw InputError({file, 1, 0, ""}, "this is not a PLY file", "a first line 'ply'");
   if (is_ascii_stl(contents)) return parse_stl(contents, file, options);
-  if (file == kStandardInput) {
-    throw InputError({.file = file}, "of what kind it is cannot be told from its contents",
-                     fmt::format("{}, or the name of a file with its ending", kFormats));
-  }
+  if (file == kStandardInput) refuse_contents(file, contents, "a mesh", {".stl", ".ply", ".obj", ".step"});
   throw InputError({file, 0, 0, ""}, fmt::format("files with the extension '{}' are not known", extension), kFormats);
 }
 

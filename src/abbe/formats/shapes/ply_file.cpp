@@ -289,7 +289,9 @@ class BodyReader {
 
 }  // namespace
 
-bool is_ply(std::string_view contents) { return contents.starts_with("ply\n") || contents.starts_with("ply\r"); }
+bool is_ply(std::string_view contents) {
+  return contents == "ply" || contents.starts_with("ply\n") || contents.starts_with("ply\r");
+}
 
 PlyContents parse_ply(std::string_view contents, const std::string& file, const std::optional<FileLength>& unit) {
   const PlyHeader header = parse_ply_header(contents, file);

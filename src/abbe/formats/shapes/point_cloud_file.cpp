@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "abbe/formats/files/file_extension.h"
+#include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/shapes/obj_file.h"
@@ -89,6 +90,9 @@ PointCloudFile parse_point_cloud(std::string_view contents, const std::string& f
   }
   if (extension == ".stl" || is_binary_stl(contents)) {
     throw InputError({file, 0, 0, ""}, "this is an STL file, a mesh", "a point cloud: XYZ, CSV, PLY or OBJ");
+  }
+  if (file == kStandardInput && extension != ".xyz") {
+    refuse_contents(file, contents, "a point cloud", {".xyz", ".csv", ".ply", ".obj"});
   }
   if (extension == ".ply") throw InputError({file, 1, 0, ""}, "this is not a PLY file", "a first line 'ply'");
   result.unit = agreed_unit(std::nullopt, options.unit, file);

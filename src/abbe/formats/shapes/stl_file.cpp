@@ -293,6 +293,28 @@ bool is_binary_stl(std::string_view contents) {
   return contents.size() >= kHeader && kHeader + std::uint64_t{kFacet} * stated_facets(contents) == contents.size();
 }
 
+bool begins_like_binary_stl(std::string_view contents) {
+  if (contents.size() < kHeader || stated_facets(contents) == 0) return false;
+  // Most headers are a text with zeros or blanks behind; the number of triangles has a zero byte at least. Files of
+  // other programs mostly begin with a byte that no text has.
+  const std::string_view header = contents.substr(0, kHeader);
+  if (header.find('\0') == std::string_view::npos) return false;
+  const auto is_text = [](char c) { return c == '\0' || (c >= ' ' && c <= '~'); };
+  if (!is_text(header.front())) return false;
+  std::array<float, 12> facet{};
+  const std::size_t there = std::min(facet.size(), (contents.size() - kHeader) / sizeof(float));
+  std::memcpy(facet.data(), contents.data() + kHeader, there * sizeof(float));
+  bool any = false;
+  for (std::size_t k = 0; k < there; ++k) {
+    // Whole numbers and halves of doubles would be tiny, packed data anything.
+    const float magnitude = std::abs(facet[k]);
+    const bool plausible = magnitude == 0 || (magnitude > 1e-20F && magnitude <= static_cast<float>(kLargestInput));
+    if (!plausible && !(k < 3 && std::isnan(magnitude))) return false;
+    any = any || magnitude > 0;
+  }
+  return any || (there < facet.size() && std::all_of(header.begin(), header.begin() + 80, is_text));
+}
+
 bool is_ascii_stl(std::string_view contents) {
   while (!contents.empty() && is_blank(contents.front())) contents.remove_prefix(1);
   if (contents.size() < 5 || !is_word(contents.substr(0, 5), "solid")) return false;

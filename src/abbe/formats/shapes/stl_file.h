@@ -10,6 +10,9 @@ namespace abbe {
 /// True if the contents can be a binary STL file: the number of triangles in it agrees with its length. That decides
 /// before the word "solid", with which the header of a binary file may begin too.
 bool is_binary_stl(std::string_view contents);
+/// True if the contents begin like a binary STL file, of whatever length: header, number of triangles and, as far as it
+/// is there, a facet with numbers that coordinates have.
+bool begins_like_binary_stl(std::string_view contents);
 /// True if the contents begin like an ascii STL file.
 bool is_ascii_stl(std::string_view contents);
 
