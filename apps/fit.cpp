@@ -10,6 +10,7 @@
 
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/formats/text/file_unit.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
 #include "abbe/study/fitted_points.h"
@@ -77,7 +78,7 @@ std::vector<double> held_radii(const FitCommand& command, std::size_t count) {
 
 PointCloudOptions reading_options(const FitCommand& command) {
   PointCloudOptions options;
-  if (!command.unit.empty()) options.unit = file_length_named(command.unit);
+  options.unit = file_length_named(command.unit);
   options.threads = command.threads;
   return options;
 }
@@ -171,7 +172,7 @@ void add_fit_command(CommandLine& line) {
   add_number(app, "--u-point-um", Quantity::length, "um", {0, 1e6}, command->sigma,
              "Standard uncertainty of a point across the shape; default: from the residuals");
   app->add_option("--unit", command->unit, "Unit of files that state none: mm (default), m, inch")
-      ->check(one_of({"mm", "m", "inch"}));
+      ->check(one_of(file_length_names()));
   app->add_output_file("--residuals", command->residuals, "CSV file to write: the points with their deviation_mm");
   app->add_output_folder("-o,--output", command->options.output,
                          "Results folder to write: evaluation.json, plot.svg, report.html; default: print only");

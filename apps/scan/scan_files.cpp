@@ -1,35 +1,27 @@
 #include "scan/scan_files.h"
 
-#include <optional>
-
+#include "abbe/formats/text/file_unit.h"
 #include "options.h"
 
 namespace abbe {
-namespace {
-
-std::optional<FileLength> unit_of(const std::string& name) {
-  return name.empty() ? std::nullopt : file_length_named(name);
-}
-
-}  // namespace
 
 PointCloudFile ScanFiles::read_scan() const {
   PointCloudOptions options;
-  options.unit = unit_of(scan_unit);
+  options.unit = file_length_named(scan_unit);
   options.threads = threads;
   return read_point_cloud(scan, options);
 }
 
 MeshFile ScanFiles::read_part() const {
   step.require_step_among({part});
-  return step.read(part, unit_of(part_unit), threads);
+  return step.read(part, file_length_named(part_unit), threads);
 }
 
 void add_scan_files(Subcommand* command, ScanFiles& files) {
   command->add_input_file("scan", files.scan, "Points of the scan (.csv .xyz .ply .obj; docs/geometry-files.md)")
       ->required();
   command->add_input_file("part", files.part, "Surface of the part (.stl .ply .obj .step)")->required();
-  const Check units = one_of({"mm", "m", "inch"});
+  const Check units = one_of(file_length_names());
   command->add_option("--scan-unit", files.scan_unit, "Unit of a scan file that states none (mm)")->check(units);
   command->add_option("--part-unit", files.part_unit, "Unit of a part file that states none (mm)")->check(units);
   files.step.add_to(command);

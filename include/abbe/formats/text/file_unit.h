@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace abbe {
 
@@ -24,6 +25,8 @@ struct FileUnit {
 /// "mm", "m", "inch".
 std::string_view file_length_name(FileLength length);
 std::optional<FileLength> file_length_named(std::string_view name);
+/// The names of all, for options.
+std::vector<std::string> file_length_names();
 /// mm in one unit.
 double millimetres(FileLength length);
 

@@ -2,11 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cassert>
 
 #include "abbe/formats/text/input_error.h"
 
 namespace abbe {
+namespace {
+
+constexpr std::array kFileLengths = {FileLength::millimetre, FileLength::metre, FileLength::inch};
+
+}  // namespace
 
 std::string_view file_length_name(FileLength length) {
   switch (length) {
@@ -22,10 +28,16 @@ std::string_view file_length_name(FileLength length) {
 }
 
 std::optional<FileLength> file_length_named(std::string_view name) {
-  for (const FileLength length : {FileLength::millimetre, FileLength::metre, FileLength::inch}) {
+  for (const FileLength length : kFileLengths) {
     if (name == file_length_name(length)) return length;
   }
   return std::nullopt;
+}
+
+std::vector<std::string> file_length_names() {
+  std::vector<std::string> names;
+  for (const FileLength length : kFileLengths) names.emplace_back(file_length_name(length));
+  return names;
 }
 
 double millimetres(FileLength length) {
