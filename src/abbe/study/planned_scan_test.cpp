@@ -34,12 +34,27 @@ TEST(PlannedScanOfAPart, CoversItAndNeedsTheRequestNoLonger) {
   const PlannedScan planned = [&] { return plan_part_scan(pyramid_to_scan(), {.progress = progress}); }();
   EXPECT_EQ(told, planned.plan.faces.size());
   EXPECT_GT(planned.plan.points(), 10U);
-  EXPECT_EQ(planned.is_complete(), planned.plan.missed_places() + planned.plan.blocked_links == 0);
+  EXPECT_TRUE(planned.is_complete());
   EXPECT_THAT(planned_scan_text(planned), HasSubstr("pyramid.stl"));
   EXPECT_THAT(planned_scan_program(planned), HasSubstr("scan of pyramid.stl on " + planned.machine.name));
   EXPECT_THAT(planned_scan_csv(planned), testing::StartsWith("time_s,"));
   EXPECT_EQ(planned_scan_json(planned), planned_scan_json(plan_part_scan(pyramid_to_scan())));
   EXPECT_THAT(planned_scan_page(planned), HasSubstr("pyramid.stl"));
+}
+
+TEST(PlannedScanOfAPart, IsIncompleteWherePlacesAreNotReachedOrAWayIsNotClear) {
+  ScanRequest request = pyramid_to_scan();
+  PlannedScan planned = plan_part_scan(request);
+  ASSERT_TRUE(planned.is_complete());
+  planned.plan.blocked_links = 1;
+  EXPECT_FALSE(planned.is_complete());
+  // Faces that want the probe above this are out of reach, the others are not.
+  request.machine.axes[request.machine.find_axis("Z")].travel_max = 5;
+  planned = plan_part_scan(request);
+  EXPECT_GT(planned.plan.points(), 0U);
+  EXPECT_GT(planned.plan.missed_places(), 0U);
+  EXPECT_EQ(planned.plan.blocked_links, 0U);
+  EXPECT_FALSE(planned.is_complete());
 }
 
 TEST(PlannedScanOfAPart, IsStopped) {
