@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "abbe/formats/readings/instrument_file.h"
@@ -50,6 +51,15 @@ std::shared_ptr<Instrument> read_tracking_interferometer(TomlTable& table, const
 
 /// Body by `key`: "bed", "workpiece" or "tool".
 Body read_body(TomlTable& table, std::string_view key, Body otherwise);
+
+/// Key of a body, and the body where the key is missing.
+struct BodyField {
+  std::string_view key;
+  Body otherwise;
+};
+
+/// The bodies of the two ends of an instrument. @throws InputError where they are one body
+std::pair<Body, Body> read_bodies(TomlTable& table, const BodyField& one, const BodyField& other);
 
 /// Refuses an instrument whose two ends are on one body.
 void refuse_same_body(TomlTable& table, Body a, Body b);

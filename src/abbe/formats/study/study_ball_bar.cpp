@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include "abbe/formats/study/study_instrument.h"
 #include "abbe/formats/study/study_quantity.h"
 #include "abbe/instruments/ball_bar.h"
@@ -7,9 +9,8 @@ namespace abbe {
 std::shared_ptr<Instrument> read_ball_bar(TomlTable& table, const InstrumentContext& context) {
   BallBarSetup setup;
   setup.name = context.name;
-  setup.spindle_body = read_body(table, "spindle_ball_on", Body::tool);
-  setup.table_body = read_body(table, "balls_on", Body::workpiece);
-  refuse_same_body(table, setup.spindle_body, setup.table_body);
+  std::tie(setup.spindle_body, setup.table_body) =
+      read_bodies(table, {"spindle_ball_on", Body::tool}, {"balls_on", Body::workpiece});
   setup.spindle_ball = read_setup_point(table, "spindle_ball", Knowledge::exact, context.simulated);
   setup.length_deviation =
       read_setup_number(table, "length_deviation", Quantity::length, Knowledge::exact, context.simulated, 0.0);

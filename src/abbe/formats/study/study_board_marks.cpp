@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include "abbe/formats/study/study_direction.h"
 #include "abbe/formats/study/study_instrument.h"
 #include "abbe/formats/study/study_quantity.h"
@@ -15,9 +17,8 @@ std::shared_ptr<Instrument> read_board_marks(TomlTable& table, const InstrumentC
       table.word_or("measure", 0, {"points", "lines", "points-and-widths", "lines-and-widths", "widths"});
   setup.position = positions[measure];
   setup.width = measure >= 2;
-  setup.beam_body = read_body(table, "beam_on", Body::tool);
-  setup.board_body = read_body(table, "boards_on", Body::workpiece);
-  refuse_same_body(table, setup.beam_body, setup.board_body);
+  std::tie(setup.beam_body, setup.board_body) =
+      read_bodies(table, {"beam_on", Body::tool}, {"boards_on", Body::workpiece});
   setup.focus = read_setup_point(table, "focus", Knowledge::exact, simulated);
   setup.beam = read_direction(table, "beam", Eigen::Vector3d::UnitZ());
   setup.beam_tilt_first =

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <tuple>
+
 #include "abbe/formats/study/study_direction.h"
 #include "abbe/formats/study/study_instrument.h"
 #include "abbe/formats/study/study_quantity.h"
@@ -56,9 +58,8 @@ DialIndicatorsSetup::Arrangement read_arrangement(TomlTable& table, std::string 
 std::shared_ptr<Instrument> read_dials(TomlTable& table, const InstrumentContext& context) {
   DialIndicatorsSetup setup;
   setup.name = context.name;
-  setup.carriage_body = read_body(table, "dials_on", Body::tool);
-  setup.face_body = read_body(table, "faces_on", Body::workpiece);
-  refuse_same_body(table, setup.carriage_body, setup.face_body);
+  std::tie(setup.carriage_body, setup.face_body) =
+      read_bodies(table, {"dials_on", Body::tool}, {"faces_on", Body::workpiece});
   TomlTable noise = table.table("noise");
   setup.noise = read_noise(noise, "indication", Quantity::length);
   setup.flatness = noise.size_or("flatness", Quantity::length, 0);

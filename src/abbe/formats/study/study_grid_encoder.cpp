@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include "abbe/formats/study/study_instrument.h"
 #include "abbe/formats/study/study_quantity.h"
 #include "abbe/formats/text/toml_vector.h"
@@ -9,9 +11,8 @@ std::shared_ptr<Instrument> read_grid_encoder(TomlTable& table, const Instrument
   const bool simulated = context.simulated;
   GridEncoderSetup setup;
   setup.name = context.name;
-  setup.head_body = read_body(table, "head_on", Body::tool);
-  setup.grid_body = read_body(table, "grid_on", Body::workpiece);
-  refuse_same_body(table, setup.head_body, setup.grid_body);
+  std::tie(setup.head_body, setup.grid_body) =
+      read_bodies(table, {"head_on", Body::tool}, {"grid_on", Body::workpiece});
   setup.head = read_setup_point(table, "head", Knowledge::exact, simulated);
   setup.scale_x = read_setup_number(table, "scale_x", Quantity::length_per_length, Knowledge::exact, simulated, 0.0);
   setup.scale_y = read_setup_number(table, "scale_y", Quantity::length_per_length, Knowledge::exact, simulated, 0.0);

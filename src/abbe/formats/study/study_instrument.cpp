@@ -42,6 +42,12 @@ Body read_body(TomlTable& table, std::string_view key, Body otherwise) {
   return static_cast<Body>(table.word_or(key, static_cast<std::size_t>(otherwise), {"bed", "workpiece", "tool"}));
 }
 
+std::pair<Body, Body> read_bodies(TomlTable& table, const BodyField& one, const BodyField& other) {
+  const Body first = read_body(table, one.key, one.otherwise), second = read_body(table, other.key, other.otherwise);
+  refuse_same_body(table, first, second);
+  return {first, second};
+}
+
 void refuse_same_body(TomlTable& table, Body a, Body b) {
   if (a == b) {
     table.fail("", "both ends of the instrument are on the same body, so that no axis moves between them",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
 
 #include "abbe/formats/study/study_instrument.h"
 #include "abbe/formats/study/study_quantity.h"
@@ -74,9 +75,8 @@ InterferometerRun read_run(TomlTable& table, const InstrumentContext& context) {
   const bool simulated = context.simulated;
   InterferometerRun run;
   run.name = table.text("name");
-  run.moving_body = read_body(table, "moving_on", Body::tool);
-  run.reference_body = read_body(table, "reference_on", Body::workpiece);
-  refuse_same_body(table, run.moving_body, run.reference_body);
+  std::tie(run.moving_body, run.reference_body) =
+      read_bodies(table, {"moving_on", Body::tool}, {"reference_on", Body::workpiece});
   run.optic = read_setup_point(table, "optic", Knowledge::exact, simulated);
   run.origin = read_setup_point(table, "origin", Knowledge::exact, simulated, Eigen::Vector3d::Zero());
   run.direction = vector_of(table.numbers("direction", Quantity::dimensionless, 3));

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <tuple>
 
 #include "abbe/formats/study/study_direction.h"
 #include "abbe/formats/study/study_instrument.h"
@@ -12,10 +13,9 @@ std::shared_ptr<Instrument> read_level(TomlTable& table, const InstrumentContext
   const bool simulated = context.simulated;
   ElectronicLevelSetup setup;
   setup.name = context.name;
-  setup.body = read_body(table, "level_on", Body::workpiece);
   setup.relative = table.boolean_or("relative", false);
-  setup.reference_body = read_body(table, "reference_on", Body::bed);
-  refuse_same_body(table, setup.body, setup.reference_body);
+  std::tie(setup.body, setup.reference_body) =
+      read_bodies(table, {"level_on", Body::workpiece}, {"reference_on", Body::bed});
   if (!setup.relative && setup.reference_body != Body::bed) {
     table.fail("reference_on", "belongs to a level that is read against another", "relative = true");
   }
@@ -49,9 +49,8 @@ std::shared_ptr<Instrument> read_autocollimator(TomlTable& table, const Instrume
   };
   AutocollimatorSetup setup;
   setup.name = context.name;
-  setup.mirror_body = read_body(table, "mirror_on", Body::workpiece);
-  setup.collimator_body = read_body(table, "autocollimator_on", Body::bed);
-  refuse_same_body(table, setup.mirror_body, setup.collimator_body);
+  std::tie(setup.mirror_body, setup.collimator_body) =
+      read_bodies(table, {"mirror_on", Body::workpiece}, {"autocollimator_on", Body::bed});
   setup.beam = read_direction(table, "beam");
   setup.first = read_direction(table, "first");
   if (!(setup.beam.cross(setup.first).norm() > 1e-3 * setup.beam.norm() * setup.first.norm())) {

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 #include "abbe/formats/study/study_direction.h"
 #include "abbe/formats/study/study_instrument.h"
@@ -218,9 +219,8 @@ void read_placement(TomlTable& table, const Machine& machine, PolygonGaugeSetup&
     table.fail("rotary_axis", fmt::format("the machine has no rotary axis {}", name),
                names.empty() ? "a machine with one" : "one of " + names);
   }
-  placement.table_body = read_body(table, "prism_on", Body::workpiece);
-  placement.sensor_body = read_body(table, "sensors_on", Body::bed);
-  refuse_same_body(table, placement.table_body, placement.sensor_body);
+  std::tie(placement.table_body, placement.sensor_body) =
+      read_bodies(table, {"prism_on", Body::workpiece}, {"sensors_on", Body::bed});
   if (const auto centre = table.optional_numbers("centre", Quantity::length, 3)) placement.centre = vector_of(*centre);
   placement.top = read_direction(table, "top", machine.axes[placement.axis].direction);
   const bool across_x = std::abs(placement.top.normalized().x()) < 0.5;

@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include "abbe/formats/study/study_direction.h"
 #include "abbe/formats/study/study_instrument.h"
 #include "abbe/formats/study/study_quantity.h"
@@ -30,9 +32,8 @@ RTestSetup::Probe read_probe(TomlTable& table, bool simulated) {
 std::shared_ptr<Instrument> read_r_test(TomlTable& table, const InstrumentContext& context) {
   RTestSetup setup;
   setup.name = context.name;
-  setup.nest_body = read_body(table, "nest_on", Body::workpiece);
-  setup.sphere_body = read_body(table, "spheres_on", Body::tool);
-  refuse_same_body(table, setup.nest_body, setup.sphere_body);
+  std::tie(setup.nest_body, setup.sphere_body) =
+      read_bodies(table, {"nest_on", Body::workpiece}, {"spheres_on", Body::tool});
   setup.nest = read_setup_point(table, "nest", Knowledge::open, context.simulated);
   setup.sphere_radius =
       read_setup_number(table, "sphere_radius", Quantity::length, Knowledge::exact, context.simulated, 11.0);

@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include "abbe/formats/study/study_direction.h"
 #include "abbe/formats/study/study_instrument.h"
 #include "abbe/formats/study/study_quantity.h"
@@ -29,9 +31,8 @@ std::shared_ptr<Instrument> read_surface_probe(TomlTable& table, const Instrumen
   SurfaceProbeSetup setup;
   setup.name = context.name;
   setup.standard = static_cast<Standard>(table.word("standard", {"cylinder", "sphere", "plane"}));
-  setup.probe_body = read_body(table, "probe_on", Body::tool);
-  setup.standard_body = read_body(table, "standard_on", Body::workpiece);
-  refuse_same_body(table, setup.probe_body, setup.standard_body);
+  std::tie(setup.probe_body, setup.standard_body) =
+      read_bodies(table, {"probe_on", Body::tool}, {"standard_on", Body::workpiece});
   setup.zero = read_setup_point(table, "zero", Knowledge::exact, context.simulated, Eigen::Vector3d::Zero());
   setup.beam = read_direction(table, "beam", -Eigen::Vector3d::UnitZ());
   setup.beam_first = read_setup_number(table, "beam_first", Quantity::angle, Knowledge::exact, context.simulated, 0.0);

@@ -1,3 +1,5 @@
+#include <tuple>
+
 #include "abbe/formats/study/study_instrument.h"
 #include "abbe/formats/study/study_quantity.h"
 #include "abbe/instruments/touch_probe.h"
@@ -31,9 +33,8 @@ std::shared_ptr<Instrument> read_touch_probe(TomlTable& table, const InstrumentC
   setup.name = context.name;
   setup.measure = static_cast<TouchProbeSetup::Measure>(table.word_or("measure", 0, {"centre", "touch"}));
   setup.frame = static_cast<TouchProbeSetup::Frame>(table.word_or("frame", 0, {"probe", "artefact"}));
-  setup.probe_body = read_body(table, "probe_on", Body::tool);
-  setup.artefact_body = read_body(table, "artefact_on", Body::workpiece);
-  refuse_same_body(table, setup.probe_body, setup.artefact_body);
+  std::tie(setup.probe_body, setup.artefact_body) =
+      read_bodies(table, {"probe_on", Body::tool}, {"artefact_on", Body::workpiece});
   setup.tip = read_setup_point(table, "tip", Knowledge::exact, context.simulated);
   setup.tip_radius = read_radius(table, "tip_radius", context.simulated, 3);
   setup.scale =

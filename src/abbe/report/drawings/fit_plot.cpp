@@ -67,30 +67,26 @@ EvaluationPlot fit_plot(const FitRequest& request, const ShapeFit& fit, const Fi
   const auto is_drawn = [&](double value) {
     return request.choice.method != FitMethod::robust || (value >= low && value <= high);
   };
-  if (round) {
-    PolarPlot plot(request.title, value_label);
-    std::vector<PolarPoint> all, touching;
+  // `all`: no points yet, of the type that the plot takes; `line`: draws one at a deviation.
+  const auto drawn = [&](auto& plot, auto all, const auto& line) {
+    auto touching = all;
     for (const std::size_t k : thinned(values)) {
       if (is_drawn(values[k])) all.push_back({place[order[k]], values[k]});
     }
     for (const std::size_t k : contacts) touching.push_back({place[k], 1e3 * deviations[k]});
     plot.points(all, Marker::circle, {PlotColour::first}, "points");
     if (!touching.empty()) plot.points(touching, Marker::cross, {PlotColour::second, 2}, "touching");
-    plot.circle(1e3 * fit.largest, "", {PlotColour::soft, 1, true, 1});
-    plot.circle(1e3 * fit.smallest, "", {PlotColour::soft, 1, true, 1});
-    return {"plot", "", plot.picture()};
+    for (const double end : {fit.largest, fit.smallest}) line(1e3 * end, PlotStyle{PlotColour::soft, 1, true, 1});
+    return EvaluationPlot{"plot", "", plot.picture()};
+  };
+  if (round) {
+    PolarPlot plot(request.title, value_label);
+    return drawn(plot, std::vector<PolarPoint>(),
+                 [&](double value, const PlotStyle& style) { plot.circle(value, "", style); });
   }
   XyPlot plot(request.title, label, value_label);
-  std::vector<PlotPoint> all, touching;
-  for (const std::size_t k : thinned(values)) {
-    if (is_drawn(values[k])) all.push_back({place[order[k]], values[k]});
-  }
-  for (const std::size_t k : contacts) touching.push_back({place[k], 1e3 * deviations[k]});
-  plot.points(all, Marker::circle, {PlotColour::first}, "points");
-  if (!touching.empty()) plot.points(touching, Marker::cross, {PlotColour::second, 2}, "touching");
-  plot.level(1e3 * fit.largest, "", {PlotColour::soft, 1, true, 1});
-  plot.level(1e3 * fit.smallest, "", {PlotColour::soft, 1, true, 1});
-  return {"plot", "", plot.picture()};
+  return drawn(plot, std::vector<PlotPoint>(),
+               [&](double value, const PlotStyle& style) { plot.level(value, "", style); });
 }
 
 }  // namespace abbe
