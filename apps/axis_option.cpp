@@ -48,4 +48,11 @@ HeldAxis axis_option(const Machine& machine, const std::string& option, const st
   return {given.axis, given.numbers[0] * given.unit};
 }
 
+std::vector<HeldAxis> axis_options(const Machine& machine, const std::string& option,
+                                   const std::vector<std::string>& texts) {
+  std::vector<HeldAxis> given;
+  for (const std::string& text : texts) given.push_back(axis_option(machine, option, text));
+  return given;
+}
+
 }  // namespace abbe

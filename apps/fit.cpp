@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <sstream>
@@ -22,6 +21,8 @@
 
 namespace abbe {
 namespace {
+
+constexpr const char* kOneRadius = "a number of mm above zero";
 
 struct FitCommand {
   EvaluationOptions options;
@@ -56,7 +57,7 @@ std::optional<Eigen::Vector3d> held_direction(const FitCommand& command) {
   if (command.direction.empty()) return {};
   const char* const expected = "three numbers, not all zero: 0,0,1";
   const std::vector<double> d = numbers(command.direction, "--fixed-direction", expected);
-  if (d.size() != 3 || !(Eigen::Vector3d(d[0], d[1], d[2]).norm() > 0)) {
+  if (d.size() != 3) {
     throw InputError({.field = "--fixed-direction"},
                      fmt::format("'{}' is not a direction", command.direction.substr(0, 60)), expected);
   }
@@ -65,15 +66,9 @@ std::optional<Eigen::Vector3d> held_direction(const FitCommand& command) {
 
 std::vector<double> held_radii(const FitCommand& command, std::size_t count) {
   if (command.radii.empty()) return {};
-  const std::string expected = count == 1 ? std::string("a number of mm above zero")
-                                          : fmt::format("{} numbers of mm above zero, one per file", count);
-  std::vector<double> radii = numbers(command.radii, "--fixed-radius-mm", expected);
-  const bool positive = std::all_of(radii.begin(), radii.end(), [](double r) { return r > 0; });
-  if (radii.size() != count || !positive) {
-    throw InputError({.field = "--fixed-radius-mm"}, fmt::format("'{}' is not valid", command.radii.substr(0, 60)),
-                     expected);
-  }
-  return radii;
+  return numbers(
+      command.radii, "--fixed-radius-mm",
+      count == 1 ? std::string(kOneRadius) : fmt::format("{} numbers of mm above zero, one per file", count));
 }
 
 PointCloudOptions reading_options(const FitCommand& command) {
@@ -115,6 +110,10 @@ FitChoice choice_of(const FitCommand& command) {
   choice.options.threads = command.threads;
   choice.options.constraints.direction = held_direction(command);
   const std::vector<double> radii = held_radii(command, 1);
+  if (radii.size() > 1) {
+    throw InputError({.field = "--fixed-radius-mm"}, fmt::format("'{}' is not valid", command.radii.substr(0, 60)),
+                     kOneRadius);
+  }
   if (!radii.empty()) choice.options.constraints.radius = radii[0];
   if (command.half_angle > 0) choice.options.constraints.half_angle = command.half_angle;
   return choice;

@@ -58,8 +58,8 @@ PathRequest request_of(const PathCommand& command) {
   request.feed = command.feed_mm_per_min / 60;
   request.retract = command.retract_mm;
   request.tolerance = 1e-3 * command.tolerance_um;
-  for (const std::string& text : command.hold) request.held.push_back(axis_option(request.machine, "--hold", text));
-  for (const std::string& text : command.start) request.start.push_back(axis_option(request.machine, "--start", text));
+  request.held = axis_options(request.machine, "--hold", command.hold);
+  request.start = axis_options(request.machine, "--start", command.start);
   return request;
 }
 

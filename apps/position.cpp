@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/text/input_error.h"
@@ -26,22 +24,18 @@ struct PositionCommand {
 };
 
 PositionsRequest request_of(const PositionCommand& command) {
-  PositionsRequest request;
-  request.file = command.file;
-  request.scans = read_scanner_positioning(command.file);
-  const std::optional<WorkpieceScan>& workpiece = request.scans.workpiece;
-  if (!command.output.empty() && !workpiece) {
-    throw InputError({.field = "--output"}, "there is no workpiece to be placed",
-                     "a table [workpiece] in " + command.file);
-  }
   if (command.output.empty() && !command.maps.empty()) {
     throw InputError({.field = "--maps"}, "there is no placement whose matrix maps that way", "with --output");
   }
-  command.step.require_step_among({workpiece ? workpiece->part : std::filesystem::path()});
-  if (workpiece && !workpiece->part.empty()) {
-    request.part = command.step.read(workpiece->part);
-    request.scan = read_point_cloud(workpiece->scan);
+  PositionsRequest request = read_positions_request(command.file, [&](const std::string& part) {
+    command.step.require_step_among({part});
+    return command.step.read(part);
+  });
+  if (!command.output.empty() && !request.scans.workpiece) {
+    throw InputError({.field = "--output"}, "there is no workpiece to be placed",
+                     "a table [workpiece] in " + command.file);
   }
+  if (!request.part) command.step.require_step_among({});
   return request;
 }
 

@@ -13,7 +13,6 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/study/corrected_program.h"
-#include "abbe/study/correction_limits.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/gcode_options.h"
@@ -35,7 +34,6 @@ int run_gcode(const GcodeOptions& options) {
   request.machine = read_machine(options.machine);
   const Machine& machine = request.machine;
   const ErrorsFile errors = read_errors_for_use(options.errors, machine, options.accept_misfit);
-  check_leave_out(options.leave_out_factor, errors, options.errors);
   request.errors = errors.errors;
   request.covariance = errors.covariance;
   request.program_file = options.program;
@@ -49,7 +47,7 @@ int run_gcode(const GcodeOptions& options) {
   const std::size_t size = program.text().size();
   request.limits = gcode_limits(options, size);
   request.correction = gcode_correction_options(options);
-  request.limit_um = options.limit_um.value_or(0);
+  request.limit_um = options.limit_um;
 
   std::optional<StreamedFile> out;
   if (!options.output.empty()) refuse_input_as_output(options.output);

@@ -2,14 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "abbe/formats/nc/path_program.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/study/correction_limits.h"
 #include "axis_option.h"
 
 namespace abbe {
@@ -39,13 +35,6 @@ void read_start(const std::string& text, const Machine& machine, const WordAxes&
   }
   throw InputError({.field = "--start " + text}, fmt::format("'{}' is not a word of an axis of the machine", name),
                    "WORD_unit=position, such as X_mm=100 or C_deg=30");
-}
-
-double positive(const char* option, double value, const char* unit) {
-  if (!(value > 0) || !std::isfinite(value)) {
-    throw InputError({.field = option}, fmt::format("{} is not above zero", value), unit);
-  }
-  return value;
 }
 
 }  // namespace
@@ -119,28 +108,16 @@ NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& 
 
 ProgramLimits gcode_limits(const GcodeOptions& options, std::size_t size) {
   const double megabytes = 1e-6 * static_cast<double>(size);
-  ProgramLimits limits{200 + 20 * megabytes, 5 + 0.1 * megabytes};
-  constexpr double kMost = 1e9;
-  if (options.max_output_mb) {
-    limits.megabytes = std::min(kMost, positive("--max-output-mb", *options.max_output_mb, "a size in MB"));
-  }
-  if (options.max_minutes) {
-    limits.minutes = std::min(kMost, positive("--max-minutes", *options.max_minutes, "a time in min"));
-  }
-  return limits;
+  return {options.max_output_mb.value_or(200 + 20 * megabytes), options.max_minutes.value_or(5 + 0.1 * megabytes)};
 }
 
 ProgramCorrectionOptions gcode_correction_options(const GcodeOptions& options) {
   ProgramCorrectionOptions correction;
-  correction.tolerance.position = 1e-3 * positive("--tolerance-um", options.tolerance_um, "um");
-  correction.rapid_tolerance = 1e-3 * positive("--rapid-tolerance-um", options.rapid_tolerance_um, "um");
-  correction.tolerance.orientation =
-      1e-6 * positive("--orientation-tolerance-urad", options.orientation_tolerance_urad, "urad");
-  correction.inverse.largest_turn = kDegree * positive("--largest-turn-deg", options.largest_turn_deg, "deg");
-  if (options.dead_band_um != 0) {
-    correction.reversal_dead_band = 1e-3 * positive("--reversal-dead-band-um", options.dead_band_um, "um");
-  }
-  correction.limit = 1e-3 * refusal_limit("--limit-um", options.limit_um, "um");
+  correction.tolerance.position = 1e-3 * options.tolerance_um;
+  correction.rapid_tolerance = 1e-3 * options.rapid_tolerance_um;
+  correction.tolerance.orientation = 1e-6 * options.orientation_tolerance_urad;
+  correction.inverse.largest_turn = kDegree * options.largest_turn_deg;
+  correction.reversal_dead_band = 1e-3 * options.dead_band_um;
   return correction;
 }
 

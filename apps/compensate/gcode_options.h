@@ -32,9 +32,8 @@ AllowedProblems allowed_problems(const GcodeOptions& options);
 /// Axes of the program's words. @throws InputError if one is of the wrong kind, or if there is none
 WordAxes gcode_words(const GcodeOptions& options, const Machine& machine);
 NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& machine, const WordAxes& words);
-/// @param size  of the program, bytes @throws InputError for numbers that are not above zero
+/// @param size  of the program, bytes
 ProgramLimits gcode_limits(const GcodeOptions& options, std::size_t size);
-/// @throws InputError for numbers out of range
 ProgramCorrectionOptions gcode_correction_options(const GcodeOptions& options);
 
 }  // namespace abbe

@@ -16,7 +16,6 @@
 #include "abbe/formats/machine/map_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/study/correction_limits.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/table_options.h"
@@ -83,8 +82,8 @@ std::vector<std::string> write_tables(const TableCommand& command, const Control
 void add_settings(const TableCommand& command, ControlTableRequest& request) {
   const auto given = [&](TableSetting setting) { return command.given.contains(setting); };
   const TableFormat& format = table_format(command.format);
-  request.reference = held_axes_option(request.machine, "--at", command.at);
-  request.reference_position = held_axes_option(request.machine, "--reference-position", command.reference_position);
+  request.reference = axis_options(request.machine, "--at", command.at);
+  request.reference_position = axis_options(request.machine, "--reference-position", command.reference_position);
   request.axes = command.axes;
   request.names = axis_names_option(format, command.names);
   if (command.interpolation_um) request.tolerance_mm = 1e-3 * *command.interpolation_um;
@@ -104,11 +103,11 @@ int run_table(const TableCommand& command) {
   request.machine = read_machine(command.machine);
   const ErrorsFile file = read_errors_for_use(command.errors, request.machine, command.accept_misfit);
   request.errors = file.errors;
+  request.errors_file = command.errors;
   request.covariance = file.covariance;
   check_outputs(command);
-  check_leave_out(command.times_uncertainty, file, command.errors);
-  request.limit_mm = 1e-3 * refusal_limit("--limit-um", command.limit_um, "um");
-  request.limit_rad = 1e-6 * refusal_limit("--limit-urad", command.limit_urad, "urad");
+  if (command.limit_um) request.limit_mm = 1e-3 * *command.limit_um;
+  if (command.limit_urad) request.limit_rad = 1e-6 * *command.limit_urad;
   request.positions = command.positions;
   request.least_reduction = 0.01 * command.least_reduction_percent;
   request.leave_out_below = command.times_uncertainty;

@@ -41,7 +41,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -71,6 +70,7 @@ struct ControlTableRequest {
   std::string format;  ///< --for: TableFormat::name
   Machine machine;
   ErrorSet errors;
+  std::string errors_file;  ///< name for messages; may be empty
   /// [p, p] of errors.parameters(), mm and rad; 0 x 0: what the errors state of their standard uncertainties.
   Eigen::MatrixXd covariance;
 
@@ -91,10 +91,10 @@ struct ControlTableRequest {
   std::vector<HeldAxis> reference_position;  ///< --reference-position, FANUC: else zero, or the next end of the travel
 
   std::optional<std::size_t> positions;  ///< --positions: per axis of the grid of `poses`; else 9, or 5 above 3 axes
-  double limit_mm = std::numeric_limits<double>::infinity();   ///< --limit-um: a larger correction is refused
-  double limit_rad = std::numeric_limits<double>::infinity();  ///< --limit-urad
+  std::optional<double> limit_mm;        ///< --limit-um: a larger correction is refused; above zero
+  std::optional<double> limit_rad;       ///< --limit-urad
   double least_reduction = 0.01;  ///< --least-reduction-percent: share of the error below which tables are refused
-  double leave_out_below = 0;     ///< --leave-out-below-uncertainty: standard uncertainties; 0: nothing is left out
+  double leave_out_below = 0;     ///< --leave-out-below-uncertainty: standard uncertainties, at most 1000; 0: none
 };
 
 /// A file for the control, not yet written.

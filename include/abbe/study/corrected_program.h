@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,9 @@
 namespace abbe {
 
 /// An NC program that is to be corrected for the errors of a machine; lengths in mm, angles in rad.
+///
+/// Messages name a field by the option of `abbe compensate gcode` that sets it: --tolerance-um and the others of
+/// `correction`, --leave-out-below-uncertainty, --max-output-mb, --max-minutes, --limit-um.
 struct ProgramRequest {
   Machine machine;
   ErrorSet errors;
@@ -26,11 +30,11 @@ struct ProgramRequest {
   WordAxes words;                       ///< axes of the program's words
   NcProgramOptions text;                ///< how it is read and written; planes, tool_centre and budget are set here
   bool tool_centre = false;             ///< X Y Z are the functional point in the workpiece frame throughout
-  ProgramCorrectionOptions correction;  ///< tolerances and limits; budget is set here
+  ProgramCorrectionOptions correction;  ///< tolerances; limit and budget are set here
   double leave_out_factor = 0;          ///< errors below so many of their standard uncertainties are left out; 0: none
   ProgramLimits limits{1e9, 1e9};       ///< beyond which the program is given up
   AllowedProblems allowed;              ///< what it may meet without being refused
-  double limit_um = 0;                  ///< of corrections, as messages state it; 0: none
+  std::optional<double> limit_um;       ///< larger corrections of the functional point are refused; above zero
 };
 
 /// Corrects a program: the actual tool follows the commanded path within a tolerance. Opens no file.
@@ -39,8 +43,8 @@ struct ProgramRequest {
 /// @param program  its text
 /// @param write    takes the corrected program piece by piece; it is only good if nothing is refused in the end
 /// @param done     told how many bytes of the program are dealt with and not looked at again
-/// @throws InputError for errors that cannot be corrected on this machine, what the program says that is not
-///   understood, and tool centre moves for which the machine has no solution
+/// @throws InputError for numbers of the request that are out of range, errors that cannot be corrected on this
+///   machine, what the program says that is not understood, and tool centre moves for which the machine has no solution
 CorrectedProgram correct_program(const ProgramRequest& request, std::string_view program,
                                  const std::function<void(std::string_view text)>& write,
                                  const std::function<void(std::size_t end)>& done);

@@ -24,6 +24,7 @@
 //
 // Formats and method: docs/workpiece-position.md.
 
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -47,6 +48,11 @@ struct PositionsRequest {
 
 /// Opens the file, and those that it names. @throws InputError
 PositionsRequest read_positions_request(const std::string& file, const MeshFileOptions& options = {});
+
+/// The same.
+/// @param read_part  reads the mesh of the part; not called where there is none
+PositionsRequest read_positions_request(const std::string& file,
+                                        const std::function<MeshFile(const std::string& part)>& read_part);
 
 /// Where they stand. It needs nothing of the request that it answers.
 struct FoundPositions {

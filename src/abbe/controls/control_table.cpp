@@ -14,6 +14,7 @@
 #include "abbe/controls/travel_grid.h"
 #include "abbe/controls/useless_tables.h"
 #include "abbe/controls/writer_request.h"
+#include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/verify/error_map.h"
 
@@ -38,15 +39,10 @@ std::size_t positions_per_axis(const ControlTableRequest& request) {
   return positions;
 }
 
-void check_judgement(const ControlTableRequest& request, const Eigen::MatrixXd& covariance) {
-  if (!(request.leave_out_below >= 0)) {
-    throw InputError({.field = "--leave-out-below-uncertainty"}, "below zero", "a number of standard uncertainties");
-  }
-  if (request.leave_out_below > 0 && covariance.size() == 0) {
-    throw InputError({.field = "--leave-out-below-uncertainty"}, "no standard uncertainties are stated", "some");
-  }
-  if (!(request.limit_mm > 0)) throw InputError({.field = "--limit-um"}, "is not a limit", "a number above zero");
-  if (!(request.limit_rad > 0)) throw InputError({.field = "--limit-urad"}, "is not a limit", "a number above zero");
+void check_judgement(const ControlTableRequest& request) {
+  check_leave_out(request.leave_out_below, request.errors, request.covariance, request.errors_file);
+  if (request.limit_mm) refusal_limit("--limit-um", 1e3 * *request.limit_mm, "um");
+  if (request.limit_rad) refusal_limit("--limit-urad", 1e6 * *request.limit_rad, "urad");
   if (!(request.least_reduction >= 0 && request.least_reduction <= 1)) {
     throw InputError({.field = "--least-reduction-percent"}, "out of range", "0 to 100 %");
   }
@@ -175,8 +171,8 @@ ControlTables make_control_tables(const ControlTableRequest& request) {
   const TableFormat& format = table_format(request.format);
   const Machine& machine = request.machine;
   const ErrorSet& errors = request.errors;
+  check_judgement(request);
   const Eigen::MatrixXd covariance = request.covariance.size() > 0 ? request.covariance : stated_variances(errors);
-  check_judgement(request, covariance);
   Making making{request, format, covariance, writer_request(request, format), errors, {}, {}};
   ControlTables made;
   made.format = &format;

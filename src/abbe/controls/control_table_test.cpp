@@ -135,7 +135,12 @@ TEST_F(ControlTablesTest, ARequestThatTheControlCannotTakeIsRefusedWithTheOption
                         for (Axis& axis : request.machine.axes) axis.name += "1";
                       }),
               HasSubstr("--for: the machine has no linear axis X"));
-  EXPECT_THAT(refused("marlin", [](ControlTableRequest& request) { request.limit_mm = 0; }), HasSubstr("--limit-um"));
+  EXPECT_EQ(refused("marlin", [](ControlTableRequest& request) { request.limit_mm = 0; }),
+            "--limit-um: 0 is not a limit; expected a number above zero in um, or no limit at all");
+  EXPECT_EQ(refused("marlin", [](ControlTableRequest& request) { request.limit_rad = -2e-6; }),
+            "--limit-urad: -2 is not a limit; expected a number above zero in urad, or no limit at all");
+  EXPECT_EQ(refused("linuxcnc", [](ControlTableRequest& request) { request.leave_out_below = -1; }),
+            "--leave-out-below-uncertainty: out of range; expected 0 to 1000 standard uncertainties");
 }
 
 }  // namespace

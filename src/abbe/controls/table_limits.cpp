@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "abbe/machine/axis_unit.h"
 #include "abbe/machine/position_words.h"
@@ -34,7 +35,9 @@ void check_limits(const ControlTableRequest& request, const CommandCorrection& c
   find_largest(request.machine, correction, made);
   const auto refuse = [&](double value, bool is_angle, const std::string& where) {
     const double scale = micro_per_unit(is_angle);
-    const double limit = scale * (is_angle ? request.limit_rad : request.limit_mm), shown = scale * value;
+    const std::optional<double>& asked = is_angle ? request.limit_rad : request.limit_mm;
+    if (!asked) return;
+    const double limit = scale * *asked, shown = scale * value;
     if (!(shown <= limit)) {
       const char* const unit = micro_unit(is_angle);
       made.refused.push_back(fmt::format("{:.3f} {} is above --limit-{} {:g}: {}", shown, unit, unit, limit, where));

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/words/corrected_poses_words.h"
-#include "abbe/study/correction_limits.h"
 
 namespace abbe {
 
 CorrectedCommands correct_commands(const CommandsRequest& request) {
-  check_leave_out(request.leave_out_factor, request.errors, request.errors_file);
+  check_leave_out(request.leave_out_factor, request.errors.errors, request.errors.covariance, request.errors_file);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   check_largest_turn(request.largest_turn);
   CorrectedCommands result;

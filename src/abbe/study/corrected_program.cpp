@@ -1,5 +1,7 @@
 #include "abbe/study/corrected_program.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -9,10 +11,34 @@
 #include "abbe/compensate/program/program_uncertainty.h"
 #include "abbe/compensate/program/tool_centre_moves.h"
 #include "abbe/errors/reversal.h"
+#include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
+
+constexpr double kMostOfALimit = 1e9;
+
+/// @param unit  of the option, in that of the value
+void require_above_zero(const char* option, double value, double unit, const char* expected) {
+  if (value > 0 && std::isfinite(value)) return;
+  throw InputError({.field = option}, fmt::format("{:g} is not above zero", value / unit), expected);
+}
+
+void check_program_request(const ProgramRequest& request) {
+  check_leave_out(request.leave_out_factor, request.errors, request.covariance, request.errors_file);
+  require_above_zero("--max-output-mb", request.limits.megabytes, 1, "a size in MB");
+  require_above_zero("--max-minutes", request.limits.minutes, 1, "a time in min");
+  const ProgramCorrectionOptions& correction = request.correction;
+  require_above_zero("--tolerance-um", correction.tolerance.position, 1e-3, "um");
+  require_above_zero("--rapid-tolerance-um", correction.rapid_tolerance, 1e-3, "um");
+  require_above_zero("--orientation-tolerance-urad", correction.tolerance.orientation, 1e-6, "urad");
+  require_above_zero("--largest-turn-deg", correction.inverse.largest_turn, kDegree, "deg");
+  if (correction.reversal_dead_band != 0) {
+    require_above_zero("--reversal-dead-band-um", correction.reversal_dead_band, 1e-3, "um");
+  }
+}
 
 void state_uncertainties(const ProgramRequest& request, const Eigen::MatrixXd& covariance, CorrectedProgram& result) {
   const Machine& machine = request.machine;
@@ -39,6 +65,8 @@ void state_uncertainties(const ProgramRequest& request, const Eigen::MatrixXd& c
 CorrectedProgram correct_program(const ProgramRequest& request, std::string_view program,
                                  const std::function<void(std::string_view text)>& write,
                                  const std::function<void(std::size_t end)>& done) {
+  check_program_request(request);
+  const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   const Machine& machine = request.machine;
   const Eigen::MatrixXd covariance = parameter_covariance(request.errors, request.covariance);
   CorrectedProgram result;
@@ -47,12 +75,14 @@ CorrectedProgram correct_program(const ProgramRequest& request, std::string_view
     result.left_out = leave_out_uncertain(machine, corrected_errors, covariance, request.leave_out_factor);
   }
   const MachinePlanes planes(machine, request.words);
-  ProgramBudget budget(static_cast<std::size_t>(1e6 * request.limits.megabytes), 60 * request.limits.minutes);
+  ProgramBudget budget(static_cast<std::size_t>(1e6 * std::min(request.limits.megabytes, kMostOfALimit)),
+                       60 * std::min(request.limits.minutes, kMostOfALimit));
   NcProgramOptions text_options = request.text;
   text_options.planes = &planes;
   text_options.tool_centre = request.tool_centre;
   text_options.budget = &budget;
   ProgramCorrectionOptions correction_options = request.correction;
+  correction_options.limit = 1e-3 * limit_um;
   correction_options.budget = &budget;
   ProgramCorrection correction(machine, corrected_errors, request.words, correction_options);
   if (!correction.problem().empty()) throw InputError({.file = request.errors_file}, correction.problem());
@@ -68,7 +98,7 @@ CorrectedProgram correct_program(const ProgramRequest& request, std::string_view
   }
   state_uncertainties(request, covariance, result);
   if (result.text.spent == ProgramBudget::Spent::nothing) {
-    result.refused = reasons_to_refuse(request.limit_um, request.allowed, machine, result.report);
+    result.refused = reasons_to_refuse(request.limit_um.value_or(0), request.allowed, machine, result.report);
   } else {
     result.refused = {given_up_words(request.program_file, request.limits, result.text)};
   }

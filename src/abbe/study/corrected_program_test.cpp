@@ -3,11 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/text/message_of.h"
+#include "abbe/geometry/angle_units.h"
 
 namespace abbe {
 namespace {
@@ -61,7 +65,6 @@ TEST(CorrectedProgramOfText, IsRefusedAboveTheLimitAndGivenUpBeyondIts) {
   ProgramRequest request = trunnion_program();
   CorrectedProgram result;
   request.limit_um = 0.01;
-  request.correction.limit = 1e-5;
   corrected(request, kMoves, result);
   ASSERT_EQ(result.refused.size(), 1U);
   EXPECT_THAT(result.refused[0], HasSubstr("correction above the limit of 0.01 um"));
@@ -70,6 +73,34 @@ TEST(CorrectedProgramOfText, IsRefusedAboveTheLimitAndGivenUpBeyondIts) {
   corrected(request, kMoves, result);
   ASSERT_EQ(result.refused.size(), 1U);
   EXPECT_THAT(result.refused[0], HasSubstr("--max-output-mb allows more"));
+}
+
+TEST(CorrectedProgramOfText, NumbersOutOfRangeAreRefusedWithTheOptionThatSetsThem) {
+  const auto problem = [](const auto& change) {
+    ProgramRequest request = trunnion_program();
+    request.errors_file = "e.toml";
+    change(request);
+    CorrectedProgram result;
+    return message_of([&] { corrected(request, kMoves, result); });
+  };
+  EXPECT_EQ(problem([](ProgramRequest& r) { r.correction.tolerance.position = -2e-3; }),
+            "--tolerance-um: -2 is not above zero; expected um");
+  EXPECT_EQ(problem([](ProgramRequest& r) { r.correction.rapid_tolerance = 0; }),
+            "--rapid-tolerance-um: 0 is not above zero; expected um");
+  EXPECT_EQ(problem([](ProgramRequest& r) { r.correction.tolerance.orientation = std::nan(""); }),
+            "--orientation-tolerance-urad: nan is not above zero; expected urad");
+  EXPECT_EQ(problem([](ProgramRequest& r) { r.correction.inverse.largest_turn = -kDegree; }),
+            "--largest-turn-deg: -1 is not above zero; expected deg");
+  EXPECT_EQ(problem([](ProgramRequest& r) { r.correction.reversal_dead_band = -1e-3; }),
+            "--reversal-dead-band-um: -1 is not above zero; expected um");
+  EXPECT_EQ(problem([](ProgramRequest& r) { r.limits.megabytes = 0; }),
+            "--max-output-mb: 0 is not above zero; expected a size in MB");
+  EXPECT_EQ(problem([](ProgramRequest& r) { r.limits.minutes = std::numeric_limits<double>::infinity(); }),
+            "--max-minutes: inf is not above zero; expected a time in min");
+  EXPECT_EQ(problem([](ProgramRequest& r) { r.limit_um = 0; }),
+            "--limit-um: 0 is not a limit; expected a number above zero in um, or no limit at all");
+  EXPECT_EQ(problem([](ProgramRequest& r) { r.leave_out_factor = 1001; }),
+            "--leave-out-below-uncertainty: out of range; expected 0 to 1000 standard uncertainties");
 }
 
 }  // namespace

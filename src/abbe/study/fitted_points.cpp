@@ -28,12 +28,18 @@ std::string name_among(const std::map<std::string, Value>& all, Value wanted) {
 
 void check_held_direction(const std::optional<Eigen::Vector3d>& direction) {
   if (!direction || (direction->allFinite() && direction->norm() > 0)) return;
-  throw InputError({.field = "--fixed-direction"}, "is not a direction", "three numbers, not all zero: 0,0,1");
+  throw InputError({.field = "--fixed-direction"},
+                   fmt::format("'{},{},{}' is not a direction", direction->x(), direction->y(), direction->z()),
+                   "three numbers, not all zero: 0,0,1");
 }
 
-void check_held_radius(double radius) {
-  if (radius > 0 && std::isfinite(radius)) return;
-  throw InputError({.field = "--fixed-radius-mm"}, fmt::format("{} is not valid", radius), "mm above zero");
+/// @param count  how many there have to be
+void check_held_radii(const std::vector<double>& radii, std::size_t count) {
+  const auto is_valid = [](double radius) { return radius > 0 && std::isfinite(radius); };
+  if (radii.size() == count && std::all_of(radii.begin(), radii.end(), is_valid)) return;
+  throw InputError({.field = "--fixed-radius-mm"}, fmt::format("'{}' is not valid", fmt::join(radii, ",")),
+                   count == 1 ? std::string("a number of mm above zero")
+                              : fmt::format("{} numbers of mm above zero, one per file", count));
 }
 
 void check_choice(const FitChoice& choice) {
@@ -45,7 +51,7 @@ void check_choice(const FitChoice& choice) {
     throw InputError({.field = "--fixed-radius-mm"}, "there is no radius" + words + " to hold",
                      "it with a circle, sphere or cylinder");
   }
-  if (held.radius) check_held_radius(*held.radius);
+  if (held.radius) check_held_radii({*held.radius}, 1);
   if (held.direction && (kind == ShapeKind::sphere || kind == ShapeKind::circle2)) {
     throw InputError({.field = "--fixed-direction"}, "there is no direction" + words + " to hold",
                      "it with a line, plane, circle in space, cylinder or cone");
@@ -144,11 +150,7 @@ std::string fitted_points_csv(const FittedShape& fitted) { return point_cloud_cs
 
 FittedCircles fit_circles(CirclesFitRequest request) {
   check_held_direction(request.options.direction);
-  for (const double radius : request.options.radii) check_held_radius(radius);
-  if (!request.options.radii.empty() && request.options.radii.size() != request.circles.size()) {
-    throw InputError({.field = "--fixed-radius-mm"}, fmt::format("there are {} radii", request.options.radii.size()),
-                     fmt::format("one per circle, {}", request.circles.size()));
-  }
+  if (!request.options.radii.empty()) check_held_radii(request.options.radii, request.circles.size());
   FitRequest asked;
   asked.title = "Coaxial circles";
   asked.choice.options.sigma = request.options.sigma;

@@ -93,12 +93,14 @@ TEST(FittedPoints, CirclesAboutOneAxis) {
   EXPECT_NEAR(fitted.fit.heights[1] - fitted.fit.heights[0], 30, 1e-9);
   EXPECT_EQ(fitted.report.title, "Coaxial circles");
   request.options.radii = {20};
-  EXPECT_THAT(message_of([&] { fit_circles(request); }), HasSubstr("--fixed-radius-mm: there are 1 radii"));
+  EXPECT_THAT(message_of([&] { fit_circles(request); }),
+              HasSubstr("--fixed-radius-mm: '20' is not valid; expected 2 numbers of mm above zero, one per file"));
   request.options.radii = {20, -1};
-  EXPECT_THAT(message_of([&] { fit_circles(request); }), HasSubstr("--fixed-radius-mm: -1 is not valid"));
+  EXPECT_THAT(message_of([&] { fit_circles(request); }), HasSubstr("--fixed-radius-mm: '20,-1' is not valid"));
   request.options = {};
   request.options.direction = Eigen::Vector3d::Zero();
-  EXPECT_THAT(message_of([&] { fit_circles(request); }), HasSubstr("--fixed-direction: is not a direction"));
+  EXPECT_THAT(message_of([&] { fit_circles(request); }),
+              HasSubstr("--fixed-direction: '0,0,0' is not a direction; expected three numbers"));
 }
 
 TEST(FittedPoints, FiguresAreJudgedByTheTolerancesOfTheRequest) {
@@ -129,7 +131,8 @@ TEST(FittedPoints, WhatAShapeDoesNotHaveCannotBeHeld) {
   radius(with_radius.choice);
   EXPECT_TRUE(fit_points(with_radius).is_ok());
   const auto zero = [](FitChoice& choice) { choice.options.constraints.radius = 0; };
-  EXPECT_THAT(problem(ShapeKind::circle2, zero), HasSubstr("--fixed-radius-mm: 0 is not valid"));
+  EXPECT_THAT(problem(ShapeKind::circle2, zero),
+              HasSubstr("--fixed-radius-mm: '0' is not valid; expected a number of mm above zero"));
   const auto up = [](FitChoice& choice) { choice.options.constraints.direction = Eigen::Vector3d::UnitZ(); };
   EXPECT_THAT(problem(ShapeKind::sphere, up), HasSubstr("there is no direction of sphere to hold"));
   EXPECT_THAT(problem(ShapeKind::line2, up), HasSubstr("--fixed-direction: it has no part in x, y"));

@@ -42,11 +42,16 @@ PlacedWorkpiece lay_on_mesh(const PositionsRequest& request, const JobOptions& o
 }  // namespace
 
 PositionsRequest read_positions_request(const std::string& file, const MeshFileOptions& options) {
+  return read_positions_request(file, [&](const std::string& part) { return read_mesh(part, options); });
+}
+
+PositionsRequest read_positions_request(const std::string& file,
+                                        const std::function<MeshFile(const std::string& part)>& read_part) {
   PositionsRequest request;
   request.file = file;
   request.scans = read_scanner_positioning(file);
   if (request.scans.workpiece && !request.scans.workpiece->part.empty()) {
-    request.part = read_mesh(request.scans.workpiece->part, options);
+    request.part = read_part(request.scans.workpiece->part.string());
     request.scan = read_point_cloud(request.scans.workpiece->scan);
   }
   return request;

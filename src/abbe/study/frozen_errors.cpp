@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "abbe/compensate/program/program_uncertainty.h"
+#include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/machine/position_words.h"
 #include "abbe/report/version.h"
-#include "abbe/study/correction_limits.h"
 
 namespace abbe {
 namespace {
@@ -59,7 +59,7 @@ std::string nothing_reached(const FrozenCompensation& frozen) {
 }  // namespace
 
 FrozenErrors freeze_errors(const FreezeRequest& request) {
-  check_leave_out(request.leave_out_factor, request.errors, request.errors_file);
+  check_leave_out(request.leave_out_factor, request.errors.errors, request.errors.covariance, request.errors_file);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   FreezeOptions options = freeze_options(request);
   FrozenErrors result;

@@ -1,4 +1,4 @@
-#include "abbe/study/correction_limits.h"
+#include "abbe/formats/machine/correction_limits.h"
 
 #include <fmt/format.h>
 
@@ -25,12 +25,13 @@ void check_largest_turn(double largest_turn) {
     throw InputError({.field = "--largest-turn-deg"}, "out of range", "more than 0 and at most 10 degrees");
 }
 
-void check_leave_out(double factor, const ErrorsFile& errors, const std::string& file) {
+void check_leave_out(double factor, const ErrorSet& errors, const Eigen::MatrixXd& covariance,
+                     const std::string& file) {
   const char* const option = "--leave-out-below-uncertainty";
   if (!(factor >= 0 && factor <= 1000)) {
     throw InputError({.field = option}, "out of range", "0 to 1000 standard uncertainties");
   }
-  if (factor > 0 && errors.covariance.size() == 0 && stated_variances(errors.errors).size() == 0) {
+  if (factor > 0 && covariance.size() == 0 && stated_variances(errors).size() == 0) {
     throw InputError({.file = file}, "no standard uncertainties are stated", fmt::format("some, for {}", option));
   }
 }

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 
-#include "abbe/formats/machine/errors_file.h"
+#include "abbe/errors/error_set.h"
 
 // What may be asked of a correction, whatever is corrected. Messages name a field by the option that sets it.
 
@@ -19,7 +20,8 @@ double refusal_limit(const char* option, const std::optional<double>& limit, con
 void check_largest_turn(double largest_turn);
 
 /// What --leave-out-below-uncertainty needs: a factor of 0 (leave out nothing) to 1000, and stated uncertainties.
-/// @param file  name of the errors file. @throws InputError
-void check_leave_out(double factor, const ErrorsFile& errors, const std::string& file);
+/// @param covariance  of the errors' parameters; 0 x 0: what the errors state themselves counts
+/// @param file        name of the errors file. @throws InputError
+void check_leave_out(double factor, const ErrorSet& errors, const Eigen::MatrixXd& covariance, const std::string& file);
 
 }  // namespace abbe
