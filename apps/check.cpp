@@ -36,7 +36,7 @@ void require_machine_file(const std::string& file) {
     refuse_contents(file, contents.text(), "a file",
                     {".toml", ".abbec", ".stl", ".ply", ".obj", ".step", ".csv", ".xyz"});
   }
-  throw InputError({.file = file}, "its name does not tell of what kind it is",
+  throw InputError({.file = file}, "its name does not tell its kind",
                    "a name ending in .abbec, .stl, .ply, .obj, .step, .stp, .xyz, .asc, .pts or .csv, or --machine "
                    "with a machine file");
 }

@@ -105,14 +105,14 @@ TEST_F(StandardInput, ContentsThatCannotBeToldAreRefusedWithWhatToDo) {
   const std::string text = folder.write("text", "hello\n").string(), scan = kExamples + "scan/bracket-scan.csv",
                     part = kExamples + "scan/bracket.stl",
                     engraver = kExamples + "machines/yin-engraver-u.machine.toml",
-                    untold = "abbe: <stdin>: of what kind it is cannot be told from its contents; expected ",
+                    untold = "abbe: <stdin>: its kind cannot be recognised from its contents; expected ",
                     mesh =
                         "a mesh that begins like an STL file ('solid', or 80 bytes and the number of triangles), a "
                         "PLY file ('ply'), an OBJ file ('v X Y Z') or a STEP file ('ISO-10303-21;')",
                     cloud =
                         "a point cloud that begins like an XYZ file (numbers), a CSV file ('x_mm,y_mm,z_mm'), a "
                         "PLY file ('ply') or an OBJ file ('v X Y Z')",
-                    named = "; or the name of a file, whose ending tells its kind\n";
+                    named = "; or give the name of a file, whose extension tells its kind\n";
   const auto said = [&](const std::string& file, const std::string& words) {
     const CommandResult result = abbe_reads(file, words);
     EXPECT_EQ(result.exit_code, ExitCode::bad_input);
@@ -143,7 +143,7 @@ TEST_F(StandardInput, ContentsThatCannotBeToldAreRefusedWithWhatToDo) {
               HasSubstr("<stdin>: begins like an STL file; expected a curve"));
   // A file has a name, which has to tell.
   EXPECT_EQ(abbe({"check", "text"}).err,
-            "abbe: text: its name does not tell of what kind it is; expected a name ending in .abbec, .stl, .ply, "
+            "abbe: text: its name does not tell its kind; expected a name ending in .abbec, .stl, .ply, "
             ".obj, .step, .stp, .xyz, .asc, .pts or .csv, or --machine with a machine file\n");
   EXPECT_EQ(abbe({"check", "none"}).err, "abbe: none: there is no such file\n");
 }

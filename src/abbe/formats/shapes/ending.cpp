@@ -119,11 +119,11 @@ void refuse_contents(const std::string& file, std::string_view contents, std::st
     const bool is_last = &ending + 1 == endings.end();
     list += fmt::format("{}{} ({})", list.empty() ? "" : is_last ? " or " : ", ", kind->name, kind->beginning);
   }
-  throw InputError(
-      {.file = file},
-      found == nullptr ? std::string("of what kind it is cannot be told from its contents")
-                       : fmt::format("begins like {}", found->name),
-      fmt::format("{} that begins like {}; or the name of a file, whose ending tells its kind", expected, list));
+  throw InputError({.file = file},
+                   found == nullptr ? std::string("its kind cannot be recognised from its contents")
+                                    : fmt::format("begins like {}", found->name),
+                   fmt::format("{} that begins like {}; or give the name of a file, whose extension tells its kind",
+                               expected, list));
 }
 
 }  // namespace abbe

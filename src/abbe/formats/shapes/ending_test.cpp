@@ -78,8 +78,8 @@ TEST(EndingOfContents, ARefusalSaysWhatItIsAndWhatTheRightKindsBeginWith) {
     return message_of([&] { refuse_contents("<stdin>", contents, "a mesh", {".ply", ".obj"}); });
   };
   EXPECT_EQ(message("hello"),
-            "<stdin>: of what kind it is cannot be told from its contents; expected a mesh that begins like a PLY file "
-            "('ply') or an OBJ file ('v X Y Z'); or the name of a file, whose ending tells its kind");
+            "<stdin>: its kind cannot be recognised from its contents; expected a mesh that begins like a PLY file "
+            "('ply') or an OBJ file ('v X Y Z'); or give the name of a file, whose extension tells its kind");
   EXPECT_THAT(message("1 2 3"), HasSubstr("<stdin>: begins like an XYZ file; expected a mesh"));
 }
 
