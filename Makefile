@@ -7,7 +7,7 @@
 #   make test      set-up, all tests, the most important ones under the sanitizers too, short fuzzing
 #   make sanitize  all quick tests under the sanitizers; continuous integration runs it after make test
 #   make unit      build and run the tests of single folders
-#   make quick     the same with the tests of the command and of the pages
+#   make quick     the same, longer ones, and the tests of the command and of the pages
 #   make lint      formatting, structure and static analysis
 #   make format    rewrite the sources in the project's format
 #   make bench     speed and accuracy benchmarks
@@ -94,7 +94,7 @@ unit:
 quick:
 	@.ci/set-up test
 	@.ci/build --expect $(QUICK_MINUTES) "make $@ makes the development build and runs the quick tests" dev -DABBE_WERROR=ON
-	@ctest --preset dev -j $(TEST_JOBS) -L quick
+	@ctest --preset dev -j $(TEST_JOBS) -L 'unit|quick'
 
 lint:
 	@.ci/set-up lint

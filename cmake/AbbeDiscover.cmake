@@ -1,4 +1,4 @@
-# abbe_discover_tests(PROGRAM PREFIX LABELS TIMEOUT): the tests of a GoogleTest program in ctest.
+# abbe_discover_tests(PROGRAM PREFIX LABEL TIMEOUT): the tests of a GoogleTest program in ctest. LABEL: unit, quick or long.
 #
 # Each test is one of ctest's and runs in a process of its own. Under the sanitizers, where a process takes a tenth of a second
 # to start, the program is run as a whole, in ABBE_SHARDS parts, of which ctest runs several at a time.
@@ -21,13 +21,30 @@ set(abbe_not_sanitized
   WangBallBar.UncertaintyOfTheTraceIsThatOfItsScatterOverCampaigns
   YinMarks.OneFitOfMarksDeterminesAllSevenParametersBetterThanTheFiveSteps)
 
-function(abbe_discover_tests program prefix labels timeout)
+# Repetitions, many shapes, many commands: a second or more for each, half a minute for some, and two thirds of the time of
+# all unit tests. They are not in `make unit`, which is for every change, but in `make quick`.
+set(abbe_not_unit
+  ChainPlanJacobian.* DamagedStepFile.* EdgeSection.* EvaluationOfAContour.* FineRegistration.* FitRivals.* FitSimulation.*
+  FrozenErrorsOfARequest.* LeastSquaresFit.CovarianceIs* LineTables.* LiuPlan.* MonteCarlo.* MoveSplitting.*
+  OrderSelection.* ProgramCorrection.* ProgramReversals.* Registration.* ResultsFolder.WritersKilled* RobustFit.*
+  RobustMonteCarlo.* RuntimeTurns.* RuntimeUncertainty.* ScanRegistrationOfARequest.* StepFile.* WangBallBar.* YinMarks.*
+  YinResults.* YinSections.*)
+
+function(abbe_discover_tests program prefix label timeout)
+  set(labels ${label})
   if(prefix IN_LIST abbe_parts_prefixes)
     add_dependencies(abbe_parts ${program})
     list(APPEND labels parts)
   endif()
   if(NOT ABBE_SHARDS)
-    gtest_discover_tests(${program} TEST_PREFIX "${prefix}" DISCOVERY_MODE PRE_TEST PROPERTIES LABELS "${labels}" TIMEOUT ${timeout})
+    if(label STREQUAL unit)
+      list(JOIN abbe_not_unit ":" slow)
+      gtest_discover_tests(${program} TEST_PREFIX "${prefix}" DISCOVERY_MODE PRE_TEST TEST_FILTER "${slow}"
+        PROPERTIES LABELS quick TIMEOUT ${timeout})
+      set(filter TEST_FILTER "-${slow}")
+    endif()
+    gtest_discover_tests(${program} TEST_PREFIX "${prefix}" DISCOVERY_MODE PRE_TEST ${filter}
+      PROPERTIES LABELS ${label} TIMEOUT ${timeout})
     return()
   endif()
   list(JOIN abbe_not_sanitized ":" left_out)

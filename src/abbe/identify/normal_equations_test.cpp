@@ -127,8 +127,9 @@ TEST(NormalEquations, gradient_is_the_slope_of_the_robust_cost) {
 TEST(NormalEquations, every_number_of_threads_gives_the_same_bits) {
   std::vector<Eigen::VectorXd> estimates;
   std::vector<Eigen::MatrixXd> covariances;
-  for (const int threads : {1, 2, 3, 8}) {
-    FunctionObservations observations(5, 2, data(20000, 4), 0.05, wave_and_decay);
+  for (const int threads : {1, 3, 8}) {
+    // 48 pieces of 128 readings, and a last one that is shorter
+    FunctionObservations observations(5, 2, data(6200, 4), 0.05, wave_and_decay);
     observations.start({0.9, 2.1, 2.9, 4.2, 0.8});
     Problem problem = function_problem({&observations});
     IdentifyOptions options;
