@@ -1,18 +1,19 @@
 # abbe_library(NAME SOURCES a.cpp ... DEPENDS geometry ... [LINK lib ...] [PRIVATE_LINK lib ...] [TESTS a_test.cpp ...]
-#   [ALONE b.cpp ...])
+#   [ALONE b.cpp ...] [FAST pattern])
 #
 # One static library per folder of src/abbe. Its public headers are in include/abbe and are installed; those in src/abbe are
 # for the library itself and for tests. DEPENDS names other folders; TESTS are the unit tests that stand beside the
-# sources, built into one program per folder. ALONE are sources or tests that cannot share a unit (cmake/AbbeUnits.cmake).
+# sources, built into one program per folder. ALONE are sources or tests that cannot share a unit, FAST
+# the sources that take the time of users (cmake/AbbeUnits.cmake).
 include(AbbeUnits)
 include(AbbeFlags)
 include(AbbeDiscover)
 
 function(abbe_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LINK;PRIVATE_LINK;TESTS;TEST_LINK;ALONE" ${ARGN})
+  cmake_parse_arguments(ARG "" "FAST" "SOURCES;DEPENDS;LINK;PRIVATE_LINK;TESTS;TEST_LINK;ALONE" ${ARGN})
   if(ARG_SOURCES)
     add_library(abbe_${name} STATIC)
-    abbe_units(abbe_${name} ${PROJECT_SOURCE_DIR}/src SOURCES ${ARG_SOURCES} ALONE ${ARG_ALONE} PRECOMPILED abbe_precompiled)
+    abbe_units(abbe_${name} ${PROJECT_SOURCE_DIR}/src SOURCES ${ARG_SOURCES} ALONE ${ARG_ALONE} FAST "${ARG_FAST}" PRECOMPILED abbe_precompiled)
     set(scope PUBLIC)
     # In the static programs fmt and Highway are others (AbbeStatic.cmake); a consumer links the shared ones.
     list(TRANSFORM ARG_PRIVATE_LINK REPLACE "^fmt::fmt$" "$<BUILD_INTERFACE:abbe_fmt>;$<INSTALL_INTERFACE:fmt::fmt>")
