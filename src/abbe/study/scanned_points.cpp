@@ -12,6 +12,9 @@ namespace abbe {
 namespace {
 
 ProbeBeam probe_beam(const ScannedPointsRequest& request) {
+  if (!request.beam_zero.allFinite()) {
+    throw InputError({.field = "--beam-zero-mm"}, "not a place", "three finite numbers in mm");
+  }
   ProbeBeam beam;
   beam.zero = request.beam_zero;
   beam.direction = -request.machine.tool_direction;

@@ -26,7 +26,9 @@ using testing::HasSubstr;
 class PointsOfAProbe : public testing::Test {
  protected:
   void SetUp() override {
-    folder = test::empty_folder("abbe_scanned_points");
+    // Tests run side by side.
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder = test::empty_folder(("abbe_scanned_points_" + name).c_str());
     request.machine = read_machine(ABBE_SOURCE_DIR "/examples/machines/liu-scanner.machine.toml");
     request.readings = (folder / "r.csv").string();
     request.output = (folder / "p.csv").string();
@@ -104,6 +106,9 @@ TEST_F(PointsOfAProbe, WhatIsWrongIsNamedAndNothingIsWritten) {
     EXPECT_EQ(problem(), "--beam: the direction has no length; expected three numbers, not all of them zero");
   }
   request.beam.reset();
+  request.beam_zero = {std::numeric_limits<double>::infinity(), 0, 0};
+  EXPECT_EQ(problem(), "--beam-zero-mm: not a place; expected three finite numbers in mm");
+  request.beam_zero.setZero();
   for (const double highest : {1.0, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
     request.indication_range = {1, highest};
     EXPECT_EQ(problem(), "--indication-range-mm: the range is empty; expected the lower end first");
