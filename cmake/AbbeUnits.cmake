@@ -14,8 +14,8 @@ set(ABBE_BATCH 8 CACHE STRING "Sources in one unit")
 # ROOT is the include folder from which batches include the sources: paths of a clone do not get into the units, so that
 # ccache finds them in another clone. ALONE are sources that cannot share a unit: those that include themselves for every
 # instruction set (Highway), those compiled with options of their own, and those with a header that no other unit should
-# have to parse. FAST is a regular expression for the sources that optimised builds compile with -O3: GCC takes a third longer
-# for it than for -O2, and it makes kernels up to 1.8 times as fast (docs/performance.md). They have units of their own.
+# have to parse. FAST is a regular expression for the sources that optimised builds compile with -O3, which makes kernels up
+# to 1.8 times as fast as -O2 does (docs/performance.md). They have units of their own.
 function(abbe_units target root)
   cmake_parse_arguments(ARG "" "PRECOMPILED;FAST" "SOURCES;ALONE" ${ARGN})
   set(number 0)
