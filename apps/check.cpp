@@ -1,6 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
 
 #include "abbe/formats/files/file_extension.h"
 #include "abbe/formats/files/standard_input.h"
@@ -26,12 +31,46 @@ void refuse_if_given(const Option* option, const char* why) {
   if (option->count() > 0) throw InputError({.field = option->get_name()}, why, "no such option");
 }
 
+/// A kind of TOML file that `abbe check` does not take by itself, and what does.
+struct OtherKind {
+  std::string_view ending;
+  std::array<std::string_view, 2> lines;  ///< beginnings of lines that only such files have
+  const char* name;
+  const char* expected;
+};
+
+constexpr std::array<OtherKind, 4> kOtherKinds = {
+    {{".errors.toml",
+      {"[[motion]]", "[[location]]"},
+      "this is an errors file",
+      "--machine with the file of its machine, and --errors with this one"},
+     {".study.toml", {"[[setup]]", "[[identify]]"}, "this is a study", "abbe run with it, or abbe plan"},
+     {".placement.toml",
+      {"maps =", "translation_mm ="},
+      "this is the placement of a workpiece",
+      "abbe path --placement with it"},
+     {".positioning.toml",
+      {"sphere_radius_mm =", "sphere_height_mm ="},
+      "these are scans of targets",
+      "abbe position with it"}}};
+
+bool is_of_kind(const OtherKind& kind, const std::string& name, std::string_view contents) {
+  if (name.ends_with(kind.ending) || name == kind.ending.substr(1)) return true;
+  return std::any_of(kind.lines.begin(), kind.lines.end(), [&](std::string_view line) {
+    return contents.starts_with(line) || contents.find("\n" + std::string(line)) != std::string_view::npos;
+  });
+}
+
 /// What is neither a shape nor a frozen compensation is a machine file if it looks like one. @throws InputError
 void require_machine_file(const std::string& file) {
-  const std::string extension = file_extension(file);
-  if (extension == ".toml") return;
   const MappedFile contents(file);
-  if (ending_of(contents.text()) == ".toml") return;
+  if (file_extension(file) == ".toml" || ending_of(contents.text()) == ".toml") {
+    const std::string name = std::filesystem::path(file).filename().string();
+    for (const OtherKind& kind : kOtherKinds) {
+      if (is_of_kind(kind, name, contents.text())) throw InputError({.file = file}, kind.name, kind.expected);
+    }
+    return;
+  }
   if (file == kStandardInput) {
     refuse_contents(file, contents.text(), "a file",
                     {".toml", ".abbec", ".stl", ".ply", ".obj", ".step", ".csv", ".xyz"});

@@ -101,6 +101,21 @@ TEST_F(StandardInput, AFileThatWasCutShortIsStillOfItsKind) {
   EXPECT_THAT(checked("# a machine\nname = \"mill\"\nchain = \"w b"), HasSubstr("write --machine -\nabbe: <stdin>:3"));
 }
 
+TEST_F(StandardInput, FilesForOtherCommandsAreNotTakenForMachines) {
+  const std::string errors =
+                        "this is an errors file; expected --machine with the file of its machine, and --errors "
+                        "with this one\n",
+                    study = "this is a study; expected abbe run with it, or abbe plan\n";
+  for (const auto& [file, words] :
+       {std::pair{"compensate/trunnion.errors.toml", errors}, std::pair{"aguado/aguado.study.toml", study}}) {
+    const CommandResult read = abbe_reads(kExamples + file, "check -"), named = abbe({"check", kExamples + file});
+    EXPECT_EQ(read.exit_code, ExitCode::bad_input);
+    EXPECT_EQ(read.err, "abbe: <stdin>: " + words);
+    EXPECT_EQ(named.exit_code, ExitCode::bad_input);
+    EXPECT_EQ(named.err, "abbe: " + kExamples + file + ": " + words);
+  }
+}
+
 TEST_F(StandardInput, ContentsThatCannotBeToldAreRefusedWithWhatToDo) {
   const std::string text = folder.write("text", "hello\n").string(), scan = kExamples + "scan/bracket-scan.csv",
                     part = kExamples + "scan/bracket.stl",

@@ -23,7 +23,7 @@ constexpr double kMostOfALimit = 1e9;
 /// @param unit  of the option, in that of the value
 void require_above_zero(const char* option, double value, double unit, const char* expected) {
   if (value > 0 && std::isfinite(value)) return;
-  throw InputError({.field = option}, fmt::format("{:g} is not above zero", value / unit), expected);
+  throw InputError({.field = option}, fmt::format("{:g} is not a finite number above zero", value / unit), expected);
 }
 
 void check_program_request(const ProgramRequest& request) {
@@ -31,12 +31,12 @@ void check_program_request(const ProgramRequest& request) {
   require_above_zero("--max-output-mb", request.limits.megabytes, 1, "a size in MB");
   require_above_zero("--max-minutes", request.limits.minutes, 1, "a time in min");
   const ProgramCorrectionOptions& correction = request.correction;
-  require_above_zero("--tolerance-um", correction.tolerance.position, 1e-3, "um");
-  require_above_zero("--rapid-tolerance-um", correction.rapid_tolerance, 1e-3, "um");
-  require_above_zero("--orientation-tolerance-urad", correction.tolerance.orientation, 1e-6, "urad");
-  require_above_zero("--largest-turn-deg", correction.inverse.largest_turn, kDegree, "deg");
+  require_above_zero("--tolerance-um", correction.tolerance.position, 1e-3, "a length in um");
+  require_above_zero("--rapid-tolerance-um", correction.rapid_tolerance, 1e-3, "a length in um");
+  require_above_zero("--orientation-tolerance-urad", correction.tolerance.orientation, 1e-6, "an angle in urad");
+  require_above_zero("--largest-turn-deg", correction.inverse.largest_turn, kDegree, "an angle in deg");
   if (correction.reversal_dead_band != 0) {
-    require_above_zero("--reversal-dead-band-um", correction.reversal_dead_band, 1e-3, "um");
+    require_above_zero("--reversal-dead-band-um", correction.reversal_dead_band, 1e-3, "a length in um");
   }
 }
 
@@ -98,7 +98,7 @@ CorrectedProgram correct_program(const ProgramRequest& request, std::string_view
   }
   state_uncertainties(request, covariance, result);
   if (result.text.spent == ProgramBudget::Spent::nothing) {
-    result.refused = reasons_to_refuse(request.limit_um.value_or(0), request.allowed, machine, result.report);
+    result.refused = reasons_to_refuse(limit_um, request.allowed, machine, result.report);
   } else {
     result.refused = {given_up_words(request.program_file, request.limits, result.text)};
   }

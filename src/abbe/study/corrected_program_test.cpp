@@ -84,19 +84,19 @@ TEST(CorrectedProgramOfText, NumbersOutOfRangeAreRefusedWithTheOptionThatSetsThe
     return message_of([&] { corrected(request, kMoves, result); });
   };
   EXPECT_EQ(problem([](ProgramRequest& r) { r.correction.tolerance.position = -2e-3; }),
-            "--tolerance-um: -2 is not above zero; expected um");
+            "--tolerance-um: -2 is not a finite number above zero; expected a length in um");
   EXPECT_EQ(problem([](ProgramRequest& r) { r.correction.rapid_tolerance = 0; }),
-            "--rapid-tolerance-um: 0 is not above zero; expected um");
+            "--rapid-tolerance-um: 0 is not a finite number above zero; expected a length in um");
   EXPECT_EQ(problem([](ProgramRequest& r) { r.correction.tolerance.orientation = std::nan(""); }),
-            "--orientation-tolerance-urad: nan is not above zero; expected urad");
+            "--orientation-tolerance-urad: nan is not a finite number above zero; expected an angle in urad");
   EXPECT_EQ(problem([](ProgramRequest& r) { r.correction.inverse.largest_turn = -kDegree; }),
-            "--largest-turn-deg: -1 is not above zero; expected deg");
+            "--largest-turn-deg: -1 is not a finite number above zero; expected an angle in deg");
   EXPECT_EQ(problem([](ProgramRequest& r) { r.correction.reversal_dead_band = -1e-3; }),
-            "--reversal-dead-band-um: -1 is not above zero; expected um");
+            "--reversal-dead-band-um: -1 is not a finite number above zero; expected a length in um");
   EXPECT_EQ(problem([](ProgramRequest& r) { r.limits.megabytes = 0; }),
-            "--max-output-mb: 0 is not above zero; expected a size in MB");
+            "--max-output-mb: 0 is not a finite number above zero; expected a size in MB");
   EXPECT_EQ(problem([](ProgramRequest& r) { r.limits.minutes = std::numeric_limits<double>::infinity(); }),
-            "--max-minutes: inf is not above zero; expected a time in min");
+            "--max-minutes: inf is not a finite number above zero; expected a time in min");
   EXPECT_EQ(problem([](ProgramRequest& r) { r.limit_um = 0; }),
             "--limit-um: 0 is not a limit; expected a number above zero in um, or no limit at all");
   EXPECT_EQ(problem([](ProgramRequest& r) { r.leave_out_factor = 1001; }),

@@ -48,7 +48,7 @@ struct CorrectedProgram {
 std::string given_up_words(const std::string& program, const ProgramLimits& limits, const NcProgramResult& text);
 
 /// Reasons not to write the program that are not allowed.
-/// @param limit_um  of corrections, as it was asked for; 0: none
+/// @param limit_um  of corrections, as it was asked for; infinite: none
 std::vector<std::string> reasons_to_refuse(double limit_um, const AllowedProblems& allowed, const Machine& machine,
                                            const ProgramReport& report);
 
