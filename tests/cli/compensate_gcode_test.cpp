@@ -318,7 +318,7 @@ TEST_F(CompensateGcode, ProgramsThatDoNotEndAreGivenUpAndNothingIsWritten) {
   const CommandResult none = abbe(
       {"compensate", "gcode", "p.ngc", "--machine", machine, "--errors", errors, "--dry-run", "--max-minutes", "0"});
   EXPECT_EQ(none.exit_code, ExitCode::bad_input);
-  EXPECT_THAT(none.err, HasSubstr("--max-minutes: 0 is not above zero; expected a time in min"));
+  EXPECT_THAT(none.err, HasSubstr("--max-minutes: 0 is not a finite number above zero; expected a time in min"));
 }
 
 TEST_F(CompensateGcode, InputsAreNeverWritten) {
