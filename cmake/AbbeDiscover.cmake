@@ -21,8 +21,8 @@ set(abbe_not_sanitized
   WangBallBar.UncertaintyOfTheTraceIsThatOfItsScatterOverCampaigns
   YinMarks.OneFitOfMarksDeterminesAllSevenParametersBetterThanTheFiveSteps)
 
-# Repetitions, many shapes, many commands: a second or more for each, half a minute for some, and two thirds of the time of
-# all unit tests. They are not in `make unit`, which is for every change, but in `make quick`.
+# Slow tests, with many repetitions, shapes or commands: two thirds of the time of all unit tests. `make quick` runs them;
+# `make unit`, which is for every change, does not.
 set(abbe_not_unit
   ChainPlanJacobian.* DamagedStepFile.* EdgeSection.* EvaluationOfAContour.* FineRegistration.* FitRivals.* FitSimulation.*
   FrozenErrorsOfARequest.* LeastSquaresFit.CovarianceIs* LineTables.* LiuPlan.* MonteCarlo.* MoveSplitting.*

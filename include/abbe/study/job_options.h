@@ -8,14 +8,14 @@
 
 namespace abbe {
 
-/// What a job that takes long is done with besides its request.
+/// Options of a long job, besides its request.
 struct JobOptions {
-  /// Called during the job: done of total. What is counted, and by which thread it is called, is stated at each job.
+  /// Called during the job with the work done and its total. Each job states what is counted and which thread calls.
   std::function<void(std::size_t done, std::size_t total)> progress{};
-  std::stop_token stop{};  ///< looked at whenever progress is told
+  std::stop_token stop{};  ///< checked whenever progress is reported
 };
 
-/// For the work of a job to call with what is done: stops it where that was asked for, then tells the progress.
+/// A callback for the work of a job: stops it if that was requested, otherwise reports the progress.
 inline std::function<void(std::size_t done, std::size_t total)> stoppable_progress(const JobOptions& options) {
   return [options](std::size_t done, std::size_t total) {
     stop_if_asked(options.stop);

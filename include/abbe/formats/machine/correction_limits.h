@@ -6,7 +6,7 @@
 
 #include "abbe/errors/error_set.h"
 
-// What may be asked of a correction, whatever is corrected. Messages name a field by the option that sets it.
+// Limits that every kind of correction shares. Messages name a field by the option that sets it.
 
 namespace abbe {
 

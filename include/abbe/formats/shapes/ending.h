@@ -7,7 +7,7 @@
 
 namespace abbe {
 
-/// The ending of files that begin like these contents, also where the rest is missing: ".step", ".ply", ".stl",
+/// The extension of files that begin like these contents, even if the rest is missing: ".step", ".ply", ".stl",
 /// ".toml", ".csv", ".obj" or ".xyz"; empty where nothing tells.
 std::string ending_of(std::string_view contents);
 
@@ -21,8 +21,7 @@ std::string with_ending(const std::filesystem::path& path);
 /// Whether contents without a name can be an NC program: they are not of another kind, and do not begin with a word.
 bool can_be_program(std::string_view contents);
 
-/// Says of standard input that it is not what was expected, or that its kind cannot be told, and how files of the right
-/// kinds begin.
+/// Refuses standard input of a wrong or unknown kind, and says how files of the right kinds begin.
 /// @param expected  "a mesh"
 /// @param endings   of the right kinds: as above, ".abbec" or ".ngc"
 /// @throws InputError
