@@ -11,30 +11,29 @@
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/machine.h"
+#include "abbe/study/example_file_for_test.h"
 
 namespace abbe {
 namespace {
 
 using testing::HasSubstr;
 
-std::string path_example(const std::string& name) { return ABBE_SOURCE_DIR "/examples/" + name; }
-
 PathRequest engraved_regions() {
   PathRequest request;
-  request.machine = read_machine(path_example("machines/yin-engraver-u.machine.toml"));
+  request.machine = read_machine(test::example_file("machines/yin-engraver-u.machine.toml"));
   request.curve_file = "regions.ngc";
-  request.curve = read_curve(path_example("laser_engraver/regions.ngc"), request.machine);
+  request.curve = read_curve(test::example_file("laser_engraver/regions.ngc"), request.machine);
   request.retract = 20;
   return request;
 }
 
 PathRequest engraved_table() {
   PathRequest request;
-  request.machine = read_machine(path_example("machines/yin-engraver-u.machine.toml"));
+  request.machine = read_machine(test::example_file("machines/yin-engraver-u.machine.toml"));
   request.curve_file = "folder/table-a4.csv";
-  request.curve = read_curve(path_example("laser_engraver/table-a4.csv"), request.machine);
+  request.curve = read_curve(test::example_file("laser_engraver/table-a4.csv"), request.machine);
   request.placement_file = "part.placement.toml";
-  request.placement = read_placement(path_example("laser_engraver/part.placement.toml"));
+  request.placement = read_placement(test::example_file("laser_engraver/part.placement.toml"));
   return request;
 }
 
@@ -65,7 +64,7 @@ TEST(PlannedPathOfACurve, CommandsAreForTheCalibratedMachine) {
   PathRequest request = engraved_regions();
   const PlannedPath nominal = plan_path(request);
   request.errors_file = "linkage.errors.toml";
-  request.errors = read_errors(path_example("laser_engraver/linkage.errors.toml"), request.machine);
+  request.errors = read_errors(test::example_file("laser_engraver/linkage.errors.toml"), request.machine);
   const PlannedPath calibrated = plan_path(request);
   ASSERT_EQ(nominal.commands.size(), calibrated.commands.size());
   const std::size_t x = request.machine.find_axis("X"), c2 = request.machine.find_axis("C2");

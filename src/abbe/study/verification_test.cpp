@@ -10,6 +10,7 @@
 
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/message_of.h"
+#include "abbe/study/example_file_for_test.h"
 #include "abbe/study/verification_page.h"
 #include "abbe/study/verification_text.h"
 
@@ -18,18 +19,17 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string verify_example(const std::string& name) { return ABBE_SOURCE_DIR "/examples/" + name; }
-
 VerificationRequest trunnion() {
-  VerificationRequest request = read_verification({.machine = verify_example("machines/trunnion-mill.machine.toml"),
-                                                   .errors = verify_example("compensate/trunnion.errors.toml"),
-                                                   .truth = verify_example("verify/truth.errors.toml")});
+  VerificationRequest request = read_verification({.machine = test::example_file("machines/trunnion-mill.machine.toml"),
+                                                   .errors = test::example_file("compensate/trunnion.errors.toml"),
+                                                   .truth = test::example_file("verify/truth.errors.toml")});
   request.poses = 60;
   return request;
 }
 
 PieceToVerify cone(const Machine& machine) {
-  const std::string before = verify_example("verify/cone-before.csv"), after = verify_example("verify/cone-after.csv");
+  const std::string before = test::example_file("verify/cone-before.csv"),
+                    after = test::example_file("verify/cone-after.csv");
   return {ConeFrustum(), {before, read_trace(before, machine)}, {after, read_trace(after, machine)}};
 }
 

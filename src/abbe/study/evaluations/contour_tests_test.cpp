@@ -12,24 +12,23 @@
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/study/evaluations/evaluation.h"
+#include "abbe/study/example_file_for_test.h"
 
 namespace abbe {
 namespace {
 
 using testing::HasSubstr;
 
-std::string engraver_file(const std::string& name) { return ABBE_SOURCE_DIR "/examples/laser_engraver/" + name; }
-
 SectionsTest example_sections() {
   SectionsTest test;
-  test.readings = read_sections(engraver_file("sections.csv"));
+  test.readings = read_sections(test::example_file("laser_engraver/sections.csv"));
   return test;
 }
 
 ContourPointsTest example_points() {
   ContourPointsTest test;
-  test.readings = read_point_cloud(engraver_file("engraved.csv"));
-  test.pieces = read_commanded_pieces(engraver_file("table-a4.csv"));
+  test.readings = read_point_cloud(test::example_file("laser_engraver/engraved.csv"));
+  test.pieces = read_commanded_pieces(test::example_file("laser_engraver/table-a4.csv"));
   return test;
 }
 
@@ -91,14 +90,14 @@ TEST(EvaluationOfAContour, ByPointsSaysWhatTheirFileIs) {
 }
 
 TEST(EvaluationOfAContour, ACurveOfAxesNeedsTheirMachine) {
-  const std::string curve = engraver_file("regions.ngc");
+  const std::string curve = test::example_file("laser_engraver/regions.ngc");
   EXPECT_THAT(message_of([&] { read_commanded_pieces(curve); }),
               HasSubstr("regions.ngc:3: C2=0: the command of an axis, and no machine is given; expected --machine"));
   const std::string machine = ABBE_SOURCE_DIR "/examples/machines/yin-engraver-u.machine.toml";
   const std::vector<CommandPiece> pieces = read_commanded_pieces(curve, machine);
   EXPECT_GT(pieces.size(), 1U);
   EXPECT_THAT(message_of([&] { read_commanded_pieces(curve, machine, true); }), testing::StartsWith("--closed: "));
-  EXPECT_THAT(message_of([&] { read_commanded_pieces(engraver_file("engraved.csv")); }),
+  EXPECT_THAT(message_of([&] { read_commanded_pieces(test::example_file("laser_engraver/engraved.csv")); }),
               testing::Not(HasSubstr("--machine")));
 }
 
