@@ -34,7 +34,7 @@
 // errors holds what is wrong with a machine, and what it does to the tool:
 //   error_set.h, basis.h                error motions, location errors, reversal values and their names
 //   poses.h                             many poses: lists, grids, sources
-//   chain_plan.h                        actual poses and derivatives of millions of poses
+//   pose_model.h, chain_plan.h          actual poses and derivatives of millions of poses
 //   reversal.h, calibrated_machine.h    lost motion; a machine with its constant errors put into its geometry
 //   random_errors.h                     errors for simulations, of a size that is asked for
 

@@ -1,0 +1,107 @@
+#pragma once
+
+// Arrays of NumPy in and out of the library.
+//
+// Axis commands come as [axes] or [n, axes], float64, of any layout. Arrays whose columns are contiguous (Fortran
+// order) are used where they lie; of others, blocks of rows are transposed on the way. What comes out is allocated here
+// and given to Python without a copy; its first index is the pose, and each number of all poses is contiguous, as the
+// library has it.
+#include <nanobind/ndarray.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <vector>
+
+#include "abbe/errors/chain_plan.h"
+#include "abbe/errors/poses.h"
+#include "abbe/machine/machine.h"
+#include "bindings/bindings.h"
+
+namespace abbe::python {
+
+/// float64 of any shape and layout, not to be written to.
+using Numbers = nb::ndarray<const double, nb::device::cpu, nb::ro>;
+
+/// Anything that numpy.asarray(..., dtype=float64) takes; shown as ArrayLike in signatures.
+struct ArrayLike {
+  nb::handle source;
+  /// Itself where it is float64, else a copy. @throws InputError  it is no array of numbers. @param name  for messages
+  Numbers numbers(const char* name) const;
+};
+
+/// Axis commands of an argument.
+class Positions {
+ public:
+  /// @throws InputError for another number of axes, and for numbers that are not finite
+  Positions(const ArrayLike& argument, const Machine& machine, const char* name = "positions_mm_rad");
+
+  std::size_t count() const { return count_; }
+  bool single() const { return array_.ndim() == 1; }  ///< one pose without an index
+
+  /// The numbers of commands in a block: what is transposed stays in the first-level cache.
+  static constexpr std::size_t kBlock = 512;
+  /// Memory for blocks that have to be transposed.
+  struct Block {
+    std::array<const double*, kMaxAxes> axis;
+    std::vector<double> values;
+  };
+  /// Commands first .. first + count - 1 as the library takes them; count <= kBlock, or any if the columns are
+  /// contiguous.
+  PositionArrays block(std::size_t first, std::size_t count, Block& memory) const;
+  bool columns_are_contiguous() const { return axis_step_ == 0 || pose_step_ == 1; }
+  /// All of them, copied.
+  PoseList list() const;
+
+ private:
+  Numbers array_;
+  std::size_t count_ = 0, axes_ = 0;
+  std::int64_t pose_step_ = 0, axis_step_ = 0;  ///< in numbers
+};
+
+/// Calls work(first, count) for blocks of poses on several threads. The GIL must not be held.
+void for_each_block_of(std::size_t count, const std::function<void(std::size_t first, std::size_t count)>& work);
+
+/// An array that is being filled and then given to Python: [n] for each of `parts` numbers, number after number.
+template <class Number>
+class Columns {
+ public:
+  Columns(std::size_t parts, std::size_t count);
+  ~Columns();
+  Columns(const Columns&) = delete;
+  Columns& operator=(const Columns&) = delete;
+
+  Number* operator[](std::size_t part) { return data_ + part * count_; }
+  std::size_t count() const { return count_; }
+
+  /// As an array [n, shape...] of Python; without its first index if `single`. Afterwards this object is empty.
+  nb::object release(std::initializer_list<std::size_t> shape, bool single);
+
+ private:
+  Number* data_ = nullptr;
+  std::size_t parts_ = 0, count_ = 0;
+};
+extern template class Columns<double>;
+extern template class Columns<std::uint8_t>;
+
+/// A C-ordered array of Python that takes over these numbers; their number is the product of the shape.
+nb::object array_of(std::vector<double>&& values, std::initializer_list<std::size_t> shape);
+nb::object array_of(std::vector<std::uint8_t>&& values);
+nb::object array_of_bools(std::vector<std::uint8_t>&& values);
+
+}  // namespace abbe::python
+
+namespace nanobind::detail {
+
+template <>
+struct type_caster<abbe::python::ArrayLike> {
+  NB_TYPE_CASTER(abbe::python::ArrayLike, const_name("numpy.typing.ArrayLike"))
+  bool from_python(handle source, std::uint32_t, cleanup_list*) noexcept {
+    value.source = source;
+    return !source.is_none();
+  }
+};
+
+}  // namespace nanobind::detail

@@ -1,0 +1,16 @@
+#pragma once
+
+// The parts of the module, one function each.
+#include <nanobind/nanobind.h>
+
+namespace abbe::python {
+
+namespace nb = nanobind;
+
+void bind_input_error(nb::module_& module);
+void bind_machine(nb::module_& module);
+void bind_errors(nb::module_& module);
+void bind_poses(nb::module_& module);
+void bind_compensation(nb::module_& module);
+
+}  // namespace abbe::python
