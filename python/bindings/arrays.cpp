@@ -1,11 +1,12 @@
 #include "bindings/arrays.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
+#include <utility>
 
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/parallel_blocks.h"
@@ -29,13 +30,14 @@ Numbers ArrayLike::numbers(const char* name) const {
   Numbers array;
   if (nb::try_cast<Numbers>(source, array, false)) return array;
   try {
-    // Lists, other types of numbers, data frames.
-    const nb::object converted = nb::module_::import_("numpy").attr("asarray")(source, "float64");
+    // Lists, other types of numbers, data frames. What is not safe, such as texts and complex numbers, is refused.
+    const nb::object given = nb::module_::import_("numpy").attr("asarray")(source);
+    const nb::object converted = given.attr("astype")("float64", nb::arg("casting") = "same_kind");
     if (nb::try_cast<Numbers>(converted, array, false)) return array;
   } catch (nb::python_error& error) {
     if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
-    refuse(name, fmt::format("is no array of numbers ({})", nb::str(error.value()).c_str()),
-           "numbers that float64 can hold");
+    const nb::str words(error.value());
+    refuse(name, fmt::format("is no array of numbers ({})", words.c_str()), "numbers that float64 can hold");
   }
   refuse(name, "is no array of numbers", "numbers that float64 can hold");
 }
@@ -110,9 +112,14 @@ void for_each_block_of(std::size_t count, const std::function<void(std::size_t f
 
 template <class Number>
 Columns<Number>::Columns(std::size_t parts, std::size_t count) : parts_(parts), count_(count) {
-  const std::size_t bytes = std::max<std::size_t>(parts * count * sizeof(Number), 64);
-  data_ = static_cast<Number*>(std::malloc(bytes));
+  // Large arrays are fresh memory each time. In pages of 4 KiB, making them takes as long as computing what goes in.
+  constexpr std::size_t kHugePage = std::size_t{1} << 21, kLine = 64;
+  const std::size_t bytes = parts * count * sizeof(Number);
+  const std::size_t alignment = bytes >= 2 * kHugePage ? kHugePage : kLine;
+  data_ = static_cast<Number*>(
+      std::aligned_alloc(alignment, std::max(alignment, (bytes + alignment - 1) / alignment * alignment)));
   if (!data_) throw std::bad_alloc();
+  if (alignment == kHugePage) madvise(data_, bytes, MADV_HUGEPAGE);
 }
 
 template <class Number>

@@ -58,7 +58,7 @@ MachineInverse make_inverse(const MachineErrors& errors, const std::string& targ
 Corrections corrected(const MachineInverse& self, const Positions& positions,
                       const std::function<void(PositionArrays, std::size_t first, const CorrectedArrays&)>& work) {
   const std::size_t axes = self.machine.axes.size(), count = positions.count();
-  Columns<double> commands(axes, count), residual(2, count);
+  Columns<double> commands(axes, count), position_residual(1, count), orientation_residual(1, count);
   Columns<std::uint8_t> status(1, count);
   {
     const nb::gil_scoped_release release;
@@ -68,7 +68,7 @@ Corrections corrected(const MachineInverse& self, const Positions& positions,
       std::array<CorrectionStatus, Positions::kBlock> became;
       for (std::size_t i = 0; i < axes; ++i) out[i] = commands[i] + first;
       work(positions.block(first, number, memory), first,
-           {{out.data(), axes}, became.data(), residual[0] + first, residual[1] + first});
+           {{out.data(), axes}, became.data(), position_residual[0] + first, orientation_residual[0] + first});
       for (std::size_t k = 0; k < number; ++k) status[0][first + k] = static_cast<std::uint8_t>(became[k]);
     });
   }
@@ -76,15 +76,14 @@ Corrections corrected(const MachineInverse& self, const Positions& positions,
   for (std::size_t k = 0; k < count; ++k)
     reached[k] = reaches_point(static_cast<CorrectionStatus>(status[0][k])) ? 1 : 0;
   const bool single = positions.single();
-  nb::object residuals = residual.release({2}, false);
+  // Of a single pose: its number, not an array of one.
+  const auto element = [&](const nb::object& array) -> nb::object { return single ? array.attr("item")(0) : array; };
   Corrections result;
   result.positions_mm_rad = commands.release({axes}, single);
-  const nb::object reached_array = array_of_bools(std::move(reached)), status_array = status.release({}, false);
-  const auto column = [&](int index) { return residuals.attr("T")[nb::int_(index)]; };
-  result.reached = single ? nb::object(reached_array[0]) : reached_array;
-  result.status = single ? nb::object(status_array[0]) : status_array;
-  result.position_residual_mm = single ? nb::object(nb::object(column(0))[0]) : nb::object(column(0));
-  result.orientation_residual_rad = single ? nb::object(nb::object(column(1))[0]) : nb::object(column(1));
+  result.reached = element(array_of_bools(std::move(reached)));
+  result.status = element(status.release({}, false));
+  result.position_residual_mm = element(position_residual.release({}, false));
+  result.orientation_residual_rad = element(orientation_residual.release({}, false));
   return result;
 }
 

@@ -217,7 +217,8 @@ void bind_poses(nb::module_& module) {
               "[n] false where a command lies outside the range of an error motion, so that the pose is an\n"
               "extrapolation; None for nominal poses.")
       .def("__repr__", [](const Poses& poses) {
-        return fmt::format("<abbe.Poses, points_mm of shape {}>", nb::str(poses.points_mm.attr("shape")).c_str());
+        const nb::object shape = poses.points_mm.attr("shape");
+        return fmt::format("<abbe.Poses, points_mm of shape {}>", nb::str(shape).c_str());
       });
   nb::class_<Inverse>(module, "InverseSolutions", "Axis commands for targets.")
       .def_ro("positions_mm_rad", &Inverse::positions_mm_rad, nb::sig("def positions_mm_rad(self) -> numpy.ndarray"),
@@ -234,8 +235,8 @@ void bind_poses(nb::module_& module) {
       ">>> mill = abbe.Machine.from_chain(\"w X' Y' b Z t\")\n"
       ">>> errors = abbe.Errors(mill)\n"
       ">>> errors.add_location('EC0Y', value_urad=20)\n"
-      ">>> abbe.PoseModel(errors).deviations([[0, 200, 0]])[:, :3].round(6).tolist()\n"
-      "[[-0.004, 0.0, 0.0]]\n"
+      ">>> abbe.PoseModel(errors).deviations([[0, 200, 0]])[:, :2].round(6).tolist()\n"
+      "[[-0.004, -0.0]]\n"
       "\nSource: ISO 230-1:2012, 3.4; composition in docs/conventions.md.")
       .def(
           "__init__",
