@@ -1,8 +1,11 @@
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
 
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/report/version.h"
 #include "bindings/bindings.h"
+#include "bindings/files.h"
 
 namespace abbe::python {
 namespace {
@@ -13,11 +16,17 @@ NB_MODULE(_core, module) {
   module.def("set_threads", &set_default_thread_count, nb::arg("threads"),
              "Number of threads that computations use; 0: one for each processor.");
   module.def("threads", &default_thread_count, "Number of threads that computations use.");
+  module.def("write_text", &write_text, nb::arg("path"), nb::arg("text"), nb::arg("overwrite"),
+             "Writes a file, whole or not at all.");
   bind_input_error(module);
   bind_machine(module);
   bind_errors(module);
   bind_poses(module);
   bind_compensation(module);
+  bind_instruments(module);
+  bind_studies(module);
+  bind_study_results(module);
+  bind_plans(module);
 }
 
 }  // namespace

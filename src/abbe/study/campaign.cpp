@@ -105,7 +105,9 @@ bool same_components(const Instrument& a, const Instrument& b) {
 
 void read_setup_files(const Study& study, const Setup& setup, CampaignSetup& result) {
   for (const SetupData& data : setup.data) {
-    InstrumentFile file = read_file(study, setup, result.device, data);
+    InstrumentFile file =
+        data.readings ? given_readings(*data.readings, study.machine, result.device, setup.name, setup.noise_from_data)
+                      : read_file(study, setup, result.device, data);
     if (result.readings.count() > 0) {
       const auto refuse = [&](const char* expected) {
         throw InputError({.file = data.file.string()}, "the files of one set-up differ in their columns", expected);
@@ -184,6 +186,7 @@ std::size_t Campaign::reading_count() const {
 
 ErrorSet true_errors(const Study& study) {
   const Simulation& simulation = *study.simulation;
+  if (simulation.errors) return *simulation.errors;
   if (simulation.errors_file) return read_errors(*simulation.errors_file, study.machine).errors;
   const ErrorGenerator& generator = *simulation.generator;
   RandomErrorOptions options;

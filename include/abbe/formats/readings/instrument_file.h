@@ -50,6 +50,14 @@ InstrumentFile read_instrument_file(const std::filesystem::path& path, const Mac
                                     const std::shared_ptr<const Instrument>& device, const std::string& setup,
                                     bool noise_from_data, const MeasurementOptions& options);
 
+/// The same of readings that somebody has already.
+/// @param setup  name of the set-up, for messages
+/// @throws InputError for another number of axes, items or components, commands outside an axis's travel, numbers that
+///   are not finite, and missing uncertainties
+InstrumentFile given_readings(const InstrumentReadings& readings, const Machine& machine,
+                              const std::shared_ptr<const Instrument>& device, const std::string& setup,
+                              bool noise_from_data);
+
 constexpr InstrumentFileForm::InstrumentFileForm() : read(read_instrument_file), text(instrument_readings_text) {}
 
 }  // namespace abbe

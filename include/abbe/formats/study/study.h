@@ -40,6 +40,7 @@ struct SimulatedOutliers {
 
 struct Simulation {
   std::optional<std::filesystem::path> errors_file;  ///< true errors; exactly one of file and generator is given
+  std::optional<ErrorSet> errors;                    ///< what the file holds, where somebody has it already
   std::optional<ErrorGenerator> generator;
   SimulatedOutliers outliers;
   bool noise = true;  ///< false: exact readings; the set-ups' noise then only weights them
@@ -79,6 +80,7 @@ struct MeasurementPlan {
 struct SetupData {
   std::filesystem::path file;
   ColumnMapping mapping;
+  std::shared_ptr<const InstrumentReadings> readings{};  ///< instead of the file, where somebody has them already
 };
 
 /// One instrument at one place in one period of time.

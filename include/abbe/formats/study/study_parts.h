@@ -10,9 +10,9 @@
 
 namespace abbe {
 
-/// @param planned  the readings are still to be planned: neither plans nor data are needed
+/// @param later  the readings are still to be planned, or given: neither plans nor data are needed
 Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated,
-                 bool planned);
+                 bool later);
 PlanningStudy read_planning(TomlTable& table, const Machine& machine);
 IdentificationPlan read_identification(TomlTable& table, const std::filesystem::path& folder, const Machine& machine);
 

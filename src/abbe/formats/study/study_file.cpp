@@ -136,7 +136,8 @@ std::vector<AxisRange> read_axis_ranges(TomlTable& parent, const Machine& machin
   return ranges;
 }
 
-Study parse_study(const std::string& text, const std::filesystem::path& path, const Machine& machine) {
+Study parse_study(const std::string& text, const std::filesystem::path& path, const Machine& machine,
+                  ReadingsSource source) {
   TomlTable root = TomlTable::parse(text, path.string());
   const std::filesystem::path folder = path.parent_path();
   Study study;
@@ -151,7 +152,8 @@ Study parse_study(const std::string& text, const std::filesystem::path& path, co
   if (auto table = root.optional_table("plan")) study.planning = read_planning(*table, machine);
   for (TomlTable& table : root.tables("setup")) {
     study.setups.push_back(
-        read_setup(table, folder, machine, study.simulation.has_value(), study.planning.has_value()));
+        read_setup(table, folder, machine, study.simulation.has_value(),
+                   study.planning.has_value() || (!study.simulation && source == ReadingsSource::given_later)));
     for (std::size_t i = 0; i + 1 < study.setups.size(); ++i) {
       if (study.setups[i].name != study.setups.back().name) continue;
       table.fail("name", fmt::format("another set-up is called \"{}\"", study.setups[i].name), "different names");

@@ -43,7 +43,7 @@ PlanNames plan_names(const Instrument& device) {
 }  // namespace
 
 Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Machine& machine, bool simulated,
-                 bool planned) {
+                 bool later) {
   Setup setup;
   setup.name = table.file_name("name");
   const std::vector<std::string_view> words = instrument_words();
@@ -66,7 +66,7 @@ Setup read_setup(TomlTable& table, const std::filesystem::path& folder, const Ma
     if (simulated) table.fail("data", "is given together with [simulate]", "only one of them");
     setup.data.push_back(read_data(data, folder));
   }
-  if (setup.plans.empty() && setup.data.empty() && !planned) {
+  if (setup.plans.empty() && setup.data.empty() && !later) {
     table.fail("", "the readings are missing", simulated ? "[[setup.plan]]" : "[[setup.data]] with a file");
   }
   table.finish();

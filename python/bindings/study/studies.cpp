@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+
+#include "abbe/formats/study/study_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/study/run_study.h"
+#include "bindings/job.h"
+#include "bindings/machine_errors.h"
+#include "bindings/study/study_objects.h"
+
+namespace abbe::python {
+namespace {
+
+/// A copy of the study in which the readings and the truth that were given take the place of files.
+std::shared_ptr<const Study> with_data(const Study& study, const std::map<std::string, PythonReadings>& readings,
+                                       const MachineErrors* truth) {
+  auto result = std::make_shared<Study>(study);
+  for (const auto& [name, given] : readings) {
+    const auto setup = std::find_if(result->setups.begin(), result->setups.end(),
+                                    [&name = name](const Setup& one) { return one.name == name; });
+    if (setup == result->setups.end()) throw nb::key_error(fmt::format("no set-up '{}' in the study", name).c_str());
+    if (result->simulation) {
+      throw InputError({.field = "readings"}, "are given, but the study simulates its readings",
+                       "a study without [simulate]");
+    }
+    if (given.readings.measured.empty()) {
+      throw InputError({.file = name, .field = "readings"}, "are a plan, nothing is measured", "readings");
+    }
+    setup->data = {
+        SetupData{.file = name, .mapping = {}, .readings = std::make_shared<InstrumentReadings>(given.readings)}};
+  }
+  if (truth) {
+    if (!result->simulation)
+      throw InputError({.field = "truth"}, "is given, but the study simulates nothing", "a study with [simulate]");
+    if (truth->machine.chain() != study.machine.chain()) {
+      throw InputError({.field = "truth"}, "are errors of another machine: " + truth->machine.chain(),
+                       study.machine.chain());
+    }
+    result->simulation->errors = truth->set();
+    result->simulation->generator.reset();
+  }
+  for (const Setup& setup : result->setups) {
+    if (!result->simulation && setup.data.empty()) {
+      throw InputError({.file = setup.name, .field = "readings"}, "the set-up has no readings",
+                       "readings for it, or [[setup.data]] with a file");
+    }
+  }
+  return result;
+}
+
+std::shared_ptr<StudyOutcome> run(const Study& study, const std::map<std::string, PythonReadings>& readings,
+                                  const MachineErrors* truth, bool accept_misfit, bool map,
+                                  const nb::object& progress) {
+  auto outcome = std::make_shared<StudyOutcome>();
+  outcome->study = with_data(study, readings, truth);
+  run_job(progress, [&](const JobControl& control) {
+    RunOptions options;
+    options.accept_misfit = accept_misfit;
+    options.map = map;
+    options.stop = control.stop;
+    options.progress = [&](StudyStep step, std::size_t done, std::size_t total) {
+      control.progress(step_words(*outcome->study, step), done, total);
+    };
+    outcome->result = run_study(*outcome->study, options);
+  });
+  return outcome;
+}
+
+std::map<std::string, PythonReadings> gather(const Study& study, const std::map<std::string, PythonReadings>& readings,
+                                             const MachineErrors* truth, const nb::object& progress) {
+  const auto complete = with_data(study, readings, truth);
+  const Campaign campaign = job_result(progress, [&](const JobControl& control) {
+    const JobOptions job = control.options(step_words(*complete, StudyStep::gather));
+    return gather_readings(*complete, stoppable_progress(job));
+  });
+  std::map<std::string, PythonReadings> result;
+  for (const CampaignSetup& setup : campaign.setups) {
+    result.emplace(setup.name,
+                   PythonReadings{{setup.name, setup.instrument, setup.device, study.machine}, setup.readings});
+  }
+  return result;
+}
+
+std::shared_ptr<PlanOutcome> plan(const Study& study, const nb::object& progress) {
+  auto outcome = std::make_shared<PlanOutcome>();
+  outcome->study = std::make_shared<Study>(study);
+  run_job(progress, [&](const JobControl& control) {
+    outcome->plan = plan_study(*outcome->study, [&](double share) {
+      stop_if_asked(control.stop);
+      control.progress("planning", static_cast<std::size_t>(1000 * share), 1000);
+    });
+  });
+  return outcome;
+}
+
+}  // namespace
+
+nb::object python_of_json(const std::string& text) {
+  return nb::module_::import_("json").attr("loads")(nb::str(text.c_str(), text.size()));
+}
+
+void bind_studies(nb::module_& module) {
+  nb::class_<Study>(module, "StudyData", "A study that has been checked against its machine; behind abbe.Study.")
+      .def_static("read", &read_study, nb::arg("path"))
+      .def_static(
+          "parse",
+          [](const std::string& text, const std::filesystem::path& path, const Machine& machine) {
+            return parse_study(text, path, machine, ReadingsSource::given_later);
+          },
+          nb::arg("text"), nb::arg("path"), nb::arg("machine"))
+      .def_ro("name", &Study::name)
+      .def_ro("description", &Study::description)
+      .def_prop_ro("machine", [](const Study& study) { return study.machine; })
+      .def_prop_ro("output", [](const Study& study) { return study.output; })
+      .def_prop_ro("simulated", [](const Study& study) { return study.simulation.has_value(); })
+      .def("instruments",
+           [](const Study& study) {
+             std::vector<MachineInstrument> instruments;
+             for (const Setup& setup : study.setups) {
+               instruments.push_back({setup.name, setup.instrument, setup.device, study.machine});
+             }
+             return instruments;
+           })
+      .def("run", &run, nb::arg("readings"), nb::arg("truth").none(), nb::arg("accept_misfit"), nb::arg("map"),
+           nb::arg("progress").none())
+      .def("gather", &gather, nb::arg("readings"), nb::arg("truth").none(), nb::arg("progress").none())
+      .def("plan", &plan, nb::arg("progress").none());
+}
+
+}  // namespace abbe::python

@@ -1,0 +1,59 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "abbe/formats/readings/axis_columns.h"
+#include "abbe/formats/readings/instrument_file.h"
+
+namespace abbe {
+namespace {
+
+void require_finite(const std::vector<std::vector<double>>& columns, const std::string& setup, const char* what) {
+  for (const std::vector<double>& column : columns) {
+    for (std::size_t k = 0; k < column.size(); ++k) {
+      if (std::isfinite(column[k])) continue;
+      throw InputError({.file = setup, .field = what}, fmt::format("reading {}: {}", k, column[k]), "finite numbers");
+    }
+  }
+}
+
+void require_travel(const InstrumentReadings& readings, const Machine& machine, const std::string& setup) {
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const auto outside = first_outside_travel(machine.axes[i], readings.poses.axis[i]);
+    if (!outside) continue;
+    throw InputError({.file = setup, .field = machine.axes[i].name},
+                     fmt::format("reading {}: {}", outside->row, outside->problem), outside->expected);
+  }
+}
+
+}  // namespace
+
+InstrumentFile given_readings(const InstrumentReadings& readings, const Machine& machine,
+                              const std::shared_ptr<const Instrument>& device, const std::string& setup,
+                              bool noise_from_data) {
+  InstrumentFile file{device, readings, {}};
+  if (!noise_from_data) {
+    file.readings.uncertainty.clear();
+    file.readings.covariance.clear();
+  } else if (readings.uncertainty.empty() && readings.covariance.empty()) {
+    throw InputError({.file = setup}, "the study takes the noise from the readings, but they state no uncertainties",
+                     "standard uncertainties of the readings");
+  }
+  InstrumentReadings without_covariance = file.readings;  // only some instruments take them; observations() checks
+  without_covariance.covariance.clear();
+  try {
+    check_readings(machine, *device, without_covariance);
+  } catch (const std::invalid_argument& error) {
+    throw InputError({.file = setup}, error.what(), "");
+  }
+  require_finite(readings.poses.axis, setup, "positions");
+  require_finite(readings.inputs, setup, "inputs");
+  require_finite(readings.measured, setup, "measured");
+  require_finite(readings.uncertainty, setup, "uncertainty");
+  require_finite(readings.covariance, setup, "covariance");
+  require_travel(readings, machine, setup);
+  return file;
+}
+
+}  // namespace abbe
