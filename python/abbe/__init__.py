@@ -23,6 +23,7 @@ from ._core import (
 )
 from ._errors import InputError, Stopped
 from ._positions import grid, positions
+from ._robots import Joint, Robot, robot_from_dh, robot_from_urdf, urdf_text
 from ._study import Study, instrument
 
 __all__ = [
@@ -35,10 +36,12 @@ __all__ = [
     "InputError",
     "Instrument",
     "InverseSolutions",
+    "Joint",
     "Machine",
     "PoseModel",
     "Poses",
     "Readings",
+    "Robot",
     "Stopped",
     "Study",
     "StudyPlan",
@@ -49,6 +52,9 @@ __all__ = [
     "inverse",
     "nominal_poses",
     "positions",
+    "robot_from_dh",
+    "robot_from_urdf",
     "set_threads",
     "threads",
+    "urdf_text",
 ]

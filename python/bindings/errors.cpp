@@ -15,6 +15,7 @@
 #include "bindings/arrays.h"
 #include "bindings/files.h"
 #include "bindings/machine_errors.h"
+#include "bindings/tables.h"
 
 namespace abbe::python {
 namespace {
@@ -173,6 +174,39 @@ nb::object uncertainties(const MachineErrors& errors) {
   return array_of(std::move(result), {count});
 }
 
+/// Standard uncertainties of the error motions of one axis at its positions, from the covariance of the coefficients.
+nb::object evaluate_uncertainty(const MachineErrors& errors, const std::string& axis_name, const ArrayLike& positions) {
+  const std::size_t axis = errors.machine.find_axis(axis_name);
+  if (axis == Machine::npos) {
+    throw nb::key_error(fmt::format("no axis '{}' in {}", axis_name, errors.machine.chain()).c_str());
+  }
+  const Numbers values = positions.numbers("positions_mm_rad");
+  if (values.ndim() != 1) refuse("positions_mm_rad", "is no list of positions", "shape (n,), mm or rad");
+  const std::size_t count = values.shape(0);
+  const Eigen::MatrixXd covariance = covariance_of(errors.file);
+  Columns<double> result(kComponentCount, count);
+  std::vector<double> functions;
+  Eigen::VectorXd row(covariance.rows());
+  for (std::size_t k = 0; k < count; ++k) {
+    const double position = values.data()[static_cast<std::int64_t>(k) * values.stride(0)];
+    for (std::size_t c = 0; c < kComponentCount; ++c) {
+      row.setZero();
+      Eigen::Index first = 0;
+      for (const ErrorMotion& motion : errors.set().motions) {
+        const std::size_t size = motion.basis.size();
+        if (motion.axis == axis && static_cast<std::size_t>(motion.component) == c && covariance.rows() > 0) {
+          functions.resize(size);
+          motion.basis.values(position, motion.coefficients, functions);
+          for (std::size_t f = 0; f < size; ++f) row[first + static_cast<Eigen::Index>(f)] += functions[f];
+        }
+        first += static_cast<Eigen::Index>(size);
+      }
+      result[c][k] = covariance.rows() > 0 ? std::sqrt(std::max(0.0, row.dot(covariance * row))) : 0.0;
+    }
+  }
+  return result.release({kComponentCount}, false);
+}
+
 nb::object evaluate(const MachineErrors& errors, const std::string& axis_name, const ArrayLike& positions) {
   const std::size_t axis = errors.machine.find_axis(axis_name);
   if (axis == Machine::npos)
@@ -213,7 +247,7 @@ Machine sound(const Machine& machine) {
 }  // namespace
 
 void bind_errors(nb::module_& module) {
-  nb::class_<MachineErrors>(
+  nb::class_<MachineErrors> bound(
       module, "Errors",
       "Geometric errors of one machine: error motions, location errors, reversal values, tool offset.\n\n"
       "The machine is copied. Values are in mm and rad, in the order of `names`.\n\n"
@@ -223,7 +257,9 @@ void bind_errors(nb::module_& module) {
       ">>> errors.add_location('EC0Y', value_urad=20)\n"
       ">>> errors.add_motion('EAX', coefficients_urad=[25, 25])\n"
       ">>> errors.names\n"
-      "['EAX[P0]', 'EAX[P1]', 'EC0Y', 'tool_X', 'tool_Y', 'tool_Z']\n")
+      "['EAX[P0]', 'EAX[P1]', 'EC0Y', 'tool_X', 'tool_Y', 'tool_Z']\n");
+  add_tables(bound, "errors_frame", "errors_html");
+  bound
       .def(
           "__init__",
           [](MachineErrors* self, const Machine& machine) {
@@ -370,6 +406,10 @@ void bind_errors(nb::module_& module) {
       .def("evaluate", &evaluate, nb::arg("axis"), nb::arg("positions_mm_rad"),
            nb::sig("def evaluate(self, axis: str, positions_mm_rad: numpy.typing.ArrayLike) -> numpy.ndarray"),
            "Error motions of one axis at its positions: [n, 6], EX EY EZ in mm, EA EB EC in rad.")
+      .def("evaluate_uncertainty", &evaluate_uncertainty, nb::arg("axis"), nb::arg("positions_mm_rad"),
+           nb::sig(
+               "def evaluate_uncertainty(self, axis: str, positions_mm_rad: numpy.typing.ArrayLike) -> numpy.ndarray"),
+           "Standard uncertainties of the error motions of one axis: [n, 6], mm and rad; 0 where none is stated.")
       .def(
           "text", [](const MachineErrors& errors) { return errors_text(errors.machine, errors.file); },
           "Text of an errors file without the covariance.")

@@ -17,6 +17,7 @@
 #include "bindings/job.h"
 #include "bindings/machine_errors.h"
 #include "bindings/study/study_objects.h"
+#include "bindings/tables.h"
 
 namespace abbe::python {
 namespace {
@@ -160,9 +161,11 @@ PythonReadings read(const MachineInstrument& instrument, const std::filesystem::
 }
 
 void bind_readings(nb::module_& module) {
-  nb::class_<PythonReadings>(module, "Readings",
-                             "Readings of one instrument, or a plan of them (nothing measured yet).\n\n"
-                             "Arrays have one row per reading; lengths in mm, angles in rad.")
+  nb::class_<PythonReadings> bound(module, "Readings",
+                                   "Readings of one instrument, or a plan of them (nothing measured yet).\n\n"
+                                   "Arrays have one row per reading; lengths in mm, angles in rad.");
+  add_tables(bound, "readings_frame", nullptr);
+  bound
       .def(
           "__init__",
           [](PythonReadings* self, const MachineInstrument& instrument, const ArrayLike& positions,

@@ -14,6 +14,7 @@
 #include "bindings/arrays.h"
 #include "bindings/files.h"
 #include "bindings/study/study_objects.h"
+#include "bindings/tables.h"
 
 namespace abbe::python {
 namespace {
@@ -38,7 +39,11 @@ PythonReadings readings_of(const PlanOutcome& outcome, const std::string& name) 
 }  // namespace
 
 void bind_plans(nb::module_& module) {
-  nb::class_<PlanOutcome>(module, "StudyPlan", "Readings to take, and what they would be worth.")
+  nb::class_<PlanOutcome> bound(module, "StudyPlan", "Readings to take, and what they would be worth.");
+  add_tables(bound, "plan_frame", "plan_html");
+  bound
+      .def_prop_ro(
+          "machine", [](const PlanOutcome& o) { return o.study->machine; }, "A copy of the machine.")
       .def_prop_ro(
           "done", [](const PlanOutcome& o) { return o.plan.plan.status == PlanningStatus::done; },
           "Whether there is a plan; text() says why not.")

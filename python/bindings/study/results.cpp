@@ -24,6 +24,7 @@
 #include "bindings/files.h"
 #include "bindings/machine_errors.h"
 #include "bindings/study/study_objects.h"
+#include "bindings/tables.h"
 
 namespace abbe::python {
 namespace {
@@ -195,6 +196,7 @@ void bind_identification(nb::class_<StudyOutcome>& result) {
 void bind_study_results(nb::module_& module) {
   nb::class_<StudyOutcome> result(module, "StudyResult", "Everything that a study has computed.", nb::dynamic_attr());
   bind_identification(result);
+  add_tables(result, "result_frame", "result_html");
   result
       .def_prop_ro(
           "setups",

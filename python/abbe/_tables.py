@@ -1,0 +1,105 @@
+"""Results as tables of pandas, and as HTML in notebooks."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy
+
+if TYPE_CHECKING:
+    import pandas
+
+    from ._core import Errors, Readings, StudyPlan, StudyResult
+
+_MOST_ROWS = 40
+
+
+def _pandas() -> object:
+    try:
+        import pandas
+    except ImportError as error:
+        raise ImportError("to_dataframe() needs pandas: pip install pandas") from error
+    return pandas
+
+
+def _values(names: Sequence[str], values: numpy.ndarray, uncertainties: numpy.ndarray, is_angle: numpy.ndarray,
+            is_pure_number: numpy.ndarray | None = None) -> dict[str, list[object]]:
+    """Values in the units in which they are read: um, urad, um/m."""
+    pure = numpy.zeros(len(names), bool) if is_pure_number is None else is_pure_number
+    factor = numpy.where(pure | is_angle, 1e6, 1e3)
+    units = numpy.where(pure, "um/m", numpy.where(is_angle, "urad", "um"))
+    return {"name": list(names), "value": list(values * factor), "u": list(uncertainties * factor), "unit": list(units)}
+
+
+def _errors(errors: Errors) -> dict[str, list[object]]:
+    return _values(errors.names, errors.values_mm_rad, errors.standard_uncertainties_mm_rad, errors.is_angle)
+
+
+def _result(result: StudyResult) -> dict[str, list[object]]:
+    if len(result.estimates_mm_rad) == 0:
+        return {"name": [], "value": [], "u": [], "unit": []}
+    uncertainties = result.standard_uncertainties_mm_rad
+    if len(uncertainties) == 0:
+        uncertainties = numpy.full(len(result.names), numpy.nan)
+    return _values(result.names, result.estimates_mm_rad, uncertainties, result.is_angle, result.is_pure_number)
+
+
+def errors_frame(errors: Errors) -> pandas.DataFrame:
+    return _pandas().DataFrame(_errors(errors)).set_index("name")  # type: ignore[attr-defined, no-any-return]
+
+
+def result_frame(result: StudyResult) -> pandas.DataFrame:
+    return _pandas().DataFrame(_result(result)).set_index("name")  # type: ignore[attr-defined, no-any-return]
+
+
+def _commands(positions: numpy.ndarray, axes: Sequence[object]) -> dict[str, numpy.ndarray]:
+    columns = {}
+    for index, axis in enumerate(axes):
+        linear = axis.kind == "linear"  # type: ignore[attr-defined]
+        name = f"{axis.name}_{'mm' if linear else 'deg'}"  # type: ignore[attr-defined]
+        columns[name] = positions[:, index] if linear else numpy.degrees(positions[:, index])
+    return columns
+
+
+def readings_frame(readings: Readings) -> pandas.DataFrame:
+    columns: dict[str, object] = dict(_commands(readings.positions_mm_rad, readings.instrument.machine.axes))
+    columns["item"] = readings.items
+    for values, prefix in ((readings.measured_mm_rad, ""), (readings.standard_uncertainties_mm_rad, "u_")):
+        if values is not None:
+            for index, name in enumerate(readings.instrument.components):
+                columns[prefix + name] = values[:, index]
+    return _pandas().DataFrame(columns)  # type: ignore[attr-defined, no-any-return]
+
+
+def plan_frame(plan: StudyPlan) -> pandas.DataFrame:
+    columns: dict[str, object] = dict(_commands(plan.positions_mm_rad, plan.machine.axes))
+    columns["setup"] = plan.setups
+    return _pandas().DataFrame(columns)  # type: ignore[attr-defined, no-any-return]
+
+
+def _table_html(columns: dict[str, list[object]]) -> str:
+    rows = list(zip(*columns.values()))
+    cells = "".join(
+        f"<tr><th style='text-align:left'>{html.escape(str(name))}</th><td>{value:.3f}</td><td>{u:.3f}</td>"
+        f"<td style='text-align:left'>{html.escape(str(unit))}</td></tr>" for name, value, u, unit in rows[:_MOST_ROWS])
+    more = f"<p>and {len(rows) - _MOST_ROWS} more</p>" if len(rows) > _MOST_ROWS else ""
+    head = "".join(f"<th>{name}</th>" for name in columns)
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{cells}</tbody></table>{more}"
+
+
+def errors_html(errors: Errors) -> str:
+    return f"<p>{html.escape(repr(errors))}</p>{_table_html(_errors(errors))}"
+
+
+def result_html(result: StudyResult) -> str:
+    parts = [f"<p><b>{html.escape(result.message or result.status)}</b></p>"]
+    parts += [f"<p>Not to be trusted: {html.escape(reason)}</p>" for reason in result.distrusted]
+    parts.append(_table_html(_result(result)))
+    parts.append(f"<details><summary>All that there is to say</summary><pre>{html.escape(result.text())}</pre></details>")
+    return "".join(parts)
+
+
+def plan_html(plan: StudyPlan) -> str:
+    return f"<p>{html.escape(repr(plan))}</p><pre>{html.escape(plan.text())}</pre>"
