@@ -11,6 +11,8 @@ namespace abbe::python {
 namespace {
 
 NB_MODULE(_core, module) {
+  // Objects that live as long as the process, such as those of a test or of a notebook, are no leaks.
+  nb::set_leak_warnings(false);
   module.doc() = "The library of abbe; import abbe instead.";
   module.attr("__version__") = version_text();
   module.def("set_threads", &set_default_thread_count, nb::arg("threads"),
