@@ -87,7 +87,9 @@ def test_any_array_is_taken_or_refused(array):
         points = MODEL.points(array)
     except (abbe.InputError, TypeError):
         return
-    assert points.shape == array.shape[:-1] + (3,) and numpy.isfinite(points).all()
+    assert points.shape == array.shape[:-1] + (3,)
+    # Beyond what the errors cover there may be no number, but never one that is said to be covered.
+    assert numpy.isfinite(points[numpy.asarray(MODEL.covered(array), bool)]).all()
 
 
 def test_no_poses():
