@@ -205,7 +205,7 @@ void bind_machine(nb::module_& module) {
           "copy", [](const Machine& machine) { return machine; }, "A copy that can be changed on its own.")
       .def(
           "__eq__", [](const Machine& a, const Machine& b) { return machine_text(a) == machine_text(b); },
-          nb::is_operator())
+          nb::is_operator(), nb::sig("def __eq__(self, other: object, /) -> bool"))
       .def("__getstate__", [](const Machine& machine) { return machine_text(machine); })
       .def("__setstate__",
            [](Machine& machine, const std::string& text) {
