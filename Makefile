@@ -6,6 +6,7 @@
 #   make closed-loop  measure, identify, compensate, run in LinuxCNC, verify: examples/closed_loop
 #   make test      set-up, all tests, the most important ones under the sanitizers too, short fuzzing
 #   make sanitize  all quick tests under the sanitizers; continuous integration runs it after make test
+#   make python    set-up, the Python package and its tests
 #   make unit      build and run the tests of single folders
 #   make quick     the same, longer ones, and the tests of the command and of the pages
 #   make lint      formatting, structure and static analysis
@@ -21,7 +22,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo closed-loop test sanitize unit quick lint format bench fuzz coverage package package-test install install-linuxcnc clean
+.PHONY: build demo closed-loop test sanitize python unit quick lint format bench fuzz coverage package package-test install install-linuxcnc clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
@@ -32,6 +33,10 @@ SANITIZE_TESTS ?= asan
 DEMO_STUDY ?= examples/aguado/aguado.study.toml
 DEMO_RESULTS ?= build/demo
 LOOP_RESULTS ?= build/closed-loop
+# OFF: make test leaves the Python package out, where pip cannot fetch what it needs.
+ABBE_PYTHON ?= ON
+SET_UP_PYTHON := $(if $(filter ON,$(ABBE_PYTHON)),python)
+WITH_PYTHON := -DABBE_PYTHON=$(ABBE_PYTHON) $(if $(SET_UP_PYTHON),-DPython_EXECUTABLE=$(CURDIR)/build/python-venv/bin/python)
 # Tests that start a LinuxCNC or a browser wait most of the time.
 TEST_JOBS ?= $(shell expr 2 \* $(JOBS))
 export JOBS
@@ -41,9 +46,10 @@ export CTEST_OUTPUT_ON_FAILURE := 1
 BUILD_MINUTES := 6
 DEMO_MINUTES := 5
 LOOP_MINUTES := 3
-TEST_MINUTES := 25
+TEST_MINUTES := 28
 SANITIZE_MINUTES := 15
 QUICK_MINUTES := 15
+PYTHON_MINUTES := 9
 
 comma := ,
 say = @printf '\n== %s (%s)\n' "$(1)" "$$(date -u +%H:%M:%S)"
@@ -65,13 +71,13 @@ closed-loop:
 	examples/closed_loop/run $(LOOP_RESULTS)
 
 test:
-	@.ci/set-up test
+	@.ci/set-up test $(SET_UP_PYTHON)
 	@echo "make $@ checks the format, makes two builds, runs all tests and the fuzzing: from nothing it takes about" \
 	  "$(TEST_MINUTES) minutes on 2 cores"
 	$(call say,1 of 6: formatting)
 	@.ci/format --check
 	$(call say,2 of 6: development build with warnings as errors)
-	@.ci/build dev -DABBE_WERROR=ON
+	@.ci/build dev -DABBE_WERROR=ON $(WITH_PYTHON)
 	$(call say,3 of 6: build with the address and undefined-behaviour sanitizers)
 	@.ci/build --target abbe_parts asan -DABBE_WERROR=ON
 	$(call say,4 of 6: tests of readers$(comma) compensation and runtime under the sanitizers)
@@ -85,6 +91,13 @@ sanitize:
 	@.ci/set-up test
 	@.ci/build --expect $(SANITIZE_MINUTES) "make $@ builds all with the sanitizers and runs the quick tests" asan -DABBE_WERROR=ON
 	@ctest --preset $(SANITIZE_TESTS) -j $(JOBS)
+
+# In the folder of the development build, configured as by make test.
+python:
+	@.ci/set-up test python
+	@.ci/build --target abbe_python_tests --expect $(PYTHON_MINUTES) "make $@ builds the Python package and runs its tests" dev \
+	  -DABBE_WERROR=ON $(WITH_PYTHON)
+	@ctest --preset dev -j $(JOBS) -L python
 
 unit:
 	@.ci/set-up test
