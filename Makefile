@@ -79,7 +79,7 @@ test:
 	$(call say,2 of 6: development build with warnings as errors)
 	@.ci/build dev -DABBE_WERROR=ON $(WITH_PYTHON)
 	$(call say,3 of 6: build with the address and undefined-behaviour sanitizers)
-	@.ci/build --target abbe_parts asan -DABBE_WERROR=ON
+	@.ci/build --target abbe_parts asan -DABBE_WERROR=ON $(WITH_PYTHON)
 	$(call say,4 of 6: tests of readers$(comma) compensation and runtime under the sanitizers)
 	@ctest --preset asan-parts -j $(JOBS)
 	$(call say,5 of 6: fuzzing for $(TEST_FUZZ_SECONDS) s per reader)
@@ -88,8 +88,9 @@ test:
 	@ctest --preset dev -j $(TEST_JOBS)
 
 sanitize:
-	@.ci/set-up test
-	@.ci/build --expect $(SANITIZE_MINUTES) "make $@ builds all with the sanitizers and runs the quick tests" asan -DABBE_WERROR=ON
+	@.ci/set-up test $(SET_UP_PYTHON)
+	@.ci/build --expect $(SANITIZE_MINUTES) "make $@ builds all with the sanitizers and runs the quick tests" asan -DABBE_WERROR=ON \
+	  $(WITH_PYTHON)
 	@ctest --preset $(SANITIZE_TESTS) -j $(JOBS)
 
 # In the folder of the development build, configured as by make test.

@@ -179,6 +179,22 @@ class SetUp(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("too old", err)
 
+    def test_the_environment_of_python_is_made_last(self):
+        script = os.path.join(self.machine.folder, "tree/.ci/python-venv")
+        with open(script, "w", encoding="utf-8") as out:
+            out.write(f'#!{shutil.which("bash")}\necho environment\nexit 7\n')
+        os.chmod(script, 0o755)
+        self.assertEqual(self.machine.set_up("build"), (0, "", "", []))
+        self.assertEqual(self.machine.set_up("build", "python"), (7, "environment\n", "", []))
+        # Without what is optional it is made all the same; without what is needed it is not.
+        self.machine.remove("ccache")
+        code, out, err, _ = self.machine.set_up("build", "python")
+        self.assertEqual((code, out, err.count("\n")), (7, "environment\n", 1))
+        self.machine.command("python3", "exit 1")
+        code, out, err, _ = self.machine.set_up("python")
+        self.assertEqual((code, out), (1, ""))
+        self.assertIn("apt-get install --no-install-recommends python3-dev python3-venv", err)
+
     def test_a_job_that_does_not_exist_is_an_error_of_use(self):
         self.assertEqual(self.machine.set_up("bogus")[0], 2)
         self.assertEqual(self.machine.set_up()[0], 2)
