@@ -148,7 +148,7 @@ def _numbers(element: ElementTree.Element | None, key: str, otherwise: str, file
 def _origin(joint: ElementTree.Element, file: str) -> numpy.ndarray:
     origin = joint.find("origin")
     roll, pitch, yaw = _numbers(origin, "rpy", "0 0 0", file)
-    frame = _turn(2, yaw) @ _turn(1, pitch) @ _turn(0, roll)
+    frame: numpy.ndarray = _turn(2, yaw) @ _turn(1, pitch) @ _turn(0, roll)
     frame[:3, 3] = _METRE * _numbers(origin, "xyz", "0 0 0", file)
     return frame
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import html
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
 if TYPE_CHECKING:
     import pandas
 
-    from ._core import Errors, Readings, StudyPlan, StudyResult
+    from ._core import Axis, Errors, Readings, StudyPlan, StudyResult
 
 _MOST_ROWS = 40
 
 
-def _pandas() -> object:
+def _pandas() -> Any:
     try:
         import pandas
     except ImportError as error:
@@ -47,18 +47,20 @@ def _result(result: StudyResult) -> dict[str, list[object]]:
 
 
 def errors_frame(errors: Errors) -> pandas.DataFrame:
-    return _pandas().DataFrame(_errors(errors)).set_index("name")  # type: ignore[attr-defined, no-any-return]
+    frame: pandas.DataFrame = _pandas().DataFrame(_errors(errors))
+    return frame.set_index("name")
 
 
 def result_frame(result: StudyResult) -> pandas.DataFrame:
-    return _pandas().DataFrame(_result(result)).set_index("name")  # type: ignore[attr-defined, no-any-return]
+    frame: pandas.DataFrame = _pandas().DataFrame(_result(result))
+    return frame.set_index("name")
 
 
-def _commands(positions: numpy.ndarray, axes: Sequence[object]) -> dict[str, numpy.ndarray]:
+def _commands(positions: numpy.ndarray, axes: Sequence[Axis]) -> dict[str, numpy.ndarray]:
     columns = {}
     for index, axis in enumerate(axes):
-        linear = axis.kind == "linear"  # type: ignore[attr-defined]
-        name = f"{axis.name}_{'mm' if linear else 'deg'}"  # type: ignore[attr-defined]
+        linear = axis.kind == "linear"
+        name = f"{axis.name}_{'mm' if linear else 'deg'}"
         columns[name] = positions[:, index] if linear else numpy.degrees(positions[:, index])
     return columns
 
@@ -70,13 +72,15 @@ def readings_frame(readings: Readings) -> pandas.DataFrame:
         if values is not None:
             for index, name in enumerate(readings.instrument.components):
                 columns[prefix + name] = values[:, index]
-    return _pandas().DataFrame(columns)  # type: ignore[attr-defined, no-any-return]
+    frame: pandas.DataFrame = _pandas().DataFrame(columns)
+    return frame
 
 
 def plan_frame(plan: StudyPlan) -> pandas.DataFrame:
     columns: dict[str, object] = dict(_commands(plan.positions_mm_rad, plan.machine.axes))
     columns["setup"] = plan.setups
-    return _pandas().DataFrame(columns)  # type: ignore[attr-defined, no-any-return]
+    frame: pandas.DataFrame = _pandas().DataFrame(columns)
+    return frame
 
 
 def _table_html(columns: dict[str, list[object]]) -> str:

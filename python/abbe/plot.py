@@ -18,6 +18,7 @@ from ._errors import InputError
 try:
     import matplotlib
     import matplotlib.pyplot as pyplot
+    from cycler import cycler
     from matplotlib.figure import Figure
 except ImportError as error:
     raise ImportError("abbe.plot needs matplotlib: pip install matplotlib") from error
@@ -30,8 +31,8 @@ _COMPONENTS = ("EX", "EY", "EZ", "EA", "EB", "EC")
 @contextmanager
 def style() -> Iterator[None]:
     """The style of these plots, for own ones: ``with abbe.plot.style(): ...``."""
-    settings: dict[str, Any] = {
-        "axes.prop_cycle": matplotlib.cycler(color=COLOURS), "axes.spines.top": False, "axes.spines.right": False,
+    settings: Any = {
+        "axes.prop_cycle": cycler(color=COLOURS), "axes.spines.top": False, "axes.spines.right": False,
         "axes.grid": True, "grid.linewidth": 0.4, "grid.color": "#cccccc", "axes.axisbelow": True, "font.size": 9,
         "axes.titlesize": 9, "legend.frameon": False, "legend.fontsize": 8, "lines.linewidth": 1.2, "savefig.dpi": 200,
         "figure.constrained_layout.use": True, "axes.titlelocation": "left",
@@ -90,9 +91,10 @@ def _covered(errors: Errors, index: int, positions: numpy.ndarray) -> numpy.ndar
         commands[:, other] = min(max(0.0, low), high)
     reference = commands[:1].copy()
     commands[:, index] = positions
-    covered = numpy.asarray(PoseModel(errors).covered(commands))
+    model = PoseModel(errors)
+    covered = numpy.asarray(model.covered(commands))
     # Another axis may stand where its own errors are not known; then nothing can be said about this one.
-    return covered if covered.any() or PoseModel(errors).covered(reference)[0] else numpy.ones(len(positions), bool)
+    return covered if covered.any() or numpy.all(model.covered(reference)) else numpy.ones(len(positions), bool)
 
 
 def _unit(unit: str) -> str:
