@@ -57,7 +57,10 @@ TEST(PoseModel, AgreesWithSinglePosesOnAllMachines) {
   for (const test::NamedMachine& named : test::all_machines()) {
     SCOPED_TRACE(named.name);
     const Machine& machine = named.machine;
-    ErrorSet errors = random_errors(machine, {.seed = 3, .constant_terms = true});
+    RandomErrorOptions options;
+    options.seed = 3;
+    options.constant_terms = true;
+    ErrorSet errors = random_errors(machine, options);
     errors.tool_offset_error = {0.02, -0.03, 0.01};
     const PoseModel model(machine, errors);
     PoseModelCase c(machine);
