@@ -79,7 +79,7 @@ test:
 	$(call say,2 of 6: development build with warnings as errors)
 	@.ci/build dev -DABBE_WERROR=ON $(WITH_PYTHON)
 	$(call say,3 of 6: build with the address and undefined-behaviour sanitizers)
-	@.ci/build --target abbe_parts asan -DABBE_WERROR=ON $(WITH_PYTHON)
+	@.ci/build --target abbe_parts asan -DABBE_WERROR=ON
 	$(call say,4 of 6: tests of readers$(comma) compensation and runtime under the sanitizers)
 	@ctest --preset asan-parts -j $(JOBS)
 	$(call say,5 of 6: fuzzing for $(TEST_FUZZ_SECONDS) s per reader)

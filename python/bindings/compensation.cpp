@@ -17,6 +17,7 @@ namespace {
 struct MachineInverse {
   Machine machine;
   CompensatedInverse inverse;
+  TargetKind target;
 };
 
 struct Corrections {
@@ -48,7 +49,7 @@ MachineInverse make_inverse(const MachineErrors& errors, const std::string& targ
   options.target = target_kind(target);
   options.largest_turn = largest_turn_deg * std::numbers::pi / 180;
   options.largest_shift = largest_shift_mm;
-  MachineInverse made{errors.machine, CompensatedInverse(errors.machine, errors.set(), options, held)};
+  MachineInverse made{errors.machine, CompensatedInverse(errors.machine, errors.set(), options, held), options.target};
   if (!made.inverse.problem().empty()) {
     throw InputError({.field = "errors"}, made.inverse.problem(), "errors and axes that can be corrected");
   }
@@ -119,6 +120,14 @@ Corrections reach(const MachineInverse& self, const ArrayLike& start, const Arra
   const Positions positions(start, self.machine, "start_mm_rad");
   if (positions.single()) throw InputError({.field = "start_mm_rad"}, "is a single pose", "shape (n, axes)");
   const std::size_t count = positions.count();
+  const auto require = [](bool there, bool wanted, const char* name) {
+    if (there != wanted) {
+      throw InputError({.field = name}, there ? "is not what this target asks for" : "is missing",
+                       "directions for the target 'direction', rotations for 'pose', neither for 'point'");
+    }
+  };
+  require(directions.has_value(), self.target == TargetKind::point_and_direction, "directions");
+  require(rotations.has_value(), self.target == TargetKind::full_pose, "rotations");
   const std::vector<double> point = columns_of(points, "points_mm", count, 3);
   std::vector<double> direction, rotation;
   if (directions) direction = columns_of(*directions, "directions", count, 3);

@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "abbe/errors/random_errors.h"
@@ -39,7 +40,10 @@ std::vector<double> values_in(bool rotation, const std::optional<std::vector<dou
            fmt::format("{}_{}", what, unit));
   }
   std::vector<double> values = *wanted;
-  for (double& value : values) value *= rotation ? kMicro : kMicrometre;
+  for (double& value : values) {
+    if (!std::isfinite(value)) refuse(name.c_str(), fmt::format("has the {} {}", what, value), "finite numbers");
+    value *= rotation ? kMicro : kMicrometre;
+  }
   return values;
 }
 
@@ -78,6 +82,9 @@ std::vector<double> positions_of(const Axis& axis, const std::optional<std::vect
            fmt::format("{}_{}", base, rotary ? "deg" : "mm"));
   }
   std::vector<double> values = (rotary ? deg : mm).value_or(std::vector<double>{});
+  for (const double value : values) {
+    if (!std::isfinite(value)) refuse(base, fmt::format("has the position {}", value), "finite numbers");
+  }
   if (rotary) {
     for (double& value : values) value *= std::numbers::pi / 180;
   }
@@ -131,7 +138,8 @@ void add_motion(MachineErrors& errors, const std::string& name, const MotionArgu
   if (basis.kind == BasisKind::fourier) {
     basis.period = axis.kind == AxisKind::rotary ? arguments.period_deg.value_or(360) * std::numbers::pi / 180
                                                  : arguments.period_mm.value_or(0);
-    if (!(basis.period > 0)) refuse("period_mm", "is missing", "the period of the harmonics, mm");
+    if (!(basis.period > 0 && std::isfinite(basis.period)))
+      refuse("period_mm", "is missing", "the period of the harmonics, mm");
   }
   if (motion.coefficients.empty() || basis.order < 0 || basis.size() != motion.coefficients.size()) {
     refuse(name.c_str(),

@@ -2,6 +2,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
 
+#include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/parallel_blocks.h"
 #include "abbe/report/version.h"
 #include "bindings/bindings.h"
@@ -15,8 +16,14 @@ NB_MODULE(_core, module) {
   nb::set_leak_warnings(false);
   module.doc() = "The library of abbe; import abbe instead.";
   module.attr("__version__") = version_text();
-  module.def("set_threads", &set_default_thread_count, nb::arg("threads"),
-             "Number of threads that computations use; 0: one for each processor.");
+  module.def(
+      "set_threads",
+      [](int threads) {
+        if (threads < 0)
+          throw InputError({.field = "threads"}, std::to_string(threads) + " is below zero", "0 or more");
+        set_default_thread_count(threads);
+      },
+      nb::arg("threads"), "Number of threads that computations use; 0: one for each processor.");
   module.def("threads", &default_thread_count, "Number of threads that computations use.");
   module.def("write_text", &write_text, nb::arg("path"), nb::arg("text"), nb::arg("overwrite"),
              "Writes a file, whole or not at all.");

@@ -122,20 +122,14 @@ def test_a_target_that_is_not_finite_is_not_reached():
     assert corrections.reached.tolist() == [False, True]
 
 
-@pytest.mark.xfail(run=False, reason="ends the process: target='direction' and no directions (bindings/compensation.cpp)")
 def test_directions_that_are_needed():
     with pytest.raises((abbe.InputError, TypeError)):
         INVERSE.reach(numpy.zeros((1, 4)), [[1, 2, 3]])
 
 
-@pytest.mark.xfail(run=False, reason="ends the process: target='pose' and no rotations (bindings/compensation.cpp)")
 def test_rotations_that_are_needed():
     with pytest.raises((abbe.InputError, TypeError)):
         abbe.CompensatedInverse(ERRORS, target="pose").reach(numpy.zeros((1, 4)), [[1, 2, 3]])
-
-
-def not_yet(call, why):
-    return pytest.param(call, marks=pytest.mark.xfail(strict=True, reason=why))
 
 
 @pytest.mark.parametrize("call", [
@@ -152,8 +146,11 @@ def not_yet(call, why):
     lambda: abbe.Errors(3),
     lambda: abbe.Errors(MILL).add_location("EXX", value_um=1),
     lambda: abbe.Errors(MILL).add_motion("EQX", coefficients_um=[1]),
-    not_yet(lambda: abbe.Errors(MILL).add_motion("EXX", coefficients_um=[numpy.nan]), "nan is taken (bindings/errors.cpp)"),
-    not_yet(lambda: abbe.Errors(MILL).add_location("EC0Y", value_urad=numpy.nan), "nan is taken (bindings/errors.cpp)"),
+    lambda: abbe.Errors(MILL).add_motion("EXX", coefficients_um=[numpy.nan]),
+    lambda: abbe.Errors(MILL).add_location("EC0Y", value_urad=numpy.nan),
+    lambda: abbe.Errors(MILL).add_motion("EXX", coefficients_um=[1], range_mm=[0, numpy.inf]),
+    lambda: abbe.Errors(MILL).add_motion("EXX", basis="table-linear", coefficients_um=[1, 2], nodes_mm=[0, numpy.nan]),
+    lambda: abbe.Errors(MILL).add_motion("EXX", basis="fourier", coefficients_um=[1, 2, 3], period_mm=numpy.inf),
     lambda: abbe.Errors(MILL).add_motion("EXX", basis="bspline", coefficients_um=[]),
     lambda: setattr(abbe.Errors(MILL), "values_mm_rad", [1, 2]),
     lambda: setattr(abbe.Errors(MILL), "covariance", numpy.zeros((2, 3))),
@@ -168,7 +165,7 @@ def not_yet(call, why):
     lambda: abbe.instrument("nothing", MILL),
     lambda: abbe.Study(MILL, {}),
     lambda: abbe.Study(MILL, {"setup": 3}),
-    not_yet(lambda: abbe.set_threads(-1), "a negative number is taken (bindings/module.cpp)"),
+    lambda: abbe.set_threads(-1),
     lambda: abbe.positions(MILL, X=3),
     lambda: abbe.positions(MILL, X_mm=[1, 2], Y_mm=[1, 2, 3]),
 ])
