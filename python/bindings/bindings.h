@@ -16,5 +16,16 @@ void bind_instruments(nb::module_& module);
 void bind_studies(nb::module_& module);
 void bind_study_results(nb::module_& module);
 void bind_plans(nb::module_& module);
+void bind_use_arguments(nb::module_& module);
+void bind_frozen_errors(nb::module_& module);
+void bind_frozen_compensation(nb::module_& module);
+void bind_corrected_commands(nb::module_& module);
+void bind_corrected_program(nb::module_& module);
+void bind_control_tables(nb::module_& module);
+void bind_maps(nb::module_& module);
+void bind_verifications(nb::module_& module);
+void bind_curves(nb::module_& module);
+void bind_placements(nb::module_& module);
+void bind_planned_paths(nb::module_& module);
 
 }  // namespace abbe::python

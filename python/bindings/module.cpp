@@ -36,6 +36,17 @@ NB_MODULE(_core, module) {
   bind_studies(module);
   bind_study_results(module);
   bind_plans(module);
+  bind_use_arguments(module);
+  bind_frozen_errors(module);
+  bind_frozen_compensation(module);
+  bind_corrected_commands(module);
+  bind_corrected_program(module);
+  bind_control_tables(module);
+  bind_maps(module);
+  bind_verifications(module);
+  bind_curves(module);
+  bind_placements(module);
+  bind_planned_paths(module);
 }
 
 }  // namespace
