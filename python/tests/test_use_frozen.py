@@ -50,9 +50,11 @@ def test_a_refused_file_is_not_written(tmp_path):
 def test_corrections_are_those_of_the_header_and_of_the_full_model(frozen):
     compensation = abbe.FrozenCompensation(frozen.bytes)
     one = compensation.correct([600, 400, -100])
-    assert one.positions_mm_rad.round(4).tolist() == [600.0341, 399.9836, -100.0124]
+    full = abbe.CompensatedInverse(mill()).correct([[600, 400, -100]])
+    assert numpy.abs(one.positions_mm_rad - full.positions_mm_rad).max() < 1e-6
     assert one.status == 0 and one.reached and not one.outside_map and compensation.status_text(one.status) == "ok"
-    assert round(1e3 * compensation.uncertainty([600, 400, -100]).uncertainty_mm, 1) == 1.7
+    stated = abbe.correct_commands(mill(), [[600, 400, -100]]).uncertainty_mm[0]
+    assert compensation.uncertainty([600, 400, -100]).uncertainty_mm >= 0.95 * stated
     positions = numpy.random.default_rng(1).uniform([0, 0, -300], [700, 440, 0], (20000, 3))
     full = abbe.CompensatedInverse(mill()).correct(positions)
     fast = compensation(positions)
@@ -85,7 +87,7 @@ def test_tools_may_differ_pose_by_pose(frozen):
     together = compensation.correct(positions, tool_mm=tools)
     for k in range(3):
         one = compensation.correct(positions[k], tool_mm=tools[k])
-        assert one.positions_mm_rad.tolist() == together.positions_mm_rad[k].tolist()
+        assert numpy.abs(one.positions_mm_rad - together.positions_mm_rad[k]).max() < 1e-11
     assert together.outside_tool.tolist() == [False, False, True]
     assert compensation.tool_of_offset([0, 0, 50]) == [0, 0, -50]
 

@@ -1,5 +1,10 @@
 """Paths, test pieces, placements and published studies, against the command."""
 
+import os
+import signal
+import threading
+import time
+
 import abbe
 import numpy
 import pytest
@@ -64,7 +69,7 @@ def test_curves_of_arrays():
 
 
 def test_bad_paths_are_named():
-    curve = abbe.Curve([[0, 0, 0], [10, 0, 0]])
+    curve = abbe.Curve([[100, 100, 200], [110, 100, 200]])
     mill = machine("three-axis-mill")
     with pytest.raises(abbe.InputError, match="feed_mm_per_min"):
         abbe.plan_path(mill, curve)
@@ -72,7 +77,7 @@ def test_bad_paths_are_named():
                 {"start": {"Q_mm": 1}}):
         with pytest.raises(abbe.InputError, match=next(iter(bad))):
             abbe.plan_path(mill, curve, **bad)
-    far = abbe.plan_path(mill, abbe.Curve([[0, 0, 0], [1e5, 0, 0]], feed_mm_per_min=100))
+    far = abbe.plan_path(mill, abbe.Curve([[100, 100, 200], [1e5, 0, 200]], feed_mm_per_min=100))
     assert not far.has_path and far.refused and far.failed_point == 1 and len(far) == 0
     with pytest.raises(abbe.InputError):
         far.program()
@@ -166,15 +171,10 @@ def test_an_interruption_ends_the_program(tmp_path, monkeypatch):
                     f"echo $$ > {tmp_path}/pid\nexec sleep 60\n")
     slow.chmod(0o755)
     monkeypatch.setenv("ABBE_PAPERS_PROGRAM", str(slow))
-    import _thread
-    import os
-    import threading
-    import time
-
     def interrupt():
         while not (tmp_path / "pid").exists() or not (tmp_path / "pid").read_text().strip():
             time.sleep(0.02)
-        _thread.interrupt_main()
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
 
     threading.Thread(target=interrupt).start()
     with pytest.raises(KeyboardInterrupt):

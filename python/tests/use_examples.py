@@ -22,7 +22,7 @@ def command(arguments, folder, exit_code=0):
 
 
 def command_json(arguments, folder, exit_code=0):
-    return json.loads(command([*arguments, "--json"], folder, exit_code))
+    return json.loads(command([*arguments, "--json", "--force"], folder, exit_code))
 
 
 @functools.cache
