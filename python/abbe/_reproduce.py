@@ -41,7 +41,8 @@ class Reproduction:
     @property
     def agrees(self) -> bool | None:
         """Whether our figures are those of the reference; None: there is none."""
-        return self.summary["agrees_with_reference"]
+        agrees: bool | None = self.summary["agrees_with_reference"]
+        return agrees
 
     def to_dict(self) -> dict[str, Any]:
         """The same as `abbe reproduce --json`."""

@@ -111,7 +111,7 @@ def test_text_that_is_no_utf8_is_kept():
 
 
 def test_a_long_program_is_stopped():
-    program = "G0 X0 Y0 Z0\nF500\n" + "".join(f"G1 X{k % 600} Y{k % 400}\n" for k in range(400000))
+    program = "G0 X0 Y0 Z0\nF500\n" + "".join(f"G1 X{k % 600} Y{k % 400}\n" for k in range(1500000))
 
     def stop(*_):
         raise StopIteration

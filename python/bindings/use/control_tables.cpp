@@ -236,7 +236,7 @@ void bind_control_tables(nb::module_& module) {
             return python_value(table_json(report(r, written)));
           },
           nb::arg("written") = std::vector<std::string>{},
-          nb::sig("def to_dict(self, written: Sequence[str] = []) -> dict"),
+          nb::sig("def to_dict(self, written: Sequence[str] = []) -> dict[str, typing.Any]"),
           "The same as `abbe compensate table --json`.")
       .def("write", &write_tables, nb::arg("folder"),
            "Writes the files to a new or empty folder, or one with older results, whole or not at all.\n\n"

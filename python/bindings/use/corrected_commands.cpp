@@ -126,7 +126,8 @@ void bind_corrected_commands(nb::module_& module) {
           [](const CorrectedCommands& r, const std::optional<std::string>& output) {
             return python_value(corrected_commands_json(r, output.value_or(""), output && r.refused.empty()));
           },
-          nb::arg("output") = nb::none(), nb::sig("def to_dict(self, output: str | None = None) -> dict"),
+          nb::arg("output") = nb::none(),
+          nb::sig("def to_dict(self, output: str | None = None) -> dict[str, typing.Any]"),
           "The same as `abbe compensate poses --json`. output: name of the file that is written.")
       .def(
           "write",

@@ -1,6 +1,7 @@
 #include "abbe/study/corrected_program.h"
 
 #include <fmt/format.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -274,8 +275,8 @@ void bind_corrected_program(nb::module_& module) {
        ">>> errors.add_location('EC0Y', value_urad=20)\n"
        ">>> result = abbe.correct_program(errors, 'G0 X0 Y0 Z0\\nG1 X100 Y100 F500\\nM30\\n', decimals=4)\n"
        ">>> print(result.program, end='')\n"
-       "G0 X0.0000 Y0.0000 Z0.0000\n"
-       "G1 X100.0020 Y100.0000 F500\n"
+       "G21 G90 G0 X0.0000 Y0.0000 Z0.0000\n"
+       "G94 G1 X100.0020 Y100.0000 F500\n"
        "M30\n")
           .c_str());
   module.def(

@@ -318,7 +318,7 @@ void bind_pieces(nb::module_& module) {
                      "Sizes of a wall in the shape of an S, in the manner of ISO 10791-7 (M4).\n\n"
                      ">>> import abbe\n"
                      ">>> abbe.SShape().piece(chord_um=5)\n"
-                     "<abbe.TestPiece S shape: 248 points>\n")
+                     "<abbe.TestPiece S shape: 254 points>\n")
       .def(
           "__init__",
           [](SShape* self, double length, double amplitude, double height, double lean, double twist, double azimuth,

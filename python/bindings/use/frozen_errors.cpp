@@ -143,7 +143,8 @@ void bind_frozen_errors(nb::module_& module) {
           [](const FrozenErrors& f, const std::optional<std::string>& output) {
             return python_value(frozen_errors_json(f, output_of(f, output)));
           },
-          nb::arg("output") = nb::none(), nb::sig("def to_dict(self, output: str | None = None) -> dict"),
+          nb::arg("output") = nb::none(),
+          nb::sig("def to_dict(self, output: str | None = None) -> dict[str, typing.Any]"),
           "The same as `abbe compensate freeze --json`.")
       .def(
           "write",
@@ -179,7 +180,7 @@ void bind_frozen_errors(nb::module_& module) {
       ">>> errors.add_location('EC0Y', value_urad=20)\n"
       ">>> frozen = abbe.freeze(errors, limit_um=500)\n"
       ">>> frozen.refused, round(frozen.largest_correction_mm, 6)\n"
-      "('', 0.01)\n"
+      "('', 0.005)\n"
       ">>> frozen.compensation().correct([100, 100, 0]).positions_mm_rad.round(6).tolist()\n"
       "[100.002, 100.0, 0.0]\n");
 }

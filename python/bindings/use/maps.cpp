@@ -121,7 +121,7 @@ void bind_functions(nb::module_& module) {
       ">>> errors.add_location('EC0Y', value_urad=20)\n"
       ">>> map = abbe.map_errors(errors, grid={'X_mm': (0, 100, 2), 'Y_mm': (0, 100, 2), 'Z_mm': 0}, keep_datum=True)\n"
       ">>> map.before.displacement_mm.round(6).tolist()[-1], map.before.statistics_mm.count\n"
-      "([-0.002, 0.0, 0.0], 4)\n");
+      "([-0.002, -0.0, 0.0], 4)\n");
   module.def(
       "volumetric_figures", &figures_of, nb::arg("errors"), nb::kw_only(), nb::arg("truth").none() = nb::none(),
       nb::arg("grid") = AxisRanges{},
@@ -187,7 +187,7 @@ void bind_maps(nb::module_& module) {
       .def("text", &errors_map_text, "What `abbe map` prints.")
       .def(
           "to_dict", [](const ErrorsMap& m) { return python_value(errors_map_json(m)); },
-          nb::sig("def to_dict(self) -> dict"), "The same as `abbe map --json`.")
+          nb::sig("def to_dict(self) -> dict[str, typing.Any]"), "The same as `abbe map --json`.")
       .def("write", &write_map, nb::arg("path"), nb::arg("overwrite") = false,
            "Writes a map file, .csv, or .vts or .vtu as it is_structured.")
       .def("__repr__", [](const ErrorsMap& m) {

@@ -214,7 +214,7 @@ void bind_planned_paths(nb::module_& module) {
             require_path(p);
             return python_value(planned_path_json(p));
           },
-          nb::sig("def to_dict(self) -> dict"), "The same as `abbe path --json`.")
+          nb::sig("def to_dict(self) -> dict[str, typing.Any]"), "The same as `abbe path --json`.")
       .def("page_html", &page, nb::arg("part") = nb::none(),
            "The page that plays the path, HTML. part: file of the workpiece (.stl, .ply, .obj, .step).")
       .def(

@@ -201,7 +201,8 @@ void bind_program_result(nb::module_& module) {
           [](const ProgramResult& r, const std::optional<std::string>& output) {
             return python_value(program_json(words_of(r, output), r.machine, r.corrected));
           },
-          nb::arg("output") = nb::none(), nb::sig("def to_dict(self, output: str | None = None) -> dict"),
+          nb::arg("output") = nb::none(),
+          nb::sig("def to_dict(self, output: str | None = None) -> dict[str, typing.Any]"),
           "The same as `abbe compensate gcode --json`.")
       .def("write", &write_program, nb::arg("path"), nb::arg("overwrite") = false,
            "Writes the program, whole or not at all. Raises InputError if it is refused.")

@@ -152,10 +152,10 @@ void bind_result(nb::module_& module) {
       .def("text", &verification_text, "What `abbe verify` prints.")
       .def(
           "to_dict", [](const Verification& v) { return python_value(verification_json(v)); },
-          nb::sig("def to_dict(self) -> dict"), "The same as `abbe verify --json`.")
+          nb::sig("def to_dict(self) -> dict[str, typing.Any]"), "The same as `abbe verify --json`.")
       .def(
           "page_data", [](const Verification& v) { return python_value(verification_page_data(v)); },
-          nb::sig("def page_data(self) -> dict"), "Data of the page: docs/report-data.md.")
+          nb::sig("def page_data(self) -> dict[str, typing.Any]"), "Data of the page: docs/report-data.md.")
       .def("page_html", &verification_page, "The page of `abbe verify -o`, HTML.")
       .def(
           "write_page",
