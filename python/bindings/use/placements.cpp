@@ -5,6 +5,8 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <Eigen/Geometry>
+
 #include "abbe/formats/machine/placement_file.h"
 #include "bindings/files.h"
 #include "bindings/use/arguments.h"
