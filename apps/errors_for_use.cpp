@@ -1,6 +1,5 @@
 #include "errors_for_use.h"
 
-#include "abbe/formats/text/input_error.h"
 #include "messages.h"
 #include "options.h"
 
@@ -8,12 +7,7 @@ namespace abbe {
 
 ErrorsFile read_errors_for_use(const std::filesystem::path& path, const Machine& machine, bool accept_misfit) {
   ErrorsFile contents = read_errors(path, machine);
-  if (contents.distrusted.empty()) return contents;
-  if (!accept_misfit && !contents.misfit_accepted) {
-    throw InputError({.file = path.string(), .field = "distrusted"},
-                     "the identification marked these errors as not to be trusted: " + contents.distrusted.front(),
-                     "errors whose cause was found, or --accept-misfit to use them as they are");
-  }
+  require_trusted(contents, path.string(), accept_misfit);
   for (const std::string& reason : contents.distrusted)
     tell("abbe: {}: used although marked as not to be trusted: {}\n", path.string(), reason);
   return contents;

@@ -13,6 +13,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/study/corrected_program.h"
+#include "abbe/study/program_settings.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/gcode_options.h"
@@ -38,10 +39,10 @@ int run_gcode(const GcodeOptions& options) {
   request.covariance = errors.covariance;
   request.program_file = options.program;
   request.errors_file = options.errors;
-  request.words = gcode_words(options, machine);
+  request.words = program_word_axes(machine, options.words, options.machine);
   request.text = gcode_text_options(options, machine, request.words);
   request.tool_centre = options.tool_centre;
-  request.allowed = allowed_problems(options);
+  request.allowed = allowed_problems(options.allow);
   request.leave_out_factor = options.leave_out_factor;
   MappedFile program(options.program);
   const std::size_t size = program.text().size();

@@ -27,10 +27,6 @@ struct GcodeOptions {
   bool accept_misfit = false, tool_centre = false, inches = false, block_delete = false, dry_run = false, json = false;
 };
 
-/// @throws InputError for an unknown name
-AllowedProblems allowed_problems(const GcodeOptions& options);
-/// Axes of the program's words. @throws InputError if one is of the wrong kind, or if there is none
-WordAxes gcode_words(const GcodeOptions& options, const Machine& machine);
 NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& machine, const WordAxes& words);
 /// @param size  of the program, bytes
 ProgramLimits gcode_limits(const GcodeOptions& options, std::size_t size);

@@ -108,12 +108,7 @@ std::vector<std::size_t> axis_indices(const Machine& machine, const std::vector<
 }
 
 void require_trusted(const MachineErrors& errors, bool accept_misfit, const std::string& file) {
-  if (errors.file.distrusted.empty()) return;
-  if (!accept_misfit && !errors.file.misfit_accepted) {
-    throw InputError({.file = file, .field = "distrusted"},
-                     "the identification marked these errors as not to be trusted: " + errors.file.distrusted.front(),
-                     "errors whose cause was found, or accept_misfit=True to use them as they are");
-  }
+  naming_arguments([&] { abbe::require_trusted(errors.file, file, accept_misfit); });
   for (const std::string& reason : errors.file.distrusted) {
     const std::string text = fmt::format("{}: used although marked as not to be trusted: {}", file, reason);
     if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw nb::python_error();

@@ -8,8 +8,8 @@
 
 #include "abbe/formats/files/streamed_file.h"
 #include "abbe/formats/files/text_file.h"
-#include "abbe/formats/nc/path_program.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/study/program_settings.h"
 #include "bindings/files.h"
 #include "bindings/job.h"
 #include "bindings/use/program_result.h"
@@ -17,75 +17,26 @@
 namespace abbe::python {
 namespace {
 
-bool is_rotary(std::size_t word) { return word >= 3 && word < 6; }
-
 /// Axes of the program's words. @param words  {"C1": "C"}
 WordAxes word_axes(const Machine& machine, const std::map<std::string, std::string>& words) {
   std::vector<std::string> texts;
   for (const auto& [axis, word] : words) texts.push_back(axis + "=" + word);
-  PathProgramOptions named;
-  named.words = axis_words(machine, texts, "words");
-  WordAxes result;
-  bool any = false;
-  for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
-    const std::string word = axis_word(machine.axes[axis].name, named);
-    for (std::size_t i = 0; i < kAxisWords; ++i) {
-      if (word != axis_word_text(static_cast<AxisWord>(i))) continue;
-      if ((machine.axes[axis].kind == AxisKind::rotary) != is_rotary(i)) {
-        throw InputError({.field = "words"}, fmt::format("axis {} and its word {}", machine.axes[axis].name, word),
-                         "A, B or C for rotary axes, X, Y, Z, U, V or W for linear ones");
-      }
-      result.axis[i] = axis;
-      any = true;
-    }
-  }
-  if (!any) throw InputError({.field = "words"}, "no axis has a word of programs", "such as {'C1': 'C'}");
-  return result;
+  return naming_arguments([&] { return program_word_axes(machine, texts); });
 }
 
 /// Where the axes of words stand: {"X_mm": 100, "C_deg": 30}.
-void set_start(const Machine& machine, const WordAxes& words, const AxisPositions& start, bool on_axes,
+void set_start(const Machine& machine, const WordAxes& words, const AxisPositions& start, bool tool_centre,
                NcProgramOptions& options) {
-  AxisPositions of_axes;
-  for (const auto& [key, position] : start) {
-    const std::string word = key.substr(0, key.rfind('_'));
-    std::string of_axis = key;
-    for (std::size_t i = 0; i < kAxisWords; ++i) {
-      if (word != axis_word_text(static_cast<AxisWord>(i)) || words.axis[i] == Machine::npos) continue;
-      of_axis = machine.axes[words.axis[i]].name + key.substr(word.size());  // it may have another name than its word
-    }
-    of_axes[of_axis] = position;
-  }
-  for (const HeldAxis& held : axis_positions(machine, "start", of_axes)) {
-    const Axis& axis = machine.axes[held.axis];
-    for (std::size_t i = 0; i < kAxisWords; ++i) {
-      if (words.axis[i] != held.axis) continue;
-      if ((on_axes || is_rotary(i)) && !axis.endless &&
-          !(held.position >= axis.travel_min && held.position <= axis.travel_max)) {
-        throw InputError({.field = "start"}, axis.name + " is outside the axis's travel", "a position within it");
+  naming_arguments([&] {
+    for (const auto& [key, position] : start) {
+      const std::string word = key.substr(0, key.rfind('_'));
+      // The axis may have another name than its word.
+      const std::string of_axis = machine.axes[axis_of_word(words, word, key)].name + key.substr(word.size());
+      for (const HeldAxis& held : axis_positions(machine, "start", {{of_axis, position}})) {
+        set_program_start(machine, words, held, tool_centre, key, options);
       }
-      options.start[i] = held.position;
     }
-  }
-}
-
-AllowedProblems allowed_problems(const std::vector<std::string>& names) {
-  AllowedProblems allowed;
-  const std::pair<const char*, bool*> all[] = {
-      {"not-covered", &allowed.not_covered},     {"outside-travel", &allowed.outside_travel},
-      {"held-start", &allowed.held_start},       {"position-left", &allowed.position_left},
-      {"not-converged", &allowed.not_converged}, {"not-proven", &allowed.not_proven}};
-  for (const std::string& name : names) {
-    bool known = false;
-    for (const auto& [text, flag] : all) {
-      if (name != text) continue;
-      *flag = known = true;
-    }
-    if (known) continue;
-    throw InputError({.field = "allow"}, fmt::format("'{}' is unknown", name),
-                     "not-covered, outside-travel, held-start, position-left, not-converged or not-proven");
-  }
-  return allowed;
+  });
 }
 
 struct ProgramArguments {
@@ -119,7 +70,7 @@ ProgramRequest request_of(const MachineErrors& errors, const std::string& progra
   request.words = word_axes(request.machine, given.words);
   NcProgramOptions& text = request.text;
   for (std::size_t i = 0; i < kAxisWords; ++i) text.words[i] = request.words.axis[i] != Machine::npos;
-  set_start(request.machine, request.words, given.start, !given.tool_centre, text);
+  set_start(request.machine, request.words, given.start, given.tool_centre, text);
   text.parameters = given.parameters;
   text.parameters_in_inches = given.parameters_in_inches;
   text.tools = given.tools;
@@ -135,26 +86,28 @@ ProgramRequest request_of(const MachineErrors& errors, const std::string& progra
   request.correction.inverse.largest_turn = kDegree * given.largest_turn_deg;
   request.correction.reversal_dead_band = 1e-3 * given.reversal_dead_band_um;
   request.leave_out_factor = given.leave_out;
-  request.allowed = allowed_problems(given.allow);
+  request.allowed = naming_arguments([&] { return allowed_problems(given.allow); });
   request.limit_um = given.limit_um;
   return request;
 }
 
 /// The limits of the command: what a program of that size can become and take.
 ProgramLimits limits(const ProgramArguments& given, std::size_t size) {
-  const double megabytes = 1e-6 * static_cast<double>(size);
-  return {given.max_output_mb.value_or(200 + 20 * megabytes), given.max_minutes.value_or(5 + 0.1 * megabytes)};
+  const ProgramLimits usual = usual_program_limits(size);
+  return {given.max_output_mb.value_or(usual.megabytes), given.max_minutes.value_or(usual.minutes)};
 }
 
 CorrectedProgram run(const nb::object& progress, const ProgramRequest& request, std::string_view program,
                      const std::function<void(std::string_view)>& write, const std::function<void(std::size_t)>& done) {
   return job_result(progress, [&](const JobControl& control) {
     return naming_arguments([&] {
-      return correct_program(request, program, write, [&](std::size_t end) {
-        stop_if_asked(control.stop);
-        control.progress("correcting the program", end, program.size());
-        if (done) done(end);
-      });
+      return correct_program(
+          request, program, write,
+          [&](std::size_t end) {
+            control.progress("correcting the program", end, program.size());
+            if (done) done(end);
+          },
+          control.stop);
     });
   });
 }

@@ -64,7 +64,7 @@ void state_uncertainties(const ProgramRequest& request, const Eigen::MatrixXd& c
 
 CorrectedProgram correct_program(const ProgramRequest& request, std::string_view program,
                                  const std::function<void(std::string_view text)>& write,
-                                 const std::function<void(std::size_t end)>& done) {
+                                 const std::function<void(std::size_t end)>& done, const std::stop_token& stop) {
   check_program_request(request);
   const double limit_um = refusal_limit("--limit-um", request.limit_um, "um");
   const Machine& machine = request.machine;
@@ -76,7 +76,7 @@ CorrectedProgram correct_program(const ProgramRequest& request, std::string_view
   }
   const MachinePlanes planes(machine, request.words);
   ProgramBudget budget(static_cast<std::size_t>(1e6 * std::min(request.limits.megabytes, kMostOfALimit)),
-                       60 * std::min(request.limits.minutes, kMostOfALimit));
+                       60 * std::min(request.limits.minutes, kMostOfALimit), stop);
   NcProgramOptions text_options = request.text;
   text_options.planes = &planes;
   text_options.tool_centre = request.tool_centre;

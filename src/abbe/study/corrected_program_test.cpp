@@ -6,12 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stop_token>
 #include <string>
 
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/message_of.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/stopped.h"
 
 namespace abbe {
 namespace {
@@ -73,6 +75,25 @@ TEST(CorrectedProgramOfText, IsRefusedAboveTheLimitAndGivenUpBeyondIts) {
   corrected(request, kMoves, result);
   ASSERT_EQ(result.refused.size(), 1U);
   EXPECT_THAT(result.refused[0], HasSubstr("--max-output-mb allows more"));
+}
+
+TEST(CorrectedProgramOfText, StopsWhileALineOfTheProgramIsStillAtWork) {
+  const ProgramRequest request = trunnion_program();
+  std::stop_source asked;
+  std::size_t pieces = 0;
+  const auto correct = [&](const std::string& program) {
+    return correct_program(
+        request, program,
+        [&](std::string_view) {
+          ++pieces;
+          asked.request_stop();
+        },
+        [](std::size_t) {}, asked.get_token());
+  };
+  EXPECT_THROW(correct("G21 G90\nG0 X0 Y0 Z0\nG91 G81 X0.001 Z-5 R2 F600 L100000000\nM2\n"), Stopped);
+  EXPECT_EQ(pieces, 1U);
+  EXPECT_THROW(correct(kMoves), Stopped);  // it was asked before
+  EXPECT_EQ(pieces, 1U);
 }
 
 TEST(CorrectedProgramOfText, NumbersOutOfRangeAreRefusedWithTheOptionThatSetsThem) {

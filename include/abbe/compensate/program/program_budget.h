@@ -3,6 +3,10 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <stop_token>
+#include <utility>
+
+#include "abbe/geometry/stopped.h"
 
 namespace abbe {
 
@@ -18,13 +22,19 @@ class ProgramBudget {
   };
   static constexpr std::size_t kMostPieces = 2'000'000;
 
-  ProgramBudget(std::size_t most_bytes, double most_seconds)
-      : most_bytes_(most_bytes), most_seconds_(most_seconds), start_(std::chrono::steady_clock::now()) {}
+  /// @param stop  looked at whenever the budget is
+  ProgramBudget(std::size_t most_bytes, double most_seconds, std::stop_token stop = {})
+      : most_bytes_(most_bytes),
+        most_seconds_(most_seconds),
+        start_(std::chrono::steady_clock::now()),
+        stop_(std::move(stop)) {}
 
   void wrote(std::size_t bytes) { bytes_ += bytes; }
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
   /// @param pieces  of moves that are corrected together, not yet written
+  /// @throws Stopped if that was asked for
   Spent spent(std::size_t pieces = 0) const {
+    stop_if_asked(stop_);
     if (bytes_ > most_bytes_) return Spent::bytes;
     if (pieces > kMostPieces) return Spent::pieces;
     return seconds() > most_seconds_ ? Spent::time : Spent::nothing;
@@ -34,6 +44,7 @@ class ProgramBudget {
   std::size_t most_bytes_;
   double most_seconds_;
   std::chrono::steady_clock::time_point start_;
+  std::stop_token stop_;
   std::atomic<std::size_t> bytes_ = 0;
 };
 

@@ -13,6 +13,7 @@
 #include "abbe/formats/machine/covariance_file.h"
 #include "abbe/formats/machine/error_fields.h"
 #include "abbe/formats/text/csv_reader.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/toml_table.h"
 
 namespace abbe {
@@ -303,6 +304,13 @@ void write_errors(const std::filesystem::path& path, const Machine& machine, con
 bool is_truth(const ErrorsFile& file) {
   return std::any_of(file.provenance.begin(), file.provenance.end(),
                      [](const auto& entry) { return entry.first == "method" && entry.second == kTruthOfSimulation; });
+}
+
+void require_trusted(const ErrorsFile& file, const std::string& path, bool accept_misfit) {
+  if (file.distrusted.empty() || accept_misfit || file.misfit_accepted) return;
+  throw InputError({.file = path, .field = "distrusted"},
+                   "the identification marked these errors as not to be trusted: " + file.distrusted.front(),
+                   "errors whose cause was found, or --accept-misfit to use them as they are");
 }
 
 Eigen::MatrixXd covariance_of(const ErrorsFile& file) {
