@@ -123,8 +123,8 @@ def test_a_long_program_is_stopped():
         abbe.correct_program(mill(), program, progress=stop)
 
 
-def test_an_interruption_ends_a_line_that_becomes_gigabytes():
-    program = "G0 X0 Y0 Z0\nG91 G81 X0.001 Z-5 R2 F600 L100000000\n"
+def test_an_interruption_ends_a_program_that_becomes_gigabytes():
+    program = "G0 X0 Y0 Z0\n" + 50 * "G90 X0\nG91 G81 X0.0001 Z-5 R2 F600 L1000000\n"
     threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
         abbe.correct_program(mill(), program, max_output_mb=1e6, max_minutes=60)

@@ -130,7 +130,7 @@ std::string argument_words(const std::string& text) {
       name += text[i] == '-' ? '_' : text[i];
     }
     --i;
-    words += name == "for" ? "format" : name;
+    words += name == "for" ? "format" : name == "word" ? "words" : name;
   }
   return words;
 }

@@ -90,7 +90,7 @@ TEST(CorrectedProgramOfText, StopsWhileALineOfTheProgramIsStillAtWork) {
         },
         [](std::size_t) {}, asked.get_token());
   };
-  EXPECT_THROW(correct("G21 G90\nG0 X0 Y0 Z0\nG91 G81 X0.001 Z-5 R2 F600 L100000000\nM2\n"), Stopped);
+  EXPECT_THROW(correct("G21 G90\nG0 X0 Y0 Z0 A0 C0\nG91 G81 X0.001 Z-5 R2 F600 L1000000\nM2\n"), Stopped);
   EXPECT_EQ(pieces, 1U);
   EXPECT_THROW(correct(kMoves), Stopped);  // it was asked before
   EXPECT_EQ(pieces, 1U);

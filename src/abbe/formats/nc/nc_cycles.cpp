@@ -106,7 +106,7 @@ void NcCycles::run(const NcCodedBlock& block, NcCode motion) {
   take_words(block, motion, depth);
   const double repeats = block.has('l') ? block.value('l') : 1;
   if (!(repeats >= 1 && repeats <= 1e6) || std::abs(repeats - std::round(repeats)) > 1e-4) {
-    block.fail('l', "is not a number of repeats", "a whole number from 1");
+    block.fail('l', "is not a number of repeats", "a whole number from 1 to 1000000");
   }
   state_.position.require(modes.absolute ? axis_bit(depth) : kXyzWords, block, "the cycle begins there");
   const Heights to = heights(block, depth);

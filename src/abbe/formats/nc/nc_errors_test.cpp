@@ -277,7 +277,7 @@ TEST(NcErrors, OfCycles) {
   EXPECT_EQ(refusal("F1\nG81 X1 Z2 R1\n"), "p.ngc:2:1: G81: R is below the bottom of the hole; expected R above it");
   EXPECT_EQ(refusal("F1\nG81 X1 Z-1 R1 A1\n"), "p.ngc:2:1: G81: a canned cycle with words other than X, Y, Z");
   EXPECT_EQ(refusal("F1\nG81 Z-1 R1 X1 L0\n"),
-            "p.ngc:2:15: L0: is not a number of repeats; expected a whole number from 1");
+            "p.ngc:2:15: L0: is not a number of repeats; expected a whole number from 1 to 1000000");
   EXPECT_EQ(refusal("F1\nG82 Z-1 R1 X1\n"), "p.ngc:2:1: G82: P is missing in this cycle");
   EXPECT_EQ(refusal("F1\nG83 Z-1 R1 X1\n"), "p.ngc:2:1: G83: Q is missing in this cycle");
   EXPECT_EQ(refusal("F1\nG83 Z-1 R1 X1 Q-1\n"), "p.ngc:2:1: G83: the step Q is not positive");
