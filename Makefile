@@ -7,6 +7,7 @@
 #   make test      set-up, all tests, the most important ones under the sanitizers too, short fuzzing
 #   make sanitize  all quick tests under the sanitizers; continuous integration runs it after make test
 #   make python    set-up, the Python package and its tests
+#   make site      set-up, documentation and reference of the Python package as pages: build/site/index.html
 #   make unit      build and run the tests of single folders
 #   make quick     the same, longer ones, and the tests of the command and of the pages
 #   make lint      formatting, structure and static analysis
@@ -22,7 +23,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo closed-loop test sanitize python unit quick lint format bench fuzz coverage package package-test install install-linuxcnc clean
+.PHONY: build demo closed-loop test sanitize python site unit quick lint format bench fuzz coverage package package-test install install-linuxcnc clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
@@ -36,6 +37,9 @@ LOOP_RESULTS ?= build/closed-loop
 # OFF: make test leaves the Python package out, where pip cannot fetch what it needs.
 ABBE_PYTHON ?= ON
 SET_UP_PYTHON := $(if $(filter ON,$(ABBE_PYTHON)),python)
+# OFF: make test leaves the site out, which needs more from pip.
+ABBE_SITE ?= $(ABBE_PYTHON)
+SET_UP_SITE := $(if $(filter ON,$(ABBE_SITE)),site)
 WITH_PYTHON := -DABBE_PYTHON=$(ABBE_PYTHON) $(if $(SET_UP_PYTHON),-DPython_EXECUTABLE=$(CURDIR)/build/python-venv/bin/python)
 # Tests that start a LinuxCNC or a browser wait most of the time.
 TEST_JOBS ?= $(shell expr 2 \* $(JOBS))
@@ -50,6 +54,7 @@ TEST_MINUTES := 28
 SANITIZE_MINUTES := 15
 QUICK_MINUTES := 15
 PYTHON_MINUTES := 9
+SITE_MINUTES := 10
 
 comma := ,
 say = @printf '\n== %s (%s)\n' "$(1)" "$$(date -u +%H:%M:%S)"
@@ -71,7 +76,7 @@ closed-loop:
 	examples/closed_loop/run $(LOOP_RESULTS)
 
 test:
-	@.ci/set-up test $(SET_UP_PYTHON)
+	@.ci/set-up test $(SET_UP_PYTHON) $(SET_UP_SITE)
 	@echo "make $@ checks the format, makes two builds, runs all tests and the fuzzing: from nothing it takes about" \
 	  "$(TEST_MINUTES) minutes on 2 cores"
 	$(call say,1 of 6: formatting)
@@ -99,6 +104,13 @@ python:
 	@.ci/build --target abbe_python_tests --expect $(PYTHON_MINUTES) "make $@ builds the Python package and runs its tests" dev \
 	  -DABBE_WERROR=ON $(WITH_PYTHON)
 	@ctest --preset dev -j $(JOBS) -L python
+
+# With the package of the development build, as make python makes it.
+site:
+	@.ci/set-up test site
+	@.ci/build --target abbe_python_stub --expect $(SITE_MINUTES) "make $@ builds the Python package and the pages" dev -DABBE_WERROR=ON \
+	  -DABBE_PYTHON=ON -DPython_EXECUTABLE=$(CURDIR)/build/python-venv/bin/python
+	@build/python-venv/bin/python docs/site/build_site.py --package build/dev/python --work build/site-work --out build/site
 
 unit:
 	@.ci/set-up test

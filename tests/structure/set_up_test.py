@@ -182,10 +182,11 @@ class SetUp(unittest.TestCase):
     def test_the_environment_of_python_is_made_last(self):
         script = os.path.join(self.machine.folder, "tree/.ci/python-venv")
         with open(script, "w", encoding="utf-8") as out:
-            out.write(f'#!{shutil.which("bash")}\necho environment\nexit 7\n')
+            out.write(f'#!{shutil.which("bash")}\necho environment $*\nexit 7\n')
         os.chmod(script, 0o755)
         self.assertEqual(self.machine.set_up("build"), (0, "", "", []))
         self.assertEqual(self.machine.set_up("build", "python"), (7, "environment\n", "", []))
+        self.assertEqual(self.machine.set_up("build", "python", "site"), (7, "environment site\n", "", []))
         # Without what is optional it is made all the same; without what is needed it is not.
         self.machine.remove("ccache")
         code, out, err, _ = self.machine.set_up("build", "python")

@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""Build the site. Usage: build_site.py --package FOLDER --out FOLDER --work FOLDER
+
+--package  folder that holds the built Python package `abbe` (build/dev/python)
+--out      where the pages are written; what was there is replaced
+--work     folder for what is kept from run to run: copies of the documents, what Sphinx has read, outputs of notebooks
+
+Exit code 77: packages of docs/site/requirements.txt are not installed, nothing was done.
+"""
+import argparse
+import hashlib
+import importlib.util
+import os
+import pathlib
+import re
+import shutil
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+NEEDED = ["docutils", "furo", "ipykernel", "myst_nb", "myst_parser", "sphinx"]
+
+
+def version() -> str:
+    text = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+    match = re.search(r"project\(abbe VERSION ([0-9.]+)", text)
+    assert match, "CMakeLists.txt states the version"
+    return match.group(1)
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description="Build the site of the documentation.")
+    for name in ("package", "out", "work"):
+        parser.add_argument(f"--{name}", type=lambda text: pathlib.Path(text).resolve(), required=True)
+    return parser.parse_args()
+
+
+def forget_outputs_of_another_package(options: argparse.Namespace) -> None:
+    """Outputs of notebooks are kept while neither the notebook nor the package changes; of the notebooks Sphinx sees it."""
+    digest = hashlib.sha256()
+    for path in sorted(options.package.glob("abbe/*")):
+        if path.suffix in (".py", ".so"):
+            digest.update(path.read_bytes())
+    stamp = options.work / "notebooks/made-by"
+    if not stamp.is_file() or stamp.read_text(encoding="ascii") != digest.hexdigest():
+        for folder in ("notebooks", "read"):
+            shutil.rmtree(options.work / folder, ignore_errors=True)
+        stamp.parent.mkdir(parents=True)
+        stamp.write_text(digest.hexdigest(), encoding="ascii")
+
+
+def settings_of_notebooks(folder: pathlib.Path) -> pathlib.Path:
+    """Figures as drawings, which are sharp at any size."""
+    profile = folder / "profile_default"
+    profile.mkdir(parents=True, exist_ok=True)
+    (profile / "ipython_kernel_config.py").write_text("c.InlineBackend.figure_formats = {'svg'}\n", encoding="ascii")
+    return folder
+
+
+def main() -> int:
+    options = arguments()
+    shutil.rmtree(options.out, ignore_errors=True)
+    missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
+    if missing:
+        print(f"SKIPPED: {', '.join(missing)} not installed in this Python: .ci/python-venv site")
+        return 77
+    if not (options.package / "abbe/_core.pyi").is_file():
+        print(f"build_site: {options.package}: expected the built package, with abbe/_core.pyi", file=sys.stderr)
+        return 1
+
+    sys.path.insert(0, str(HERE))
+    import check_links
+    import cpp_pages
+    import python_pages
+    import search_texts
+    from security_policy import add_policies
+    from sphinx.cmd.build import main as sphinx
+    from stage import Stage
+
+    stage = Stage(ROOT, options.work / "pages")
+    stage.copy_documents()
+    python_pages.write(stage, options.package / "abbe")
+    cpp_pages.write(stage)
+    stage.remove_others()
+
+    forget_outputs_of_another_package(options)
+    # Notebooks run in a process of their own, which finds the package and its settings by these.
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(options.package), os.environ.get("PYTHONPATH")]))
+    os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+    os.environ["IPYTHONDIR"] = str(settings_of_notebooks(options.work / "ipython"))
+    os.environ["ABBE_SITE_VERSION"] = version()
+    os.environ["ABBE_SITE_NOTEBOOKS"] = str(options.work / "notebooks")
+    failed = sphinx(["-q", "-W", "--keep-going", "-b", "html", "-c", str(HERE), "-d", str(options.work / "read"),
+                     str(options.work / "pages"), str(options.out)])
+    if failed:
+        return 1
+    for leftover in (".buildinfo", "objects.inv"):
+        (options.out / leftover).unlink(missing_ok=True)
+    search_texts.write(options.out)
+    add_policies(options.out)
+    faults = list(check_links.faults(options.out))
+    for page, message in faults:
+        print(f"{page}: {message}", file=sys.stderr)
+    pages = len(list(options.out.rglob("*.html")))
+    print(f"{pages} pages, {len(faults)} broken links: {options.out / 'index.html'}")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

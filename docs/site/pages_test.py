@@ -1,0 +1,109 @@
+"""The check of links finds each of its faults and nothing on pages without; the policy of a page has the scripts in it."""
+
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from check_links import faults  # noqa: E402
+from python_source import Source  # noqa: E402
+from security_policy import add_policies  # noqa: E402
+
+GOOD = {
+    "index.html": '<h1 id="top">A</h1><a href="sub/b.html#here">b</a><a href="#top">up</a><a href="search.html?q=a">s</a>'
+                  '<a href="https://example.org/x?y#z">o</a><a href="mailto:a@example.org">m</a><img src="data:image/png;base64,AA">'
+                  '<link rel="next" href="sub/b.html"><img src="a%20b.svg">',
+    "sub/b.html": '<p id="here"></p><a href="../index.html">a</a><script src="../s.js?v=1"></script>',
+    "search.html": "", "a b.svg": "", "s.js": ""}
+
+
+class Pages(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name) / "site"
+
+    def faults_with(self, **pages):
+        for name, text in {**GOOD, **{name.replace("__", "."): text for name, text in pages.items()}}.items():
+            path = self.folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        return [f"{page}: {message}" for page, message in faults(self.folder)]
+
+    def test_good_pages_have_no_faults(self):
+        self.assertEqual(self.faults_with(), [])
+
+    def test_each_fault_is_found(self):
+        wrong = {
+            '<a href="missing.html">': "there is no such file",
+            '<a href="sub/">': "there is no such file",
+            '<a href="../outside.html">': "there is no such file",
+            '<img src="missing.png">': "there is no such file",
+            '<a href="#nowhere">': "no element with this id",
+            '<a href="sub/b.html#nowhere">': "no element with this id",
+            '<a href="/index.html">': "expected a path relative to the page",
+            '<a href="file:///etc/hosts">': "expected http, https, mailto or a path",
+            '<a href="javascript:1">': "expected http, https, mailto or a path",
+            '<a href="https://nohost/">': "expected the name of a host",
+            '<a href="https://example.org:port/">': "the port is no number",
+            '<a href="https://example.org/a b">': "white space",
+            '<script src="https://example.org/x.js"></script>': "loaded from another host",
+            '<link rel="stylesheet" href="//example.org/x.css">': "loaded from another host",
+            '<i id="a"></i><i id="a"></i>': "two elements have the id 'a'"}
+        (self.folder.parent / "outside.html").write_text("", encoding="utf-8")
+        for element, words in wrong.items():
+            found = self.faults_with(index__html=GOOD["index.html"] + element)
+            self.assertEqual(len(found), 1, f"{element}: {found}")
+            self.assertIn(words, found[0])
+
+    def test_a_page_without_a_link_to_it_is_found(self):
+        self.assertEqual(self.faults_with(lost__html='<a href="index.html">'), ["lost.html: no link leads to this page"])
+
+    def test_the_policy_allows_the_scripts_of_the_page_and_no_others(self):
+        head = '<meta charset="utf-8">'
+        self.faults_with(index__html=f"{head}<script>alert(1)</script><script src='s.js'></script><style>a{{}}</style>")
+        for name in ("sub/b.html", "search.html"):
+            (self.folder / name).write_text(head, encoding="utf-8")
+        add_policies(self.folder)
+        page = (self.folder / "index.html").read_text(encoding="utf-8")
+        self.assertIn("default-src 'none'; script-src 'self' 'sha256-bhHHL3z2vDgxUt0W3dWQOrprscmda2Y5pLsLg4GF+pI='; style-src-elem "
+                      "'self' 'sha256-", page)
+        self.assertEqual(page.count("sha256-"), 2)
+        (self.folder / "search.html").write_text("no place", encoding="utf-8")
+        self.assertRaises(ValueError, add_policies, self.folder)
+
+    def test_signatures_are_read_as_a_reader_writes_them(self):
+        path = self.folder.parent / "_core.pyi"
+        path.write_text("""
+class Axis:
+    \"\"\"One axis.\"\"\"
+
+    def __init__(self, arg: str, /, *, travel_mm: collections.abc.Sequence[float] = (0.0, 1.0)) -> None: ...
+
+    @property
+    def point_mm(self) -> Annotated[NDArray[numpy.float64], dict(shape=(None,))]:
+        \"\"\"Where.\"\"\"
+
+    @point_mm.setter
+    def point_mm(self, arg: object, /) -> None: ...
+
+    @staticmethod
+    def read(path: str | os.PathLike[str]) -> abbe._core.Axis: ...
+
+def turn(axis: Axis, by: typing.Optional[float] = None) -> "Axis": ...
+""", encoding="utf-8")
+        names = Source(path).names()
+        axis, turn = names["Axis"], names["turn"]
+        self.assertEqual(axis.signatures, ["(arg: str, *, travel_mm: Sequence[float]=(0.0, 1.0))"])
+        point, read = axis.members
+        self.assertEqual((point.type, point.flags, point.doc), ("NDArray[numpy.float64]", ["settable"], "Where."))
+        self.assertEqual((read.flags, read.signatures), (["staticmethod"], ["(path: str | os.PathLike[str]) -> Axis"]))
+        self.assertEqual(turn.signatures, ["(axis: Axis, by: float | None=None) -> Axis"])
+        self.assertIn("Axis", turn.gives)
+
+
+if __name__ == "__main__":
+    unittest.main()

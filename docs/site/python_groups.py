@@ -1,0 +1,81 @@
+"""Which public names belong together: by the table "What there is" of docs/python.md, and by what they give and take.
+
+A name that the table does not list goes where the first row is whose names give it, then where the names are that it gives
+or takes, then where it is spoken of; else to the last group, "Other names"."""
+
+import pathlib
+import re
+from dataclasses import dataclass, field
+
+from python_source import Name
+
+HEADING = "## What there is"
+ROW = re.compile(r"^\| (`[^|]*`) \| ([^|]*) \| ([^|]*)\|$")
+CODE = re.compile(r"`([^`]+)`")
+
+
+@dataclass
+class Group:
+    """A row of the table: what it is about, the headers of C++ it names, and its names of the package."""
+
+    listed: list[str]
+    about: str
+    headers: list[str] = field(default_factory=list)
+    names: list[str] = field(default_factory=list)
+
+
+def rows(document: pathlib.Path) -> list[Group]:
+    text = document.read_text(encoding="utf-8")
+    _, heading, rest = text.partition(HEADING)
+    lines = rest.partition("\n## ")[0].splitlines()
+    found = [Group(CODE.findall(match[1]), match[2].strip(), CODE.findall(match[3])) for match in map(ROW.match, lines) if match]
+    if not heading or not found:
+        raise ValueError(f"{document}: expected a table of names below '{HEADING}'")
+    return found
+
+
+def groups(document: pathlib.Path, names: dict[str, Name]) -> list[Group]:
+    """All groups that have names of the package; a row of a module (`abbe.plot`) has its name alone."""
+    table = rows(document)
+    unknown = [name for group in table for name in group.listed if "." not in name and name not in names]
+    if unknown:
+        raise ValueError(f"{document}: the table names what abbe.__all__ does not have: {', '.join(unknown)}")
+    place: dict[str, int] = {}
+    for number, group in enumerate(table):
+        place.update({name: number for name in group.listed if name in names})
+
+    def settle(candidates: "callable") -> bool:
+        """One round; what it places counts from the next round on."""
+        found = {}
+        for name in names:
+            if name not in place:
+                numbers = list(candidates(name))
+                if numbers:
+                    found[name] = numbers[0]
+        place.update(found)
+        return bool(found)
+
+    def given_by(name: str) -> list[int]:
+        return sorted(number for other, number in place.items() if name in names[other].gives)
+
+    def by_type(name: str) -> list[int]:
+        one = names[name]
+        words = [*sorted(one.gives), *one.takes] if one.kind != "class" else one.takes
+        return [place[word] for word in words if word in place]
+
+    def by_words(name: str) -> list[int]:
+        def says(one: Name, word: str) -> bool:
+            texts = [one.doc, *(member.doc for member in one.members)]
+            return any(re.search(rf"\b{word}\b", text) for text in texts)
+
+        return sorted(number for other, number in place.items() if says(names[other], name))
+
+    while settle(given_by) or settle(by_type) or settle(by_words):
+        pass
+    table.append(Group([], "names that belong to no task"))
+    for name in names:
+        table[place.get(name, len(table) - 1)].names.append(name)
+    for group in table:
+        # Those of the table first, in its order.
+        group.names.sort(key=lambda name, group=group: group.listed.index(name) if name in group.listed else len(group.listed))
+    return [group for group in table if group.names or any("." in name for name in group.listed)]
