@@ -18,7 +18,7 @@ install(DIRECTORY examples DESTINATION ${abbe_data} COMPONENT data PATTERN close
 install(DIRECTORY tests/golden/aguado tests/golden/liu tests/golden/ma tests/golden/yin DESTINATION ${abbe_data}/golden
   COMPONENT data FILES_MATCHING PATTERN "*.csv" PATTERN "*.json")
 install(FILES README.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT data)
-install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT data)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT data PATTERN site EXCLUDE)
 # Manual pages and completions: the command makes them of its own options.
 set(abbe_pages ${CMAKE_CURRENT_BINARY_DIR}/pages)
 add_custom_command(OUTPUT ${abbe_pages}/completion/bash

@@ -22,7 +22,7 @@ const check = (good, text) => {
   if (!good) failures.push(text);
 };
 const urlOf = (page) => pathToFileURL(join(options.site, page)).href;
-const root = urlOf('');
+const root = `${pathToFileURL(options.site).href}/`;
 const pages = readdirSync(options.site, {recursive: true}).map(String).filter((name) => name.endsWith('.html')).sort();
 
 const browser = await chromium.launch({

@@ -10,6 +10,7 @@ Exit code 77: packages of docs/site/requirements.txt are not installed, nothing 
 import argparse
 import hashlib
 import importlib.util
+import logging
 import os
 import pathlib
 import re
@@ -50,10 +51,11 @@ def forget_outputs_of_another_package(options: argparse.Namespace) -> None:
 
 
 def settings_of_notebooks(folder: pathlib.Path) -> pathlib.Path:
-    """Figures as drawings, which are sharp at any size."""
+    """Figures as drawings, which are sharp at any size; no words about connections within this machine."""
     profile = folder / "profile_default"
     profile.mkdir(parents=True, exist_ok=True)
-    (profile / "ipython_kernel_config.py").write_text("c.InlineBackend.figure_formats = {'svg'}\n", encoding="ascii")
+    (profile / "ipython_kernel_config.py").write_text("c.InlineBackend.figure_formats = {'svg'}\nc.IPKernelApp.log_level = 40\n",
+                                                         encoding="ascii")
     return folder
 
 
@@ -90,7 +92,8 @@ def main() -> int:
     os.environ["IPYTHONDIR"] = str(settings_of_notebooks(options.work / "ipython"))
     os.environ["ABBE_SITE_VERSION"] = version()
     os.environ["ABBE_SITE_NOTEBOOKS"] = str(options.work / "notebooks")
-    failed = sphinx(["-q", "-W", "--keep-going", "-b", "html", "-c", str(HERE), "-d", str(options.work / "read"),
+    logging.getLogger("traitlets").setLevel(logging.WARNING)  # says which notebook it runs
+    failed = sphinx(["-q", "-E", "-W", "--keep-going", "-b", "html", "-c", str(HERE), "-d", str(options.work / "read"),
                      str(options.work / "pages"), str(options.out)])
     if failed:
         return 1

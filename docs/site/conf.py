@@ -30,7 +30,7 @@ myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 6  # [text](page.md#heading) as forges make them
 myst_links_external_new_tab = False
 
-nb_execution_mode = os.environ.get("X","cache")
+nb_execution_mode = "cache"
 nb_execution_in_temp = True
 nb_execution_cache_path = os.environ["ABBE_SITE_NOTEBOOKS"]
 nb_execution_raise_on_error = True

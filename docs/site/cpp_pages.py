@@ -68,10 +68,10 @@ def library_page(library: str, holds: str, lead: str, with_example: set[str]) ->
     first += [path for path in headers if path.removeprefix("abbe/") in with_example and path not in first]
     parts = [f"# C++: {library}\n\n{holds[0].upper()}{holds[1:]}.\n"]
     parts += [example_part(path, headers[path]) for path in first]
-    rows = ["## Headers", "", "| header | what it begins with | types |", "|---|---|---|"]
+    rows = ["## Headers", "", f"In `include/abbe/{library}`:", "", "| header | what it begins with | types |", "|---|---|---|"]
     for path, text in headers.items():
         types = {match.group(1) or match.group(2): None for match in TYPE.finditer(without_comments(text))}
-        rows.append(f"| `{path}` | {first_sentence(text)} | {', '.join(f'`{name}`' for name in types)} |")
+        rows.append(f"| `{path.removeprefix(f'abbe/{library}/')}` | {first_sentence(text)} | {', '.join(f'`{name}`' for name in types)} |")
     return "\n".join([*parts, *rows, ""])
 
 

@@ -1,10 +1,12 @@
 """Which public names belong together: by the table "What there is" of docs/python.md, and by what they give and take.
 
-A name that the table does not list goes where the first row is whose names give it, then where the names are that it gives
-or takes, then where it is spoken of; else to the last group, "Other names"."""
+A name that the table does not list goes to the first row with a function that gives it, else with another name that gives it,
+else with a function that takes it; a function to the row of what it gives or takes, a constant to the row that speaks of it.
+What is left goes to the last group, "Other names"."""
 
 import pathlib
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from python_source import Name
@@ -44,38 +46,46 @@ def groups(document: pathlib.Path, names: dict[str, Name]) -> list[Group]:
     for number, group in enumerate(table):
         place.update({name: number for name in group.listed if name in names})
 
-    def settle(candidates: "callable") -> bool:
+    def settle(candidates: Callable[[str], list[int]]) -> bool:
         """One round; what it places counts from the next round on."""
         found = {}
         for name in names:
             if name not in place:
-                numbers = list(candidates(name))
+                numbers = candidates(name)
                 if numbers:
                     found[name] = numbers[0]
         place.update(found)
         return bool(found)
 
+    def placed(test: Callable[[Name], bool]) -> list[int]:
+        return sorted(number for other, number in place.items() if test(names[other]))
+
+    def given_by_function(name: str) -> list[int]:
+        return placed(lambda one: one.kind == "function" and name in one.gives)
+
     def given_by(name: str) -> list[int]:
-        return sorted(number for other, number in place.items() if name in names[other].gives)
+        return placed(lambda one: name in one.gives)
+
+    def taken_by(name: str) -> list[int]:
+        return placed(lambda one: one.kind == "function" and name in one.takes) if names[name].kind == "class" else []
 
     def by_type(name: str) -> list[int]:
         one = names[name]
-        words = [*sorted(one.gives), *one.takes] if one.kind != "class" else one.takes
-        return [place[word] for word in words if word in place]
+        return [place[word] for word in [*sorted(one.gives), *one.takes] if word in place] if one.kind == "function" else []
 
     def by_words(name: str) -> list[int]:
-        def says(one: Name, word: str) -> bool:
-            texts = [one.doc, *(member.doc for member in one.members)]
-            return any(re.search(rf"\b{word}\b", text) for text in texts)
+        def says(one: Name) -> bool:
+            return any(re.search(rf"\b{name}\b", text) for text in [one.doc, *(member.doc for member in one.members)])
 
-        return sorted(number for other, number in place.items() if says(names[other], name))
+        return placed(says) if names[name].kind == "data" else []
 
-    while settle(given_by) or settle(by_type) or settle(by_words):
+    while any(map(settle, (given_by_function, given_by, taken_by, by_type, by_words))):
         pass
     table.append(Group([], "names that belong to no task"))
     for name in names:
         table[place.get(name, len(table) - 1)].names.append(name)
     for group in table:
-        # Those of the table first, in its order.
-        group.names.sort(key=lambda name, group=group: group.listed.index(name) if name in group.listed else len(group.listed))
+        # Those of the table first, in its order; parts of results last.
+        group.names.sort(key=lambda name, group=group: (not names[name].exported, group.listed.index(name) if name in group.listed
+                                                        else len(group.listed)))
     return [group for group in table if group.names or any("." in name for name in group.listed)]

@@ -1,5 +1,7 @@
 """Reference of the Python package, a page for each group of names (python_groups.py), written for Sphinx's Python domain."""
 
+import ast
+import builtins
 import pathlib
 import re
 
@@ -14,6 +16,7 @@ IN_CODE = re.compile(r"``?abbe\.(\w+)``?")
 SPANS = re.compile(r"(``.+?``|(?::[\w:]+:)?`[^`]+`)", re.DOTALL)
 # What is plain text in a docstring and markup for Sphinx: a product, an absolute value, a name that ends in a line.
 MARKUP = re.compile(r"[*|]|_(?!\w)")
+PARTS = ["These are types of what results hold. Nobody makes them, so the package has no names for them."]
 
 
 def heading(text: str, line: str) -> list[str]:
@@ -24,11 +27,43 @@ def indented(lines: list[str]) -> list[str]:
     return [f"   {line}" if line else "" for line in lines]
 
 
+class Qualify(ast.NodeTransformer):
+    """Names in types with their modules, so that none is taken for a member of a class that is called the same."""
+
+    def __init__(self, names: dict[str, Name]) -> None:
+        self.names = names
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        if node.id in self.names:
+            module = "abbe" if self.names[node.id].exported else "abbe._core"
+        elif hasattr(builtins, node.id):
+            module = "builtins"
+        else:
+            return node
+        return ast.Attribute(ast.parse(module, mode="eval").body, node.id, ast.Load())
+
+
 class Pages:
     """Writes what is known of names as reStructuredText."""
 
     def __init__(self, root: pathlib.Path, names: dict[str, Name]) -> None:
         self.root, self.names = root, names
+        self.qualify = Qualify(names)
+
+    def type(self, text: str) -> str:
+        """A type as Sphinx finds its names; it shows them without their module."""
+        return ast.unparse(self.qualify.visit(ast.parse(text, mode="eval").body))
+
+    def signature(self, text: str) -> str:
+        """A signature with such types."""
+        function = ast.parse(f"def f{text}: ...").body[0]
+        assert isinstance(function, ast.FunctionDef)
+        for node in ast.walk(function.args):
+            if isinstance(node, ast.arg) and node.annotation is not None:
+                node.annotation = self.qualify.visit(node.annotation)
+        if function.returns is not None:
+            function.returns = self.qualify.visit(function.returns)
+        return ast.unparse(function).removeprefix("def f").partition(":\n")[0]
 
     def text(self, doc: str) -> str:
         """A docstring as Sphinx reads it, with links to the documents and names that it speaks of."""
@@ -52,9 +87,9 @@ class Pages:
         """The directive of a name, with its members."""
         lines, first = [], f".. py:{DIRECTIVES[one.kind]}:: "
         for number, signature in enumerate(one.signatures or [""]):
-            lines.append((first if number == 0 else " " * len(first)) + one.name + signature)
+            lines.append((first if number == 0 else " " * len(first)) + one.name + (self.signature(signature) if signature else ""))
         lines += [f"   :{flag}:" for flag in one.flags if flag != "settable"]
-        lines += [f"   :type: {one.type}"] if one.type else []
+        lines += [f"   :type: {self.type(one.type)}"] if one.type else []
         body = [""]
         bases = [base for base in one.bases if base != "object"]
         if bases:
@@ -92,7 +127,8 @@ def write(stage: Stage, package: pathlib.Path) -> None:
              "All public names of the package ``abbe``, by task. :doc:`/docs/python` tells how they work together.", ""]
     order = []
     for group in groups(stage.root / "docs/python.md", names):
-        here = {name: names[name] for name in group.names}
+        here = {name: names[name] for name in group.names if names[name].exported}
+        parts = {name: names[name] for name in group.names if not names[name].exported}
         module, about = "abbe", group.about[0].upper() + group.about[1:]
         lines = [*heading(title(group), "=")]
         words = about + "."
@@ -108,6 +144,11 @@ def write(stage: Stage, package: pathlib.Path) -> None:
             lines += pages.table(here, module)
         for one in here.values():
             lines += pages.entry(one)
+        if parts:
+            lines += [*heading("Parts of results", "-"), ".. py:currentmodule:: abbe._core", "", *PARTS, ""]
+            lines += pages.table(parts, "abbe._core")
+            for one in parts.values():
+                lines += pages.entry(one)
         order.append(page_name(group))
         stage.write(f"reference/python/{order[-1]}.rst", "\n".join(lines))
         index += [*heading(title(group), "-"), words, "", *pages.table(here, module)]

@@ -25,6 +25,7 @@ class Name:
     members: list["Name"] = field(default_factory=list)
     gives: set[str] = field(default_factory=set)  # names in the types of results
     takes: list[str] = field(default_factory=list)  # names in the types of arguments
+    exported: bool = True  # False: only results lead to it, nobody can import it from the package
 
 
 class Types(ast.NodeTransformer):
@@ -163,7 +164,7 @@ def mentioned(kind: str) -> set[str]:
 
 
 def public_names(package: pathlib.Path) -> dict[str, Name]:
-    """The names of abbe.__all__, in its order."""
+    """The names of abbe.__all__, in its order, then the types of parts of their results that are in the module alone."""
     tree = ast.parse((package / "__init__.py").read_text(encoding="utf-8"))
     home: dict[str, str] = {}
     wanted: list[str] = []
@@ -173,13 +174,21 @@ def public_names(package: pathlib.Path) -> dict[str, Name]:
         elif isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
             wanted = ast.literal_eval(node.value)
     sources: dict[str, dict[str, Name]] = {}
-    for module in set(home.values()):
+    for module in {*home.values(), "_core"}:
         path = package / f"{module}.pyi"
         sources[module] = Source(path if path.exists() else package / f"{module}.py").names()
     missing = [name for name in wanted if name not in home or name not in sources[home[name]]]
     if missing:
         raise ValueError(f"{package}: not found in the sources of the package: {', '.join(missing)}")
-    return {name: sources[home[name]][name] for name in wanted}
+    names = {name: sources[home[name]][name] for name in wanted}
+    left = list(names.values())
+    while left:
+        for name in sorted(left.pop().gives & sources["_core"].keys() - names.keys()):
+            if not name.startswith("_"):
+                names[name] = sources["_core"][name]
+                names[name].exported = False
+                left.append(names[name])
+    return names
 
 
 def module_names(path: pathlib.Path) -> dict[str, Name]:

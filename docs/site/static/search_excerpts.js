@@ -1,47 +1,51 @@
 // Shows below each result of the search where its words stand in the page. The texts come from search_texts.js, a script:
-// no browser lets a page opened from a file read another one.
+// no browser lets a page that was opened from a file read another one.
 (() => {
   const kBefore = 60;
   const kLength = 220;
+  const kMostPlaces = 500;
 
-  /// [text, whether it is a word that was looked for] of the place where most of the words are near each other.
-  const excerptOf = (text, words) => {
-    const found = [];
-    const lower = text.toLowerCase();
-    for (const word of words) {
-      for (let at = lower.indexOf(word); at >= 0 && found.length < 500; at = lower.indexOf(word, at + 1)) found.push([at, word]);
+  /// Where words that begin with one of the stems stand in a text: [from, to, stem], in order.
+  const placesOf = (text, stems) => {
+    const alternatives = stems.map((stem) => stem.replace(/[.*+\-?^${}()|[\]\\]/g, '\\$&')).join('|');
+    const places = [];
+    for (const match of text.matchAll(new RegExp(`(?<![\\p{L}\\p{N}])(${alternatives})[\\p{L}\\p{N}_]*`, 'giu'))) {
+      places.push([match.index, match.index + match[0].length, match[1].toLowerCase()]);
+      if (places.length === kMostPlaces) break;
     }
-    if (!found.length) return [];
-    found.sort((a, b) => a[0] - b[0]);
-    let best = 0, most = 0;
-    for (const [at] of found) {
-      const near = new Set(found.filter(([other]) => other >= at && other < at + kLength - kBefore).map(([, word]) => word)).size;
-      if (near > most) [best, most] = [at, near];
-    }
-    const from = best <= kBefore ? 0 : text.indexOf(' ', best - kBefore) + 1;
-    const start = from > best ? best : from;
-    const end = Math.min(text.length, start + kLength);
+    return places;
+  };
+
+  /// The part of a text with most of the stems near each other: [text, whether it is one of the words].
+  const excerptOf = (text, stems) => {
+    const places = placesOf(text, stems);
+    if (!places.length) return [];
+    const stemsFrom = (at) => new Set(places.filter(([from]) => from >= at && from < at + kLength - kBefore).map((place) => place[2])).size;
+    const counts = places.map(([from]) => stemsFrom(from));
+    const best = places[counts.indexOf(Math.max(...counts))][0];
+    const start = best <= kBefore ? 0 : Math.min(best, text.indexOf(' ', best - kBefore) + 1);
+    const end = start + kLength >= text.length ? text.length : text.lastIndexOf(' ', start + kLength);
     const parts = [[start ? '… ' : '', false]];
     let last = start;
-    for (const [at, word] of found) {
-      if (at < last || at + word.length > end) continue;
-      parts.push([text.slice(last, at), false], [text.slice(at, at + word.length), true]);
-      last = at + word.length;
+    for (const [from, to] of places) {
+      if (from < last || to > end) continue;
+      parts.push([text.slice(last, from), false], [text.slice(from, to), true]);
+      last = to;
     }
     parts.push([text.slice(last, end) + (end < text.length ? ' …' : ''), false]);
     return parts;
   };
 
-  const show = (item, words) => {
+  const show = (item, stems) => {
     const link = item.querySelector('a');
     if (!link || item.querySelector('.excerpt, span')) return;
     const page = link.getAttribute('href').replace(/[#?].*$/, '').replace(/\.html$/, '');
-    const parts = excerptOf(window.abbeSearchTexts?.[page] ?? '', words);
+    const parts = excerptOf(window.abbeSearchTexts?.[page] ?? '', stems);
     if (!parts.length) return;
     const line = document.createElement('p');
     line.className = 'excerpt';
     for (const [text, marked] of parts) {
-      const part = marked ? document.createElement('mark') : document.createElement('span');
+      const part = document.createElement(marked ? 'mark' : 'span');
       part.textContent = text;
       line.append(part);
     }
@@ -50,15 +54,11 @@
 
   document.addEventListener('DOMContentLoaded', () => {
     const results = document.getElementById('search-results');
-    if (!results) return;
     const query = new URLSearchParams(location.search).get('q') ?? '';
-    // Endings are left to the search, which stems words.
-    const words = query.toLowerCase().split(/[^\p{L}\p{N}_]+/u).filter((word) => word.length > 1)
-      .map((word) => (word.length > 5 ? word.replace(/(ations?|ing|ed|es|s|e)$/, '') : word));
-    new MutationObserver((changes) => {
-      for (const change of changes) {
-        for (const node of change.addedNodes) if (node.nodeName === 'LI') show(node, words);
-      }
-    }).observe(results, {childList: true, subtree: true});
+    const stemmer = new Stemmer();
+    const stems = query.toLowerCase().split(/[^\p{L}\p{N}_]+/u).filter((word) => word.length > 1).map((word) => stemmer.stemWord(word));
+    if (!results || !stems.length) return;
+    new MutationObserver(() => results.querySelectorAll('li').forEach((item) => show(item, stems))).observe(results, {childList: true, subtree: true});
+    results.querySelectorAll('li').forEach((item) => show(item, stems));
   });
 })();
