@@ -7,6 +7,7 @@
 
 Exit code 77: packages of docs/site/requirements.txt are not installed, nothing was done.
 """
+
 import argparse
 import hashlib
 import importlib.util
@@ -37,7 +38,7 @@ def arguments() -> argparse.Namespace:
 
 
 def forget_outputs_of_another_package(options: argparse.Namespace) -> None:
-    """Outputs of notebooks are kept while neither the notebook nor the package changes; of the notebooks Sphinx sees it."""
+    """Outputs of notebooks are kept until the notebook changes, which is seen without this, or the package."""
     digest = hashlib.sha256()
     for path in sorted(options.package.glob("abbe/*")):
         if path.suffix in (".py", ".so"):
@@ -54,8 +55,9 @@ def settings_of_notebooks(folder: pathlib.Path) -> pathlib.Path:
     """Figures as drawings, which are sharp at any size; no words about connections within this machine."""
     profile = folder / "profile_default"
     profile.mkdir(parents=True, exist_ok=True)
-    (profile / "ipython_kernel_config.py").write_text("c.InlineBackend.figure_formats = {'svg'}\nc.IPKernelApp.log_level = 40\n",
-                                                         encoding="ascii")
+    (profile / "ipython_kernel_config.py").write_text(
+        "c.InlineBackend.figure_formats = {'svg'}\nc.IPKernelApp.log_level = 40\n", encoding="ascii"
+    )
     return folder
 
 
@@ -93,8 +95,22 @@ def main() -> int:
     os.environ["ABBE_SITE_VERSION"] = version()
     os.environ["ABBE_SITE_NOTEBOOKS"] = str(options.work / "notebooks")
     logging.getLogger("traitlets").setLevel(logging.WARNING)  # says which notebook it runs
-    failed = sphinx(["-q", "-E", "-W", "--keep-going", "-b", "html", "-c", str(HERE), "-d", str(options.work / "read"),
-                     str(options.work / "pages"), str(options.out)])
+    failed = sphinx(
+        [
+            "-q",
+            "-E",
+            "-W",
+            "--keep-going",
+            "-b",
+            "html",
+            "-c",
+            str(HERE),
+            "-d",
+            str(options.work / "read"),
+            str(options.work / "pages"),
+            str(options.out),
+        ]
+    )
     if failed:
         return 1
     for leftover in (".buildinfo", "objects.inv"):

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Check the links of a folder of pages. Usage: check_links.py FOLDER
 
-Every link, image, style and script leads to a file of the folder and, with #anchor, to an element that has this id. Links to
-other hosts are checked for their form only, nothing is fetched; a page loads nothing from other hosts. Every page but the
-search page can be reached from index.html. Every fault is one line: page: message.
+Every link, image, style and script leads to a file of the folder and, with #anchor, to an element that has this id.
+Links to other hosts are checked for their form only, nothing is fetched; a page loads nothing from other hosts. Every
+page but the search page can be reached from index.html. Every fault is one line: page: message.
 """
+
 import html.parser
 import pathlib
 import sys
@@ -12,8 +13,19 @@ import urllib.parse
 from collections.abc import Iterator
 
 # What a browser loads by itself when it shows the element.
-LOADS = {("img", "src"), ("script", "src"), ("link", "href"), ("source", "src"), ("source", "srcset"), ("iframe", "src"),
-         ("video", "src"), ("audio", "src"), ("object", "data"), ("embed", "src"), ("use", "href")}
+LOADS = {
+    ("img", "src"),
+    ("script", "src"),
+    ("link", "href"),
+    ("source", "src"),
+    ("source", "srcset"),
+    ("iframe", "src"),
+    ("video", "src"),
+    ("audio", "src"),
+    ("object", "data"),
+    ("embed", "src"),
+    ("use", "href"),
+}
 FOLLOWS = {("a", "href"), ("area", "href"), ("form", "action")}
 # `link` elements that only name a page.
 NAMES = {"next", "prev", "index", "search", "author", "copyright", "canonical"}

@@ -1,10 +1,13 @@
 """How Sphinx reads the documents, which are written to be read on a forge: see stage.py for what is adapted before."""
 
+import builtins
 import os
 import pathlib
 import sys
 
+from docutils import nodes
 from pygments.lexers.special import TextLexer
+from sphinx.addnodes import pending_xref
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
@@ -61,5 +64,13 @@ pygments_style = "a11y-high-contrast-light"
 pygments_dark_style = "a11y-high-contrast-dark"
 
 
+def leave_python_alone(app, doctree):
+    """`bytes` in a type is Python's, although a class of the package has a member of this name: no link."""
+    for node in list(doctree.findall(pending_xref)):
+        if node.get("refdomain") == "py" and hasattr(builtins, node["reftarget"]):
+            node.replace_self(nodes.Text(node["reftarget"]))
+
+
 def setup(app):
     app.add_lexer("csv", TextLexer)
+    app.connect("doctree-read", leave_python_alone)

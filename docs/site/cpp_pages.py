@@ -1,5 +1,5 @@
-"""Pages of the public C++ headers: a page for each library, with the examples that the tests run and what every header says
-first. The libraries and the header of each to open first are those of the table in docs/architecture.md."""
+"""Pages of the public C++ headers: a page for each library, with the examples that the tests run and what every header
+says first. The libraries and the header of each to open first are those of the table in docs/architecture.md."""
 
 import pathlib
 import re
@@ -36,8 +36,22 @@ def example_part(path: str, text: str) -> str:
     overview = [line.removeprefix("//").removeprefix(" ") for number, line in comment if number > printed[-1][0]]
     overview = "\n".join(overview).strip("\n").split("\n")
     title = comment[0][1].removeprefix("// ").rstrip(":")
-    lines = [f"## {title}", "", f"`{path}` begins with this program:", "", f"```{'c' if is_c(program) else 'cpp'}",
-             *(line for _, line in program), "```", "", "It prints:", "", "```text", *(line for _, line in printed), "```", ""]
+    lines = [
+        f"## {title}",
+        "",
+        f"`{path}` begins with this program:",
+        "",
+        f"```{'c' if is_c(program) else 'cpp'}",
+        *(line for _, line in program),
+        "```",
+        "",
+        "It prints:",
+        "",
+        "```text",
+        *(line for _, line in printed),
+        "```",
+        "",
+    ]
     if overview[0]:
         lines += [overview[0], ""]
         if overview[1:]:
@@ -62,16 +76,26 @@ def first_sentence(text: str) -> str:
 
 def library_page(library: str, holds: str, lead: str, with_example: set[str]) -> str:
     folder = ROOT / "include/abbe" / library
-    headers = {path.relative_to(ROOT / "include").as_posix(): path.read_text(encoding="utf-8")
-               for path in sorted(folder.rglob("*.h"))}
+    headers = {
+        path.relative_to(ROOT / "include").as_posix(): path.read_text(encoding="utf-8")
+        for path in sorted(folder.rglob("*.h"))
+    }
     first = [f"abbe/{library}/{lead}"]
     first += [path for path in headers if path.removeprefix("abbe/") in with_example and path not in first]
     parts = [f"# C++: {library}\n\n{holds[0].upper()}{holds[1:]}.\n"]
     parts += [example_part(path, headers[path]) for path in first]
-    rows = ["## Headers", "", f"In `include/abbe/{library}`:", "", "| header | what it begins with | types |", "|---|---|---|"]
+    rows = [
+        "## Headers",
+        "",
+        f"In `include/abbe/{library}`:",
+        "",
+        "| header | what it begins with | types |",
+        "|---|---|---|",
+    ]
     for path, text in headers.items():
         types = {match.group(1) or match.group(2): None for match in TYPE.finditer(without_comments(text))}
-        rows.append(f"| `{path.removeprefix(f'abbe/{library}/')}` | {first_sentence(text)} | {', '.join(f'`{name}`' for name in types)} |")
+        name = path.removeprefix(f"abbe/{library}/")
+        rows.append(f"| `{name}` | {first_sentence(text)} | {', '.join(f'`{each}`' for each in types)} |")
     return "\n".join([*parts, *rows, ""])
 
 

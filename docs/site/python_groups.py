@@ -1,8 +1,8 @@
 """Which public names belong together: by the table "What there is" of docs/python.md, and by what they give and take.
 
-A name that the table does not list goes to the first row with a function that gives it, else with another name that gives it,
-else with a function that takes it; a function to the row of what it gives or takes, a constant to the row that speaks of it.
-What is left goes to the last group, "Other names"."""
+A name that the table does not list goes to the first row with a function that gives it, else with another name that
+gives it, else with a function that takes it; a function to the row of what it gives or takes, a constant to the row
+that speaks of it. What is left goes to the last group, "Other names"."""
 
 import pathlib
 import re
@@ -30,7 +30,11 @@ def rows(document: pathlib.Path) -> list[Group]:
     text = document.read_text(encoding="utf-8")
     _, heading, rest = text.partition(HEADING)
     lines = rest.partition("\n## ")[0].splitlines()
-    found = [Group(CODE.findall(match[1]), match[2].strip(), CODE.findall(match[3])) for match in map(ROW.match, lines) if match]
+    found = [
+        Group(CODE.findall(match[1]), match[2].strip(), CODE.findall(match[3]))
+        for match in map(ROW.match, lines)
+        if match
+    ]
     if not heading or not found:
         raise ValueError(f"{document}: expected a table of names below '{HEADING}'")
     return found
@@ -71,7 +75,11 @@ def groups(document: pathlib.Path, names: dict[str, Name]) -> list[Group]:
 
     def by_type(name: str) -> list[int]:
         one = names[name]
-        return [place[word] for word in [*sorted(one.gives), *one.takes] if word in place] if one.kind == "function" else []
+        return (
+            [place[word] for word in [*sorted(one.gives), *one.takes] if word in place]
+            if one.kind == "function"
+            else []
+        )
 
     def by_words(name: str) -> list[int]:
         def says(one: Name) -> bool:
@@ -86,6 +94,10 @@ def groups(document: pathlib.Path, names: dict[str, Name]) -> list[Group]:
         table[place.get(name, len(table) - 1)].names.append(name)
     for group in table:
         # Those of the table first, in its order; parts of results last.
-        group.names.sort(key=lambda name, group=group: (not names[name].exported, group.listed.index(name) if name in group.listed
-                                                        else len(group.listed)))
+        group.names.sort(
+            key=lambda name, group=group: (
+                not names[name].exported,
+                group.listed.index(name) if name in group.listed else len(group.listed),
+            )
+        )
     return [group for group in table if group.names or any("." in name for name in group.listed)]

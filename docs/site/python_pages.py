@@ -1,7 +1,6 @@
-"""Reference of the Python package, a page for each group of names (python_groups.py), written for Sphinx's Python domain."""
+"""Reference of the Python package, a page for each group of names (python_groups.py), as reStructuredText."""
 
 import ast
-import builtins
 import pathlib
 import re
 
@@ -9,8 +8,14 @@ from python_groups import Group, groups
 from python_source import SPECIAL, Name, module_names, public_names
 from stage import Stage
 
-DIRECTIVES = {"class": "class", "exception": "exception", "function": "function", "data": "data", "method": "method",
-              "property": "property"}
+DIRECTIVES = {
+    "class": "class",
+    "exception": "exception",
+    "function": "function",
+    "data": "data",
+    "method": "method",
+    "property": "property",
+}
 DOCUMENT = re.compile(r"(?<![\w/])docs/([\w-]+)\.md")
 IN_CODE = re.compile(r"``?abbe\.(\w+)``?")
 SPANS = re.compile(r"(``.+?``|(?::[\w:]+:)?`[^`]+`)", re.DOTALL)
@@ -28,7 +33,7 @@ def indented(lines: list[str]) -> list[str]:
 
 
 class Qualify(ast.NodeTransformer):
-    """Names in types with their modules, so that none is taken for a member of a class that is called the same."""
+    """Names of the package in types with their modules."""
 
     def __init__(self, names: dict[str, Name]) -> None:
         self.names = names
@@ -36,8 +41,6 @@ class Qualify(ast.NodeTransformer):
     def visit_Name(self, node: ast.Name) -> ast.expr:
         if node.id in self.names:
             module = "abbe" if self.names[node.id].exported else "abbe._core"
-        elif hasattr(builtins, node.id):
-            module = "builtins"
         else:
             return node
         return ast.Attribute(ast.parse(module, mode="eval").body, node.id, ast.Load())
@@ -87,7 +90,11 @@ class Pages:
         """The directive of a name, with its members."""
         lines, first = [], f".. py:{DIRECTIVES[one.kind]}:: "
         for number, signature in enumerate(one.signatures or [""]):
-            lines.append((first if number == 0 else " " * len(first)) + one.name + (self.signature(signature) if signature else ""))
+            lines.append(
+                (first if number == 0 else " " * len(first))
+                + one.name
+                + (self.signature(signature) if signature else "")
+            )
         lines += [f"   :{flag}:" for flag in one.flags if flag != "settable"]
         lines += [f"   :type: {self.type(one.type)}"] if one.type else []
         body = [""]
@@ -117,14 +124,20 @@ def page_name(group: Group) -> str:
 
 
 def title(group: Group) -> str:
-    return ", ".join(group.listed) or "Other names"
+    more = " and more" if len(group.listed) > 3 else ""
+    return ", ".join(group.listed[:3]) + more if group.listed else "Other names"
 
 
 def write(stage: Stage, package: pathlib.Path) -> None:
     names = public_names(package)
     pages = Pages(stage.root, names)
-    index = [*heading("Python reference", "="), ".. py:module:: abbe", "",
-             "All public names of the package ``abbe``, by task. :doc:`/docs/python` tells how they work together.", ""]
+    index = [
+        *heading("Python reference", "="),
+        ".. py:module:: abbe",
+        "",
+        "All public names of the package ``abbe``, by task. :doc:`/docs/python` tells how they work together.",
+        "",
+    ]
     order = []
     for group in groups(stage.root / "docs/python.md", names):
         here = {name: names[name] for name in group.names if names[name].exported}

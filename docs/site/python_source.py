@@ -1,4 +1,4 @@
-"""The public names of the package, read from its sources and from the types of its module (_core.pyi): nothing is imported."""
+"""The public names of the package, read from its sources and from the types of its module (_core.pyi), not imported."""
 
 import ast
 import copy
@@ -69,9 +69,14 @@ class Source:
         text = path.read_text(encoding="utf-8")
         self.lines = text.splitlines()
         self.tree = ast.parse(text)
-        self.aliases = {node.targets[0].id: node.value for node in self.tree.body
-                        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
-                        and isinstance(node.value, ast.Subscript) and ast.unparse(node.value.value).endswith("Union")}
+        self.aliases = {
+            node.targets[0].id: node.value
+            for node in self.tree.body
+            if isinstance(node, ast.Assign)
+            and isinstance(node.targets[0], ast.Name)
+            and isinstance(node.value, ast.Subscript)
+            and ast.unparse(node.value.value).endswith("Union")
+        }
 
     def type(self, node: ast.expr | None) -> str:
         if node is None:
@@ -102,8 +107,13 @@ class Source:
                 target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0]
                 if isinstance(target, ast.Name):
                     kind = self.type(node.annotation) if isinstance(node, ast.AnnAssign) else ""
-                    found[target.id] = Name(target.id, "property" if in_class else "data", self.comment(node), type=kind,
-                                            gives=mentioned(kind))
+                    found[target.id] = Name(
+                        target.id,
+                        "property" if in_class else "data",
+                        self.comment(node),
+                        type=kind,
+                        gives=mentioned(kind),
+                    )
         return found
 
     def add_function(self, found: dict[str, Name], node: ast.FunctionDef, in_class: bool) -> None:
@@ -140,8 +150,12 @@ class Source:
     def class_of(self, node: ast.ClassDef) -> Name:
         members = self.read(node.body, in_class=True)
         bases = [self.type(base) for base in node.bases]
-        one = Name(node.name, "exception" if any(base.endswith(("Error", "Exception")) for base in bases) else "class",
-                   inspect.cleandoc(ast.get_docstring(node) or ""), bases=bases)
+        one = Name(
+            node.name,
+            "exception" if any(base.endswith(("Error", "Exception")) for base in bases) else "class",
+            inspect.cleandoc(ast.get_docstring(node) or ""),
+            bases=bases,
+        )
         start = members.pop("__init__", None)
         if start is not None:
             one.signatures = start.signatures
@@ -149,8 +163,11 @@ class Source:
             one.takes = start.takes
         elif any("dataclass" in ast.unparse(each) for each in node.decorator_list):
             fields = [each for each in node.body if isinstance(each, ast.AnnAssign)]
-            words = [f"{each.target.id}: {self.type(each.annotation)}" +
-                     (f" = {ast.unparse(each.value)}" if each.value is not None else "") for each in fields]
+            words = [
+                f"{each.target.id}: {self.type(each.annotation)}"
+                + (f" = {ast.unparse(each.value)}" if each.value is not None else "")
+                for each in fields
+            ]
             one.signatures = [f"({', '.join(words)})"]
         one.members = [each for name, each in members.items() if not name.startswith("_") or name in SPECIAL]
         one.gives = set().union(*(each.gives for each in one.members)) - {one.name}
@@ -164,7 +181,7 @@ def mentioned(kind: str) -> set[str]:
 
 
 def public_names(package: pathlib.Path) -> dict[str, Name]:
-    """The names of abbe.__all__, in its order, then the types of parts of their results that are in the module alone."""
+    """The names of abbe.__all__, in its order, then the types of parts of results that only the module has."""
     tree = ast.parse((package / "__init__.py").read_text(encoding="utf-8"))
     home: dict[str, str] = {}
     wanted: list[str] = []

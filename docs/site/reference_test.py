@@ -49,7 +49,15 @@ CLASSES = [name for name in abbe.__all__ if isinstance(getattr(abbe, name), type
 
 def members(kind):
     """Public names of a class and of those it is derived from, but not of Python's own."""
-    return sorted({name for base in kind.__mro__ if base.__module__ != "builtins" for name in vars(base) if not name.startswith("_")})
+    return sorted(
+        {
+            name
+            for base in kind.__mro__
+            if base.__module__ != "builtins"
+            for name in vars(base)
+            if not name.startswith("_")
+        }
+    )
 
 
 def test_every_public_name_is_there():
@@ -70,18 +78,36 @@ def test_nothing_is_there_that_the_package_does_not_have():
         return True
 
     import abbe.plot  # noqa: F401
+
     assert [name for name in DEFINITIONS if not exists(name)] == []
 
 
 def test_every_function_of_the_plots_is_there():
     import abbe.plot
-    functions = [name for name, value in vars(abbe.plot).items()
-                 if inspect.isfunction(value) and value.__module__ == "abbe.plot" and not name.startswith("_")]
+
+    functions = [
+        name
+        for name, value in vars(abbe.plot).items()
+        if inspect.isfunction(value) and value.__module__ == "abbe.plot" and not name.startswith("_")
+    ]
     assert [name for name in functions if f"abbe.plot.{name}" not in DEFINITIONS] == []
     assert len(functions) > 5
 
 
-@pytest.mark.parametrize("trace", [r"_core", r"nanobind", r"\bAnnotated\b", r"\barg\d?\b", r"\bself\b", r"collections\.abc", r"\btyping\.", r"<"])
+@pytest.mark.parametrize(
+    "trace",
+    [
+        r"_core",
+        r"nanobind",
+        r"\bAnnotated\b",
+        r"\barg\d?\b",
+        r"\bself\b",
+        r"collections\.abc",
+        r"builtins",
+        r"\btyping\.",
+        r"<",
+    ],
+)
 def test_signatures_have_no_trace_of_how_they_are_made(trace):
     assert [text for text in DEFINITIONS.values() if re.search(trace, text)] == []
 

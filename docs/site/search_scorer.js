@@ -1,4 +1,4 @@
-// How results of the search are ordered: what has the word in its title first, the reference of C++ after what explains.
+// Order of the results of the search: first what has the words in its title; the reference of C++ after what explains.
 var Scorer = {
   score: ([page, title, anchor, description, score]) => {
     const query = (new URLSearchParams(location.search).get('q') ?? '').toLowerCase().split(/\s+/).filter(Boolean);

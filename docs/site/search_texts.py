@@ -39,7 +39,10 @@ class Article(html.parser.HTMLParser):
 
 
 def write(folder: pathlib.Path) -> None:
-    texts = {path.relative_to(folder).with_suffix("").as_posix(): Article(path.read_text(encoding="utf-8")).text()
-             for path in sorted(folder.rglob("*.html")) if path.name not in ("search.html", "genindex.html")}
+    texts = {
+        path.relative_to(folder).with_suffix("").as_posix(): Article(path.read_text(encoding="utf-8")).text()
+        for path in sorted(folder.rglob("*.html"))
+        if path.name not in ("search.html", "genindex.html")
+    }
     script = f"window.abbeSearchTexts = {json.dumps(texts, ensure_ascii=False)};\n"
     (folder / "_static/search_texts.js").write_text(script, encoding="utf-8")

@@ -1,12 +1,19 @@
-"""Copies of the documents in the form that Sphinx reads: README.md of a folder is its index page, and the table of pages of
-docs/README.md is the navigation. The documents themselves stay as a forge shows them."""
+"""Copies of the documents in the form that Sphinx reads: README.md of a folder is its index page, and the table of
+pages in docs/README.md is the navigation. The documents themselves stay as a forge shows them."""
 
 import pathlib
 import re
 from collections.abc import Iterator
 
-PAGES = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/*.md", "examples/*/README.md", "linuxcnc/README.md",
-         "python/notebooks/*.ipynb"]
+PAGES = [
+    "README.md",
+    "CHANGELOG.md",
+    "CONTRIBUTING.md",
+    "docs/*.md",
+    "examples/*/README.md",
+    "linuxcnc/README.md",
+    "python/notebooks/*.ipynb",
+]
 IMAGES = ["docs/images/*"]
 LINK = re.compile(r"\[([^\[\]]+)\]\(([^()\s]+)\)")
 FENCE = re.compile(r"^ *```")
@@ -110,7 +117,9 @@ class Stage:
         last = list(sections)[-1]
         work = sections.pop(last)
         sections["Python"] = python
-        sections["Examples"] = [f"examples/{path.parent.name}/index" for path in sorted(self.root.glob("examples/*/README.md"))]
+        sections["Examples"] = [
+            f"examples/{path.parent.name}/index" for path in sorted(self.root.glob("examples/*/README.md"))
+        ]
         sections["Examples"].append("linuxcnc/index")
         sections[last] = [*work, "reference/cpp/index", "CHANGELOG"]
         return "\n" + "\n".join(toctree(pages, caption) for caption, pages in sections.items())

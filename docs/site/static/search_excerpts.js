@@ -1,5 +1,5 @@
-// Shows below each result of the search where its words stand in the page. The texts come from search_texts.js, a script:
-// no browser lets a page that was opened from a file read another one.
+// Shows below each result of the search where its words stand in the page. The texts come from search_texts.js, a
+// script: no browser lets a page that was opened from a file read another one.
 (() => {
   const kBefore = 60;
   const kLength = 220;
@@ -20,7 +20,8 @@
   const excerptOf = (text, stems) => {
     const places = placesOf(text, stems);
     if (!places.length) return [];
-    const stemsFrom = (at) => new Set(places.filter(([from]) => from >= at && from < at + kLength - kBefore).map((place) => place[2])).size;
+    const stemsFrom = (at) =>
+      new Set(places.filter(([from]) => from >= at && from < at + kLength - kBefore).map((place) => place[2])).size;
     const counts = places.map(([from]) => stemsFrom(from));
     const best = places[counts.indexOf(Math.max(...counts))][0];
     const start = best <= kBefore ? 0 : Math.min(best, text.indexOf(' ', best - kBefore) + 1);
@@ -39,7 +40,10 @@
   const show = (item, stems) => {
     const link = item.querySelector('a');
     if (!link || item.querySelector('.excerpt, span')) return;
-    const page = link.getAttribute('href').replace(/[#?].*$/, '').replace(/\.html$/, '');
+    const page = link
+      .getAttribute('href')
+      .replace(/[#?].*$/, '')
+      .replace(/\.html$/, '');
     const parts = excerptOf(window.abbeSearchTexts?.[page] ?? '', stems);
     if (!parts.length) return;
     const line = document.createElement('p');
@@ -56,9 +60,16 @@
     const results = document.getElementById('search-results');
     const query = new URLSearchParams(location.search).get('q') ?? '';
     const stemmer = new Stemmer();
-    const stems = query.toLowerCase().split(/[^\p{L}\p{N}_]+/u).filter((word) => word.length > 1).map((word) => stemmer.stemWord(word));
+    const stems = query
+      .toLowerCase()
+      .split(/[^\p{L}\p{N}_]+/u)
+      .filter((word) => word.length > 1)
+      .map((word) => stemmer.stemWord(word));
     if (!results || !stems.length) return;
-    new MutationObserver(() => results.querySelectorAll('li').forEach((item) => show(item, stems))).observe(results, {childList: true, subtree: true});
+    new MutationObserver(() => results.querySelectorAll('li').forEach((item) => show(item, stems))).observe(results, {
+      childList: true,
+      subtree: true,
+    });
     results.querySelectorAll('li').forEach((item) => show(item, stems));
   });
 })();
