@@ -191,6 +191,24 @@ const lowContrast = () => {
   return [...found].slice(0, 6);
 };
 
+/// Formulas are set as such: no command of TeX is left, and 1/2 is a half.
+async function formulas() {
+  await page.goto(urlOf('docs/evaluate.html'));
+  const texts = await page.$$eval('article math', (all) => all.map((e) => e.textContent));
+  const left = texts.filter((text) => /[\\{}$]/.test(text));
+  check(
+    texts.length > 40 && !left.length,
+    `${texts.length} formulas, of which with commands of TeX: ${left.slice(0, 2).join('; ')}`,
+  );
+  const fractions = await page.$$eval('article mfrac', (all) =>
+    all.map((e) => [...e.children].map((part) => part.textContent)),
+  );
+  check(
+    fractions.some(([above, below]) => above === '1' && below === '2') && !fractions.flat().includes('('),
+    `fractions: ${fractions.map((parts) => parts.join('/')).join(' ')}`,
+  );
+}
+
 async function everyPageInANarrowWindow() {
   await page.setViewportSize({width: 360, height: 800});
   for (const name of pages) {
@@ -281,6 +299,7 @@ async function pictures() {
 
 try {
   await searches();
+  await formulas();
   await everyPageInANarrowWindow();
   await themesAndPaper();
   if (options.shots) await pictures();

@@ -20,7 +20,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-NEEDED = ["docutils", "furo", "ipykernel", "myst_nb", "myst_parser", "sphinx"]
+NEEDED = ["furo", "ipykernel", "latex2mathml", "myst_nb", "myst_parser", "sphinx"]
 
 
 def version() -> str:
