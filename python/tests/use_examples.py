@@ -14,9 +14,9 @@ BUILD = pathlib.Path(abbe.__file__).absolute().parent.parent.parent
 COMMAND = os.environ.get("ABBE_COMMAND", str(BUILD / "bin" / "abbe"))
 
 
-def command(arguments, folder, exit_code=0):
+def command(arguments, folder, exit_code=0, timeout=120):
     """What the command prints on standard output."""
-    ran = subprocess.run([COMMAND, *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=120)
+    ran = subprocess.run([COMMAND, *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=timeout)
     assert ran.returncode == exit_code, ran.stderr
     return ran.stdout
 
