@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <new>
+#include <type_traits>
 #include <utility>
 
 #include "abbe/formats/text/input_error.h"
@@ -18,6 +20,19 @@ namespace {
   throw InputError({.field = name}, problem, expected);
 }
 
+/// Whether all numbers are finite: differences of infinities and of what is no number are not zero. Several sums at a
+/// time, because one would wait for itself.
+bool all_finite(const double* values, std::size_t count) {
+  constexpr std::size_t kSums = 8;
+  std::array<double, kSums> sums{};
+  std::size_t i = 0;
+  for (; i + kSums <= count; i += kSums) {
+    for (std::size_t s = 0; s < kSums; ++s) sums[s] += values[i + s] - values[i + s];
+  }
+  for (; i < count; ++i) sums[0] += values[i] - values[i];
+  return std::all_of(sums.begin(), sums.end(), [](double sum) { return sum == 0; });
+}
+
 std::string shape_words(const Numbers& array) {
   std::string words = "(";
   for (std::size_t i = 0; i < array.ndim(); ++i) words += fmt::format("{}{}", i == 0 ? "" : ", ", array.shape(i));
@@ -28,12 +43,12 @@ std::string shape_words(const Numbers& array) {
 
 Numbers ArrayLike::numbers(const char* name) const {
   Numbers array;
-  if (nb::try_cast<Numbers>(source, array, false)) return array;
+  if (array.take(source)) return array;
   try {
     // Lists, other types of numbers, data frames. What is not safe, such as texts and complex numbers, is refused.
     const nb::object given = nb::module_::import_("numpy").attr("asarray")(source);
     const nb::object converted = given.attr("astype")("float64", nb::arg("casting") = "same_kind");
-    if (nb::try_cast<Numbers>(converted, array, false)) return array;
+    if (array.take(converted)) return array;
   } catch (nb::python_error& error) {
     if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
     const nb::str words(error.value());
@@ -43,40 +58,52 @@ Numbers ArrayLike::numbers(const char* name) const {
 }
 
 Positions::Positions(const ArrayLike& argument, const Machine& machine, const char* name)
-    : array_(argument.numbers(name)), axes_(machine.axes.size()) {
-  const std::string expected =
-      fmt::format("shape ({},) or (n, {}): a command for each axis of {}, in mm or rad", axes_, axes_, machine.chain());
-  if (array_.ndim() != 1 && array_.ndim() != 2) refuse(name, "has the shape " + shape_words(array_), expected);
-  if (array_.shape(array_.ndim() - 1) != axes_) refuse(name, "has the shape " + shape_words(array_), expected);
+    : array_(argument.numbers(name)), machine_(machine), name_(name), axes_(machine.axes.size()) {
+  if ((array_.ndim() != 1 && array_.ndim() != 2) || array_.shape(array_.ndim() - 1) != axes_) {
+    refuse(name, "has the shape " + shape_words(array_), expected());
+  }
   count_ = single() ? 1 : array_.shape(0);
   axis_step_ = array_.stride(array_.ndim() - 1);
   pose_step_ = single() ? 1 : array_.stride(0);
-  const double* values = array_.data();
+  if (count_ > kBlock) return;
   for (std::size_t i = 0; i < axes_; ++i) {
-    const double* column = values + static_cast<std::int64_t>(i) * axis_step_;
     for (std::size_t k = 0; k < count_; ++k) {
-      if (std::isfinite(column[static_cast<std::int64_t>(k) * pose_step_])) continue;
-      refuse(name,
-             fmt::format("pose {}, axis {}: {}", k, machine.axes[i].name,
-                         column[static_cast<std::int64_t>(k) * pose_step_]),
-             "finite numbers");
+      if (!std::isfinite(*column(i, k))) refuse_what_is_not_finite();
     }
   }
 }
 
-PositionArrays Positions::block(std::size_t first, std::size_t count, Block& memory) const {
-  const double* values = array_.data() + static_cast<std::int64_t>(first) * pose_step_;
-  if (columns_are_contiguous()) {
-    for (std::size_t i = 0; i < axes_; ++i) memory.axis[i] = values + static_cast<std::int64_t>(i) * axis_step_;
-    return {{memory.axis.data(), axes_}, count};
-  }
-  memory.values.resize(axes_ * kBlock);
-  for (std::size_t i = 0; i < axes_; ++i) memory.axis[i] = memory.values.data() + i * kBlock;
-  for (std::size_t k = 0; k < count; ++k) {
-    for (std::size_t i = 0; i < axes_; ++i) {
-      memory.values[i * kBlock + k] =
-          values[static_cast<std::int64_t>(k) * pose_step_ + static_cast<std::int64_t>(i) * axis_step_];
+std::string Positions::expected() const {
+  return fmt::format("shape ({},) or (n, {}): a command for each axis of {}, in mm or rad", axes_, axes_,
+                     machine_.chain());
+}
+
+void Positions::refuse_what_is_not_finite() const {
+  for (std::size_t i = 0; i < axes_; ++i) {
+    for (std::size_t k = 0; k < count_; ++k) {
+      const double value = *column(i, k);
+      if (!std::isfinite(value)) {
+        refuse(name_, fmt::format("pose {}, axis {}: {}", k, machine_.axes[i].name, value), "finite numbers");
+      }
     }
+  }
+  refuse(name_, "has changed meanwhile", "an array that is left alone");
+}
+
+PositionArrays Positions::block(std::size_t first, std::size_t count, Block& memory) const {
+  // Columns are not a power of two apart, so that they do not share lines of the cache.
+  const std::size_t column_step = std::min(count_, kBlock) + 8;
+  if (!columns_are_contiguous()) memory.values.resize(axes_ * column_step);
+  for (std::size_t i = 0; i < axes_; ++i) {
+    const double* from = column(i, first);
+    memory.axis[i] = from;
+    if (columns_are_contiguous()) continue;
+    double* to = memory.values.data() + i * column_step;
+    memory.axis[i] = to;
+    for (std::size_t k = 0; k < count; ++k, from += pose_step_) to[k] = *from;
+  }
+  for (std::size_t i = 0; i < axes_ && count_ > kBlock; ++i) {
+    if (!all_finite(memory.axis[i], count)) refuse_what_is_not_finite();
   }
   return {{memory.axis.data(), axes_}, count};
 }
@@ -85,10 +112,8 @@ PoseList Positions::list() const {
   PoseList list;
   list.axis.assign(axes_, std::vector<double>(count_));
   for (std::size_t i = 0; i < axes_; ++i) {
-    for (std::size_t k = 0; k < count_; ++k) {
-      list.axis[i][k] =
-          array_.data()[static_cast<std::int64_t>(k) * pose_step_ + static_cast<std::int64_t>(i) * axis_step_];
-    }
+    for (std::size_t k = 0; k < count_; ++k) list.axis[i][k] = *column(i, k);
+    if (!all_finite(list.axis[i].data(), count_)) refuse_what_is_not_finite();
   }
   return list;
 }
@@ -111,26 +136,38 @@ void for_each_block_of(std::size_t count, const std::function<void(std::size_t f
 }
 
 template <class Number>
-Columns<Number>::Columns(std::size_t parts, std::size_t count) : parts_(parts), count_(count) {
+Columns<Number>::Columns(std::size_t parts, std::size_t count) : parts_(parts), count_(count), few_{} {
+  if (parts * count <= kFew) {
+    data_ = few_.data();
+    return;
+  }
   // Large arrays are fresh memory each time. In pages of 4 KiB, making them takes as long as computing what goes in.
   constexpr std::size_t kHugePage = std::size_t{1} << 21, kLine = 64;
   const std::size_t bytes = parts * count * sizeof(Number);
   const std::size_t alignment = bytes >= 2 * kHugePage ? kHugePage : kLine;
-  data_ = static_cast<Number*>(
-      std::aligned_alloc(alignment, std::max(alignment, (bytes + alignment - 1) / alignment * alignment)));
+  data_ = static_cast<Number*>(std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment));
   if (!data_) throw std::bad_alloc();
   if (alignment == kHugePage) madvise(data_, bytes, MADV_HUGEPAGE);
 }
 
 template <class Number>
 Columns<Number>::~Columns() {
-  std::free(data_);
+  if (!few()) std::free(data_);
 }
 
 template <class Number>
 nb::object Columns<Number>::release(std::initializer_list<std::size_t> shape, bool single) {
-  nb::capsule owner(data_, [](void* memory) noexcept { std::free(memory); });
-  Number* data = std::exchange(data_, nullptr);
+  return release_as(std::is_same_v<Number, double> ? NumberType::float64 : NumberType::uint8, shape, single);
+}
+
+template <class Number>
+nb::object Columns<Number>::release_bools() {
+  static_assert(sizeof(bool) == 1);
+  return release_as(NumberType::bool8, {}, false);
+}
+
+template <class Number>
+nb::object Columns<Number>::release_as(NumberType type, std::initializer_list<std::size_t> shape, bool single) {
   std::array<std::size_t, 4> sizes{};
   std::array<std::int64_t, 4> steps{};
   std::size_t dimensions = 0;
@@ -144,8 +181,15 @@ nb::object Columns<Number>::release(std::initializer_list<std::size_t> shape, bo
     sizes[dimensions] = size;
     steps[dimensions++] = static_cast<std::int64_t>(step * count_);
   }
-  return nb::cast(nb::ndarray<nb::numpy, Number>(data, dimensions, sizes.data(), owner, steps.data()),
-                  nb::rv_policy::reference);
+  const std::span<const std::size_t> all_sizes(sizes.data(), dimensions);
+  const std::span<const std::int64_t> all_steps(steps.data(), dimensions);
+  if (few()) {
+    nb::object array = new_array(type, all_sizes, all_steps);
+    std::copy_n(data_, parts_ * count_, static_cast<Number*>(array_data(array)));
+    return array;
+  }
+  const nb::capsule owner(data_, [](void* memory) noexcept { std::free(memory); });
+  return new_array(type, all_sizes, all_steps, std::exchange(data_, nullptr), owner);
 }
 
 template class Columns<double>;
@@ -154,25 +198,32 @@ template class Columns<std::uint8_t>;
 namespace {
 
 template <class Number>
-nb::object array_of_vector(std::vector<Number>&& values, std::initializer_list<std::size_t> shape) {
+nb::object array_of_vector(NumberType type, std::vector<Number>&& values, std::span<const std::size_t> shape) {
+  constexpr std::size_t kCopied = 1024;  // bytes: then memory of its own costs more than a copy
+  if (values.size() * sizeof(Number) <= kCopied) {
+    nb::object array = new_array(type, shape, {});
+    std::copy(values.begin(), values.end(), static_cast<Number*>(array_data(array)));
+    return array;
+  }
   auto* kept = new std::vector<Number>(std::move(values));
-  nb::capsule owner(kept, [](void* memory) noexcept { delete static_cast<std::vector<Number>*>(memory); });
-  return nb::cast(nb::ndarray<nb::numpy, Number>(kept->data(), shape, owner), nb::rv_policy::reference);
+  const nb::capsule owner(kept, [](void* memory) noexcept { delete static_cast<std::vector<Number>*>(memory); });
+  return new_array(type, shape, {}, kept->data(), owner);
 }
 
 }  // namespace
 
 nb::object array_of(std::vector<double>&& values, std::initializer_list<std::size_t> shape) {
-  return array_of_vector(std::move(values), shape);
+  return array_of_vector(NumberType::float64, std::move(values), {shape.begin(), shape.size()});
 }
 
 nb::object array_of(std::vector<std::uint8_t>&& values) {
   const std::size_t count = values.size();
-  return array_of_vector(std::move(values), {count});
+  return array_of_vector(NumberType::uint8, std::move(values), {&count, 1});
 }
 
 nb::object array_of_bools(std::vector<std::uint8_t>&& values) {
-  return array_of(std::move(values)).attr("view")("bool");
+  const std::size_t count = values.size();
+  return array_of_vector(NumberType::bool8, std::move(values), {&count, 1});
 }
 
 }  // namespace abbe::python

@@ -6,8 +6,6 @@
 // order) are used where they lie; of others, blocks of rows are transposed on the way. What comes out is allocated here
 // and given to Python without a copy; its first index is the pose, and each number of all poses is contiguous, as the
 // library has it.
-#include <nanobind/ndarray.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,11 +17,9 @@
 #include "abbe/errors/poses.h"
 #include "abbe/machine/machine.h"
 #include "bindings/bindings.h"
+#include "bindings/numpy_arrays.h"
 
 namespace abbe::python {
-
-/// float64 of any shape and layout, not to be written to.
-using Numbers = nb::ndarray<const double, nb::device::cpu, nb::ro>;
 
 /// Anything that numpy.asarray(..., dtype=float64) takes; shown as ArrayLike in signatures.
 struct ArrayLike {
@@ -32,10 +28,11 @@ struct ArrayLike {
   Numbers numbers(const char* name) const;
 };
 
-/// Axis commands of an argument.
+/// Axis commands of an argument, for a machine that outlives them.
 class Positions {
  public:
-  /// @throws InputError for another number of axes, and for numbers that are not finite
+  /// @throws InputError for another number of axes; a few poses are checked here for numbers that are not finite, many
+  ///         of them where they are used, when they are in the cache
   Positions(const ArrayLike& argument, const Machine& machine, const char* name = "positions_mm_rad");
 
   std::size_t count() const { return count_; }
@@ -48,15 +45,24 @@ class Positions {
     std::array<const double*, kMaxAxes> axis;
     std::vector<double> values;
   };
-  /// Commands first .. first + count - 1 as the library takes them; count <= kBlock, or any if the columns are
-  /// contiguous.
+  /// Commands first .. first + count - 1 as the library takes them; count <= kBlock. The GIL need not be held.
+  /// @throws InputError for numbers that are not finite
   PositionArrays block(std::size_t first, std::size_t count, Block& memory) const;
-  bool columns_are_contiguous() const { return axis_step_ == 0 || pose_step_ == 1; }
-  /// All of them, copied.
+  /// All of them, copied. @throws InputError for numbers that are not finite
   PoseList list() const;
 
  private:
+  bool columns_are_contiguous() const { return pose_step_ == 1 || count_ == 1; }
+  const double* column(std::size_t axis, std::size_t first) const {
+    return array_.data() + static_cast<std::int64_t>(axis) * axis_step_ + static_cast<std::int64_t>(first) * pose_step_;
+  }
+  std::string expected() const;
+  /// Names the first number that is not finite.
+  [[noreturn]] void refuse_what_is_not_finite() const;
+
   Numbers array_;
+  const Machine& machine_;
+  const char* name_;
   std::size_t count_ = 0, axes_ = 0;
   std::int64_t pose_step_ = 0, axis_step_ = 0;  ///< in numbers
 };
@@ -78,10 +84,17 @@ class Columns {
 
   /// As an array [n, shape...] of Python; without its first index if `single`. Afterwards this object is empty.
   nb::object release(std::initializer_list<std::size_t> shape, bool single);
+  /// The same as an array of bool, of numbers that are 0 or 1.
+  nb::object release_bools();
 
  private:
+  static constexpr std::size_t kFew = 16;  ///< numbers: those of a pose
+  bool few() const { return data_ == few_.data(); }
+  nb::object release_as(NumberType type, std::initializer_list<std::size_t> shape, bool single);
+
   Number* data_ = nullptr;
   std::size_t parts_ = 0, count_ = 0;
+  alignas(64) std::array<Number, kFew> few_;
 };
 extern template class Columns<double>;
 extern template class Columns<std::uint8_t>;

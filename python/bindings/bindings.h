@@ -11,6 +11,7 @@ void bind_input_error(nb::module_& module);
 void bind_machine(nb::module_& module);
 void bind_errors(nb::module_& module);
 void bind_poses(nb::module_& module);
+void bind_inverse(nb::module_& module);
 void bind_compensation(nb::module_& module);
 void bind_instruments(nb::module_& module);
 void bind_studies(nb::module_& module);

@@ -7,6 +7,7 @@
 #include "abbe/report/version.h"
 #include "bindings/bindings.h"
 #include "bindings/files.h"
+#include "bindings/numpy_arrays.h"
 
 namespace abbe::python {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 NB_MODULE(_core, module) {
   // Objects that live as long as the process, such as those of a test or of a notebook, are no leaks.
   nb::set_leak_warnings(false);
+  load_numpy();
   module.doc() = "The library of abbe; import abbe instead.";
   module.attr("__version__") = version_text();
   module.def(
@@ -31,6 +33,7 @@ NB_MODULE(_core, module) {
   bind_machine(module);
   bind_errors(module);
   bind_poses(module);
+  bind_inverse(module);
   bind_compensation(module);
   bind_instruments(module);
   bind_studies(module);

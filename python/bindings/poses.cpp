@@ -1,15 +1,9 @@
 #include <fmt/format.h>
-#include <nanobind/eigen/dense.h>
-#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
-
-#include <cmath>
 
 #include "abbe/errors/pose_model.h"
 #include "abbe/formats/text/input_error.h"
-#include "abbe/machine/inverse_kinematics.h"
 #include "bindings/arrays.h"
 #include "bindings/machine_errors.h"
 
@@ -21,15 +15,16 @@ struct Poses {
   nb::object points_mm, rotations, covered;
 };
 
-PointArrays points(Columns<double>& columns) { return {columns[0], columns[1], columns[2]}; }
+/// Where results go: memory of `parts` numbers of each pose, number after number.
+PointArrays points(double* columns, std::size_t count) { return {columns, columns + count, columns + 2 * count}; }
 
 PointArrays from(PointArrays arrays, std::size_t first) {
   return {arrays.x + first, arrays.y + first, arrays.z + first};
 }
 
-RotationArrays rotations(Columns<double>& columns) {
+RotationArrays rotations(double* columns, std::size_t count) {
   RotationArrays arrays;
-  for (std::size_t e = 0; e < 9; ++e) arrays.r[e] = columns[e];
+  for (std::size_t e = 0; e < 9; ++e) arrays.r[e] = columns + e * count;
   return arrays;
 }
 
@@ -53,34 +48,79 @@ void for_blocks(const Positions& positions, const Work& work) {
 }
 
 nb::object covered_array(Columns<std::uint8_t>& covered, bool single) {
-  nb::object bytes = covered.release({}, single);
-  return single ? nb::object(nb::bool_(nb::cast<int>(bytes.attr("item")()) != 0)) : bytes.attr("view")("bool");
+  return single ? nb::object(nb::bool_(covered[0][0] != 0)) : covered.release_bools();
 }
 
-Poses poses_of(const PoseModel& model, const ArrayLike& argument, bool nominal) {
-  const Positions positions(argument, model.machine());
-  Columns<double> point(3, positions.count()), rotation(9, positions.count());
-  Columns<std::uint8_t> covered(1, positions.count());
+void fill_poses(const PoseModel& model, const Positions& positions, bool nominal, double* point, double* rotation,
+                std::uint8_t* covered) {
+  const PointArrays to_points = points(point, positions.count());
+  const RotationArrays to_rotations = rotations(rotation, positions.count());
   for_blocks(positions, [&](PositionArrays block, std::size_t first) {
     if (nominal) {
-      model.nominal_poses(block, from(points(point), first), from(rotations(rotation), first));
+      model.nominal_poses(block, from(to_points, first), from(to_rotations, first));
     } else {
-      model.poses(block, from(points(point), first), from(rotations(rotation), first), covered[0] + first);
+      model.poses(block, from(to_points, first), from(to_rotations, first), covered + first);
     }
   });
+}
+
+[[noreturn]] void refuse_out(const Positions& positions, const char* expected) {
+  throw InputError({.field = "out"}, positions.single() ? "is given for a single pose" : "has another shape or order",
+                   fmt::format("{} for {} poses, to be written over", expected, positions.count()));
+}
+
+/// Numbers of [n, parts...] as these functions give them.
+double* memory_of_columns(nb::handle array, std::size_t count, std::initializer_list<std::size_t> shape,
+                          std::initializer_list<std::size_t> parts) {
+  std::vector<std::size_t> sizes{count};
+  std::vector<std::int64_t> steps{1};
+  sizes.insert(sizes.end(), shape);
+  for (const std::size_t part : parts) steps.push_back(static_cast<std::int64_t>(part * count));
+  return static_cast<double*>(memory_of(array, NumberType::float64, sizes, steps));
+}
+
+void fill_out(const PoseModel& model, const Positions& positions, bool nominal, const Poses& out) {
+  const std::size_t count = positions.count();
+  const std::int64_t one = 1;
+  double* point = memory_of_columns(out.points_mm, count, {3}, {1});
+  double* rotation = memory_of_columns(out.rotations, count, {3, 3}, {3, 1});
+  void* covered = nominal ? nullptr : memory_of(out.covered, NumberType::bool8, {&count, 1}, {&one, 1});
+  if (positions.single() || !point || !rotation || (!nominal && !covered)) {
+    refuse_out(positions, nominal ? "poses of nominal_poses()" : "poses of poses()");
+  }
+  fill_poses(model, positions, nominal, point, rotation, static_cast<std::uint8_t*>(covered));
+}
+
+nb::object poses_of(const PoseModel& model, const ArrayLike& argument, bool nominal, Poses* out) {
+  const Positions positions(argument, model.machine());
+  if (out) {
+    fill_out(model, positions, nominal, *out);
+    return nb::find(out);
+  }
+  Columns<double> point(3, positions.count()), rotation(9, positions.count());
+  Columns<std::uint8_t> covered(1, positions.count());
+  fill_poses(model, positions, nominal, point[0], rotation[0], covered[0]);
   const bool single = positions.single();
   Poses result;
   result.points_mm = point.release({3}, single);
   result.rotations = rotation.release({3, 3}, single);
   result.covered = nominal ? nb::none() : covered_array(covered, single);
-  return result;
+  return nb::cast(std::move(result));
 }
 
-nb::object points_of(const PoseModel& model, const ArrayLike& argument) {
+nb::object points_of(const PoseModel& model, const ArrayLike& argument, const std::optional<ArrayLike>& out) {
   const Positions positions(argument, model.machine());
+  const auto fill = [&](PointArrays to) {
+    for_blocks(positions, [&](PositionArrays block, std::size_t first) { model.poses(block, from(to, first)); });
+  };
+  if (out) {
+    double* memory = memory_of_columns(out->source, positions.count(), {3}, {1});
+    if (!memory || positions.single()) refuse_out(positions, "an array (n, 3) of float64 in Fortran order");
+    fill(points(memory, positions.count()));
+    return nb::borrow(out->source);
+  }
   Columns<double> point(3, positions.count());
-  for_blocks(positions,
-             [&](PositionArrays block, std::size_t first) { model.poses(block, from(points(point), first)); });
+  fill(points(point[0], positions.count()));
   return point.release({3}, positions.single());
 }
 
@@ -99,8 +139,9 @@ nb::object covered_of(const PoseModel& model, const ArrayLike& argument) {
   const Positions positions(argument, model.machine());
   Columns<double> point(3, positions.count());
   Columns<std::uint8_t> covered(1, positions.count());
+  const PointArrays to = points(point[0], positions.count());
   for_blocks(positions, [&](PositionArrays block, std::size_t first) {
-    model.poses(block, from(points(point), first), {}, covered[0] + first);
+    model.poses(block, from(to, first), {}, covered[0] + first);
   });
   return covered_array(covered, positions.single());
 }
@@ -123,88 +164,6 @@ nb::object jacobian_of(const PoseModel& model, const ArrayLike& argument, bool b
   return array_of(std::move(jacobian), {positions.count(), 6, columns});
 }
 
-Eigen::Vector3d row(const Numbers& numbers, std::size_t k) {
-  Eigen::Vector3d result;
-  for (std::int64_t c = 0; c < 3; ++c) {
-    result[c] = numbers.data()[static_cast<std::int64_t>(k) * numbers.stride(0) + c * numbers.stride(1)];
-  }
-  return result;
-}
-
-Numbers rows_of_three(const ArrayLike& argument, const char* name) {
-  const Numbers numbers = argument.numbers(name);
-  if (numbers.ndim() != 2 || numbers.shape(1) != 3)
-    throw InputError({.field = name}, "has another shape", "shape (n, 3)");
-  return numbers;
-}
-
-/// Axis commands for targets: the best solution of each.
-struct Inverse {
-  nb::object positions_mm_rad, solved;
-  std::vector<std::string> problems;
-};
-
-Inverse inverse_of(const Machine& machine, const ArrayLike& points, const std::optional<ArrayLike>& directions,
-                   const std::optional<ArrayLike>& rotations, const std::optional<ArrayLike>& start,
-                   const std::map<std::string, double>& hold) {
-  if (directions && rotations)
-    throw InputError({.field = "rotations"}, "is given together with directions", "one of them");
-  const Numbers point = rows_of_three(points, "points_mm");
-  const std::size_t count = point.shape(0), axes = machine.axes.size();
-  std::optional<Numbers> direction, rotation;
-  if (directions) direction = rows_of_three(*directions, "directions");
-  if (rotations) {
-    rotation = rotations->numbers("rotations");
-    if (rotation->ndim() != 3 || rotation->shape(1) != 3 || rotation->shape(2) != 3) {
-      throw InputError({.field = "rotations"}, "has another shape", "shape (n, 3, 3)");
-    }
-  }
-  if ((direction && direction->shape(0) != count) || (rotation && rotation->shape(0) != count)) {
-    throw InputError({.field = direction ? "directions" : "rotations"}, "are not as many as points_mm",
-                     fmt::format("{} of them", count));
-  }
-  InverseOptions options;
-  for (const auto& [name, position] : hold) {
-    const std::size_t axis = machine.find_axis(name);
-    if (axis == Machine::npos) throw nb::key_error(fmt::format("no axis '{}' in {}", name, machine.chain()).c_str());
-    options.held.push_back({axis, position});
-  }
-  const InverseKinematics inverse(machine, options);
-  if (!inverse.problem().empty())
-    throw InputError({.field = "machine"}, inverse.problem(), "a machine without problems()");
-  std::optional<Positions> starts;
-  if (start) {
-    starts.emplace(*start, machine, "start_mm_rad");
-    if (!starts->single() && starts->count() != count) {
-      throw InputError({.field = "start_mm_rad"}, "are not as many as points_mm", fmt::format("one, or {}", count));
-    }
-  }
-  const PoseList start_list = starts ? starts->list() : PoseList{};
-  Columns<double> commands(axes, count);
-  std::vector<std::uint8_t> solved(count);
-  std::vector<std::string> problems(count);
-  InverseResult result;
-  for (std::size_t k = 0; k < count; ++k) {
-    PoseTarget target = direction ? PoseTarget::at(row(point, k), row(*direction, k)) : PoseTarget::at(row(point, k));
-    if (rotation) {
-      RigidTransform pose = RigidTransform::translate(row(point, k));
-      for (std::int64_t i = 0; i < 3; ++i) {
-        for (std::int64_t j = 0; j < 3; ++j) {
-          pose.rotation(i, j) = rotation->data()[static_cast<std::int64_t>(k) * rotation->stride(0) +
-                                                 i * rotation->stride(1) + j * rotation->stride(2)];
-        }
-      }
-      target = PoseTarget::at(pose);
-    }
-    std::vector<double> from = starts ? start_list.pose(starts->single() ? 0 : k) : std::vector<double>{};
-    inverse.solve(target, starts ? from.data() : nullptr, result);
-    solved[k] = result.status == InverseStatus::solved ? 1 : 0;
-    if (!solved[k]) problems[k] = describe(machine, result);
-    for (std::size_t i = 0; i < axes; ++i) commands[i][k] = solved[k] ? result.solutions.front().position[i] : NAN;
-  }
-  return {commands.release({axes}, false), array_of_bools(std::move(solved)), std::move(problems)};
-}
-
 }  // namespace
 
 void bind_poses(nb::module_& module) {
@@ -220,11 +179,6 @@ void bind_poses(nb::module_& module) {
         const nb::object shape = poses.points_mm.attr("shape");
         return fmt::format("<abbe.Poses, points_mm of shape {}>", nb::str(shape).c_str());
       });
-  nb::class_<Inverse>(module, "InverseSolutions", "Axis commands for targets.")
-      .def_ro("positions_mm_rad", &Inverse::positions_mm_rad, nb::sig("def positions_mm_rad(self) -> numpy.ndarray"),
-              "[n, axes] commands, mm or rad; NaN where there is no solution.")
-      .def_ro("solved", &Inverse::solved, nb::sig("def solved(self) -> numpy.ndarray"), "[n] whether there is one.")
-      .def_ro("problems", &Inverse::problems, "[n] why there is none, in words; empty where there is one.");
   nb::class_<PoseModel>(
       module, "PoseModel",
       "Poses of a machine with errors, compiled for many commands.\n\n"
@@ -243,15 +197,29 @@ void bind_poses(nb::module_& module) {
           [](PoseModel* self, const MachineErrors& errors) { new (self) PoseModel(errors.machine, errors.set()); },
           nb::arg("errors"))
       .def(
-          "poses", [](const PoseModel& model, const ArrayLike& positions) { return poses_of(model, positions, false); },
-          nb::arg("positions_mm_rad"), "Where the tool really is.")
+          "poses",
+          [](const PoseModel& model, const ArrayLike& positions, Poses* out) {
+            return poses_of(model, positions, false, out);
+          },
+          nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("out").none() = nb::none(),
+          nb::sig("def poses(self, positions_mm_rad: numpy.typing.ArrayLike, *, out: Poses | None = None) -> Poses"),
+          "Where the tool really is.\n\n"
+          "out: poses of an earlier call with as many commands, which are written over and returned: new memory for a\n"
+          "million poses takes about as long as computing them. When something is refused, they may be half written.")
       .def(
           "nominal_poses",
-          [](const PoseModel& model, const ArrayLike& positions) { return poses_of(model, positions, true); },
-          nb::arg("positions_mm_rad"), "Where the tool would be without errors.")
-      .def("points", &points_of, nb::arg("positions_mm_rad"),
-           nb::sig("def points(self, positions_mm_rad: numpy.typing.ArrayLike) -> numpy.ndarray"),
-           "The functional point alone, [n, 3], mm: faster than poses().")
+          [](const PoseModel& model, const ArrayLike& positions, Poses* out) {
+            return poses_of(model, positions, true, out);
+          },
+          nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("out").none() = nb::none(),
+          nb::sig("def nominal_poses(self, positions_mm_rad: numpy.typing.ArrayLike, *, out: Poses | None = None) -> "
+                  "Poses"),
+          "Where the tool would be without errors. out: as in poses().")
+      .def("points", &points_of, nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("out") = nb::none(),
+           nb::sig("def points(self, positions_mm_rad: numpy.typing.ArrayLike, *, out: numpy.ndarray | None = None) -> "
+                   "numpy.ndarray"),
+           "The functional point alone, [n, 3], mm: faster than poses().\n\n"
+           "out: an array (n, 3) of float64 in Fortran order, such as an earlier result, which is written over.")
       .def("covered", &covered_of, nb::arg("positions_mm_rad"),
            nb::sig("def covered(self, positions_mm_rad: numpy.typing.ArrayLike) -> numpy.ndarray | bool"),
            "[n] false where a command lies outside the range of an error motion.")
@@ -273,18 +241,11 @@ void bind_poses(nb::module_& module) {
   module.def(
       "nominal_poses",
       [](const Machine& machine, const ArrayLike& positions) {
-        return poses_of(PoseModel(machine, {}), positions, true);
+        return poses_of(PoseModel(machine, {}), positions, true, nullptr);
       },
-      nb::arg("machine"), nb::arg("positions_mm_rad"), "Poses of a machine without errors.");
-  module.def(
-      "inverse", &inverse_of, nb::arg("machine"), nb::arg("points_mm"), nb::kw_only(),
-      nb::arg("directions") = nb::none(), nb::arg("rotations") = nb::none(), nb::arg("start_mm_rad") = nb::none(),
-      nb::arg("hold_mm_rad") = std::map<std::string, double>{},
-      "Commands that bring the tool of a machine without errors to targets in the workpiece frame.\n\n"
-      "points_mm [n, 3]: functional point. directions [n, 3]: from it to the spindle, of any length; or rotations\n"
-      "[n, 3, 3]: columns are the axes of the tool frame. start_mm_rad [axes] or [n, axes]: the solution nearest to "
-      "it\n"
-      "is taken. hold_mm_rad: axes that are kept at a command. Method: docs/kinematics.md.");
+      nb::arg("machine"), nb::arg("positions_mm_rad"),
+      nb::sig("def nominal_poses(machine: Machine, positions_mm_rad: numpy.typing.ArrayLike) -> Poses"),
+      "Poses of a machine without errors.");
 }
 
 }  // namespace abbe::python

@@ -1,0 +1,57 @@
+#pragma once
+
+// Arrays of NumPy through NumPy's own C interface. Its table of functions is taken from NumPy when the module is
+// loaded: building needs no headers of NumPy, and one module serves all its versions. Making an array this way takes a
+// tenth of the time of the buffer protocol, which decides what a call with a single pose costs.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "bindings/bindings.h"
+
+namespace abbe::python {
+
+enum class NumberType { float64, bool8, uint8 };
+
+/// Finds NumPy. @throws nb::python_error (ImportError) where it is missing or has another memory layout
+void load_numpy();
+
+/// A new array. GIL needed.
+/// @param sizes  of each dimension
+/// @param steps  from one element of a dimension to the next, in numbers; empty: C order
+/// @param data   null: memory of NumPy, not initialized; else `owner` keeps it alive as long as the array
+nb::object new_array(NumberType type, std::span<const std::size_t> sizes, std::span<const std::int64_t> steps,
+                     void* data = nullptr, nb::handle owner = {});
+
+/// Memory of an array that new_array() has made.
+void* array_data(nb::handle array);
+
+/// Memory of an array to be written to; null: it is none of this type, these sizes and steps, or read-only.
+/// @param steps  in numbers; of a dimension of one element any will do
+void* memory_of(nb::handle array, NumberType type, std::span<const std::size_t> sizes,
+                std::span<const std::int64_t> steps);
+
+/// float64 in the processor's byte order, of any shape; strides are whole numbers. Not to be written to.
+class Numbers {
+ public:
+  Numbers() = default;
+  /// Takes an array as it is. @return false: it is none, or of another type or layout
+  bool take(nb::handle source);
+
+  std::size_t ndim() const { return dimensions_; }
+  std::size_t shape(std::size_t dimension) const { return static_cast<std::size_t>(sizes_[dimension]); }
+  /// In numbers, not in bytes.
+  std::int64_t stride(std::size_t dimension) const {
+    return static_cast<std::int64_t>(steps_[dimension]) / static_cast<std::int64_t>(sizeof(double));
+  }
+  const double* data() const { return data_; }
+
+ private:
+  nb::object array_;
+  std::size_t dimensions_ = 0;
+  const Py_ssize_t *sizes_ = nullptr, *steps_ = nullptr;  ///< in the array
+  const double* data_ = nullptr;
+};
+
+}  // namespace abbe::python
