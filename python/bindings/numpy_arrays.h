@@ -1,9 +1,7 @@
 #pragma once
 
-// Arrays of NumPy through NumPy's own C interface. Its table of functions is taken from NumPy when the module is
-// loaded: building needs no headers of NumPy, and one module serves all its versions. Making an array this way takes a
-// tenth of the time of the buffer protocol, which decides what a call with a single pose costs.
-#include <array>
+// Arrays of NumPy through NumPy's own C interface: making an array this way takes a tenth of the time of the buffer
+// protocol, which decides what a call with a single pose costs.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,7 +12,7 @@ namespace abbe::python {
 
 enum class NumberType { float64, bool8, uint8 };
 
-/// Finds NumPy. @throws nb::python_error (ImportError) where it is missing or has another memory layout
+/// Finds NumPy. @throws nb::python_error (ImportError) where it is missing or older than 1.23
 void load_numpy();
 
 /// A new array. GIL needed.
