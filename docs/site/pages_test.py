@@ -112,7 +112,7 @@ class Pages(unittest.TestCase):
             "Setting": Name("Setting", "class"),
             "fit": Name("fit", "function", gives={"Fit"}, takes=["Setting"]),
             "read_map": Name("read_map", "function", gives={"Map"}),
-            "threads": Name("threads", "function", gives={"int"}),
+            "threads": Name("threads", "function", gives={"int"}, takes=["Map"]),
         }
         found = [(group.listed, group.names) for group in groups(document, names)]
         self.assertEqual(

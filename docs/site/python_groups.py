@@ -1,8 +1,8 @@
 """Which public names belong together: by the table "What there is" of docs/python.md, and by what they give and take.
 
 A name that the table does not list goes to the first row with a function that gives it, else with another name that
-gives it, else with a function that takes it; a function to the row of what it gives or takes, a constant to the row
-that speaks of it. What is left goes to the last group, "Other names"."""
+gives it, else with a function that takes it; a function to the row of what it gives, a constant to the row that speaks
+of it. What is left goes to the last group, "Other names"."""
 
 import pathlib
 import re
@@ -73,13 +73,9 @@ def groups(document: pathlib.Path, names: dict[str, Name]) -> list[Group]:
     def taken_by(name: str) -> list[int]:
         return placed(lambda one: one.kind == "function" and name in one.takes) if names[name].kind == "class" else []
 
-    def by_type(name: str) -> list[int]:
+    def by_result(name: str) -> list[int]:
         one = names[name]
-        return (
-            [place[word] for word in [*sorted(one.gives), *one.takes] if word in place]
-            if one.kind == "function"
-            else []
-        )
+        return sorted(place[word] for word in one.gives if word in place) if one.kind == "function" else []
 
     def by_words(name: str) -> list[int]:
         def says(one: Name) -> bool:
@@ -87,7 +83,7 @@ def groups(document: pathlib.Path, names: dict[str, Name]) -> list[Group]:
 
         return placed(says) if names[name].kind == "data" else []
 
-    while any(map(settle, (given_by_function, given_by, taken_by, by_type, by_words))):
+    while any(map(settle, (given_by_function, given_by, taken_by, by_result, by_words))):
         pass
     table.append(Group([], "names that belong to no task"))
     for name in names:
