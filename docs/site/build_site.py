@@ -2,7 +2,7 @@
 """Build the site. Usage: build_site.py --package FOLDER --out FOLDER --work FOLDER
 
 --package  folder that holds the built Python package `abbe` (build/dev/python)
---out      where the pages are written; what was there is replaced
+--out      where the pages are written; a site that was there is replaced, anything else refused
 --work     folder for what is kept from run to run: copies of the documents, what Sphinx has read, outputs of notebooks
 
 Exit code 77: packages of docs/site/requirements.txt are not installed, nothing was done.
@@ -20,6 +20,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
+MARK = ".abbe-site"  # in the folder of a site, which may be replaced
 NEEDED = ["furo", "ipykernel", "latex2mathml", "myst_nb", "myst_parser", "sphinx"]
 
 
@@ -61,9 +62,21 @@ def settings_of_notebooks(folder: pathlib.Path) -> pathlib.Path:
     return folder
 
 
+def make_folder_of_site(folder: pathlib.Path) -> bool:
+    """Removes the site that was there. False, with a message, where the folder holds anything else."""
+    if folder.exists() and not (folder / MARK).is_file() and (not folder.is_dir() or any(folder.iterdir())):
+        print(f"build_site: --out {folder}: expected a folder that is new, empty or holds a site", file=sys.stderr)
+        return False
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    (folder / MARK).touch()
+    return True
+
+
 def main() -> int:
     options = arguments()
-    shutil.rmtree(options.out, ignore_errors=True)
+    if not make_folder_of_site(options.out):
+        return 1
     missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if missing:
         print(f"SKIPPED: {', '.join(missing)} not installed in this Python: .ci/python-venv site")

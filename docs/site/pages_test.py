@@ -1,5 +1,7 @@
 """The check of links finds each of its faults and nothing on good pages; the policy of a page has the scripts in it."""
 
+import contextlib
+import io
 import os
 import pathlib
 import sys
@@ -8,6 +10,7 @@ import unittest
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from build_site import make_folder_of_site  # noqa: E402
 from check_links import faults  # noqa: E402
 from python_groups import groups  # noqa: E402
 from python_source import Name, Source  # noqa: E402
@@ -24,6 +27,22 @@ GOOD = {
     "a b.svg": "",
     "s.js": "",
 }
+
+
+class Folder(unittest.TestCase):
+    def test_only_a_site_is_replaced(self) -> None:
+        with tempfile.TemporaryDirectory() as name, contextlib.redirect_stderr(io.StringIO()) as said:
+            folder = pathlib.Path(name)
+            self.assertTrue(make_folder_of_site(folder / "new/site"))
+            (folder / "new/site/index.html").touch()
+            self.assertTrue(make_folder_of_site(folder / "new/site"))
+            self.assertFalse((folder / "new/site/index.html").exists())
+            self.assertFalse(make_folder_of_site(folder / "new"))
+            self.assertTrue((folder / "new/site").is_dir())
+            (folder / "file").touch()
+            self.assertFalse(make_folder_of_site(folder / "file"))
+            self.assertTrue((folder / "file").is_file())
+        self.assertIn("expected a folder that is new, empty or holds a site", said.getvalue())
 
 
 class Pages(unittest.TestCase):
