@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "abbe/formats/text/named_columns.h"
 #include "abbe/verify/evaluations/circular.h"
 
 namespace abbe {
@@ -24,5 +25,7 @@ struct CircularFile {
 CircularFile read_circular(const std::filesystem::path& path, double nominal_radius);
 /// The same from text. @param file  name for messages
 CircularFile parse_circular(std::string_view text, const std::string& file, double nominal_radius);
+/// The same from columns of a program, named with their units as in a file. @throws InputError
+CircularFile parse_circular(const NamedColumns& columns, double nominal_radius);
 
 }  // namespace abbe

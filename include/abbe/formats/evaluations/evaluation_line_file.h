@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "abbe/formats/text/named_columns.h"
+
 namespace abbe {
 
 /// Deviations read at positions along a line.
@@ -23,10 +25,13 @@ inline constexpr double kNearlySamePosition = 1e-6;
 LineReadings read_straightness(const std::filesystem::path& path);
 /// The same from text. @param file  name for messages
 LineReadings parse_straightness(std::string_view text, const std::string& file);
+/// The same from columns of a program, named with their units as in a file. @throws InputError
+LineReadings parse_straightness(const NamedColumns& columns);
 
 /// Reads a CSV of squareness: the same with a column `line` that names two lines; the first named one is the reference.
 /// @throws InputError
 std::array<LineReadings, 2> read_squareness(const std::filesystem::path& path);
 std::array<LineReadings, 2> parse_squareness(std::string_view text, const std::string& file);
+std::array<LineReadings, 2> parse_squareness(const NamedColumns& columns);
 
 }  // namespace abbe

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "abbe/formats/text/named_columns.h"
 #include "abbe/verify/evaluations/diagonals.h"
 #include "abbe/verify/evaluations/positioning.h"
 
@@ -24,10 +25,13 @@ struct PositioningFile {
 PositioningFile read_positioning(const std::filesystem::path& path);
 /// The same from text. @param file  name for messages
 PositioningFile parse_positioning(std::string_view text, const std::string& file);
+/// The same from columns of a program, named with their units as in a file. @throws InputError
+PositioningFile parse_positioning(const NamedColumns& columns);
 
 /// Reads displacements along diagonals: the same columns in lengths, and `diagonal` with the name of the diagonal.
 /// @return in order of appearance
 std::vector<DiagonalReadings> read_diagonals(const std::filesystem::path& path);
 std::vector<DiagonalReadings> parse_diagonals(std::string_view text, const std::string& file);
+std::vector<DiagonalReadings> parse_diagonals(const NamedColumns& columns);
 
 }  // namespace abbe

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "abbe/formats/text/named_columns.h"
 #include "abbe/verify/evaluations/rotation_error_motion.h"
 
 namespace abbe {
@@ -16,5 +17,7 @@ namespace abbe {
 RotationReadings read_rotation(const std::filesystem::path& path);
 /// The same from text. @param file  name for messages
 RotationReadings parse_rotation(std::string_view text, const std::string& file);
+/// The same from columns of a program, named with their units as in a file. @throws InputError
+RotationReadings parse_rotation(const NamedColumns& columns);
 
 }  // namespace abbe

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "abbe/formats/text/named_columns.h"
 #include "abbe/identify/linkage/linkage_steps.h"
 
 namespace abbe {
@@ -15,6 +16,8 @@ namespace abbe {
 LinkageReadings read_linkage(const std::filesystem::path& path);
 /// The same from text. @param file  name for messages
 LinkageReadings parse_linkage(std::string_view text, const std::string& file);
+/// The same from columns of a program, named with their units as in a file. @throws InputError
+LinkageReadings parse_linkage(const NamedColumns& columns);
 
 /// Text of such a file, exact.
 std::string linkage_text(const LinkageReadings& readings);

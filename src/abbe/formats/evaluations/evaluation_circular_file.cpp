@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "abbe/formats/files/text_file.h"
-#include "abbe/formats/text/csv_reader.h"
-#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/placed_table.h"
 
 namespace abbe {
 namespace {
@@ -55,8 +55,7 @@ void put_in_order(CircularReadings& path) {
 
 class CircularReader {
  public:
-  CircularReader(std::string_view text, const std::string& file, double nominal_radius)
-      : text_(text), file_(file), nominal_radius_(nominal_radius), csv_(read_csv(text, file, circular_columns())) {}
+  CircularReader(PlacedTable table, double nominal_radius) : nominal_radius_(nominal_radius), csv_(std::move(table)) {}
 
   CircularFile read() {
     const std::size_t coordinates = (has(kActualX) ? 1U : 0U) + (has(kActualY) ? 1U : 0U) + (has(kActualZ) ? 1U : 0U);
@@ -80,12 +79,12 @@ class CircularReader {
   bool has(std::size_t column) const { return csv_.columns[column].present; }
 
   [[noreturn]] void refuse_columns(std::size_t column, const std::string& problem) const {
-    throw InputError({file_, 0, 0, csv_.columns[column].header}, problem,
+    throw InputError(csv_.place(csv_.columns[column].header), problem,
                      "angle_deg with deviation_um or radius_mm, or two of X_mm, Y_mm, Z_mm");
   }
   [[noreturn]] void refuse_row(std::size_t row, const std::string& field, const std::string& problem,
                                const std::string& expected) const {
-    throw InputError({file_, csv_line(text_, row), 0, field}, problem, expected);
+    throw InputError(csv_.place(row, field), problem, expected);
   }
 
   /// The path to which a row belongs.
@@ -100,10 +99,10 @@ class CircularReader {
 
   void read_lengths() {
     if (!has(kPathAngle))
-      throw InputError({file_, 0, 0, "angle"}, "missing column", accepted_names("angle", Quantity::angle));
+      throw InputError(csv_.place("angle"), "missing column", accepted_names("angle", Quantity::angle));
     if (has(kDeviation) && has(kRadius)) refuse_columns(kRadius, "is given together with the deviation");
     if (!has(kDeviation) && !has(kRadius)) {
-      throw InputError({file_, 0, 0, "deviation"}, "missing column", "deviation_um or radius_mm");
+      throw InputError(csv_.place("deviation"), "missing column", "deviation_um or radius_mm");
     }
     for (std::size_t row = 0; row < csv_.rows; ++row) {
       const double radius =
@@ -143,10 +142,8 @@ class CircularReader {
     }
   }
 
-  std::string_view text_;
-  const std::string& file_;
   double nominal_radius_;
-  CsvTable csv_;
+  PlacedTable csv_;
   CircularFile result_;
 };
 
@@ -158,7 +155,11 @@ CircularFile read_circular(const std::filesystem::path& path, double nominal_rad
 }
 
 CircularFile parse_circular(std::string_view text, const std::string& file, double nominal_radius) {
-  return CircularReader(text, file, nominal_radius).read();
+  return CircularReader({text, file, circular_columns()}, nominal_radius).read();
+}
+
+CircularFile parse_circular(const NamedColumns& columns, double nominal_radius) {
+  return CircularReader({columns, circular_columns()}, nominal_radius).read();
 }
 
 }  // namespace abbe

@@ -6,8 +6,7 @@
 #include <numeric>
 
 #include "abbe/formats/files/text_file.h"
-#include "abbe/formats/text/csv_reader.h"
-#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/placed_table.h"
 
 namespace abbe {
 namespace {
@@ -19,8 +18,7 @@ const std::vector<CsvColumn>& line_columns(bool with_line) {
 }
 
 /// @param rows  of the file that belong to this line
-LineReadings line_of(std::string_view text, const std::string& file, const CsvTable& csv,
-                     const std::vector<std::size_t>& rows, const std::string& name) {
+LineReadings line_of(const PlacedTable& csv, const std::vector<std::size_t>& rows, const std::string& name) {
   LineReadings line;
   line.name = name;
   const std::vector<double>& positions = csv.columns[0].numbers;
@@ -32,15 +30,15 @@ LineReadings line_of(std::string_view text, const std::string& file, const CsvTa
     const double distance = positions[order[i]] - positions[order[i - 1]];
     if (distance > 0 && distance < kNearlySamePosition) {
       const auto [first, second] = std::minmax(order[i - 1], order[i]);
-      throw InputError({file, csv_line(text, second), 0, csv.columns[0].header},
-                       fmt::format("this position is nearly the same as that of line {}: {:.3g} mm from it",
-                                   csv_line(text, first), distance),
+      throw InputError(csv.place(second, csv.columns[0].header),
+                       fmt::format("this position is nearly the same as that of {}: {:.3g} mm from it",
+                                   csv.row_words(first), distance),
                        "the same position, or at least 1e-6 mm between positions");
     }
     if (distance > 0) ++different;
   }
   if (different < 3) {
-    throw InputError({file, 0, 0, csv.columns[0].header},
+    throw InputError(csv.place(csv.columns[0].header),
                      fmt::format("{} different position{}{}", different, different == 1 ? "" : "s",
                                  name.empty() ? "" : " on line '" + name.substr(0, 40) + "'"),
                      "at least three: two points are always straight");
@@ -52,6 +50,24 @@ LineReadings line_of(std::string_view text, const std::string& file, const CsvTa
   return line;
 }
 
+LineReadings straightness_of(const PlacedTable& csv) {
+  std::vector<std::size_t> rows(csv.rows);
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  return line_of(csv, rows, "");
+}
+
+std::array<LineReadings, 2> squareness_of(const PlacedTable& csv) {
+  const CsvValues& names = csv.columns[2];
+  if (names.names.size() != 2) {
+    throw InputError(csv.place(names.header),
+                     fmt::format("{} line{} named", names.names.size(), names.names.size() == 1 ? " is" : "s are"),
+                     "two lines, such as X and Y");
+  }
+  std::array<std::vector<std::size_t>, 2> rows;
+  for (std::size_t row = 0; row < csv.rows; ++row) rows[names.words[row]].push_back(row);
+  return {line_of(csv, rows[0], names.names[0]), line_of(csv, rows[1], names.names[1])};
+}
+
 }  // namespace
 
 LineReadings read_straightness(const std::filesystem::path& path) {
@@ -60,11 +76,10 @@ LineReadings read_straightness(const std::filesystem::path& path) {
 }
 
 LineReadings parse_straightness(std::string_view text, const std::string& file) {
-  const CsvTable csv = read_csv(text, file, line_columns(false));
-  std::vector<std::size_t> rows(csv.rows);
-  std::iota(rows.begin(), rows.end(), std::size_t{0});
-  return line_of(text, file, csv, rows, "");
+  return straightness_of({text, file, line_columns(false)});
 }
+
+LineReadings parse_straightness(const NamedColumns& columns) { return straightness_of({columns, line_columns(false)}); }
 
 std::array<LineReadings, 2> read_squareness(const std::filesystem::path& path) {
   const MappedFile file(path);
@@ -72,16 +87,11 @@ std::array<LineReadings, 2> read_squareness(const std::filesystem::path& path) {
 }
 
 std::array<LineReadings, 2> parse_squareness(std::string_view text, const std::string& file) {
-  const CsvTable csv = read_csv(text, file, line_columns(true));
-  const CsvValues& names = csv.columns[2];
-  if (names.names.size() != 2) {
-    throw InputError({file, 0, 0, names.header},
-                     fmt::format("{} line{} named", names.names.size(), names.names.size() == 1 ? " is" : "s are"),
-                     "two lines, such as X and Y");
-  }
-  std::array<std::vector<std::size_t>, 2> rows;
-  for (std::size_t row = 0; row < csv.rows; ++row) rows[names.words[row]].push_back(row);
-  return {line_of(text, file, csv, rows[0], names.names[0]), line_of(text, file, csv, rows[1], names.names[1])};
+  return squareness_of({text, file, line_columns(true)});
+}
+
+std::array<LineReadings, 2> parse_squareness(const NamedColumns& columns) {
+  return squareness_of({columns, line_columns(true)});
 }
 
 }  // namespace abbe

@@ -6,10 +6,10 @@
 #include <map>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "abbe/formats/files/text_file.h"
-#include "abbe/formats/text/csv_reader.h"
-#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/placed_table.h"
 
 namespace abbe {
 namespace {
@@ -42,12 +42,12 @@ std::vector<CsvColumn> wanted_columns(bool diagonals) {
 
 class PositioningReader {
  public:
-  PositioningReader(std::string_view text, const std::string& file, bool diagonals)
-      : text_(text), file_(file), csv_(read_csv(text, file, wanted_columns(diagonals))) {
+  PositioningReader(PlacedTable table, bool diagonals) : csv_(std::move(table)) {
     rotary_ =
         !one_of(kTargetLength, kTargetAngle, "target", "target_mm for a linear axis, target_deg for a rotary one");
     if (!diagonals && csv_.columns[kDiagonal].present) {
-      fail(csv_.columns[kDiagonal].header, "the file holds diagonals", "abbe evaluate diagonals, or no such column");
+      fail(csv_.columns[kDiagonal].header, "the file holds diagonals",
+           csv_.is_file() ? "abbe evaluate diagonals, or no such column" : "no such column, or evaluate_diagonals()");
     }
     if (diagonals && rotary_) {
       fail(csv_.columns[kTargetAngle].header, "a diagonal has no angles", "target_mm: the distance along the diagonal");
@@ -93,11 +93,11 @@ class PositioningReader {
   bool present(std::size_t column) const { return csv_.columns[column].present; }
 
   [[noreturn]] void fail(const std::string& field, const std::string& problem, const std::string& expected) const {
-    throw InputError({file_, 0, 0, field}, problem, expected);
+    throw InputError(csv_.place(field), problem, expected);
   }
   [[noreturn]] void fail_row(std::size_t row, const std::string& field, const std::string& problem,
                              const std::string& expected) const {
-    throw InputError({file_, csv_line(text_, row), 0, field}, problem, expected);
+    throw InputError(csv_.place(row, field), problem, expected);
   }
 
   /// True for the length, false for the angle. @throws InputError if both or none are there
@@ -138,24 +138,19 @@ class PositioningReader {
       const auto entry = seen.emplace(key, row);
       if (entry.second) continue;
       fail_row(row, "run",
-               fmt::format("run {} approaches this target twice from the same side, first in line {}",
-                           runs.names[runs.words[row]].substr(0, 40), csv_line(text_, entry.first->second)),
+               fmt::format("run {} approaches this target twice from the same side, first in {}",
+                           runs.names[runs.words[row]].substr(0, 40), csv_.row_words(entry.first->second)),
                "one reading per run, direction and target");
     }
   }
 
-  std::string_view text_;
-  const std::string& file_;
-  CsvTable csv_;
+  PlacedTable csv_;
   bool rotary_ = false, is_actual_ = false;
   std::size_t value_ = kDeviationLength;
   std::vector<ApproachDirection> directions_;
 };
 
-}  // namespace
-
-PositioningFile parse_positioning(std::string_view text, const std::string& file) {
-  const PositioningReader reader(text, file, false);
+PositioningFile positioning_readings_of(const PositioningReader& reader) {
   PositioningFile result;
   result.rotary = reader.rotary();
   result.readings.reserve(reader.rows());
@@ -163,14 +158,31 @@ PositioningFile parse_positioning(std::string_view text, const std::string& file
   return result;
 }
 
-std::vector<DiagonalReadings> parse_diagonals(std::string_view text, const std::string& file) {
-  const PositioningReader reader(text, file, true);
+std::vector<DiagonalReadings> diagonals_of(const PositioningReader& reader) {
   std::vector<DiagonalReadings> result;
   for (const std::string& name : reader.diagonal().names) result.push_back({name, {}});
   for (std::size_t row = 0; row < reader.rows(); ++row) {
     result[reader.diagonal().words[row]].readings.push_back(reader.reading(row));
   }
   return result;
+}
+
+}  // namespace
+
+PositioningFile parse_positioning(std::string_view text, const std::string& file) {
+  return positioning_readings_of({{text, file, wanted_columns(false)}, false});
+}
+
+PositioningFile parse_positioning(const NamedColumns& columns) {
+  return positioning_readings_of({{columns, wanted_columns(false)}, false});
+}
+
+std::vector<DiagonalReadings> parse_diagonals(std::string_view text, const std::string& file) {
+  return diagonals_of({{text, file, wanted_columns(true)}, true});
+}
+
+std::vector<DiagonalReadings> parse_diagonals(const NamedColumns& columns) {
+  return diagonals_of({{columns, wanted_columns(true)}, true});
 }
 
 PositioningFile read_positioning(const std::filesystem::path& path) {

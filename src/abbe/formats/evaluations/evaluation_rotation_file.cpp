@@ -4,10 +4,10 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "abbe/formats/files/text_file.h"
-#include "abbe/formats/text/csv_reader.h"
-#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/placed_table.h"
 #include "abbe/geometry/angle_units.h"
 
 namespace abbe {
@@ -15,8 +15,14 @@ namespace {
 
 constexpr std::array<const char*, 6> kProbes = {"x1", "y1", "x2", "y2", "axial", "face"};
 
+std::vector<CsvColumn> rotation_columns() {
+  std::vector<CsvColumn> columns = {{"angle", Quantity::angle}};
+  for (const char* probe : kProbes) columns.push_back({probe, Quantity::length, false, false});
+  return columns;
+}
+
 /// Angle without jumps at the turns; in one sense only.
-std::vector<double> continued(std::string_view text, const std::string& file, const CsvValues& values) {
+std::vector<double> continued(const PlacedTable& csv, const CsvValues& values) {
   std::vector<double> angle(values.numbers);
   double turns = 0, sense = 0;
   for (std::size_t i = 1; i < angle.size(); ++i) {
@@ -27,7 +33,7 @@ std::vector<double> continued(std::string_view text, const std::string& file, co
     const double step = angle[i] - angle[i - 1];
     if (sense == 0) sense = step;
     if (step == 0 || (step > 0) != (sense > 0)) {
-      throw InputError({file, csv_line(text, i), 0, values.header},
+      throw InputError(csv.place(i, values.header),
                        fmt::format("the angle {} the row before", step == 0 ? "is that of" : "turns back against"),
                        "readings in the order of time, with an angle that only rises or only falls");
     }
@@ -35,17 +41,7 @@ std::vector<double> continued(std::string_view text, const std::string& file, co
   return angle;
 }
 
-}  // namespace
-
-RotationReadings read_rotation(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  return parse_rotation(file.text(), path.string());
-}
-
-RotationReadings parse_rotation(std::string_view text, const std::string& file) {
-  std::vector<CsvColumn> columns = {{"angle", Quantity::angle}};
-  for (const char* probe : kProbes) columns.push_back({probe, Quantity::length, false, false});
-  CsvTable csv = read_csv(text, file, columns);
+RotationReadings rotation_of(PlacedTable csv) {
   RotationReadings readings;
   const std::array<std::vector<double>*, 6> probes = {&readings.x1, &readings.y1,    &readings.x2,
                                                       &readings.y2, &readings.axial, &readings.face};
@@ -55,11 +51,23 @@ RotationReadings parse_rotation(std::string_view text, const std::string& file) 
     *probes[k] = std::move(csv.columns[k + 1].numbers);
   }
   if (!any) {
-    throw InputError({file, 0, 0, "x1"}, "there is no column of a probe",
+    throw InputError(csv.place("x1"), "there is no column of a probe",
                      "at least one of x1_um, y1_um, x2_um, y2_um, axial_um, face_um");
   }
-  readings.angle = continued(text, file, csv.columns[0]);
+  readings.angle = continued(csv, csv.columns[0]);
   return readings;
 }
+}  // namespace
+
+RotationReadings read_rotation(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  return parse_rotation(file.text(), path.string());
+}
+
+RotationReadings parse_rotation(std::string_view text, const std::string& file) {
+  return rotation_of({text, file, rotation_columns()});
+}
+
+RotationReadings parse_rotation(const NamedColumns& columns) { return rotation_of({columns, rotation_columns()}); }
 
 }  // namespace abbe

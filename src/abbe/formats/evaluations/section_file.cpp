@@ -7,8 +7,7 @@
 #include <stdexcept>
 
 #include "abbe/formats/files/text_file.h"
-#include "abbe/formats/text/csv_reader.h"
-#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/placed_table.h"
 #include "abbe/geometry/angle_units.h"
 
 namespace abbe {
@@ -26,27 +25,19 @@ const std::vector<CsvColumn>& section_columns() {
 }
 
 /// What a whole section has in common: the first row says it, the others repeat it.
-void enter_common(std::string_view text, const std::string& file, const CsvValues& column, std::size_t row,
-                  const std::string& section, std::optional<double>& value) {
+void enter_common(const PlacedTable& csv, const CsvValues& column, std::size_t row, const std::string& section,
+                  std::optional<double>& value) {
   if (!column.present) return;
   const double here = column.numbers[row];
   if (value && *value != here) {
-    throw InputError({file, csv_line(text, row), 0, column.header},
+    throw InputError(csv.place(row, column.header),
                      "not that of the rows of section '" + section.substr(0, 40) + "' before",
                      "the same on all rows of a section");
   }
   value = here;
 }
 
-}  // namespace
-
-std::vector<SectionReadings> read_sections(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  return parse_sections(file.text(), path.string());
-}
-
-std::vector<SectionReadings> parse_sections(std::string_view text, const std::string& file) {
-  const CsvTable csv = read_csv(text, file, section_columns());
+std::vector<SectionReadings> sections_of(const PlacedTable& csv) {
   const CsvValues& names = csv.columns[kSection];
   std::vector<SectionReadings> sections(names.names.size());
   std::vector<Eigen::Index> count(sections.size(), 0);
@@ -60,10 +51,25 @@ std::vector<SectionReadings> parse_sections(std::string_view text, const std::st
     const std::size_t s = names.words[row];
     SectionReadings& section = sections[s];
     section.points.col(count[s]++) << csv.columns[kAcross].numbers[row], csv.columns[kHeight].numbers[row];
-    enter_common(text, file, csv.columns[kAlong], row, section.name, section.along);
-    enter_common(text, file, csv.columns[kBeamTilt], row, section.name, section.beam_tilt);
+    enter_common(csv, csv.columns[kAlong], row, section.name, section.along);
+    enter_common(csv, csv.columns[kBeamTilt], row, section.name, section.beam_tilt);
   }
   return sections;
+}
+
+}  // namespace
+
+std::vector<SectionReadings> read_sections(const std::filesystem::path& path) {
+  const MappedFile file(path);
+  return parse_sections(file.text(), path.string());
+}
+
+std::vector<SectionReadings> parse_sections(std::string_view text, const std::string& file) {
+  return sections_of({text, file, section_columns()});
+}
+
+std::vector<SectionReadings> parse_sections(const NamedColumns& columns) {
+  return sections_of({columns, section_columns()});
 }
 
 std::string sections_csv(const std::vector<SectionReadings>& sections) {

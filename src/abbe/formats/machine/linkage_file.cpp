@@ -10,9 +10,8 @@
 #include <vector>
 
 #include "abbe/formats/files/text_file.h"
-#include "abbe/formats/text/csv_reader.h"
-#include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
+#include "abbe/formats/text/placed_table.h"
 #include "abbe/geometry/angle_units.h"
 
 namespace abbe {
@@ -82,18 +81,17 @@ std::string mark_names() {
 
 class LinkageReader {
  public:
-  LinkageReader(std::string_view text, std::string file)
-      : text_(text), file_(std::move(file)), csv_(read_csv(text, file_, linkage_columns())) {}
+  explicit LinkageReader(PlacedTable table) : csv_(std::move(table)) {}
 
   LinkageReadings read() {
     for (std::size_t row = 0; row < csv_.rows; ++row) take(row);
     for (const LinkageMark& mark : linkage_marks()) {
       const std::string name = mark.name;
       if (seen_.count(name) != 0 || name == "circle" || name == "point") continue;
-      throw InputError({file_, 0, 0, "mark"}, fmt::format("there is no row '{}'", name), mark.words);
+      throw InputError(csv_.place("mark"), fmt::format("there is no row '{}'", name), mark.words);
     }
     if (seen_.count("circle") == 0 && seen_.count("point") == 0) {
-      throw InputError({file_, 0, 0, "mark"}, "there is no row 'circle' or 'point'",
+      throw InputError(csv_.place("mark"), "there is no row 'circle' or 'point'",
                        "step 5: marks of a circle while the table turns, or the commands that make it a point");
     }
     return std::move(readings_);
@@ -108,7 +106,7 @@ class LinkageReader {
 
   [[noreturn]] void refuse(std::size_t row, const std::string& field, const std::string& problem,
                            const std::string& expected) const {
-    throw InputError({file_, csv_line(text_, row), 0, field}, problem, expected);
+    throw InputError(csv_.place(row, field), problem, expected);
   }
 
   std::string header(LinkageColumn column) const {
@@ -128,7 +126,7 @@ class LinkageReader {
     }
     const auto [earlier, is_first] = seen_.emplace(name, row);
     if (!is_first && !found->repeats) {
-      refuse(row, marks.header, fmt::format("'{}' is already in line {}", name, csv_line(text_, earlier->second)),
+      refuse(row, marks.header, fmt::format("'{}' is already in {}", name, csv_.row_words(earlier->second)),
              "one such row");
     }
     std::array<double, kLinkageColumns> numbers{};
@@ -187,9 +185,7 @@ class LinkageReader {
     r.circle_marks.emplace_back(n[kMarkX], n[kMarkY]);
   }
 
-  std::string_view text_;
-  std::string file_;
-  CsvTable csv_;
+  PlacedTable csv_;
   std::map<std::string, std::size_t> seen_;  ///< first row of each mark
   LinkageReadings readings_;
 };
@@ -197,7 +193,11 @@ class LinkageReader {
 }  // namespace
 
 LinkageReadings parse_linkage(std::string_view text, const std::string& file) {
-  return LinkageReader(text, file).read();
+  return LinkageReader({text, file, linkage_columns()}).read();
+}
+
+LinkageReadings parse_linkage(const NamedColumns& columns) {
+  return LinkageReader({columns, linkage_columns()}).read();
 }
 
 LinkageReadings read_linkage(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "abbe/formats/text/csv_number.h"
 #include "abbe/formats/text/csv_rows.h"
 #include "abbe/formats/text/decimal_text.h"
 #include "abbe/formats/text/input_error.h"
@@ -15,8 +16,6 @@
 
 namespace abbe {
 namespace {
-
-constexpr std::uint32_t kLargestNameCount = 1000;
 
 /// A run of whole lines and where its rows belong.
 struct RowBlock : TextBlock {
@@ -58,35 +57,6 @@ const char* fast_number(const char* at, const char* end, int decimal_shift, doub
   return at == nullptr || at == end || *at == ',' ? at : nullptr;
 }
 
-std::string expected_number(const Target& target) {
-  std::string words(quantity_words(target.wanted->quantity));
-  if (!target.column->unit->suffix.empty()) words += fmt::format(" in {}", target.column->unit->suffix);
-  if (target.wanted->range == CsvColumn::Range::positive) words += " above zero";
-  if (target.wanted->range == CsvColumn::Range::not_negative) words += " not below zero";
-  return words;
-}
-
-/// Says what is wrong with a field, or reads it.
-std::string read_number(std::string_view field, const Target& target, double& value) {
-  if (field.empty()) return "is empty";
-  const std::string shown = field.size() > 40 ? std::string(field.substr(0, 40)) + "..." : std::string(field);
-  switch (parse_quantity(field, *target.column->unit, value)) {
-    case NumberProblem::none:
-      return "";
-    case NumberProblem::not_a_number:
-      return fmt::format("'{}' is not a number", shown);
-    case NumberProblem::not_finite:
-      return fmt::format("'{}' is not a finite number", shown);
-    case NumberProblem::too_large:
-      return fmt::format("'{}' is too large", shown);
-  }
-  return "";
-}
-
-bool in_range(double value, CsvColumn::Range range) {
-  return range == CsvColumn::Range::any || value > 0 || (value == 0 && range == CsvColumn::Range::not_negative);
-}
-
 class RowReader {
  public:
   RowReader(std::string_view text, const std::vector<Target>& targets, std::size_t wanted, RowBlock& block)
@@ -123,7 +93,7 @@ class RowReader {
       if (target.numbers != nullptr) {
         const char* const behind = fast_number(at, end, target.decimal_shift, value);
         value *= target.factor;
-        if (behind != nullptr && std::abs(value) <= kLargestInput && in_range(value, target.wanted->range)) {
+        if (behind != nullptr && std::abs(value) <= kLargestInput && csv_in_range(value, target.wanted->range)) {
           target.numbers[row] = value;
           more = behind != end;
           at = more ? behind + 1 : behind;
@@ -160,9 +130,11 @@ class RowReader {
       return true;
     }
     double value = 0;
-    std::string problem = read_number(field, target, value);
-    if (problem.empty() && !in_range(value, target.wanted->range)) problem = fmt::format("is {}", field);
-    if (!problem.empty()) return refuse(start, target.column->name, std::move(problem), expected_number(target));
+    const CsvColumn& wanted = *target.wanted;
+    std::string problem = csv_read_number(field, wanted, *target.column->unit, value);
+    if (!problem.empty()) {
+      return refuse(start, target.column->name, std::move(problem), csv_expected_number(wanted, *target.column->unit));
+    }
     target.numbers[row] = value;
     return true;
   }

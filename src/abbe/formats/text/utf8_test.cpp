@@ -1,5 +1,6 @@
 #include "abbe/formats/text/utf8.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -48,7 +49,7 @@ TEST(Utf8, ANameHasNoControlCharacterButTheTab) {
 
 TEST(InputError, SaysAllOfItWhateverIsInTheFile) {
   const std::string cell("1\0\x1b", 3);
-  const InputError error({"q.csv", 23, 8, std::string(100000, 'y')}, "'" + cell + "' is not a number",
+  const InputError error({"q.csv", 23, 8, std::string(100000, 'y')}, fmt::format("'{}' is not a number", cell),
                          "a length in mm");
   const std::string message = error.what();
   EXPECT_TRUE(message.starts_with("q.csv:23:8: yyy")) << message;

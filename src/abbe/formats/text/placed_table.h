@@ -1,0 +1,35 @@
+#pragma once
+
+// Internal to formats: a table with what its rows are called in messages.
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/named_columns.h"
+
+namespace abbe {
+
+/// The rows of a file, or those of columns of a program.
+class PlacedTable : public CsvTable {
+ public:
+  /// As read_csv(). @param text  has to live on
+  PlacedTable(std::string_view text, std::string file, const std::vector<CsvColumn>& wanted);
+  /// As table_of_columns().
+  PlacedTable(const NamedColumns& given, const std::vector<CsvColumn>& wanted);
+
+  /// All of a column.
+  InputError::Place place(const std::string& field) const { return {.file = file_, .field = field}; }
+  /// One field of it.
+  InputError::Place place(std::size_t row, const std::string& field) const;
+  /// "line 7" of a file, "row 5" of columns.
+  std::string row_words(std::size_t row) const;
+  bool is_file() const { return is_file_; }
+
+ private:
+  std::string_view text_;
+  std::string file_;
+  bool is_file_;
+};
+
+}  // namespace abbe
