@@ -13,4 +13,7 @@ namespace abbe {
 EvaluationReport rotation_report(const std::string& file, const RotationOptions& options,
                                  const RotationReadings& readings, const RotationResult& result);
 
+/// What the figures of an error motion begin with: "radial_x1".
+const char* error_motion_symbol(AxisErrorMotionKind kind);
+
 }  // namespace abbe

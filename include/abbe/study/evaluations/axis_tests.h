@@ -9,6 +9,7 @@
 #include "abbe/formats/evaluations/evaluation_positioning.h"
 #include "abbe/formats/evaluations/evaluation_rotation_file.h"
 #include "abbe/verify/evaluations/circular.h"
+#include "abbe/verify/evaluations/circular_diagnosis.h"
 #include "abbe/verify/evaluations/diagonals.h"
 #include "abbe/verify/evaluations/positioning_uncertainty.h"
 #include "abbe/verify/evaluations/rotation_error_motion.h"
@@ -29,6 +30,18 @@ struct PositioningTest {
   PositioningUncertaintyInput linear, rotary;
 };
 
+/// How a contribution to the uncertainty of a positioning test is called.
+struct PositioningContribution {
+  const char* option;                                  ///< of `abbe evaluate positioning`: "--instrument-um"
+  PositioningUncertaintyInput PositioningTest::*axis;  ///< of which kind
+  double PositioningUncertaintyInput::*value;
+  double unit;  ///< of the option's number, in mm, rad, ...
+  const char* words;
+};
+
+/// All contributions, in the order of the options.
+const std::array<PositioningContribution, 15>& positioning_contributions();
+
 /// Positioning along diagonals (ISO 230-6).
 struct DiagonalsTest {
   std::vector<DiagonalReadings> readings;
@@ -47,6 +60,12 @@ struct CircularTest {
   double feed = 0;             ///< --feed-mm-min: along the path; 0: not known
 };
 
+/// What the readings of a circular test say.
+struct CircularEvaluation {
+  CircularResult deviations;
+  CircularDiagnosis diagnosis;
+};
+
 /// Error motions of an axis of rotation (ISO 230-7). The evaluation is refused where the turns do not show them.
 struct RotationTest {
   RotationReadings readings;
@@ -58,6 +77,11 @@ struct StraightnessTest {
   LineReadings readings;
   ReferenceLine reference = ReferenceLine::least_squares;  ///< --reference: of the plot
   double reading_uncertainty = 0;  ///< --u-reading-um: standard, of one deviation; 0: not stated
+};
+
+/// What the readings of a straightness test say.
+struct StraightnessEvaluation {
+  Straightness least_squares, minimum_zone;  ///< by both reference lines
 };
 
 /// Squareness of two lines (ISO 230-1).

@@ -6,6 +6,7 @@
 
 #include "abbe/formats/evaluations/section_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/machine/machine.h"
 #include "abbe/verify/parts/contour_error.h"
 #include "abbe/verify/parts/contour_sections.h"
 
@@ -36,5 +37,7 @@ struct ContourPointsTest {
 /// @throws InputError as read_curve() and commanded_pieces(), and for a curve that sets axes where there is no machine
 std::vector<CommandPiece> read_commanded_pieces(const std::string& curve, const std::string& machine = "",
                                                 bool closed = false);
+/// The same on a machine that is already read.
+std::vector<CommandPiece> read_commanded_pieces(const std::string& curve, const Machine& machine, bool closed = false);
 
 }  // namespace abbe

@@ -58,8 +58,14 @@ struct EvaluationRequest {
   std::vector<std::string> tolerances;  ///< --tolerance: "A_um=10", as apply_tolerances() takes them
 };
 
+/// What a test says in numbers, of which its report is made; mm and rad.
+using EvaluatedNumbers =
+    std::variant<PositioningEvaluation, DiagonalsEvaluation, CircularEvaluation, RotationResult, StraightnessEvaluation,
+                 Squareness, SectionsEvaluation, ContourPointsEvaluation, LinkageEvaluation>;
+
 /// What the readings say. It needs nothing of the request that it answers.
 struct Evaluation {
+  EvaluatedNumbers found;   ///< of the kind of the test
   EvaluationReport report;  ///< with the tolerances of the request
   /// Why the figures are not those that were asked for, in words; empty: they are. Tolerances are no reason: the report
   /// says which of them are exceeded.

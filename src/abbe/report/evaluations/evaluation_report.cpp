@@ -10,23 +10,19 @@
 #include "abbe/report/report.h"
 
 namespace abbe {
-namespace {
 
-/// In the unit shown, without the last digits that the conversion of the unit makes up.
-double in_unit(const EvaluationFigure& figure, double value) {
+double figure_number(const EvaluationFigure& figure, double value) {
   const Unit& unit = unit_named(figure.quantity, figure.unit);
   const double shown = value / unit.factor * std::pow(10, -unit.decimal_shift);
   return std::round(shown * 1e9) / 1e9;
 }
 
-const char* verdict(const EvaluationFigure& figure) {
-  if (!figure.tolerance) return "";
-  if (!figure.value) return "cannot be judged";
-  if (figure.exceeds_tolerance()) return figure.is_undecided() ? "exceeded, not proven" : "exceeded";
-  return figure.is_undecided() ? "within, not proven" : "within";
+std::string EvaluationFigure::verdict() const {
+  if (!tolerance) return "";
+  if (!value) return "cannot be judged";
+  if (exceeds_tolerance()) return is_undecided() ? "exceeded, not proven" : "exceeded";
+  return is_undecided() ? "within, not proven" : "within";
 }
-
-}  // namespace
 
 bool EvaluationFigure::is_undecided() const {
   return tolerance && value && uncertainty && std::abs(std::abs(*value) - *tolerance) < *uncertainty;
@@ -38,7 +34,7 @@ bool EvaluationReport::exceeds_tolerance() const {
 }
 
 std::string figure_text(const EvaluationFigure& figure, double value) {
-  std::string text = fmt::format("{:.{}f}", in_unit(figure, value), figure.decimals);
+  std::string text = fmt::format("{:.{}f}", figure_number(figure, value), figure.decimals);
   const bool is_zero = text.find_first_of("123456789") == std::string::npos;
   return is_zero && text.starts_with('-') ? text.substr(1) : text;
 }
@@ -64,13 +60,13 @@ nlohmann::ordered_json evaluation_json(const EvaluationReport& report) {
     entry["name"] = figure.name;
     const auto add = [&](const std::string& key, const std::optional<double>& value) {
       if (!value) return;
-      entry[figure.unit.empty() ? key : key + "_" + figure.unit] = in_unit(figure, *value);
+      entry[figure.unit.empty() ? key : key + "_" + figure.unit] = figure_number(figure, *value);
     };
     add("value", figure.value);
     if (!figure.value) entry["not_evaluated"] = figure.missing;
     add("expanded_uncertainty", figure.uncertainty);
     add("tolerance", figure.tolerance);
-    if (figure.tolerance) entry["verdict"] = verdict(figure);
+    if (figure.tolerance) entry["verdict"] = figure.verdict();
     tolerances = tolerances || figure.tolerance;
     json["figures"][figure.symbol] = std::move(entry);
   }

@@ -143,6 +143,8 @@ void add_notes(const RotationResult& result, const RotationOptions& options, Eva
 
 }  // namespace
 
+const char* error_motion_symbol(AxisErrorMotionKind kind) { return name_of(kind).symbol; }
+
 EvaluationReport rotation_report(const std::string& file, const RotationOptions& options,
                                  const RotationReadings& readings, const RotationResult& result) {
   EvaluationReport report;

@@ -78,6 +78,30 @@ TEST(EvaluationOfAnAxis, FiguresAreJudgedAndTheRequestIsNeededNoLonger) {
               StartsWith("--tolerance Q_um=1: there is no such figure"));
 }
 
+TEST(EvaluationOfAnAxis, HasTheNumbersBehindItsFigures) {
+  const Evaluation axis = evaluate_readings(axis_request(positioning_by_hand()));
+  EXPECT_EQ(std::get<PositioningEvaluation>(axis.found).systematic.figure.value, *figure_of(axis, "E").value);
+  const Evaluation circle = evaluate_readings(axis_request(circle_of_ball_bar(360)));
+  const auto& found = std::get<CircularEvaluation>(circle.found);
+  EXPECT_EQ(found.deviations.paths[0].circular, *figure_of(circle, "G_cw").value);
+  EXPECT_EQ(found.diagnosis.residuals[0].size(), 180U);
+  StraightnessTest line;
+  line.readings = {"", {0, 1, 2, 3}, {0, 1e-3, 1e-3, 0}};
+  EXPECT_NEAR(std::get<StraightnessEvaluation>(evaluate_readings(axis_request(line)).found).minimum_zone.value, 1e-3,
+              1e-12);
+}
+
+TEST(EvaluationOfAnAxis, ContributionsToTheUncertaintyHaveTheirOptions) {
+  PositioningTest test;
+  for (const PositioningContribution& contribution : positioning_contributions()) {
+    EXPECT_THAT(contribution.option, StartsWith("--"));
+    EXPECT_EQ((test.*contribution.axis).*contribution.value, 0) << contribution.option << " is there twice";
+    (test.*contribution.axis).*contribution.value = contribution.unit;
+  }
+  EXPECT_EQ(test.rotary.setup, kArcsec);
+  EXPECT_EQ(test.linear.instrument_per_length, 1e-6);
+}
+
 TEST(EvaluationOfAnAxis, WithoutReadingsThereIsNone) {
   const std::string expected = "folder/x.csv: there are no readings; expected one at least";
   CircularTest circular;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <regex>
+#include <utility>
 
 #include "abbe/formats/files/file_name.h"
 #include "abbe/formats/machine/machine_file.h"
@@ -37,9 +38,12 @@ std::string contour_title(const std::string& file) { return "Contour error of " 
 }  // namespace
 
 std::vector<CommandPiece> read_commanded_pieces(const std::string& curve, const std::string& machine, bool closed) {
-  return commanded_pieces(
-      machine.empty() ? read_curve_without_machine(curve) : read_curve(curve, read_machine(machine)), curve,
-      closed ? "--closed" : "");
+  if (!machine.empty()) return read_commanded_pieces(curve, read_machine(machine), closed);
+  return commanded_pieces(read_curve_without_machine(curve), curve, closed ? "--closed" : "");
+}
+
+std::vector<CommandPiece> read_commanded_pieces(const std::string& curve, const Machine& machine, bool closed) {
+  return commanded_pieces(read_curve(curve, machine), curve, closed ? "--closed" : "");
 }
 
 Evaluation evaluated(const SectionsTest& test, const std::string& file) {
@@ -52,23 +56,24 @@ Evaluation evaluated(const SectionsTest& test, const std::string& file) {
   }
   SectionOptions options = test.options;
   options.edge.beam_tilt = test.beam_tilt.value_or(0);
-  const SectionsEvaluation found = evaluate_sections(sections, options);
+  SectionsEvaluation found = evaluate_sections(sections, options);
   Evaluation result;
   result.report = section_report(contour_title(file), options, sections, found);
   if (found.refused > 0) {
     result.refused = fmt::format("{} of {} sections could not be evaluated", found.refused, sections.size());
   }
+  result.found = std::move(found);
   return result;
 }
 
 Evaluation evaluated(const ContourPointsTest& test, const std::string& file) {
   if (test.pieces.empty()) throw InputError({.field = "--curve"}, "there is no curve", "one piece of it at least");
   const PointCloudFile& measured = test.readings;
+  ContourPointsEvaluation found = evaluate_contour_points(test.pieces, measured.cloud.points, test.origin_uncertainty);
   Evaluation result;
-  result.report =
-      contour_points_report(contour_title(file), test.pieces,
-                            evaluate_contour_points(test.pieces, measured.cloud.points, test.origin_uncertainty));
+  result.report = contour_points_report(contour_title(file), test.pieces, found);
   result.report.facts.front().second += fmt::format(", {}, {}", measured.format, unit_words(measured.unit));
+  result.found = std::move(found);
   return result;
 }
 

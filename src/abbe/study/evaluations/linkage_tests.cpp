@@ -84,7 +84,7 @@ Evaluation evaluated(const LinkageTest& test, const std::string& file) {
   LinkageReadings readings = test.readings;
   readings.convention =
       test.machine ? convention_of_machine(test) : test.convention.value_or(LinkageConvention::table_moves);
-  const LinkageEvaluation found = evaluate_linkage(readings, test.accuracy);
+  LinkageEvaluation found = evaluate_linkage(readings, test.accuracy);
   require_linkage(found, file);
   const bool stated = states_any(test.accuracy);
   std::optional<LinkageErrors> errors;
@@ -99,6 +99,7 @@ Evaluation evaluated(const LinkageTest& test, const std::string& file) {
     result.files = {{"errors.toml", errors_text(*test.machine, contents, stated ? "errors.covariance.csv" : "")}};
     if (stated) result.files.emplace_back("errors.covariance.csv", covariance_text(*test.machine, contents));
   }
+  result.found = std::move(found);
   return result;
 }
 
