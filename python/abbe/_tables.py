@@ -11,7 +11,7 @@ import numpy
 if TYPE_CHECKING:
     import pandas
 
-    from ._core import Axis, Errors, Readings, StudyPlan, StudyResult
+    from ._core import Axis, Errors, Evaluation, Readings, StudyPlan, StudyResult
 
 _MOST_ROWS = 40
 
@@ -103,6 +103,34 @@ def result_html(result: StudyResult) -> str:
     parts.append(_table_html(_result(result)))
     parts.append(f"<details><summary>All that there is to say</summary><pre>{html.escape(result.text())}</pre></details>")
     return "".join(parts)
+
+
+def _figures(result: Evaluation) -> dict[str, list[object]]:
+    figures = list(result.figures.values())
+    names = ("symbol", "name", "value", "expanded_uncertainty", "unit", "tolerance", "verdict")
+    return {name: [getattr(figure, name) for figure in figures] for name in names}
+
+
+def figures_frame(result: Evaluation) -> pandas.DataFrame:
+    frame: pandas.DataFrame = _pandas().DataFrame(_figures(result))
+    for name in ("value", "expanded_uncertainty", "tolerance"):
+        frame[name] = frame[name].astype(float)
+    return frame.set_index("symbol")
+
+
+def figures_html(result: Evaluation) -> str:
+    columns = _figures(result)
+
+    def cell(name: str, value: object) -> str:
+        if value is None:
+            return "<td></td>"
+        return f"<td style='text-align:{'right' if isinstance(value, float) else 'left'}'>{html.escape(str(value))}</td>"
+
+    head = "".join(f"<th>{name}</th>" for name in columns)
+    rows = "".join("<tr>" + "".join(cell(name, value) for name, value in zip(columns, row)) + "</tr>"
+                   for row in zip(*columns.values()))
+    return (f"<p><b>{html.escape(result.title)}</b> {html.escape(result.standard)}</p><table><thead><tr>{head}</tr></thead>"
+            f"<tbody>{rows}</tbody></table>")
 
 
 def plan_html(plan: StudyPlan) -> str:

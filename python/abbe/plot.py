@@ -12,7 +12,7 @@ from typing import Any
 import numpy
 import numpy.typing
 
-from ._core import Errors, StudyPlan, StudyResult
+from ._core import CircularNumbers, Errors, Evaluation, StudyPlan, StudyResult
 from ._errors import InputError
 
 try:
@@ -162,18 +162,40 @@ def polar(angles_deg: numpy.typing.ArrayLike, deviations_mm: numpy.typing.ArrayL
     angles, deviations = numpy.radians(numpy.asarray(angles_deg, float)), 1e3 * numpy.asarray(deviations_mm, float)
     if angles.ndim != 1 or angles.shape != deviations.shape or len(angles) == 0:
         raise InputError(f"angles_deg: shapes {angles.shape} and {deviations.shape}; expected (n,) of both", field="angles_deg")
-    spread = float(numpy.ptp(deviations)) or 1.0
-    base = 1e3 * radius_mm if radius_mm is not None else 3 * spread - float(deviations.min())
+    return _polar([("", angles, deviations)], title, None if radius_mm is None else 1e3 * radius_mm)
+
+
+def _polar(curves: Sequence[tuple[str, numpy.ndarray, numpy.ndarray]], title: str, base: float | None = None) -> Figure:
+    """Curves with a name, an angle in rad and deviations in um, about the circle from which they count."""
+    shown = numpy.concatenate([deviations for _, _, deviations in curves])
+    spread = float(numpy.ptp(shown)) or 1.0
+    middle = 3 * spread - float(shown.min()) if base is None else base
     with style():
         figure = pyplot.figure(figsize=(4.2, 4.2))
         panel: Any = figure.add_subplot(projection="polar")
-        panel.plot(angles, base + deviations)
-        panel.plot(numpy.linspace(0, 2 * numpy.pi, 361), numpy.full(361, base), color="#555555", linewidth=0.8)
-        ticks = base + numpy.array([-spread, 0, spread])
-        panel.set_yticks(ticks, [f"{tick - base:+.3g} µm" for tick in ticks])
-        panel.set_ylim(0, base + 1.5 * spread)
+        for name, angles, deviations in curves:
+            panel.plot(angles, middle + deviations, label=name)
+        panel.plot(numpy.linspace(0, 2 * numpy.pi, 361), numpy.full(361, middle), color="#555555", linewidth=0.8)
+        ticks = middle + numpy.array([-spread, 0, spread])
+        panel.set_yticks(ticks, [f"{tick - middle:+.3g} µm" for tick in ticks])
+        panel.set_ylim(0, middle + 1.5 * spread)
         panel.set_title(title)
+        if any(name for name, _, _ in curves):
+            panel.legend(loc="lower center", bbox_to_anchor=(0.5, -0.22))
     return figure
+
+
+def circular(evaluation: Evaluation, *, title: str = "") -> Figure:
+    """Radial deviations of a circular test (in um) about their centres, one direction over the other."""
+    numbers = evaluation.numbers
+    if not isinstance(numbers, CircularNumbers):
+        raise InputError(f"evaluation: is one of {evaluation.kind}; expected one of evaluate_circular()", field="evaluation")
+    paths = [(name, path) for name, path in (("clockwise", numbers.clockwise),
+                                             ("counter-clockwise", numbers.counterclockwise)) if path.status == "done"]
+    if not paths:
+        raise InputError("evaluation: no path has a centre; expected one with figures", field="evaluation")
+    return _polar([(f"{name}, G = {1e3 * path.circular_mm:.2f} µm", path.angle_rad, 1e3 * path.deviation_mm)
+                   for name, path in paths], title or evaluation.title)
 
 
 def trend(times: numpy.typing.ArrayLike, values: numpy.typing.ArrayLike, standard_uncertainties: numpy.typing.ArrayLike | None = None,

@@ -28,5 +28,7 @@ void bind_verifications(nb::module_& module);
 void bind_curves(nb::module_& module);
 void bind_placements(nb::module_& module);
 void bind_planned_paths(nb::module_& module);
+void bind_evaluation_reports(nb::module_& module);
+void bind_evaluations(nb::module_& module);
 
 }  // namespace abbe::python

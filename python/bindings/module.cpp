@@ -50,6 +50,7 @@ NB_MODULE(_core, module) {
   bind_curves(module);
   bind_placements(module);
   bind_planned_paths(module);
+  bind_evaluations(module);
 }
 
 }  // namespace

@@ -44,5 +44,17 @@ def chi_squares(paths: list[Path]) -> dict[str, float]:
     return results
 
 
+def accuracy_um(readings: Path | dict[str, numpy.typing.ArrayLike]) -> float | None:
+    evaluation: abbe.Evaluation = abbe.evaluate_positioning(readings, tolerances={"A_um": 10})
+    figure: abbe.EvaluationFigure = evaluation["A"]
+    return figure.value
+
+
+def roundness_um(angle_deg: numpy.typing.ArrayLike, deviation_um: numpy.typing.ArrayLike, count: int) -> dict[str, float]:
+    columns = {"direction": ["cw"] * count, "angle_deg": angle_deg, "deviation_um": deviation_um}
+    figures = abbe.evaluate_circular(columns, 150).figures
+    return {symbol: figure.value for symbol, figure in figures.items() if figure.value is not None}
+
+
 if __name__ == "__main__":
     print(f"{deviation_mm(machine_from(None), 20, 200):.4f} mm")

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+
+#include "bindings/evaluate/evaluations.h"
+
+namespace abbe::python {
+namespace {
+
+/// [n] of a number of each.
+template <class Each, class Value>
+nb::object of_each(const std::vector<Each>& all, const Value& value) {
+  std::vector<double> values;
+  values.reserve(all.size());
+  for (const Each& each : all) values.push_back(value(each));
+  const std::size_t count = values.size();
+  return array_of(std::move(values), {count});
+}
+
+void bind_sections(nb::module_& module) {
+  using Sections = SectionsEvaluation;
+  nb::class_<SectionsEvaluation>(module, "SectionNumbers",
+                                 "What each cross-section of an engraved curve says, mm; NaN: no answer.")
+      .def_prop_ro(
+          "reasons",
+          [](const Sections& s) {
+            std::vector<std::string> reasons;
+            for (const SectionAnswer& answer : s.answers) reasons.push_back(answer.reason);
+            return reasons;
+          },
+          "[n] why there is no answer; empty: there is one.")
+      .def_prop_ro(
+          "error_mm",
+          [](const Sections& s) {
+            return of_each(s.answers, [](const SectionAnswer& a) { return a.ok ? a.error : NAN; });
+          },
+          nb::sig("def error_mm(self) -> numpy.ndarray"), "[n] contour error across the curve, with its sign.")
+      .def_prop_ro(
+          "error_uncertainty_mm",
+          [](const Sections& s) {
+            return of_each(s.answers, [](const SectionAnswer& a) { return a.ok ? a.error_uncertainty : NAN; });
+          },
+          nb::sig("def error_uncertainty_mm(self) -> numpy.ndarray"), "[n] standard.")
+      .def_prop_ro(
+          "width_mm",
+          [](const Sections& s) {
+            return of_each(s.answers, [](const SectionAnswer& a) { return a.ok && a.groove ? a.width : NAN; });
+          },
+          nb::sig("def width_mm(self) -> numpy.ndarray"), "[n] of a groove.")
+      .def_ro("refused", &Sections::refused, "Number of sections without an answer.")
+      .def_ro("radius_mm", &Sections::radius, "Mean rounding of the edges.")
+      .def("__len__", [](const Sections& s) { return s.answers.size(); });
+}
+
+void bind_points(nb::module_& module) {
+  using Points = ContourPointsEvaluation;
+  nb::class_<ContourPointsEvaluation>(module, "ContourNumbers",
+                                      "Deviation of each measured point from the commanded curve, mm.")
+      .def_prop_ro(
+          "along_mm",
+          [](const Points& p) { return of_each(p.deviations, [](const ContourDeviation& d) { return d.along; }); },
+          nb::sig("def along_mm(self) -> numpy.ndarray"), "[n] where on the curve.")
+      .def_prop_ro(
+          "distance_mm",
+          [](const Points& p) { return of_each(p.deviations, [](const ContourDeviation& d) { return d.distance; }); },
+          nb::sig("def distance_mm(self) -> numpy.ndarray"), "[n]")
+      .def_prop_ro(
+          "across_mm",
+          [](const Points& p) {
+            return of_each(p.deviations, [](const ContourDeviation& d) { return d.across.value_or(NAN); });
+          },
+          nb::sig("def across_mm(self) -> numpy.ndarray"),
+          "[n] in the surface, positive to the left of the curve seen from outside; NaN: no direction.")
+      .def_prop_ro(
+          "off_mm",
+          [](const Points& p) {
+            return of_each(p.deviations, [](const ContourDeviation& d) { return d.off.value_or(NAN); });
+          },
+          nb::sig("def off_mm(self) -> numpy.ndarray"), "[n] out of the surface.")
+      .def_prop_ro(
+          "beyond_end",
+          [](const Points& p) {
+            std::vector<std::uint8_t> beyond;
+            for (const ContourDeviation& deviation : p.deviations) beyond.push_back(deviation.beyond_end);
+            return array_of_bools(std::move(beyond));
+          },
+          nb::sig("def beyond_end(self) -> numpy.ndarray"),
+          "[n] points beyond an end of the curve; none of them counts.")
+      .def("__len__", [](const Points& p) { return p.deviations.size(); });
+}
+
+void bind_linkage(nb::module_& module) {
+  nb::class_<LinkageEvaluation>(module, "LinkageNumbers", "Linkage parameters of a laser engraver, mm.")
+      .def_prop_ro(
+          "names",
+          [](const LinkageEvaluation&) {
+            std::vector<std::string> names;
+            for (std::size_t i = 0; i < SwingHeadLinkage::kCount; ++i) names.emplace_back(linkage_name(i));
+            return names;
+          },
+          "R_A, R_C1, L_tA, L_AC1, x0, y0, z0.")
+      .def_prop_ro(
+          "values_mm",
+          [](const LinkageEvaluation& e) {
+            const auto values = e.linkage.values();
+            return copied_array({values.begin(), values.end()});
+          },
+          nb::sig("def values_mm(self) -> numpy.ndarray"), "[7]")
+      .def_prop_ro(
+          "covariance_mm2", [](const LinkageEvaluation& e) { return e.covariance; }, "[7, 7]; zero: nothing stated.")
+      .def_ro("focus_z_mm", &LinkageEvaluation::focus_z, "Lowest point of the parabola through width squared.");
+}
+
+}  // namespace
+
+void bind_contour_numbers(nb::module_& module) {
+  bind_sections(module);
+  bind_points(module);
+  bind_linkage(module);
+}
+
+}  // namespace abbe::python

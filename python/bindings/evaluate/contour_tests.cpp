@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
+
+#include <algorithm>
+
+#include "abbe/formats/shapes/curve_pieces.h"
+#include "bindings/evaluate/evaluations.h"
+#include "bindings/use/curves.h"
+
+namespace abbe::python {
+namespace {
+
+constexpr double kMostUm = 1e6;
+
+Evaluation of_sections(const ReadingsArgument& argument, const std::string& feature, const std::string& surface,
+                       std::optional<double> beam_tilt_deg, bool free_wall, std::optional<double> surface_radius_mm,
+                       double u_across_um, double u_height_um, double u_origin_um, const Tolerances& tolerances,
+                       const std::string& file) {
+  SectionsTest test;
+  SectionOptions& options = test.options;
+  options.groove = word_index("feature", feature, {"edge", "groove"}) == 1;
+  options.edge.surface = word_index("surface", surface, {"left", "right"}) == 1 ? EdgeSide::right : EdgeSide::left;
+  options.edge.free_wall = free_wall;
+  if (beam_tilt_deg) test.beam_tilt = quantity("beam_tilt_deg", *beam_tilt_deg, Quantity::angle, "deg", -30, 30);
+  if (surface_radius_mm) {
+    const double radius = quantity("surface_radius_mm", *surface_radius_mm, Quantity::length, "mm", -1e6, 1e6);
+    options.edge.surface_curvature = radius == 0 ? 0 : 1 / radius;
+  }
+  options.edge.across_noise = quantity("u_across_um", u_across_um, Quantity::length, "um", 0, kMostUm);
+  options.edge.height_noise = quantity("u_height_um", u_height_um, Quantity::length, "um", 0, kMostUm);
+  options.origin_uncertainty = quantity("u_origin_um", u_origin_um, Quantity::length, "um", 0, kMostUm);
+  const GivenReadings given = given_readings(argument);
+  test.readings = readings_of(
+      given, [](const auto& path) { return read_sections(path); },
+      [](const NamedColumns& columns) { return parse_sections(columns); });
+  return evaluate_test(std::move(test), name_of(given, file), tolerances);
+}
+
+/// A file of a curve, or one in memory.
+using CurveArgument = std::variant<NamedCurve, std::filesystem::path>;
+
+std::vector<CommandPiece> pieces_of(const CurveArgument& curve, const std::optional<Machine>& machine, bool closed) {
+  if (const auto* const path = std::get_if<std::filesystem::path>(&curve)) {
+    return machine ? read_commanded_pieces(path->string(), *machine, closed)
+                   : read_commanded_pieces(path->string(), "", closed);
+  }
+  const auto& named = std::get<NamedCurve>(curve);
+  if (!machine && !named.indexed.empty()) {
+    throw InputError({.field = "curve"}, "it sets axes, and no machine is given", "machine=... with these axes");
+  }
+  return commanded_pieces(machine ? curve_on(named, *machine) : named.curve, named.file, closed ? "--closed" : "");
+}
+
+Evaluation of_points(const PointsArgument& points, const CurveArgument& curve, const std::optional<Machine>& machine,
+                     bool closed, double u_origin_um, const Tolerances& tolerances, const std::string& file) {
+  ContourPointsTest test;
+  test.origin_uncertainty = quantity("u_origin_um", u_origin_um, Quantity::length, "um", 0, kMostUm);
+  const std::optional<std::filesystem::path> path = path_of(points.source);
+  if (path) {
+    test.readings = computed([&] { return read_point_cloud(*path); });
+  } else {
+    test.readings = points_of_array({points.source}, "points_mm");
+    if (test.readings.cloud.size() == 0)
+      throw InputError({.field = "points_mm"}, "there are no points", "one at least");
+  }
+  naming_arguments([&] {
+    test.pieces = pieces_of(curve, machine, closed);
+    return 0;
+  });
+  return evaluate_test(std::move(test), !file.empty() ? file : path ? path->string() : "points", tolerances);
+}
+
+/// "--u-x-um" -> "u_x_um"
+std::string accuracy_name(const LinkageAccuracyName& name) {
+  std::string text = std::string(name.option).substr(2);
+  std::replace(text.begin(), text.end(), '-', '_');
+  return text;
+}
+
+void enter_accuracy(const std::map<std::string, double>& given, LinkageAccuracy& accuracy) {
+  for (const auto& [key, value] : given) {
+    const auto& all = linkage_accuracy_names();
+    const auto found = std::find_if(all.begin(), all.end(), [wanted = key](const LinkageAccuracyName& name) {
+      return accuracy_name(name) == wanted;
+    });
+    if (found == all.end()) {
+      std::vector<std::string> names;
+      for (const LinkageAccuracyName& name : all) names.push_back(accuracy_name(name));
+      throw InputError({.field = "accuracy"}, fmt::format("'{}' is not known", key.substr(0, 60)),
+                       fmt::format("one of {}", fmt::join(names, ", ")));
+    }
+    accuracy.*found->value = quantity(key.c_str(), value, found->quantity, found->unit, 0, kMostUm);
+  }
+}
+
+Evaluation of_linkage(const ReadingsArgument& argument, double exit_to_axis_mm, double board_mm,
+                      const std::optional<Machine>& machine, const std::optional<std::string>& convention,
+                      const std::map<std::string, double>& accuracy, const Tolerances& tolerances,
+                      const std::string& file) {
+  LinkageTest test;
+  const double exit_to_axis = quantity("exit_to_axis_mm", exit_to_axis_mm, Quantity::length, "mm", 0, 1e5);
+  const double board = quantity("board_mm", board_mm, Quantity::length, "mm", 0, 1e5);
+  enter_accuracy(accuracy, test.accuracy);
+  if (convention) {
+    test.convention = word_index("convention", *convention, {"table-moves", "head-moves"}) == 1
+                          ? LinkageConvention::head_moves
+                          : LinkageConvention::table_moves;
+  }
+  test.machine = machine;
+  test.machine_file = "machine";
+  const GivenReadings given = given_readings(argument);
+  test.readings = readings_of(
+      given, [](const auto& path) { return read_linkage(path); },
+      [](const NamedColumns& columns) { return parse_linkage(columns); });
+  test.readings.exit_to_axis = exit_to_axis;
+  test.readings.board_thickness = board;
+  return evaluate_test(std::move(test), name_of(given, file), tolerances);
+}
+
+}  // namespace
+
+void bind_contour_tests(nb::module_& module) {
+  module.def(
+      "evaluate_sections", &of_sections, nb::arg("readings"), nb::kw_only(), nb::arg("feature") = "edge",
+      nb::arg("surface") = "left", nb::arg("beam_tilt_deg") = nb::none(), nb::arg("free_wall") = false,
+      nb::arg("surface_radius_mm") = nb::none(), nb::arg("u_across_um") = 0.0, nb::arg("u_height_um") = 0.0,
+      nb::arg("u_origin_um") = 0.0, nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
+      "Contour error of an engraved curve from cross-sections of a line scanner: `abbe evaluate contour`.\n\n"
+      "readings: a file, or columns [n]: section (a name), across_mm, height_mm with the origin on the commanded "
+      "curve;\n"
+      "along_mm and beam_tilt_deg may be there. feature: 'edge', or 'groove': the middle between its two edges.\n"
+      "surface: side of an edge on which the surface remains. beam_tilt_deg: of sections that do not state theirs.\n"
+      "free_wall: the wall need not be parallel to the laser. surface_radius_mm: of the part, positive if convex. "
+      "u_...:\n"
+      "standard uncertainties. numbers is a SectionNumbers. Raises InputError. Method: docs/contour-error.md.");
+  module.def(
+      "evaluate_contour", &of_points, nb::arg("points_mm"), nb::arg("curve"), nb::kw_only(),
+      nb::arg("machine") = nb::none(), nb::arg("closed") = false, nb::arg("u_origin_um") = 0.0,
+      nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
+      "Contour error of measured points [n, 3] against a commanded curve: `abbe evaluate contour --curve`.\n\n"
+      "points_mm: an array, or a file of points, in the frame of the curve. curve: a Curve, or a file as for "
+      "plan_path().\n"
+      "machine: whose axes the curve sets. closed: the last point is followed by the first. u_origin_um: standard\n"
+      "uncertainty of the points' place against the curve. numbers is a ContourNumbers. Raises InputError. Method:\n"
+      "docs/contour-error.md.");
+  module.def(
+      "evaluate_linkage", &of_linkage, nb::arg("readings"), nb::arg("exit_to_axis_mm"), nb::arg("board_mm"),
+      nb::kw_only(), nb::arg("machine") = nb::none(), nb::arg("convention") = nb::none(),
+      nb::arg("accuracy") = std::map<std::string, double>{}, nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
+      "Linkage parameters of a laser engraver with a swing head C1, A, from the five steps.\n\n"
+      "readings: a file, or columns [n] as in one (mark, X_mm, Z_mm, width_um, ...; NaN where a field is empty).\n"
+      "exit_to_axis_mm: from the exit of the beam to the axis of A. board_mm: thickness of the board. machine: its "
+      "errors\n"
+      "are found; files() has them. convention: without a machine, 'table-moves' (default) or 'head-moves'. accuracy:\n"
+      "standard uncertainties by the names of the command's options, {'u_x_um': 2.77}. numbers is a LinkageNumbers.\n"
+      "Raises InputError. Method: docs/linkage-steps.md.");
+}
+
+}  // namespace abbe::python

@@ -1,0 +1,95 @@
+#include "bindings/evaluate/report.h"
+
+#include <fmt/format.h>
+
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/text/number_text.h"
+#include "abbe/report/pages/evaluation_files.h"
+
+namespace abbe::python {
+namespace {
+
+std::optional<double> in_unit(const EvaluationFigure& figure, const std::optional<double>& value) {
+  if (!value) return std::nullopt;
+  return figure_number(figure, *value);
+}
+
+}  // namespace
+
+std::vector<std::string> tolerance_texts(const std::map<std::string, double>& tolerances) {
+  std::vector<std::string> texts;
+  for (const auto& [name, value] : tolerances) {
+    if (!std::isfinite(value)) {
+      throw InputError({.field = "tolerances"}, fmt::format("{} is {}", name, value), "a number above zero");
+    }
+    texts.push_back(name + "=" + shortest_text(value));
+  }
+  return texts;
+}
+
+ResultFiles report_files(const EvaluationReport& report, const ResultFiles& more) {
+  ResultFiles files = evaluation_files(report);
+  files.insert(files.end(), more.begin(), more.end());
+  return files;
+}
+
+nb::dict files_by_name(const ResultFiles& files) {
+  nb::dict result;
+  for (const auto& [name, contents] : files) result[name.c_str()] = nb::bytes(contents.data(), contents.size());
+  return result;
+}
+
+void write_results_folder(const std::filesystem::path& folder, const ResultFiles& files, bool overwrite) {
+  refuse_existing(folder, overwrite);
+  const nb::gil_scoped_release release;
+  ResultsFolder results(folder);
+  for (const auto& [name, contents] : files) results.write(name, contents);
+  results.commit();
+}
+
+const EvaluationFigure& figure_named(const EvaluationReport& report, const std::string& symbol) {
+  for (const EvaluationFigure& figure : report.figures) {
+    if (figure.symbol == symbol) return figure;
+  }
+  throw nb::key_error(fmt::format("no figure '{}' of a {}", symbol, report.kind).c_str());
+}
+
+std::string report_page_of(const EvaluationReport& report) { return evaluation_files(report).back().second; }
+
+std::string plot_of(const EvaluationReport& report, const std::string& name) {
+  for (const EvaluationPlot& plot : report.plots) {
+    if (plot.name == name) return plot.picture.wide;
+  }
+  throw nb::key_error(fmt::format("no plot '{}'", name).c_str());
+}
+
+void bind_evaluation_reports(nb::module_& module) {
+  nb::class_<EvaluationFigure>(module, "EvaluationFigure",
+                               "A figure of a report: a value with its uncertainty and tolerance, or why there is "
+                               "none.\n\nNumbers are in `unit`: 'um', 'urad', 'arcsec', ...")
+      .def_ro("symbol", &EvaluationFigure::symbol, "Such as 'A', 'G_cw'; what a tolerance calls it.")
+      .def_ro("name", &EvaluationFigure::name)
+      .def_ro("unit", &EvaluationFigure::unit, "Of value, expanded_uncertainty and tolerance; '': a pure number.")
+      .def_prop_ro(
+          "value", [](const EvaluationFigure& f) { return in_unit(f, f.value); }, "None: see missing.")
+      .def_ro("missing", &EvaluationFigure::missing, "Why there is no value, in words; empty if there is one.")
+      .def_prop_ro(
+          "expanded_uncertainty", [](const EvaluationFigure& f) { return in_unit(f, f.uncertainty); },
+          "k = 2; None: not stated.")
+      .def_prop_ro(
+          "tolerance", [](const EvaluationFigure& f) { return in_unit(f, f.tolerance); },
+          "Largest permitted amount; None: not asked for.")
+      .def_prop_ro("verdict", &EvaluationFigure::verdict,
+                   "'within', 'exceeded', either with ', not proven', 'cannot be judged'; '' without a tolerance.")
+      .def_prop_ro("exceeds_tolerance", &EvaluationFigure::exceeds_tolerance)
+      .def(
+          "text",
+          [](const EvaluationFigure& f) { return f.value ? figure_text(f, *f.value) + " " + f.unit : f.missing; },
+          "With the digits and the unit of the report.")
+      .def("__repr__", [](const EvaluationFigure& f) {
+        return fmt::format("<abbe.EvaluationFigure {}: {}>", f.symbol,
+                           f.value ? figure_text(f, *f.value) + " " + f.unit : f.missing);
+      });
+}
+
+}  // namespace abbe::python
