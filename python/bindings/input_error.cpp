@@ -2,6 +2,7 @@
 
 #include "abbe/geometry/stopped.h"
 #include "bindings/bindings.h"
+#include "bindings/use/arguments.h"
 
 namespace abbe::python {
 namespace {
@@ -14,11 +15,12 @@ void raise_input_error(const InputError& error) {
     return number == 0 ? nb::none() : nb::object(nb::int_(number));
   };
   const auto text_or_none = [](const std::string& text) -> nb::object {
-    return text.empty() ? nb::none() : nb::object(nb::str(text.c_str(), text.size()));
+    // Names of files are bytes, and need not be UTF-8.
+    return text.empty() ? nb::none() : text_of_bytes(text);
   };
-  const nb::object raised =
-      type(nb::str(error.what()), text_or_none(place.file), number_or_none(place.line), number_or_none(place.column),
-           text_or_none(place.field), text_or_none(error.problem()), text_or_none(error.expected()));
+  const nb::object raised = type(text_of_bytes(error.what()), text_or_none(place.file), number_or_none(place.line),
+                                 number_or_none(place.column), text_or_none(place.field), text_or_none(error.problem()),
+                                 text_or_none(error.expected()));
   PyErr_SetObject(type.ptr(), raised.ptr());
 }
 
