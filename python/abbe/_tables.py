@@ -11,7 +11,10 @@ import numpy
 if TYPE_CHECKING:
     import pandas
 
-    from ._core import Axis, Errors, Evaluation, Readings, StudyPlan, StudyResult
+    from ._core import (Axis, Errors, Evaluation, FittedCircles, FittedShape, Readings, ScanDeviations, StudyPlan,
+                        StudyResult)
+
+    Reported = Evaluation | FittedShape | FittedCircles | ScanDeviations
 
 _MOST_ROWS = 40
 
@@ -105,20 +108,20 @@ def result_html(result: StudyResult) -> str:
     return "".join(parts)
 
 
-def _figures(result: Evaluation) -> dict[str, list[object]]:
+def _figures(result: Reported) -> dict[str, list[object]]:
     figures = list(result.figures.values())
     names = ("symbol", "name", "value", "expanded_uncertainty", "unit", "tolerance", "verdict")
     return {name: [getattr(figure, name) for figure in figures] for name in names}
 
 
-def figures_frame(result: Evaluation) -> pandas.DataFrame:
+def figures_frame(result: Reported) -> pandas.DataFrame:
     frame: pandas.DataFrame = _pandas().DataFrame(_figures(result))
     for name in ("value", "expanded_uncertainty", "tolerance"):
         frame[name] = frame[name].astype(float)
     return frame.set_index("symbol")
 
 
-def figures_html(result: Evaluation) -> str:
+def figures_html(result: Reported) -> str:
     columns = _figures(result)
 
     def cell(name: str, value: object) -> str:

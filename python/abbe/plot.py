@@ -12,7 +12,7 @@ from typing import Any
 import numpy
 import numpy.typing
 
-from ._core import CircularNumbers, Errors, Evaluation, StudyPlan, StudyResult
+from ._core import CircularNumbers, Errors, Evaluation, ScanDeviations, StudyPlan, StudyResult
 from ._errors import InputError
 
 try:
@@ -196,6 +196,22 @@ def circular(evaluation: Evaluation, *, title: str = "") -> Figure:
         raise InputError("evaluation: no path has a centre; expected one with figures", field="evaluation")
     return _polar([(f"{name}, G = {1e3 * path.circular_mm:.2f} µm", path.angle_rad, 1e3 * path.deviation_mm)
                    for name, path in paths], title or evaluation.title)
+
+
+def deviations(result: ScanDeviations, *, limits_um: tuple[float, float] | None = None, title: str = "") -> Figure:
+    """How many points of a scan are how far from the part (in um), with limits."""
+    if not result.has_points:
+        raise InputError("result: no point counts; expected deviations of some", field="result")
+    shown, statistics = 1e3 * result.counted_mm, result.statistics_mm
+    with style():
+        figure, panel = pyplot.subplots(figsize=(5.2, 2.8))
+        panel.hist(shown, bins="auto" if numpy.ptp(shown) > 0 else 1, color=COLOURS[0])
+        panel.axvline(1e3 * statistics.mean, color="#555555", linewidth=0.8)
+        for limit in limits_um or ():
+            panel.axvline(limit, color=COLOURS[1], linestyle="--", linewidth=0.8)
+        panel.set(xlabel="deviation / µm, positive outside", ylabel="points",
+                  title=title or f"mean {1e3 * statistics.mean:.1f} µm, rms {1e3 * statistics.rms:.1f} µm")
+    return figure
 
 
 def trend(times: numpy.typing.ArrayLike, values: numpy.typing.ArrayLike, standard_uncertainties: numpy.typing.ArrayLike | None = None,

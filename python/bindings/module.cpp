@@ -8,6 +8,7 @@
 #include "bindings/bindings.h"
 #include "bindings/files.h"
 #include "bindings/numpy_arrays.h"
+#include "bindings/shapes/shapes.h"
 
 namespace abbe::python {
 namespace {
@@ -50,7 +51,14 @@ NB_MODULE(_core, module) {
   bind_curves(module);
   bind_placements(module);
   bind_planned_paths(module);
+  bind_clouds(module);
+  bind_meshes(module);
   bind_evaluations(module);
+  bind_ideal_shapes(module);
+  bind_fits(module);
+  bind_transforms(module);
+  bind_registrations(module);
+  bind_deviations(module);
 }
 
 }  // namespace

@@ -57,6 +57,64 @@ def test_bad_commands(function, bad):
     assert str(raised.value)
 
 
+TRIANGLE = abbe.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+PLANE = abbe.Shape("plane", [0, 0, 0], [0, 0, 1])
+TAKES_POINTS = {
+    "PointCloud": abbe.PointCloud,
+    "PointCloud normals": lambda points: abbe.PointCloud(numpy.zeros((2, 3)), points),
+    "Mesh": lambda points: abbe.Mesh(points, [[0, 0, 0]]),
+    "closest": TRIANGLE.closest,
+    "distances": PLANE.distances,
+    "fit": lambda points: abbe.fit(points, "sphere"),
+    "fit_coaxial_circles": lambda points: abbe.fit_coaxial_circles([points]),
+    "best_fit_transform source": lambda points: abbe.best_fit_transform(points, numpy.zeros((2, 3))),
+    "best_fit_transform target": lambda points: abbe.best_fit_transform(numpy.zeros((2, 3)), points),
+    "register_scan": lambda points: abbe.register_scan(points, TRIANGLE),
+    "register_to_features": lambda points: abbe.register_to_features(points, [PLANE]),
+    "scan_deviations": lambda points: abbe.scan_deviations(points, TRIANGLE),
+    "evaluate_contour": lambda points: abbe.evaluate_contour(points, abbe.Curve([[0, 0, 0], [1, 0, 0]])),
+}
+BAD_POINTS = {
+    "None": None, "0-d": numpy.array(1.0), "a number": 1.0, "one point": [0, 0, 0], "two columns": numpy.zeros((5, 2)),
+    "four columns": numpy.zeros((5, 4)), "three dimensions": numpy.zeros((2, 2, 3)), "no columns": numpy.zeros((3, 0)),
+    "nan": [[0, 0, numpy.nan]] * 2, "infinity": numpy.full((3000, 3), numpy.inf), "huge": [[1e300, 0, 0]] * 2,
+    "complex": numpy.zeros((2, 3), complex), "texts": [["0", "0", "0"]] * 2, "objects": numpy.array([[object()] * 3]),
+    "ragged": [[0, 0, 0], [0, 0]], "dates": numpy.zeros((2, 3), "datetime64[s]"), "dictionary": {"x": 1},
+    "records": numpy.zeros(3, dtype=[("a", float), ("b", int)]), "itself": MILL, "a missing file": "/nowhere/points.csv",
+    "a name with a zero": "a\0b", "a surrogate": "\udcff",
+}
+
+
+@pytest.mark.parametrize("bad", BAD_POINTS)
+@pytest.mark.parametrize("function", TAKES_POINTS)
+def test_bad_points(function, bad):
+    if function == "PointCloud normals" and bad == "None":
+        return  # there are none
+    with pytest.raises((abbe.InputError, TypeError, ValueError)) as raised:
+        TAKES_POINTS[function](BAD_POINTS[bad])
+    assert str(raised.value)
+
+
+@pytest.mark.parametrize("count", [1, 2, 513, 3000])
+def test_unusual_points(count):
+    points = numpy.random.default_rng(1).uniform(-100, 100, (count, 3))
+    expected = TRIANGLE.closest(points).distance_mm
+    for name, same in unusual_points(points):
+        assert numpy.array_equal(TRIANGLE.closest(same).distance_mm, expected), name
+        assert numpy.array_equal(abbe.PointCloud(same).points_mm, points), name
+
+
+def unusual_points(points):
+    """The same numbers in other ways."""
+    padded = numpy.zeros((2 * len(points), 9))
+    padded[::2, 1:7:2] = points
+    yield "every second", padded[::2, 1:7:2]
+    yield "backwards", points[::-1, ::-1].copy()[::-1, ::-1]
+    yield "Fortran order", numpy.asfortranarray(points)
+    yield "other byte order", points.astype(">f8")
+    yield "lists", points.tolist()
+
+
 def unusual(commands):
     """The same numbers in other ways."""
     padded = numpy.zeros((2 * len(commands), 9))
@@ -176,7 +234,8 @@ def test_bad_arguments(call):
 
 
 def test_classes_that_cannot_be_made_say_so():
-    for kind in (abbe.StudyResult, abbe.StudyPlan, abbe.Instrument, abbe.Poses, abbe.Corrections):
+    for kind in (abbe.StudyResult, abbe.StudyPlan, abbe.Instrument, abbe.Poses, abbe.Corrections, abbe.Evaluation,
+                 abbe.EvaluationFigure, abbe.FittedShape, abbe.ScanRegistration, abbe.ScanDeviations):
         with pytest.raises(TypeError):
             kind()
 
@@ -186,6 +245,14 @@ def test_classes_that_cannot_be_made_say_so():
     lambda: abbe.PoseModel.__new__(abbe.PoseModel).points([0]),
     lambda: abbe.Errors.__new__(abbe.Errors).names,
     lambda: abbe.CompensatedInverse.__new__(abbe.CompensatedInverse).correct([0]),
+    lambda: abbe.Mesh.__new__(abbe.Mesh).vertices_mm,
+    lambda: abbe.Mesh.__new__(abbe.Mesh).triangles,
+    lambda: abbe.Mesh.__new__(abbe.Mesh).closest([[0, 0, 0]]),
+    lambda: abbe.PointCloud.__new__(abbe.PointCloud).points_mm,
+    lambda: abbe.PointCloud.__new__(abbe.PointCloud).normals,
+    lambda: abbe.fit(abbe.PointCloud.__new__(abbe.PointCloud), "plane"),
+    lambda: abbe.Evaluation.__new__(abbe.Evaluation).numbers,
+    lambda: abbe.FittedShape.__new__(abbe.FittedShape).points_mm,
 ])
 def test_an_object_that_was_never_initialised_is_refused(call):
     with pytest.raises(TypeError):

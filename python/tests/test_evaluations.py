@@ -34,19 +34,24 @@ KINDS = {
                                  lambda r, **more: abbe.evaluate_circular(r, 150, length_calibrated=False, **more)),
     "rotation": (["rotation", "--plane-distance-mm", 80, "--u-reading-um", 0.02, "--sensitive-deg", 30],
                  EVALUATE / "rotation.csv",
-                 lambda r, **more: abbe.evaluate_rotation(r, plane_distance_mm=80, u_reading_um=0.02, sensitive_deg=30, **more)),
-    "straightness": (["straightness", "--u-reading-um", 0.3, "--reference", "minimum-zone"], EVALUATE / "straightness.csv",
-                     lambda r, **more: abbe.evaluate_straightness(r, u_reading_um=0.3, reference="minimum-zone", **more)),
+                 lambda r, **more: abbe.evaluate_rotation(r, plane_distance_mm=80, u_reading_um=0.02, sensitive_deg=30,
+                                                          **more)),
+    "straightness": (["straightness", "--u-reading-um", 0.3, "--reference", "minimum-zone"],
+                     EVALUATE / "straightness.csv",
+                     lambda r, **more: abbe.evaluate_straightness(r, u_reading_um=0.3, reference="minimum-zone",
+                                                                  **more)),
     "squareness": (["squareness", "--u-reading-um", 0.3, "--u-square-urad", 1, "--square-urad", -3],
                    EVALUATE / "squareness.csv",
-                   lambda r, **more: abbe.evaluate_squareness(r, u_reading_um=0.3, u_square_urad=1, square_urad=-3, **more)),
+                   lambda r, **more: abbe.evaluate_squareness(r, u_reading_um=0.3, u_square_urad=1, square_urad=-3,
+                                                              **more)),
     "sections": (["contour", "--u-height-um", 2, "--u-across-um", 1], ENGRAVER / "sections.csv",
                  lambda r, **more: abbe.evaluate_sections(r, u_height_um=2, u_across_um=1, **more)),
     "linkage": (["linkage", "--exit-to-axis-mm", 120, "--board-mm", 4, "--machine",
                  EXAMPLES / "machines/yin-engraver-u.machine.toml",
                  *[text for name, value in ACCURACY.items() for text in ("--" + name.replace("_", "-"), value)]],
                 ENGRAVER / "five-steps.csv",
-                lambda r, **more: abbe.evaluate_linkage(r, 120, 4, machine=machine("yin-engraver-u"), accuracy=ACCURACY, **more)),
+                lambda r, **more: abbe.evaluate_linkage(r, 120, 4, machine=machine("yin-engraver-u"),
+                                                        accuracy=ACCURACY, **more)),
 }
 
 
@@ -99,7 +104,8 @@ def test_contour_points_are_those_of_the_command(tmp_path):
     asked = ["evaluate", "contour", points, "--curve", curve, "--u-origin-um", 1, "--tolerance", "contour_max_um=50"]
     wanted = command([*asked, "--json", "-o", "wanted"], tmp_path)
     result = abbe.evaluate_contour(points, curve, u_origin_um=1, tolerances={"contour_max_um": 50})
-    assert result.json_text() == wanted and result.text() + "\nresults in again\n" == command([*asked, "-o", "again"], tmp_path)
+    assert result.json_text() == wanted
+    assert result.text() + "\nresults in again\n" == command([*asked, "-o", "again"], tmp_path)
     same_folder(result, tmp_path / "wanted", tmp_path / "own")
     columns = columns_of(points)
     array = numpy.stack([columns[name] for name in ("x_mm", "y_mm", "z_mm")], axis=1)
@@ -124,7 +130,8 @@ def test_tolerances_and_figures(tmp_path):
     assert result["E"].verdict == "within" and result["B"].verdict == "" and result["B"].tolerance is None
     assert list(result.figures)[0] == "A" and repr(figure).startswith("<abbe.EvaluationFigure A: 10.8")
     frame = result.to_dataframe()
-    assert frame.loc["A", "value"] == figure.value and frame.index.name == "symbol" and len(frame) == len(result.figures)
+    assert frame.loc["A", "value"] == figure.value and frame.index.name == "symbol"
+    assert len(frame) == len(result.figures)
     assert "exceeded" in result._repr_html_() and "<script" not in result._repr_html_()
     with pytest.raises(KeyError, match="Q"):
         result["Q"]
@@ -167,7 +174,8 @@ def test_numbers_of_the_other_kinds():
     motion = spindle.motions["radial_rotating_1"]
     assert motion.total_mm_rad.shape == (spindle.turns, len(spindle.angle_rad))
     assert numpy.allclose(motion.total_mm_rad.mean(axis=0), motion.synchronous_mm_rad, atol=1e-12)
-    assert "tilt_rotating" in spindle.motions and "tilt_x" not in abbe.evaluate_rotation(EVALUATE / "rotation.csv").numbers.motions
+    assert "tilt_rotating" in spindle.motions
+    assert "tilt_x" not in abbe.evaluate_rotation(EVALUATE / "rotation.csv").numbers.motions
     line = abbe.evaluate_straightness(EVALUATE / "straightness.csv").numbers
     assert line.minimum_zone.value_mm <= line.least_squares.value_mm
     assert numpy.ptp(line.minimum_zone.deviations_mm) == pytest.approx(line.minimum_zone.value_mm)
@@ -197,13 +205,16 @@ def test_what_is_refused_says_why(tmp_path):
 
 GOOD = {"direction": ["+", "-"], "target_mm": [0.0, 0.0], "deviation_um": [1.0, 2.0]}
 BAD_COLUMNS = {
-    "no columns": {}, "no rows": {name: [] for name in GOOD}, "a missing column": {"target_mm": [0], "direction": ["+"]},
+    "no columns": {}, "no rows": {name: [] for name in GOOD},
+    "a missing column": {"target_mm": [0], "direction": ["+"]},
     "different lengths": {**GOOD, "target_mm": [0]}, "nan": {**GOOD, "deviation_um": [1, numpy.nan]},
     "infinity": {**GOOD, "target_mm": [0, numpy.inf]}, "huge": {**GOOD, "target_mm": [0, 1e30]},
     "texts": {**GOOD, "target_mm": ["a", "b"]}, "complex": {**GOOD, "target_mm": [1j, 0]},
     "two dimensions": {**GOOD, "target_mm": [[0], [0]]}, "ragged": {**GOOD, "target_mm": [[0], [0, 1]]},
-    "a number": {**GOOD, "target_mm": 0}, "none": {**GOOD, "target_mm": None}, "an unknown column": {**GOOD, "x": [0, 0]},
-    "an unknown unit": {**GOOD, "target_kg": [0, 0]}, "no unit": {"direction": ["+"], "target": [0], "deviation_um": [0]},
+    "a number": {**GOOD, "target_mm": 0}, "none": {**GOOD, "target_mm": None},
+    "an unknown column": {**GOOD, "x": [0, 0]},
+    "an unknown unit": {**GOOD, "target_kg": [0, 0]},
+    "no unit": {"direction": ["+"], "target": [0], "deviation_um": [0]},
     "a wrong word": {**GOOD, "direction": ["+", "up"]}, "numbers for words": {**GOOD, "direction": [1, 2]},
     "surrogates": {**GOOD, "direction": ["\udcff", "+"]}, "bytes": {**GOOD, "direction": [b"+", b"-"]},
     "name is no text": {1: [0, 0]}, "name is a surrogate": {"\udcff": [0]}, "a name with a comma": {"a,b\n": [0]},
@@ -215,7 +226,8 @@ BAD_COLUMNS = {
 @bad_input
 @pytest.mark.parametrize("bad", BAD_COLUMNS)
 def test_bad_readings_are_named(bad):
-    for function in (abbe.evaluate_positioning, abbe.evaluate_diagonals, abbe.evaluate_rotation, abbe.evaluate_straightness,
+    for function in (abbe.evaluate_positioning, abbe.evaluate_diagonals, abbe.evaluate_rotation,
+                     abbe.evaluate_straightness,
                      abbe.evaluate_squareness, abbe.evaluate_sections, lambda r: abbe.evaluate_circular(r, 100),
                      lambda r: abbe.evaluate_linkage(r, 120, 4)):
         with pytest.raises(abbe.InputError) as error:
@@ -229,7 +241,8 @@ def test_bad_readings_are_named(bad):
 def test_the_place_of_a_bad_reading_is_its_row():
     with pytest.raises(abbe.InputError) as error:
         abbe.evaluate_positioning({**GOOD, "deviation_um": [1, numpy.nan]})
-    assert error.value.field == "deviation_um[1]" and error.value.file is None and error.value.expected == "a length in um"
+    assert error.value.field == "deviation_um[1]" and error.value.file is None
+    assert error.value.expected == "a length in um"
     with pytest.raises(abbe.InputError, match=r"run\[1\]: run 1 approaches this target twice .* first in row 0"):
         abbe.evaluate_positioning({"direction": ["+"] * 2, "target_mm": [0, 0], "deviation_um": [0, 1], "run": [1, 1]})
 

@@ -56,5 +56,23 @@ def roundness_um(angle_deg: numpy.typing.ArrayLike, deviation_um: numpy.typing.A
     return {symbol: figure.value for symbol, figure in figures.items() if figure.value is not None}
 
 
+def radius_mm(points: abbe.PointCloud | numpy.typing.ArrayLike | Path) -> tuple[float, float] | str:
+    fitted: abbe.FittedShape = abbe.fit(points, "sphere", method="robust")
+    if not fitted.ok or fitted.shape.radius_mm is None or fitted.radius_uncertainty_mm is None:
+        return fitted.reason
+    return fitted.shape.radius_mm, fitted.radius_uncertainty_mm
+
+
+def largest_deviation_mm(scan: Path, part: abbe.Mesh | Path) -> float:
+    placed: abbe.ScanRegistration = abbe.register_scan(scan, part, progress=step)
+    deviations: abbe.ScanDeviations = abbe.scan_deviations(scan, part, transform=placed, faces_deg=30)
+    return max(abs(deviations.statistics_mm.minimum), deviations.statistics_mm.maximum)
+
+
+def distances(part: abbe.Mesh, points: numpy.typing.NDArray[numpy.float64]) -> numpy.ndarray:
+    shifted: abbe.BestFit = abbe.best_fit_transform(points, points + 1, weights=numpy.ones(len(points)))
+    return part.closest(points + shifted.matrix[:3, 3]).distance_mm
+
+
 if __name__ == "__main__":
     print(f"{deviation_mm(machine_from(None), 20, 200):.4f} mm")

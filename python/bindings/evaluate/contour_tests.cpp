@@ -10,6 +10,7 @@
 
 #include "abbe/formats/shapes/curve_pieces.h"
 #include "bindings/evaluate/evaluations.h"
+#include "bindings/shapes/shapes.h"
 #include "bindings/use/curves.h"
 
 namespace abbe::python {
@@ -60,19 +61,14 @@ Evaluation of_points(const PointsArgument& points, const CurveArgument& curve, c
                      bool closed, double u_origin_um, const Tolerances& tolerances, const std::string& file) {
   ContourPointsTest test;
   test.origin_uncertainty = quantity("u_origin_um", u_origin_um, Quantity::length, "um", 0, kMostUm);
-  const std::optional<std::filesystem::path> path = path_of(points.source);
-  if (path) {
-    test.readings = computed([&] { return read_point_cloud(*path); });
-  } else {
-    test.readings = points_of_array({points.source}, "points_mm");
-    if (test.readings.cloud.size() == 0)
-      throw InputError({.field = "points_mm"}, "there are no points", "one at least");
-  }
+  NamedPoints given = points_of(points, "points_mm", std::nullopt, file);
+  if (given.file.cloud.size() == 0) throw InputError({.field = "points_mm"}, "there are no points", "one at least");
+  test.readings = std::move(given.file);
   naming_arguments([&] {
     test.pieces = pieces_of(curve, machine, closed);
     return 0;
   });
-  return evaluate_test(std::move(test), !file.empty() ? file : path ? path->string() : "points", tolerances);
+  return evaluate_test(std::move(test), given.name, tolerances);
 }
 
 /// "--u-x-um" -> "u_x_um"
@@ -143,7 +139,8 @@ void bind_contour_tests(nb::module_& module) {
       nb::arg("machine") = nb::none(), nb::arg("closed") = false, nb::arg("u_origin_um") = 0.0,
       nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
       "Contour error of measured points [n, 3] against a commanded curve: `abbe evaluate contour --curve`.\n\n"
-      "points_mm: an array, or a file of points, in the frame of the curve. curve: a Curve, or a file as for "
+      "points_mm: an array, a PointCloud or a file of points, in the frame of the curve. curve: a Curve, or a file as "
+      "for "
       "plan_path().\n"
       "machine: whose axes the curve sets. closed: the last point is followed by the first. u_origin_um: standard\n"
       "uncertainty of the points' place against the curve. numbers is a ContourNumbers. Raises InputError. Method:\n"

@@ -33,10 +33,10 @@ void bind_evaluations(nb::module_& module) {
       .def_prop_ro(
           "numbers",
           [](nb::handle_t<Evaluation> self) {
-            const auto* const evaluation = nb::inst_ptr<Evaluation>(self);
+            const Evaluation& evaluation = initialised(self);
             return std::visit(
                 [&](const auto& found) { return nb::cast(&found, nb::rv_policy::reference_internal, self); },
-                evaluation->found);
+                evaluation.found);
           },
           nb::sig("def numbers(self) -> PositioningNumbers | DiagonalsNumbers | CircularNumbers | RotationNumbers | "
                   "StraightnessNumbers | SquarenessNumbers | SectionNumbers | ContourNumbers | LinkageNumbers"),

@@ -46,6 +46,14 @@ double quantity(const char* name, double value, Quantity quantity, const char* u
 /// Index of a word in a list. @throws InputError that names them all
 std::size_t word_index(const char* name, const std::string& word, std::initializer_list<const char*> words);
 
+/// The object of Python as one of C++ that owns what arrays show. @throws TypeError of Python  it was made by __new__
+/// only
+template <class Object>
+const Object& initialised(nb::handle_t<Object> self) {
+  if (!nb::inst_ready(self)) throw nb::type_error("the object was never initialised");
+  return *nb::inst_ptr<Object>(self);
+}
+
 }  // namespace abbe::python
 
 namespace nanobind::detail {
@@ -63,7 +71,7 @@ struct type_caster<abbe::python::ReadingsArgument> {
 
 template <>
 struct type_caster<abbe::python::PointsArgument> {
-  NB_TYPE_CASTER(abbe::python::PointsArgument, const_name("str | os.PathLike | numpy.typing.ArrayLike"))
+  NB_TYPE_CASTER(abbe::python::PointsArgument, const_name("str | os.PathLike | numpy.typing.ArrayLike | PointCloud"))
   bool from_python(handle source, std::uint32_t, cleanup_list*) noexcept {
     value.source = source;
     return !source.is_none();

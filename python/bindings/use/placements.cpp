@@ -9,29 +9,13 @@
 
 #include "abbe/formats/machine/placement_file.h"
 #include "bindings/files.h"
+#include "bindings/shapes/shapes.h"
 #include "bindings/use/arguments.h"
 
 namespace abbe::python {
 namespace {
 
 using Covariance = Eigen::Matrix<double, 6, 6>;
-
-RigidTransform rigid(const ArrayLike& argument, const char* name) {
-  const Rows rows(argument, name, 4, "a rigid transform, mm");
-  if (rows.count() != 4 || rows.single()) throw InputError({.field = name}, "has another shape", "shape (4, 4), mm");
-  RigidTransform result;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    for (std::size_t j = 0; j < 3; ++j) result.rotation(row, static_cast<Eigen::Index>(j)) = rows.at(i, j);
-    result.translation[row] = rows.at(i, 3);
-  }
-  const bool is_last_row = rows.at(3, 0) == 0 && rows.at(3, 1) == 0 && rows.at(3, 2) == 0 && rows.at(3, 3) == 1;
-  const Eigen::Matrix3d& r = result.rotation;
-  constexpr double kRounding = 1e-6;
-  const bool is_rotation = (r.transpose() * r).isIdentity(kRounding) && r.col(0).cross(r.col(1)).dot(r.col(2)) > 0;
-  if (!is_last_row || !is_rotation) throw InputError({.field = name}, "is no rigid transform", "a rotation, and mm");
-  return result;
-}
 
 Covariance covariance_of_six(const ArrayLike& argument) {
   const Rows rows(argument, "covariance", 6, "covariance of translation (mm) and rotation vector (rad)");
@@ -49,13 +33,6 @@ Covariance covariance_of_six(const ArrayLike& argument) {
   return result;
 }
 
-Eigen::Matrix4d matrix(const RigidTransform& transform) {
-  Eigen::Matrix4d result = Eigen::Matrix4d::Identity();
-  result.topLeftCorner<3, 3>() = transform.rotation;
-  result.topRightCorner<3, 1>() = transform.translation;
-  return result;
-}
-
 }  // namespace
 
 void bind_placements(nb::module_& module) {
@@ -69,7 +46,7 @@ void bind_placements(nb::module_& module) {
       .def(
           "__init__",
           [](PlacementFile* self, const ArrayLike& matrix4, const std::optional<ArrayLike>& covariance) {
-            PlacementFile made{{rigid(matrix4, "matrix"), std::nullopt}};
+            PlacementFile made{{rigid_transform(matrix4, "matrix"), std::nullopt}};
             if (covariance) made.placement.covariance = covariance_of_six(*covariance);
             new (self) PlacementFile(std::move(made));
           },
@@ -80,7 +57,7 @@ void bind_placements(nb::module_& module) {
       .def_static("parse", &parse_placement, nb::arg("text"), nb::arg("file") = "placement.toml",
                   "From the text of such a file.")
       .def_prop_ro(
-          "matrix", [](const PlacementFile& p) { return matrix(p.placement.table_from_workpiece); },
+          "matrix", [](const PlacementFile& p) { return transform_matrix(p.placement.table_from_workpiece); },
           "Table from workpiece, [4, 4], mm.")
       .def_prop_ro(
           "covariance", [](const PlacementFile& p) -> std::optional<Covariance> { return p.placement.covariance; },

@@ -1,0 +1,138 @@
+#include "bindings/use/arguments.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/number_text.h"
+#include "bindings/shapes/shapes.h"
+
+namespace abbe::python {
+namespace {
+
+/// Points of a plane as those of space with z = 0.
+PointCloudFile flat_points(const ArrayLike& points, const char* name) {
+  const Rows rows(points, name, 2, "points in the plane, mm");
+  if (rows.single()) throw InputError({.field = name}, "is a single point", "shape (n, 2), mm");
+  PointCloudFile file;
+  file.cloud.points.setZero(3, static_cast<Eigen::Index>(rows.count()));
+  file.cloud.normals.resize(3, 0);
+  for (std::size_t k = 0; k < rows.count(); ++k) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (std::abs(rows.at(k, i)) > kLargestInput) {
+        throw InputError({.field = name}, fmt::format("row {}, number {}: {}", k, i, rows.at(k, i)), "at most 1e9");
+      }
+      file.cloud.points(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = rows.at(k, i);
+    }
+  }
+  file.format = "array";
+  file.unit = {FileLength::millimetre, UnitSource::given};
+  return file;
+}
+
+bool has_two_columns(const ArrayLike& points, const char* name) {
+  const Numbers array = points.numbers(name);
+  return array.ndim() == 2 && array.shape(1) == 2;
+}
+
+}  // namespace
+
+std::shared_ptr<const ClosestPointFinder> NamedMesh::finder() const {
+  if (finder_) return finder_;
+  if (mesh().size() == 0) throw InputError({.file = name_}, "there is no triangle", "a surface");
+  std::shared_ptr<const ClosestPointFinder> made;
+  {
+    const nb::gil_scoped_release release;
+    made = std::make_shared<const ClosestPointFinder>(mesh());
+  }
+  return finder_ = made;
+}
+
+std::optional<FileLength> file_unit(const char* name, const std::optional<std::string>& unit) {
+  if (!unit) return std::nullopt;
+  const std::optional<FileLength> length = file_length_named(*unit);
+  if (length) return length;
+  throw InputError({.field = name}, fmt::format("'{}' is no unit of a file", unit->substr(0, 40)),
+                   fmt::format("{}", fmt::join(file_length_names(), ", ")));
+}
+
+NamedPoints points_of(const PointsArgument& argument, const char* name, const std::optional<std::string>& unit,
+                      const std::string& called, bool in_plane) {
+  const std::optional<FileLength> length = file_unit("unit", unit);
+  const bool is_cloud = nb::isinstance<NamedPoints>(argument.source);
+  const std::optional<std::filesystem::path> path = is_cloud ? std::nullopt : path_of(argument.source);
+  if (path) {
+    PointCloudOptions options;
+    options.unit = length;
+    options.in_plane = in_plane;
+    return {computed([&] { return read_point_cloud(*path, options); }), called.empty() ? path->string() : called};
+  }
+  if (length) throw InputError({.field = "unit"}, "has no effect on an array, which is in mm", "a file of points");
+  if (is_cloud) {
+    NamedPoints points = initialised(nb::handle_t<NamedPoints>(argument.source));
+    if (!called.empty()) points.name = called;
+    return points;
+  }
+  const ArrayLike array{argument.source};
+  return {in_plane && has_two_columns(array, name) ? flat_points(array, name) : points_of_array(array, name),
+          called.empty() ? "points" : called};
+}
+
+NamedMesh mesh_of(const MeshArgument& argument, const std::optional<std::string>& unit) {
+  const std::optional<FileLength> length = file_unit("part_unit", unit);
+  if (const auto* const mesh = std::get_if<NamedMesh>(&argument)) {
+    if (length) throw InputError({.field = "part_unit"}, "has no effect on a Mesh, which is in mm", "a file");
+    return *mesh;
+  }
+  const auto& path = std::get<std::filesystem::path>(argument);
+  MeshFileOptions options;
+  options.unit = length;
+  return {computed([&] { return read_mesh(path, options); }), path.string()};
+}
+
+RigidTransform rigid_transform(const ArrayLike& argument, const char* name) {
+  const Rows rows(argument, name, 4, "a rigid transform, mm");
+  if (rows.count() != 4 || rows.single()) throw InputError({.field = name}, "has another shape", "shape (4, 4), mm");
+  RigidTransform result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t j = 0; j < 3; ++j) result.rotation(row, static_cast<Eigen::Index>(j)) = rows.at(i, j);
+    result.translation[row] = rows.at(i, 3);
+  }
+  const bool is_last_row = rows.at(3, 0) == 0 && rows.at(3, 1) == 0 && rows.at(3, 2) == 0 && rows.at(3, 3) == 1;
+  const Eigen::Matrix3d& r = result.rotation;
+  constexpr double kRounding = 1e-6;
+  const bool is_rotation = (r.transpose() * r).isIdentity(kRounding) && r.col(0).cross(r.col(1)).dot(r.col(2)) > 0;
+  if (!is_last_row || !is_rotation) throw InputError({.field = name}, "is no rigid transform", "a rotation, and mm");
+  return result;
+}
+
+Eigen::Matrix4d transform_matrix(const RigidTransform& transform) {
+  Eigen::Matrix4d result = Eigen::Matrix4d::Identity();
+  result.topLeftCorner<3, 3>() = transform.rotation;
+  result.topRightCorner<3, 1>() = transform.translation;
+  return result;
+}
+
+std::optional<Eigen::Vector3d> direction_of(const std::optional<ArrayLike>& argument, const char* name) {
+  if (!argument) return std::nullopt;
+  const Rows rows(*argument, name, 3, "a direction");
+  if (!rows.single()) throw InputError({.field = name}, "has another shape", "shape (3,): a direction");
+  return Eigen::Vector3d(rows.at(0, 0), rows.at(0, 1), rows.at(0, 2));
+}
+
+nb::object rows_view(const Eigen::Matrix3Xd& columns, nb::handle owner) {
+  const std::array<std::size_t, 2> shape{static_cast<std::size_t>(columns.cols()), 3};
+  return nb::cast(nb::ndarray<nb::numpy, const double>(columns.data(), 2, shape.data(), owner),
+                  nb::rv_policy::reference);
+}
+
+nb::object copied_rows(const Eigen::Matrix3Xd& columns) {
+  return array_of(std::vector<double>(columns.data(), columns.data() + columns.size()),
+                  {static_cast<std::size_t>(columns.cols()), 3});
+}
+
+}  // namespace abbe::python

@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings/shapes/shapes.h"
+#include "bindings/use/arguments.h"
+
+namespace abbe::python {
+namespace {
+
+struct ClosestPoints {
+  std::vector<SurfacePoint> found;
+};
+
+ClosestPoints closest(const NamedMesh& mesh, const ArrayLike& points) {
+  const Eigen::Matrix3Xd of_array = points_of_array(points, "points_mm").cloud.points;
+  const std::shared_ptr<const ClosestPointFinder> finder = mesh.finder();
+  const nb::gil_scoped_release release;
+  return {finder->closest(of_array)};
+}
+
+/// [n, 3] of a vector of each point.
+nb::object vectors_of(const ClosestPoints& points, Eigen::Vector3d SurfacePoint::*vector) {
+  std::vector<double> values;
+  values.reserve(3 * points.found.size());
+  for (const SurfacePoint& point : points.found) {
+    for (const double value : point.*vector) values.push_back(value);
+  }
+  return array_of(std::move(values), {points.found.size(), 3});
+}
+
+}  // namespace
+
+void bind_closest_points(nb::module_& module) {
+  nb::class_<ClosestPoints>(module, "ClosestPoints", "The closest points of a mesh. Made by Mesh.closest().")
+      .def_prop_ro(
+          "points_mm", [](const ClosestPoints& c) { return vectors_of(c, &SurfacePoint::point); },
+          nb::sig("def points_mm(self) -> numpy.ndarray"), "[n, 3] on the surface.")
+      .def_prop_ro(
+          "distance_mm",
+          [](const ClosestPoints& c) {
+            std::vector<double> distances;
+            for (const SurfacePoint& point : c.found) distances.push_back(point.distance);
+            return array_of(std::move(distances), {c.found.size()});
+          },
+          nb::sig("def distance_mm(self) -> numpy.ndarray"), "[n] positive outside of the material.")
+      .def_prop_ro(
+          "normals", [](const ClosestPoints& c) { return vectors_of(c, &SurfacePoint::normal); },
+          nb::sig("def normals(self) -> numpy.ndarray"),
+          "[n, 3] of the face, or weighted by the angles at an edge or vertex; zero without an area.")
+      .def_prop_ro(
+          "triangles",
+          [](const ClosestPoints& c) {
+            std::vector<int> triangles;
+            for (const SurfacePoint& point : c.found) triangles.push_back(static_cast<int>(point.triangle));
+            return array_of_ints(std::move(triangles));
+          },
+          nb::sig("def triangles(self) -> numpy.ndarray"), "[n] the nearest one; of several the first.")
+      .def_prop_ro(
+          "on_border",
+          [](const ClosestPoints& c) {
+            std::vector<std::uint8_t> border;
+            for (const SurfacePoint& point : c.found) border.push_back(point.on_border);
+            return array_of_bools(std::move(border));
+          },
+          nb::sig("def on_border(self) -> numpy.ndarray"), "[n] on the edge of an open mesh, where signs mean little.")
+      .def("__len__", [](const ClosestPoints& c) { return c.found.size(); })
+      .def("__repr__", [](const ClosestPoints& c) { return fmt::format("<abbe.ClosestPoints: {}>", c.found.size()); });
+  nb::cpp_function_def(&closest, nb::scope(nb::type<NamedMesh>()), nb::name("closest"), nb::is_method(),
+                       nb::arg("points_mm"),
+                       "Closest points of the surface to points [n, 3], mm, frame of the mesh. Exact to rounding; the "
+                       "first call makes a\n"
+                       "search structure, which the mesh keeps. Raises InputError. Method: docs/registration.md.");
+}
+
+}  // namespace abbe::python

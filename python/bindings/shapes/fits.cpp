@@ -1,0 +1,254 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+
+#include "abbe/formats/shapes/ending.h"
+#include "abbe/study/fitted_points.h"
+#include "bindings/evaluate/report.h"
+#include "bindings/shapes/ideal_shapes.h"
+#include "bindings/shapes/shapes.h"
+
+namespace abbe::python {
+namespace {
+
+constexpr double kMostUm = 1e6;
+
+FitMethod fit_method(const std::string& method) {
+  const auto found = fit_methods_by_name().find(method);
+  if (found != fit_methods_by_name().end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& [name, value] : fit_methods_by_name()) names.push_back(name);
+  throw InputError({.field = "method"}, fmt::format("'{}' is no method", method.substr(0, 40)),
+                   fmt::format("{}", fmt::join(names, ", ")));
+}
+
+/// As read_points_to_fit() of a file, and points of arrays and clouds.
+PointsToFit points_to_fit(const PointsArgument& argument, const std::optional<std::string>& unit,
+                          const std::string& called, bool in_plane) {
+  const std::optional<std::filesystem::path> path =
+      nb::isinstance<NamedPoints>(argument.source) ? std::nullopt : path_of(argument.source);
+  if (path) {
+    PointCloudOptions options;
+    options.unit = file_unit("unit", unit);
+    options.in_plane = in_plane;
+    PointsToFit points = computed([&] { return read_points_to_fit(path->string(), options); });
+    if (!called.empty()) points.file = called;
+    return points;
+  }
+  NamedPoints points = points_of(argument, "points_mm", unit, called, in_plane);
+  return {points.name, std::move(points.file.cloud), points.file.format + ", " + unit_words(points.file.unit)};
+}
+
+std::optional<double> half_angle(const std::optional<double>& degrees) {
+  if (!degrees) return std::nullopt;
+  return quantity("fixed_half_angle_deg", *degrees, Quantity::angle, "deg", 0.001, 89.9);
+}
+
+FittedShape fit(const PointsArgument& points, const std::string& shape, const std::string& method,
+                const std::string& loss, std::optional<double> fixed_radius_mm,
+                const std::optional<ArrayLike>& fixed_direction, std::optional<double> fixed_half_angle_deg,
+                double u_point_um, const std::optional<std::string>& unit, const Tolerances& tolerances, bool page,
+                const std::string& file) {
+  ShapeFitRequest request;
+  FitChoice& choice = request.choice;
+  choice.kind = shape_kind(shape);
+  choice.method = fit_method(method);
+  choice.robust.kind = std::array{RobustKind::tukey, RobustKind::huber,
+                                  RobustKind::welsch}[word_index("loss", loss, {"tukey", "huber", "welsch"})];
+  choice.options.sigma = quantity("u_point_um", u_point_um, Quantity::length, "um", 0, kMostUm);
+  choice.options.constraints.direction = direction_of(fixed_direction, "fixed_direction");
+  choice.options.constraints.radius = fixed_radius_mm;
+  choice.options.constraints.half_angle = half_angle(fixed_half_angle_deg);
+  request.tolerances = tolerance_texts(tolerances);
+  request.page = page;
+  request.points = points_to_fit(points, unit, file, is_plane_shape(choice.kind));
+  return computed([&] { return fit_points(std::move(request)); });
+}
+
+FittedCircles fit_coaxial(const std::vector<nb::object>& circles, const std::optional<std::vector<double>>& radii,
+                          const std::optional<ArrayLike>& direction, double u_point_um,
+                          const std::optional<std::string>& unit, const Tolerances& tolerances) {
+  if (circles.empty()) throw InputError({.field = "circles"}, "there are none", "points of one circle at least");
+  CirclesFitRequest request;
+  request.options.direction = direction_of(direction, "fixed_direction");
+  if (radii) {
+    request.options.radii = *radii;
+    if (radii->size() != circles.size()) {
+      throw InputError({.field = "fixed_radius_mm"}, fmt::format("has {} numbers", radii->size()),
+                       fmt::format("{}, one per circle", circles.size()));
+    }
+  }
+  request.options.sigma = quantity("u_point_um", u_point_um, Quantity::length, "um", 0, kMostUm);
+  request.tolerances = tolerance_texts(tolerances);
+  for (const nb::object& circle : circles) {
+    if (circle.is_none()) throw InputError({.field = "circles"}, "one of them is None", "points, or a file of them");
+    request.circles.push_back(points_to_fit({circle}, unit, "", false));
+    if (nb::isinstance<NamedPoints>(circle) || path_of(circle)) continue;
+    request.circles.back().file = fmt::format("circle {}", request.circles.size());
+  }
+  return computed([&] { return fit_circles(std::move(request)); });
+}
+
+/// Of (point, direction, radius, half_angle).
+std::optional<Eigen::Matrix<double, 8, 8>> covariance_of(const ShapeFit& fit) {
+  return fit.has_covariance ? std::optional(fit.covariance) : std::nullopt;
+}
+
+std::optional<double> if_known(const ShapeFit& fit, double value) {
+  return fit.has_covariance ? std::optional(value) : std::nullopt;
+}
+
+void bind_uncertainties(nb::class_<FittedShape>& bound) {
+  bound
+      .def_prop_ro(
+          "covariance", [](const FittedShape& f) { return covariance_of(f.fit); },
+          "[8, 8] of point (mm), direction, radius (mm), half angle (rad); None: not known.")
+      .def_prop_ro(
+          "radius_uncertainty_mm", [](const FittedShape& f) { return if_known(f.fit, f.fit.radius_uncertainty()); },
+          "Standard; None: not known.")
+      .def_prop_ro(
+          "direction_uncertainty_rad",
+          [](const FittedShape& f) { return if_known(f.fit, f.fit.direction_uncertainty()); },
+          "Standard, of its most uncertain tilt; None: not known.")
+      .def_prop_ro(
+          "point_uncertainty_mm", [](const FittedShape& f) { return if_known(f.fit, f.fit.point_uncertainty()); },
+          "Standard, in its most uncertain direction; None: not known.");
+}
+
+void bind_fitted_shape(nb::module_& module) {
+  nb::class_<FittedShape> bound(module, "FittedShape",
+                                "A shape fitted to points. Made by fit().\n\n"
+                                "Numbers count only if ok; status and reason say why not.");
+  add_report(
+      bound, &FittedShape::report, +[](const FittedShape&) { return ResultFiles{}; });
+  bound.def_prop_ro("ok", &FittedShape::is_ok, "Whether there is an answer.")
+      .def_prop_ro(
+          "status", [](const FittedShape& f) { return fit_status_name(f.fit.status); }, "'ok', or why there is none.")
+      .def_prop_ro(
+          "reason", [](const FittedShape& f) { return f.fit.reason; }, "The same in words; empty: it is ok.")
+      .def_prop_ro(
+          "shape", [](const FittedShape& f) { return f.fit.shape; }, "The fitted Shape.")
+      .def_prop_ro(
+          "deviations_mm", [](const FittedShape& f) { return copied_array(f.deviations); },
+          nb::sig("def deviations_mm(self) -> numpy.ndarray"), "[n] as Shape.distances(); empty without an answer.")
+      .def_prop_ro(
+          "points_mm", [](nb::handle_t<FittedShape> self) { return rows_view(initialised(self).points.points, self); },
+          nb::sig("def points_mm(self) -> numpy.ndarray"), "[n, 3] as given.")
+      .def_prop_ro(
+          "form_mm", [](const FittedShape& f) { return f.fit.form; },
+          "Largest less smallest distance; of a line or circle in space the diameter of the tube about it.")
+      .def_prop_ro(
+          "rms_mm", [](const FittedShape& f) { return f.fit.rms; }, "Root mean square distance.")
+      .def_prop_ro(
+          "sigma_mm", [](const FittedShape& f) { return f.fit.sigma; },
+          "Standard deviation of a point with which the covariance is made.")
+      .def_prop_ro("degrees_of_freedom", [](const FittedShape& f) { return f.fit.degrees_of_freedom; })
+      .def_prop_ro(
+          "contacts", [](const FittedShape& f) { return f.fit.contacts; },
+          "Indices of the points that determine the answer: minimum zone, circumscribed, inscribed.")
+      .def_prop_ro(
+          "weights",
+          [](const FittedShape& f) -> nb::object {
+            if (f.fit.weights.empty()) return nb::none();
+            return copied_array(f.fit.weights);
+          },
+          nb::sig("def weights(self) -> numpy.ndarray | None"), "[n] of a robust fit, 0 to 1; else None.")
+      .def_prop_ro(
+          "rejected", [](const FittedShape& f) { return f.fit.rejected; }, "Points that a robust fit left out.")
+      .def(
+          "residuals_csv",
+          [](const FittedShape& f) {
+            if (f.is_ok()) return fitted_points_csv(f);
+            throw InputError({.field = "status"}, "there is no fit: " + f.fit.reason, "a fit that is ok");
+          },
+          "The points with their deviation_mm: what `abbe fit --residuals` writes.")
+      .def("__repr__", [](const FittedShape& f) {
+        return f.is_ok() ? fmt::format("<abbe.FittedShape {}: {} points, form {:.3f} um>",
+                                       shape_kind_name(f.fit.shape.kind), f.fit.points, 1e3 * f.fit.form)
+                         : fmt::format("<abbe.FittedShape: {}>", fit_status_name(f.fit.status));
+      });
+  bind_uncertainties(bound);
+}
+
+void bind_fitted_circles(nb::module_& module) {
+  nb::class_<FittedCircles> bound(
+      module, "FittedCircles", "Circles about one axis. Made by fit_coaxial_circles().\n\nNumbers count only if ok.");
+  add_report(
+      bound, &FittedCircles::report, +[](const FittedCircles&) { return ResultFiles{}; });
+  bound.def_prop_ro("ok", &FittedCircles::is_ok, "Whether there is an answer.")
+      .def_prop_ro(
+          "status", [](const FittedCircles& f) { return fit_status_name(f.fit.status); }, "'ok', or why there is none.")
+      .def_prop_ro(
+          "reason", [](const FittedCircles& f) { return f.fit.reason; }, "The same in words.")
+      .def_prop_ro(
+          "point_mm", [](const FittedCircles& f) { return f.fit.point; }, "[3] of the axis: mean of the centres.")
+      .def_prop_ro(
+          "direction", [](const FittedCircles& f) { return f.fit.direction; }, "[3] of the axis, unit.")
+      .def_prop_ro(
+          "heights_mm", [](const FittedCircles& f) { return copied_array(f.fit.heights); },
+          nb::sig("def heights_mm(self) -> numpy.ndarray"), "[m] of the centres from the point, along the direction.")
+      .def_prop_ro(
+          "radii_mm", [](const FittedCircles& f) { return copied_array(f.fit.radii); },
+          nb::sig("def radii_mm(self) -> numpy.ndarray"), "[m]")
+      .def_prop_ro(
+          "form_mm", [](const FittedCircles& f) { return copied_array(f.fit.form); },
+          nb::sig("def form_mm(self) -> numpy.ndarray"), "[m] diameter of the tube about each that holds its points.")
+      .def_prop_ro(
+          "rms_mm", [](const FittedCircles& f) { return f.fit.rms; }, "Root mean square distance.")
+      .def_prop_ro(
+          "covariance",
+          [](const FittedCircles& f) { return f.fit.has_covariance ? std::optional(f.fit.covariance) : std::nullopt; },
+          "[6 + 2 m, 6 + 2 m] of point, direction, heights, radii, mm and rad; None: not known.")
+      .def("__repr__", [](const FittedCircles& f) {
+        return fmt::format("<abbe.FittedCircles: {} circles, {}>", f.fit.radii.size(), fit_status_name(f.fit.status));
+      });
+}
+
+}  // namespace
+
+void bind_fits(nb::module_& module) {
+  bind_fitted_shape(module);
+  bind_fitted_circles(module);
+  module.def(
+      "fit", &fit, nb::arg("points_mm"), nb::arg("shape"), nb::kw_only(), nb::arg("method") = "least-squares",
+      nb::arg("loss") = "tukey", nb::arg("fixed_radius_mm") = nb::none(), nb::arg("fixed_direction") = nb::none(),
+      nb::arg("fixed_half_angle_deg") = nb::none(), nb::arg("u_point_um") = 0.0, nb::arg("unit") = nb::none(),
+      nb::arg("tolerances") = Tolerances{}, nb::arg("page") = true, nb::arg("file") = "",
+      "A line, plane, circle, sphere, cylinder or cone fitted to points: `abbe fit`.\n\n"
+      "points_mm: [n, 3] (of shapes in the plane [n, 2] too), a PointCloud, or a file (csv, xyz, ply, obj, corners of "
+      "stl).\n"
+      "shape: 'line2', 'circle2' (in x, y), 'line', 'plane', 'circle', 'sphere', 'cylinder', 'cone'. method:\n"
+      "'least-squares', 'minimum-zone', 'circumscribed', 'inscribed', 'robust' (up to 30 % wrong points). loss of the\n"
+      "robust method: 'tukey', 'huber', 'welsch'. fixed_...: held as it is. u_point_um: standard uncertainty of a "
+      "point\n"
+      "across the shape; 0: from the residuals. unit: of a file that states none. tolerances: {'form_um': 10}. page:\n"
+      "whether the page has the points on the surface. file: name for the title. Raises InputError; too few or\n"
+      "degenerate points give a result that is not ok. Methods: docs/fits.md.\n\n"
+      ">>> import abbe, numpy\n"
+      ">>> angle = numpy.linspace(0, 6, 20)\n"
+      ">>> ring = abbe.fit(numpy.stack([3 + 5 * numpy.cos(angle), 5 * numpy.sin(angle)], axis=1), 'circle2')\n"
+      ">>> round(ring.shape.radius_mm, 9), ring.shape.point_mm.round(9).tolist(), ring.ok\n"
+      "(5.0, [3.0, 0.0, 0.0], True)\n"
+      ">>> abbe.fit([[0, 0, 0], [1, 0, 0]], 'plane').status\n"
+      "'too few points'\n");
+  module.def(
+      "fit_coaxial_circles", &fit_coaxial, nb::arg("circles"), nb::kw_only(), nb::arg("fixed_radius_mm") = nb::none(),
+      nb::arg("fixed_direction") = nb::none(), nb::arg("u_point_um") = 0.0, nb::arg("unit") = nb::none(),
+      nb::arg("tolerances") = Tolerances{},
+      nb::sig("def fit_coaxial_circles(circles: collections.abc.Sequence[str | os.PathLike | numpy.typing.ArrayLike | "
+              "PointCloud], *, fixed_radius_mm: collections.abc.Sequence[float] | None = None, fixed_direction: "
+              "numpy.typing.ArrayLike | None = None, u_point_um: float = 0.0, unit: str | None = None, tolerances: "
+              "collections.abc.Mapping[str, float] = {}) -> FittedCircles"),
+      "Circles about one common axis by least squares, all at once: `abbe fit --shape coaxial-circles`.\n\n"
+      "circles: points [n, 3] of each, mm, or files. fixed_radius_mm: one per circle. Two circles suffice for the "
+      "axis,\n"
+      "also where each is a short arc. Raises InputError. Method: docs/fits.md.");
+}
+
+}  // namespace abbe::python

@@ -1,0 +1,75 @@
+#pragma once
+
+// Points and meshes as arguments, from files or arrays.
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "abbe/formats/shapes/mesh_file.h"
+#include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/geometry/rigid_transform.h"
+#include "abbe/geometry/surface/closest_point.h"
+#include "abbe/study/evaluations/evaluation.h"
+#include "bindings/evaluate/readings.h"
+
+namespace abbe::python {
+
+/// A mesh with its name, and what closest points need of it, made when it is first wanted.
+class NamedMesh {
+ public:
+  NamedMesh(MeshFile read, std::string called)
+      : file_(std::make_shared<const MeshFile>(std::move(read))), name_(std::move(called)) {}
+
+  const MeshFile& file() const { return *file_; }
+  const TriangleMesh& mesh() const { return file_->mesh; }
+  const std::string& name() const { return name_; }
+  /// Not to be called without the GIL.
+  std::shared_ptr<const ClosestPointFinder> finder() const;
+
+ private:
+  std::shared_ptr<const MeshFile> file_;
+  std::string name_;
+  mutable std::shared_ptr<const ClosestPointFinder> finder_;
+};
+
+/// Points with their name.
+struct NamedPoints {
+  PointCloudFile file;
+  std::string name;
+};
+
+/// A point cloud, a path, or an array. @param in_plane  an array may be [n, 2], and a file need not have z
+NamedPoints points_of(const PointsArgument& argument, const char* name, const std::optional<std::string>& unit,
+                      const std::string& called, bool in_plane = false);
+
+using MeshArgument = std::variant<NamedMesh, std::filesystem::path>;
+/// Reads it where it is a path. @param unit  of a file that states none
+NamedMesh mesh_of(const MeshArgument& argument, const std::optional<std::string>& unit);
+
+/// "mm", "m", "inch". @throws InputError
+std::optional<FileLength> file_unit(const char* name, const std::optional<std::string>& unit);
+
+/// A transform as [4, 4] with mm. @throws InputError
+RigidTransform rigid_transform(const ArrayLike& argument, const char* name);
+Eigen::Matrix4d transform_matrix(const RigidTransform& transform);
+/// Three numbers. @throws InputError
+std::optional<Eigen::Vector3d> direction_of(const std::optional<ArrayLike>& argument, const char* name);
+
+/// [n, 3] of columns, which they keep alive.
+nb::object rows_view(const Eigen::Matrix3Xd& columns, nb::handle owner);
+/// [n, 3], copied.
+nb::object copied_rows(const Eigen::Matrix3Xd& columns);
+
+void bind_clouds(nb::module_& module);
+void bind_meshes(nb::module_& module);
+void bind_closest_points(nb::module_& module);
+void bind_ideal_shapes(nb::module_& module);
+void bind_fits(nb::module_& module);
+void bind_transforms(nb::module_& module);
+void bind_registrations(nb::module_& module);
+void bind_deviations(nb::module_& module);
+
+}  // namespace abbe::python
