@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,11 +9,9 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/readings/scan_plan_file.h"
 #include "abbe/formats/shapes/mesh_file.h"
-#include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/angle_units.h"
-#include "abbe/geometry/rotation.h"
 #include "abbe/study/planned_scan.h"
 #include "command.h"
 #include "exit_code.h"
@@ -47,16 +43,10 @@ MeshFile read_whole(const std::string& file, const StepReading& step) {
 ScanPlanOptions scan_options(const PlanOptions& options) {
   ScanPlanOptions scan = options.scan;
   if (!options.stage.empty()) scan.stage = read_whole(options.stage, options.step).mesh;
-  scan.workpiece_from_part = {
-      rotation_from_error_angles(Eigen::Vector3d(options.turn[0], options.turn[1], options.turn[2]) * kDegree),
-      {options.position[0], options.position[1], options.position[2]}};
+  scan.workpiece_from_part = part_placement({options.position[0], options.position[1], options.position[2]},
+                                            {options.turn[0], options.turn[1], options.turn[2]});
   for (const std::vector<double>& plane : options.beyond) {
-    const Eigen::Vector3d normal(plane[0], plane[1], plane[2]);
-    if (!(normal.norm() > 1e-12) || !std::isfinite(normal.norm()) || !std::isfinite(plane[3])) {
-      throw InputError({.field = "--beyond-plane-mm"}, "the normal has no length",
-                       "NX NY NZ and D in mm: NX x + NY y + NZ z >= D");
-    }
-    scan.wanted.push_back({normal.normalized(), plane[3] / normal.norm()});
+    scan.wanted.push_back(beyond_plane({plane[0], plane[1], plane[2], plane[3]}));
   }
   scan.crease_angle = options.crease_deg * kDegree;
   scan.largest_angle = options.angle_deg * kDegree;

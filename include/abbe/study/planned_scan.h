@@ -28,10 +28,13 @@
 //
 // Method and figures: docs/scan.md.
 
+#include <Eigen/Core>
+#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "abbe/formats/nc/path_program.h"
+#include "abbe/geometry/rigid_transform.h"
 #include "abbe/geometry/surface/triangle_mesh.h"
 #include "abbe/machine/machine.h"
 #include "abbe/plan/scans/scan_plan.h"
@@ -46,6 +49,12 @@ struct ScanRequest {
   std::string part_file;  ///< name for texts and messages
   ScanPlanOptions scan;   ///< its `progress` is set here
 };
+
+/// Where a part stands in the workpiece frame. @param turn_deg  about x, then y, then z
+RigidTransform part_placement(const Eigen::Vector3d& position_mm, const Eigen::Vector3d& turn_deg);
+/// What lies beyond a plane. @param plane  nx, ny, nz, d: nx x + ny y + nz z >= d, mm, the normal of any length
+/// @throws InputError naming --beyond-plane-mm for a normal without a length
+HalfSpace beyond_plane(const std::array<double, 4>& plane);
 
 /// A planned scan. It needs nothing of the request that it answers.
 struct PlannedScan {

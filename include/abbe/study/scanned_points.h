@@ -36,6 +36,7 @@
 
 #include "abbe/errors/error_set.h"
 #include "abbe/formats/readings/scan_file.h"
+#include "abbe/instruments/point_scan.h"
 #include "abbe/machine/machine.h"
 #include "abbe/study/job_options.h"
 #include "abbe/verify/left_out_poses.h"
@@ -58,6 +59,12 @@ struct ScannedPointsRequest {
       indication_range;  ///< --indication-range-mm: others are left out; lower end first
   ScanOptions scan;      ///< columns, travel, decimals, threads; range of indications and progress are set here
 };
+
+/// The beam of a probe on a machine. @param direction  towards the part, of any length; else against the tool's
+/// direction
+/// @throws InputError for a beam that has no direction or no place
+ProbeBeam probe_beam(const Machine& machine, const Eigen::Vector3d& zero,
+                     const std::optional<Eigen::Vector3d>& direction = std::nullopt);
 
 /// What became of the readings. It needs nothing of the request that it answers.
 struct ScannedPoints {

@@ -2,17 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/files/file_name.h"
 #include "abbe/formats/readings/scan_plan_file.h"
 #include "abbe/formats/shapes/closed_part.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/angle_units.h"
+#include "abbe/geometry/rotation.h"
 #include "abbe/plan/scans/wanted_area.h"
 #include "abbe/report/pages/scan_plan_page.h"
 #include "abbe/report/words/scan_plan_words.h"
 
 namespace abbe {
+
+RigidTransform part_placement(const Eigen::Vector3d& position_mm, const Eigen::Vector3d& turn_deg) {
+  return {rotation_from_error_angles(turn_deg * kDegree), position_mm};
+}
+
+HalfSpace beyond_plane(const std::array<double, 4>& plane) {
+  const Eigen::Vector3d normal(plane[0], plane[1], plane[2]);
+  if (!(normal.norm() > 1e-12) || !std::isfinite(normal.norm()) || !std::isfinite(plane[3])) {
+    throw InputError({.field = "--beyond-plane-mm"}, "the normal has no length",
+                     "NX NY NZ and D in mm: NX x + NY y + NZ z >= D");
+  }
+  return {normal.normalized(), plane[3] / normal.norm()};
+}
 
 PlannedScan plan_part_scan(const ScanRequest& request, const JobOptions& options) {
   PlannedScan result;

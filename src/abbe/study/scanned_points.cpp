@@ -6,29 +6,26 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/text/input_error.h"
-#include "abbe/instruments/point_scan.h"
 
 namespace abbe {
-namespace {
 
-ProbeBeam probe_beam(const ScannedPointsRequest& request) {
-  if (!request.beam_zero.allFinite()) {
+ProbeBeam probe_beam(const Machine& machine, const Eigen::Vector3d& zero,
+                     const std::optional<Eigen::Vector3d>& direction) {
+  if (!zero.allFinite()) {
     throw InputError({.field = "--beam-zero-mm"}, "not a place", "three finite numbers in mm");
   }
   ProbeBeam beam;
-  beam.zero = request.beam_zero;
-  beam.direction = -request.machine.tool_direction;
-  if (request.beam) {
-    const double length = request.beam->norm();
+  beam.zero = zero;
+  beam.direction = -machine.tool_direction;
+  if (direction) {
+    const double length = direction->norm();
     if (!(length > 1e-12) || !std::isfinite(length)) {
       throw InputError({.field = "--beam"}, "the direction has no length", "three numbers, not all of them zero");
     }
-    beam.direction = *request.beam / length;
+    beam.direction = *direction / length;
   }
   return beam;
 }
-
-}  // namespace
 
 LeftOutPoses ScannedPoints::left_out() const {
   return {.all = summary.readings, .not_covered = summary.not_covered, .what = "readings"};
@@ -50,8 +47,10 @@ ScannedPoints write_scanned_points(const ScannedPointsRequest& request, const Jo
   result.machine = request.machine.name;
   result.errors_file = request.errors_file;
   result.output = request.output;
-  result.summary = scan_points(request.readings, request.machine,
-                               PointScan(request.machine, request.errors, probe_beam(request)), request.output, scan);
+  result.summary = scan_points(
+      request.readings, request.machine,
+      PointScan(request.machine, request.errors, probe_beam(request.machine, request.beam_zero, request.beam)),
+      request.output, scan);
   if (result.summary.points == 0) {
     result.refused = result.summary.not_covered == 0 ? "no reading lies within the probe's range"
                                                      : left_out_words(result.left_out());
