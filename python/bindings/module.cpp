@@ -59,6 +59,8 @@ NB_MODULE(_core, module) {
   bind_transforms(module);
   bind_registrations(module);
   bind_deviations(module);
+  bind_scan_points(module);
+  bind_planned_scans(module);
 }
 
 }  // namespace

@@ -235,7 +235,7 @@ def test_bad_arguments(call):
 
 def test_classes_that_cannot_be_made_say_so():
     for kind in (abbe.StudyResult, abbe.StudyPlan, abbe.Instrument, abbe.Poses, abbe.Corrections, abbe.Evaluation,
-                 abbe.EvaluationFigure, abbe.FittedShape, abbe.ScanRegistration, abbe.ScanDeviations):
+                 abbe.EvaluationFigure, abbe.FittedShape, abbe.ScanRegistration, abbe.ScanDeviations, abbe.PlannedScan):
         with pytest.raises(TypeError):
             kind()
 

@@ -74,5 +74,10 @@ def distances(part: abbe.Mesh, points: numpy.typing.NDArray[numpy.float64]) -> n
     return part.closest(points + shifted.matrix[:3, 3]).distance_mm
 
 
+def scanned(part: abbe.Mesh, machine: abbe.Machine) -> numpy.ndarray:
+    planned: abbe.PlannedScan = abbe.plan_scan(part, machine, along_mm=1, beyond_planes_mm=[(0, 0, 1, 0)])
+    return abbe.scan_points(machine, planned.positions_mm_rad, numpy.zeros(len(planned))).points_mm
+
+
 if __name__ == "__main__":
     print(f"{deviation_mm(machine_from(None), 20, 200):.4f} mm")

@@ -71,5 +71,7 @@ void bind_fits(nb::module_& module);
 void bind_transforms(nb::module_& module);
 void bind_registrations(nb::module_& module);
 void bind_deviations(nb::module_& module);
+void bind_scan_points(nb::module_& module);
+void bind_planned_scans(nb::module_& module);
 
 }  // namespace abbe::python

@@ -1,0 +1,241 @@
+#include <fmt/format.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/variant.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "abbe/formats/readings/scan_plan_file.h"
+#include "abbe/formats/text/json_text.h"
+#include "abbe/geometry/angle_units.h"
+#include "abbe/study/planned_scan.h"
+#include "bindings/files.h"
+#include "bindings/job.h"
+#include "bindings/shapes/shapes.h"
+#include "bindings/use/arguments.h"
+
+namespace abbe::python {
+namespace {
+
+/// What the probe and the axes can do, in the units of the arguments.
+struct ScanArguments {
+  double along_mm, between_mm, turn_between_deg, crease_deg, largest_angle_deg, range_um, working_distance_mm;
+  double probe_radius_mm, probe_length_mm, clearance_mm, linear_speed_mm_per_s, rotary_speed_deg_per_s;
+  double readings_per_second;
+};
+
+double within(const char* name, double value, double low, double high) {
+  if (value >= low && value <= high) return value;
+  throw InputError({.field = name}, fmt::format("is {}", value), fmt::format("{} to {}", low, high));
+}
+
+ScanPlanOptions options_of(const ScanArguments& given) {
+  const auto positive = [](const char* name, double value) { return within(name, value, 1e-9, 1e6); };
+  ScanPlanOptions scan;
+  scan.along = positive("along_mm", given.along_mm);
+  scan.between = positive("between_mm", given.between_mm);
+  scan.largest_turn = within("turn_between_deg", given.turn_between_deg, 0.1, 20) * kDegree;
+  scan.crease_angle = within("crease_deg", given.crease_deg, 1, 90) * kDegree;
+  scan.largest_angle = within("largest_angle_deg", given.largest_angle_deg, 2, 85) * kDegree;
+  scan.range = 1e-3 * positive("range_um", given.range_um);
+  scan.working_distance = positive("working_distance_mm", given.working_distance_mm);
+  scan.probe_radius = positive("probe_radius_mm", given.probe_radius_mm);
+  scan.probe_length = positive("probe_length_mm", given.probe_length_mm);
+  scan.clearance = positive("clearance_mm", given.clearance_mm);
+  scan.linear_speed = positive("linear_speed_mm_per_s", given.linear_speed_mm_per_s);
+  scan.rotary_speed = positive("rotary_speed_deg_per_s", given.rotary_speed_deg_per_s) * kDegree;
+  scan.readings_per_second = positive("readings_per_second", given.readings_per_second);
+  return scan;
+}
+
+/// The probe must keep clear of all of it.
+TriangleMesh whole(const NamedMesh& mesh) {
+  if (mesh.file().left_out.empty()) return mesh.mesh();
+  throw InputError({.file = mesh.name()}, "faces are left out: " + mesh.file().left_out.front(),
+                   "all faces of the part and the stage, because the probe must keep clear of them");
+}
+
+Eigen::Vector3d triple(const Triple& numbers, const char* name) {
+  for (const double number : numbers) {
+    if (!(std::abs(number) <= 1e9)) throw InputError({.field = name}, fmt::format("has {}", number), "at most 1e9");
+  }
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+PlannedScan planned(const MeshArgument& part, const Machine& machine, const Triple& position_mm, const Triple& turn_deg,
+                    const std::vector<std::array<double, 4>>& beyond_planes_mm,
+                    const std::optional<MeshArgument>& stage, double along_mm, double between_mm,
+                    double turn_between_deg, double crease_deg, double largest_angle_deg, double range_um,
+                    double working_distance_mm, double probe_radius_mm, double probe_length_mm, double clearance_mm,
+                    double linear_speed_mm_per_s, double rotary_speed_deg_per_s, double readings_per_second,
+                    const nb::object& progress) {
+  ScanRequest request;
+  request.scan = options_of({along_mm, between_mm, turn_between_deg, crease_deg, largest_angle_deg, range_um,
+                             working_distance_mm, probe_radius_mm, probe_length_mm, clearance_mm, linear_speed_mm_per_s,
+                             rotary_speed_deg_per_s, readings_per_second});
+  request.scan.workpiece_from_part = part_placement(triple(position_mm, "position_mm"), triple(turn_deg, "turn_deg"));
+  naming_arguments([&] {
+    for (const std::array<double, 4>& plane : beyond_planes_mm) request.scan.wanted.push_back(beyond_plane(plane));
+    return 0;
+  });
+  if (stage) request.scan.stage = whole(mesh_of(*stage, std::nullopt));
+  const NamedMesh mesh = mesh_of(part, std::nullopt);
+  request.machine = machine;
+  request.part = whole(mesh);
+  request.part_file = mesh.name();
+  return job_result(progress, [&](const JobControl& control) {
+    return naming_arguments([&] { return plan_part_scan(request, control.options("planning the scan")); });
+  });
+}
+
+std::string program(const PlannedScan& scan, const std::vector<std::string>& words) {
+  PathProgramOptions options;
+  options.words = naming_arguments([&] { return axis_words(scan.machine, words, "--words"); });
+  return planned_scan_program(scan, options);
+}
+
+/// [n, 3] of a vector of each move.
+nb::object vectors_of(const PlannedScan& scan, Eigen::Vector3d PlannedMove::*vector) {
+  std::vector<double> values;
+  for (const PlannedMove& move : scan.plan.moves) {
+    for (const double value : move.*vector) values.push_back(value);
+  }
+  return array_of(std::move(values), {scan.plan.moves.size(), 3});
+}
+
+nb::object flags_of(const PlannedScan& scan, bool PlannedMove::*flag) {
+  std::vector<std::uint8_t> flags;
+  for (const PlannedMove& move : scan.plan.moves) flags.push_back(move.*flag);
+  return array_of_bools(std::move(flags));
+}
+
+nb::object indices_of(const PlannedScan& scan, std::size_t PlannedMove::*index) {
+  std::vector<int> indices;
+  for (const PlannedMove& move : scan.plan.moves) indices.push_back(static_cast<int>(move.*index));
+  return array_of_ints(std::move(indices));
+}
+
+void bind_moves(nb::class_<PlannedScan>& bound) {
+  bound
+      .def_prop_ro(
+          "positions_mm_rad", [](const PlannedScan& s) { return copied_poses(s.plan.positions); },
+          nb::sig("def positions_mm_rad(self) -> numpy.ndarray"), "[n, axes] commands of all moves.")
+      .def_prop_ro(
+          "points_mm", [](const PlannedScan& s) { return vectors_of(s, &PlannedMove::point); },
+          nb::sig("def points_mm(self) -> numpy.ndarray"), "[n, 3] workpiece frame.")
+      .def_prop_ro(
+          "normals", [](const PlannedScan& s) { return vectors_of(s, &PlannedMove::normal); },
+          nb::sig("def normals(self) -> numpy.ndarray"), "[n, 3] of the surface.")
+      .def_prop_ro(
+          "beams", [](const PlannedScan& s) { return vectors_of(s, &PlannedMove::beam); },
+          nb::sig("def beams(self) -> numpy.ndarray"), "[n, 3] from the part to the probe.")
+      .def_prop_ro(
+          "measures", [](const PlannedScan& s) { return flags_of(s, &PlannedMove::measures); },
+          nb::sig("def measures(self) -> numpy.ndarray"), "[n] False: the move goes around, away from the part.")
+      .def_prop_ro(
+          "blocked", [](const PlannedScan& s) { return flags_of(s, &PlannedMove::blocked); },
+          nb::sig("def blocked(self) -> numpy.ndarray"), "[n] no clear way was found: the probe may touch.")
+      .def_prop_ro(
+          "face", [](const PlannedScan& s) { return indices_of(s, &PlannedMove::face); },
+          nb::sig("def face(self) -> numpy.ndarray"), "[n] index into faces.")
+      .def_prop_ro(
+          "line", [](const PlannedScan& s) { return indices_of(s, &PlannedMove::line); },
+          nb::sig("def line(self) -> numpy.ndarray"), "[n] of the face.");
+}
+
+void bind_faces(nb::module_& module) {
+  nb::class_<PlannedFace>(module, "PlannedFace", "A face of a part in a planned scan.")
+      .def_prop_ro(
+          "kind", [](const PlannedFace& f) { return scan_path_name(f.kind); }, "'rotary', 'raster' or 'free'.")
+      .def_ro("why", &PlannedFace::why, "It is scanned so, in words.")
+      .def_ro("area_mm2", &PlannedFace::area, "Of what is wanted.")
+      .def_ro("covered_mm2", &PlannedFace::covered)
+      .def_ro("lines", &PlannedFace::lines)
+      .def_ro("points", &PlannedFace::points)
+      .def_ro("largest_angle_rad", &PlannedFace::largest_angle, "Between beam and normal.")
+      .def_prop_ro("missed_places", &PlannedFace::missed_places, "Places on its lines that are not measured.")
+      .def("__repr__", [](const PlannedFace& f) {
+        return fmt::format("<abbe.PlannedFace {}: {} points>", scan_path_name(f.kind), f.points);
+      });
+}
+
+}  // namespace
+
+void bind_planned_scans(nb::module_& module) {
+  bind_faces(module);
+  nb::class_<PlannedScan> bound(module, "PlannedScan", "Paths of a probe over a part. Made by plan_scan().");
+  bind_moves(bound);
+  bound.def_ro("machine", &PlannedScan::machine)
+      .def_prop_ro("faces", [](const PlannedScan& s) { return s.plan.faces; })
+      .def_prop_ro(
+          "points", [](const PlannedScan& s) { return s.plan.points(); }, "Number of points measured.")
+      .def_prop_ro("time_s", [](const PlannedScan& s) { return s.plan.time; })
+      .def_prop_ro(
+          "covered_share", [](const PlannedScan& s) { return s.plan.covered_share(); }, "Of the area that is wanted.")
+      .def_prop_ro("complete", &PlannedScan::is_complete,
+                   "Whether everything that is wanted is reached, and on a clear way.")
+      .def("text", &planned_scan_text, "What `abbe scan plan` prints.")
+      .def(
+          "json_text", [](const PlannedScan& s) { return json_text(planned_scan_json(s)); },
+          "What it prints with --json.")
+      .def(
+          "to_dict", [](const PlannedScan& s) { return python_value(planned_scan_json(s)); },
+          nb::sig("def to_dict(self) -> dict[str, typing.Any]"), "The same as a dictionary.")
+      .def("csv", &planned_scan_csv, "The path as CSV.")
+      .def("program", &program, nb::arg("words") = std::vector<std::string>{},
+           "The path as an NC program (G1, inverse time feed). words: of axes, such as ['C1=C'].")
+      .def(
+          "coverage_ply",
+          [](const PlannedScan& s) {
+            const std::string bytes = scan_coverage_ply(s.plan);
+            return nb::bytes(bytes.data(), bytes.size());
+          },
+          "The coverage as coloured points, PLY.")
+      .def("page_html", &planned_scan_page, "The page that plays the path over the part, HTML.")
+      .def(
+          "write",
+          [](const PlannedScan& s, const std::filesystem::path& path, bool overwrite) {
+            const std::string ending = path.extension().string();
+            if (ending == ".csv") return write_text(path, planned_scan_csv(s), overwrite);
+            if (ending == ".ngc") return write_text(path, program(s, {}), overwrite);
+            if (ending == ".ply") return write_text(path, scan_coverage_ply(s.plan), overwrite);
+            if (ending == ".html") return write_text(path, planned_scan_page(s), overwrite);
+            throw InputError({.file = path.string()}, "has another ending",
+                             ".csv (path), .ngc (program), .ply (coverage) or .html (page)");
+          },
+          nb::arg("path"), nb::arg("overwrite") = false,
+          "Writes the path (.csv, .ngc), the coverage (.ply) or the page (.html), whole or not at all.")
+      .def("__len__", [](const PlannedScan& s) { return s.plan.moves.size(); })
+      .def("__repr__", [](const PlannedScan& s) {
+        return fmt::format("<abbe.PlannedScan: {} points on {} faces>", s.plan.points(), s.plan.faces.size());
+      });
+  module.def("plan_scan", &planned, nb::arg("part"), nb::arg("machine"), nb::kw_only(),
+             nb::arg("position_mm") = Triple{}, nb::arg("turn_deg") = Triple{},
+             nb::arg("beyond_planes_mm") = std::vector<std::array<double, 4>>{}, nb::arg("stage") = nb::none(),
+             nb::arg("along_mm") = 0.5, nb::arg("between_mm") = 0.5, nb::arg("turn_between_deg") = 10.0,
+             nb::arg("crease_deg") = 30.0, nb::arg("largest_angle_deg") = 28.0, nb::arg("range_um") = 400.0,
+             nb::arg("working_distance_mm") = 10.0, nb::arg("probe_radius_mm") = 5.0, nb::arg("probe_length_mm") = 60.0,
+             nb::arg("clearance_mm") = 0.5, nb::arg("linear_speed_mm_per_s") = 10.0,
+             nb::arg("rotary_speed_deg_per_s") = 30.0, nb::arg("readings_per_second") = 100.0,
+             nb::arg("progress") = nb::none(),
+             "Paths of a displacement probe over all faces of a part: `abbe scan plan`.\n\n"
+             "part: a closed Mesh, or a file, frame of the part. position_mm, turn_deg (about x, then y, then z): "
+             "where it stands\n"
+             "in the workpiece frame. beyond_planes_mm: [(nx, ny, nz, d)], only nx x + ny y + nz z >= d is scanned. "
+             "stage: a Mesh\n"
+             "or a file of what turns with the part, workpiece frame. along_mm, between_mm: distances of points and of "
+             "lines.\n"
+             "turn_between_deg: largest turn of the normal from point to point. crease_deg: faces end where triangles "
+             "meet at\n"
+             "more. largest_angle_deg: between beam and normal. range_um of the probe about its middle; "
+             "working_distance_mm from\n"
+             "the point to the probe, a rod of probe_radius_mm and probe_length_mm that keeps clearance_mm. progress: "
+             "a function\n"
+             "of the step, what is done and its total. Raises InputError, Stopped. Method: docs/scan.md.");
+}
+
+}  // namespace abbe::python
