@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nanobind/ndarray.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 
 #include "abbe/formats/text/input_error.h"
