@@ -13,6 +13,7 @@
 #   make lint      formatting, structure and static analysis
 #   make format    rewrite the sources in the project's format
 #   make bench     speed and accuracy benchmarks
+#   make bench-python  speed of the Python package beside C++, NumPy and other packages
 #   make fuzz      fuzz every reader for FUZZ_SECONDS (default 60) each
 #   make coverage  line coverage of the quick tests
 #   make package   Debian packages and the tarball for any Linux: build/packages
@@ -23,7 +24,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo closed-loop test sanitize python site unit quick lint format bench fuzz coverage package package-test install install-linuxcnc clean
+.PHONY: build demo closed-loop test sanitize python site unit quick lint format bench bench-python fuzz coverage package package-test install install-linuxcnc clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
@@ -142,6 +143,14 @@ bench:
 	@for program in closest_point compensated_inverse fits forward_pose five_instruments identification identification_memory nc_program planning \
 	  polygon_trace program_correction read_csv read_mesh registration runtime_call scan_points; do \
 	  echo "== $$program"; build/bench/bin/$$program; done
+	@if [ "$(ABBE_PYTHON)" = ON ] && [ -x build/python-venv/bin/python ]; then $(MAKE) --no-print-directory bench-python; fi
+
+bench-python:
+	@.ci/set-up build python
+	@.ci/build --target abbe_python_bench --expect $(BUILD_MINUTES) "make $@ builds the Python package" release -DABBE_PYTHON=ON \
+	  -DPython_EXECUTABLE=$(CURDIR)/build/python-venv/bin/python
+	@venv=build/python-venv; if .ci/bench-venv; then venv=build/bench-venv; fi; \
+	  PYTHONPATH=build/release/python $$venv/bin/python benchmarks/python/run.py --json build/bench-python.json
 
 fuzz:
 	@.ci/set-up fuzz
