@@ -21,6 +21,8 @@ def same_bytes(paper, folder):
     assert made.files == sorted(path.as_posix() for path in theirs if not path.name.startswith("."))
 
 
-@pytest.mark.parametrize("paper", ["aguado", "ma", "wang", "yin"])
+# Package and command start the same program: two studies show that what is asked of it is the same. The command's tests
+# recompute all five.
+@pytest.mark.parametrize("paper", ["ma", "wang"])
 def test_a_published_study_is_that_of_the_command(paper, tmp_path):
     same_bytes(paper, tmp_path)
