@@ -36,7 +36,7 @@ NcProgramOptions gcode_text_options(const GcodeOptions& options, const Machine& 
 }
 
 ProgramLimits gcode_limits(const GcodeOptions& options, std::size_t size) {
-  const ProgramLimits usual = usual_program_limits(size);
+  const ProgramLimits usual = default_program_limits(size);
   return {options.max_output_mb.value_or(usual.megabytes), options.max_minutes.value_or(usual.minutes)};
 }
 

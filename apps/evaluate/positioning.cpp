@@ -1,4 +1,5 @@
-#include <array>
+#include <cstddef>
+#include <vector>
 
 #include "command.h"
 #include "evaluate/evaluate.h"
@@ -9,7 +10,8 @@ namespace {
 
 struct PositioningCommand {
   EvaluationOptions options;
-  std::array<double, 15> contributions{};  ///< positioning_contributions() in the units of their names
+  /// Those of positioning_contributions() in the units of their options.
+  std::vector<double> contributions = std::vector<double>(positioning_contributions().size());
 };
 
 int run(const PositioningCommand& command) {

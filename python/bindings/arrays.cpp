@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <new>
 #include <type_traits>
 #include <utility>
@@ -108,6 +109,17 @@ PositionArrays Positions::block(std::size_t first, std::size_t count, Block& mem
   return {{memory.axis.data(), axes_}, count};
 }
 
+bool Positions::overlaps(const double* memory, std::size_t size) const {
+  if (count_ == 0) return false;
+  const double *first = array_.data(), *last = first;
+  const auto widen = [&](std::int64_t step, std::size_t count) {
+    (step < 0 ? first : last) += step * static_cast<std::int64_t>(count - 1);
+  };
+  widen(axis_step_, axes_);
+  widen(pose_step_, count_);
+  return memory <= last && first < memory + size;
+}
+
 PoseList Positions::list() const {
   PoseList list;
   list.axis.assign(axes_, std::vector<double>(count_));
@@ -205,9 +217,9 @@ nb::object array_of_vector(NumberType type, std::vector<Number>&& values, std::s
     std::copy(values.begin(), values.end(), static_cast<Number*>(array_data(array)));
     return array;
   }
-  auto* kept = new std::vector<Number>(std::move(values));
-  const nb::capsule owner(kept, [](void* memory) noexcept { delete static_cast<std::vector<Number>*>(memory); });
-  return new_array(type, shape, {}, kept->data(), owner);
+  auto kept = std::make_unique<std::vector<Number>>(std::move(values));
+  const nb::capsule owner(kept.get(), [](void* memory) noexcept { delete static_cast<std::vector<Number>*>(memory); });
+  return new_array(type, shape, {}, kept.release()->data(), owner);
 }
 
 }  // namespace

@@ -50,6 +50,8 @@ class Positions {
   PositionArrays block(std::size_t first, std::size_t count, Block& memory) const;
   /// All of them, copied. @throws InputError for numbers that are not finite
   PoseList list() const;
+  /// Whether memory of `size` numbers lies between the first and the last of these numbers, in whole or in part.
+  bool overlaps(const double* memory, std::size_t size) const;
 
  private:
   bool columns_are_contiguous() const { return pose_step_ == 1 || count_ == 1; }

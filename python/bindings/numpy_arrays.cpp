@@ -12,7 +12,7 @@
 namespace abbe::python {
 namespace {
 
-constexpr std::size_t kLargestDimension = 4;
+constexpr std::size_t kMostDimensions = 4;
 
 int number_of(NumberType type) {
   switch (type) {
@@ -26,12 +26,12 @@ int number_of(NumberType type) {
   return NPY_DOUBLE;
 }
 
-PyArrayObject* array_of(nb::handle source) { return reinterpret_cast<PyArrayObject*>(source.ptr()); }
+PyArrayObject* numpy_array(nb::handle source) { return reinterpret_cast<PyArrayObject*>(source.ptr()); }
 
 /// Whether it is an array of that type in the processor's byte order, at aligned addresses.
 bool is_array_of(nb::handle source, NumberType type) {
-  return PyArray_CheckExact(source.ptr()) && PyArray_TYPE(array_of(source)) == number_of(type) &&
-         PyArray_ISALIGNED(array_of(source)) && PyArray_ISNOTSWAPPED(array_of(source));
+  return PyArray_CheckExact(source.ptr()) && PyArray_TYPE(numpy_array(source)) == number_of(type) &&
+         PyArray_ISALIGNED(numpy_array(source)) && PyArray_ISNOTSWAPPED(numpy_array(source));
 }
 
 }  // namespace
@@ -42,9 +42,9 @@ void load_numpy() {
 
 nb::object new_array(NumberType type, std::span<const std::size_t> sizes, std::span<const std::int64_t> steps,
                      void* data, nb::handle owner) {
-  if (sizes.size() > kLargestDimension) throw std::invalid_argument("an array of too many dimensions");
+  if (sizes.size() > kMostDimensions) throw std::invalid_argument("an array with too many dimensions");
   PyArray_Descr* const numbers = PyArray_DescrFromType(number_of(type));  // is taken over by the array
-  std::array<npy_intp, kLargestDimension> size{}, step{};
+  std::array<npy_intp, kMostDimensions> size{}, step{};
   std::transform(sizes.begin(), sizes.end(), size.begin(), [](std::size_t n) { return static_cast<npy_intp>(n); });
   std::transform(steps.begin(), steps.end(), step.begin(), [&](std::int64_t n) {
     return static_cast<npy_intp>(n) * static_cast<npy_intp>(PyDataType_ELSIZE(numbers));
@@ -53,16 +53,16 @@ nb::object new_array(NumberType type, std::span<const std::size_t> sizes, std::s
                                                           size.data(), steps.empty() ? nullptr : step.data(), data,
                                                           data ? NPY_ARRAY_WRITEABLE : 0, nullptr));
   if (!array.is_valid()) throw nb::python_error();
-  if (data && PyArray_SetBaseObject(array_of(array), owner.inc_ref().ptr()) != 0) throw nb::python_error();
+  if (data && PyArray_SetBaseObject(numpy_array(array), owner.inc_ref().ptr()) != 0) throw nb::python_error();
   return array;
 }
 
-void* array_data(nb::handle array) { return PyArray_DATA(array_of(array)); }
+void* array_data(nb::handle array) { return PyArray_DATA(numpy_array(array)); }
 
 void* memory_of(nb::handle source, NumberType type, std::span<const std::size_t> sizes,
                 std::span<const std::int64_t> steps) {
   if (!is_array_of(source, type)) return nullptr;
-  PyArrayObject* const array = array_of(source);
+  PyArrayObject* const array = numpy_array(source);
   if (!PyArray_ISWRITEABLE(array) || static_cast<std::size_t>(PyArray_NDIM(array)) != sizes.size()) return nullptr;
   for (int i = 0; i < PyArray_NDIM(array); ++i) {
     const std::size_t size = sizes[static_cast<std::size_t>(i)];
@@ -75,7 +75,7 @@ void* memory_of(nb::handle source, NumberType type, std::span<const std::size_t>
 
 bool Numbers::take(nb::handle source) {
   if (!is_array_of(source, NumberType::float64)) return false;
-  PyArrayObject* const array = array_of(source);
+  PyArrayObject* const array = numpy_array(source);
   for (int i = 0; i < PyArray_NDIM(array); ++i) {
     if (PyArray_STRIDE(array, i) % static_cast<npy_intp>(sizeof(double)) != 0) return false;
   }

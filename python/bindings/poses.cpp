@@ -2,6 +2,8 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <vector>
+
 #include "abbe/errors/pose_model.h"
 #include "abbe/formats/text/input_error.h"
 #include "bindings/arrays.h"
@@ -69,23 +71,33 @@ void fill_poses(const PoseModel& model, const Positions& positions, bool nominal
                    fmt::format("{} for {} poses, to be written over", expected, positions.count()));
 }
 
-/// Numbers of [n, parts...] as these functions give them.
-double* memory_of_columns(nb::handle array, std::size_t count, std::initializer_list<std::size_t> shape,
+/// Memory of an array [n, shape...] laid out as these functions return it; null if it is no such array.
+/// @param parts  from one number of a pose to the next along each dimension of the shape, in numbers of a pose
+/// @throws InputError if it overlaps the commands, which would be written over before they are read
+double* memory_of_columns(nb::handle array, const Positions& positions, std::initializer_list<std::size_t> shape,
                           std::initializer_list<std::size_t> parts) {
+  const std::size_t count = positions.count();
   std::vector<std::size_t> sizes{count};
   std::vector<std::int64_t> steps{1};
   sizes.insert(sizes.end(), shape);
   for (const std::size_t part : parts) steps.push_back(static_cast<std::int64_t>(part * count));
-  return static_cast<double*>(memory_of(array, NumberType::float64, sizes, steps));
+  auto* const memory = static_cast<double*>(memory_of(array, NumberType::float64, sizes, steps));
+  std::size_t size = 1;
+  for (const std::size_t n : sizes) size *= n;
+  if (memory && positions.overlaps(memory, size)) {
+    throw InputError({.field = "out"}, "shares memory with positions_mm_rad", "memory of its own");
+  }
+  return memory;
 }
 
 void fill_out(const PoseModel& model, const Positions& positions, bool nominal, const Poses& out) {
   const std::size_t count = positions.count();
   const std::int64_t one = 1;
-  double* point = memory_of_columns(out.points_mm, count, {3}, {1});
-  double* rotation = memory_of_columns(out.rotations, count, {3, 3}, {3, 1});
+  double* point = memory_of_columns(out.points_mm, positions, {3}, {1});
+  double* rotation = memory_of_columns(out.rotations, positions, {3, 3}, {3, 1});
   void* covered = nominal ? nullptr : memory_of(out.covered, NumberType::bool8, {&count, 1}, {&one, 1});
-  if (positions.single() || !point || !rotation || (!nominal && !covered)) {
+  const bool has_coverage = nominal ? out.covered.is_none() : covered != nullptr;
+  if (positions.single() || !point || !rotation || !has_coverage) {
     refuse_out(positions, nominal ? "poses of nominal_poses()" : "poses of poses()");
   }
   fill_poses(model, positions, nominal, point, rotation, static_cast<std::uint8_t*>(covered));
@@ -114,7 +126,7 @@ nb::object points_of(const PoseModel& model, const ArrayLike& argument, const st
     for_blocks(positions, [&](PositionArrays block, std::size_t first) { model.poses(block, from(to, first)); });
   };
   if (out) {
-    double* memory = memory_of_columns(out->source, positions.count(), {3}, {1});
+    double* memory = memory_of_columns(out->source, positions, {3}, {1});
     if (!memory || positions.single()) refuse_out(positions, "an array (n, 3) of float64 in Fortran order");
     fill(points(memory, positions.count()));
     return nb::borrow(out->source);

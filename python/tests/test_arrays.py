@@ -61,6 +61,8 @@ def test_poses_are_not_written_into_others():
         MODEL.poses(commands(5), out=MODEL.poses(commands(6)))
     with pytest.raises(abbe.InputError, match="out: has another shape or order; expected poses of poses"):
         MODEL.poses(commands(5), out=MODEL.nominal_poses(commands(5)))  # which state no coverage
+    with pytest.raises(abbe.InputError, match="out: has another shape or order"):
+        MODEL.nominal_poses(commands(5), out=MODEL.poses(commands(5)))  # whose coverage would be that of other poses
     with pytest.raises(abbe.InputError, match="out: is given for a single pose"):
         MODEL.poses(commands(1)[0], out=MODEL.poses(commands(1)[0]))
     with pytest.raises(abbe.InputError, match="out: is given for a single pose"):
@@ -71,6 +73,21 @@ def test_poses_are_not_written_into_others():
         MODEL.poses(commands(5), out=frozen)
     with pytest.raises(TypeError):
         MODEL.poses(commands(5), out=numpy.empty((5, 3)))
+
+
+@pytest.mark.parametrize("count", [5, 20_000])
+@pytest.mark.parametrize("place", ["first", "last", "same"])
+def test_commands_are_not_written_over(count, place):
+    memory = numpy.zeros(11 * count)
+    q, before = memory[3 * count:7 * count].reshape((count, 4), order="F"), commands(count)
+    q[:] = before
+    # The last number of `out` is the first command, or the first is the last command, or both begin together.
+    start = {"first": 1, "last": 7 * count - 1, "same": 3 * count}[place]
+    with pytest.raises(abbe.InputError, match="out: shares memory with positions_mm_rad"):
+        MODEL.points(q, out=memory[start:start + 3 * count].reshape((count, 3), order="F"))
+    assert numpy.array_equal(q, before)
+    beside = memory[7 * count:10 * count].reshape((count, 3), order="F")
+    assert numpy.array_equal(MODEL.points(q, out=beside), MODEL.points(before))
 
 
 @pytest.mark.parametrize("order", ["C", "F"])

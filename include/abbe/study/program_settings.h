@@ -36,6 +36,6 @@ void set_program_start(const Machine& machine, const WordAxes& words, const Held
 AllowedProblems allowed_problems(std::span<const std::string> names);
 
 /// Limits that every useful program keeps. @param size  of the program, bytes
-ProgramLimits usual_program_limits(std::size_t size);
+ProgramLimits default_program_limits(std::size_t size);
 
 }  // namespace abbe

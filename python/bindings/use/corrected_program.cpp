@@ -93,7 +93,7 @@ ProgramRequest request_of(const MachineErrors& errors, const std::string& progra
 
 /// The limits of the command: what a program of that size can become and take.
 ProgramLimits limits(const ProgramArguments& given, std::size_t size) {
-  const ProgramLimits usual = usual_program_limits(size);
+  const ProgramLimits usual = default_program_limits(size);
   return {given.max_output_mb.value_or(usual.megabytes), given.max_minutes.value_or(usual.minutes)};
 }
 

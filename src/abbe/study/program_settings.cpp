@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <utility>
+#include <algorithm>
+#include <array>
 
 #include "abbe/formats/nc/path_program.h"
 #include "abbe/formats/text/input_error.h"
@@ -11,7 +12,29 @@
 namespace abbe {
 namespace {
 
-bool is_rotary_word(std::size_t word) { return word >= 3 && word < 6; }
+struct NamedProblem {
+  const char* name;
+  bool AllowedProblems::*allowed;
+};
+
+constexpr auto kNamedProblems = std::to_array<NamedProblem>({
+    {"not-covered", &AllowedProblems::not_covered},
+    {"outside-travel", &AllowedProblems::outside_travel},
+    {"held-start", &AllowedProblems::held_start},
+    {"position-left", &AllowedProblems::position_left},
+    {"not-converged", &AllowedProblems::not_converged},
+    {"not-proven", &AllowedProblems::not_proven},
+});
+
+/// "a, b or c"
+std::string names_of_problems() {
+  std::string names;
+  for (const NamedProblem& problem : kNamedProblems) {
+    names += &problem == &kNamedProblems.front() ? "" : &problem == &kNamedProblems.back() ? " or " : ", ";
+    names += problem.name;
+  }
+  return names;
+}
 
 }  // namespace
 
@@ -68,23 +91,16 @@ void set_program_start(const Machine& machine, const WordAxes& words, const Held
 
 AllowedProblems allowed_problems(std::span<const std::string> names) {
   AllowedProblems allowed;
-  const std::pair<const char*, bool*> all[] = {
-      {"not-covered", &allowed.not_covered},     {"outside-travel", &allowed.outside_travel},
-      {"held-start", &allowed.held_start},       {"position-left", &allowed.position_left},
-      {"not-converged", &allowed.not_converged}, {"not-proven", &allowed.not_proven}};
   for (const std::string& name : names) {
-    bool known = false;
-    for (const auto& [text, flag] : all) {
-      if (name == text) *flag = known = true;
-    }
-    if (known) continue;
-    throw InputError({.field = "--allow " + name}, "unknown",
-                     "not-covered, outside-travel, held-start, position-left, not-converged or not-proven");
+    const auto* const found = std::find_if(kNamedProblems.begin(), kNamedProblems.end(),
+                                           [&](const NamedProblem& problem) { return name == problem.name; });
+    if (found == kNamedProblems.end()) throw InputError({.field = "--allow " + name}, "unknown", names_of_problems());
+    allowed.*found->allowed = true;
   }
   return allowed;
 }
 
-ProgramLimits usual_program_limits(std::size_t size) {
+ProgramLimits default_program_limits(std::size_t size) {
   const double megabytes = 1e-6 * static_cast<double>(size);
   return {200 + 20 * megabytes, 5 + 0.1 * megabytes};
 }

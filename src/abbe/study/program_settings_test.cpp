@@ -72,10 +72,10 @@ TEST(ProblemsThatAreAllowed, AreFoundByTheirNames) {
 }
 
 TEST(UsualLimitsOfAProgram, GrowWithItsSize) {
-  EXPECT_EQ(usual_program_limits(0).megabytes, 200);
-  EXPECT_EQ(usual_program_limits(0).minutes, 5);
-  EXPECT_EQ(usual_program_limits(10'000'000).megabytes, 400);
-  EXPECT_EQ(usual_program_limits(10'000'000).minutes, 6);
+  EXPECT_EQ(default_program_limits(0).megabytes, 200);
+  EXPECT_EQ(default_program_limits(0).minutes, 5);
+  EXPECT_EQ(default_program_limits(10'000'000).megabytes, 400);
+  EXPECT_EQ(default_program_limits(10'000'000).minutes, 6);
 }
 
 TEST(ErrorsThatAreDistrusted, AreRefusedUnlessThatIsAccepted) {

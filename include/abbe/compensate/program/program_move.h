@@ -12,6 +12,8 @@ namespace abbe {
 /// Words of a program that move an axis, in the order of RS274/NGC.
 enum class AxisWord : std::uint8_t { X, Y, Z, A, B, C, U, V, W };
 inline constexpr std::size_t kAxisWords = 9;
+/// Whether the axis word with this index is A, B or C, those of rotary axes.
+inline constexpr bool is_rotary_word(std::size_t word) { return word >= 3 && word <= 5; }
 
 /// One value per axis word; mm, or rad for A B C.
 using WordValues = std::array<double, kAxisWords>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ struct PositioningContribution {
 };
 
 /// All contributions, in the order of the options.
-const std::array<PositioningContribution, 15>& positioning_contributions();
+std::span<const PositioningContribution> positioning_contributions();
 
 /// Positioning along diagonals (ISO 230-6).
 struct DiagonalsTest {

@@ -57,6 +57,7 @@ RotationReadings rotation_of(PlacedTable csv) {
   readings.angle = continued(csv, csv.columns[0]);
   return readings;
 }
+
 }  // namespace
 
 RotationReadings read_rotation(const std::filesystem::path& path) {

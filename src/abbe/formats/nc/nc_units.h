@@ -29,7 +29,4 @@ void for_axes(std::uint32_t words, Take&& take) {
   for (; words != 0; words &= words - 1) take(static_cast<std::size_t>(std::countr_zero(words)));
 }
 
-/// Whether an axis word (see nc_axis()) is of a rotary axis: A, B or C, in degrees in a program.
-inline bool is_rotary_word(std::size_t axis) { return axis >= 3 && axis <= 5; }
-
 }  // namespace abbe

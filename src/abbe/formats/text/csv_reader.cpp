@@ -120,8 +120,10 @@ class RowReader {
     if (target.words != nullptr) {
       if (field.empty()) return refuse(start, target.column->name, "is empty", "a name");
       const std::uint32_t word = word_index(field, target.column->wanted);
-      if (word >= kLargestNameCount)
-        return refuse(start, target.column->name, "too many different names", "at most 1000");
+      if (word >= kLargestNameCount) {
+        return refuse(start, target.column->name, "too many different names",
+                      fmt::format("at most {}", kLargestNameCount));
+      }
       target.words[row] = word;
       return true;
     }

@@ -63,7 +63,8 @@ void enter_words(const NamedColumn& column, CsvValues& values) {
     const auto [entry, is_new] = index.emplace(word, static_cast<std::uint32_t>(values.names.size()));
     if (is_new) values.names.push_back(word);
     if (values.names.size() > kLargestNameCount) {
-      throw InputError({.field = column_field(column, row)}, "too many different names", "at most 1000");
+      throw InputError({.field = column_field(column, row)}, "too many different names",
+                       fmt::format("at most {}", kLargestNameCount));
     }
     values.words.push_back(entry->second);
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "abbe/formats/files/file_name.h"
@@ -51,10 +52,10 @@ std::string plane_of(const CircularTest& test, const std::string& file) {
 
 }  // namespace
 
-const std::array<PositioningContribution, 15>& positioning_contributions() {
+std::span<const PositioningContribution> positioning_contributions() {
   using Known = PositioningUncertaintyInput;
   constexpr auto kLinear = &PositioningTest::linear, kRotary = &PositioningTest::rotary;
-  static constexpr std::array<PositioningContribution, 15> contributions = {{
+  static constexpr auto contributions = std::to_array<PositioningContribution>({
       {"--instrument-um", kLinear, &Known::instrument, 1e-3,
        "Instrument, expanded (k = 2), part that does not grow with the length"},
       {"--instrument-um-per-m", kLinear, &Known::instrument_per_length, 1e-6,
@@ -81,7 +82,7 @@ const std::array<PositioningContribution, 15>& positioning_contributions() {
       {"--environment-um", kLinear, &Known::environmental_variation, 1e-3,
        "E_VE: range of the indication at rest over the duration of a test"},
       {"--environment-arcsec", kRotary, &Known::environmental_variation, kArcsec, "E_VE on a rotary axis"},
-  }};
+  });
   return contributions;
 }
 
