@@ -1,4 +1,4 @@
-// What most bindings include, parsed once (CMakeLists.txt). Every source includes what it needs all the same.
+// What most bindings include, parsed once (CMakeLists.txt). Every source still includes what it needs.
 #pragma once
 
 #include <fmt/format.h>

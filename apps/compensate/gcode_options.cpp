@@ -11,7 +11,7 @@ namespace {
 void read_start(const std::string& text, const Machine& machine, const WordAxes& words, bool tool_centre,
                 NcProgramOptions& options) {
   const std::string name = text.substr(0, text.find('_'));
-  // The axis may have another name than its word.
+  // The name of the axis may differ from its word.
   const std::string of_axis = machine.axes[axis_of_word(words, name, text)].name + text.substr(name.size());
   set_program_start(machine, words, axis_option(machine, "--start", of_axis), tool_centre, text, options);
 }

@@ -166,7 +166,7 @@ def polar(angles_deg: numpy.typing.ArrayLike, deviations_mm: numpy.typing.ArrayL
 
 
 def _polar(curves: Sequence[tuple[str, numpy.ndarray, numpy.ndarray]], title: str, base: float | None = None) -> Figure:
-    """Curves with a name, an angle in rad and deviations in um, about the circle from which they count."""
+    """Curves (name, angles in rad, deviations in um) about the circle from which the deviations are measured."""
     shown = numpy.concatenate([deviations for _, _, deviations in curves])
     spread = float(numpy.ptp(shown)) or 1.0
     middle = 3 * spread - float(shown.min()) if base is None else base
@@ -186,22 +186,22 @@ def _polar(curves: Sequence[tuple[str, numpy.ndarray, numpy.ndarray]], title: st
 
 
 def circular(evaluation: Evaluation, *, title: str = "") -> Figure:
-    """Radial deviations of a circular test (in um) about their centres, one direction over the other."""
+    """Radial deviations of a circular test (in um), both directions, each about its own centre."""
     numbers = evaluation.numbers
     if not isinstance(numbers, CircularNumbers):
-        raise InputError(f"evaluation: is one of {evaluation.kind}; expected one of evaluate_circular()", field="evaluation")
+        raise InputError(f"evaluation: is of {evaluation.kind}; expected one by evaluate_circular()", field="evaluation")
     paths = [(name, path) for name, path in (("clockwise", numbers.clockwise),
                                              ("counter-clockwise", numbers.counterclockwise)) if path.status == "done"]
     if not paths:
-        raise InputError("evaluation: no path has a centre; expected one with figures", field="evaluation")
+        raise InputError("evaluation: no path has a centre; expected at least one that has", field="evaluation")
     return _polar([(f"{name}, G = {1e3 * path.circular_mm:.2f} µm", path.angle_rad, 1e3 * path.deviation_mm)
                    for name, path in paths], title or evaluation.title)
 
 
 def deviations(result: ScanDeviations, *, limits_um: tuple[float, float] | None = None, title: str = "") -> Figure:
-    """How many points of a scan are how far from the part (in um), with limits."""
+    """Histogram of the deviations of a scan from the part (in um), with limits."""
     if not result.has_points:
-        raise InputError("result: no point counts; expected deviations of some", field="result")
+        raise InputError("result: no point counts; expected at least one that does", field="result")
     shown, statistics = 1e3 * result.counted_mm, result.statistics_mm
     with style():
         figure, panel = pyplot.subplots(figsize=(5.2, 2.8))

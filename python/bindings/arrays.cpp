@@ -21,8 +21,8 @@ namespace {
   throw InputError({.field = name}, problem, expected);
 }
 
-/// Whether all numbers are finite: differences of infinities and of what is no number are not zero. Several sums at a
-/// time, because one would wait for itself.
+/// Whether all numbers are finite: x - x is zero unless x is infinite or NaN. Several sums, because the additions to a
+/// single one would wait for each other.
 bool all_finite(const double* values, std::size_t count) {
   constexpr std::size_t kSums = 8;
   std::array<double, kSums> sums{};
@@ -88,11 +88,11 @@ void Positions::refuse_what_is_not_finite() const {
       }
     }
   }
-  refuse(name_, "has changed meanwhile", "an array that is left alone");
+  refuse(name_, "was changed during the call", "an array that is not written to meanwhile");
 }
 
 PositionArrays Positions::block(std::size_t first, std::size_t count, Block& memory) const {
-  // Columns are not a power of two apart, so that they do not share lines of the cache.
+  // The columns are not a power of two apart, so that they do not compete for the same cache lines.
   const std::size_t column_step = std::min(count_, kBlock) + 8;
   if (!columns_are_contiguous()) memory.values.resize(axes_ * column_step);
   for (std::size_t i = 0; i < axes_; ++i) {
@@ -211,7 +211,7 @@ namespace {
 
 template <class Number>
 nb::object array_of_vector(NumberType type, std::vector<Number>&& values, std::span<const std::size_t> shape) {
-  constexpr std::size_t kCopied = 1024;  // bytes: then memory of its own costs more than a copy
+  constexpr std::size_t kCopied = 1024;  // bytes, up to which a copy costs less than memory of its own
   if (values.size() * sizeof(Number) <= kCopied) {
     nb::object array = new_array(type, shape, {});
     std::copy(values.begin(), values.end(), static_cast<Number*>(array_data(array)));

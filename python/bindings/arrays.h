@@ -28,11 +28,11 @@ struct ArrayLike {
   Numbers numbers(const char* name) const;
 };
 
-/// Axis commands of an argument, for a machine that outlives them.
+/// Axis commands of an argument. The machine and `name` must outlive them.
 class Positions {
  public:
-  /// @throws InputError for another number of axes; a few poses are checked here for numbers that are not finite, many
-  ///         of them where they are used, when they are in the cache
+  /// @throws InputError for another number of axes, and for numbers that are not finite: up to kBlock poses are checked
+  ///         here, more of them where they are used, while they are in the cache
   Positions(const ArrayLike& argument, const Machine& machine, const char* name = "positions_mm_rad");
 
   std::size_t count() const { return count_; }
@@ -84,13 +84,13 @@ class Columns {
   Number* operator[](std::size_t part) { return data_ + part * count_; }
   std::size_t count() const { return count_; }
 
-  /// As an array [n, shape...] of Python; without its first index if `single`. Afterwards this object is empty.
+  /// As an array [n, shape...] of Python; without its first index if `single`. To be called once.
   nb::object release(std::initializer_list<std::size_t> shape, bool single);
-  /// The same as an array of bool, of numbers that are 0 or 1.
+  /// The same as an array of bool, [n]; the numbers are 0 or 1.
   nb::object release_bools();
 
  private:
-  static constexpr std::size_t kFew = 16;  ///< numbers: those of a pose
+  static constexpr std::size_t kFew = 16;  ///< numbers, enough for a pose: they are copied
   bool few() const { return data_ == few_.data(); }
   nb::object release_as(NumberType type, std::initializer_list<std::size_t> shape, bool single);
 

@@ -15,7 +15,7 @@ void raise_input_error(const InputError& error) {
     return number == 0 ? nb::none() : nb::object(nb::int_(number));
   };
   const auto text_or_none = [](const std::string& text) -> nb::object {
-    // Names of files are bytes, and need not be UTF-8.
+    // File names are bytes, not necessarily UTF-8.
     return text.empty() ? nb::none() : text_of_bytes(text);
   };
   const nb::object raised = type(text_of_bytes(error.what()), text_or_none(place.file), number_or_none(place.line),

@@ -109,9 +109,8 @@ void bind_inverse(nb::module_& module) {
       nb::arg("hold_mm_rad") = std::map<std::string, double>{},
       "Commands that bring the tool of a machine without errors to targets in the workpiece frame.\n\n"
       "points_mm [n, 3]: functional point. directions [n, 3]: from it to the spindle, of any length; or rotations\n"
-      "[n, 3, 3]: columns are the axes of the tool frame. start_mm_rad [axes] or [n, axes]: the solution nearest to "
-      "it\n"
-      "is taken. hold_mm_rad: axes that are kept at a command. Method: docs/kinematics.md.");
+      "[n, 3, 3]: columns are the axes of the tool frame. start_mm_rad [axes] or [n, axes]: the solution\n"
+      "nearest to it is taken. hold_mm_rad: axes that are kept at a command. Method: docs/kinematics.md.");
 }
 
 }  // namespace abbe::python

@@ -18,23 +18,24 @@ void load_numpy();
 /// A new array. GIL needed.
 /// @param sizes  of each dimension
 /// @param steps  from one element of a dimension to the next, in numbers; empty: C order
-/// @param data   null: memory of NumPy, not initialized; else `owner` keeps it alive as long as the array
+/// @param data   null: memory from NumPy, not initialized; otherwise `owner` keeps it alive as long as the array
 nb::object new_array(NumberType type, std::span<const std::size_t> sizes, std::span<const std::int64_t> steps,
                      void* data = nullptr, nb::handle owner = {});
 
-/// Memory of an array that new_array() has made.
+/// Memory of an array made by new_array().
 void* array_data(nb::handle array);
 
-/// Memory of an array to be written to; null: it is none of this type, these sizes and steps, or read-only.
-/// @param steps  in numbers; of a dimension of one element any will do
+/// Memory of an array to be written to; null if it is not an array of this type, these sizes and steps, or is
+/// read-only.
+/// @param steps  in numbers; that of a dimension with one element does not matter
 void* memory_of(nb::handle array, NumberType type, std::span<const std::size_t> sizes,
                 std::span<const std::int64_t> steps);
 
-/// float64 in the processor's byte order, of any shape; strides are whole numbers. Not to be written to.
+/// float64 in the processor's byte order, of any shape; strides are multiples of 8 bytes. Not to be written to.
 class Numbers {
  public:
   Numbers() = default;
-  /// Takes an array as it is. @return false: it is none, or of another type or layout
+  /// Refers to an array as it is. @return false if it is not an array, or has another type or layout
   bool take(nb::handle source);
 
   std::size_t ndim() const { return dimensions_; }
@@ -48,7 +49,7 @@ class Numbers {
  private:
   nb::object array_;
   std::size_t dimensions_ = 0;
-  const Py_ssize_t *sizes_ = nullptr, *steps_ = nullptr;  ///< in the array
+  const Py_ssize_t *sizes_ = nullptr, *steps_ = nullptr;  ///< of the array, which owns them
   const double* data_ = nullptr;
 };
 

@@ -17,7 +17,7 @@ struct Poses {
   nb::object points_mm, rotations, covered;
 };
 
-/// Where results go: memory of `parts` numbers of each pose, number after number.
+/// Where results go: each number of all poses, one number after the other.
 PointArrays points(double* columns, std::size_t count) { return {columns, columns + count, columns + 2 * count}; }
 
 PointArrays from(PointArrays arrays, std::size_t first) {
@@ -67,8 +67,9 @@ void fill_poses(const PoseModel& model, const Positions& positions, bool nominal
 }
 
 [[noreturn]] void refuse_out(const Positions& positions, const char* expected) {
-  throw InputError({.field = "out"}, positions.single() ? "is given for a single pose" : "has another shape or order",
-                   fmt::format("{} for {} poses, to be written over", expected, positions.count()));
+  throw InputError({.field = "out"},
+                   positions.single() ? "is given for a single pose" : "has another shape or order, or is read-only",
+                   fmt::format("{} for {} commands", expected, positions.count()));
 }
 
 /// Memory of an array [n, shape...] laid out as these functions return it; null if it is no such array.
@@ -98,7 +99,7 @@ void fill_out(const PoseModel& model, const Positions& positions, bool nominal, 
   void* covered = nominal ? nullptr : memory_of(out.covered, NumberType::bool8, {&count, 1}, {&one, 1});
   const bool has_coverage = nominal ? out.covered.is_none() : covered != nullptr;
   if (positions.single() || !point || !rotation || !has_coverage) {
-    refuse_out(positions, nominal ? "poses of nominal_poses()" : "poses of poses()");
+    refuse_out(positions, nominal ? "a result of nominal_poses()" : "a result of poses()");
   }
   fill_poses(model, positions, nominal, point, rotation, static_cast<std::uint8_t*>(covered));
 }
@@ -216,8 +217,9 @@ void bind_poses(nb::module_& module) {
           nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("out").none() = nb::none(),
           nb::sig("def poses(self, positions_mm_rad: numpy.typing.ArrayLike, *, out: Poses | None = None) -> Poses"),
           "Where the tool really is.\n\n"
-          "out: poses of an earlier call with as many commands, which are written over and returned: new memory for a\n"
-          "million poses takes about as long as computing them. When something is refused, they may be half written.")
+          "out: the result of an earlier call with as many commands, which is overwritten and returned: new memory\n"
+          "for a million poses takes about as long as computing them. It must not share memory with the commands.\n"
+          "If the call fails, part of it may be overwritten.")
       .def(
           "nominal_poses",
           [](const PoseModel& model, const ArrayLike& positions, Poses* out) {
@@ -231,7 +233,8 @@ void bind_poses(nb::module_& module) {
            nb::sig("def points(self, positions_mm_rad: numpy.typing.ArrayLike, *, out: numpy.ndarray | None = None) -> "
                    "numpy.ndarray"),
            "The functional point alone, [n, 3], mm: faster than poses().\n\n"
-           "out: an array (n, 3) of float64 in Fortran order, such as an earlier result, which is written over.")
+           "out: an array (n, 3) of float64 in Fortran order, such as an earlier result, which is overwritten and\n"
+           "returned. It must not share memory with the commands.")
       .def("covered", &covered_of, nb::arg("positions_mm_rad"),
            nb::sig("def covered(self, positions_mm_rad: numpy.typing.ArrayLike) -> numpy.ndarray | bool"),
            "[n] false where a command lies outside the range of an error motion.")

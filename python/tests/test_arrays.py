@@ -59,7 +59,7 @@ def test_points_are_not_written_into_anything_else(out):
 def test_poses_are_not_written_into_others():
     with pytest.raises(abbe.InputError, match="out: has another shape or order"):
         MODEL.poses(commands(5), out=MODEL.poses(commands(6)))
-    with pytest.raises(abbe.InputError, match="out: has another shape or order; expected poses of poses"):
+    with pytest.raises(abbe.InputError, match="out: has another shape or order, or is read-only; expected a result of poses"):
         MODEL.poses(commands(5), out=MODEL.nominal_poses(commands(5)))  # which state no coverage
     with pytest.raises(abbe.InputError, match="out: has another shape or order"):
         MODEL.nominal_poses(commands(5), out=MODEL.poses(commands(5)))  # whose coverage would be that of other poses

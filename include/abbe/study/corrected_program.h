@@ -44,8 +44,8 @@ struct ProgramRequest {
 /// @param program  its text
 /// @param write    takes the corrected program piece by piece; it is only good if nothing is refused in the end
 /// @param done     told how many bytes of the program are dealt with and not looked at again
-/// @param stop     looked at every few moves
-/// @throws Stopped if `stop` asks for it
+/// @param stop     checked every few moves
+/// @throws Stopped if `stop` was requested
 /// @throws InputError for numbers of the request that are out of range, errors that cannot be corrected on this
 ///   machine, what the program says that is not understood, and tool centre moves for which the machine has no solution
 CorrectedProgram correct_program(const ProgramRequest& request, std::string_view program,

@@ -50,10 +50,13 @@ struct ScanRequest {
   ScanPlanOptions scan;   ///< its `progress` is set here
 };
 
-/// Where a part stands in the workpiece frame. @param turn_deg  about x, then y, then z
+/// Workpiece from part.
+/// @param position_mm  origin of the part in the workpiece frame
+/// @param turn_deg     about x, then y, then z, as rotation_from_error_angles()
 RigidTransform part_placement(const Eigen::Vector3d& position_mm, const Eigen::Vector3d& turn_deg);
-/// What lies beyond a plane. @param plane  nx, ny, nz, d: nx x + ny y + nz z >= d, mm, the normal of any length
-/// @throws InputError naming --beyond-plane-mm for a normal without a length
+/// The half-space beyond a plane.
+/// @param plane  nx, ny, nz, d: nx x + ny y + nz z >= d; d in mm for a unit normal, which may be of any length
+/// @throws InputError naming --beyond-plane-mm for a normal of no length and for numbers that are not finite
 HalfSpace beyond_plane(const std::array<double, 4>& plane);
 
 /// A planned scan. It needs nothing of the request that it answers.

@@ -13,29 +13,31 @@
 
 namespace abbe {
 
-// Settings of a ProgramRequest as people give them. Messages name the options of `abbe compensate gcode`.
+// Settings of a ProgramRequest as users state them. Messages name the options of `abbe compensate gcode`.
 
-/// Axes of the program's words: by the letters of their names, unless `texts` gives another, such as "C1=C".
+/// The axes that the program's words move: those of the same name, unless `texts` states another word, as in "C1=C".
 /// @param machine_file  for messages
-/// @throws InputError if an axis does not exist or has a word of another kind, and if no axis has a word
+/// @throws InputError if an axis does not exist, if its word is for the other kind of axis, and if no axis has a word
 WordAxes program_word_axes(const Machine& machine, const std::vector<std::string>& texts,
                            const std::string& machine_file = "");
 
-/// The axis of a word, "X", "C": its index in the machine. @param text  what was given, for messages: "X_mm=100"
-/// @throws InputError if no axis has it
+/// The axis that a word, such as "C", moves: its index in the machine.
+/// @param text  what the user stated, for messages: "X_mm=100"
+/// @throws InputError if no axis has that word
 std::size_t axis_of_word(const WordAxes& words, const std::string& word, const std::string& text);
 
-/// States where an axis stands when the program begins.
-/// @param tool_centre  X Y Z are not positions of axes and may lie outside the travel of these
-/// @param text         what was given, for messages
+/// Sets where an axis stands when the program begins.
+/// @param start        its index and its position, mm or rad
+/// @param tool_centre  X Y Z are the functional point, which may lie outside the travel of the axes X Y Z
+/// @param text         what the user stated, for messages: "X_mm=100"
 /// @throws InputError if the position lies outside the axis's travel
 void set_program_start(const Machine& machine, const WordAxes& words, const HeldAxis& start, bool tool_centre,
                        const std::string& text, NcProgramOptions& options);
 
-/// Problems by their names, "not-covered" and so on. @throws InputError for another name
+/// Problems by their names for --allow, such as "not-covered". @throws InputError for any other name
 AllowedProblems allowed_problems(std::span<const std::string> names);
 
-/// Limits that every useful program keeps. @param size  of the program, bytes
+/// Limits unless others are stated; any useful program stays within them. @param size  of the program, bytes
 ProgramLimits default_program_limits(std::size_t size);
 
 }  // namespace abbe

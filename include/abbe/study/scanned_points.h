@@ -60,9 +60,10 @@ struct ScannedPointsRequest {
   ScanOptions scan;      ///< columns, travel, decimals, threads; range of indications and progress are set here
 };
 
-/// The beam of a probe on a machine. @param direction  towards the part, of any length; else against the tool's
-/// direction
-/// @throws InputError for a beam that has no direction or no place
+/// The beam of a displacement probe on a machine.
+/// @param zero       where the indication is zero: from the gauge point, mm, tool frame
+/// @param direction  towards the part, of any length, tool frame; without it, opposite to the tool direction
+/// @throws InputError naming --beam-zero-mm or --beam for numbers that are not finite and a direction of no length
 ProbeBeam probe_beam(const Machine& machine, const Eigen::Vector3d& zero,
                      const std::optional<Eigen::Vector3d>& direction = std::nullopt);
 

@@ -30,7 +30,7 @@ void set_start(const Machine& machine, const WordAxes& words, const AxisPosition
   naming_arguments([&] {
     for (const auto& [key, position] : start) {
       const std::string word = key.substr(0, key.rfind('_'));
-      // The axis may have another name than its word.
+      // The name of the axis may differ from its word.
       const std::string of_axis = machine.axes[axis_of_word(words, word, key)].name + key.substr(word.size());
       for (const HeldAxis& held : axis_positions(machine, "start", {{of_axis, position}})) {
         set_program_start(machine, words, held, tool_centre, key, options);

@@ -51,7 +51,7 @@ WordAxes program_word_axes(const Machine& machine, const std::vector<std::string
       const bool rotary = machine.axes[axis].kind == AxisKind::rotary;
       if (rotary != is_rotary_word(i)) {
         throw InputError({.field = "--word"},
-                         fmt::format("axis {} is {}, its word {} is not", machine.axes[axis].name,
+                         fmt::format("axis {} is {}, but its word {} is not", machine.axes[axis].name,
                                      rotary ? "rotary" : "linear", word),
                          "A, B or C for rotary axes, X, Y, Z, U, V or W for linear ones");
       }
@@ -60,7 +60,8 @@ WordAxes program_word_axes(const Machine& machine, const std::vector<std::string
     }
   }
   if (!any) {
-    throw InputError({.file = machine_file}, "no axis has a word of programs", "--word AXIS=WORD, such as --word C1=C");
+    throw InputError({.file = machine_file}, "no axis of the machine has a program word",
+                     "--word AXIS=WORD, such as --word C1=C");
   }
   return words;
 }
@@ -69,7 +70,7 @@ std::size_t axis_of_word(const WordAxes& words, const std::string& word, const s
   for (std::size_t i = 0; i < kAxisWords; ++i) {
     if (word == axis_word_text(static_cast<AxisWord>(i)) && words.axis[i] != Machine::npos) return words.axis[i];
   }
-  throw InputError({.field = "--start " + text}, fmt::format("'{}' is not a word of an axis of the machine", word),
+  throw InputError({.field = "--start " + text}, fmt::format("no axis of the machine has the word '{}'", word),
                    "WORD_unit=position, such as X_mm=100 or C_deg=30");
 }
 

@@ -24,12 +24,13 @@ TEST(ProgramWordAxes, AreThoseOfTheNamesUnlessOthersAreGiven) {
   const WordAxes other = program_word_axes(machine, {"C=B"});
   EXPECT_EQ(other.of(AxisWord::B), machine.find_axis("C"));
   EXPECT_EQ(other.of(AxisWord::C), Machine::npos);
-  EXPECT_EQ(message_of([&] { program_word_axes(machine, {"C=V"}); }),
-            "--word: axis C is rotary, its word V is not; expected A, B or C for rotary axes, X, Y, Z, U, V or W for "
-            "linear ones");
+  EXPECT_EQ(
+      message_of([&] { program_word_axes(machine, {"C=V"}); }),
+      "--word: axis C is rotary, but its word V is not; expected A, B or C for rotary axes, X, Y, Z, U, V or W for "
+      "linear ones");
   for (std::size_t i = 0; i < machine.axes.size(); ++i) machine.axes[i].name += "1";
   EXPECT_EQ(message_of([&] { program_word_axes(machine, {}, "m.toml"); }),
-            "m.toml: no axis has a word of programs; expected --word AXIS=WORD, such as --word C1=C");
+            "m.toml: no axis of the machine has a program word; expected --word AXIS=WORD, such as --word C1=C");
 }
 
 TEST(ProgramStart, IsThatOfTheAxisOfTheWord) {
@@ -40,7 +41,7 @@ TEST(ProgramStart, IsThatOfTheAxisOfTheWord) {
   set_program_start(machine, words, {c, 30 * kDegree}, false, "B_deg=30", options);
   EXPECT_EQ(options.start[static_cast<std::size_t>(AxisWord::B)], 30 * kDegree);
   EXPECT_EQ(message_of([&] { axis_of_word(words, "C", "C_deg=30"); }),
-            "--start C_deg=30: 'C' is not a word of an axis of the machine; expected WORD_unit=position, such as "
+            "--start C_deg=30: no axis of the machine has the word 'C'; expected WORD_unit=position, such as "
             "X_mm=100 or C_deg=30");
 }
 

@@ -22,7 +22,7 @@ class ProgramBudget {
   };
   static constexpr std::size_t kMostPieces = 2'000'000;
 
-  /// @param stop  looked at whenever the budget is
+  /// @param stop  checked whenever the budget is
   ProgramBudget(std::size_t most_bytes, double most_seconds, std::stop_token stop = {})
       : most_bytes_(most_bytes),
         most_seconds_(most_seconds),
@@ -32,7 +32,7 @@ class ProgramBudget {
   void wrote(std::size_t bytes) { bytes_ += bytes; }
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
   /// @param pieces  of moves that are corrected together, not yet written
-  /// @throws Stopped if that was asked for
+  /// @throws Stopped if `stop` was requested
   Spent spent(std::size_t pieces = 0) const {
     stop_if_asked(stop_);
     if (bytes_ > most_bytes_) return Spent::bytes;

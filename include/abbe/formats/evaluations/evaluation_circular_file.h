@@ -25,7 +25,7 @@ struct CircularFile {
 CircularFile read_circular(const std::filesystem::path& path, double nominal_radius);
 /// The same from text. @param file  name for messages
 CircularFile parse_circular(std::string_view text, const std::string& file, double nominal_radius);
-/// The same from columns of a program, named with their units as in a file. @throws InputError
+/// The same from columns in memory, named with their units as in a file. @throws InputError
 CircularFile parse_circular(const NamedColumns& columns, double nominal_radius);
 
 }  // namespace abbe

@@ -25,7 +25,7 @@ inline constexpr double kNearlySamePosition = 1e-6;
 LineReadings read_straightness(const std::filesystem::path& path);
 /// The same from text. @param file  name for messages
 LineReadings parse_straightness(std::string_view text, const std::string& file);
-/// The same from columns of a program, named with their units as in a file. @throws InputError
+/// The same from columns in memory, named with their units as in a file. @throws InputError
 LineReadings parse_straightness(const NamedColumns& columns);
 
 /// Reads a CSV of squareness: the same with a column `line` that names two lines; the first named one is the reference.

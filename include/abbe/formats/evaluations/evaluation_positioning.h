@@ -25,7 +25,7 @@ struct PositioningFile {
 PositioningFile read_positioning(const std::filesystem::path& path);
 /// The same from text. @param file  name for messages
 PositioningFile parse_positioning(std::string_view text, const std::string& file);
-/// The same from columns of a program, named with their units as in a file. @throws InputError
+/// The same from columns in memory, named with their units as in a file. @throws InputError
 PositioningFile parse_positioning(const NamedColumns& columns);
 
 /// Reads displacements along diagonals: the same columns in lengths, and `diagonal` with the name of the diagonal.

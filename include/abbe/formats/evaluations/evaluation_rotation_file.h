@@ -17,7 +17,7 @@ namespace abbe {
 RotationReadings read_rotation(const std::filesystem::path& path);
 /// The same from text. @param file  name for messages
 RotationReadings parse_rotation(std::string_view text, const std::string& file);
-/// The same from columns of a program, named with their units as in a file. @throws InputError
+/// The same from columns in memory, named with their units as in a file. @throws InputError
 RotationReadings parse_rotation(const NamedColumns& columns);
 
 }  // namespace abbe

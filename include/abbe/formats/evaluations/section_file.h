@@ -15,7 +15,7 @@ namespace abbe {
 std::vector<SectionReadings> read_sections(const std::filesystem::path& path);
 /// The same from text. @param file  name for messages
 std::vector<SectionReadings> parse_sections(std::string_view text, const std::string& file);
-/// The same from columns of a program, named with their units as in a file. @throws InputError
+/// The same from columns in memory, named with their units as in a file. @throws InputError
 std::vector<SectionReadings> parse_sections(const NamedColumns& columns);
 
 /// The file; coordinates to a nanometre. What is optional is stated by all sections or by none.

@@ -26,9 +26,9 @@ struct ErrorsFile {
   std::vector<std::string> warnings{};    ///< what else the identification had to say
 };
 
-/// Errors that are going to correct something must be trusted, or be used knowingly.
+/// Refuses to correct with errors that are not to be trusted, unless their user knows it.
 /// @param path  of their file, for messages
-/// @throws InputError if they are marked as not to be trusted and neither their file nor the caller accepts that
+/// @throws InputError if they are marked as not to be trusted and neither the file nor the caller accepts that
 void require_trusted(const ErrorsFile& file, const std::string& path, bool accept_misfit);
 
 /// Whether these errors are said to be the truth of a simulation.

@@ -16,7 +16,7 @@ namespace abbe {
 LinkageReadings read_linkage(const std::filesystem::path& path);
 /// The same from text. @param file  name for messages
 LinkageReadings parse_linkage(std::string_view text, const std::string& file);
-/// The same from columns of a program, named with their units as in a file. @throws InputError
+/// The same from columns in memory, named with their units as in a file. @throws InputError
 LinkageReadings parse_linkage(const NamedColumns& columns);
 
 /// Text of such a file, exact.

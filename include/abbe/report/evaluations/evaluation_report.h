@@ -70,11 +70,12 @@ struct EvaluationFigure {
   bool exceeds_tolerance() const { return tolerance && (!value || std::abs(*value) > *tolerance); }
   /// Within the uncertainty of its tolerance: neither conformity nor nonconformity is proven (ISO 14253-1).
   bool is_undecided() const;
-  /// "within", "exceeded, not proven", "cannot be judged"; empty without a tolerance.
+  /// "within" or "exceeded", with ", not proven" if undecided; "cannot be judged" without a value; empty without a
+  /// tolerance.
   std::string verdict() const;
 };
 
-/// A value in the unit in which the figure is shown, without the last digits that the conversion makes up.
+/// A value in the unit in which the figure is shown, rounded to 1e-9 so that the conversion adds no spurious digits.
 double figure_number(const EvaluationFigure& figure, double value);
 /// Text of a value in the unit in which the figure is shown, with its decimals: "12.34".
 std::string figure_text(const EvaluationFigure& figure, double value);

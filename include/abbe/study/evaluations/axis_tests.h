@@ -31,13 +31,13 @@ struct PositioningTest {
   PositioningUncertaintyInput linear, rotary;
 };
 
-/// How a contribution to the uncertainty of a positioning test is called.
+/// A contribution to the uncertainty of a positioning test, as a user states it.
 struct PositioningContribution {
   const char* option;                                  ///< of `abbe evaluate positioning`: "--instrument-um"
-  PositioningUncertaintyInput PositioningTest::*axis;  ///< of which kind
+  PositioningUncertaintyInput PositioningTest::*axis;  ///< of a linear or of a rotary axis
   double PositioningUncertaintyInput::*value;
-  double unit;  ///< of the option's number, in mm, rad, ...
-  const char* words;
+  double unit;        ///< of the option's value, in mm, rad, mm/mm, K, 1/K
+  const char* words;  ///< what it is
 };
 
 /// All contributions, in the order of the options.
@@ -61,7 +61,7 @@ struct CircularTest {
   double feed = 0;             ///< --feed-mm-min: along the path; 0: not known
 };
 
-/// What the readings of a circular test say.
+/// The numerical results of a circular test, mm and rad.
 struct CircularEvaluation {
   CircularResult deviations;
   CircularDiagnosis diagnosis;
@@ -80,9 +80,9 @@ struct StraightnessTest {
   double reading_uncertainty = 0;  ///< --u-reading-um: standard, of one deviation; 0: not stated
 };
 
-/// What the readings of a straightness test say.
+/// The numerical results of a straightness test, mm and rad.
 struct StraightnessEvaluation {
-  Straightness least_squares, minimum_zone;  ///< by both reference lines
+  Straightness least_squares, minimum_zone;  ///< about each reference line
 };
 
 /// Squareness of two lines (ISO 230-1).

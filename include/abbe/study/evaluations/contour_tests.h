@@ -37,7 +37,7 @@ struct ContourPointsTest {
 /// @throws InputError as read_curve() and commanded_pieces(), and for a curve that sets axes where there is no machine
 std::vector<CommandPiece> read_commanded_pieces(const std::string& curve, const std::string& machine = "",
                                                 bool closed = false);
-/// The same on a machine that is already read.
+/// The same on a machine that has already been read.
 std::vector<CommandPiece> read_commanded_pieces(const std::string& curve, const Machine& machine, bool closed = false);
 
 }  // namespace abbe

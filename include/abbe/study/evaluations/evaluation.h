@@ -58,7 +58,7 @@ struct EvaluationRequest {
   std::vector<std::string> tolerances;  ///< --tolerance: "A_um=10", as apply_tolerances() takes them
 };
 
-/// What a test says in numbers, of which its report is made; mm and rad.
+/// The numerical results of a test, from which its report is made; mm and rad.
 using EvaluatedNumbers =
     std::variant<PositioningEvaluation, DiagonalsEvaluation, CircularEvaluation, RotationResult, StraightnessEvaluation,
                  Squareness, SectionsEvaluation, ContourPointsEvaluation, LinkageEvaluation>;

@@ -23,25 +23,26 @@ std::vector<CsvFileColumn> matched_columns(const NamedColumns& columns, const st
   try {
     return csv_match_header(header, "", 0, wanted, {});
   } catch (const InputError& error) {
-    // There is no line in which a character could be counted.
+    // Without a file there is no line or character to name.
     throw InputError({.field = error.place().field}, error.problem(), error.expected());
   }
 }
 
 std::string column_field(const NamedColumn& column, std::size_t row) { return fmt::format("{}[{}]", column.name, row); }
 
-/// As a file would have it.
+/// As a file would state it.
 std::string column_text(double number) {
   return std::isfinite(number) ? shortest_text(number) : fmt::format("{}", number);
 }
 
 void enter_numbers(const NamedColumn& column, const CsvColumn& wanted, const Unit& unit, CsvValues& values) {
   const auto* const numbers = std::get_if<std::vector<double>>(&column.values);
-  if (!numbers) throw InputError({.field = column.name}, "is no array of numbers", csv_expected_number(wanted, unit));
+  if (!numbers)
+    throw InputError({.field = column.name}, "is not an array of numbers", csv_expected_number(wanted, unit));
   values.numbers.resize(numbers->size(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t row = 0; row < numbers->size(); ++row) {
     if (wanted.may_be_empty && std::isnan((*numbers)[row])) continue;
-    // By the text, so that 2.5 um is the same number of mm as in a file.
+    // Through text, so that 2.5 um becomes the same number of mm as from a file.
     const std::string problem = csv_read_number(column_text((*numbers)[row]), wanted, unit, values.numbers[row]);
     if (!problem.empty())
       throw InputError({.field = column_field(column, row)}, problem, csv_expected_number(wanted, unit));
@@ -73,7 +74,7 @@ void enter_words(const NamedColumn& column, CsvValues& values) {
 }  // namespace
 
 CsvTable table_of_columns(const NamedColumns& columns, const std::vector<CsvColumn>& wanted) {
-  if (columns.empty()) throw InputError({}, "there are no columns", "columns with names as in a file");
+  if (columns.empty()) throw InputError({}, "there are no columns", "columns named as in a file");
   const std::vector<CsvFileColumn> matches = matched_columns(columns, wanted);
   CsvTable table;
   table.rows = column_rows(columns.front());

@@ -39,7 +39,7 @@ TEST(NamedColumns, GiveTheSameNumbersAsAFile) {
 
 TEST(NamedColumns, AreRefusedWithTheirNameAndIndex) {
   const NamedColumn plus{"direction", Words{"+", "+"}}, target{"target_mm", Numbers{0, 100}};
-  EXPECT_EQ(refused_columns({}), "there are no columns; expected columns with names as in a file");
+  EXPECT_EQ(refused_columns({}), "there are no columns; expected columns named as in a file");
   EXPECT_EQ(refused_columns({plus, target, {"deviation_um", Numbers{0, std::numeric_limits<double>::quiet_NaN()}}}),
             "deviation_um[1]: 'nan' is not a finite number; expected a length in um");
   EXPECT_EQ(refused_columns({plus, target, {"deviation_um", Numbers{0}}}),
@@ -47,7 +47,7 @@ TEST(NamedColumns, AreRefusedWithTheirNameAndIndex) {
   EXPECT_EQ(refused_columns({{"direction", Words{}}, {"target_mm", Numbers{}}, {"deviation_um", Numbers{}}}),
             "direction: there are no rows; expected at least one row");
   EXPECT_EQ(refused_columns({plus, target, {"deviation_um", Words{"a", "b"}}}),
-            "deviation_um: is no array of numbers; expected a length in um");
+            "deviation_um: is not an array of numbers; expected a length in um");
   EXPECT_EQ(refused_columns({plus, target, {"deviation_kg", Numbers{0, 0}}}).substr(0, 62),
             "deviation_kg: 'kg' is not a unit of a length or an angle; expe");
   EXPECT_EQ(

@@ -1,6 +1,6 @@
 #pragma once
 
-// Internal to formats: a table with what its rows are called in messages.
+// Internal to formats: a table that knows how messages name its rows.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,17 +10,17 @@
 
 namespace abbe {
 
-/// The rows of a file, or those of columns of a program.
+/// A table from a file or from columns in memory.
 class PlacedTable : public CsvTable {
  public:
-  /// As read_csv(). @param text  has to live on
+  /// As read_csv(). @param text  must outlive the table
   PlacedTable(std::string_view text, std::string file, const std::vector<CsvColumn>& wanted);
   /// As table_of_columns().
   PlacedTable(const NamedColumns& given, const std::vector<CsvColumn>& wanted);
 
-  /// All of a column.
+  /// A whole column.
   InputError::Place place(const std::string& field) const { return {.file = file_, .field = field}; }
-  /// One field of it.
+  /// One field of a column.
   InputError::Place place(std::size_t row, const std::string& field) const;
   /// "line 7" of a file, "row 5" of columns.
   std::string row_words(std::size_t row) const;
