@@ -266,6 +266,8 @@ def test_the_place_of_a_bad_reading_is_its_row():
     ("beam_tilt_deg", lambda: abbe.evaluate_sections(ENGRAVER / "sections.csv", beam_tilt_deg=31)),
     ("accuracy", lambda: abbe.evaluate_linkage(ENGRAVER / "five-steps.csv", 120, 4, accuracy={"u_q_um": 1})),
     ("u_x_um", lambda: abbe.evaluate_linkage(ENGRAVER / "five-steps.csv", 120, 4, accuracy={"u_x_um": -1})),
+    ("u_c1_arcsec: is -1",
+     lambda: abbe.evaluate_linkage(ENGRAVER / "five-steps.csv", 120, 4, accuracy={"u_c1_arcsec": -1})),
     ("board_mm", lambda: abbe.evaluate_linkage(ENGRAVER / "five-steps.csv", 120, -4)),
     ("convention", lambda: abbe.evaluate_linkage(ENGRAVER / "five-steps.csv", 120, 4, convention="other")),
     ("no axis", lambda: abbe.evaluate_linkage(ENGRAVER / "five-steps.csv", 120, 4, machine=machine("trunnion-mill"))),

@@ -5,23 +5,13 @@
 
 #include <cmath>
 
+#include "bindings/arrays_of_each.h"
 #include "bindings/evaluate/evaluations.h"
 
 namespace abbe::python {
 namespace {
 
-using Targets = std::vector<PositioningTarget>;
-
 double number_of(const EvaluatedFigure& figure) { return figure.is_evaluated() ? figure.value : NAN; }
-
-/// [targets] of a number of each.
-template <class Value>
-nb::object of_targets(const PositioningEvaluation& evaluation, const Value& value) {
-  std::vector<double> values;
-  for (const PositioningTarget& target : evaluation.targets) values.push_back(value(target));
-  const std::size_t count = values.size();
-  return array_of(std::move(values), {count});
-}
 
 /// [targets, 2] of a number of each side.
 template <class Value>
@@ -40,8 +30,7 @@ void bind_positioning(nb::module_& module) {
                                     "second\nindex of [n, 2] is the side of approach: positive, negative. NaN: the "
                                     "readings do not suffice.")
       .def_prop_ro(
-          "targets_mm_rad",
-          [](const Evaluated& e) { return of_targets(e, [](const PositioningTarget& t) { return t.position; }); },
+          "targets_mm_rad", [](const Evaluated& e) { return numbers_of_each(e.targets, &PositioningTarget::position); },
           nb::sig("def targets_mm_rad(self) -> numpy.ndarray"), "[n] ascending.")
       .def_prop_ro(
           "runs",
@@ -75,19 +64,21 @@ void bind_positioning(nb::module_& module) {
       .def_prop_ro(
           "reversal_mm_rad",
           [](const Evaluated& e) {
-            return of_targets(e, [](const PositioningTarget& t) { return number_of(t.reversal); });
+            return numbers_of_each(e.targets, [](const PositioningTarget& t) { return number_of(t.reversal); });
           },
           nb::sig("def reversal_mm_rad(self) -> numpy.ndarray"), "[n] B with its sign: positive less negative side.")
       .def_prop_ro(
           "mean_bidirectional_mm_rad",
           [](const Evaluated& e) {
-            return of_targets(e, [](const PositioningTarget& t) { return number_of(t.mean_bidirectional); });
+            return numbers_of_each(e.targets,
+                                   [](const PositioningTarget& t) { return number_of(t.mean_bidirectional); });
           },
           nb::sig("def mean_bidirectional_mm_rad(self) -> numpy.ndarray"), "[n] mean of both sides.")
       .def_prop_ro(
           "bidirectional_repeatability_mm_rad",
           [](const Evaluated& e) {
-            return of_targets(e, [](const PositioningTarget& t) { return number_of(t.bidirectional_repeatability); });
+            return numbers_of_each(e.targets,
+                                   [](const PositioningTarget& t) { return number_of(t.bidirectional_repeatability); });
           },
           nb::sig("def bidirectional_repeatability_mm_rad(self) -> numpy.ndarray"), "[n] R.")
       .def("__len__", [](const Evaluated& e) { return e.targets.size(); })
@@ -97,17 +88,13 @@ void bind_positioning(nb::module_& module) {
       .def_prop_ro(
           "names",
           [](const DiagonalsEvaluation& e) {
-            std::vector<std::string> names;
-            for (const DiagonalEvaluation& diagonal : e.diagonals) names.push_back(diagonal.name);
-            return names;
+            return values_of_each<std::string>(e.diagonals, &DiagonalEvaluation::name);
           },
           "In the order of the readings.")
       .def_prop_ro(
           "positioning",
           [](const DiagonalsEvaluation& e) {
-            std::vector<PositioningEvaluation> all;
-            for (const DiagonalEvaluation& diagonal : e.diagonals) all.push_back(diagonal.positioning);
-            return all;
+            return values_of_each<PositioningEvaluation>(e.diagonals, &DiagonalEvaluation::positioning);
           },
           "PositioningNumbers of each diagonal, mm.")
       .def("__repr__", [](const DiagonalsEvaluation& e) {

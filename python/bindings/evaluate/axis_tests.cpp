@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -11,29 +10,13 @@ namespace {
 
 constexpr double kMostUm = 1e6;
 
-/// "--instrument-um" -> "instrument_um"
-std::string contribution_name(const PositioningContribution& contribution) {
-  std::string name = std::string(contribution.option).substr(2);
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-
 void enter_uncertainty(const std::map<std::string, double>& given, PositioningTest& test) {
   for (const auto& [name, value] : given) {
-    const auto& all = positioning_contributions();
-    const auto found = std::find_if(all.begin(), all.end(), [key = name](const PositioningContribution& contribution) {
-      return contribution_name(contribution) == key;
-    });
-    if (found == all.end()) {
-      std::vector<std::string> names;
-      for (const PositioningContribution& contribution : all) names.push_back(contribution_name(contribution));
-      throw InputError({.field = "uncertainty"}, fmt::format("'{}' is no contribution", name.substr(0, 60)),
-                       fmt::format("one of {}", fmt::join(names, ", ")));
-    }
+    const PositioningContribution& contribution = entry_named("uncertainty", name, positioning_contributions());
     if (!(value >= 0 && value <= kMostUm)) {
       throw InputError({.field = "uncertainty"}, fmt::format("{} is {}", name, value), "a number from 0 to 1e6");
     }
-    (test.*found->axis).*found->value = value * found->unit;
+    (test.*contribution.axis).*contribution.value = value * contribution.unit;
   }
 }
 
@@ -63,9 +46,10 @@ Evaluation circular(const ReadingsArgument& argument, double radius_mm, const st
   CircularTest test;
   test.nominal_radius = quantity("radius_mm", radius_mm, Quantity::length, "mm", 0.001, 1e6);
   test.plane = plane.value_or("");
-  test.centre = std::array{
-      CircularCentre::least_squares, CircularCentre::minimum_zone,
-      CircularCentre::instrument}[word_index("centre", centre, {"least-squares", "minimum-zone", "instrument"})];
+  test.centre = word_value<CircularCentre>("centre", centre,
+                                           {{"least-squares", CircularCentre::least_squares},
+                                            {"minimum-zone", CircularCentre::minimum_zone},
+                                            {"instrument", CircularCentre::instrument}});
   test.reading_uncertainty = quantity("u_reading_um", u_reading_um, Quantity::length, "um", 0, kMostUm);
   test.length_uncertainty = quantity("u_length_um", u_length_um, Quantity::length, "um", 0, kMostUm);
   test.length_calibrated = length_calibrated;
@@ -95,8 +79,9 @@ Evaluation rotation(const ReadingsArgument& argument, std::optional<double> plan
 }
 
 ReferenceLine reference_line(const std::string& reference) {
-  return word_index("reference", reference, {"least-squares", "minimum-zone"}) == 0 ? ReferenceLine::least_squares
-                                                                                    : ReferenceLine::minimum_zone;
+  return word_value<ReferenceLine>(
+      "reference", reference,
+      {{"least-squares", ReferenceLine::least_squares}, {"minimum-zone", ReferenceLine::minimum_zone}});
 }
 
 Evaluation of_one_line(const ReadingsArgument& argument, const std::string& reference, double u_reading_um,

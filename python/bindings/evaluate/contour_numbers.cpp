@@ -5,49 +5,35 @@
 
 #include <cmath>
 
+#include "bindings/arrays_of_each.h"
 #include "bindings/evaluate/evaluations.h"
 
 namespace abbe::python {
 namespace {
-
-/// [n] of a number of each.
-template <class Each, class Value>
-nb::object of_each(const std::vector<Each>& all, const Value& value) {
-  std::vector<double> values;
-  values.reserve(all.size());
-  for (const Each& each : all) values.push_back(value(each));
-  const std::size_t count = values.size();
-  return array_of(std::move(values), {count});
-}
 
 void bind_sections(nb::module_& module) {
   using Sections = SectionsEvaluation;
   nb::class_<SectionsEvaluation>(module, "SectionNumbers",
                                  "What each cross-section of an engraved curve says, mm; NaN: no answer.")
       .def_prop_ro(
-          "reasons",
-          [](const Sections& s) {
-            std::vector<std::string> reasons;
-            for (const SectionAnswer& answer : s.answers) reasons.push_back(answer.reason);
-            return reasons;
-          },
+          "reasons", [](const Sections& s) { return values_of_each<std::string>(s.answers, &SectionAnswer::reason); },
           "[n] why there is no answer; empty: there is one.")
       .def_prop_ro(
           "error_mm",
           [](const Sections& s) {
-            return of_each(s.answers, [](const SectionAnswer& a) { return a.ok ? a.error : NAN; });
+            return numbers_of_each(s.answers, [](const SectionAnswer& a) { return a.ok ? a.error : NAN; });
           },
           nb::sig("def error_mm(self) -> numpy.ndarray"), "[n] contour error across the curve, with its sign.")
       .def_prop_ro(
           "error_uncertainty_mm",
           [](const Sections& s) {
-            return of_each(s.answers, [](const SectionAnswer& a) { return a.ok ? a.error_uncertainty : NAN; });
+            return numbers_of_each(s.answers, [](const SectionAnswer& a) { return a.ok ? a.error_uncertainty : NAN; });
           },
           nb::sig("def error_uncertainty_mm(self) -> numpy.ndarray"), "[n] standard.")
       .def_prop_ro(
           "width_mm",
           [](const Sections& s) {
-            return of_each(s.answers, [](const SectionAnswer& a) { return a.ok && a.groove ? a.width : NAN; });
+            return numbers_of_each(s.answers, [](const SectionAnswer& a) { return a.ok && a.groove ? a.width : NAN; });
           },
           nb::sig("def width_mm(self) -> numpy.ndarray"), "[n] of a groove.")
       .def_ro("refused", &Sections::refused, "Number of sections without an answer.")
@@ -60,33 +46,26 @@ void bind_points(nb::module_& module) {
   nb::class_<ContourPointsEvaluation>(module, "ContourNumbers",
                                       "Deviation of each measured point from the commanded curve, mm.")
       .def_prop_ro(
-          "along_mm",
-          [](const Points& p) { return of_each(p.deviations, [](const ContourDeviation& d) { return d.along; }); },
+          "along_mm", [](const Points& p) { return numbers_of_each(p.deviations, &ContourDeviation::along); },
           nb::sig("def along_mm(self) -> numpy.ndarray"), "[n] where on the curve.")
       .def_prop_ro(
-          "distance_mm",
-          [](const Points& p) { return of_each(p.deviations, [](const ContourDeviation& d) { return d.distance; }); },
+          "distance_mm", [](const Points& p) { return numbers_of_each(p.deviations, &ContourDeviation::distance); },
           nb::sig("def distance_mm(self) -> numpy.ndarray"), "[n]")
       .def_prop_ro(
           "across_mm",
           [](const Points& p) {
-            return of_each(p.deviations, [](const ContourDeviation& d) { return d.across.value_or(NAN); });
+            return numbers_of_each(p.deviations, [](const ContourDeviation& d) { return d.across.value_or(NAN); });
           },
           nb::sig("def across_mm(self) -> numpy.ndarray"),
           "[n] in the surface, positive to the left of the curve seen from outside; NaN: no direction.")
       .def_prop_ro(
           "off_mm",
           [](const Points& p) {
-            return of_each(p.deviations, [](const ContourDeviation& d) { return d.off.value_or(NAN); });
+            return numbers_of_each(p.deviations, [](const ContourDeviation& d) { return d.off.value_or(NAN); });
           },
           nb::sig("def off_mm(self) -> numpy.ndarray"), "[n] out of the surface.")
       .def_prop_ro(
-          "beyond_end",
-          [](const Points& p) {
-            std::vector<std::uint8_t> beyond;
-            for (const ContourDeviation& deviation : p.deviations) beyond.push_back(deviation.beyond_end);
-            return array_of_bools(std::move(beyond));
-          },
+          "beyond_end", [](const Points& p) { return flags_of_each(p.deviations, &ContourDeviation::beyond_end); },
           nb::sig("def beyond_end(self) -> numpy.ndarray"),
           "[n] points beyond an end of the curve; none of them counts.")
       .def("__len__", [](const Points& p) { return p.deviations.size(); });

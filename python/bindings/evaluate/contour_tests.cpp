@@ -1,12 +1,8 @@
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
-
-#include <algorithm>
 
 #include "abbe/formats/shapes/curve_pieces.h"
 #include "bindings/evaluate/evaluations.h"
@@ -24,8 +20,9 @@ Evaluation of_sections(const ReadingsArgument& argument, const std::string& feat
                        const std::string& file) {
   SectionsTest test;
   SectionOptions& options = test.options;
-  options.groove = word_index("feature", feature, {"edge", "groove"}) == 1;
-  options.edge.surface = word_index("surface", surface, {"left", "right"}) == 1 ? EdgeSide::right : EdgeSide::left;
+  options.groove = word_value<bool>("feature", feature, {{"edge", false}, {"groove", true}});
+  options.edge.surface =
+      word_value<EdgeSide>("surface", surface, {{"left", EdgeSide::left}, {"right", EdgeSide::right}});
   options.edge.free_wall = free_wall;
   if (beam_tilt_deg) test.beam_tilt = quantity("beam_tilt_deg", *beam_tilt_deg, Quantity::angle, "deg", -30, 30);
   if (surface_radius_mm) {
@@ -64,33 +61,14 @@ Evaluation of_points(const PointsArgument& points, const CurveArgument& curve, c
   NamedPoints given = points_of(points, "points_mm", std::nullopt, file);
   if (given.file.cloud.size() == 0) throw InputError({.field = "points_mm"}, "there are no points", "one at least");
   test.readings = std::move(given.file);
-  naming_arguments([&] {
-    test.pieces = pieces_of(curve, machine, closed);
-    return 0;
-  });
+  test.pieces = naming_arguments([&] { return pieces_of(curve, machine, closed); });
   return evaluate_test(std::move(test), given.name, tolerances);
-}
-
-/// "--u-x-um" -> "u_x_um"
-std::string accuracy_name(const LinkageAccuracyName& name) {
-  std::string text = std::string(name.option).substr(2);
-  std::replace(text.begin(), text.end(), '-', '_');
-  return text;
 }
 
 void enter_accuracy(const std::map<std::string, double>& given, LinkageAccuracy& accuracy) {
   for (const auto& [key, value] : given) {
-    const auto& all = linkage_accuracy_names();
-    const auto found = std::find_if(all.begin(), all.end(), [wanted = key](const LinkageAccuracyName& name) {
-      return accuracy_name(name) == wanted;
-    });
-    if (found == all.end()) {
-      std::vector<std::string> names;
-      for (const LinkageAccuracyName& name : all) names.push_back(accuracy_name(name));
-      throw InputError({.field = "accuracy"}, fmt::format("'{}' is not known", key.substr(0, 60)),
-                       fmt::format("one of {}", fmt::join(names, ", ")));
-    }
-    accuracy.*found->value = quantity(key.c_str(), value, found->quantity, found->unit, 0, kMostUm);
+    const LinkageAccuracyName& name = entry_named("accuracy", key, linkage_accuracy_names());
+    accuracy.*name.value = quantity(key.c_str(), value, name.quantity, name.unit, 0, kMostUm);
   }
 }
 
@@ -103,9 +81,9 @@ Evaluation of_linkage(const ReadingsArgument& argument, double exit_to_axis_mm, 
   const double board = quantity("board_mm", board_mm, Quantity::length, "mm", 0, 1e5);
   enter_accuracy(accuracy, test.accuracy);
   if (convention) {
-    test.convention = word_index("convention", *convention, {"table-moves", "head-moves"}) == 1
-                          ? LinkageConvention::head_moves
-                          : LinkageConvention::table_moves;
+    test.convention = word_value<LinkageConvention>(
+        "convention", *convention,
+        {{"table-moves", LinkageConvention::table_moves}, {"head-moves", LinkageConvention::head_moves}});
   }
   test.machine = machine;
   test.machine_file = "machine";

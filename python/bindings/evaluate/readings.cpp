@@ -6,8 +6,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <Eigen/Core>
-#include <cmath>
 #include <utility>
 
 #include "abbe/formats/text/input_error.h"
@@ -78,41 +76,6 @@ GivenReadings given_readings(const ReadingsArgument& argument, const char* name)
   return columns;
 }
 
-PointCloudFile points_of_array(const ArrayLike& points, const char* name, const std::optional<ArrayLike>& normals) {
-  const auto filled = [](const ArrayLike& array, const char* argument, const char* words) {
-    const Rows rows(array, argument, 3, words);
-    if (rows.single()) throw InputError({.field = argument}, "is a single row", fmt::format("shape (n, 3): {}", words));
-    Eigen::Matrix3Xd values(3, static_cast<Eigen::Index>(rows.count()));
-    for (std::size_t k = 0; k < rows.count(); ++k) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const double value = rows.at(k, i);
-        if (std::abs(value) > kLargestInput) {
-          throw InputError({.field = argument}, fmt::format("row {}, number {}: {}", k, i, value), "at most 1e9");
-        }
-        values(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = value;
-      }
-    }
-    return values;
-  };
-  PointCloudFile file;
-  file.cloud.points = filled(points, name, "points, mm");
-  file.cloud.normals.resize(3, 0);
-  file.format = "array";
-  file.unit = {FileLength::millimetre, UnitSource::given};
-  if (!normals) return file;
-  file.cloud.normals = filled(*normals, "normals", "directions out of the material");
-  if (file.cloud.normals.cols() != file.cloud.points.cols()) {
-    throw InputError({.field = "normals"}, fmt::format("has {} rows", file.cloud.normals.cols()),
-                     fmt::format("{} as in {}", file.cloud.points.cols(), name));
-  }
-  for (Eigen::Index k = 0; k < file.cloud.normals.cols(); ++k) {
-    const double length = file.cloud.normals.col(k).norm();
-    if (!(length > 0)) throw InputError({.field = "normals"}, fmt::format("row {} has no length", k), "a direction");
-    file.cloud.normals.col(k) /= length;
-  }
-  return file;
-}
-
 double quantity(const char* name, double value, Quantity quantity, const char* unit, double from, double to) {
   double inside = 0;
   if (!(value >= from && value <= to) ||
@@ -123,14 +86,9 @@ double quantity(const char* name, double value, Quantity quantity, const char* u
   return inside;
 }
 
-std::size_t word_index(const char* name, const std::string& word, std::initializer_list<const char*> words) {
-  std::size_t index = 0;
-  for (const char* known : words) {
-    if (word == known) return index;
-    ++index;
-  }
-  throw InputError({.field = name}, fmt::format("'{}' is not known", word.substr(0, 40)),
-                   fmt::format("{}", fmt::join(words, ", ")));
+void refuse_word(const char* name, const std::string& word, const std::vector<std::string>& known) {
+  throw InputError({.field = name}, fmt::format("'{}' is not known", word.substr(0, 60)),
+                   fmt::format("{}", fmt::join(known, ", ")));
 }
 
 }  // namespace abbe::python

@@ -2,15 +2,15 @@
 
 // Readings as files or as columns of numbers, and numbers with a unit in their name.
 #include <filesystem>
-#include <initializer_list>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
-#include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/named_columns.h"
 #include "abbe/formats/text/unit.h"
-#include "bindings/arrays.h"
+#include "bindings/use/arguments.h"
 
 namespace abbe::python {
 
@@ -28,23 +28,36 @@ using GivenReadings = std::variant<ReadingsFile, NamedColumns>;
 /// Takes the argument apart. @throws InputError for what is neither, and for columns that are no lists
 GivenReadings given_readings(const ReadingsArgument& argument, const char* name = "readings");
 
-/// A path, or points [n, 3].
-struct PointsArgument {
-  nb::handle source;
-};
-
-/// Points of a program as a file of them would be read. @throws InputError for another shape, numbers that are not
-///   finite or larger than a file may have
-PointCloudFile points_of_array(const ArrayLike& points, const char* name,
-                               const std::optional<ArrayLike>& normals = std::nullopt);
 /// The path of an argument, or nothing if it is an array.
 std::optional<std::filesystem::path> path_of(nb::handle source);
 
 /// A number in the unit of its name, as the command reads it. @throws InputError outside of the range
 double quantity(const char* name, double value, Quantity quantity, const char* unit, double from, double to);
 
-/// Index of a word in a list. @throws InputError that names them all
-std::size_t word_index(const char* name, const std::string& word, std::initializer_list<const char*> words);
+/// @throws InputError that names all the words that are known
+[[noreturn]] void refuse_word(const char* name, const std::string& word, const std::vector<std::string>& known);
+
+/// The value of a word. @throws InputError that names all words
+template <class Value>
+Value word_value(const char* name, const std::string& word, const std::map<std::string, Value>& values) {
+  const auto found = values.find(word);
+  if (found != values.end()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [other, value] : values) known.push_back(other);
+  refuse_word(name, word, known);
+}
+
+/// The entry whose option of the command has this name as an argument: "--u-x-um" is "u_x_um".
+/// @throws InputError that names them all
+template <class Entries>
+const auto& entry_named(const char* name, const std::string& word, const Entries& entries) {
+  std::vector<std::string> known;
+  for (const auto& entry : entries) {
+    known.push_back(argument_words(entry.option));
+    if (known.back() == word) return entry;
+  }
+  refuse_word(name, word, known);
+}
 
 /// The object of Python as one of C++ that owns what arrays show. @throws TypeError of Python  it was made by __new__
 /// only
@@ -63,15 +76,6 @@ struct type_caster<abbe::python::ReadingsArgument> {
   NB_TYPE_CASTER(abbe::python::ReadingsArgument,
                  const_name("str | os.PathLike | collections.abc.Mapping[str, numpy.typing.ArrayLike] | "
                             "pandas.DataFrame"))
-  bool from_python(handle source, std::uint32_t, cleanup_list*) noexcept {
-    value.source = source;
-    return !source.is_none();
-  }
-};
-
-template <>
-struct type_caster<abbe::python::PointsArgument> {
-  NB_TYPE_CASTER(abbe::python::PointsArgument, const_name("str | os.PathLike | numpy.typing.ArrayLike | PointCloud"))
   bool from_python(handle source, std::uint32_t, cleanup_list*) noexcept {
     value.source = source;
     return !source.is_none();

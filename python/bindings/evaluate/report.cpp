@@ -14,9 +14,13 @@ std::optional<double> in_unit(const EvaluationFigure& figure, const std::optiona
   return figure_number(figure, *value);
 }
 
+std::string words_of(const EvaluationFigure& figure) {
+  return figure.value ? figure_text(figure, *figure.value) + " " + figure.unit : figure.missing;
+}
+
 }  // namespace
 
-std::vector<std::string> tolerance_texts(const std::map<std::string, double>& tolerances) {
+std::vector<std::string> tolerance_texts(const Tolerances& tolerances) {
   std::vector<std::string> texts;
   for (const auto& [name, value] : tolerances) {
     if (!std::isfinite(value)) {
@@ -54,8 +58,6 @@ const EvaluationFigure& figure_named(const EvaluationReport& report, const std::
   throw nb::key_error(fmt::format("no figure '{}' of a {}", symbol, report.kind).c_str());
 }
 
-std::string report_page_of(const EvaluationReport& report) { return evaluation_files(report).back().second; }
-
 std::string plot_of(const EvaluationReport& report, const std::string& name) {
   for (const EvaluationPlot& plot : report.plots) {
     if (plot.name == name) return plot.picture.wide;
@@ -82,13 +84,9 @@ void bind_evaluation_reports(nb::module_& module) {
       .def_prop_ro("verdict", &EvaluationFigure::verdict,
                    "'within', 'exceeded', either with ', not proven', 'cannot be judged'; '' without a tolerance.")
       .def_prop_ro("exceeds_tolerance", &EvaluationFigure::exceeds_tolerance)
-      .def(
-          "text",
-          [](const EvaluationFigure& f) { return f.value ? figure_text(f, *f.value) + " " + f.unit : f.missing; },
-          "With the digits and the unit of the report.")
+      .def("text", &words_of, "With the digits and the unit of the report.")
       .def("__repr__", [](const EvaluationFigure& f) {
-        return fmt::format("<abbe.EvaluationFigure {}: {}>", f.symbol,
-                           f.value ? figure_text(f, *f.value) + " " + f.unit : f.missing);
+        return fmt::format("<abbe.EvaluationFigure {}: {}>", f.symbol, words_of(f));
       });
 }
 

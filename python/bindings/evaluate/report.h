@@ -10,35 +10,25 @@
 
 #include <functional>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "abbe/formats/text/json_text.h"
 #include "abbe/report/evaluations/evaluation_report.h"
 #include "abbe/report/words/evaluation_text.h"
-#include "bindings/files.h"
+#include "bindings/evaluate/outputs.h"
 #include "bindings/tables.h"
-#include "bindings/use/arguments.h"
 
 namespace abbe::python {
 
-/// {"A_um": 10} -> "A_um=10", as --tolerance takes it.
-std::vector<std::string> tolerance_texts(const std::map<std::string, double>& tolerances);
-
 using Tolerances = std::map<std::string, double>;  ///< largest permitted values by figures with their units
-using ResultFiles = std::vector<std::pair<std::string, std::string>>;  ///< names and contents
+
+/// {"A_um": 10} -> "A_um=10", as --tolerance takes it.
+std::vector<std::string> tolerance_texts(const Tolerances& tolerances);
 
 /// The files that `-o` writes. @param more  beside those of the report
 ResultFiles report_files(const EvaluationReport& report, const ResultFiles& more);
-/// {name: bytes}
-nb::dict files_by_name(const ResultFiles& files);
-/// Writes them as a results folder. @throws FileExistsError of Python
-void write_results_folder(const std::filesystem::path& folder, const ResultFiles& files, bool overwrite);
 const EvaluationFigure& figure_named(const EvaluationReport& report, const std::string& symbol);
-/// The page, whatever its sections.
-std::string report_page_of(const EvaluationReport& report);
 std::string plot_of(const EvaluationReport& report, const std::string& name);
 
 /// Adds the members that show the report. @param more  files beside those of the report
@@ -72,20 +62,6 @@ void add_report(Class& bound, EvaluationReport Result::*report, ResultFiles (*mo
           "Whether a figure exceeds its tolerance or could not be evaluated although it has one.")
       .def(
           "text", [=](const Result& r) { return evaluation_text(r.*report); }, "What the command prints.")
-      .def(
-          "json_text", [=](const Result& r) { return json_text(evaluation_json(r.*report)); },
-          "What the command prints with --json.")
-      .def(
-          "to_dict", [=](const Result& r) { return python_value(evaluation_json(r.*report)); },
-          nb::sig("def to_dict(self) -> dict[str, typing.Any]"), "The same as a dictionary.")
-      .def(
-          "page_html", [=](const Result& r) { return report_page_of(r.*report); }, "The page of the command, HTML.")
-      .def(
-          "write_page",
-          [=](const Result& r, const std::filesystem::path& path, bool overwrite) {
-            write_text(path, report_page_of(r.*report), overwrite);
-          },
-          nb::arg("path"), nb::arg("overwrite") = false, "Writes the page (*.html), whole or not at all.")
       .def_prop_ro(
           "plot_names",
           [=](const Result& r) {
@@ -96,17 +72,12 @@ void add_report(Class& bound, EvaluationReport Result::*report, ResultFiles (*mo
           "Names that plot_svg() takes.")
       .def(
           "plot_svg", [=](const Result& r, const std::string& name) { return plot_of(r.*report, name); },
-          nb::arg("name") = "plot", "A plot of the page as SVG. Raises KeyError.")
-      .def(
-          "files", [=](const Result& r) { return files_by_name(report_files(r.*report, more(r))); },
-          nb::sig("def files(self) -> dict[str, bytes]"), "The files of a results folder, contents by name.")
-      .def(
-          "write",
-          [=](const Result& r, const std::filesystem::path& folder, bool overwrite) {
-            write_results_folder(folder, report_files(r.*report, more(r)), overwrite);
-          },
-          nb::arg("folder"), nb::arg("overwrite") = false,
-          "Writes the results folder that the command writes with -o, whole or not at all.");
+          nb::arg("name") = "plot", "A plot of the page as SVG. Raises KeyError.");
+  add_json(bound, [=](const Result& r) { return evaluation_json(r.*report); });
+  add_page(bound, [=](const Result& r) { return evaluation_page(r.*report); });
+  add_files(
+      bound, [=](const Result& r) { return report_files(r.*report, more(r)); },
+      "Writes the results folder that the command writes with -o, whole or not at all.");
   add_tables(bound, "figures_frame", "figures_html");
 }
 

@@ -15,21 +15,29 @@
 namespace abbe::python {
 namespace {
 
-/// Points of a plane as those of space with z = 0.
-PointCloudFile flat_points(const ArrayLike& points, const char* name) {
-  const Rows rows(points, name, 2, "points in the plane, mm");
-  if (rows.single()) throw InputError({.field = name}, "is a single point", "shape (n, 2), mm");
-  PointCloudFile file;
-  file.cloud.points.setZero(3, static_cast<Eigen::Index>(rows.count()));
-  file.cloud.normals.resize(3, 0);
+/// The first coordinates of points or directions, row by row; the others are zero. @param words  what they are
+Eigen::Matrix3Xd columns_of(const ArrayLike& array, const char* name, std::size_t width, const char* words) {
+  const Rows rows(array, name, width, words);
+  if (rows.single()) {
+    throw InputError({.field = name}, "is a single row", fmt::format("shape (n, {}): {}", width, words));
+  }
+  Eigen::Matrix3Xd columns = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(rows.count()));
   for (std::size_t k = 0; k < rows.count(); ++k) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (std::abs(rows.at(k, i)) > kLargestInput) {
-        throw InputError({.field = name}, fmt::format("row {}, number {}: {}", k, i, rows.at(k, i)), "at most 1e9");
+    for (std::size_t i = 0; i < width; ++i) {
+      const double value = rows.at(k, i);
+      if (std::abs(value) > kLargestInput) {
+        throw InputError({.field = name}, fmt::format("row {}, number {}: {}", k, i, value), "at most 1e9");
       }
-      file.cloud.points(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = rows.at(k, i);
+      columns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = value;
     }
   }
+  return columns;
+}
+
+PointCloudFile file_of(Eigen::Matrix3Xd points) {
+  PointCloudFile file;
+  file.cloud.points = std::move(points);
+  file.cloud.normals.resize(3, 0);
   file.format = "array";
   file.unit = {FileLength::millimetre, UnitSource::given};
   return file;
@@ -51,6 +59,23 @@ std::shared_ptr<const ClosestPointFinder> NamedMesh::finder() const {
     made = std::make_shared<const ClosestPointFinder>(mesh());
   }
   return finder_ = made;
+}
+
+PointCloudFile points_of_array(const ArrayLike& points, const char* name, const std::optional<ArrayLike>& normals) {
+  PointCloudFile file = file_of(columns_of(points, name, 3, "points, mm"));
+  if (!normals) return file;
+  Eigen::Matrix3Xd& directions = file.cloud.normals;
+  directions = columns_of(*normals, "normals", 3, "directions out of the material");
+  if (directions.cols() != file.cloud.points.cols()) {
+    throw InputError({.field = "normals"}, fmt::format("has {} rows", directions.cols()),
+                     fmt::format("{} as in {}", file.cloud.points.cols(), name));
+  }
+  for (Eigen::Index k = 0; k < directions.cols(); ++k) {
+    const double length = directions.col(k).norm();
+    if (!(length > 0)) throw InputError({.field = "normals"}, fmt::format("row {} has no length", k), "a direction");
+    directions.col(k) /= length;
+  }
+  return file;
 }
 
 std::optional<FileLength> file_unit(const char* name, const std::optional<std::string>& unit) {
@@ -79,7 +104,8 @@ NamedPoints points_of(const PointsArgument& argument, const char* name, const st
     return points;
   }
   const ArrayLike array{argument.source};
-  return {in_plane && has_two_columns(array, name) ? flat_points(array, name) : points_of_array(array, name),
+  return {in_plane && has_two_columns(array, name) ? file_of(columns_of(array, name, 2, "points in the plane, mm"))
+                                                   : points_of_array(array, name),
           called.empty() ? "points" : called};
 }
 
@@ -119,11 +145,15 @@ Eigen::Matrix4d transform_matrix(const RigidTransform& transform) {
   return result;
 }
 
+Eigen::Vector3d vector_of(const ArrayLike& argument, const char* name, const char* words) {
+  const Rows rows(argument, name, 3, words);
+  if (!rows.single()) throw InputError({.field = name}, "has another shape", fmt::format("shape (3,): {}", words));
+  return {rows.at(0, 0), rows.at(0, 1), rows.at(0, 2)};
+}
+
 std::optional<Eigen::Vector3d> direction_of(const std::optional<ArrayLike>& argument, const char* name) {
   if (!argument) return std::nullopt;
-  const Rows rows(*argument, name, 3, "a direction");
-  if (!rows.single()) throw InputError({.field = name}, "has another shape", "shape (3,): a direction");
-  return Eigen::Vector3d(rows.at(0, 0), rows.at(0, 1), rows.at(0, 2));
+  return vector_of(*argument, name, "a direction");
 }
 
 nb::object rows_view(const Eigen::Matrix3Xd& columns, nb::handle owner) {

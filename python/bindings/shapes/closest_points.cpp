@@ -2,8 +2,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "bindings/arrays_of_each.h"
 #include "bindings/shapes/shapes.h"
-#include "bindings/use/arguments.h"
 
 namespace abbe::python {
 namespace {
@@ -19,50 +19,25 @@ ClosestPoints closest(const NamedMesh& mesh, const ArrayLike& points) {
   return {finder->closest(of_array)};
 }
 
-/// [n, 3] of a vector of each point.
-nb::object vectors_of(const ClosestPoints& points, Eigen::Vector3d SurfacePoint::*vector) {
-  std::vector<double> values;
-  values.reserve(3 * points.found.size());
-  for (const SurfacePoint& point : points.found) {
-    for (const double value : point.*vector) values.push_back(value);
-  }
-  return array_of(std::move(values), {points.found.size(), 3});
-}
-
 }  // namespace
 
 void bind_closest_points(nb::module_& module) {
   nb::class_<ClosestPoints>(module, "ClosestPoints", "The closest points of a mesh. Made by Mesh.closest().")
       .def_prop_ro(
-          "points_mm", [](const ClosestPoints& c) { return vectors_of(c, &SurfacePoint::point); },
+          "points_mm", [](const ClosestPoints& c) { return vectors_of_each(c.found, &SurfacePoint::point); },
           nb::sig("def points_mm(self) -> numpy.ndarray"), "[n, 3] on the surface.")
       .def_prop_ro(
-          "distance_mm",
-          [](const ClosestPoints& c) {
-            std::vector<double> distances;
-            for (const SurfacePoint& point : c.found) distances.push_back(point.distance);
-            return array_of(std::move(distances), {c.found.size()});
-          },
+          "distance_mm", [](const ClosestPoints& c) { return numbers_of_each(c.found, &SurfacePoint::distance); },
           nb::sig("def distance_mm(self) -> numpy.ndarray"), "[n] positive outside of the material.")
       .def_prop_ro(
-          "normals", [](const ClosestPoints& c) { return vectors_of(c, &SurfacePoint::normal); },
+          "normals", [](const ClosestPoints& c) { return vectors_of_each(c.found, &SurfacePoint::normal); },
           nb::sig("def normals(self) -> numpy.ndarray"),
           "[n, 3] of the face, or weighted by the angles at an edge or vertex; zero without an area.")
       .def_prop_ro(
-          "triangles",
-          [](const ClosestPoints& c) {
-            std::vector<int> triangles;
-            for (const SurfacePoint& point : c.found) triangles.push_back(static_cast<int>(point.triangle));
-            return array_of_ints(std::move(triangles));
-          },
+          "triangles", [](const ClosestPoints& c) { return ints_of_each(c.found, &SurfacePoint::triangle); },
           nb::sig("def triangles(self) -> numpy.ndarray"), "[n] the nearest one; of several the first.")
       .def_prop_ro(
-          "on_border",
-          [](const ClosestPoints& c) {
-            std::vector<std::uint8_t> border;
-            for (const SurfacePoint& point : c.found) border.push_back(point.on_border);
-            return array_of_bools(std::move(border));
-          },
+          "on_border", [](const ClosestPoints& c) { return flags_of_each(c.found, &SurfacePoint::on_border); },
           nb::sig("def on_border(self) -> numpy.ndarray"), "[n] on the edge of an open mesh, where signs mean little.")
       .def("__len__", [](const ClosestPoints& c) { return c.found.size(); })
       .def("__repr__", [](const ClosestPoints& c) { return fmt::format("<abbe.ClosestPoints: {}>", c.found.size()); });

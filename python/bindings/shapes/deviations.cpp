@@ -11,13 +11,14 @@
 #include "abbe/report/words/registration_words.h"
 #include "abbe/study/scan_deviations.h"
 #include "abbe/study/scan_registration.h"
+#include "bindings/arrays_of_each.h"
 #include "bindings/evaluate/report.h"
 #include "bindings/shapes/shapes.h"
 
 namespace abbe::python {
 namespace {
 
-constexpr double kMostUm = 1e9;
+constexpr double kMost = 1e9;  // mm or um
 
 /// The file of a transform, a registration, or [4, 4].
 using TransformArgument = std::variant<ScanRegistration, std::filesystem::path, ArrayLike>;
@@ -46,13 +47,13 @@ ScanDeviations deviations(const PointsArgument& scan, const MeshArgument& part,
                           const Tolerances& tolerances, bool page) {
   ScanDeviationsRequest request;
   const auto length = [](const char* name, const std::optional<double>& value, const char* in, double from) {
-    return value ? quantity(name, *value, Quantity::length, in, from, kMostUm) : 0;
+    return value ? quantity(name, *value, Quantity::length, in, from, kMost) : 0;
   };
   request.largest_mm = length("largest_mm", largest_mm, "mm", 0);
   request.colour_mm = length("colour_um", colour_um, "um", 0);
   if (lower_um || upper_um) {
     request.tolerance =
-        DeviationTolerance{length("lower_um", lower_um, "um", -kMostUm), length("upper_um", upper_um, "um", -kMostUm)};
+        DeviationTolerance{length("lower_um", lower_um, "um", -kMost), length("upper_um", upper_um, "um", -kMost)};
   }
   if (faces && faces_deg) throw InputError({.field = "faces_deg"}, "is given together with faces", "one of them");
   if (faces_deg) request.crease = quantity("faces_deg", *faces_deg, Quantity::angle, "deg", 0, 180);
@@ -62,12 +63,7 @@ ScanDeviations deviations(const PointsArgument& scan, const MeshArgument& part,
   request.tolerances = tolerance_texts(tolerances);
   request.page = page;
   enter_transform(transform, request);
-  NamedPoints points = points_of(scan, "scan", unit, "");
-  const NamedMesh mesh = mesh_of(part, part_unit);
-  request.scan_file = points.name;
-  request.part_file = mesh.name();
-  request.scan = std::move(points.file);
-  request.part = mesh.file();
+  enter_scan_and_part(scan, unit, part, part_unit, request);
   return computed([&] { return find_deviations(request); });
 }
 
@@ -94,23 +90,14 @@ void bind_deviations(nb::module_& module) {
           "counted_mm", [](const Result& r) { return copied_array(r.compared.counted_mm); },
           nb::sig("def counted_mm(self) -> numpy.ndarray"), "[k] their deviations.")
       .def_prop_ro(
-          "closest_mm",
-          [](const Result& r) {
-            std::vector<double> values;
-            for (const SurfacePoint& point : r.compared.closest) {
-              for (const double value : point.point) values.push_back(value);
-            }
-            return array_of(std::move(values), {r.compared.closest.size(), 3});
-          },
+          "closest_mm", [](const Result& r) { return vectors_of_each(r.compared.closest, &SurfacePoint::point); },
           nb::sig("def closest_mm(self) -> numpy.ndarray"), "[n, 3] on the part.")
       .def_prop_ro(
           "statistics_mm", [](const Result& r) { return r.compared.deviation.all.sample; }, "Of those that count.")
       .def_prop_ro(
           "statistics_by_face_mm",
           [](const Result& r) {
-            std::vector<SampleStatistics> faces;
-            for (const DeviationStatistics& face : r.compared.deviation.regions) faces.push_back(face.sample);
-            return faces;
+            return values_of_each<SampleStatistics>(r.compared.deviation.regions, &DeviationStatistics::sample);
           },
           "Of each face that was asked for.")
       .def_prop_ro(

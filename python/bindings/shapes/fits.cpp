@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
@@ -18,15 +17,6 @@ namespace abbe::python {
 namespace {
 
 constexpr double kMostUm = 1e6;
-
-FitMethod fit_method(const std::string& method) {
-  const auto found = fit_methods_by_name().find(method);
-  if (found != fit_methods_by_name().end()) return found->second;
-  std::vector<std::string> names;
-  for (const auto& [name, value] : fit_methods_by_name()) names.push_back(name);
-  throw InputError({.field = "method"}, fmt::format("'{}' is no method", method.substr(0, 40)),
-                   fmt::format("{}", fmt::join(names, ", ")));
-}
 
 /// As read_points_to_fit() of a file, and points of arrays and clouds.
 PointsToFit points_to_fit(const PointsArgument& argument, const std::optional<std::string>& unit,
@@ -58,9 +48,9 @@ FittedShape fit(const PointsArgument& points, const std::string& shape, const st
   ShapeFitRequest request;
   FitChoice& choice = request.choice;
   choice.kind = shape_kind(shape);
-  choice.method = fit_method(method);
-  choice.robust.kind = std::array{RobustKind::tukey, RobustKind::huber,
-                                  RobustKind::welsch}[word_index("loss", loss, {"tukey", "huber", "welsch"})];
+  choice.method = word_value("method", method, fit_methods_by_name());
+  choice.robust.kind = word_value<RobustKind>(
+      "loss", loss, {{"tukey", RobustKind::tukey}, {"huber", RobustKind::huber}, {"welsch", RobustKind::welsch}});
   choice.options.sigma = quantity("u_point_um", u_point_um, Quantity::length, "um", 0, kMostUm);
   choice.options.constraints.direction = direction_of(fixed_direction, "fixed_direction");
   choice.options.constraints.radius = fixed_radius_mm;
@@ -95,19 +85,15 @@ FittedCircles fit_coaxial(const std::vector<nb::object>& circles, const std::opt
   return computed([&] { return fit_circles(std::move(request)); });
 }
 
-/// Of (point, direction, radius, half_angle).
-std::optional<Eigen::Matrix<double, 8, 8>> covariance_of(const ShapeFit& fit) {
-  return fit.has_covariance ? std::optional(fit.covariance) : std::nullopt;
-}
-
-std::optional<double> if_known(const ShapeFit& fit, double value) {
+template <class Fit, class Value>
+std::optional<Value> if_known(const Fit& fit, const Value& value) {
   return fit.has_covariance ? std::optional(value) : std::nullopt;
 }
 
 void bind_uncertainties(nb::class_<FittedShape>& bound) {
   bound
       .def_prop_ro(
-          "covariance", [](const FittedShape& f) { return covariance_of(f.fit); },
+          "covariance", [](const FittedShape& f) { return if_known(f.fit, f.fit.covariance); },
           "[8, 8] of point (mm), direction, radius (mm), half angle (rad); None: not known.")
       .def_prop_ro(
           "radius_uncertainty_mm", [](const FittedShape& f) { return if_known(f.fit, f.fit.radius_uncertainty()); },
@@ -202,8 +188,7 @@ void bind_fitted_circles(nb::module_& module) {
       .def_prop_ro(
           "rms_mm", [](const FittedCircles& f) { return f.fit.rms; }, "Root mean square distance.")
       .def_prop_ro(
-          "covariance",
-          [](const FittedCircles& f) { return f.fit.has_covariance ? std::optional(f.fit.covariance) : std::nullopt; },
+          "covariance", [](const FittedCircles& f) { return if_known(f.fit, f.fit.covariance); },
           "[6 + 2 m, 6 + 2 m] of point, direction, heights, radii, mm and rad; None: not known.")
       .def("__repr__", [](const FittedCircles& f) {
         return fmt::format("<abbe.FittedCircles: {} circles, {}>", f.fit.radii.size(), fit_status_name(f.fit.status));

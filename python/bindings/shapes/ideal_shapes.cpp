@@ -1,7 +1,6 @@
 #include "bindings/shapes/ideal_shapes.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/study/fitted_points.h"
 #include "bindings/shapes/shapes.h"
@@ -16,8 +16,6 @@
 
 namespace abbe::python {
 namespace {
-
-constexpr double kLargest = 1e9;  // mm, as in files
 
 bool has_direction(ShapeKind kind) { return kind != ShapeKind::sphere; }
 bool has_radius(ShapeKind kind) { return kind >= ShapeKind::circle2; }
@@ -35,8 +33,8 @@ Shape shape_of(const std::string& name, const ArrayLike& point, const std::optio
                const std::optional<double>& radius_mm, const std::optional<double>& half_angle_deg) {
   Shape shape;
   shape.kind = shape_kind(name);
-  shape.point = *direction_of(point, "point_mm");
-  if (!(shape.point.cwiseAbs().maxCoeff() <= kLargest)) {
+  shape.point = vector_of(point, "point_mm", "a point, mm");
+  if (!(shape.point.cwiseAbs().maxCoeff() <= kLargestInput)) {
     throw InputError({.field = "point_mm"}, "is too far away", "at most 1e9 mm");
   }
   if (has_direction(shape.kind)) {
@@ -53,7 +51,7 @@ Shape shape_of(const std::string& name, const ArrayLike& point, const std::optio
     refuse_if(direction.has_value(), "direction", name);
   }
   if (has_radius(shape.kind)) {
-    shape.radius = above_zero("radius_mm", radius_mm, kLargest, "a length in mm above zero");
+    shape.radius = above_zero("radius_mm", radius_mm, kLargestInput, "a length in mm above zero");
   } else {
     refuse_if(radius_mm.has_value(), "radius_mm", name);
   }
@@ -81,14 +79,7 @@ nb::object distances(const Shape& shape, const ArrayLike& points) {
 
 }  // namespace
 
-ShapeKind shape_kind(const std::string& shape) {
-  const auto found = shapes_by_name().find(shape);
-  if (found != shapes_by_name().end()) return found->second;
-  std::vector<std::string> names;
-  for (const auto& [name, kind] : shapes_by_name()) names.push_back(name);
-  throw InputError({.field = "shape"}, fmt::format("'{}' is no shape", shape.substr(0, 40)),
-                   fmt::format("{}", fmt::join(names, ", ")));
-}
+ShapeKind shape_kind(const std::string& shape) { return word_value("shape", shape, shapes_by_name()); }
 
 std::string shape_kind_name(ShapeKind kind) {
   for (const auto& [name, known] : shapes_by_name()) {

@@ -154,10 +154,7 @@ void bind_meshes(nb::module_& module) {
           "write",
           [](const NamedMesh& m, const std::filesystem::path& path, bool overwrite) {
             refuse_existing(path, overwrite);
-            computed([&] {
-              write_mesh(path, m.mesh());
-              return 0;
-            });
+            computed([&] { write_mesh(path, m.mesh()); });
           },
           nb::arg("path"), nb::arg("overwrite") = false,
           "Writes .stl (binary, coordinates rounded to float) or .ply (binary, double), whole or not at all.")

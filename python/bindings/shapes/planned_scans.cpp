@@ -10,10 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/readings/scan_plan_file.h"
-#include "abbe/formats/text/json_text.h"
+#include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/study/planned_scan.h"
-#include "bindings/files.h"
+#include "bindings/arrays_of_each.h"
+#include "bindings/evaluate/outputs.h"
 #include "bindings/job.h"
 #include "bindings/shapes/shapes.h"
 #include "bindings/use/arguments.h"
@@ -61,7 +62,8 @@ TriangleMesh whole(const NamedMesh& mesh) {
 
 Eigen::Vector3d triple(const Triple& numbers, const char* name) {
   for (const double number : numbers) {
-    if (!(std::abs(number) <= 1e9)) throw InputError({.field = name}, fmt::format("has {}", number), "at most 1e9");
+    if (!(std::abs(number) <= kLargestInput))
+      throw InputError({.field = name}, fmt::format("has {}", number), "at most 1e9");
   }
   return {numbers[0], numbers[1], numbers[2]};
 }
@@ -80,7 +82,6 @@ PlannedScan planned(const MeshArgument& part, const Machine& machine, const Trip
   request.scan.workpiece_from_part = part_placement(triple(position_mm, "position_mm"), triple(turn_deg, "turn_deg"));
   naming_arguments([&] {
     for (const std::array<double, 4>& plane : beyond_planes_mm) request.scan.wanted.push_back(beyond_plane(plane));
-    return 0;
   });
   if (stage) request.scan.stage = whole(mesh_of(*stage, std::nullopt));
   const NamedMesh mesh = mesh_of(part, std::nullopt);
@@ -98,52 +99,31 @@ std::string program(const PlannedScan& scan, const std::vector<std::string>& wor
   return planned_scan_program(scan, options);
 }
 
-/// [n, 3] of a vector of each move.
-nb::object vectors_of(const PlannedScan& scan, Eigen::Vector3d PlannedMove::*vector) {
-  std::vector<double> values;
-  for (const PlannedMove& move : scan.plan.moves) {
-    for (const double value : move.*vector) values.push_back(value);
-  }
-  return array_of(std::move(values), {scan.plan.moves.size(), 3});
-}
-
-nb::object flags_of(const PlannedScan& scan, bool PlannedMove::*flag) {
-  std::vector<std::uint8_t> flags;
-  for (const PlannedMove& move : scan.plan.moves) flags.push_back(move.*flag);
-  return array_of_bools(std::move(flags));
-}
-
-nb::object indices_of(const PlannedScan& scan, std::size_t PlannedMove::*index) {
-  std::vector<int> indices;
-  for (const PlannedMove& move : scan.plan.moves) indices.push_back(static_cast<int>(move.*index));
-  return array_of_ints(std::move(indices));
-}
-
 void bind_moves(nb::class_<PlannedScan>& bound) {
   bound
       .def_prop_ro(
           "positions_mm_rad", [](const PlannedScan& s) { return copied_poses(s.plan.positions); },
           nb::sig("def positions_mm_rad(self) -> numpy.ndarray"), "[n, axes] commands of all moves.")
       .def_prop_ro(
-          "points_mm", [](const PlannedScan& s) { return vectors_of(s, &PlannedMove::point); },
+          "points_mm", [](const PlannedScan& s) { return vectors_of_each(s.plan.moves, &PlannedMove::point); },
           nb::sig("def points_mm(self) -> numpy.ndarray"), "[n, 3] workpiece frame.")
       .def_prop_ro(
-          "normals", [](const PlannedScan& s) { return vectors_of(s, &PlannedMove::normal); },
+          "normals", [](const PlannedScan& s) { return vectors_of_each(s.plan.moves, &PlannedMove::normal); },
           nb::sig("def normals(self) -> numpy.ndarray"), "[n, 3] of the surface.")
       .def_prop_ro(
-          "beams", [](const PlannedScan& s) { return vectors_of(s, &PlannedMove::beam); },
+          "beams", [](const PlannedScan& s) { return vectors_of_each(s.plan.moves, &PlannedMove::beam); },
           nb::sig("def beams(self) -> numpy.ndarray"), "[n, 3] from the part to the probe.")
       .def_prop_ro(
-          "measures", [](const PlannedScan& s) { return flags_of(s, &PlannedMove::measures); },
+          "measures", [](const PlannedScan& s) { return flags_of_each(s.plan.moves, &PlannedMove::measures); },
           nb::sig("def measures(self) -> numpy.ndarray"), "[n] False: the move goes around, away from the part.")
       .def_prop_ro(
-          "blocked", [](const PlannedScan& s) { return flags_of(s, &PlannedMove::blocked); },
+          "blocked", [](const PlannedScan& s) { return flags_of_each(s.plan.moves, &PlannedMove::blocked); },
           nb::sig("def blocked(self) -> numpy.ndarray"), "[n] no clear way was found: the probe may touch.")
       .def_prop_ro(
-          "face", [](const PlannedScan& s) { return indices_of(s, &PlannedMove::face); },
+          "face", [](const PlannedScan& s) { return ints_of_each(s.plan.moves, &PlannedMove::face); },
           nb::sig("def face(self) -> numpy.ndarray"), "[n] index into faces.")
       .def_prop_ro(
-          "line", [](const PlannedScan& s) { return indices_of(s, &PlannedMove::line); },
+          "line", [](const PlannedScan& s) { return ints_of_each(s.plan.moves, &PlannedMove::line); },
           nb::sig("def line(self) -> numpy.ndarray"), "[n] of the face.");
 }
 
@@ -169,6 +149,7 @@ void bind_planned_scans(nb::module_& module) {
   bind_faces(module);
   nb::class_<PlannedScan> bound(module, "PlannedScan", "Paths of a probe over a part. Made by plan_scan().");
   bind_moves(bound);
+  add_json(bound, &planned_scan_json);
   bound.def_ro("machine", &PlannedScan::machine)
       .def_prop_ro("faces", [](const PlannedScan& s) { return s.plan.faces; })
       .def_prop_ro(
@@ -179,12 +160,6 @@ void bind_planned_scans(nb::module_& module) {
       .def_prop_ro("complete", &PlannedScan::is_complete,
                    "Whether everything that is wanted is reached, and on a clear way.")
       .def("text", &planned_scan_text, "What `abbe scan plan` prints.")
-      .def(
-          "json_text", [](const PlannedScan& s) { return json_text(planned_scan_json(s)); },
-          "What it prints with --json.")
-      .def(
-          "to_dict", [](const PlannedScan& s) { return python_value(planned_scan_json(s)); },
-          nb::sig("def to_dict(self) -> dict[str, typing.Any]"), "The same as a dictionary.")
       .def("csv", &planned_scan_csv, "The path as CSV.")
       .def("program", &program, nb::arg("words") = std::vector<std::string>{},
            "The path as an NC program (G1, inverse time feed). words: of axes, such as ['C1=C'].")

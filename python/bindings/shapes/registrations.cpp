@@ -10,7 +10,7 @@
 #include "abbe/geometry/registration/feature_registration.h"
 #include "abbe/report/words/registration_words.h"
 #include "abbe/study/scan_registration.h"
-#include "bindings/evaluate/report.h"
+#include "bindings/evaluate/outputs.h"
 #include "bindings/job.h"
 #include "bindings/shapes/shapes.h"
 
@@ -37,18 +37,14 @@ ScanRegistration registered(const PointsArgument& scan, const MeshArgument& part
                             const std::optional<std::string>& unit, const std::optional<std::string>& part_unit,
                             bool compare, const nb::object& progress) {
   ScanRegistrationRequest request;
-  const std::size_t kind = word_index("loss", loss, {"adf", "welsch", "tukey"});
-  request.options.loss = kind == 2 ? RegistrationLoss::tukey : RegistrationLoss::welsch;
-  request.options.adaptive_distance = kind == 0;
+  request.options.loss = word_value<RegistrationLoss>(
+      "loss", loss,
+      {{"adf", RegistrationLoss::welsch}, {"welsch", RegistrationLoss::welsch}, {"tukey", RegistrationLoss::tukey}});
+  request.options.adaptive_distance = loss == "adf";
   request.options.noise_mm = quantity("noise_um", noise_um, Quantity::length, "um", 0, 1e6);
   request.options.seed = seed;
   request.options.start = start_of(start);
-  NamedPoints points = points_of(scan, "scan", unit, "");
-  const NamedMesh mesh = mesh_of(part, part_unit);
-  request.scan_file = points.name;
-  request.part_file = mesh.name();
-  request.scan = std::move(points.file);
-  request.part = mesh.file();
+  enter_scan_and_part(scan, unit, part, part_unit, request);
   request.compare = compare;
   return job_result(progress, [&](const JobControl& control) {
     return naming_arguments([&] { return register_scan(std::move(request), control.options("registering")); });
@@ -76,8 +72,8 @@ FineRegistration to_features(const ArrayLike& points, const std::vector<Shape>& 
     throw InputError({.field = "labels"}, fmt::format("has {}", label), fmt::format("below {}", features.size()));
   }
   FeatureRegistrationOptions options;
-  options.loss = word_index("loss", loss, {"welsch", "least-squares"}) == 0 ? RegistrationLoss::welsch
-                                                                            : RegistrationLoss::least_squares;
+  options.loss = word_value<RegistrationLoss>(
+      "loss", loss, {{"welsch", RegistrationLoss::welsch}, {"least-squares", RegistrationLoss::least_squares}});
   options.noise_mm = quantity("noise_um", noise_um, Quantity::length, "um", 0, 1e6);
   const RigidTransform from = start ? rigid_transform(*start, "start") : RigidTransform{};
   return computed([&] { return register_to_features(given, features, of_points, from, options); });
@@ -144,33 +140,14 @@ void bind_registration(nb::module_& module) {
           "[n] from the part, positive outside of the material; None without a pose or with compare=False.")
       .def("text", &scan_registration_text, nb::arg("uncertainty") = false,
            "What `abbe register` prints. uncertainty: with the covariance of the pose.")
-      .def(
-          "json_text", [](const Result& r) { return json_text(scan_registration_json(r)); },
-          "What it prints with --json.")
-      .def(
-          "to_dict", [](const Result& r) { return python_value(scan_registration_json(r)); },
-          nb::sig("def to_dict(self) -> dict[str, typing.Any]"), "The same as a dictionary.")
-      .def("page_html", &scan_registration_page, "The page of the command, HTML.")
-      .def(
-          "write_page",
-          [](const Result& r, const std::filesystem::path& path, bool overwrite) {
-            write_text(path, scan_registration_page(r), overwrite);
-          },
-          nb::arg("path"), nb::arg("overwrite") = false, "Writes the page (*.html), whole or not at all.")
-      .def(
-          "files", [](const Result& r) { return files_by_name(scan_registration_files(r)); },
-          nb::sig("def files(self) -> dict[str, bytes]"), "The files of a results folder, contents by name.")
-      .def(
-          "write",
-          [](const Result& r, const std::filesystem::path& folder, bool overwrite) {
-            write_results_folder(folder, scan_registration_files(r), overwrite);
-          },
-          nb::arg("folder"), nb::arg("overwrite") = false,
-          "Writes the results folder: registration.json, report.html, transform.csv and registered.ply.")
       .def("__repr__", [](const Result& r) {
         return fmt::format("<abbe.ScanRegistration: {}, scale {:.3f} um>", registration_status_name(r.found.status),
                            1e3 * r.found.fine.scale_mm);
       });
+  add_json(bound, &scan_registration_json);
+  add_page(bound, &scan_registration_page);
+  add_files(bound, &scan_registration_files,
+            "Writes the results folder: registration.json, report.html, transform.csv and registered.ply.");
 }
 
 }  // namespace

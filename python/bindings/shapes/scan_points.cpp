@@ -11,10 +11,9 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "abbe/formats/text/json_text.h"
 #include "abbe/instruments/point_scan.h"
 #include "abbe/study/scanned_points.h"
-#include "bindings/files.h"
+#include "bindings/evaluate/outputs.h"
 #include "bindings/job.h"
 #include "bindings/shapes/shapes.h"
 #include "bindings/use/arguments.h"
@@ -57,7 +56,8 @@ PointsOfReadings of_arrays(const ErrorsOrMachine& errors, const ArrayLike& posit
     throw InputError({.field = "indication_mm"}, fmt::format("has {} numbers", indication.size()),
                      fmt::format("{}, one of each position", commands.count()));
   }
-  const Eigen::Vector3d zero = direction_of(beam_zero_mm, "beam_zero_mm").value_or(Eigen::Vector3d::Zero());
+  const Eigen::Vector3d zero =
+      beam_zero_mm ? vector_of(*beam_zero_mm, "beam_zero_mm", "a point, mm") : Eigen::Vector3d::Zero();
   const std::optional<Eigen::Vector3d> direction = direction_of(beam, "beam");
   const PointScan scan =
       naming_arguments([&] { return PointScan(machine, set, probe_beam(machine, zero, direction)); });
@@ -71,7 +71,7 @@ PointsOfReadings of_arrays(const ErrorsOrMachine& errors, const ArrayLike& posit
                   {points[0] + first, points[1] + first, points[2] + first}, covered[0] + first);
     });
   }
-  return {points.release({3}, false), covered.release({}, false).attr("view")("bool")};
+  return {points.release({3}, false), covered.release_bools()};
 }
 
 ScannedPoints of_file(const std::filesystem::path& readings, const ErrorsOrMachine& errors,
@@ -87,7 +87,7 @@ ScannedPoints of_file(const std::filesystem::path& readings, const ErrorsOrMachi
   if (std::holds_alternative<MachineErrors>(errors)) request.errors_file = errors_file;
   request.readings = readings.string();
   request.output = output.string();
-  if (beam_zero_mm) request.beam_zero = *direction_of(beam_zero_mm, "beam_zero_mm");
+  if (beam_zero_mm) request.beam_zero = vector_of(*beam_zero_mm, "beam_zero_mm", "a point, mm");
   request.beam = direction_of(beam, "beam");
   if (indication_range_mm) request.indication_range = {indication_range_mm->first, indication_range_mm->second};
   request.scan.mapping.columns = std::move(columns);
@@ -113,7 +113,9 @@ void bind_results(nb::module_& module) {
       .def("__len__", [](const PointsOfReadings& p) { return nb::len(p.points_mm); })
       .def("__repr__",
            [](const PointsOfReadings& p) { return fmt::format("<abbe.ScanPoints: {}>", nb::len(p.points_mm)); });
-  nb::class_<ScannedPoints>(module, "ScannedFile", "What became of a file of readings. Made by scan_points_file().")
+  nb::class_<ScannedPoints> bound(module, "ScannedFile",
+                                  "What became of a file of readings. Made by scan_points_file().");
+  bound
       .def_prop_ro(
           "readings", [](const ScannedPoints& p) { return p.summary.readings; }, "Rows of the file.")
       .def_prop_ro(
@@ -138,15 +140,10 @@ void bind_results(nb::module_& module) {
           "The corner opposite to it.")
       .def_ro("refused", &ScannedPoints::refused, "Why there is no point at all; empty: there are some.")
       .def("text", &scanned_points_text, "What `abbe scan points` prints.")
-      .def(
-          "json_text", [](const ScannedPoints& p) { return json_text(scanned_points_json(p)); },
-          "What it prints with --json.")
-      .def(
-          "to_dict", [](const ScannedPoints& p) { return python_value(scanned_points_json(p)); },
-          nb::sig("def to_dict(self) -> dict[str, typing.Any]"), "The same as a dictionary.")
       .def("__repr__", [](const ScannedPoints& p) {
         return fmt::format("<abbe.ScannedFile: {} of {} readings>", p.summary.points, p.summary.readings);
       });
+  add_json(bound, &scanned_points_json);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/geometry/rigid_transform.h"
 #include "abbe/geometry/surface/closest_point.h"
-#include "abbe/study/evaluations/evaluation.h"
 #include "bindings/evaluate/readings.h"
 
 namespace abbe::python {
@@ -35,6 +34,16 @@ class NamedMesh {
   mutable std::shared_ptr<const ClosestPointFinder> finder_;
 };
 
+/// A path, points [n, 3], or a PointCloud.
+struct PointsArgument {
+  nb::handle source;
+};
+
+/// Points of a program as a file of them would be read. @throws InputError for another shape, numbers that are not
+///   finite or larger than a file may have
+PointCloudFile points_of_array(const ArrayLike& points, const char* name,
+                               const std::optional<ArrayLike>& normals = std::nullopt);
+
 /// Points with their name.
 struct NamedPoints {
   PointCloudFile file;
@@ -49,13 +58,26 @@ using MeshArgument = std::variant<NamedMesh, std::filesystem::path>;
 /// Reads it where it is a path. @param unit  of a file that states none
 NamedMesh mesh_of(const MeshArgument& argument, const std::optional<std::string>& unit);
 
+/// Enters a scan and its part, each read where it is a path, with their names.
+template <class Request>
+void enter_scan_and_part(const PointsArgument& scan, const std::optional<std::string>& unit, const MeshArgument& part,
+                         const std::optional<std::string>& part_unit, Request& request) {
+  NamedPoints points = points_of(scan, "scan", unit, "");
+  const NamedMesh mesh = mesh_of(part, part_unit);
+  request.scan_file = points.name;
+  request.part_file = mesh.name();
+  request.scan = std::move(points.file);
+  request.part = mesh.file();
+}
+
 /// "mm", "m", "inch". @throws InputError
 std::optional<FileLength> file_unit(const char* name, const std::optional<std::string>& unit);
 
 /// A transform as [4, 4] with mm. @throws InputError
 RigidTransform rigid_transform(const ArrayLike& argument, const char* name);
 Eigen::Matrix4d transform_matrix(const RigidTransform& transform);
-/// Three numbers. @throws InputError
+/// [3], a point or a direction. @param words  what it is, for messages  @throws InputError
+Eigen::Vector3d vector_of(const ArrayLike& argument, const char* name, const char* words);
 std::optional<Eigen::Vector3d> direction_of(const std::optional<ArrayLike>& argument, const char* name);
 
 /// [n, 3] of columns, which they keep alive.
@@ -75,3 +97,16 @@ void bind_scan_points(nb::module_& module);
 void bind_planned_scans(nb::module_& module);
 
 }  // namespace abbe::python
+
+namespace nanobind::detail {
+
+template <>
+struct type_caster<abbe::python::PointsArgument> {
+  NB_TYPE_CASTER(abbe::python::PointsArgument, const_name("str | os.PathLike | numpy.typing.ArrayLike | PointCloud"))
+  bool from_python(handle source, std::uint32_t, cleanup_list*) noexcept {
+    value.source = source;
+    return !source.is_none();
+  }
+};
+
+}  // namespace nanobind::detail

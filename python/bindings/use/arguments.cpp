@@ -127,7 +127,11 @@ std::string argument_words(const std::string& text) {
       continue;
     }
     std::string name;
-    for (i += 2; i < text.size() && (std::islower(static_cast<unsigned char>(text[i])) != 0 || text[i] == '-'); ++i) {
+    const auto belongs = [](char c) {
+      return c == '-' || std::islower(static_cast<unsigned char>(c)) != 0 ||
+             std::isdigit(static_cast<unsigned char>(c)) != 0;
+    };
+    for (i += 2; i < text.size() && belongs(text[i]); ++i) {
       name += text[i] == '-' ? '_' : text[i];
     }
     --i;

@@ -9,6 +9,7 @@
 #include "abbe/formats/shapes/curve_file.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/study/test_piece_sizes.h"
+#include "bindings/arrays_of_each.h"
 
 namespace abbe::python {
 namespace {
@@ -93,30 +94,6 @@ NamedCurve curve_of(const ArrayLike& points, const std::optional<ArrayLike>& dir
   return result;
 }
 
-template <class Get>
-nb::object number_of_points(const NamedCurve& self, const Get& get) {
-  std::vector<double> values;
-  for (const CurvePoint& point : self.curve.points) values.push_back(get(point));
-  const std::size_t count = values.size();
-  return array_of(std::move(values), {count});
-}
-
-template <class Get>
-nb::object triples_of_points(const NamedCurve& self, const Get& get) {
-  std::vector<double> values;
-  for (const CurvePoint& point : self.curve.points) {
-    for (const double number : get(point)) values.push_back(number);
-  }
-  const std::size_t count = self.curve.points.size();
-  return array_of(std::move(values), {count, 3});
-}
-
-nb::object working(const NamedCurve& self) {
-  std::vector<std::uint8_t> values;
-  for (const CurvePoint& point : self.curve.points) values.push_back(point.working ? 1 : 0);
-  return array_of_bools(std::move(values));
-}
-
 std::string csv(const NamedCurve& self) {
   bool plain = self.curve.indexed.empty();
   for (const CurvePoint& point : self.curve.points) plain = plain && point.dwell == 0;
@@ -186,16 +163,6 @@ SShape s_shape_of(double length, double amplitude, double height, double lean_de
                         tool_diameter});
 }
 
-template <class Get>
-nb::object ruling_points(const PieceOfSizes& self, const Get& get) {
-  std::vector<double> values;
-  for (const Ruling& ruling : self.piece.rulings) {
-    for (const double number : get(ruling)) values.push_back(number);
-  }
-  const std::size_t count = self.piece.rulings.size();
-  return array_of(std::move(values), {count, 3});
-}
-
 void bind_curve(nb::module_& module) {
   nb::class_<NamedCurve>(module, "Curve",
                          "A curve on the workpiece that a tool follows, with directions of the tool.\n\n"
@@ -233,23 +200,23 @@ void bind_curve(nb::module_& module) {
           "From the text of a CSV, or of a program.")
       .def_ro("file", &NamedCurve::file)
       .def_prop_ro(
-          "points_mm",
-          [](const NamedCurve& c) { return triples_of_points(c, [](const CurvePoint& p) { return p.point; }); },
+          "points_mm", [](const NamedCurve& c) { return vectors_of_each(c.curve.points, &CurvePoint::point); },
           nb::sig("def points_mm(self) -> numpy.ndarray"), "[n, 3]")
       .def_prop_ro(
-          "directions",
-          [](const NamedCurve& c) { return triples_of_points(c, [](const CurvePoint& p) { return p.direction; }); },
+          "directions", [](const NamedCurve& c) { return vectors_of_each(c.curve.points, &CurvePoint::direction); },
           nb::sig("def directions(self) -> numpy.ndarray"), "[n, 3] from the functional point to the spindle.")
       .def_prop_ro(
           "feed_mm_per_min",
-          [](const NamedCurve& c) { return number_of_points(c, [](const CurvePoint& p) { return 60 * p.feed; }); },
+          [](const NamedCurve& c) {
+            return numbers_of_each(c.curve.points, [](const CurvePoint& p) { return 60 * p.feed; });
+          },
           nb::sig("def feed_mm_per_min(self) -> numpy.ndarray"), "[n] on the way to each point; 0: not stated.")
       .def_prop_ro(
-          "dwell_s",
-          [](const NamedCurve& c) { return number_of_points(c, [](const CurvePoint& p) { return p.dwell; }); },
+          "dwell_s", [](const NamedCurve& c) { return numbers_of_each(c.curve.points, &CurvePoint::dwell); },
           nb::sig("def dwell_s(self) -> numpy.ndarray"), "[n]")
-      .def_prop_ro("working", &working, nb::sig("def working(self) -> numpy.ndarray"),
-                   "[n] whether the tool works on the way to each point.")
+      .def_prop_ro(
+          "working", [](const NamedCurve& c) { return flags_of_each(c.curve.points, &CurvePoint::working); },
+          nb::sig("def working(self) -> numpy.ndarray"), "[n] whether the tool works on the way to each point.")
       .def_ro("indexed", &NamedCurve::indexed, "Names of axes that are set beforehand.")
       .def(
           "working_runs",
@@ -276,18 +243,16 @@ void bind_pieces(nb::module_& module) {
           "Path of the middle of the tool's end.")
       .def_prop_ro("tool_radius_mm", [](const PieceOfSizes& p) { return p.piece.tool_radius; })
       .def_prop_ro(
-          "foot_mm", [](const PieceOfSizes& p) { return ruling_points(p, [](const Ruling& r) { return r.foot; }); },
+          "foot_mm", [](const PieceOfSizes& p) { return vectors_of_each(p.piece.rulings, &Ruling::foot); },
           nb::sig("def foot_mm(self) -> numpy.ndarray"), "[n, 3] lower ends of the rulings, workpiece frame.")
       .def_prop_ro(
-          "head_mm", [](const PieceOfSizes& p) { return ruling_points(p, [](const Ruling& r) { return r.head; }); },
+          "head_mm", [](const PieceOfSizes& p) { return vectors_of_each(p.piece.rulings, &Ruling::head); },
           nb::sig("def head_mm(self) -> numpy.ndarray"), "[n, 3] upper ends.")
       .def_prop_ro(
-          "foot_normals",
-          [](const PieceOfSizes& p) { return ruling_points(p, [](const Ruling& r) { return r.foot_normal; }); },
+          "foot_normals", [](const PieceOfSizes& p) { return vectors_of_each(p.piece.rulings, &Ruling::foot_normal); },
           nb::sig("def foot_normals(self) -> numpy.ndarray"), "[n, 3] out of the material.")
       .def_prop_ro(
-          "head_normals",
-          [](const PieceOfSizes& p) { return ruling_points(p, [](const Ruling& r) { return r.head_normal; }); },
+          "head_normals", [](const PieceOfSizes& p) { return vectors_of_each(p.piece.rulings, &Ruling::head_normal); },
           nb::sig("def head_normals(self) -> numpy.ndarray"), "[n, 3] out of the material.")
       .def("__repr__", [](const PieceOfSizes& p) {
         return fmt::format("<abbe.TestPiece {}: {} points>", p.name, p.piece.curve.points.size());

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/study/planned_path.h"
+#include "bindings/arrays_of_each.h"
 #include "bindings/files.h"
 #include "bindings/use/curves.h"
 #include "bindings/use/path_parts.h"
@@ -85,49 +86,30 @@ nb::object commands(const PlannedPath& planned) {
   return array_of(std::move(values), {count, axes});
 }
 
-template <class Get>
-nb::object numbers_of_steps(const PlannedPath& planned, const Get& get) {
-  std::vector<double> values;
-  for (const ToolPathStep& step : planned.path.steps) values.push_back(get(step));
-  const std::size_t count = values.size();
-  return array_of(std::move(values), {count});
-}
-
-template <class Get>
-nb::object ints_of_steps(const PlannedPath& planned, const Get& get) {
-  std::vector<int> values;
-  for (const ToolPathStep& step : planned.path.steps) values.push_back(get(step));
-  return array_of_ints(std::move(values));
-}
-
-nb::object working(const PlannedPath& planned) {
-  std::vector<std::uint8_t> values;
-  for (const ToolPathStep& step : planned.path.steps) values.push_back(step.working ? 1 : 0);
-  return array_of_bools(std::move(values));
-}
-
 void bind_steps(nb::class_<PlannedPath>& bound) {
   bound
       .def_prop_ro("positions_mm_rad", &commands, nb::sig("def positions_mm_rad(self) -> numpy.ndarray"),
                    "[steps, axes] commands as the control is to have them, mm or rad.")
-      .def_prop_ro("working", &working, nb::sig("def working(self) -> numpy.ndarray"),
-                   "[steps] whether the tool works on the way there; else a rapid move.")
       .def_prop_ro(
-          "length_mm",
-          [](const PlannedPath& p) { return numbers_of_steps(p, [](const ToolPathStep& s) { return s.length; }); },
+          "working", [](const PlannedPath& p) { return flags_of_each(p.path.steps, &ToolPathStep::working); },
+          nb::sig("def working(self) -> numpy.ndarray"),
+          "[steps] whether the tool works on the way there; else a rapid move.")
+      .def_prop_ro(
+          "length_mm", [](const PlannedPath& p) { return numbers_of_each(p.path.steps, &ToolPathStep::length); },
           nb::sig("def length_mm(self) -> numpy.ndarray"), "[steps] along the curve, of moves at work.")
       .def_prop_ro(
           "feed_mm_per_min",
-          [](const PlannedPath& p) { return numbers_of_steps(p, [](const ToolPathStep& s) { return 60 * s.feed; }); },
+          [](const PlannedPath& p) {
+            return numbers_of_each(p.path.steps, [](const ToolPathStep& s) { return 60 * s.feed; });
+          },
           nb::sig("def feed_mm_per_min(self) -> numpy.ndarray"), "[steps]")
       .def_prop_ro(
-          "dwell_s",
-          [](const PlannedPath& p) { return numbers_of_steps(p, [](const ToolPathStep& s) { return s.dwell; }); },
+          "dwell_s", [](const PlannedPath& p) { return numbers_of_each(p.path.steps, &ToolPathStep::dwell); },
           nb::sig("def dwell_s(self) -> numpy.ndarray"), "[steps]")
       .def_prop_ro(
           "point",
           [](const PlannedPath& p) {
-            return ints_of_steps(p, [](const ToolPathStep& s) {
+            return ints_of_each(p.path.steps, [](const ToolPathStep& s) {
               return s.point == ToolPathStep::kNoPoint ? -1 : static_cast<int>(s.point);
             });
           },
@@ -135,12 +117,11 @@ void bind_steps(nb::class_<PlannedPath>& bound) {
       .def_prop_ro(
           "region",
           [](const PlannedPath& p) {
-            return ints_of_steps(p, [](const ToolPathStep& s) { return static_cast<int>(s.region); });
+            return ints_of_each(p.path.steps, [](const ToolPathStep& s) { return static_cast<int>(s.region); });
           },
           nb::sig("def region(self) -> numpy.ndarray"), "[steps]")
       .def_prop_ro(
-          "branch",
-          [](const PlannedPath& p) { return ints_of_steps(p, [](const ToolPathStep& s) { return s.branch; }); },
+          "branch", [](const PlannedPath& p) { return ints_of_each(p.path.steps, &ToolPathStep::branch); },
           nb::sig("def branch(self) -> numpy.ndarray"), "[steps] of the inverse kinematics.");
 }
 
