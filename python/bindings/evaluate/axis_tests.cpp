@@ -121,10 +121,10 @@ void bind_axis_tests(nb::module_& module) {
       "Accuracy and repeatability of positioning of a linear or rotary axis (ISO 230-2), as an Evaluation.\n\n"
       "readings: a file, or columns [n] named as in one, of any unit: direction ('+', '-': from which side the target\n"
       "was approached), target_mm or target_deg, deviation_um (actual minus target) or actual_mm, or deviation_arcsec\n"
-      "or actual_deg, and perhaps run. uncertainty: what is known of the measurement, with the names of the command's\n"
-      "options: {'instrument_um_per_m': 0.6, 'misalignment_mm': 1}; instruments and set-up expanded (k = 2).\n"
+      "or actual_deg, and optionally run. uncertainty: contributions, named like the options of the command:\n"
+      "{'instrument_um_per_m': 0.6, 'misalignment_mm': 1}; instruments and set-up expanded (k = 2).\n"
       "tolerances: {'A_um': 10}. file: name for the title. numbers is a PositioningNumbers.\n"
-      "Raises InputError that names the column and the row. Definitions: docs/evaluate.md.\n\n"
+      "Raises InputError naming the column and the row. Definitions: docs/evaluate.md.\n\n"
       ">>> import abbe\n"
       ">>> result = abbe.evaluate_positioning({\n"
       "...     'direction': ['+', '-'] * 4, 'target_mm': [0, 0, 0, 0, 100, 100, 100, 100],\n"
@@ -138,7 +138,8 @@ void bind_axis_tests(nb::module_& module) {
       nb::arg("file") = "",
       "Positioning along body or face diagonals (ISO 230-6), as an Evaluation.\n\n"
       "readings: a file, or columns [n]: diagonal (a name such as '+X+Y+Z'), direction, target_mm (the distance along\n"
-      "the diagonal), deviation_um or actual_mm, and perhaps run. numbers is a DiagonalsNumbers. Raises InputError.\n"
+      "the diagonal), deviation_um or actual_mm, and optionally run. numbers is a DiagonalsNumbers. Raises "
+      "InputError.\n"
       "Definitions: docs/evaluate.md.");
   module.def(
       "evaluate_circular", &circular, nb::arg("readings"), nb::arg("radius_mm"), nb::kw_only(),
@@ -148,11 +149,12 @@ void bind_axis_tests(nb::module_& module) {
       "Circular test (ISO 230-4) with a ball bar or grid encoder, and the causes of the deviations.\n\n"
       "readings: a file, or columns [n]: direction ('cw', 'ccw') with angle_deg and deviation_um (from the nominal\n"
       "radius) or radius_mm of a ball bar, or with two of X_mm, Y_mm, Z_mm of a grid encoder, from the centre of the\n"
-      "nominal circle. radius_mm: the nominal one. plane: 'XY' (default), 'YZ' or 'ZX' of a ball bar; angles run from\n"
+      "nominal circle. radius_mm: nominal radius. plane: 'XY' (default), 'YZ' or 'ZX' of a ball bar; angles run from\n"
       "the first axis to the second. centre: 'least-squares', 'minimum-zone' or 'instrument'. u_reading_um,\n"
-      "u_length_um: standard uncertainties of a reading, and of what all readings share. length_calibrated: else the\n"
-      "length shows only the difference of the scales. skip_reversal_deg: readings so near a reversal have no part in\n"
-      "the causes. feed_mm_min: along the path. numbers is a CircularNumbers. Raises InputError.\n"
+      "u_length_um: standard uncertainties of a reading, and of what all readings share. length_calibrated: if False, "
+      "the\n"
+      "length shows only the difference of the scales. skip_reversal_deg: readings this near a reversal are not used\n"
+      "to find the causes. feed_mm_min: along the path. numbers is a CircularNumbers. Raises InputError.\n"
       "Definitions: docs/evaluate-geometry.md.\n\n"
       ">>> import abbe, numpy\n"
       ">>> angle = numpy.arange(0, 360, 5.0)\n"
@@ -172,17 +174,19 @@ void bind_axis_tests(nb::module_& module) {
       "probes along X and Y), x2_um, y2_um (in a second plane), axial_um (on the axis), face_um (parallel to it at a\n"
       "radius). plane_distance_mm: from the first to the second plane, for the tilts. sensitive_deg: rotating "
       "sensitive\n"
-      "direction at axis angle zero, from X towards Y. u_reading_um: standard uncertainty of a displacement. Four "
-      "whole\n"
-      "turns are needed, else refused says so. numbers is a RotationNumbers. Raises InputError.\n"
+      "direction at axis angle zero, from X towards Y. u_reading_um: standard uncertainty of a displacement. With "
+      "fewer "
+      "than\n"
+      "four whole turns, refused says so. numbers is a RotationNumbers. Raises InputError.\n"
       "Definitions: docs/evaluate-geometry.md.");
   module.def(
       "evaluate_straightness", &of_one_line, nb::arg("readings"), nb::kw_only(), nb::arg("reference") = "least-squares",
       nb::arg("u_reading_um") = 0.0, nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
       "Straightness error (ISO 230-1) by least squares and by the minimum zone.\n\n"
-      "readings: a file, or columns [n]: position_mm along the line, deviation_um across it; three different "
-      "positions\n"
-      "at least. reference: 'least-squares' or 'minimum-zone', of the plot. u_reading_um: standard uncertainty of a\n"
+      "readings: a file, or columns [n]: position_mm along the line, deviation_um across it; at least "
+      "three\n"
+      "different positions. reference: 'least-squares' or 'minimum-zone', for the plot. u_reading_um: standard "
+      "uncertainty of a\n"
       "deviation. numbers is a StraightnessNumbers. Raises InputError. Definitions: docs/evaluate-geometry.md.\n\n"
       ">>> import abbe\n"
       ">>> result = abbe.evaluate_straightness({'position_mm': [0, 1, 2, 3], 'deviation_um': [0, 1, 1, 0]})\n"
@@ -195,7 +199,7 @@ void bind_axis_tests(nb::module_& module) {
       "Squareness error (ISO 230-1) between two lines read against a reference square.\n\n"
       "readings: a file, or columns [n]: line (two names such as 'X' and 'Y'), position_mm along it, deviation_um\n"
       "across it, positive along the other line. reference: 'least-squares' or 'minimum-zone'. u_reading_um: standard\n"
-      "uncertainty of a deviation. square_urad: angle of the reference square less 90 degrees; u_square_urad: its\n"
+      "uncertainty of a deviation. square_urad: angle of the reference square minus 90 degrees; u_square_urad: its\n"
       "standard uncertainty. numbers is a SquarenessNumbers. Raises InputError. Definitions:\n"
       "docs/evaluate-geometry.md.");
 }

@@ -10,10 +10,10 @@
 namespace abbe::python {
 namespace {
 
-/// A path with what the causes leave of it.
+/// A path with what the causes explain of it, and what they leave.
 struct CircularPath {
   const CircularDeviation* deviation;
-  const std::vector<double>*residuals, *modelled;  ///< null: of both directions
+  const std::vector<double>*residuals, *modelled;  ///< null for both directions together
 };
 
 const char* status_word(CircleStatus status) {
@@ -40,31 +40,34 @@ void bind_circular(nb::module_& module) {
           "status", [](const CircularPath& p) { return status_word(p.deviation->status); },
           "'done', or why there are no numbers.")
       .def_prop_ro(
-          "partial", [](const CircularPath& p) { return p.deviation->partial; }, "Whether it is an arc.")
+          "partial", [](const CircularPath& p) { return p.deviation->partial; },
+          "Whether the path is an arc, not a full circle.")
       .def_prop_ro(
           "centre_mm", [](const CircularPath& p) { return p.deviation->centre; },
-          "[2] along the first and the second axis, from that of the instrument.")
+          "[2] along the first and the second axis, from the centre of the instrument.")
       .def_prop_ro("mean_radius_mm", [](const CircularPath& p) { return p.deviation->mean_radius; })
       .def_prop_ro(
           "angle_rad", [](const CircularPath& p) { return copied_array(p.deviation->angle); },
           nb::sig("def angle_rad(self) -> numpy.ndarray"), "[n] seen from the centre, in the order along the path.")
       .def_prop_ro(
           "deviation_mm", [](const CircularPath& p) { return copied_array(p.deviation->deviations); },
-          nb::sig("def deviation_mm(self) -> numpy.ndarray"), "[n] radius about the centre less the nominal one.")
+          nb::sig("def deviation_mm(self) -> numpy.ndarray"), "[n] radius about the centre minus the nominal radius.")
       .def_prop_ro(
           "circular_mm", [](const CircularPath& p) { return p.deviation->circular; },
-          "G: largest less smallest radius.")
+          "Circular deviation G: largest minus smallest radius.")
       .def_prop_ro(
-          "radial_largest_mm", [](const CircularPath& p) { return p.deviation->radial_largest; }, "F max.")
+          "radial_largest_mm", [](const CircularPath& p) { return p.deviation->radial_largest; },
+          "Radial deviation F max.")
       .def_prop_ro(
-          "radial_smallest_mm", [](const CircularPath& p) { return p.deviation->radial_smallest; }, "F min.")
+          "radial_smallest_mm", [](const CircularPath& p) { return p.deviation->radial_smallest; },
+          "Radial deviation F min.")
       .def_prop_ro(
           "modelled_mm", [](const CircularPath& p) { return array_or_none(p.modelled); },
           nb::sig("def modelled_mm(self) -> numpy.ndarray | None"),
           "[n] radial deviation that the causes explain, centre left out; None for both directions together.")
       .def_prop_ro(
           "residuals_mm", [](const CircularPath& p) { return array_or_none(p.residuals); },
-          nb::sig("def residuals_mm(self) -> numpy.ndarray | None"), "[n] what they leave.")
+          nb::sig("def residuals_mm(self) -> numpy.ndarray | None"), "[n] radial deviation that the causes leave.")
       .def("__repr__", [](const CircularPath& p) {
         return fmt::format("<abbe.CircularPath: {} readings, G {:.3f} um>", p.deviation->deviations.size(),
                            1e3 * p.deviation->circular);
@@ -74,7 +77,7 @@ void bind_circular(nb::module_& module) {
       return CircularPath{&e.deviations.paths[at], &e.diagnosis.residuals[at], &e.diagnosis.modelled[at]};
     };
   };
-  nb::class_<CircularEvaluation>(module, "CircularNumbers", "Radial deviations; the causes are figures.")
+  nb::class_<CircularEvaluation>(module, "CircularNumbers", "Radial deviations; the causes are among the figures.")
       .def_prop_ro("clockwise", path(CircularDirection::clockwise), nb::keep_alive<0, 1>())
       .def_prop_ro("counterclockwise", path(CircularDirection::counterclockwise), nb::keep_alive<0, 1>())
       .def_prop_ro(
@@ -88,7 +91,7 @@ void bind_circular(nb::module_& module) {
           [](const CircularEvaluation& e) {
             return e.deviations.has_mean ? std::optional(e.deviations.mean) : std::nullopt;
           },
-          "D: mean bidirectional radial deviation; None: one direction only.")
+          "Mean bidirectional radial deviation D; None with one direction only.")
       .def_prop_ro(
           "residual_rms_mm", [](const CircularEvaluation& e) { return e.diagnosis.residual_rms; },
           "Standard deviation of what the causes leave.");
@@ -101,10 +104,10 @@ nb::object by_turn(const std::vector<double>& values, std::size_t positions) {
 }
 
 void bind_rotation(nb::module_& module) {
-  nb::class_<AxisErrorMotion>(module, "AxisErrorMotion", "An error motion of an axis of rotation: mm, tilts rad.")
+  nb::class_<AxisErrorMotion>(module, "AxisErrorMotion", "An error motion of an axis of rotation, in mm; tilts in rad.")
       .def_prop_ro(
           "symbol", [](const AxisErrorMotion& m) { return error_motion_symbol(m.kind); },
-          "What its figures begin with: 'radial_x1', 'tilt_rotating', 'axial'.")
+          "Start of the symbols of its figures: 'radial_x1', 'tilt_rotating', 'axial'.")
       .def_prop_ro(
           "synchronous_mm_rad", [](const AxisErrorMotion& m) { return copied_array(m.synchronous); },
           nb::sig("def synchronous_mm_rad(self) -> numpy.ndarray"), "[positions] mean over the turns.")
@@ -114,16 +117,17 @@ void bind_rotation(nb::module_& module) {
       .def_ro("total_value_mm_rad", &AxisErrorMotion::total_value)
       .def_ro("synchronous_value_mm_rad", &AxisErrorMotion::synchronous_value)
       .def_ro("asynchronous_value_mm_rad", &AxisErrorMotion::asynchronous_value)
-      .def_ro("drift_mm_rad", &AxisErrorMotion::drift, "Of the mean of a turn, from first to last.")
+      .def_ro("drift_mm_rad", &AxisErrorMotion::drift, "Change of the mean of a turn from the first turn to the last.")
       .def("__repr__", [](const AxisErrorMotion& m) {
         return fmt::format("<abbe.AxisErrorMotion {}>", error_motion_symbol(m.kind));
       });
   nb::class_<RotationResult>(module, "RotationNumbers", "Error motions over the angle of the axis.")
       .def_ro("turns", &RotationResult::turns, "Whole turns used.")
-      .def_ro("interpolated", &RotationResult::interpolated, "Readings do not stand at the same angles in every turn.")
+      .def_ro("interpolated", &RotationResult::interpolated,
+              "Whether the angles differ from turn to turn, so that readings were interpolated.")
       .def_prop_ro(
           "angle_rad", [](const RotationResult& r) { return copied_array(r.angle); },
-          nb::sig("def angle_rad(self) -> numpy.ndarray"), "[positions] of the first turn.")
+          nb::sig("def angle_rad(self) -> numpy.ndarray"), "[positions] angles of the first turn.")
       .def_prop_ro(
           "motions",
           [](const RotationResult& r) {
@@ -132,7 +136,8 @@ void bind_rotation(nb::module_& module) {
               motions[error_motion_symbol(motion.kind)] = nb::cast(motion);
             return motions;
           },
-          nb::sig("def motions(self) -> dict[str, AxisErrorMotion]"), "By symbol; empty if the evaluation is refused.");
+          nb::sig("def motions(self) -> dict[str, AxisErrorMotion]"),
+          "Error motions by symbol; empty if the evaluation is refused.");
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ std::vector<CommandPiece> pieces_of(const CurveArgument& curve, const std::optio
   }
   const auto& named = std::get<NamedCurve>(curve);
   if (!machine && !named.indexed.empty()) {
-    throw InputError({.field = "curve"}, "it sets axes, and no machine is given", "machine=... with these axes");
+    throw InputError({.field = "curve"}, "the curve sets axes, but no machine is given", "machine=... with these axes");
   }
   return commanded_pieces(machine ? curve_on(named, *machine) : named.curve, named.file, closed ? "--closed" : "");
 }
@@ -59,7 +59,8 @@ Evaluation of_points(const PointsArgument& points, const CurveArgument& curve, c
   ContourPointsTest test;
   test.origin_uncertainty = quantity("u_origin_um", u_origin_um, Quantity::length, "um", 0, kMostUm);
   NamedPoints given = points_of(points, "points_mm", std::nullopt, file);
-  if (given.file.cloud.size() == 0) throw InputError({.field = "points_mm"}, "there are no points", "one at least");
+  if (given.file.cloud.size() == 0)
+    throw InputError({.field = "points_mm"}, "there are no points", "at least one point");
   test.readings = std::move(given.file);
   test.pieces = naming_arguments([&] { return pieces_of(curve, machine, closed); });
   return evaluate_test(std::move(test), given.name, tolerances);
@@ -107,8 +108,8 @@ void bind_contour_tests(nb::module_& module) {
       "Contour error of an engraved curve from cross-sections of a line scanner: `abbe evaluate contour`.\n\n"
       "readings: a file, or columns [n]: section (a name), across_mm, height_mm with the origin on the commanded "
       "curve;\n"
-      "along_mm and beam_tilt_deg may be there. feature: 'edge', or 'groove': the middle between its two edges.\n"
-      "surface: side of an edge on which the surface remains. beam_tilt_deg: of sections that do not state theirs.\n"
+      "along_mm and beam_tilt_deg are optional. feature: 'edge', or 'groove': the middle between its two edges.\n"
+      "surface: side of an edge on which the surface remains. beam_tilt_deg: for sections that do not state theirs.\n"
       "free_wall: the wall need not be parallel to the laser. surface_radius_mm: of the part, positive if convex. "
       "u_...:\n"
       "standard uncertainties. numbers is a SectionNumbers. Raises InputError. Method: docs/contour-error.md.");
@@ -117,12 +118,10 @@ void bind_contour_tests(nb::module_& module) {
       nb::arg("machine") = nb::none(), nb::arg("closed") = false, nb::arg("u_origin_um") = 0.0,
       nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
       "Contour error of measured points [n, 3] against a commanded curve: `abbe evaluate contour --curve`.\n\n"
-      "points_mm: an array, a PointCloud or a file of points, in the frame of the curve. curve: a Curve, or a file as "
-      "for "
-      "plan_path().\n"
-      "machine: whose axes the curve sets. closed: the last point is followed by the first. u_origin_um: standard\n"
-      "uncertainty of the points' place against the curve. numbers is a ContourNumbers. Raises InputError. Method:\n"
-      "docs/contour-error.md.");
+      "points_mm: an array, a PointCloud or a file of points, in the frame of the curve. curve: a Curve, or a file as\n"
+      "for plan_path(). machine: the one whose axes the curve sets. closed: the last point is followed by the first.\n"
+      "u_origin_um: standard uncertainty of where the points are relative to the curve. numbers is a ContourNumbers.\n"
+      "Raises InputError. Method: docs/contour-error.md.");
   module.def(
       "evaluate_linkage", &of_linkage, nb::arg("readings"), nb::arg("exit_to_axis_mm"), nb::arg("board_mm"),
       nb::kw_only(), nb::arg("machine") = nb::none(), nb::arg("convention") = nb::none(),
@@ -131,8 +130,8 @@ void bind_contour_tests(nb::module_& module) {
       "readings: a file, or columns [n] as in one (mark, X_mm, Z_mm, width_um, ...; NaN where a field is empty).\n"
       "exit_to_axis_mm: from the exit of the beam to the axis of A. board_mm: thickness of the board. machine: its "
       "errors\n"
-      "are found; files() has them. convention: without a machine, 'table-moves' (default) or 'head-moves'. accuracy:\n"
-      "standard uncertainties by the names of the command's options, {'u_x_um': 2.77}. numbers is a LinkageNumbers.\n"
+      "are found too, see files(). convention: without a machine, 'table-moves' (default) or 'head-moves'. accuracy:\n"
+      "standard uncertainties, named like the options of the command, {'u_x_um': 2.77}. numbers is a LinkageNumbers.\n"
       "Raises InputError. Method: docs/linkage-steps.md.");
 }
 

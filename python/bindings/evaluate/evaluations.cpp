@@ -22,11 +22,12 @@ void bind_evaluations(nb::module_& module) {
   bind_axis_numbers(module);
   bind_circular_numbers(module);
   bind_contour_numbers(module);
-  nb::class_<Evaluation> bound(module, "Evaluation",
-                               "Figures of a test by its standard. Made by the functions evaluate_...().\n\n"
-                               "text(), json_text(), page_html() and write() give what `abbe evaluate` writes; "
-                               "numbers\n"
-                               "has the arrays behind the figures.");
+  nb::class_<Evaluation> bound(
+      module, "Evaluation",
+      "Figures of a test as its standard defines them. Made by the evaluate_...() functions.\n\n"
+      "text(), json_text(), page_html() and write() give what `abbe evaluate` writes; "
+      "numbers\n"
+      "has the arrays behind the figures.");
   add_report(
       bound, &Evaluation::report, +[](const Evaluation& e) { return e.files; });
   bound
@@ -40,11 +41,10 @@ void bind_evaluations(nb::module_& module) {
           },
           nb::sig("def numbers(self) -> PositioningNumbers | DiagonalsNumbers | CircularNumbers | RotationNumbers | "
                   "StraightnessNumbers | SquarenessNumbers | SectionNumbers | ContourNumbers | LinkageNumbers"),
-          "What was computed, as numbers and arrays in mm and rad; its class is that of the test.")
+          "Results as numbers and arrays in mm and rad; the class depends on the test.")
       .def_ro("refused", &Evaluation::refused,
-              "Why the figures are not those that were asked for; empty: they are. Tolerances are no reason.")
-      .def_prop_ro("ok", &Evaluation::is_ok,
-                   "Whether the figures are those that were asked for and exceed no tolerance.")
+              "Why the figures are not those requested; empty if they are. An exceeded tolerance is no reason.")
+      .def_prop_ro("ok", &Evaluation::is_ok, "Whether the figures are those requested and none exceeds its tolerance.")
       .def("__repr__", [](const Evaluation& e) {
         return fmt::format("<abbe.Evaluation '{}': {} figures{}>", e.report.title, e.report.figures.size(),
                            !e.refused.empty()             ? ", refused"

@@ -16,7 +16,7 @@ Evaluation evaluate_test(TestToEvaluate test, const std::string& file, const Tol
 /// The name of readings for titles and messages.
 std::string name_of(const GivenReadings& readings, const std::string& file);
 
-/// read(path) of a file, parse(columns) of columns; without the GIL.
+/// read(path) for a file, parse(columns) for columns; without the GIL.
 template <class Read, class Parse>
 auto readings_of(const GivenReadings& given, const Read& read, const Parse& parse) {
   return computed([&] {
@@ -25,11 +25,11 @@ auto readings_of(const GivenReadings& given, const Read& read, const Parse& pars
   });
 }
 
-/// The numbers behind reports, by kinds of tests.
+/// Classes of the numbers behind the reports, by kind of test.
 void bind_axis_numbers(nb::module_& module);
 void bind_circular_numbers(nb::module_& module);
 void bind_contour_numbers(nb::module_& module);
-/// Functions of tests of axes, and of curves and linkages.
+/// Functions that evaluate tests of axes, and of curves and linkages.
 void bind_axis_tests(nb::module_& module);
 void bind_contour_tests(nb::module_& module);
 

@@ -57,7 +57,7 @@ void add_files(Class& bound, const Files& files, const char* write_words) {
   bound
       .def(
           "files", [files](const Result& r) { return files_by_name(files(r)); },
-          nb::sig("def files(self) -> dict[str, bytes]"), "The files of a results folder, contents by name.")
+          nb::sig("def files(self) -> dict[str, bytes]"), "The files of the results folder: contents by name.")
       .def(
           "write",
           [files](const Result& r, const std::filesystem::path& folder, bool overwrite) {

@@ -34,7 +34,7 @@ NamedColumn column_of(const std::string& name, nb::handle values) {
     array = nb::module_::import_("numpy").attr("asarray")(values);
   } catch (nb::python_error& error) {
     if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
-    throw InputError({.field = name}, "is no column", "one number or text for each reading");
+    throw InputError({.field = name}, "is not a column", "one number or text for each reading");
   }
   if (nb::cast<int>(array.attr("ndim")) != 1) {
     throw InputError({.field = name}, "has another shape", "shape (n,): one number or text for each reading");
@@ -69,7 +69,7 @@ GivenReadings given_readings(const ReadingsArgument& argument, const char* name)
     const auto entry = nb::cast<std::pair<nb::object, nb::object>>(item);
     std::string column;
     if (!nb::try_cast(entry.first, column, false)) {
-      throw InputError({.field = name}, "a column has a name that is no text", kExpected);
+      throw InputError({.field = name}, "the name of a column is not text", kExpected);
     }
     columns.push_back(column_of(column, entry.second));
   }

@@ -25,13 +25,13 @@ struct ReadingsFile {
 };
 using GivenReadings = std::variant<ReadingsFile, NamedColumns>;
 
-/// Takes the argument apart. @throws InputError for what is neither, and for columns that are no lists
+/// The path or the columns of an argument. @throws InputError if it is neither, or a column is not a list
 GivenReadings given_readings(const ReadingsArgument& argument, const char* name = "readings");
 
 /// The path of an argument, or nothing if it is an array.
 std::optional<std::filesystem::path> path_of(nb::handle source);
 
-/// A number in the unit of its name, as the command reads it. @throws InputError outside of the range
+/// A number in the unit of its name, in the inside unit, as the command reads it. @throws InputError out of range
 double quantity(const char* name, double value, Quantity quantity, const char* unit, double from, double to);
 
 /// @throws InputError that names all the words that are known
@@ -59,8 +59,8 @@ const auto& entry_named(const char* name, const std::string& word, const Entries
   refuse_word(name, word, known);
 }
 
-/// The object of Python as one of C++ that owns what arrays show. @throws TypeError of Python  it was made by __new__
-/// only
+/// The C++ object of a Python object, whose memory arrays show. @throws TypeError of Python  __new__ made it, but
+/// __init__ never ran
 template <class Object>
 const Object& initialised(nb::handle_t<Object> self) {
   if (!nb::inst_ready(self)) throw nb::type_error("the object was never initialised");

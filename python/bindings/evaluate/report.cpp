@@ -55,36 +55,39 @@ const EvaluationFigure& figure_named(const EvaluationReport& report, const std::
   for (const EvaluationFigure& figure : report.figures) {
     if (figure.symbol == symbol) return figure;
   }
-  throw nb::key_error(fmt::format("no figure '{}' of a {}", symbol, report.kind).c_str());
+  throw nb::key_error(
+      fmt::format("there is no figure '{}' in an evaluation of kind '{}'", symbol, report.kind).c_str());
 }
 
 std::string plot_of(const EvaluationReport& report, const std::string& name) {
   for (const EvaluationPlot& plot : report.plots) {
     if (plot.name == name) return plot.picture.wide;
   }
-  throw nb::key_error(fmt::format("no plot '{}'", name).c_str());
+  throw nb::key_error(fmt::format("there is no plot '{}'", name).c_str());
 }
 
 void bind_evaluation_reports(nb::module_& module) {
   nb::class_<EvaluationFigure>(module, "EvaluationFigure",
-                               "A figure of a report: a value with its uncertainty and tolerance, or why there is "
+                               "A figure of a report: a value with its uncertainty and tolerance, or why it has "
                                "none.\n\nNumbers are in `unit`: 'um', 'urad', 'arcsec', ...")
-      .def_ro("symbol", &EvaluationFigure::symbol, "Such as 'A', 'G_cw'; what a tolerance calls it.")
+      .def_ro("symbol", &EvaluationFigure::symbol, "Such as 'A' or 'G_cw'; the names of tolerances start with it.")
       .def_ro("name", &EvaluationFigure::name)
-      .def_ro("unit", &EvaluationFigure::unit, "Of value, expanded_uncertainty and tolerance; '': a pure number.")
+      .def_ro("unit", &EvaluationFigure::unit,
+              "Unit of value, expanded_uncertainty and tolerance; '' for a pure number.")
       .def_prop_ro(
-          "value", [](const EvaluationFigure& f) { return in_unit(f, f.value); }, "None: see missing.")
+          "value", [](const EvaluationFigure& f) { return in_unit(f, f.value); },
+          "In unit; None if there is none: see missing.")
       .def_ro("missing", &EvaluationFigure::missing, "Why there is no value, in words; empty if there is one.")
       .def_prop_ro(
           "expanded_uncertainty", [](const EvaluationFigure& f) { return in_unit(f, f.uncertainty); },
-          "k = 2; None: not stated.")
+          "Coverage factor k = 2; None if not stated.")
       .def_prop_ro(
           "tolerance", [](const EvaluationFigure& f) { return in_unit(f, f.tolerance); },
-          "Largest permitted amount; None: not asked for.")
+          "Largest permitted magnitude; None if none was given.")
       .def_prop_ro("verdict", &EvaluationFigure::verdict,
-                   "'within', 'exceeded', either with ', not proven', 'cannot be judged'; '' without a tolerance.")
+                   "'within' or 'exceeded', perhaps with ', not proven'; 'cannot be judged'; '' without a tolerance.")
       .def_prop_ro("exceeds_tolerance", &EvaluationFigure::exceeds_tolerance)
-      .def("text", &words_of, "With the digits and the unit of the report.")
+      .def("text", &words_of, "Value and unit, with the digits of the report.")
       .def("__repr__", [](const EvaluationFigure& f) {
         return fmt::format("<abbe.EvaluationFigure {}: {}>", f.symbol, words_of(f));
       });

@@ -21,17 +21,17 @@
 
 namespace abbe::python {
 
-using Tolerances = std::map<std::string, double>;  ///< largest permitted values by figures with their units
+using Tolerances = std::map<std::string, double>;  ///< largest permitted values by figure and unit: {"A_um": 10}
 
 /// {"A_um": 10} -> "A_um=10", as --tolerance takes it.
 std::vector<std::string> tolerance_texts(const Tolerances& tolerances);
 
-/// The files that `-o` writes. @param more  beside those of the report
+/// The files that `-o` writes. @param more  further files
 ResultFiles report_files(const EvaluationReport& report, const ResultFiles& more);
 const EvaluationFigure& figure_named(const EvaluationReport& report, const std::string& symbol);
 std::string plot_of(const EvaluationReport& report, const std::string& name);
 
-/// Adds the members that show the report. @param more  files beside those of the report
+/// Adds the members that show the report. @param more  files beyond those of the report
 template <class Class, class Result>
 void add_report(Class& bound, EvaluationReport Result::*report, ResultFiles (*more)(const Result&)) {
   bound
@@ -41,10 +41,9 @@ void add_report(Class& bound, EvaluationReport Result::*report, ResultFiles (*mo
       .def_prop_ro(
           "standard", [=](const Result& r) { return (r.*report).standard; }, "Such as 'ISO 230-2:2014'.")
       .def_prop_ro(
-          "facts", [=](const Result& r) { return (r.*report).facts; }, "What was measured: (name, text).")
+          "facts", [=](const Result& r) { return (r.*report).facts; }, "What was measured, as (name, text).")
       .def_prop_ro(
-          "notes", [=](const Result& r) { return (r.*report).notes; },
-          "What a reader has to know to judge the figures.")
+          "notes", [=](const Result& r) { return (r.*report).notes; }, "What a reader must know to judge the figures.")
       .def_prop_ro(
           "figures",
           [=](const Result& r) {
@@ -53,13 +52,14 @@ void add_report(Class& bound, EvaluationReport Result::*report, ResultFiles (*mo
               figures[figure.symbol.c_str()] = nb::cast(figure);
             return figures;
           },
-          nb::sig("def figures(self) -> dict[str, EvaluationFigure]"), "All figures by their symbols, in order.")
+          nb::sig("def figures(self) -> dict[str, EvaluationFigure]"),
+          "All figures by symbol, in the order of the report.")
       .def(
           "__getitem__", [=](const Result& r, const std::string& symbol) { return figure_named(r.*report, symbol); },
           nb::arg("symbol"), "The figure of that symbol. Raises KeyError.")
       .def_prop_ro(
           "exceeds_tolerance", [=](const Result& r) { return (r.*report).exceeds_tolerance(); },
-          "Whether a figure exceeds its tolerance or could not be evaluated although it has one.")
+          "Whether a figure exceeds its tolerance, or has one and could not be evaluated.")
       .def(
           "text", [=](const Result& r) { return evaluation_text(r.*report); }, "What the command prints.")
       .def_prop_ro(

@@ -52,7 +52,7 @@ bool has_two_columns(const ArrayLike& points, const char* name) {
 
 std::shared_ptr<const ClosestPointFinder> NamedMesh::finder() const {
   if (finder_) return finder_;
-  if (mesh().size() == 0) throw InputError({.file = name_}, "there is no triangle", "a surface");
+  if (mesh().size() == 0) throw InputError({.file = name_}, "there are no triangles", "at least one triangle");
   std::shared_ptr<const ClosestPointFinder> made;
   {
     const nb::gil_scoped_release release;
@@ -82,7 +82,7 @@ std::optional<FileLength> file_unit(const char* name, const std::optional<std::s
   if (!unit) return std::nullopt;
   const std::optional<FileLength> length = file_length_named(*unit);
   if (length) return length;
-  throw InputError({.field = name}, fmt::format("'{}' is no unit of a file", unit->substr(0, 40)),
+  throw InputError({.field = name}, fmt::format("'{}' is not a unit of a file", unit->substr(0, 40)),
                    fmt::format("{}", fmt::join(file_length_names(), ", ")));
 }
 
@@ -134,7 +134,8 @@ RigidTransform rigid_transform(const ArrayLike& argument, const char* name) {
   const Eigen::Matrix3d& r = result.rotation;
   constexpr double kRounding = 1e-6;
   const bool is_rotation = (r.transpose() * r).isIdentity(kRounding) && r.col(0).cross(r.col(1)).dot(r.col(2)) > 0;
-  if (!is_last_row || !is_rotation) throw InputError({.field = name}, "is no rigid transform", "a rotation, and mm");
+  if (!is_last_row || !is_rotation)
+    throw InputError({.field = name}, "is not a rigid transform", "a rotation and a translation in mm");
   return result;
 }
 

@@ -32,19 +32,20 @@ void bind_closest_points(nb::module_& module) {
       .def_prop_ro(
           "normals", [](const ClosestPoints& c) { return vectors_of_each(c.found, &SurfacePoint::normal); },
           nb::sig("def normals(self) -> numpy.ndarray"),
-          "[n, 3] of the face, or weighted by the angles at an edge or vertex; zero without an area.")
+          "[n, 3] normal of the face, or angle-weighted at an edge or vertex; zero where no triangle has an area.")
       .def_prop_ro(
           "triangles", [](const ClosestPoints& c) { return ints_of_each(c.found, &SurfacePoint::triangle); },
-          nb::sig("def triangles(self) -> numpy.ndarray"), "[n] the nearest one; of several the first.")
+          nb::sig("def triangles(self) -> numpy.ndarray"), "[n] index of the nearest triangle, the first of several.")
       .def_prop_ro(
           "on_border", [](const ClosestPoints& c) { return flags_of_each(c.found, &SurfacePoint::on_border); },
-          nb::sig("def on_border(self) -> numpy.ndarray"), "[n] on the edge of an open mesh, where signs mean little.")
+          nb::sig("def on_border(self) -> numpy.ndarray"),
+          "[n] on the border of an open mesh, where the sign means little.")
       .def("__len__", [](const ClosestPoints& c) { return c.found.size(); })
       .def("__repr__", [](const ClosestPoints& c) { return fmt::format("<abbe.ClosestPoints: {}>", c.found.size()); });
   nb::cpp_function_def(&closest, nb::scope(nb::type<NamedMesh>()), nb::name("closest"), nb::is_method(),
                        nb::arg("points_mm"),
-                       "Closest points of the surface to points [n, 3], mm, frame of the mesh. Exact to rounding; the "
-                       "first call makes a\n"
+                       "Closest points of the surface to points [n, 3], mm, frame of the mesh. Exact to rounding. The "
+                       "first call builds a\n"
                        "search structure, which the mesh keeps. Raises InputError. Method: docs/registration.md.");
 }
 

@@ -19,7 +19,8 @@ namespace abbe::python {
 namespace {
 
 CheckedCloud check(const NamedPoints& points) {
-  if (points.file.cloud.size() == 0) throw InputError({.file = points.name}, "there is no point", "one at least");
+  if (points.file.cloud.size() == 0)
+    throw InputError({.file = points.name}, "there are no points", "at least one point");
   const nb::gil_scoped_release release;
   return checked_cloud(points.file);
 }
@@ -39,7 +40,7 @@ void bind_clouds(nb::module_& module) {
             new (self) NamedPoints{points_of_array(points, "points_mm", normals), name};
           },
           nb::arg("points_mm"), nb::arg("normals") = nb::none(), nb::arg("name") = "points",
-          "points_mm [n, 3]. normals [n, 3] out of the material, of any length. name: for texts and messages.")
+          "points_mm [n, 3]. normals [n, 3], out of the material, of any length. name: for texts and messages.")
       .def_static(
           "read",
           [](const std::filesystem::path& path, const std::optional<std::string>& unit,
@@ -53,20 +54,21 @@ void bind_clouds(nb::module_& module) {
           },
           nb::arg("path"), nb::kw_only(), nb::arg("unit") = nb::none(),
           nb::arg("columns") = std::map<std::string, std::string>{}, nb::arg("ignore") = std::vector<std::string>{},
-          "From a file: csv, xyz, ply, obj (docs/geometry-files.md). unit: 'mm', 'm', 'inch', of a file that states\n"
-          "none (mm). columns: {'x_mm': 'East'}, of a CSV file with other names; ignore: columns of it that do not\n"
-          "count. Raises InputError.")
+          "From a file: csv, xyz, ply, obj (docs/geometry-files.md). unit: 'mm', 'm' or 'inch', for a file that\n"
+          "states none (default: mm). columns: {'x_mm': 'East'}, for a CSV file with other names; ignore: its columns "
+          "to\n"
+          "skip. Raises InputError.")
       .def_prop_ro(
           "points_mm",
           [](nb::handle_t<NamedPoints> self) { return rows_view(initialised(self).file.cloud.points, self); },
-          nb::sig("def points_mm(self) -> numpy.ndarray"), "[n, 3], not to be written to.")
+          nb::sig("def points_mm(self) -> numpy.ndarray"), "[n, 3], read-only.")
       .def_prop_ro(
           "normals",
           [](nb::handle_t<NamedPoints> self) -> nb::object {
             const PointCloud& cloud = initialised(self).file.cloud;
             return cloud.has_normals() ? rows_view(cloud.normals, self) : nb::none();
           },
-          nb::sig("def normals(self) -> numpy.ndarray | None"), "[n, 3] unit vectors; None: not known.")
+          nb::sig("def normals(self) -> numpy.ndarray | None"), "[n, 3] unit vectors; None if not known.")
       .def_prop_ro(
           "deviation_mm",
           [](const NamedPoints& p) -> nb::object {
@@ -78,11 +80,11 @@ void bind_clouds(nb::module_& module) {
           "format", [](const NamedPoints& p) { return p.file.format; }, "'CSV', 'PLY, ascii', ..., 'array'.")
       .def_prop_ro(
           "unit", [](const NamedPoints& p) { return unit_words(p.file.unit); },
-          "That of the file, and where it is known from.")
+          "Unit of the file, and how it is known.")
       .def_ro("name", &NamedPoints::name)
       .def(
           "check_text", [](const NamedPoints& p) { return cloud_text(check(p)); },
-          "What is counted in the cloud: extent, centroid, repeated points; for people.")
+          "Extent, centroid and repeated points of the cloud, as text.")
       .def(
           "check", [](const NamedPoints& p) { return python_value(cloud_json(check(p))); },
           nb::sig("def check(self) -> dict[str, typing.Any]"), "The same as a dictionary; units in the keys.")

@@ -55,7 +55,7 @@ ScanDeviations deviations(const PointsArgument& scan, const MeshArgument& part,
     request.tolerance =
         DeviationTolerance{length("lower_um", lower_um, "um", -kMost), length("upper_um", upper_um, "um", -kMost)};
   }
-  if (faces && faces_deg) throw InputError({.field = "faces_deg"}, "is given together with faces", "one of them");
+  if (faces && faces_deg) throw InputError({.field = "faces_deg"}, "is given together with faces", "only one of them");
   if (faces_deg) request.crease = quantity("faces_deg", *faces_deg, Quantity::angle, "deg", 0, 180);
   request.faces = faces                ? DeviationFaces::of_file
                   : request.crease > 0 ? DeviationFaces::by_edges
@@ -72,7 +72,7 @@ ScanDeviations deviations(const PointsArgument& scan, const MeshArgument& part,
 void bind_deviations(nb::module_& module) {
   using Result = ScanDeviations;
   nb::class_<ScanDeviations> bound(module, "ScanDeviations",
-                                   "How far a scan is from its part. Made by scan_deviations().");
+                                   "Deviations of a scan from its part. Made by scan_deviations().");
   add_report(bound, &ScanDeviations::report, &deviation_files);
   bound.def_prop_ro("has_points", &Result::has_points, "Whether any point counts.")
       .def_prop_ro(
@@ -82,29 +82,30 @@ void bind_deviations(nb::module_& module) {
           "counted",
           [](const Result& r) { return array_of_bools(std::vector<std::uint8_t>(r.compared.deviation.counted)); },
           nb::sig("def counted(self) -> numpy.ndarray"),
-          "[n] False: nearest to the border of an open mesh, or farther away than largest_mm.")
+          "[n] False where the closest point is on the border of an open mesh, or farther away than largest_mm.")
       .def_prop_ro(
           "counted_points_mm", [](const Result& r) { return copied_rows(r.compared.counted_points); },
-          nb::sig("def counted_points_mm(self) -> numpy.ndarray"), "[k, 3] those that count, frame of the part.")
+          nb::sig("def counted_points_mm(self) -> numpy.ndarray"), "[k, 3] points that count, frame of the part.")
       .def_prop_ro(
           "counted_mm", [](const Result& r) { return copied_array(r.compared.counted_mm); },
           nb::sig("def counted_mm(self) -> numpy.ndarray"), "[k] their deviations.")
       .def_prop_ro(
           "closest_mm", [](const Result& r) { return vectors_of_each(r.compared.closest, &SurfacePoint::point); },
-          nb::sig("def closest_mm(self) -> numpy.ndarray"), "[n, 3] on the part.")
+          nb::sig("def closest_mm(self) -> numpy.ndarray"), "[n, 3] closest points of the part.")
       .def_prop_ro(
-          "statistics_mm", [](const Result& r) { return r.compared.deviation.all.sample; }, "Of those that count.")
+          "statistics_mm", [](const Result& r) { return r.compared.deviation.all.sample; },
+          "Of the deviations that count.")
       .def_prop_ro(
           "statistics_by_face_mm",
           [](const Result& r) {
             return values_of_each<SampleStatistics>(r.compared.deviation.regions, &DeviationStatistics::sample);
           },
-          "Of each face that was asked for.")
+          "Of each face, if faces or faces_deg is given.")
       .def_prop_ro(
           "within", [](const Result& r) { return r.compared.deviation.all.within; },
           "Share of the points in the band from lower_um to upper_um; 0 without one.")
       .def_prop_ro(
-          "colour_mm", [](const Result& r) { return r.colour_mm; }, "Deviation of the full colour.")
+          "colour_mm", [](const Result& r) { return r.colour_mm; }, "Deviation that is shown in full colour.")
       .def("__repr__", [](const Result& r) {
         const SampleStatistics& sample = r.compared.deviation.all.sample;
         return fmt::format("<abbe.ScanDeviations: {} points count, rms {:.3f} um>", sample.count, 1e3 * sample.rms);
@@ -117,12 +118,13 @@ void bind_deviations(nb::module_& module) {
       nb::arg("tolerances") = Tolerances{}, nb::arg("page") = true,
       "Signed distances of a scan from its part, with statistics: `abbe deviate`.\n\n"
       "scan: points [n, 3], a PointCloud or a file. part: a Mesh or a file. transform: part from scan, as [4, 4], a\n"
-      "transform file or a ScanRegistration; else the scan as it stands. largest_mm: points farther away are left "
+      "transform file or a ScanRegistration; default: the scan as it stands. largest_mm: points farther away are left "
       "out.\n"
-      "lower_um, upper_um: a band, of which the share of the points is found. faces_deg: statistics by faces that end "
+      "lower_um, upper_um: a band; within is the share of points in it. faces_deg: statistics by face, where faces end "
       "at\n"
-      "edges sharper than this; faces: by those of a STEP or OBJ file. colour_um: deviation of the full colour. unit,\n"
-      "part_unit: of files that state none. tolerances: {'maximum_um': 50}. page: whether the page has the part in "
+      "edges sharper than this; faces: by the faces of a STEP or OBJ file. colour_um: deviation shown in full colour.\n"
+      "unit, part_unit: for files that state none. tolerances: {'maximum_um': 50}. page: whether the page shows the "
+      "part in "
       "three\n"
       "dimensions. Raises InputError. Figures: docs/registration.md.\n\n"
       ">>> import abbe\n"

@@ -64,7 +64,7 @@ FittedShape fit(const PointsArgument& points, const std::string& shape, const st
 FittedCircles fit_coaxial(const std::vector<nb::object>& circles, const std::optional<std::vector<double>>& radii,
                           const std::optional<ArrayLike>& direction, double u_point_um,
                           const std::optional<std::string>& unit, const Tolerances& tolerances) {
-  if (circles.empty()) throw InputError({.field = "circles"}, "there are none", "points of one circle at least");
+  if (circles.empty()) throw InputError({.field = "circles"}, "is empty", "at least one circle");
   CirclesFitRequest request;
   request.options.direction = direction_of(direction, "fixed_direction");
   if (radii) {
@@ -94,50 +94,51 @@ void bind_uncertainties(nb::class_<FittedShape>& bound) {
   bound
       .def_prop_ro(
           "covariance", [](const FittedShape& f) { return if_known(f.fit, f.fit.covariance); },
-          "[8, 8] of point (mm), direction, radius (mm), half angle (rad); None: not known.")
+          "[8, 8] of point (mm), direction, radius (mm), half angle (rad); None if not known.")
       .def_prop_ro(
           "radius_uncertainty_mm", [](const FittedShape& f) { return if_known(f.fit, f.fit.radius_uncertainty()); },
-          "Standard; None: not known.")
+          "Standard uncertainty; None if not known.")
       .def_prop_ro(
           "direction_uncertainty_rad",
           [](const FittedShape& f) { return if_known(f.fit, f.fit.direction_uncertainty()); },
-          "Standard, of its most uncertain tilt; None: not known.")
+          "Standard uncertainty of its most uncertain tilt; None if not known.")
       .def_prop_ro(
           "point_uncertainty_mm", [](const FittedShape& f) { return if_known(f.fit, f.fit.point_uncertainty()); },
-          "Standard, in its most uncertain direction; None: not known.");
+          "Standard uncertainty in its most uncertain direction; None if not known.");
 }
 
 void bind_fitted_shape(nb::module_& module) {
-  nb::class_<FittedShape> bound(module, "FittedShape",
-                                "A shape fitted to points. Made by fit().\n\n"
-                                "Numbers count only if ok; status and reason say why not.");
+  nb::class_<FittedShape> bound(
+      module, "FittedShape",
+      "A shape fitted to points. Made by fit().\n\n"
+      "Use the numbers only if ok is True; otherwise status and reason say why there are none.");
   add_report(
       bound, &FittedShape::report, +[](const FittedShape&) { return ResultFiles{}; });
-  bound.def_prop_ro("ok", &FittedShape::is_ok, "Whether there is an answer.")
+  bound.def_prop_ro("ok", &FittedShape::is_ok, "Whether the fit succeeded.")
       .def_prop_ro(
-          "status", [](const FittedShape& f) { return fit_status_name(f.fit.status); }, "'ok', or why there is none.")
+          "status", [](const FittedShape& f) { return fit_status_name(f.fit.status); }, "'ok', or why it did not.")
       .def_prop_ro(
-          "reason", [](const FittedShape& f) { return f.fit.reason; }, "The same in words; empty: it is ok.")
+          "reason", [](const FittedShape& f) { return f.fit.reason; }, "The same in words; empty if ok.")
       .def_prop_ro(
           "shape", [](const FittedShape& f) { return f.fit.shape; }, "The fitted Shape.")
       .def_prop_ro(
           "deviations_mm", [](const FittedShape& f) { return copied_array(f.deviations); },
-          nb::sig("def deviations_mm(self) -> numpy.ndarray"), "[n] as Shape.distances(); empty without an answer.")
+          nb::sig("def deviations_mm(self) -> numpy.ndarray"), "[n] as from Shape.distances(); empty if not ok.")
       .def_prop_ro(
           "points_mm", [](nb::handle_t<FittedShape> self) { return rows_view(initialised(self).points.points, self); },
           nb::sig("def points_mm(self) -> numpy.ndarray"), "[n, 3] as given.")
       .def_prop_ro(
           "form_mm", [](const FittedShape& f) { return f.fit.form; },
-          "Largest less smallest distance; of a line or circle in space the diameter of the tube about it.")
+          "Largest minus smallest distance; for a line or circle in space, the diameter of the tube around it.")
       .def_prop_ro(
           "rms_mm", [](const FittedShape& f) { return f.fit.rms; }, "Root mean square distance.")
       .def_prop_ro(
           "sigma_mm", [](const FittedShape& f) { return f.fit.sigma; },
-          "Standard deviation of a point with which the covariance is made.")
+          "Standard deviation of a point from which the covariance is computed.")
       .def_prop_ro("degrees_of_freedom", [](const FittedShape& f) { return f.fit.degrees_of_freedom; })
       .def_prop_ro(
           "contacts", [](const FittedShape& f) { return f.fit.contacts; },
-          "Indices of the points that determine the answer: minimum zone, circumscribed, inscribed.")
+          "Indices of the points that determine the result: minimum zone, circumscribed, inscribed.")
       .def_prop_ro(
           "weights",
           [](const FittedShape& f) -> nb::object {
@@ -164,12 +165,13 @@ void bind_fitted_shape(nb::module_& module) {
 
 void bind_fitted_circles(nb::module_& module) {
   nb::class_<FittedCircles> bound(
-      module, "FittedCircles", "Circles about one axis. Made by fit_coaxial_circles().\n\nNumbers count only if ok.");
+      module, "FittedCircles",
+      "Circles about one axis. Made by fit_coaxial_circles().\n\nUse the numbers only if ok is True.");
   add_report(
       bound, &FittedCircles::report, +[](const FittedCircles&) { return ResultFiles{}; });
-  bound.def_prop_ro("ok", &FittedCircles::is_ok, "Whether there is an answer.")
+  bound.def_prop_ro("ok", &FittedCircles::is_ok, "Whether the fit succeeded.")
       .def_prop_ro(
-          "status", [](const FittedCircles& f) { return fit_status_name(f.fit.status); }, "'ok', or why there is none.")
+          "status", [](const FittedCircles& f) { return fit_status_name(f.fit.status); }, "'ok', or why it did not.")
       .def_prop_ro(
           "reason", [](const FittedCircles& f) { return f.fit.reason; }, "The same in words.")
       .def_prop_ro(
@@ -178,18 +180,19 @@ void bind_fitted_circles(nb::module_& module) {
           "direction", [](const FittedCircles& f) { return f.fit.direction; }, "[3] of the axis, unit.")
       .def_prop_ro(
           "heights_mm", [](const FittedCircles& f) { return copied_array(f.fit.heights); },
-          nb::sig("def heights_mm(self) -> numpy.ndarray"), "[m] of the centres from the point, along the direction.")
+          nb::sig("def heights_mm(self) -> numpy.ndarray"), "[m] of the centres above point_mm, along the direction.")
       .def_prop_ro(
           "radii_mm", [](const FittedCircles& f) { return copied_array(f.fit.radii); },
-          nb::sig("def radii_mm(self) -> numpy.ndarray"), "[m]")
+          nb::sig("def radii_mm(self) -> numpy.ndarray"), "[m] of the circles.")
       .def_prop_ro(
           "form_mm", [](const FittedCircles& f) { return copied_array(f.fit.form); },
-          nb::sig("def form_mm(self) -> numpy.ndarray"), "[m] diameter of the tube about each that holds its points.")
+          nb::sig("def form_mm(self) -> numpy.ndarray"),
+          "[m] diameter of the tube around each circle that holds its points.")
       .def_prop_ro(
           "rms_mm", [](const FittedCircles& f) { return f.fit.rms; }, "Root mean square distance.")
       .def_prop_ro(
           "covariance", [](const FittedCircles& f) { return if_known(f.fit, f.fit.covariance); },
-          "[6 + 2 m, 6 + 2 m] of point, direction, heights, radii, mm and rad; None: not known.")
+          "[6 + 2 m, 6 + 2 m] of point, direction, heights, radii, mm and rad; None if not known.")
       .def("__repr__", [](const FittedCircles& f) {
         return fmt::format("<abbe.FittedCircles: {} circles, {}>", f.fit.radii.size(), fit_status_name(f.fit.status));
       });
@@ -206,14 +209,15 @@ void bind_fits(nb::module_& module) {
       nb::arg("fixed_half_angle_deg") = nb::none(), nb::arg("u_point_um") = 0.0, nb::arg("unit") = nb::none(),
       nb::arg("tolerances") = Tolerances{}, nb::arg("page") = true, nb::arg("file") = "",
       "A line, plane, circle, sphere, cylinder or cone fitted to points: `abbe fit`.\n\n"
-      "points_mm: [n, 3] (of shapes in the plane [n, 2] too), a PointCloud, or a file (csv, xyz, ply, obj, corners of "
+      "points_mm: [n, 3] (for shapes in the plane also [n, 2]), a PointCloud, or a file (csv, xyz, ply, obj, corners "
+      "of "
       "stl).\n"
       "shape: 'line2', 'circle2' (in x, y), 'line', 'plane', 'circle', 'sphere', 'cylinder', 'cone'. method:\n"
       "'least-squares', 'minimum-zone', 'circumscribed', 'inscribed', 'robust' (up to 30 % wrong points). loss of the\n"
-      "robust method: 'tukey', 'huber', 'welsch'. fixed_...: held as it is. u_point_um: standard uncertainty of a "
+      "robust method: 'tukey', 'huber', 'welsch'. fixed_...: held at this value. u_point_um: standard uncertainty of a "
       "point\n"
-      "across the shape; 0: from the residuals. unit: of a file that states none. tolerances: {'form_um': 10}. page:\n"
-      "whether the page has the points on the surface. file: name for the title. Raises InputError; too few or\n"
+      "across the shape; 0: from the residuals. unit: for a file that states none. tolerances: {'form_um': 10}. page:\n"
+      "whether the page shows the points on the surface. file: name for the title. Raises InputError; too few or\n"
       "degenerate points give a result that is not ok. Methods: docs/fits.md.\n\n"
       ">>> import abbe, numpy\n"
       ">>> angle = numpy.linspace(0, 6, 20)\n"
@@ -233,7 +237,7 @@ void bind_fits(nb::module_& module) {
       "Circles about one common axis by least squares, all at once: `abbe fit --shape coaxial-circles`.\n\n"
       "circles: points [n, 3] of each, mm, or files. fixed_radius_mm: one per circle. Two circles suffice for the "
       "axis,\n"
-      "also where each is a short arc. Raises InputError. Method: docs/fits.md.");
+      "even if each is a short arc. Raises InputError. Method: docs/fits.md.");
 }
 
 }  // namespace abbe::python

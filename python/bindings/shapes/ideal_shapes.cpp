@@ -26,7 +26,7 @@ double above_zero(const char* name, const std::optional<double>& value, double l
 }
 
 void refuse_if(bool given, const char* name, const std::string& shape) {
-  if (given) throw InputError({.field = name}, "a " + shape + " has none", "without it");
+  if (given) throw InputError({.field = name}, "a " + shape + " has none", fmt::format("no {}", name));
 }
 
 Shape shape_of(const std::string& name, const ArrayLike& point, const std::optional<ArrayLike>& direction,
@@ -89,14 +89,15 @@ std::string shape_kind_name(ShapeKind kind) {
 }
 
 void bind_ideal_shapes(nb::module_& module) {
-  nb::class_<Shape>(module, "Shape",
-                    "An ideal feature: line2, line, plane, circle2, circle, sphere, cylinder or cone.\n\n"
-                    "point_mm [3] is on the line or plane, the centre, or on the axis; of a cone where its radius is.\n"
-                    "direction [3], unit: along a line, normal of a plane or circle, along an axis, away from the apex "
-                    "of a cone.\n\n"
-                    ">>> import abbe\n"
-                    ">>> abbe.Shape('sphere', [0, 0, 0], radius_mm=5).distances([[0, 0, 7.0]]).tolist()\n"
-                    "[2.0]\n")
+  nb::class_<Shape>(
+      module, "Shape",
+      "An ideal feature: line2, line, plane, circle2, circle, sphere, cylinder or cone.\n\n"
+      "point_mm [3]: a point of the line, plane or axis, or the centre; for a cone, where its radius is radius_mm.\n"
+      "direction [3], unit: along a line, normal of a plane or circle, along an axis, away from the apex "
+      "of a cone.\n\n"
+      ">>> import abbe\n"
+      ">>> abbe.Shape('sphere', [0, 0, 0], radius_mm=5).distances([[0, 0, 7.0]]).tolist()\n"
+      "[2.0]\n")
       .def(
           "__init__",
           [](Shape* self, const std::string& kind, const ArrayLike& point, const std::optional<ArrayLike>& direction,
@@ -105,15 +106,15 @@ void bind_ideal_shapes(nb::module_& module) {
           },
           nb::arg("kind"), nb::arg("point_mm"), nb::arg("direction") = nb::none(), nb::kw_only(),
           nb::arg("radius_mm") = nb::none(), nb::arg("half_angle_deg") = nb::none(),
-          "direction: of any length. What a shape does not have must not be given. Raises InputError.")
+          "direction: of any length. Give only what the shape has. Raises InputError.")
       .def_prop_ro("kind", [](const Shape& s) { return shape_kind_name(s.kind); })
       .def_ro("point_mm", &Shape::point)
       .def_prop_ro(
           "direction", [](const Shape& s) { return has_direction(s.kind) ? std::optional(s.direction) : std::nullopt; },
-          "None of a sphere.")
+          "None for a sphere.")
       .def_prop_ro(
           "radius_mm", [](const Shape& s) { return has_radius(s.kind) ? std::optional(s.radius) : std::nullopt; },
-          "None without one; of a cone at point_mm.")
+          "None for a shape without one; of a cone, at point_mm.")
       .def_prop_ro(
           "half_angle_rad",
           [](const Shape& s) { return s.kind == ShapeKind::cone ? std::optional(s.half_angle) : std::nullopt; },
@@ -122,9 +123,9 @@ void bind_ideal_shapes(nb::module_& module) {
           "apex_mm", [](const Shape& s) { return s.kind == ShapeKind::cone ? std::optional(s.apex()) : std::nullopt; },
           "Of a cone; else None.")
       .def("distances", &distances, nb::arg("points_mm"),
-           "Distances [n] of points [n, 3], mm: along the normal of a plane, positive to the left of a line2 and "
-           "outside "
-           "of\nwhat has an inside; without a sign of a line and a circle in space.")
+           "Distances [n] of points [n, 3], mm: positive along the normal of a plane, to the left of a line2, outside "
+           "a\n"
+           "circle2, sphere, cylinder or cone; without a sign for a line and a circle in space.")
       .def("__repr__", [](const Shape& s) {
         return fmt::format("<abbe.Shape {} at ({:.6g}, {:.6g}, {:.6g}) mm>", shape_kind_name(s.kind), s.point[0],
                            s.point[1], s.point[2]);

@@ -78,12 +78,12 @@ void bind_facts(nb::class_<NamedMesh>& bound) {
           "format", [](const NamedMesh& m) { return m.file().format; }, "'STL, binary', ..., 'array'.")
       .def_prop_ro(
           "unit", [](const NamedMesh& m) { return unit_words(m.file().unit); },
-          "That of the file, and where it is known from.")
+          "Unit of the file, and how it is known.")
       .def_prop_ro(
-          "notes", [](const NamedMesh& m) { return m.file().notes; }, "What a reader of results has to know.")
+          "notes", [](const NamedMesh& m) { return m.file().notes; }, "What a reader of results must know.")
       .def_prop_ro(
           "faces", [](const NamedMesh& m) { return m.file().faces; },
-          "Faces that the file states: of STEP, or objects, groups and materials of OBJ; else 0.")
+          "Number of faces that the file states: those of STEP; objects, groups and materials of OBJ; else 0.")
       .def_prop_ro(
           "face_of_triangle",
           [](const NamedMesh& m) -> nb::object {
@@ -91,7 +91,8 @@ void bind_facts(nb::class_<NamedMesh>& bound) {
             if (faces.empty()) return nb::none();
             return array_of_ints(std::vector<int>(faces.begin(), faces.end()));
           },
-          nb::sig("def face_of_triangle(self) -> numpy.ndarray | None"), "[m] from 0; None where faces is 0.")
+          nb::sig("def face_of_triangle(self) -> numpy.ndarray | None"),
+          "[m] index of the face, from 0; None if faces is 0.")
       .def_prop_ro(
           "face_names", [](const NamedMesh& m) { return m.file().face_names; }, "Of OBJ: 'object / group / material'.")
       .def_prop_ro(
@@ -107,7 +108,7 @@ void bind_facts(nb::class_<NamedMesh>& bound) {
 void bind_meshes(nb::module_& module) {
   nb::class_<NamedMesh> bound(module, "Mesh",
                               "The surface of a part as triangles, mm; it does not change.\n\n"
-                              "The corners of a triangle count anticlockwise seen from outside.\n\n"
+                              "The vertices of a triangle run anticlockwise, seen from outside.\n\n"
                               ">>> import abbe\n"
                               ">>> corner = abbe.Mesh([[0, 0, 0], [10, 0, 0], [0, 10, 0]], [[0, 1, 2]])\n"
                               ">>> corner.closest([[2, 3, 5.0]]).distance_mm.tolist()\n"
@@ -120,21 +121,22 @@ void bind_meshes(nb::module_& module) {
           },
           nb::arg("vertices_mm"), nb::arg("triangles"), nb::arg("name") = "mesh",
           "vertices_mm [n, 3]. triangles [m, 3]: indices of vertices. Raises InputError.")
-      .def_static("read", &mesh_from, nb::arg("path"), nb::kw_only(), nb::arg("unit") = nb::none(),
-                  nb::arg("chord_mm") = nb::none(), nb::arg("step_seconds") = 60.0, nb::arg("leave_out_faces") = false,
-                  nb::arg("progress") = nb::none(),
-                  "From a file: STL, PLY, OBJ, STEP (docs/geometry-files.md); its contents decide.\n\n"
-                  "unit: 'mm', 'm', 'inch', of a file that states none (mm). Of STEP files: chord_mm, the largest "
-                  "distance of\n"
-                  "the triangles from the exact faces (0.01 mm, less and more for very small and large parts);\n"
-                  "step_seconds, a limit of time; leave_out_faces, to go on without faces that cannot be read. The "
-                  "environment\n"
-                  "variable ABBE_STEP_PROGRAM says where abbe-step is, which reads them.\n"
-                  "progress: a function of the step, what is done and its total. Raises InputError.")
+      .def_static(
+          "read", &mesh_from, nb::arg("path"), nb::kw_only(), nb::arg("unit") = nb::none(),
+          nb::arg("chord_mm") = nb::none(), nb::arg("step_seconds") = 60.0, nb::arg("leave_out_faces") = false,
+          nb::arg("progress") = nb::none(),
+          "From a file: STL, PLY, OBJ, STEP (docs/geometry-files.md); the contents decide which.\n\n"
+          "unit: 'mm', 'm' or 'inch', for a file that states none (default: mm). For STEP: chord_mm, the largest "
+          "distance of\n"
+          "the triangles from the exact faces (0.01 mm, less for very small parts and more for very large ones);\n"
+          "step_seconds, a time limit; leave_out_faces, to go on without faces that cannot be read. The "
+          "environment\n"
+          "variable ABBE_STEP_PROGRAM says where abbe-step is, which reads them.\n"
+          "progress: a function of the step, what is done and its total. Raises InputError.")
       .def_prop_ro(
           "vertices_mm",
           [](nb::handle_t<NamedMesh> self) { return rows_view(initialised(self).mesh().vertices, self); },
-          nb::sig("def vertices_mm(self) -> numpy.ndarray"), "[n, 3], not to be written to.")
+          nb::sig("def vertices_mm(self) -> numpy.ndarray"), "[n, 3], read-only.")
       .def_prop_ro(
           "triangles",
           [](nb::handle_t<NamedMesh> self) {
@@ -143,10 +145,10 @@ void bind_meshes(nb::module_& module) {
             return nb::cast(nb::ndarray<nb::numpy, const std::uint32_t>(triangles.data(), 2, shape.data(), self),
                             nb::rv_policy::reference);
           },
-          nb::sig("def triangles(self) -> numpy.ndarray"), "[m, 3] indices of vertices, not to be written to.")
+          nb::sig("def triangles(self) -> numpy.ndarray"), "[m, 3] indices of vertices, read-only.")
       .def(
           "check_text", [](const NamedMesh& m) { return mesh_text(check(m)); },
-          "What is counted in the mesh: closed, oriented, area, volume, holes; for people.")
+          "Whether the mesh is closed and oriented, its area, volume and holes, as text.")
       .def(
           "check", [](const NamedMesh& m) { return python_value(mesh_json(check(m))); },
           nb::sig("def check(self) -> dict[str, typing.Any]"), "The same as a dictionary; units in the keys.")

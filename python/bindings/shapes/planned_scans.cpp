@@ -53,7 +53,7 @@ ScanPlanOptions options_of(const ScanArguments& given) {
   return scan;
 }
 
-/// The probe must keep clear of all of it.
+/// The mesh of all faces: the probe must keep clear of every one. @throws InputError if faces are left out
 TriangleMesh whole(const NamedMesh& mesh) {
   if (mesh.file().left_out.empty()) return mesh.mesh();
   throw InputError({.file = mesh.name()}, "faces are left out: " + mesh.file().left_out.front(),
@@ -115,25 +115,26 @@ void bind_moves(nb::class_<PlannedScan>& bound) {
           nb::sig("def beams(self) -> numpy.ndarray"), "[n, 3] from the part to the probe.")
       .def_prop_ro(
           "measures", [](const PlannedScan& s) { return flags_of_each(s.plan.moves, &PlannedMove::measures); },
-          nb::sig("def measures(self) -> numpy.ndarray"), "[n] False: the move goes around, away from the part.")
+          nb::sig("def measures(self) -> numpy.ndarray"),
+          "[n] False where the probe moves around the part, away from it.")
       .def_prop_ro(
           "blocked", [](const PlannedScan& s) { return flags_of_each(s.plan.moves, &PlannedMove::blocked); },
-          nb::sig("def blocked(self) -> numpy.ndarray"), "[n] no clear way was found: the probe may touch.")
+          nb::sig("def blocked(self) -> numpy.ndarray"), "[n] no clear path was found: the probe may touch.")
       .def_prop_ro(
           "face", [](const PlannedScan& s) { return ints_of_each(s.plan.moves, &PlannedMove::face); },
           nb::sig("def face(self) -> numpy.ndarray"), "[n] index into faces.")
       .def_prop_ro(
           "line", [](const PlannedScan& s) { return ints_of_each(s.plan.moves, &PlannedMove::line); },
-          nb::sig("def line(self) -> numpy.ndarray"), "[n] of the face.");
+          nb::sig("def line(self) -> numpy.ndarray"), "[n] index of the scan line on its face.");
 }
 
 void bind_faces(nb::module_& module) {
   nb::class_<PlannedFace>(module, "PlannedFace", "A face of a part in a planned scan.")
       .def_prop_ro(
           "kind", [](const PlannedFace& f) { return scan_path_name(f.kind); }, "'rotary', 'raster' or 'free'.")
-      .def_ro("why", &PlannedFace::why, "It is scanned so, in words.")
-      .def_ro("area_mm2", &PlannedFace::area, "Of what is wanted.")
-      .def_ro("covered_mm2", &PlannedFace::covered)
+      .def_ro("why", &PlannedFace::why, "Why it is scanned this way.")
+      .def_ro("area_mm2", &PlannedFace::area, "Area to be scanned.")
+      .def_ro("covered_mm2", &PlannedFace::covered, "Area that is scanned.")
       .def_ro("lines", &PlannedFace::lines)
       .def_ro("points", &PlannedFace::points)
       .def_ro("largest_angle_rad", &PlannedFace::largest_angle, "Between beam and normal.")
@@ -156,9 +157,8 @@ void bind_planned_scans(nb::module_& module) {
           "points", [](const PlannedScan& s) { return s.plan.points(); }, "Number of points measured.")
       .def_prop_ro("time_s", [](const PlannedScan& s) { return s.plan.time; })
       .def_prop_ro(
-          "covered_share", [](const PlannedScan& s) { return s.plan.covered_share(); }, "Of the area that is wanted.")
-      .def_prop_ro("complete", &PlannedScan::is_complete,
-                   "Whether everything that is wanted is reached, and on a clear way.")
+          "covered_share", [](const PlannedScan& s) { return s.plan.covered_share(); }, "Share of the wanted area.")
+      .def_prop_ro("complete", &PlannedScan::is_complete, "Whether all of the wanted area is reached, on a clear path.")
       .def("text", &planned_scan_text, "What `abbe scan plan` prints.")
       .def("csv", &planned_scan_csv, "The path as CSV.")
       .def("program", &program, nb::arg("words") = std::vector<std::string>{},
@@ -188,29 +188,27 @@ void bind_planned_scans(nb::module_& module) {
       .def("__repr__", [](const PlannedScan& s) {
         return fmt::format("<abbe.PlannedScan: {} points on {} faces>", s.plan.points(), s.plan.faces.size());
       });
-  module.def("plan_scan", &planned, nb::arg("part"), nb::arg("machine"), nb::kw_only(),
-             nb::arg("position_mm") = Triple{}, nb::arg("turn_deg") = Triple{},
-             nb::arg("beyond_planes_mm") = std::vector<std::array<double, 4>>{}, nb::arg("stage") = nb::none(),
-             nb::arg("along_mm") = 0.5, nb::arg("between_mm") = 0.5, nb::arg("turn_between_deg") = 10.0,
-             nb::arg("crease_deg") = 30.0, nb::arg("largest_angle_deg") = 28.0, nb::arg("range_um") = 400.0,
-             nb::arg("working_distance_mm") = 10.0, nb::arg("probe_radius_mm") = 5.0, nb::arg("probe_length_mm") = 60.0,
-             nb::arg("clearance_mm") = 0.5, nb::arg("linear_speed_mm_per_s") = 10.0,
-             nb::arg("rotary_speed_deg_per_s") = 30.0, nb::arg("readings_per_second") = 100.0,
-             nb::arg("progress") = nb::none(),
-             "Paths of a displacement probe over all faces of a part: `abbe scan plan`.\n\n"
-             "part: a closed Mesh, or a file, frame of the part. position_mm, turn_deg (about x, then y, then z): "
-             "where it stands\n"
-             "in the workpiece frame. beyond_planes_mm: [(nx, ny, nz, d)], only nx x + ny y + nz z >= d is scanned. "
-             "stage: a Mesh\n"
-             "or a file of what turns with the part, workpiece frame. along_mm, between_mm: distances of points and of "
-             "lines.\n"
-             "turn_between_deg: largest turn of the normal from point to point. crease_deg: faces end where triangles "
-             "meet at\n"
-             "more. largest_angle_deg: between beam and normal. range_um of the probe about its middle; "
-             "working_distance_mm from\n"
-             "the point to the probe, a rod of probe_radius_mm and probe_length_mm that keeps clearance_mm. progress: "
-             "a function\n"
-             "of the step, what is done and its total. Raises InputError, Stopped. Method: docs/scan.md.");
+  module.def(
+      "plan_scan", &planned, nb::arg("part"), nb::arg("machine"), nb::kw_only(), nb::arg("position_mm") = Triple{},
+      nb::arg("turn_deg") = Triple{}, nb::arg("beyond_planes_mm") = std::vector<std::array<double, 4>>{},
+      nb::arg("stage") = nb::none(), nb::arg("along_mm") = 0.5, nb::arg("between_mm") = 0.5,
+      nb::arg("turn_between_deg") = 10.0, nb::arg("crease_deg") = 30.0, nb::arg("largest_angle_deg") = 28.0,
+      nb::arg("range_um") = 400.0, nb::arg("working_distance_mm") = 10.0, nb::arg("probe_radius_mm") = 5.0,
+      nb::arg("probe_length_mm") = 60.0, nb::arg("clearance_mm") = 0.5, nb::arg("linear_speed_mm_per_s") = 10.0,
+      nb::arg("rotary_speed_deg_per_s") = 30.0, nb::arg("readings_per_second") = 100.0,
+      nb::arg("progress") = nb::none(),
+      "Paths of a displacement probe over all faces of a part: `abbe scan plan`.\n\n"
+      "part: a closed Mesh, or a file, frame of the part. position_mm, turn_deg (about x, then y, then z): "
+      "where it stands\n"
+      "in the workpiece frame. beyond_planes_mm: [(nx, ny, nz, d)], only nx x + ny y + nz z >= d is scanned. "
+      "stage: a Mesh\n"
+      "or a file of what turns with the part, workpiece frame. along_mm, between_mm: distances of points and of "
+      "lines.\n"
+      "turn_between_deg: largest turn of the normal from point to point. crease_deg: faces end where triangles\n"
+      "meet at a larger angle. largest_angle_deg: between beam and normal. range_um of the probe about its middle;\n"
+      "working_distance_mm from the point to the probe, a rod of probe_radius_mm and probe_length_mm that keeps\n"
+      "clearance_mm. progress: a function of the step, what is done and its total. Raises InputError, Stopped.\n"
+      "Method: docs/scan.md.");
 }
 
 }  // namespace abbe::python

@@ -55,7 +55,7 @@ FineRegistration to_features(const ArrayLike& points, const std::vector<Shape>& 
                              const std::optional<std::vector<std::size_t>>& labels,
                              const std::optional<ArrayLike>& start, const std::string& loss, double noise_um) {
   const Eigen::Matrix3Xd given = points_of_array(points, "points_mm").cloud.points;
-  if (features.empty()) throw InputError({.field = "features"}, "there are none", "one Shape at least");
+  if (features.empty()) throw InputError({.field = "features"}, "is empty", "at least one Shape");
   for (const Shape& feature : features) {
     const ShapeKind kind = feature.kind;
     if (kind == ShapeKind::plane || kind == ShapeKind::sphere || kind == ShapeKind::cylinder) continue;
@@ -65,7 +65,7 @@ FineRegistration to_features(const ArrayLike& points, const std::vector<Shape>& 
   const std::vector<std::size_t> of_points = labels.value_or(std::vector<std::size_t>{});
   if (labels && of_points.size() != static_cast<std::size_t>(given.cols())) {
     throw InputError({.field = "labels"}, fmt::format("has {} numbers", of_points.size()),
-                     fmt::format("{}, one of each point", given.cols()));
+                     fmt::format("{}, one per point", given.cols()));
   }
   for (const std::size_t label : of_points) {
     if (label < features.size()) continue;
@@ -84,7 +84,7 @@ void add_pose(nb::class_<Result>& bound, const FineRegistration& (*fine)(const R
   bound
       .def_prop_ro(
           "matrix", [=](const Result& r) { return transform_matrix(fine(r).mesh_from_scan); },
-          "Part from scan, [4, 4], mm; counts only if there is a pose.")
+          "Part from scan, [4, 4], mm; valid only if there is a pose.")
       .def_prop_ro(
           "covariance", [=](const Result& r) { return fine(r).covariance; },
           "[6, 6] of a turn about reference_mm (rad) and a shift (mm) in the frame of the part.")
@@ -96,28 +96,30 @@ void add_pose(nb::class_<Result>& bound, const FineRegistration& (*fine)(const R
       .def_prop_ro(
           "rms_mm", [=](const Result& r) { return fine(r).rms_mm; }, "Of the distances, weighted.")
       .def_prop_ro(
-          "used", [=](const Result& r) { return static_cast<std::size_t>(fine(r).used); }, "Points that count.")
+          "used", [=](const Result& r) { return static_cast<std::size_t>(fine(r).used); },
+          "Number of points that count.")
       .def_prop_ro(
           "undetermined", [=](const Result& r) { return undetermined_words(fine(r)); },
-          "Motions that the scan does not show, in words.");
+          "Motions that the scan does not determine, in words.");
 }
 
 void bind_registration(nb::module_& module) {
   using Result = ScanRegistration;
   nb::class_<ScanRegistration> bound(module, "ScanRegistration",
-                                     "A scan laid on its part. Made by register_scan().\n\n"
+                                     "The pose of a scan on its part. Made by register_scan().\n\n"
                                      "text(), json_text(), page_html() and write() give what `abbe register` writes.");
   add_pose<ScanRegistration>(
       bound, +[](const Result& r) -> const FineRegistration& { return r.found.fine; });
-  bound.def_prop_ro("ok", &Result::is_ok, "Whether there is one pose, and no other.")
+  bound.def_prop_ro("ok", &Result::is_ok, "Whether exactly one pose fits.")
       .def_prop_ro(
-          "has_pose", [](const Result& r) { return has_pose(r.found); }, "One, be it one of many.")
+          "has_pose", [](const Result& r) { return has_pose(r.found); },
+          "Whether there is a pose, even if it is one of many.")
       .def_prop_ro(
           "status", [](const Result& r) { return registration_status_name(r.found.status); },
           "'ok', 'ambiguous', 'undetermined', or why there is no pose.")
       .def_prop_ro(
           "inlier_share", [](const Result& r) { return r.found.inlier_share; },
-          "Of the points, those nearer than three robust standard deviations.")
+          "Share of the points that are nearer than three robust standard deviations.")
       .def_prop_ro(
           "alternatives",
           [](const Result& r) {
@@ -126,7 +128,7 @@ void bind_registration(nb::module_& module) {
               poses.push_back(transform_matrix(pose.mesh_from_scan));
             return poses;
           },
-          "Other poses that fit as well: part from scan, [4, 4].")
+          "Other poses that fit equally well: part from scan, [4, 4].")
       .def_prop_ro(
           "points_mm", [](const Result& r) { return copied_rows(registered_scan(r).points); },
           nb::sig("def points_mm(self) -> numpy.ndarray"), "[n, 3] the scan in the frame of the part.")
@@ -137,7 +139,7 @@ void bind_registration(nb::module_& module) {
             return copied_array(r.compared->deviation.deviation_mm);
           },
           nb::sig("def deviations_mm(self) -> numpy.ndarray | None"),
-          "[n] from the part, positive outside of the material; None without a pose or with compare=False.")
+          "[n] from the part, positive outside of the material; None without a pose, or with compare=False.")
       .def("text", &scan_registration_text, nb::arg("uncertainty") = false,
            "What `abbe register` prints. uncertainty: with the covariance of the pose.")
       .def("__repr__", [](const Result& r) {
@@ -155,7 +157,7 @@ void bind_registration(nb::module_& module) {
 void bind_registrations(nb::module_& module) {
   bind_registration(module);
   nb::class_<FineRegistration> features(module, "FeatureRegistration",
-                                        "Points laid on ideal features. Made by register_to_features().");
+                                        "The pose of points on ideal features. Made by register_to_features().");
   add_pose<FineRegistration>(
       features, +[](const FineRegistration& r) -> const FineRegistration& { return r; });
   features
@@ -175,7 +177,7 @@ void bind_registrations(nb::module_& module) {
       "transform file, or part from scan [4, 4]. loss: 'adf' (Welsch weights with second-order steps), 'welsch',\n"
       "'tukey'. noise_um: standard uncertainty of a point along the normal; 0: from the residuals. unit, part_unit: "
       "of\n"
-      "files that state none. compare: find the deviations that are left, also for the page. progress: a function of "
+      "files that state none. compare: find the remaining deviations, also for the page. progress: a function of "
       "the\n"
       "step, what is done and its total. Raises InputError, Stopped. Method: docs/registration.md.");
   module.def("register_to_features", &to_features, nb::arg("points_mm"), nb::arg("features"), nb::kw_only(),

@@ -36,7 +36,7 @@ ErrorSet error_set_of(const ErrorsOrMachine& errors, bool accept_misfit, const s
   return known->set();
 }
 
-/// Points of arrays.
+/// Points computed from arrays.
 struct PointsOfReadings {
   nb::object points_mm, covered;
 };
@@ -51,10 +51,10 @@ PointsOfReadings of_arrays(const ErrorsOrMachine& errors, const ArrayLike& posit
     throw InputError({.field = "positions_mm_rad"}, "is a single pose",
                      fmt::format("shape (n, {})", machine.axes.size()));
   }
-  const std::vector<double> indication = number_list(indication_mm, "indication_mm", "of each position, mm");
+  const std::vector<double> indication = number_list(indication_mm, "indication_mm", "one per position, mm");
   if (indication.size() != commands.count()) {
     throw InputError({.field = "indication_mm"}, fmt::format("has {} numbers", indication.size()),
-                     fmt::format("{}, one of each position", commands.count()));
+                     fmt::format("{}, one per position", commands.count()));
   }
   const Eigen::Vector3d zero =
       beam_zero_mm ? vector_of(*beam_zero_mm, "beam_zero_mm", "a point, mm") : Eigen::Vector3d::Zero();
@@ -105,40 +105,40 @@ ScannedPoints of_file(const std::filesystem::path& readings, const ErrorsOrMachi
 }
 
 void bind_results(nb::module_& module) {
-  nb::class_<PointsOfReadings>(module, "ScanPoints", "Points of readings. Made by scan_points().")
+  nb::class_<PointsOfReadings>(module, "ScanPoints", "Points computed from readings. Made by scan_points().")
       .def_ro("points_mm", &PointsOfReadings::points_mm, nb::sig("def points_mm(self) -> numpy.ndarray"),
               "[n, 3] workpiece frame.")
       .def_ro("covered", &PointsOfReadings::covered, nb::sig("def covered(self) -> numpy.ndarray"),
-              "[n] False: a position outside the range in which an error motion is known.")
+              "[n] False where the position is outside the range of an error motion.")
       .def("__len__", [](const PointsOfReadings& p) { return nb::len(p.points_mm); })
       .def("__repr__",
            [](const PointsOfReadings& p) { return fmt::format("<abbe.ScanPoints: {}>", nb::len(p.points_mm)); });
   nb::class_<ScannedPoints> bound(module, "ScannedFile",
-                                  "What became of a file of readings. Made by scan_points_file().");
+                                  "Summary of a file of points computed from readings. Made by scan_points_file().");
   bound
       .def_prop_ro(
-          "readings", [](const ScannedPoints& p) { return p.summary.readings; }, "Rows of the file.")
+          "readings", [](const ScannedPoints& p) { return p.summary.readings; }, "Number of readings in the file.")
       .def_prop_ro(
-          "points", [](const ScannedPoints& p) { return p.summary.points; }, "Written.")
+          "points", [](const ScannedPoints& p) { return p.summary.points; }, "Number of points written.")
       .def_prop_ro(
           "out_of_range", [](const ScannedPoints& p) { return p.summary.out_of_range; },
-          "Left out: indication outside of the range.")
+          "Number left out because the indication is out of range.")
       .def_prop_ro(
           "not_covered", [](const ScannedPoints& p) { return p.summary.not_covered; },
-          "Left out: position where an error motion is not known.")
+          "Number left out because an error motion is not known at the position.")
       .def_prop_ro(
           "lowest_mm",
           [](const ScannedPoints& p) {
             return Triple{p.summary.lowest[0], p.summary.lowest[1], p.summary.lowest[2]};
           },
-          "Corner of the box around the points; meaningless without points.")
+          "Lowest corner of the box around the points; meaningless without points.")
       .def_prop_ro(
           "highest_mm",
           [](const ScannedPoints& p) {
             return Triple{p.summary.highest[0], p.summary.highest[1], p.summary.highest[2]};
           },
-          "The corner opposite to it.")
-      .def_ro("refused", &ScannedPoints::refused, "Why there is no point at all; empty: there are some.")
+          "The opposite corner.")
+      .def_ro("refused", &ScannedPoints::refused, "Why there are no points; empty if there are some.")
       .def("text", &scanned_points_text, "What `abbe scan points` prints.")
       .def("__repr__", [](const ScannedPoints& p) {
         return fmt::format("<abbe.ScannedFile: {} of {} readings>", p.summary.points, p.summary.readings);
@@ -164,20 +164,18 @@ void bind_scan_points(nb::module_& module) {
       ">>> scanner = abbe.Machine.from_chain(\"w C' A' b X Y Z t\")\n"
       ">>> abbe.scan_points(scanner, [[0, 0, 10, 20, 30]], [0.5]).points_mm.tolist()\n"
       "[[10.0, 20.0, 29.5]]\n");
-  module.def("scan_points_file", &of_file, nb::arg("readings"), nb::arg("errors"), nb::arg("output"), nb::kw_only(),
-             nb::arg("beam_zero_mm") = nb::none(), nb::arg("beam") = nb::none(),
-             nb::arg("indication_range_mm") = nb::none(), nb::arg("columns") = std::map<std::string, std::string>{},
-             nb::arg("ignore") = std::vector<std::string>{}, nb::arg("decimals") = 9, nb::arg("any_travel") = false,
-             nb::arg("accept_misfit") = false, nb::arg("errors_file") = "errors.toml", nb::arg("overwrite") = false,
-             nb::arg("progress") = nb::none(),
-             "The same from a file of readings of any length to a file of points: `abbe scan points`.\n\n"
-             "readings: CSV with X_mm, C_deg, ... and indication_mm (or _um). output: .csv or .ply. "
-             "indication_range_mm: others\n"
-             "are left out. columns: {'indication_um': 'h'}, of other names; ignore: columns that are not read. "
-             "decimals: of a\n"
-             "coordinate in CSV. any_travel: accept positions outside of the travel. errors_file: name for the text. "
-             "progress: a\n"
-             "function of the step, what is done and its total. Raises InputError, FileExistsError, Stopped.");
+  module.def(
+      "scan_points_file", &of_file, nb::arg("readings"), nb::arg("errors"), nb::arg("output"), nb::kw_only(),
+      nb::arg("beam_zero_mm") = nb::none(), nb::arg("beam") = nb::none(), nb::arg("indication_range_mm") = nb::none(),
+      nb::arg("columns") = std::map<std::string, std::string>{}, nb::arg("ignore") = std::vector<std::string>{},
+      nb::arg("decimals") = 9, nb::arg("any_travel") = false, nb::arg("accept_misfit") = false,
+      nb::arg("errors_file") = "errors.toml", nb::arg("overwrite") = false, nb::arg("progress") = nb::none(),
+      "As scan_points(), from a file of readings of any length to a file of points: `abbe scan points`.\n\n"
+      "readings: CSV with X_mm, C_deg, ... and indication_mm (or _um). output: .csv or .ply. indication_range_mm:\n"
+      "readings outside it are left out. columns: {'indication_um': 'h'}, for other names; ignore: columns that\n"
+      "are not read. decimals: of a coordinate in CSV. any_travel: accept positions outside of the travel.\n"
+      "errors_file: name for the text. progress: a function of the step, what is done and its total. Raises\n"
+      "InputError, FileExistsError, Stopped.");
 }
 
 }  // namespace abbe::python

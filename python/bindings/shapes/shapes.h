@@ -16,7 +16,7 @@
 
 namespace abbe::python {
 
-/// A mesh with its name, and what closest points need of it, made when it is first wanted.
+/// A mesh with its name, and a search structure for closest points that is built on first use.
 class NamedMesh {
  public:
   NamedMesh(MeshFile read, std::string called)
@@ -25,7 +25,7 @@ class NamedMesh {
   const MeshFile& file() const { return *file_; }
   const TriangleMesh& mesh() const { return file_->mesh; }
   const std::string& name() const { return name_; }
-  /// Not to be called without the GIL.
+  /// The GIL must be held.
   std::shared_ptr<const ClosestPointFinder> finder() const;
 
  private:
@@ -39,7 +39,7 @@ struct PointsArgument {
   nb::handle source;
 };
 
-/// Points of a program as a file of them would be read. @throws InputError for another shape, numbers that are not
+/// Points of an array, as if read from a file. @throws InputError for another shape, numbers that are not
 ///   finite or larger than a file may have
 PointCloudFile points_of_array(const ArrayLike& points, const char* name,
                                const std::optional<ArrayLike>& normals = std::nullopt);
@@ -55,7 +55,7 @@ NamedPoints points_of(const PointsArgument& argument, const char* name, const st
                       const std::string& called, bool in_plane = false);
 
 using MeshArgument = std::variant<NamedMesh, std::filesystem::path>;
-/// Reads it where it is a path. @param unit  of a file that states none
+/// Reads it if it is a path. @param unit  for a file that states none
 NamedMesh mesh_of(const MeshArgument& argument, const std::optional<std::string>& unit);
 
 /// Enters a scan and its part, each read where it is a path, with their names.
@@ -80,7 +80,7 @@ Eigen::Matrix4d transform_matrix(const RigidTransform& transform);
 Eigen::Vector3d vector_of(const ArrayLike& argument, const char* name, const char* words);
 std::optional<Eigen::Vector3d> direction_of(const std::optional<ArrayLike>& argument, const char* name);
 
-/// [n, 3] of columns, which they keep alive.
+/// [n, 3], a view of columns, which belong to `owner`; the array keeps it alive.
 nb::object rows_view(const Eigen::Matrix3Xd& columns, nb::handle owner);
 /// [n, 3], copied.
 nb::object copied_rows(const Eigen::Matrix3Xd& columns);

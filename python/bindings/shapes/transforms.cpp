@@ -20,10 +20,10 @@ std::vector<Eigen::Vector3d> vectors_of(const ArrayLike& points, const char* nam
 
 std::vector<double> weights_of(const std::optional<ArrayLike>& argument, std::size_t count) {
   if (!argument) return {};
-  std::vector<double> weights = number_list(*argument, "weights", "one of each point, 0 or more");
+  std::vector<double> weights = number_list(*argument, "weights", "one per point, 0 or more");
   if (weights.size() != count) {
     throw InputError({.field = "weights"}, fmt::format("has {} numbers", weights.size()),
-                     fmt::format("{}, one of each point", count));
+                     fmt::format("{}, one per point", count));
   }
   for (const double weight : weights) {
     if (weight < 0) throw InputError({.field = "weights"}, fmt::format("has {}", weight), "0 or more");
@@ -39,7 +39,8 @@ BestFitTransform best_fit(const ArrayLike& source, const ArrayLike& target, cons
                      fmt::format("{} as in source_mm", from.size()));
   }
   const std::vector<double> given = weights_of(weights, from.size());
-  if (robust && weights) throw InputError({.field = "weights"}, "have no effect on a robust fit", "without them");
+  if (robust && weights)
+    throw InputError({.field = "weights"}, "have no effect on a robust fit", "either weights or robust=True");
   const nb::gil_scoped_release release;
   if (!robust) return best_fit_transform(from, to, given);
   RobustFitOptions options;
@@ -54,13 +55,13 @@ void bind_transforms(nb::module_& module) {
                                "A rigid motion that brings paired points together. Made by best_fit_transform().")
       .def_prop_ro(
           "ok", [](const BestFitTransform& f) { return f.status == BestFitStatus::ok; },
-          "Whether the points determine it.")
+          "Whether the points determine the motion.")
       .def_prop_ro(
           "status", [](const BestFitTransform& f) { return best_fit_status_name(f.status); },
           "'ok', or why they do not.")
       .def_prop_ro(
           "matrix", [](const BestFitTransform& f) { return transform_matrix(f.target_from_source); },
-          "Target from source, [4, 4], mm. Of coincident and collinear points one of many that fit as well.")
+          "Target from source, [4, 4], mm. For coincident or collinear points, one of many that fit equally well.")
       .def_ro("rms_mm", &BestFitTransform::rms, "Root mean square distance, weighted.")
       .def_ro("extent_mm", &BestFitTransform::extent,
               "[3] root mean square extent of the source along its principal directions, largest first.")
@@ -78,8 +79,9 @@ void bind_transforms(nb::module_& module) {
   module.def(
       "best_fit_transform", &best_fit, nb::arg("source_mm"), nb::arg("target_mm"), nb::kw_only(),
       nb::arg("weights") = nb::none(), nb::arg("robust") = false, nb::arg("seed") = 1,
-      "The rigid motion, without reflection and scale, that brings points onto their partners.\n\n"
-      "source_mm, target_mm: [n, 3], row by row. weights [n], 0 or more, of the squares. robust: up to 40 % of the\n"
+      "The rigid motion, without reflection or scaling, that best brings points onto their partners.\n\n"
+      "source_mm, target_mm: [n, 3], row by row. weights [n], 0 or more, of the squared distances. robust: up to 40 % "
+      "of the\n"
       "pairs may be wrong; seed of its random triples. Raises InputError; too few points give a result that is not "
       "ok.\n"
       "Source: Kabsch, Acta Cryst. A32 (1976) 922; Umeyama, IEEE PAMI 13 (1991) 376.\n\n"
