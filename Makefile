@@ -7,13 +7,13 @@
 #   make test      set-up, all tests, the most important ones under the sanitizers too, short fuzzing
 #   make sanitize  all quick tests under the sanitizers; continuous integration runs it after make test
 #   make python    set-up, the Python package and its tests
-#   make site      set-up, documentation and reference of the Python package as pages: build/site/index.html
+#   make site      set-up, documentation and reference of the Python package as a site: build/site/index.html
 #   make unit      build and run the tests of single folders
 #   make quick     the same, longer ones, and the tests of the command and of the pages
 #   make lint      formatting, structure and static analysis
 #   make format    rewrite the sources in the project's format
 #   make bench     speed and accuracy benchmarks
-#   make bench-python  speed of the Python package beside C++, NumPy and other packages
+#   make bench-python  speed of the Python package compared with C++, NumPy and other packages
 #   make fuzz      fuzz every reader for FUZZ_SECONDS (default 60) each
 #   make coverage  line coverage of the quick tests
 #   make package   Debian packages and the tarball for any Linux: build/packages
@@ -49,12 +49,12 @@ export CTEST_OUTPUT_ON_FAILURE := 1
 
 # What is said at the start: minutes that the whole takes on two cores when nothing is built and nothing is in ccache.
 BUILD_MINUTES := 6
-DEMO_MINUTES := 5
+DEMO_MINUTES := 7
 LOOP_MINUTES := 3
-TEST_MINUTES := 28
+TEST_MINUTES := 40
 SANITIZE_MINUTES := 15
 QUICK_MINUTES := 15
-PYTHON_MINUTES := 9
+PYTHON_MINUTES := 12
 SITE_MINUTES := 10
 
 comma := ,

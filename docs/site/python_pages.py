@@ -21,7 +21,7 @@ IN_CODE = re.compile(r"``?abbe\.(\w+)``?")
 SPANS = re.compile(r"(``.+?``|(?::[\w:]+:)?`[^`]+`)", re.DOTALL)
 # What is plain text in a docstring and markup for Sphinx: a product, an absolute value, a name that ends in a line.
 MARKUP = re.compile(r"[*|]|_(?!\w)")
-PARTS = ["These are types of what results hold. Nobody makes them, so the package has no names for them."]
+PARTS = ["Results hold objects of these types. They cannot be constructed, so `abbe` does not export their names."]
 
 
 def heading(text: str, line: str) -> list[str]:

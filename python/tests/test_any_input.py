@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 import abbe
-from test_bad_input import ERRORS, MILL, MODEL, PLANE, TAKES_COMMANDS, TAKES_POINTS, TRIANGLE
+from test_bad_input import ERRORS, MILL, MODEL, PLANE, TAKES_COMMANDS, TAKES_POINTS
 
 pytestmark = pytest.mark.bad_input  # also run under the address sanitizer (CMakeLists.txt)
 
@@ -28,7 +28,6 @@ TAKES_ARRAYS = {
     "values": lambda array: setattr(ERRORS.copy(), "values_mm_rad", array),
     "coefficients": lambda array: abbe.Errors(MILL).add_motion("EXX", coefficients_um=array),
     "triangles": lambda array: abbe.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], array),
-    "faces of a mesh": lambda array: TRIANGLE.closest(array),
     "rotation_xyz": abbe.rotation_xyz,
     "angles_xyz": abbe.angles_xyz,
     "out": lambda array: MODEL.poses(numpy.zeros((3, 4)), out=array),
