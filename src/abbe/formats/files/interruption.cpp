@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <csignal>
-#include <system_error>
 #include <thread>
 #include <vector>
+
+#include "abbe/formats/files/remove_unfinished.h"
 
 namespace abbe {
 namespace {
@@ -51,10 +52,7 @@ void end_cleanly_when_interrupted(std::function<void(int signal)> before) {
     all.steps.lock();
     if (before) before(signal);
     all.list.lock();
-    for (const std::filesystem::path& path : all.paths) {
-      std::error_code ignored;
-      std::filesystem::remove_all(path, ignored);
-    }
+    for (const std::filesystem::path& path : all.paths) remove_unfinished(path);
     ::_exit(128 + signal);
   }).detach();
 }

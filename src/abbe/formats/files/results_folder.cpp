@@ -14,6 +14,7 @@
 #include "abbe/formats/files/existing_output.h"
 #include "abbe/formats/files/interruption.h"
 #include "abbe/formats/files/kept_inputs.h"
+#include "abbe/formats/files/remove_unfinished.h"
 #include "abbe/formats/files/results_marker.h"
 #include "abbe/formats/files/streamed_file.h"
 #include "abbe/formats/files/unfinished_output.h"
@@ -24,9 +25,6 @@ namespace abbe {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// In a folder until its results are whole.
-constexpr const char* kBeingWritten = ".abbe-being-written";
 
 /// @param called  what messages call it: its name when all is done
 void write_and_flush(const fs::path& path, std::string_view contents, const fs::path& called) {
@@ -62,7 +60,7 @@ void clear_abandoned(const fs::path& path) {
   for_abandoned(path, kUnfinished, [&](const fs::path& unfinished) {
     std::error_code ignored;
     if (fs::exists(unfinished / kBeingWritten, ignored)) {
-      fs::remove_all(unfinished, ignored);
+      remove_unfinished(unfinished);
     } else if (fs::is_directory(unfinished, ignored)) {
       clear_away(unfinished, path);
     }
@@ -174,7 +172,13 @@ void ResultsFolder::put_in_place() {
     older = unfinished;
     if (problem == 0 && !ResultsMarker::read(older) && !is_empty_folder(older)) {
       // Somebody has put it there since it was looked at.
-      problem = exchange(unfinished, path_) == 0 ? EEXIST : errno;
+      if (exchange(unfinished, path_) != 0) {
+        unfinished_->release();
+        throw InputError({older.string(), 0, 0, ""},
+                         "was in the place of " + name_.string() + " and could not be moved back",
+                         "it to be moved by hand");
+      }
+      problem = EEXIST;
     }
   }
   if (problem == EINVAL || problem == ENOSYS) {

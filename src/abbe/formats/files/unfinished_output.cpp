@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "abbe/formats/files/remove_unfinished.h"
 #include "abbe/formats/files/write_error.h"
 #include "abbe/formats/text/input_error.h"
 
@@ -128,8 +129,7 @@ int UnfinishedOutput::make(Kind kind) {
 }
 
 UnfinishedOutput::~UnfinishedOutput() {
-  std::error_code ignored;
-  if (noted_) fs::remove_all(path_, ignored);
+  if (noted_) remove_unfinished(path_);
 }
 
 void UnfinishedOutput::release() {
