@@ -81,8 +81,8 @@ int run_command(int argc, const char* const* argv, const std::function<void(Comm
     const std::vector<std::string> names = line.program.subcommand_names();
     if (std::find(names.begin(), names.end(), name) == names.end()) {
       const std::optional<std::string> meant = nearest_word(name, names);
-      tell("abbe: there is no subcommand '{}'{}; abbe --help lists them\n", name,
-           meant ? "; did you mean " + *meant + "?" : "");
+      tell("abbe: there is no subcommand '{}'.{} abbe --help lists them all.\n", name,
+           meant ? " Did you mean " + *meant + "?" : "");
       return kBadInput;
     }
   }

@@ -35,7 +35,8 @@ TEST_F(CommandLine, WhatIsMisspelledIsNamedWithWhatWasMeant) {
     EXPECT_EQ(result.err.find("abbe: "), 0U) << result.err;
     return result.err;
   };
-  EXPECT_THAT(refusal({"verfy"}), HasSubstr("there is no subcommand 'verfy'; did you mean verify?"));
+  EXPECT_THAT(refusal({"verfy"}),
+              HasSubstr("there is no subcommand 'verfy'. Did you mean verify? abbe --help lists them all."));
   EXPECT_THAT(refusal({"compensate", "tabel"}),
               HasSubstr("'tabel' is not expected by abbe compensate; did you mean table?"));
   EXPECT_THAT(refusal({"run", "--jsn", "a.study.toml"}),

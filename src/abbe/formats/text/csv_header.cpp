@@ -77,7 +77,7 @@ std::string known_columns(const std::vector<std::string>& known) {
   const std::string_view near = nearest_name(base, known);
   throw InputError(place,
                    near.empty() ? "unknown column"
-                                : fmt::format("unknown column, did you mean {}{}?", near, name.substr(base.size())),
+                                : fmt::format("unknown column (did you mean {}{}?)", near, name.substr(base.size())),
                    known_columns(known) + (ignored_by.empty() ? "" : "; or its name under " + ignored_by));
 }
 

@@ -38,7 +38,7 @@ TEST(CsvReader, ReadsForeignColumnsByMappingAndLeavesIgnoredOnesUnread) {
   const CsvTable table = read_csv("remark,x,angle\n\"no, number\",1,2\n", "m.csv", kWanted, mapping);
   EXPECT_EQ(table.columns[0].numbers, (std::vector<double>{1}));
   EXPECT_EQ(message_of_csv("x_mm,angle\n1,2\n", {{{"X_mm", "y"}}, {}, "`ignore`"}),
-            "m.csv:1:1: x_mm: unknown column, did you mean X_mm?; expected one of X, C, station, u; or its name under "
+            "m.csv:1:1: x_mm: unknown column (did you mean X_mm?); expected one of X, C, station, u; or its name under "
             "`ignore`");
   EXPECT_EQ(message_of_csv("X_mm,C_deg\n1,2\n", {{{"station", "s"}}, {}, ""}),
             "m.csv:1: s: there is no such column to be read as station");
@@ -87,7 +87,7 @@ TEST(CsvReader, RefusesWrongUnitsAndColumns) {
   EXPECT_EQ(message_of_csv("X_mm,C_deg,X_mm\n1,2,3\n"), "m.csv:1:12: X_mm: this column is given twice");
   EXPECT_EQ(message_of_csv("X_mm,C_deg,X_um\n1,2,3\n"), "m.csv:1:12: X_um: says the same as column X_mm");
   EXPECT_EQ(message_of_csv("X_mm,C_deg,stadion\n1,2,3\n"),
-            "m.csv:1:12: stadion: unknown column, did you mean station?; expected one of X, C, station, u");
+            "m.csv:1:12: stadion: unknown column (did you mean station?); expected one of X, C, station, u");
   EXPECT_EQ(message_of_csv("X_mm;C_deg\n1,5;2\n"),
             "m.csv:1:1: X_mm;C_deg: the columns are not separated by commas; expected commas between columns and a "
             "decimal point");
