@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/mman.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -21,17 +22,10 @@ namespace {
   throw InputError({.field = name}, problem, expected);
 }
 
-/// Whether all numbers are finite: x - x is zero unless x is infinite or NaN. Several sums, because the additions to a
-/// single one would wait for each other.
+/// Whether all numbers are finite: x - x is zero unless x is infinite or NaN.
 bool all_finite(const double* values, std::size_t count) {
-  constexpr std::size_t kSums = 8;
-  std::array<double, kSums> sums{};
-  std::size_t i = 0;
-  for (; i + kSums <= count; i += kSums) {
-    for (std::size_t s = 0; s < kSums; ++s) sums[s] += values[i + s] - values[i + s];
-  }
-  for (; i < count; ++i) sums[0] += values[i] - values[i];
-  return std::all_of(sums.begin(), sums.end(), [](double sum) { return sum == 0; });
+  const Eigen::Map<const Eigen::ArrayXd> x(values, static_cast<Eigen::Index>(count));
+  return (x - x).sum() == 0;
 }
 
 std::string shape_words(const Numbers& array) {
@@ -156,10 +150,12 @@ Columns<Number>::Columns(std::size_t parts, std::size_t count) : parts_(parts), 
   // Large arrays are fresh memory each time. In pages of 4 KiB, making them takes as long as computing what goes in.
   constexpr std::size_t kHugePage = std::size_t{1} << 21, kLine = 64;
   const std::size_t bytes = parts * count * sizeof(Number);
-  const std::size_t alignment = bytes >= 2 * kHugePage ? kHugePage : kLine;
-  data_ = static_cast<Number*>(std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment));
+  const std::size_t alignment = bytes >= kHugePage / 4 ? kHugePage : kLine;
+  const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
+  data_ = static_cast<Number*>(std::aligned_alloc(alignment, whole));
   if (!data_) throw std::bad_alloc();
-  if (alignment == kHugePage) madvise(data_, bytes, MADV_HUGEPAGE);
+  // To its end: a large page that is not wholly advised would become 512 small ones.
+  if (alignment == kHugePage) madvise(data_, whole, MADV_HUGEPAGE);
 }
 
 template <class Number>

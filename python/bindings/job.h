@@ -37,4 +37,10 @@ auto job_result(const nb::object& progress, const Work& work) {
   return std::move(*result);
 }
 
+/// work(stop) as a job without progress.
+template <class Work>
+auto stoppable_result(const Work& work) {
+  return job_result(nb::none(), [&](const JobControl& control) { return work(control.stop); });
+}
+
 }  // namespace abbe::python

@@ -1,7 +1,11 @@
 """Points, meshes and scans, against the command."""
 
 import json
+import os
 import re
+import signal
+import threading
+import time
 
 import abbe
 import numpy
@@ -222,3 +226,20 @@ def test_the_planned_scan_is_that_of_the_command(tmp_path):
     abbe.Mesh(CUBE + [500, 500, 500], CUBE_TRIANGLES).write(tmp_path / "stage.ply")
     command(placed, tmp_path, exit_code=0 if turned.complete else 1)
     assert turned.csv() == (tmp_path / "t.csv").read_text()
+
+
+@pytest.mark.parametrize("work", [
+    lambda mesh, points: mesh.closest(points),
+    lambda mesh, points: abbe.scan_deviations(points, mesh),
+    lambda mesh, points: abbe.register_to_features(
+        points, [abbe.Shape("plane", [0, 0, 0], [0, 0, 1]), abbe.Shape("sphere", [5, 5, 5], radius_mm=3)]),
+], ids=["closest", "scan_deviations", "register_to_features"])
+def test_an_interruption_ends_the_work_on_a_large_scan(work):
+    mesh = abbe.Mesh([[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]], [[0, 1, 2], [0, 2, 3]])
+    points = numpy.random.default_rng(1).uniform(0, 10, (8_000_000, 3))
+    finished = []
+    with pytest.raises(KeyboardInterrupt):
+        threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+        finished.append(work(mesh, points))
+        time.sleep(60)
+    assert not finished

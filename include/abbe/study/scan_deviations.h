@@ -28,6 +28,7 @@
 // The report as JSON: evaluation_json(); as a page: evaluation_files(). Figures: docs/registration.md.
 
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -79,10 +80,12 @@ struct ScanDeviations {
 };
 
 /// Compares a scan with its part. Opens no file and prints nothing.
+/// @param stop  looked at between the steps, and before every block of points
 /// @throws InputError for a scan without points, a part without triangles or without the faces that were asked for, a
 ///   transform of a registration that found no pose, a band whose lower end is above the upper one, and as
 ///   apply_tolerances()
-ScanDeviations find_deviations(const ScanDeviationsRequest& request);
+/// @throws Stopped
+ScanDeviations find_deviations(const ScanDeviationsRequest& request, const std::stop_token& stop = {});
 
 /// Files of the points that count, name and contents: deviation.csv and deviation.ply (coloured).
 std::vector<std::pair<std::string, std::string>> deviation_files(const ScanDeviations& result);

@@ -3,6 +3,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings/arrays_of_each.h"
+#include "bindings/job.h"
 #include "bindings/shapes/shapes.h"
 
 namespace abbe::python {
@@ -15,6 +16,11 @@ struct ClosestPoints {
 ClosestPoints closest(const NamedMesh& mesh, const ArrayLike& points) {
   const Eigen::Matrix3Xd of_array = points_of_array(points, "points_mm").cloud.points;
   const std::shared_ptr<const ClosestPointFinder> finder = mesh.finder();
+  constexpr Eigen::Index kSoonDone = 10'000;  // by this thread before another one would have started
+  if (of_array.cols() > kSoonDone) {
+    return stoppable_result(
+        [&](const std::stop_token& stop) { return ClosestPoints{finder->closest(of_array, 0, stop)}; });
+  }
   const nb::gil_scoped_release release;
   return {finder->closest(of_array)};
 }

@@ -13,6 +13,7 @@
 #include "abbe/study/scan_registration.h"
 #include "bindings/arrays_of_each.h"
 #include "bindings/evaluate/report.h"
+#include "bindings/job.h"
 #include "bindings/shapes/shapes.h"
 
 namespace abbe::python {
@@ -64,7 +65,8 @@ ScanDeviations deviations(const PointsArgument& scan, const MeshArgument& part,
   request.page = page;
   enter_transform(transform, request);
   enter_scan_and_part(scan, unit, part, part_unit, request);
-  return computed([&] { return find_deviations(request); });
+  return stoppable_result(
+      [&](const std::stop_token& stop) { return naming_arguments([&] { return find_deviations(request, stop); }); });
 }
 
 }  // namespace
@@ -126,7 +128,7 @@ void bind_deviations(nb::module_& module) {
       "unit, part_unit: for files that state none. tolerances: {'maximum_um': 50}. page: whether the page shows the "
       "part in "
       "three\n"
-      "dimensions. Raises InputError. Figures: docs/registration.md.\n\n"
+      "dimensions. Raises InputError. Ctrl-C stops it. Figures: docs/registration.md.\n\n"
       ">>> import abbe\n"
       ">>> plane = abbe.Mesh([[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0]], [[0, 1, 2], [0, 2, 3]])\n"
       ">>> result = abbe.scan_deviations([[2, 3, 0.01], [7, 3, -0.02]], plane)\n"

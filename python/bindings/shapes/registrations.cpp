@@ -76,7 +76,10 @@ FineRegistration to_features(const ArrayLike& points, const std::vector<Shape>& 
       "loss", loss, {{"welsch", RegistrationLoss::welsch}, {"least-squares", RegistrationLoss::least_squares}});
   options.noise_mm = quantity("noise_um", noise_um, Quantity::length, "um", 0, 1e6);
   const RigidTransform from = start ? rigid_transform(*start, "start") : RigidTransform{};
-  return computed([&] { return register_to_features(given, features, of_points, from, options); });
+  return stoppable_result([&](const std::stop_token& stop) {
+    options.stop = stop;
+    return naming_arguments([&] { return register_to_features(given, features, of_points, from, options); });
+  });
 }
 
 template <class Result>

@@ -40,7 +40,7 @@ SurfaceFaces faces_of_part(const ScanDeviationsRequest& request) {
 
 }  // namespace
 
-ScanDeviations find_deviations(const ScanDeviationsRequest& request) {
+ScanDeviations find_deviations(const ScanDeviationsRequest& request, const std::stop_token& stop) {
   check_scan_pose(request);
   if (request.tolerance && request.tolerance->lower_mm > request.tolerance->upper_mm) {
     throw InputError({.field = "--lower-um"}, "lies above --upper-um", "a band from lower to upper");
@@ -48,12 +48,14 @@ ScanDeviations find_deviations(const ScanDeviationsRequest& request) {
   check_scan_and_part(request.scan, request.scan_file, request.part, request.part_file);
   const MeshFile& part = request.part;
   const ClosestPointFinder surface(part.mesh, request.threads);
+  stop_if_asked(stop);
   ScanDeviations result;
   result.compared = compare_scan(surface, moved_cloud(request.scan.cloud, request.pose.transform).points,
                                  {.tolerance = request.tolerance,
                                   .largest_mm = request.largest_mm,
                                   .faces = faces_of_part(request),
-                                  .threads = request.threads});
+                                  .threads = request.threads,
+                                  .stop = stop});
   DeviationRequest asked{.scan = request.scan_file,
                          .part = request.part_file,
                          .transform = request.transform_file,
@@ -66,6 +68,7 @@ ScanDeviations find_deviations(const ScanDeviationsRequest& request) {
   apply_tolerances(request.tolerances, result.report);
   result.colour_mm = deviation_colour_range(asked, result.compared);
   if (request.page) {
+    stop_if_asked(stop);
     result.report.page = deviation_page(part.mesh, result.compared.closest, result.compared.deviation, result.colour_mm,
                                         request.threads);
   }

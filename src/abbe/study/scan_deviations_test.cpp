@@ -72,6 +72,12 @@ TEST(ScanDeviationsOfARequest, AreJudgedByTheTolerancesOfTheRequest) {
   EXPECT_FALSE(find_deviations(request).report.exceeds_tolerance());
 }
 
+TEST(ScanDeviationsOfARequest, StopWhenAsked) {
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_THROW(find_deviations(bracket_deviations(), source.get_token()), Stopped);
+}
+
 TEST(ScanDeviationsOfARequest, WhatCannotBeComparedIsSaid) {
   const auto problem = [](const auto& change) {
     ScanDeviationsRequest request = bracket_deviations();

@@ -29,9 +29,9 @@ ScanRegistration register_scan(ScanRegistrationRequest request, const JobOptions
   const RegistrationTarget target(result.part.mesh, request.options);
   result.found = target.register_scan(result.scan.cloud, stoppable_progress(options));
   if (request.compare && has_pose(result.found)) {
-    result.compared =
-        compare_scan(target.surface(), registered_scan(result).points,
-                     {.largest_mm = farthest_shown_mm(result.part.mesh), .threads = request.options.threads});
+    result.compared = compare_scan(
+        target.surface(), registered_scan(result).points,
+        {.largest_mm = farthest_shown_mm(result.part.mesh), .threads = request.options.threads, .stop = options.stop});
   }
   return result;
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stop_token>
 #include <vector>
 
 #include "abbe/geometry/fits/shapes.h"
 #include "abbe/geometry/registration/fine_registration.h"
+#include "abbe/geometry/stopped.h"
 
 namespace abbe {
 
@@ -12,6 +14,7 @@ struct FeatureRegistrationOptions {
   RegistrationLoss loss = RegistrationLoss::welsch;  ///< least_squares or welsch, with the scale from the median
   double noise_mm = 0;  ///< standard uncertainty of a point along the normal; 0: from the residuals
   int iterations = 100;
+  std::stop_token stop{};  ///< looked at in every iteration: throws Stopped
 };
 
 /// As register_finely(), but on ideal features (planes, spheres, cylinders) instead of triangles: exact where a part's

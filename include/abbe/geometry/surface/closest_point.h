@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <stop_token>
 #include <vector>
 
+#include "abbe/geometry/stopped.h"
 #include "abbe/geometry/surface/triangle_mesh.h"
 
 namespace abbe {
@@ -44,8 +46,11 @@ class ClosestPointFinder {
 
   /// @param points  [3, n] mm, finite, frame of the mesh, in any order: more than kBlock of them are searched in an
   ///                order of their own, in which neighbours follow each other
+  /// @param stop    looked at before every block
   /// @return [n]
-  std::vector<SurfacePoint> closest(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int threads = 0) const;
+  /// @throws Stopped
+  std::vector<SurfacePoint> closest(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int threads = 0,
+                                    const std::stop_token& stop = {}) const;
   SurfacePoint closest_to(const Eigen::Vector3d& point) const;
 
   /// Same points, distances only. @return [n] mm, signed

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include "abbe/geometry/surface/closest_point.h"
@@ -15,6 +16,7 @@ struct ScanComparisonOptions {
   double largest_mm = 0;    ///< points farther away are left out; 0: all count
   SurfaceFaces faces = {};  ///< by which statistics are stated too; empty: none
   int threads = 0;          ///< 0: all; the result does not depend on it
+  std::stop_token stop{};   ///< looked at before every block of points: throws Stopped
 };
 
 /// Points of a scan against the surface of its part.

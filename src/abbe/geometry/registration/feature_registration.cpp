@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "abbe/geometry/decompositions.h"
+#include "abbe/geometry/registration/undetermined_motions.h"
 #include "abbe/geometry/rotation.h"
 
 namespace abbe {
@@ -91,6 +92,7 @@ FineRegistration register_to_features(const Eigen::Matrix3Xd& points, const std:
   bool converged = false;
   Matrix6d normal_matrix;
   for (; result.iterations < options.iterations && !converged; ++result.iterations) {
+    stop_if_asked(options.stop);
     normal_matrix.setZero();
     Vector6d right = Vector6d::Zero();
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -103,8 +105,11 @@ FineRegistration register_to_features(const Eigen::Matrix3Xd& points, const std:
     Matrix6d scale = Matrix6d::Identity();
     scale.topLeftCorner<3, 3>() /= std::max(extent, 1e-12);
     const SymmetricEigen<6> spectrum(scale * normal_matrix * scale);
-    if (!(spectrum.eigenvalues()[0] > 1e-9 * spectrum.eigenvalues()[5])) {
+    const double least = 1e-9 * spectrum.eigenvalues()[5];
+    if (!(spectrum.eigenvalues()[0] > least)) {
       result.status = FineRegistrationStatus::undetermined;
+      const Eigen::Index unseen = 6 - (spectrum.eigenvalues().array() > least).count();
+      result.undetermined = undetermined_motions(spectrum.eigenvectors().leftCols(unseen), extent, result.reference);
       return result;
     }
     const Vector6d step = scale * (spectrum.eigenvectors() * (spectrum.eigenvalues().cwiseInverse().asDiagonal() *

@@ -66,13 +66,31 @@ TEST(FeatureRegistration, WhatASurfaceDoesNotShowIsSaid) {
   const Scan scan = scan_of(kTruth, 0.02, 0, 5);
   std::vector<std::size_t> only_cylinder(450, 0);
   const std::vector<Shape> cylinder = {part()[0]};
-  EXPECT_EQ(register_to_features(scan.points, cylinder, only_cylinder, kTruth).status,
-            FineRegistrationStatus::undetermined);
+  const FineRegistration fit = register_to_features(scan.points, cylinder, only_cylinder, kTruth);
+  EXPECT_EQ(fit.status, FineRegistrationStatus::undetermined);
+  // Along the axis, and about it.
+  ASSERT_EQ(fit.undetermined.size(), 2U);
+  for (const UndeterminedMotion& motion : fit.undetermined) {
+    EXPECT_NEAR(std::abs(motion.direction.dot(cylinder[0].direction)), 1, 1e-6);
+    if (!motion.rotation) continue;
+    const Eigen::Vector3d beside = motion.point - cylinder[0].point;
+    EXPECT_LT(beside.cross(cylinder[0].direction).norm(), 1e-3);
+    EXPECT_EQ(motion.pitch_mm, 0);
+  }
+  EXPECT_NE(fit.undetermined[0].rotation, fit.undetermined[1].rotation);
   EXPECT_EQ(register_to_features(scan.points.leftCols(4), cylinder, {}, kTruth).status,
             FineRegistrationStatus::too_few_points);
   Shape circle;
   circle.kind = ShapeKind::circle3;
   EXPECT_THROW(register_to_features(scan.points, {circle}, {}, kTruth), std::invalid_argument);
+}
+
+TEST(FeatureRegistration, StopsWhenAsked) {
+  std::stop_source source;
+  source.request_stop();
+  FeatureRegistrationOptions options;
+  options.stop = source.get_token();
+  EXPECT_THROW(register_to_features(scan_of(kTruth, 0, 0, 1).points, part(), {}, beside(), options), Stopped);
 }
 
 }  // namespace

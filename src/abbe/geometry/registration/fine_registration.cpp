@@ -6,6 +6,7 @@
 
 #include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/parallel_blocks.h"
+#include "abbe/geometry/registration/undetermined_motions.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/geometry/singular_values.h"
 #include "abbe/geometry/surface/hilbert_order.h"
@@ -229,39 +230,6 @@ double start_scale(const Matrix3Xd& points, const ClosestPointFinder& surface, c
   return fit.scale();
 }
 
-/// Names the unseen motions: first pure translations, then rotations about lines.
-std::vector<UndeterminedMotion> named(const MatrixXd& unseen, double extent, const Vector3d& reference) {
-  std::vector<UndeterminedMotion> motions;
-  if (unseen.cols() == 0) return motions;
-  // Combinations in the order of how much they turn.
-  const RightSingular turning = right_singular(unseen.topRows(3));
-  MatrixXd translations(3, 0);
-  for (Eigen::Index k = unseen.cols(); k-- > 0;) {
-    const Vector6d motion = unseen * turning.vectors.col(k);
-    const double turn = motion.head<3>().norm();
-    UndeterminedMotion named;
-    if (turn < 0.02) {
-      named.direction = motion.tail<3>().normalized();
-      translations.conservativeResize(3, translations.cols() + 1);
-      translations.rightCols(1) = named.direction;
-    } else {
-      const Vector3d omega = motion.head<3>() / extent;
-      Vector3d shift = motion.tail<3>();
-      shift -= translations * (translations.transpose() * shift);
-      named.rotation = true;
-      named.direction = omega.normalized();
-      named.point = reference + omega.cross(shift) / omega.squaredNorm();
-      named.pitch_mm = omega.dot(shift) / omega.squaredNorm();
-      if (std::abs(named.pitch_mm) < 0.01 * extent) named.pitch_mm = 0;
-    }
-    Eigen::Index largest = 0;
-    named.direction.cwiseAbs().maxCoeff(&largest);
-    if (named.direction[largest] < 0) named.direction = -named.direction;
-    motions.push_back(named);
-  }
-  return motions;
-}
-
 }  // namespace
 
 RigidTransform small_motion(const Vector6d& motion, const Vector3d& reference) {
@@ -319,7 +287,7 @@ FineRegistration register_finely(const Matrix3Xd& points, const ClosestPointFind
   result.weight_sum = sums.weight;
   result.rms_mm = sums.weight > 0 ? std::sqrt(sums.weighted_square / sums.weight) : 0;
   result.reference = fit.reference(pose);
-  result.undetermined = named(seen.unseen, extent, result.reference);
+  result.undetermined = undetermined_motions(seen.unseen, extent, result.reference);
   const MatrixXd slope = seen.seen.transpose() * sums.slope * seen.seen;
   const Ldlt<> solver(slope);
   if (seen.seen.cols() > 0 && sums.used > 6 && solver.is_positive()) {

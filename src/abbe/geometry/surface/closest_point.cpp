@@ -72,7 +72,8 @@ struct ClosestPointFinder::Inside {
 
   /// All points, many of them in an order in which neighbours follow each other.
   template <class Take>
-  void search_all(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int threads, const Take& take) const {
+  void search_all(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int threads, const std::stop_token& stop,
+                  const Take& take) const {
     // A part of very many points keeps the numbers small and the memory for them bounded.
     constexpr Eigen::Index kPart = Eigen::Index{1} << 23;
     for (Eigen::Index from = 0; from < points.cols(); from += kPart) {
@@ -84,6 +85,7 @@ struct ClosestPointFinder::Inside {
           hilbert_order(part, part.rowwise().minCoeff().cwiseMax(tree.low - half),
                         part.rowwise().maxCoeff().cwiseMin(tree.high + half), threads);
       for_each_block(blocks, threads, [&](std::size_t block) {
+        stop_if_asked(stop);
         const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlock;
         Eigen::Matrix3Xd some(3, std::min(kBlock, part.cols() - first));
         const std::uint32_t* number = order.data() + first;
@@ -110,10 +112,10 @@ void ClosestPointFinder::closest_block(const Eigen::Ref<const Eigen::Matrix3Xd>&
   inside_->search(points, hints, [&](Eigen::Index i, const SurfacePoint& point) { found[i] = point; });
 }
 
-std::vector<SurfacePoint> ClosestPointFinder::closest(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
-                                                      int threads) const {
+std::vector<SurfacePoint> ClosestPointFinder::closest(const Eigen::Ref<const Eigen::Matrix3Xd>& points, int threads,
+                                                      const std::stop_token& stop) const {
   std::vector<SurfacePoint> found(static_cast<std::size_t>(points.cols()));
-  inside_->search_all(points, threads,
+  inside_->search_all(points, threads, stop,
                       [&](Eigen::Index i, const SurfacePoint& point) { found[static_cast<std::size_t>(i)] = point; });
   return found;
 }
@@ -127,7 +129,7 @@ SurfacePoint ClosestPointFinder::closest_to(const Vector3d& point) const {
 Eigen::VectorXd ClosestPointFinder::signed_distances(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                                      int threads) const {
   Eigen::VectorXd distances(points.cols());
-  inside_->search_all(points, threads,
+  inside_->search_all(points, threads, {},
                       [&](Eigen::Index i, const SurfacePoint& point) { distances[i] = point.distance; });
   return distances;
 }

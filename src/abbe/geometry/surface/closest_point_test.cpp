@@ -244,6 +244,14 @@ TEST(ClosestPoint, OpenMeshGivesTheSideOfTheSheetAndItsBorder) {
   EXPECT_EQ(corner.feature, SurfaceFeature::vertex);
 }
 
+TEST(ClosestPoint, ManyPointsStopWhenAsked) {
+  const TriangleMesh mesh = parts::stepped_box();
+  const ClosestPointFinder finder(mesh);
+  std::stop_source source;
+  source.request_stop();
+  EXPECT_THROW(finder.closest(points_around(mesh, 9000, 1), 0, source.get_token()), Stopped);
+}
+
 TEST(ClosestPoint, HugeCoordinatesStopNothing) {
   const ClosestPointFinder finder(parts::stepped_box());
   const SurfacePoint at = finder.closest_to(Vector3d(1e30, 0, 0));

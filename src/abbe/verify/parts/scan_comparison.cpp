@@ -11,7 +11,7 @@ ScanComparison compare_scan(const ClosestPointFinder& surface, const Eigen::Matr
   deviation.largest_mm = options.largest_mm;
   deviation.region_of_triangle = result.faces.face_of_triangle;
   deviation.regions = result.faces.count();
-  result.closest = surface.closest(points, options.threads);
+  result.closest = surface.closest(points, options.threads, options.stop);
   result.deviation = surface_deviation(result.closest, deviation);
   const std::size_t count = result.deviation.all.sample.count;
   result.counted_mm.reserve(count);
