@@ -1,11 +1,22 @@
 #include "abbe/formats/text/toml_document.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "abbe/formats/text/toml_scan.h"
 
 namespace abbe {
+namespace {
+
+/// Adds what a file is read as, for one whose name ends like that of another format, such as a table of readings.
+std::string expected_in(const std::string& file, const std::string& expected) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  if (ending.empty() || ending == ".toml") return expected;
+  return expected + (expected.empty() ? "" : "; ") + "a TOML file, whose name usually ends in .toml";
+}
+
+}  // namespace
 
 TomlDocument::TomlDocument(std::string text, std::string file) : file_(std::move(file)), text_(std::move(text)) {
   if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
@@ -14,11 +25,13 @@ TomlDocument::TomlDocument(std::string text, std::string file) : file_(std::move
   for (std::size_t at = text_.find('\n'); at != std::string::npos; at = text_.find('\n', at + 1)) {
     line_starts_.push_back(at + 1);
   }
-  refuse_what_the_parser_cannot_take(text_, file_);
   try {
+    refuse_what_the_parser_cannot_take(text_, file_);
     root_ = toml::parse(text_, file_);
+  } catch (const InputError& error) {
+    throw InputError(error.place(), error.problem(), expected_in(file_, error.expected()));
   } catch (const toml::parse_error& error) {
-    throw InputError(place(error.source().begin, ""), std::string(error.description()));
+    throw InputError(place(error.source().begin, ""), std::string(error.description()), expected_in(file_, ""));
   }
 }
 

@@ -1,8 +1,10 @@
 #include "abbe/formats/text/toml_table.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "abbe/formats/text/message_of.h"
+#include "abbe/formats/text/toml_document.h"
 
 namespace abbe {
 namespace {
@@ -106,6 +108,18 @@ TEST(TomlTable, ReportsTheParsersPlace) {
   EXPECT_TRUE(twice.starts_with("a.toml:2:")) << twice;
   const std::string comma = message_of_toml("a = 1\nrange_mm = 1,5\n", read_range);
   EXPECT_TRUE(comma.starts_with("a.toml:2:")) << comma;
+}
+
+TEST(TomlTable, SaysWhatAFileOfAnotherFormatIsReadAs) {
+  const auto message = [](const std::string& text, const std::string& file) {
+    return message_of([&] { TomlDocument(text, file); });
+  };
+  const std::string readings = "x_mm,y_mm,z_mm\n1,2,3\n", hint = "a TOML file, whose name usually ends in .toml";
+  EXPECT_THAT(message(readings, "runs.v2/readings.csv"), testing::EndsWith("; expected " + hint));
+  EXPECT_THAT(message("# Title\n![](a)\n", "README.md"), testing::EndsWith("; " + hint));
+  for (const char* file : {"a.study.toml", "study", "runs.v2/study"}) {
+    EXPECT_THAT(message(readings, file), testing::Not(testing::HasSubstr(hint)));
+  }
 }
 
 // Found by fuzzing: toml++ 3.3 asserts on these.
