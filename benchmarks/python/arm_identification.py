@@ -8,7 +8,7 @@ from typing import Any
 import numpy
 from arm import SEEN, TARGET_MM, Arm, commands, joint_frames, links, machine, poses_by_numpy
 from report import Table
-from rivals import missing, pinocchio_model, pybotics_robot, version_of
+from rivals import figaroh_settings, missing, pinocchio_model, pybotics_robot, version_of
 from timing import seconds, shortest
 
 import abbe
@@ -106,15 +106,10 @@ def by_figaroh(q: numpy.ndarray, measured: numpy.ndarray) -> Callable[[numpy.nda
             component += 1 if component % 3 == 0 else -1  # its frame is turned by theta
         names.append(f"{('d_px', 'd_py', 'd_pz', 'd_phix', 'd_phiy', 'd_phiz')[component]}_A{joint + 1}")
 
-    def settings(count: int) -> dict[str, Any]:
-        return {"calib_model": "full_params", "param_name": names, "start_frame": "base", "end_frame": "target",
-                "NbMarkers": 1, "NbSample": count, "calibration_index": 3, "actJoint_idx": [1, 2, 3, 4, 5, 6],
-                "measurability": [True, True, True, False, False, False]}
-
     expected = measured.T.ravel()
-    found = least_squares(lambda x: calc_updated_fkm(model, data, x, q, settings(len(q))) - expected,
+    found = least_squares(lambda x: calc_updated_fkm(model, data, x, q, figaroh_settings(names, len(q))) - expected,
                           numpy.zeros(len(names)), method="lm", max_nfev=1000)
-    return lambda poses: calc_updated_fkm(model, data, found.x, poses, settings(len(poses))).reshape(3, -1).T
+    return lambda poses: calc_updated_fkm(model, data, found.x, poses, figaroh_settings(names, len(poses))).reshape(3, -1).T
 
 
 OTHERS: dict[str, tuple[str, str, Fit]] = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from arm import Arm, commands, errors_of, poses_by_numpy
 from report import Table
-from rivals import POSES, TAKE_ARRAYS, missing, version_of
+from rivals import POSES, WITHOUT_TARGET, missing, version_of
 from timing import in_turn, seconds
 
 import abbe
@@ -40,7 +40,7 @@ def arm_poses(count: int, one_by_one: int, repetitions: int) -> Table:
     times = in_turn({name: measure for name, (_, measure) in measures.items()}, repetitions)
     per_pose = {name: times[name].per(1e-9 * number) for name, (number, _) in measures.items()}
     for name, time in per_pose.items():
-        others = not name.startswith(("abbe", "NumPy", *TAKE_ARRAYS))
+        others = not name.startswith(("abbe", "NumPy, vectorised", *WITHOUT_TARGET))
         table.add(name, time, per_pose["abbe, poses()"], at_least=100 if others else None)
     table.notes.append(f"{count:,} poses for abbe and NumPy, {one_by_one:,} for the others, whose positions are taken; they agree to "
                        f"{AGREE_MM:g} mm")

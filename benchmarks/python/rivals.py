@@ -11,7 +11,7 @@ from importlib.metadata import version
 from typing import Any
 
 import numpy
-from arm import TARGET_MM, Arm, links
+from arm import TARGET_MM, Arm, links, turn
 
 Points = Callable[[numpy.ndarray], numpy.ndarray]
 
@@ -103,8 +103,40 @@ def by_pinocchio(arm: Arm) -> Points:
     return points
 
 
-#: Those whose arrays are gone through by compiled code, and not pose by pose in Python.
-TAKE_ARRAYS = {"roboticstoolbox, ETS, compiled"}
+def figaroh_settings(parameters: list[str], count: int) -> dict[str, Any]:
+    """Of calc_updated_fkm(), for positions of one target."""
+    return {"calib_model": "full_params", "param_name": parameters, "start_frame": "base", "end_frame": "target",
+            "NbMarkers": 1, "NbSample": count, "calibration_index": 3, "actJoint_idx": [1, 2, 3, 4, 5, 6],
+            "measurability": [True, True, True, False, False, False]}
+
+
+def by_figaroh(arm: Arm) -> Points:
+    """Its model of positions of a target on an arm with errors, which are in the links here."""
+    from figaroh.calibration.calibration_tools import calc_updated_fkm
+
+    model = pinocchio_model(arm)
+    data = model.createData()
+    return lambda q: calc_updated_fkm(model, data, numpy.zeros(1), q, figaroh_settings(["d_px_A1"], len(q))).reshape(3, -1).T
+
+
+def by_matrices(arm: Arm) -> Points:
+    """NumPy as people write it: products of 4 x 4 matrices, pose after pose."""
+    constant, target = links(arm), numpy.array([*TARGET_MM, 1.0])
+
+    def points(q: numpy.ndarray) -> numpy.ndarray:
+        found = numpy.empty((len(q), 3))
+        for k, pose in enumerate(q):
+            frame = numpy.eye(4)
+            for link, angle in zip(constant, pose):
+                frame = frame @ link @ turn(2, angle)
+            found[k] = (frame @ constant[6] @ target)[:3]
+        return found
+
+    return points
+
+
+#: Compiled code that is called directly: shown, but not what users of a package for robots or of NumPy write.
+WITHOUT_TARGET = {"roboticstoolbox, ETS, compiled", "Pinocchio, called directly"}
 
 #: Name, what has to be imported and its distribution, and how poses are computed.
 POSES: dict[str, tuple[str, str, Callable[[Arm], Points]]] = {
@@ -112,7 +144,9 @@ POSES: dict[str, tuple[str, str, Callable[[Arm], Points]]] = {
     "roboticstoolbox, DHRobot": ("roboticstoolbox", "roboticstoolbox-python", by_roboticstoolbox),
     "roboticstoolbox, ETS, compiled": ("roboticstoolbox", "roboticstoolbox-python", by_elementary_transforms),
     "PyKDL": ("PyKDL", "", by_pykdl),
-    "Pinocchio (figaroh)": ("pinocchio", "pin", by_pinocchio),
+    "figaroh, calc_updated_fkm": ("figaroh", "figaroh", by_figaroh),
+    "NumPy, matrices, pose after pose": ("numpy", "numpy", by_matrices),
+    "Pinocchio, called directly": ("pinocchio", "pin", by_pinocchio),
 }
 
 
