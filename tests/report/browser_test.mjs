@@ -2,6 +2,7 @@
 //   node browser_test.mjs --web WEB_DIR --out FOLDER [--shots] REPORT.html ...
 // --shots leaves pictures of the steps in FOLDER, to be looked at: they cost more than all checks together.
 // Exit code 77: Chromium is not installed, nothing was tested.
+import {spawnSync} from 'node:child_process';
 import {existsSync, mkdirSync, readFileSync, statSync, writeFileSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {basename, join, resolve} from 'node:path';
@@ -26,6 +27,17 @@ const chromiumPath = process.env.ABBE_CHROMIUM ?? '/usr/bin/chromium';
 if (!existsSync(chromiumPath)) {
   console.log(`SKIPPED: no Chromium at ${chromiumPath} (set ABBE_CHROMIUM)`);
   process.exit(77);
+}
+// Seldom, Chromium starts and then answers nothing. It is started again once; a page that hangs does so again.
+const kLongestMs = 280_000;
+if (!process.env.ABBE_BROWSER_TRY) {
+  for (const attempt of ['1', '2']) {
+    const done = spawnSync(process.execPath, process.argv.slice(1),
+      {stdio: 'inherit', timeout: kLongestMs, killSignal: 'SIGKILL', env: {...process.env, ABBE_BROWSER_TRY: attempt}});
+    if (done.signal === null) process.exit(done.status);
+    console.log(`attempt ${attempt} was ended by ${done.signal}, after at most ${kLongestMs / 1000} s`);
+  }
+  process.exit(1);
 }
 const {chromium} = createRequire(join(resolve(options.web), 'package.json'))('playwright-core');
 mkdirSync(options.out, {recursive: true});
