@@ -106,7 +106,7 @@ class Calls {
 
   Seconds poses(bool fresh) {
     const Seconds start = now();
-    // As Python gives back an earlier result: that takes as long as a tenth of the poses.
+    // Within the time measured, as Python gives back an earlier result.
     if (fresh) kept_.reset();
     if (!kept_) kept_ = std::make_unique<Results>(count_);
     abbe::for_each_block((count_ + kTask - 1) / kTask, 0, [&](std::size_t task) {

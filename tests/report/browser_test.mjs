@@ -29,7 +29,7 @@ if (!existsSync(chromiumPath)) {
   process.exit(77);
 }
 // Seldom, Chromium starts and then answers nothing. It is started again once; a page that hangs does so again.
-const kLongestMs = 280_000;
+const kLongestMs = 280_000;  // the longest page takes a tenth of it
 if (!process.env.ABBE_BROWSER_TRY) {
   for (const attempt of ['1', '2']) {
     const done = spawnSync(process.execPath, process.argv.slice(1),

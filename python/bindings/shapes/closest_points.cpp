@@ -16,7 +16,7 @@ struct ClosestPoints {
 ClosestPoints closest(const NamedMesh& mesh, const ArrayLike& points) {
   const Eigen::Matrix3Xd of_array = points_of_array(points, "points_mm").cloud.points;
   const std::shared_ptr<const ClosestPointFinder> finder = mesh.finder();
-  constexpr Eigen::Index kSoonDone = 10'000;  // by this thread before another one would have started
+  constexpr Eigen::Index kSoonDone = 10'000;  // points, found within some milliseconds
   if (of_array.cols() > kSoonDone) {
     return stoppable_result(
         [&](const std::stop_token& stop) { return ClosestPoints{finder->closest(of_array, 0, stop)}; });

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "abbe/geometry/decompositions.h"
+#include "abbe/geometry/registration/fine_registration.h"
 
 namespace abbe {
 
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 std::vector<UndeterminedMotion> undetermined_motions(const MatrixXd& unseen, double extent, const Vector3d& reference) {
   std::vector<UndeterminedMotion> motions;
