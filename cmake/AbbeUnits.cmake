@@ -15,8 +15,8 @@ set(ABBE_BATCH 8 CACHE STRING "Sources in one unit")
 # ccache finds them in another clone. ALONE are sources that cannot share a unit: those that include themselves for every
 # instruction set (Highway), those compiled with options of their own, and those with a header that no other unit should
 # have to parse. FAST is a regular expression for the sources that optimised builds compile with -O3, which makes kernels up
-# to 1.8 times as fast as -O2 does (docs/performance.md). They have units of their own, and a precompiled header of their own:
-# with one that was compiled with -O2, GCC takes -O3 but inlines as with -O2, and instruments take 1.4 times as long.
+# to 1.8 times as fast as -O2 does (docs/performance.md). They have their own units and their own precompiled header: with a
+# header that was compiled with -O2, GCC accepts -O3 but inlines as with -O2, and instruments take 1.4 times as long.
 function(abbe_units target root)
   cmake_parse_arguments(ARG "" "PRECOMPILED;FAST" "SOURCES;ALONE" ${ARGN})
   set(number 0)

@@ -224,7 +224,7 @@ void judge_ramp(const std::string& folder, const std::string& name, double secon
       const double full = std::abs(whole[kCorrection + j]);
       const double moves = std::abs(samples[k][j] - samples[k - 1][j]);
       if (moves > 1.001 * step * full + 1e-9) ++further;
-      // Where samples were lost between two, a joint may make up what it lagged behind.
+      // If samples were lost in between, a joint may catch up within this one.
       const double within_lag = std::abs(part - samples[k - kLag - 1][kJoints]);
       if (moves > 1.001 * std::max(step, within_lag) * full + 1e-9)
         fail(name + ": joint " + std::to_string(j) + " moves further than the part that is enabled: " +

@@ -28,7 +28,7 @@ if (!existsSync(chromiumPath)) {
   console.log(`SKIPPED: no Chromium at ${chromiumPath} (set ABBE_CHROMIUM)`);
   process.exit(77);
 }
-// Seldom, Chromium starts and then answers nothing. It is started again once; a page that hangs does so again.
+// Chromium occasionally starts and then never answers. It is started once more; a page that hangs would hang again.
 const kLongestMs = 280_000;  // the longest page takes a tenth of it
 if (!process.env.ABBE_BROWSER_TRY) {
   for (const attempt of ['1', '2']) {

@@ -9,7 +9,7 @@
 namespace abbe {
 namespace {
 
-/// Adds what a file is read as, for one whose name ends like that of another format, such as a table of readings.
+/// Adds that TOML is expected if the name ends like that of another format, such as a table of readings.
 std::string expected_in(const std::string& file, const std::string& expected) {
   const std::string ending = std::filesystem::path(file).extension().string();
   if (ending.empty() || ending == ".toml") return expected;
