@@ -44,7 +44,7 @@ int run_deviate(const DeviateCommand& command) {
   std::vector<std::pair<std::string, std::string>> files;
   if (!command.options.output.empty()) files = deviation_files(result);
   const int code = finish_evaluation(result.report, command.options, files);
-  return result.has_points() ? code : static_cast<int>(kNegative);
+  return result.has_points() && !result.elsewhere ? code : static_cast<int>(kNegative);
 }
 
 }  // namespace

@@ -276,6 +276,7 @@ def test_deviations_of_arrays_and_of_a_registration():
     assert numpy.array_equal(abbe.scan_deviations(scan.points_mm, part, transform=registration.matrix).deviations_mm,
                              result.deviations_mm)
     assert numpy.allclose(part.closest(registration.points_mm).distance_mm, result.deviations_mm, atol=1e-12)
+    assert not result.elsewhere and abbe.scan_deviations(scan.points_mm + 300, part).elsewhere
     nothing = abbe.scan_deviations([[0, 0, 1e6]], part, largest_mm=1)
     assert not nothing.has_points and len(nothing.counted_mm) == 0 and nothing.text()
 

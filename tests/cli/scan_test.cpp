@@ -148,6 +148,14 @@ TEST_F(Scan, DeviateLooksAtWhatTheRegistrationSaid) {
   EXPECT_THAT(lost.err, HasSubstr("says not_converged; expected the transform of a registration that found a pose"));
 }
 
+TEST_F(Scan, DeviationsOfAScanElsewhereAreAnsweredNo) {
+  folder.write("far.csv", "x_mm,y_mm,z_mm\n300,0,0\n301,0,0\n300,1,0\n");
+  const CommandResult far = abbe({"deviate", "far.csv", file("bracket.stl"), "-o", "out"});
+  EXPECT_EQ(far.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(far.out, HasSubstr("The scan is not where the part is: half of its points are farther than"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/evaluation.json"));
+}
+
 TEST_F(Scan, ATolerancePassedIsAnsweredNo) {
   const auto found = json({"deviate", file("pin-scan.csv"), file("pin.stl"), "--transform", file("pin-transform.csv"),
                            "--tolerance", "maximum_um=5"},

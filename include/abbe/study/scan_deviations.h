@@ -74,6 +74,9 @@ struct ScanDeviations {
   ScanComparison compared;
   EvaluationReport report;  ///< with the tolerances of the request
   double colour_mm = 0;     ///< of the full colour
+  /// Half of the points that count lie farther from the part than a tenth of its diagonal: the scan is not where the
+  /// part is, and its deviations say nothing about the part. A note of the report says so.
+  bool elsewhere = false;
 
   /// Whether any point counts.
   bool has_points() const { return !compared.counted_mm.empty(); }

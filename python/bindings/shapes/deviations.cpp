@@ -77,6 +77,9 @@ void bind_deviations(nb::module_& module) {
                                    "Deviations of a scan from its part. Made by scan_deviations().");
   add_report(bound, &ScanDeviations::report, &deviation_files);
   bound.def_prop_ro("has_points", &Result::has_points, "Whether any point counts.")
+      .def_ro("elsewhere", &Result::elsewhere,
+              "Half of the points that count lie farther from the part than a tenth of its diagonal: the scan is not "
+              "where the part is.")
       .def_prop_ro(
           "deviations_mm", [](const Result& r) { return copied_array(r.compared.deviation.deviation_mm); },
           nb::sig("def deviations_mm(self) -> numpy.ndarray"), "[n] positive outside of the material.")

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/drawings/deviation_colours.h"
@@ -38,6 +42,29 @@ SurfaceFaces faces_of_part(const ScanDeviationsRequest& request) {
   return stated_faces(request.part.mesh, request.part.face_of_triangle, request.part.faces);
 }
 
+/// Notes a scan that is not where its part is. A scan on its part has half of its points within a tenth of the part's
+/// diagonal even where the part is badly made or much of its surroundings was scanned too.
+void note_scan_elsewhere(const MeshFile& part, ScanDeviations& result) {
+  constexpr double kShareOfDiagonal = 0.1;
+  std::vector<double> distance = result.compared.counted_mm;
+  if (distance.empty()) return;
+  for (double& d : distance) d = std::abs(d);
+  const auto middle = distance.begin() + static_cast<std::ptrdiff_t>(distance.size() / 2);
+  std::nth_element(distance.begin(), middle, distance.end());
+  Eigen::AlignedBox3d box;
+  for (Eigen::Index i = 0; i < part.mesh.size(); ++i) {
+    for (int corner = 0; corner < 3; ++corner) box.extend(part.mesh.corner(i, corner));
+  }
+  const double diagonal = box.diagonal().norm();
+  result.elsewhere = *middle > kShareOfDiagonal * diagonal;
+  if (!result.elsewhere) return;
+  result.report.notes.insert(
+      result.report.notes.begin(),
+      fmt::format("The scan is not where the part is: half of its points are farther than {:.4g} mm away, and the part "
+                  "measures {:.4g} mm from corner to corner. Register the scan first (abbe register).",
+                  *middle, diagonal));
+}
+
 }  // namespace
 
 ScanDeviations find_deviations(const ScanDeviationsRequest& request, const std::stop_token& stop) {
@@ -65,6 +92,7 @@ ScanDeviations find_deviations(const ScanDeviationsRequest& request, const std::
                          .colour_mm = request.colour_mm};
   if (request.faces == DeviationFaces::of_file) asked.face_names = part.face_names;
   result.report = deviation_report(asked, request.scan, part, result.compared);
+  note_scan_elsewhere(part, result);
   apply_tolerances(request.tolerances, result.report);
   result.colour_mm = deviation_colour_range(asked, result.compared);
   if (request.page) {

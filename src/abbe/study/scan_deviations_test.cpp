@@ -50,6 +50,22 @@ TEST(ScanDeviationsOfARequest, AreThoseOfTheScanWhereItLies) {
   EXPECT_FALSE(elsewhere.has_points());
 }
 
+TEST(ScanDeviationsOfARequest, SayThatTheScanIsElsewhere) {
+  ScanDeviationsRequest request = bracket_deviations();
+  request.largest_mm = 0;
+  EXPECT_FALSE(find_deviations(request).elsewhere);
+  for (const double shift_mm : {-300.0, 300.0}) {
+    request = bracket_deviations();
+    request.largest_mm = 0;
+    request.scan.cloud.points.colwise() += Eigen::Vector3d(0, 0, shift_mm);
+    const ScanDeviations elsewhere = find_deviations(request);
+    EXPECT_TRUE(elsewhere.has_points());
+    EXPECT_TRUE(elsewhere.elsewhere);
+    ASSERT_FALSE(elsewhere.report.notes.empty());
+    EXPECT_THAT(elsewhere.report.notes.front(), HasSubstr("The scan is not where the part is: half of its points"));
+  }
+}
+
 TEST(ScanDeviationsOfARequest, HaveFacesAndAPageWhereTheyAreAskedFor) {
   ScanDeviationsRequest request = bracket_deviations();
   EXPECT_EQ(find_deviations(request).compared.faces.count(), 0U);
