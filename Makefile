@@ -51,7 +51,7 @@ export CTEST_OUTPUT_ON_FAILURE := 1
 BUILD_MINUTES := 6
 DEMO_MINUTES := 7
 LOOP_MINUTES := 3
-TEST_MINUTES := 40
+TEST_MINUTES := 28
 SANITIZE_MINUTES := 15
 QUICK_MINUTES := 15
 PYTHON_MINUTES := 12
@@ -91,7 +91,7 @@ test:
 	$(call say,5 of 6: fuzzing for $(TEST_FUZZ_SECONDS) s per reader)
 	@ABBE_FUZZ_SECONDS=$(TEST_FUZZ_SECONDS) ctest --preset fuzz -j $(JOBS)
 	$(call say,6 of 6: all tests)
-	@ctest --preset dev -j $(TEST_JOBS)
+	@$(if $(SET_UP_SITE),ABBE_SITE_RUNS_NOTEBOOKS=1 )ctest --preset dev -j $(TEST_JOBS)
 
 sanitize:
 	@.ci/set-up test $(SET_UP_PYTHON)

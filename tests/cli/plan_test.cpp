@@ -284,5 +284,17 @@ TEST_F(Plans, WhatABallBarDoesNotSeeIsSaidInTheTerminalTheSummaryAndTheReport) {
   EXPECT_THAT(folder.read("out/report.html"), HasSubstr("straightness error motion of Z in Y"));
 }
 
+TEST_F(Plans, ForTheTrunnionMillNeedLessThanHalfTheReadingsOfAGrid) {
+  const std::string study = std::string(ABBE_SOURCE_DIR "/examples/trunnion/trunnion.study.toml");
+  const CommandResult planned = abbe({"plan", study, "--json"});
+  ASSERT_EQ(planned.exit_code, ExitCode::done) << planned.err;
+  const nlohmann::json json = nlohmann::json::parse(planned.out);
+  EXPECT_EQ(json.at("readings"), 240);
+  EXPECT_GE(json.at("grid_readings_per_reading"), 2);
+  EXPECT_GE(json.at("gain"), 1.5);
+  EXPECT_GE(json.at("gain_with_prior"), 1.4);
+  EXPECT_LT(json.at("predicted_volumetric_uncertainty_um"), 1.0);
+}
+
 }  // namespace
 }  // namespace abbe
