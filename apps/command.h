@@ -28,6 +28,7 @@ void add_check_command(CommandLine& line);
 void add_simulate_command(CommandLine& line);
 void add_plan_command(CommandLine& line);
 void add_identify_command(CommandLine& line);
+void add_import_command(CommandLine& line);
 void add_map_command(CommandLine& line);
 void add_path_command(CommandLine& line);
 void add_position_command(CommandLine& line);

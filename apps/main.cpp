@@ -18,6 +18,7 @@ void add_subcommands(CommandLine& line) {
   add_simulate_command(line);
   add_scan_command(line);
   add_position_command(line);
+  add_import_command(line);
   line.begin_section("Identify");
   add_identify_command(line);
   add_map_command(line);

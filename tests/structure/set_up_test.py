@@ -10,7 +10,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 REAL = ["bash", "cat", "dirname", "env", "find", "grep", "mkdir", "sort"]
 BUILD_TOOLS = ["g++", "cmake", "ninja", "git", "python3", "npm", "ccache"]
 BUILD_LIBRARIES = ["libeigen3-dev", "libfmt-dev", "libtomlplusplus-dev", "nlohmann-json3-dev", "libcli11-dev", "libhwy-dev",
-                   "libboost-dev", "libocct-data-exchange-dev"]
+                   "libboost-dev", "zlib1g-dev", "libocct-data-exchange-dev"]
 OPTIONAL = ["ccache", "libocct-data-exchange-dev"]
 
 

@@ -41,9 +41,10 @@ namespace abbe {
 
 /// Points, and what the report says of their file.
 struct PointsToFit {
-  std::string file;  ///< name for texts
-  PointCloud cloud;  ///< mm
-  std::string fact;  ///< "CSV, mm"; may be empty
+  std::string file;                  ///< name for texts
+  PointCloud cloud;                  ///< mm
+  std::string fact;                  ///< "CSV, mm"; may be empty
+  std::vector<std::string> names{};  ///< [points] or empty
 };
 
 /// Reads a point cloud, or the corners of the triangles of an STL file. @throws InputError
@@ -65,6 +66,7 @@ struct FittedShape {
   ShapeFit fit;
   PointCloud points;               ///< of the request
   std::vector<double> deviations;  ///< [points] mm; empty if there is no answer
+  std::vector<std::string> names;  ///< [points] of the request, or empty
   EvaluationReport report;         ///< with the tolerances of the request
 
   bool is_ok() const { return fit.ok(); }
@@ -75,7 +77,7 @@ struct FittedShape {
 ///   apply_tolerances()
 FittedShape fit_points(ShapeFitRequest request);
 
-/// CSV of the points with their deviations. The fit must have an answer.
+/// CSV of the points with their deviations and names. The fit must have an answer.
 std::string fitted_points_csv(const FittedShape& fitted);
 
 /// Circles about one axis, by least squares.

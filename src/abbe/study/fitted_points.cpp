@@ -106,7 +106,7 @@ PointsToFit read_points_to_fit(const std::string& file, const PointCloudOptions&
             mesh.format + ", corners, " + unit_words(mesh.unit)};
   }
   PointCloudFile read = read_point_cloud(file, options);
-  return {file, std::move(read.cloud), read.format + ", " + unit_words(read.unit)};
+  return {file, std::move(read.cloud), read.format + ", " + unit_words(read.unit), std::move(read.names)};
 }
 
 FittedShape fit_points(ShapeFitRequest request) {
@@ -118,6 +118,7 @@ FittedShape fit_points(ShapeFitRequest request) {
   if (!request.points.fact.empty()) asked.facts = {{"file", request.points.fact}};
   FittedShape result;
   result.points = std::move(request.points.cloud);
+  result.names = std::move(request.points.names);
   Eigen::Matrix3Xd flat;
   std::string note;
   if (is_plane_shape(choice.kind) && result.points.size() > 0) {
@@ -146,7 +147,9 @@ FittedShape fit_points(ShapeFitRequest request) {
   return result;
 }
 
-std::string fitted_points_csv(const FittedShape& fitted) { return point_cloud_csv(fitted.points, fitted.deviations); }
+std::string fitted_points_csv(const FittedShape& fitted) {
+  return point_cloud_csv(fitted.points, fitted.deviations, fitted.names);
+}
 
 FittedCircles fit_circles(CirclesFitRequest request) {
   check_held_direction(request.options.direction);

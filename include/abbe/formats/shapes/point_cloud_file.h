@@ -23,12 +23,13 @@ struct PointCloudOptions {
 struct PointCloudFile {
   PointCloud cloud;                  ///< mm
   std::vector<double> deviation_mm;  ///< [n] of a CSV file with a column deviation_mm, or empty
+  std::vector<std::string> names;    ///< [n] of a CSV file with a column point, or empty
   std::string format;                ///< "XYZ", "CSV", "PLY, ascii"
   FileUnit unit;
 };
 
-/// Reads CSV (.csv: x_mm, y_mm, z_mm, perhaps nx, ny, nz), PLY, OBJ (the vertices) or XYZ: any other file, with three
-/// numbers in a line, or six, of which the last three are a unit normal. See docs/geometry-files.md.
+/// Reads CSV (.csv: x_mm, y_mm, z_mm, perhaps nx, ny, nz and point), PLY, OBJ (the vertices) or XYZ: any other file,
+/// with three numbers in a line, or six, of which the last three are a unit normal. See docs/geometry-files.md.
 ///
 /// Points keep their order; all of them count or are an error. Normals become unit vectors. @throws InputError
 PointCloudFile read_point_cloud(const std::filesystem::path& path, const PointCloudOptions& options = {});
@@ -40,9 +41,11 @@ PointCloudFile parse_point_cloud(std::string_view contents, const std::string& f
 /// True for the extensions of point clouds that are no meshes (.xyz .asc .pts .csv, also in capitals).
 bool has_point_cloud_extension(const std::filesystem::path& path);
 
-/// CSV of points in mm: x_mm,y_mm,z_mm, then nx,ny,nz and deviation_mm where there are any; reads back to the same
-/// bits.
+/// CSV of points in mm: x_mm,y_mm,z_mm, then nx,ny,nz, deviation_mm and point where there are any; reads back to the
+/// same bits.
 /// @param deviation_mm  [n] or empty
-std::string point_cloud_csv(const PointCloud& cloud, const std::vector<double>& deviation_mm = {});
+/// @param names         [n] or empty
+std::string point_cloud_csv(const PointCloud& cloud, const std::vector<double>& deviation_mm = {},
+                            const std::vector<std::string>& names = {});
 
 }  // namespace abbe

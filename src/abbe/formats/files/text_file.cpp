@@ -60,8 +60,8 @@ void MappedFile::forget(std::size_t end) {
 std::string read_text_file(const std::filesystem::path& path) { return std::string(MappedFile(path).text()); }
 
 std::string read_file_of_kind(const std::filesystem::path& path, std::string_view ending) {
-  constexpr std::string_view kEndings[] = {".machine.toml", ".errors.toml", ".study.toml", ".placement.toml",
-                                           ".positioning.toml"};
+  constexpr std::string_view kEndings[] = {".machine.toml",   ".errors.toml",      ".study.toml",
+                                           ".placement.toml", ".positioning.toml", ".import.toml"};
   const std::string name = path.filename().string();
   const std::string text = read_text_file(path);
   for (const std::string_view other : kEndings) {

@@ -26,6 +26,9 @@ PointCloudFile parse_csv_cloud(std::string_view contents, const std::string& fil
   wanted.push_back({"z", Quantity::length, false, !options.in_plane});
   for (const char* name : {"nx", "ny", "nz"}) wanted.push_back({name, Quantity::dimensionless, false, false});
   wanted.push_back({"deviation", Quantity::length, false, false});
+  CsvColumn name{"point", Quantity::dimensionless, true, false};
+  name.is_label = true;
+  wanted.push_back(name);
   CsvTable table = read_csv(contents, file, wanted, options.mapping, options.threads);
   std::size_t normals = 0;
   for (std::size_t k = 3; k < 6; ++k) normals += table.columns[k].present ? 1U : 0U;
@@ -60,6 +63,7 @@ PointCloudFile parse_csv_cloud(std::string_view contents, const std::string& fil
     }
   }
   if (table.columns[6].present) result.deviation_mm = std::move(table.columns[6].numbers);
+  result.names = std::move(table.columns[7].labels);
   return result;
 }
 
@@ -113,11 +117,14 @@ bool has_point_cloud_extension(const std::filesystem::path& path) {
   return extension == ".xyz" || extension == ".asc" || extension == ".pts" || extension == ".csv";
 }
 
-std::string point_cloud_csv(const PointCloud& cloud, const std::vector<double>& deviation_mm) {
+std::string point_cloud_csv(const PointCloud& cloud, const std::vector<double>& deviation_mm,
+                            const std::vector<std::string>& names) {
+  assert(names.empty() || names.size() == static_cast<std::size_t>(cloud.size()));
   assert(deviation_mm.empty() || deviation_mm.size() == static_cast<std::size_t>(cloud.size()));
   std::string text = "x_mm,y_mm,z_mm";
   if (cloud.has_normals()) text += ",nx,ny,nz";
   if (!deviation_mm.empty()) text += ",deviation_mm";
+  if (!names.empty()) text += ",point";
   text += '\n';
   for (Eigen::Index i = 0; i < cloud.size(); ++i) {
     for (Eigen::Index k = 0; k < 3; ++k) {
@@ -126,6 +133,7 @@ std::string point_cloud_csv(const PointCloud& cloud, const std::vector<double>& 
     }
     for (Eigen::Index k = 0; cloud.has_normals() && k < 3; ++k) text += ',' + shortest_text(cloud.normals(k, i));
     if (!deviation_mm.empty()) text += ',' + shortest_text(deviation_mm[static_cast<std::size_t>(i)]);
+    if (!names.empty()) text += ',' + csv_field(names[static_cast<std::size_t>(i)]);
     text += '\n';
   }
   return text;

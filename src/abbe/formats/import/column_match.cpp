@@ -1,0 +1,214 @@
+#include "abbe/formats/import/column_match.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "abbe/formats/import/foreign_row.h"
+#include "abbe/formats/import/foreign_unit.h"
+#include "abbe/formats/import/foreign_word.h"
+
+namespace abbe {
+namespace {
+
+// Only the order of these counts.
+constexpr double kOwnName = 5, kOwnCase = 4, kKnownWord = 3, kOtherCase = 2, kNextWord = 1e-3;
+
+bool holds_numbers(const ColumnFacts& file) { return file.texts == 0 && file.numbers + file.sexagesimal > 0; }
+
+bool holds_directions(const ColumnFacts& file) {
+  return !file.more_words && !file.words.empty() &&
+         std::all_of(file.words.begin(), file.words.end(), [](const auto& w) { return direction_of_word(w) != 0; });
+}
+
+/// Whether the rows and the unit of a file's column can be what is wanted.
+bool can_be(const ImportColumn& wanted, const ColumnFacts& file) {
+  switch (wanted.holds) {
+    case ImportColumn::Holds::number:
+      break;
+    case ImportColumn::Holds::name:
+      return file.numbers + file.sexagesimal + file.texts > 0;
+    case ImportColumn::Holds::label:
+      return file.unit.empty();
+    case ImportColumn::Holds::direction:
+      return holds_directions(file);
+  }
+  if (!holds_numbers(file)) return false;
+  if (wanted.quantity == Quantity::dimensionless) return file.unit.empty();
+  if (file.sexagesimal > 0 && wanted.quantity != Quantity::angle) return false;
+  return file.unit.empty() || foreign_unit(file.unit, wanted.quantity) != nullptr;
+}
+
+bool is_own_name(const ImportColumn& wanted, const ColumnFacts& file, const std::string& header) {
+  if (file.name != wanted.base) return false;
+  return header == wanted.base
+             ? wanted.quantity == Quantity::dimensionless || wanted.holds != ImportColumn::Holds::number
+             : unit_of_name(header, wanted.base, wanted.quantity) != nullptr;
+}
+
+double score_of(const ImportColumn& wanted, const ColumnFacts& file) {
+  if (file.name.empty() || !can_be(wanted, file)) return 0;
+  if (is_own_name(wanted, file, file.unit.empty() ? file.name : file.name + "_" + file.unit)) return kOwnName;
+  const std::string word = comparable_word(file.name);
+  if (!wanted.exact_word.empty() && word == small_letters(wanted.exact_word)) {
+    return comparable_word(file.name, true) == wanted.exact_word ? kOwnCase : kOtherCase;
+  }
+  const auto found = std::find(wanted.words.begin(), wanted.words.end(), word);
+  if (found == wanted.words.end()) return 0;
+  return kKnownWord - kNextWord * static_cast<double>(found - wanted.words.begin());
+}
+
+/// Takes away groups of which only a part was found, and what says the same twice.
+class GroupCheck {
+ public:
+  GroupCheck(const std::vector<ImportColumn>& wanted, ColumnMatch& match) : wanted_(wanted), match_(match) {}
+
+  bool has_all(const std::string& group) const {
+    bool any = false;
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      if (wanted_[i].group != group) continue;
+      if (match_.source[i] == kNoSource) return false;
+      any = true;
+    }
+    return any;
+  }
+  void drop(const std::string& group) {
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      if (wanted_[i].group == group) match_.source[i] = kNoSource;
+    }
+  }
+  void drop_parts() {
+    for (const ImportColumn& column : wanted_) {
+      if (!column.group.empty() && !has_all(column.group)) drop(column.group);
+    }
+  }
+  bool has(const std::string& base) const {
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      if (wanted_[i].base == base && match_.source[i] != kNoSource) return true;
+    }
+    return false;
+  }
+  void drop_base(const std::string& base) {
+    for (std::size_t i = 0; i < wanted_.size(); ++i) {
+      if (wanted_[i].base == base) match_.source[i] = kNoSource;
+    }
+  }
+
+ private:
+  const std::vector<ImportColumn>& wanted_;
+  ColumnMatch& match_;
+};
+
+/// Where a deviation states no unit it is what its target is: a length or an angle.
+void follow_target(const std::vector<ImportColumn>& wanted, const std::vector<ColumnFacts>& file, ColumnMatch& match) {
+  bool angles = false;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    angles =
+        angles || (wanted[i].base == "target" && wanted[i].quantity == Quantity::angle && match.source[i] != kNoSource);
+  }
+  for (std::size_t i = 0; angles && i + 1 < wanted.size(); ++i) {
+    if (match.source[i] == kNoSource || wanted[i].base == "target" || wanted[i + 1].base != wanted[i].base) continue;
+    if (file[match.source[i]].unit.empty()) std::swap(match.source[i], match.source[i + 1]);
+  }
+}
+
+void find_missing(ImportKind kind, const std::vector<ImportColumn>& wanted, ColumnMatch& match) {
+  GroupCheck groups(wanted, match);
+  groups.drop_parts();
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (wanted[i].required && match.source[i] == kNoSource) match.missing.push_back(wanted[i].base);
+  }
+  if (kind == ImportKind::tracker) {
+    if (groups.has_all("point")) groups.drop("polar");
+    if (!groups.has_all("point")) groups.drop("u of the point");
+    if (!groups.has_all("point") && !groups.has_all("polar")) match.missing.emplace_back("measured_x");
+  }
+  if (kind == ImportKind::positioning) {
+    if (groups.has("deviation")) groups.drop_base("actual");
+    if (!groups.has("target")) match.missing.emplace_back("target");
+    if (!groups.has("deviation") && !groups.has("actual")) match.missing.emplace_back("deviation");
+  }
+}
+
+ColumnMatch empty_match(std::size_t count) {
+  return {std::vector<std::size_t>(count, kNoSource), std::vector<bool>(count), std::vector<std::string>(count), {}};
+}
+
+}  // namespace
+
+int direction_of_word(const std::string& word) {
+  constexpr std::array<std::string_view, 16> kPositive = {"+",   "positive", "pos",     "forward", "forwards", "fwd",
+                                                          "vor", "vorwärts", "hin",     "up",      "auf",      "1",
+                                                          "+1",  "↑",        "positiv", "aufwärts"};
+  constexpr std::array<std::string_view, 17> kNegative = {"-",    "negative", "neg", "backward", "backwards", "back",
+                                                          "bwd",  "reverse",  "rev", "rück",     "rückwärts", "zurück",
+                                                          "down", "ab",       "-1",  "↓",        "negativ"};
+  const std::string small = small_letters(word);
+  if (std::find(kPositive.begin(), kPositive.end(), small) != kPositive.end()) return 1;
+  return std::find(kNegative.begin(), kNegative.end(), small) != kNegative.end() ? -1 : 0;
+}
+
+ColumnMatch match_by_names(ImportKind kind, const std::vector<ImportColumn>& wanted,
+                           const std::vector<ColumnFacts>& file) {
+  ColumnMatch match = empty_match(wanted.size());
+  std::vector<bool> taken(file.size());
+  std::vector<std::string> bases;
+  for (;;) {
+    double best = 0;
+    std::size_t column = 0, source = kNoSource;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (std::find(bases.begin(), bases.end(), wanted[i].base) != bases.end()) continue;
+      for (std::size_t k = 0; k < file.size(); ++k) {
+        const double score = taken[k] ? 0 : score_of(wanted[i], file[k]);
+        if (score <= best) continue;
+        best = score;
+        column = i;
+        source = k;
+      }
+    }
+    if (source == kNoSource) break;
+    for (std::size_t k = source + 1; k < file.size(); ++k) {
+      if (taken[k] || score_of(wanted[column], file[k]) != best) continue;
+      match.doubts[column] = fmt::format("{} has the same name", column_words(k + 1, file[k].name));
+    }
+    taken[source] = true;
+    match.source[column] = source;
+    match.own_name[column] = best == kOwnName;
+    bases.push_back(wanted[column].base);
+  }
+  if (kind == ImportKind::positioning) follow_target(wanted, file, match);
+  find_missing(kind, wanted, match);
+  return match;
+}
+
+ColumnMatch match_by_order(ImportKind kind, const std::vector<ImportColumn>& wanted,
+                           const std::vector<ColumnFacts>& file) {
+  ColumnMatch match = empty_match(wanted.size());
+  std::vector<std::size_t> numbers, ordered;
+  std::size_t text = kNoSource;
+  for (std::size_t k = 0; k < file.size(); ++k) {
+    if (holds_numbers(file[k])) {
+      numbers.push_back(k);
+    } else if (text == kNoSource && file[k].texts > 0) {
+      text = k;
+    }
+  }
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (wanted[i].holds == ImportColumn::Holds::number && (wanted[i].required || wanted[i].group == "point")) {
+      ordered.push_back(i);
+    }
+    if (wanted[i].holds == ImportColumn::Holds::label) match.source[i] = text;
+  }
+  // A tracker's columns count; behind three coordinates there may be anything.
+  const bool fits = kind == ImportKind::points ? numbers.size() >= ordered.size()
+                                               : kind == ImportKind::tracker && numbers.size() == ordered.size();
+  for (std::size_t i = 0; fits && i < ordered.size(); ++i) {
+    match.source[ordered[i]] = numbers[i];
+    match.doubts[ordered[i]] = "there are no names of columns; the numbers are taken in their order";
+  }
+  find_missing(kind, wanted, match);
+  return match;
+}
+
+}  // namespace abbe

@@ -1,0 +1,157 @@
+#include "abbe/formats/import/proposed_mapping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "abbe/formats/import/column_match.h"
+#include "abbe/formats/import/column_proposal.h"
+#include "abbe/formats/import/foreign_row.h"
+#include "abbe/formats/import/foreign_word.h"
+#include "abbe/formats/import/table_facts.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/list_text.h"
+#include "abbe/formats/text/utf8.h"
+
+namespace abbe {
+namespace {
+
+/// A kind and what was found for it.
+struct KindMatch {
+  ImportKind kind = ImportKind::points;
+  std::vector<ImportColumn> wanted;
+  ColumnMatch match;
+};
+
+class Proposer {
+ public:
+  Proposer(std::string_view text, const std::string& file, const FoundLayout& found, const Machine* machine,
+           const ImportHints& hints)
+      : text_(text), file_(file), found_(found), machine_(machine), hints_(hints), facts_(column_facts(text, found)) {}
+
+  ProposedMapping proposed(std::optional<ImportKind> kind) const {
+    ProposedMapping result;
+    const KindMatch chosen = kind ? match(*kind) : only_complete();
+    if (!chosen.match.is_complete()) refuse_missing(chosen);
+    result.kind = chosen.kind;
+    result.reason = kind ? "as given" : "all columns that it needs are there";
+    for (std::size_t i = 0; i < chosen.wanted.size(); ++i) {
+      if (chosen.match.source[i] != kNoSource) result.columns.push_back(column(chosen, i));
+    }
+    doubt_handedness(result);
+    for (std::size_t k = 0; k < facts_.size(); ++k) {
+      const auto reads = [&](const ProposedColumn& column) { return column.source == k; };
+      if (std::any_of(result.columns.begin(), result.columns.end(), reads)) continue;
+      if (found_.names[k].empty() && facts_[k].numbers + facts_[k].sexagesimal + facts_[k].texts == 0) continue;
+      result.not_read.push_back(column_words(k + 1, found_.names[k]));
+    }
+    return result;
+  }
+
+ private:
+  bool has_header() const { return found_.layout.header_line > 0; }
+
+  KindMatch match(ImportKind kind) const {
+    if (kind == ImportKind::tracker && machine_ == nullptr) {
+      throw InputError({.field = "--machine"}, "is missing", "the machine whose commands the table has");
+    }
+    KindMatch result;
+    result.kind = kind;
+    result.wanted = import_columns(kind, machine_ == nullptr ? Machine() : *machine_);
+    result.match =
+        has_header() ? match_by_names(kind, result.wanted, facts_) : match_by_order(kind, result.wanted, facts_);
+    return result;
+  }
+
+  /// With a machine the table is a tracker's; otherwise the kind whose columns are all there.
+  KindMatch only_complete() const {
+    if (machine_ != nullptr) return match(ImportKind::tracker);
+    std::vector<KindMatch> complete;
+    for (const ImportKind kind : {ImportKind::points, ImportKind::positioning}) {
+      KindMatch one = match(kind);
+      if (has_header() && one.match.is_complete()) complete.push_back(std::move(one));
+    }
+    if (complete.size() == 1) return std::move(complete.front());
+    throw InputError({.file = file_, .line = found_.layout.header_line},
+                     complete.empty() ? "the columns do not tell what the table is: " + header_words()
+                                      : "the table has the columns of points and of a positioning test",
+                     "--as points, --as positioning, or --as tracker with --machine");
+  }
+
+  std::string header_words() const {
+    if (!has_header()) return fmt::format("{} without names", counted(facts_.size(), "column", "columns"));
+    std::vector<std::string> names;
+    for (const std::string& name : found_.names) names.push_back("'" + printable(name, 40, LineFeeds::escaped) + "'");
+    return fmt::format("{}", fmt::join(names, ", "));
+  }
+
+  [[noreturn]] void refuse_missing(const KindMatch& chosen) const {
+    const std::string& base = chosen.match.missing.front();
+    const auto wanted = std::find_if(chosen.wanted.begin(), chosen.wanted.end(),
+                                     [&](const ImportColumn& column) { return column.base == base; });
+    std::string expected = "numbers in their order";
+    if (has_header()) {
+      const std::size_t shown = std::min<std::size_t>(wanted->words.size(), 4);
+      expected = fmt::format(
+          "a name such as {}",
+          fmt::join(wanted->words.begin(), wanted->words.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+    }
+    throw InputError({.file = file_, .line = found_.layout.header_line, .field = base},
+                     fmt::format("no column for it was found in {}", header_words()),
+                     expected + ", or a mapping file that says which column it is (--mapping)");
+  }
+
+  ProposedColumn column(const KindMatch& chosen, std::size_t wanted) const {
+    ColumnCase asked;
+    asked.wanted = &chosen.wanted[wanted];
+    asked.source = chosen.match.source[wanted];
+    asked.file = &facts_[asked.source];
+    asked.own_name = chosen.match.own_name[wanted];
+    asked.unit_in_header = found_.units[asked.source].empty();
+    asked.doubt = chosen.match.doubts[wanted];
+    if (machine_ != nullptr && chosen.kind == ImportKind::tracker) {
+      const std::size_t axis = machine_->find_axis(asked.wanted->base);
+      if (axis != Machine::npos) asked.axis = &machine_->axes[axis];
+    }
+    ProposedColumn proposed = proposed_column(asked, hints_);
+    const std::string& name = found_.names[asked.source];
+    const bool is_unique = std::count(found_.names.begin(), found_.names.end(), name) == 1;
+    if (name.empty() || !is_unique || has_control_character(name)) {
+      proposed.column.from_column = asked.source + 1;
+    } else {
+      proposed.column.from = name;
+    }
+    return proposed;
+  }
+
+  /// Programs that have left-handed frames usually say so above their tables.
+  void doubt_handedness(ProposedMapping& result) const {
+    if (!hints_.mirrored.empty()) return;
+    const std::string above = small_letters(text_.substr(0, line_start(text_, found_.layout.first_line)));
+    for (const char* const words : {"left-hand", "left hand", "linkshänd", "linkssystem"}) {
+      if (above.find(words) == std::string::npos) continue;
+      for (ProposedColumn& column : result.columns) {
+        if (!column.column.name.starts_with("x_") && !column.column.name.starts_with("measured_x_")) continue;
+        column.sense_doubt = "the lines above the table speak of a left-handed frame (--mirrored)";
+      }
+      return;
+    }
+  }
+
+  std::string_view text_;
+  const std::string& file_;
+  const FoundLayout& found_;
+  const Machine* machine_;
+  const ImportHints& hints_;
+  std::vector<ColumnFacts> facts_;
+};
+
+}  // namespace
+
+ProposedMapping propose_mapping(std::string_view text, const std::string& file, const FoundLayout& found,
+                                std::optional<ImportKind> kind, const Machine* machine, const ImportHints& hints) {
+  ProposedMapping result = Proposer(text, file, found, machine, hints).proposed(kind);
+  return result;
+}
+
+}  // namespace abbe

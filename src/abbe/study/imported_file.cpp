@@ -1,0 +1,183 @@
+#include "abbe/study/imported_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "abbe/formats/evaluations/evaluation_positioning.h"
+#include "abbe/formats/readings/measurement_file.h"
+#include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/study/frame_sense.h"
+
+namespace abbe {
+namespace {
+
+constexpr const char* kWrittenName = "imported.csv";
+
+const Machine& machine_of_import(const ImportRequest& request) {
+  static const Machine none;
+  return request.machine ? *request.machine : none;
+}
+
+void take_mapping(const ImportRequest& request, ImportedTable& result) {
+  const ImportMapping& mapping = *request.mapping;
+  if (request.kind && *request.kind != mapping.kind) {
+    throw InputError({.field = "--as"},
+                     fmt::format("is not the kind of the mapping, {}", import_kind_name(mapping.kind)),
+                     "the same kind, or no --as");
+  }
+  if (mapping.kind == ImportKind::tracker && !request.machine) {
+    throw InputError({.field = "--machine"}, "is missing", "the machine whose commands the table has");
+  }
+  result.found = layout_as_given(request.text.text, request.file, mapping.layout);
+  result.mapping = mapping;
+  result.kind_reason = "as the mapping says";
+  std::vector<bool> is_read(result.found.names.size());
+  for (const MappedColumn& column : mapping.columns) {
+    ProposedColumn& taken = result.columns.emplace_back();
+    taken.column = column;
+    taken.reason = "as the mapping says";
+    const std::vector<std::string>& names = result.found.names;
+    taken.source = column.from_column > 0
+                       ? column.from_column - 1
+                       : static_cast<std::size_t>(std::find(names.begin(), names.end(), column.from) - names.begin());
+    if (taken.source < is_read.size()) is_read[taken.source] = true;
+  }
+  for (std::size_t k = 0; k < is_read.size(); ++k) {
+    const std::string& name = result.found.names[k];
+    if (is_read[k]) continue;
+    result.not_read.push_back(name.empty() ? fmt::format("column {}", k + 1)
+                                           : fmt::format("column {} '{}'", k + 1, name));
+  }
+}
+
+void take_proposal(const ImportRequest& request, ImportedTable& result) {
+  result.found = find_layout(request.text.text, request.file, request.hints.layout);
+  ProposedMapping proposed = propose_mapping(request.text.text, request.file, result.found, request.kind,
+                                             request.machine ? &*request.machine : nullptr, request.hints);
+  result.mapping.kind = proposed.kind;
+  result.mapping.layout = result.found.layout;
+  if (request.text.given) result.mapping.encoding = request.text.encoding;
+  for (const ProposedColumn& column : proposed.columns) result.mapping.columns.push_back(column.column);
+  result.kind_reason = std::move(proposed.reason);
+  result.columns = std::move(proposed.columns);
+  result.not_read = std::move(proposed.not_read);
+}
+
+/// The readings of a tracker; nothing for other kinds.
+std::optional<MeasurementTable> read_back(const ImportedTable& result, const Machine& machine, int threads) {
+  const std::string& csv = result.rows.csv;
+  switch (result.mapping.kind) {
+    case ImportKind::points:
+      parse_point_cloud(csv, kWrittenName, {.unit = {}, .mapping = {}, .threads = threads});
+      return std::nullopt;
+    case ImportKind::tracker:
+      return parse_measurements(csv, kWrittenName, machine, {.mapping = {}, .threads = threads});
+    case ImportKind::positioning:
+      parse_positioning(csv, kWrittenName);
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// What the reader says of the CSV, with the line and the column of the table.
+[[noreturn]] void refuse_as_read(const ImportRequest& request, const ImportedTable& result, const InputError& error) {
+  InputError::Place place{.file = request.file};
+  if (error.place().line >= 2) {
+    place.line = imported_line(request.text.text, result.found.layout, error.place().line - 2);
+  }
+  place.field = error.place().field;
+  for (const ProposedColumn& column : result.columns) {
+    if (column.column.name != place.field) continue;
+    const std::string& name = result.found.names[column.source];
+    if (name != place.field) place.field += fmt::format(" (column {})", column.source + 1);
+    break;
+  }
+  throw InputError(std::move(place), error.problem(), error.expected());
+}
+
+std::optional<MeasurementTable> convert(const ImportRequest& request, const Machine& machine, ImportedTable& result) {
+  result.rows = imported_rows(request.text.text, request.file, result.found, result.mapping, machine, request.threads);
+  try {
+    return read_back(result, machine, request.threads);
+  } catch (const InputError& error) {
+    refuse_as_read(request, result, error);
+  }
+}
+
+/// The column that decides the sense of the frame: the azimuth, or the y of a point.
+ProposedColumn* column_of_sense(ImportedTable& result) {
+  const auto is_it = [](const ProposedColumn& column) {
+    return column.column.name.starts_with("azimuth_") || column.column.name.starts_with("measured_y_");
+  };
+  const auto found = std::find_if(result.columns.begin(), result.columns.end(), is_it);
+  return found == result.columns.end() ? nullptr : &*found;
+}
+
+void reverse_sense(ProposedColumn& column) {
+  const bool azimuth = column.column.name.starts_with("azimuth_");
+  const ImportConvention reversed = azimuth ? ImportConvention::clockwise : ImportConvention::mirrored;
+  column.column.convention = column.column.convention == reversed ? ImportConvention::as_written : reversed;
+}
+
+/// Lets the commands of the machine decide whether the frame is right-handed. @returns whether the mapping changed
+bool decide_sense(const ImportRequest& request, const Machine& machine, const MeasurementTable& table,
+                  ImportedTable& result) {
+  ProposedColumn* const column = column_of_sense(result);
+  if (column == nullptr) return false;
+  const FrameSense sense = frame_sense(machine, table);
+  if (!sense.is_right() && !sense.is_left()) return false;
+  const std::string words =
+      fmt::format("the nominal machine fits to {:.3g} mm, and to {:.3g} mm with it reversed",
+                  std::min(sense.right_mm, sense.left_mm), std::max(sense.right_mm, sense.left_mm));
+  const bool is_given = request.hints.clockwise || !request.hints.mirrored.empty();
+  if (is_given && sense.is_left()) {
+    column->doubts.push_back("contradicts the commands: " + words + " the other way");
+    return false;
+  }
+  for (ProposedColumn& one : result.columns) one.sense_doubt.clear();
+  if (sense.is_left()) {
+    reverse_sense(*column);
+    result.mapping.columns[static_cast<std::size_t>(column - result.columns.data())] = column->column;
+  }
+  column->reason += fmt::format("; {}: {}", convention_name(column->column.convention), words);
+  return sense.is_left();
+}
+
+}  // namespace
+
+std::vector<std::string> ImportedTable::doubts() const {
+  std::vector<std::string> all = found.doubts;
+  for (const ProposedColumn& column : columns) {
+    for (const std::string& doubt : column.doubts) all.push_back(fmt::format("{}: {}", column.column.name, doubt));
+  }
+  return all;
+}
+
+ImportedTable import_table(const ImportRequest& request) {
+  ImportedTable result;
+  result.file = request.file;
+  result.encoding = request.text.encoding;
+  result.encoding_reason = request.text.reason;
+  result.packed = request.text.packed;
+  result.doubts_accepted = request.accept_doubts;
+  if (request.mapping) {
+    take_mapping(request, result);
+  } else {
+    take_proposal(request, result);
+  }
+  const Machine& machine = machine_of_import(request);
+  const std::optional<MeasurementTable> readings = convert(request, machine, result);
+  if (!request.mapping && readings && decide_sense(request, machine, *readings, result)) {
+    convert(request, machine, result);
+  }
+  for (ProposedColumn& column : result.columns) {
+    if (!column.sense_doubt.empty()) column.doubts.push_back(std::exchange(column.sense_doubt, std::string()));
+  }
+  return result;
+}
+
+}  // namespace abbe
