@@ -16,13 +16,17 @@ function(abbe_either_library name static shared source)
 endfunction()
 abbe_either_library(abbe_fmt abbe_static_fmt fmt::fmt fmt.cpp)
 abbe_either_library(abbe_highway abbe_static_highway hwy::hwy highway.cpp)
-# zlib's static library is in the same package as the shared one.
+# zlib's static library is in the same package as the shared one; on other systems it may be missing.
 get_filename_component(abbe_zlib_folder "${ZLIB_LIBRARIES}" DIRECTORY)
 find_library(ABBE_STATIC_ZLIB libz.a HINTS "${abbe_zlib_folder}")
 mark_as_advanced(ABBE_STATIC_ZLIB)
+set(abbe_static_zlib ZLIB::ZLIB)
+if(ABBE_STATIC_ZLIB)
+  set(abbe_static_zlib ${ABBE_STATIC_ZLIB})
+endif()
 add_library(abbe_zlib INTERFACE)
 target_include_directories(abbe_zlib SYSTEM INTERFACE ${ZLIB_INCLUDE_DIRS})
-target_link_libraries(abbe_zlib INTERFACE $<IF:$<BOOL:$<TARGET_PROPERTY:ABBE_STATIC>>,${ABBE_STATIC_ZLIB},ZLIB::ZLIB>)
+target_link_libraries(abbe_zlib INTERFACE $<IF:$<BOOL:$<TARGET_PROPERTY:ABBE_STATIC>>,${abbe_static_zlib},ZLIB::ZLIB>)
 
 # abbe_static_program(NAME SOURCE LIBRARY): NAME linked statically, as a target abbe_static_NAME. Its addresses are chosen at
 # each start, as those of other programs.

@@ -83,7 +83,7 @@ class SetUp(unittest.TestCase):
     def test_without_root_and_sudo_one_message_says_what_to_install(self):
         self.machine.remove("g++", "ninja", "ccache")
         self.machine.install("libeigen3-dev", "libfmt-dev", "libtomlplusplus-dev", "nlohmann-json3-dev", "libcli11-dev",
-                             "libboost-dev")
+                             "libboost-dev", "zlib1g-dev")
         code, out, err, called = self.machine.set_up("build")
         self.assertEqual((code, out, called), (1, "", []))
         self.assertEqual(self.lines_with(err, "apt-get install"), [

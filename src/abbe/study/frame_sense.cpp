@@ -60,12 +60,21 @@ std::optional<double> distance_of_fit(const std::vector<SensedReading>& readings
   return earlier;
 }
 
+double extent_of(const std::vector<SensedReading>& readings) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const SensedReading& reading : readings) mean += reading.point / static_cast<double>(readings.size());
+  double sum = 0;
+  for (const SensedReading& reading : readings) sum += (reading.point - mean).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(readings.size()));
+}
+
 }  // namespace
 
 FrameSense frame_sense(const Machine& machine, const MeasurementTable& table) {
   const TrackerReadings& readings = table.readings;
   if (readings.count() == 0) return {};
   std::optional<double> right, left;
+  double extent = 0;
   for (const bool from_workpiece : {true, false}) {
     std::vector<SensedReading> seen;
     for (const std::size_t i : chosen_readings(readings)) {
@@ -74,6 +83,7 @@ FrameSense frame_sense(const Machine& machine, const MeasurementTable& table) {
           {readings.point(i), readings.reflector[i],
            from_workpiece ? nominal_workpiece_from_tool(machine, pose) : nominal_bed_from_tool(machine, pose)});
     }
+    extent = extent_of(seen);
     const std::optional<double> as_read = distance_of_fit(seen, table.reflectors.size());
     for (SensedReading& reading : seen) reading.point.y() = -reading.point.y();
     const std::optional<double> mirrored = distance_of_fit(seen, table.reflectors.size());
@@ -82,7 +92,7 @@ FrameSense frame_sense(const Machine& machine, const MeasurementTable& table) {
       left = std::min(left.value_or(*mirrored), *mirrored);
     }
   }
-  return right ? FrameSense{*right, *left} : FrameSense{};
+  return right ? FrameSense{*right, *left, extent} : FrameSense{};
 }
 
 }  // namespace abbe

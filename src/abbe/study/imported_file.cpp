@@ -10,6 +10,7 @@
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/unit.h"
 #include "abbe/study/frame_sense.h"
 
 namespace abbe {
@@ -35,6 +36,7 @@ void take_mapping(const ImportRequest& request, ImportedTable& result) {
   result.found = layout_as_given(request.text.text, request.file, mapping.layout);
   result.mapping = mapping;
   result.kind_reason = "as the mapping says";
+  result.found.reasons.emplace_back("layout as the mapping says");
   std::vector<bool> is_read(result.found.names.size());
   for (const MappedColumn& column : mapping.columns) {
     ProposedColumn& taken = result.columns.emplace_back();
@@ -123,19 +125,37 @@ void reverse_sense(ProposedColumn& column) {
   column.column.convention = column.column.convention == reversed ? ImportConvention::as_written : reversed;
 }
 
-/// Lets the commands of the machine decide whether the frame is right-handed. @returns whether the mapping changed
-bool decide_sense(const ImportRequest& request, const Machine& machine, const MeasurementTable& table,
-                  ImportedTable& result) {
+/// Takes away the doubts about commands and points that a good fit proves. An axis that stands still proves nothing.
+void drop_proved_doubts(const Machine& machine, const MeasurementTable& table, ImportedTable& result) {
+  for (ProposedColumn& column : result.columns) {
+    if (column.doubts.empty()) continue;
+    const std::string base(without_unit(column.column.name));
+    const std::size_t axis = machine.find_axis(base);
+    bool proved = base.starts_with("measured_") || base == "range" || base == "azimuth" || base == "elevation";
+    if (axis != Machine::npos) {
+      const auto [least, most] =
+          std::minmax_element(table.readings.poses.axis[axis].begin(), table.readings.poses.axis[axis].end());
+      proved = *least < *most;
+    }
+    if (!proved) continue;
+    column.reason += "; the file says no more, and the fit to the machine proves it";
+    column.doubts.clear();
+  }
+}
+
+/// Lets the commands of the machine decide whether the frame is right-handed, and whether the columns are what they are
+/// taken for. @returns whether the mapping changed
+bool judge_by_machine(const ImportRequest& request, const Machine& machine, const MeasurementTable& table,
+                      ImportedTable& result) {
   ProposedColumn* const column = column_of_sense(result);
   if (column == nullptr) return false;
   const FrameSense sense = frame_sense(machine, table);
   if (!sense.is_right() && !sense.is_left()) return false;
-  const std::string words =
-      fmt::format("the nominal machine fits to {:.3g} mm, and to {:.3g} mm with it reversed",
-                  std::min(sense.right_mm, sense.left_mm), std::max(sense.right_mm, sense.left_mm));
+  const double better = std::min(sense.right_mm, sense.left_mm), worse = std::max(sense.right_mm, sense.left_mm);
   const bool is_given = request.hints.clockwise || !request.hints.mirrored.empty();
   if (is_given && sense.is_left()) {
-    column->doubts.push_back("contradicts the commands: " + words + " the other way");
+    column->doubts.push_back(fmt::format(
+        "the nominal machine fits to {:.3g} mm only with it reversed, and to {:.3g} mm as given", better, worse));
     return false;
   }
   for (ProposedColumn& one : result.columns) one.sense_doubt.clear();
@@ -143,7 +163,9 @@ bool decide_sense(const ImportRequest& request, const Machine& machine, const Me
     reverse_sense(*column);
     result.mapping.columns[static_cast<std::size_t>(column - result.columns.data())] = column->column;
   }
-  column->reason += fmt::format("; {}: {}", convention_name(column->column.convention), words);
+  column->reason += fmt::format("; {}: the nominal machine fits to {:.3g} mm, and to {:.3g} mm with it reversed",
+                                convention_name(column->column.convention), better, worse);
+  if (sense.is_proof()) drop_proved_doubts(machine, table, result);
   return sense.is_left();
 }
 
@@ -171,7 +193,7 @@ ImportedTable import_table(const ImportRequest& request) {
   }
   const Machine& machine = machine_of_import(request);
   const std::optional<MeasurementTable> readings = convert(request, machine, result);
-  if (!request.mapping && readings && decide_sense(request, machine, *readings, result)) {
+  if (!request.mapping && readings && judge_by_machine(request, machine, *readings, result)) {
     convert(request, machine, result);
   }
   for (ProposedColumn& column : result.columns) {

@@ -15,11 +15,11 @@ namespace abbe {
 
 /// What the caller knows of a table. What is given is no longer in doubt.
 struct ImportHints {
-  LayoutHints layout;
-  std::string length_unit, angle_unit;  ///< of columns that state none, such as "inch" and "gon"; empty: not known
-  std::optional<bool> clockwise;        ///< azimuths count clockwise, seen from above
-  std::optional<bool> zenith;           ///< vertical angles count from the zenith
-  std::string mirrored;                 ///< coordinate of a left-handed frame to be reversed: "x", "y" or "z"; or empty
+  LayoutHints layout{};
+  std::string length_unit{}, angle_unit{};  ///< of columns that state none, such as "inch" and "gon"; empty: not known
+  std::optional<bool> clockwise{};          ///< azimuths count clockwise, seen from above
+  std::optional<bool> zenith{};             ///< vertical angles count from the zenith
+  std::string mirrored{};  ///< coordinate of a left-handed frame to be reversed: "x", "y" or "z"; or empty
 };
 
 /// A column with the reason why it is read so.

@@ -39,14 +39,15 @@ struct FoundLayout {
   TableLayout layout;
   std::vector<std::string> names;    ///< [columns] as in the header; empty texts where it says nothing
   std::vector<std::string> units;    ///< [columns] as in the row of units, likewise
+  bool short_header = false;         ///< rows have a field more than the header: behind the last separator, empty
   std::vector<std::string> reasons;  ///< a sentence each
   std::vector<std::string> doubts;   ///< what somebody has to look at, a sentence each
 };
 
 /// What the caller knows.
 struct LayoutHints {
-  std::optional<FieldSeparator> separator;
-  std::optional<DecimalMark> decimal;
+  std::optional<FieldSeparator> separator{};
+  std::optional<DecimalMark> decimal{};
 };
 
 /// Finds the layout of a table. All rows together decide about the decimal mark: "1,234" means one and a bit beside

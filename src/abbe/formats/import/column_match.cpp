@@ -15,7 +15,11 @@ namespace {
 // Only the order of these counts.
 constexpr double kOwnName = 5, kOwnCase = 4, kKnownWord = 3, kOtherCase = 2, kNextWord = 1e-3;
 
-bool holds_numbers(const ColumnFacts& file) { return file.texts == 0 && file.numbers + file.sexagesimal > 0; }
+/// A few other fields are mistakes, which are told where the rows are read.
+bool holds_numbers(const ColumnFacts& file) {
+  const std::size_t numbers = file.numbers + file.sexagesimal;
+  return numbers > 0 && numbers >= file.texts;
+}
 
 bool holds_directions(const ColumnFacts& file) {
   return !file.more_words && !file.words.empty() &&
@@ -37,19 +41,19 @@ bool can_be(const ImportColumn& wanted, const ColumnFacts& file) {
   if (!holds_numbers(file)) return false;
   if (wanted.quantity == Quantity::dimensionless) return file.unit.empty();
   if (file.sexagesimal > 0 && wanted.quantity != Quantity::angle) return false;
+  // Nothing needs times; without their unit they may be anything.
+  if (wanted.quantity == Quantity::time && file.unit.empty()) return false;
   return file.unit.empty() || foreign_unit(file.unit, wanted.quantity) != nullptr;
 }
 
-bool is_own_name(const ImportColumn& wanted, const ColumnFacts& file, const std::string& header) {
-  if (file.name != wanted.base) return false;
-  return header == wanted.base
-             ? wanted.quantity == Quantity::dimensionless || wanted.holds != ImportColumn::Holds::number
-             : unit_of_name(header, wanted.base, wanted.quantity) != nullptr;
+bool is_own_name(const ImportColumn& wanted, const ColumnFacts& file) {
+  const bool has_unit = wanted.holds == ImportColumn::Holds::number && wanted.quantity != Quantity::dimensionless;
+  return has_unit ? unit_of_name(file.header, wanted.base, wanted.quantity) != nullptr : file.header == wanted.base;
 }
 
 double score_of(const ImportColumn& wanted, const ColumnFacts& file) {
   if (file.name.empty() || !can_be(wanted, file)) return 0;
-  if (is_own_name(wanted, file, file.unit.empty() ? file.name : file.name + "_" + file.unit)) return kOwnName;
+  if (is_own_name(wanted, file)) return kOwnName;
   const std::string word = comparable_word(file.name);
   if (!wanted.exact_word.empty() && word == small_letters(wanted.exact_word)) {
     return comparable_word(file.name, true) == wanted.exact_word ? kOwnCase : kOtherCase;
@@ -149,6 +153,10 @@ int direction_of_word(const std::string& word) {
   return std::find(kNegative.begin(), kNegative.end(), small) != kNegative.end() ? -1 : 0;
 }
 
+bool is_taken_by_order(const ImportColumn& column) {
+  return column.holds == ImportColumn::Holds::number && (column.required || column.group == "point");
+}
+
 ColumnMatch match_by_names(ImportKind kind, const std::vector<ImportColumn>& wanted,
                            const std::vector<ColumnFacts>& file) {
   ColumnMatch match = empty_match(wanted.size());
@@ -195,9 +203,7 @@ ColumnMatch match_by_order(ImportKind kind, const std::vector<ImportColumn>& wan
     }
   }
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (wanted[i].holds == ImportColumn::Holds::number && (wanted[i].required || wanted[i].group == "point")) {
-      ordered.push_back(i);
-    }
+    if (is_taken_by_order(wanted[i])) ordered.push_back(i);
     if (wanted[i].holds == ImportColumn::Holds::label) match.source[i] = text;
   }
   // A tracker's columns count; behind three coordinates there may be anything.

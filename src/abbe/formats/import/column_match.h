@@ -28,6 +28,9 @@ ColumnMatch match_by_names(ImportKind kind, const std::vector<ImportColumn>& wan
 ColumnMatch match_by_order(ImportKind kind, const std::vector<ImportColumn>& wanted,
                            const std::vector<ColumnFacts>& file);
 
+/// Whether a column is one of those that are taken by their order.
+bool is_taken_by_order(const ImportColumn& column);
+
 /// What a word of a column of directions means: +1, -1, or 0 for any other word.
 int direction_of_word(const std::string& word);
 

@@ -74,20 +74,11 @@ class ColumnDecision {
       return unit;
     }
     const std::string& given = wanted_.quantity == Quantity::length ? hints_.length_unit : hints_.angle_unit;
-    if (wanted_.quantity != Quantity::time && !given.empty()) {
+    if (!given.empty()) {
       because(fmt::format("{} as given", given));
       return *foreign_unit_named(given);
     }
-    switch (wanted_.quantity) {
-      case Quantity::length:
-        return unit_of_length();
-      case Quantity::angle:
-        return unit_of_angle();
-      default:
-        break;
-    }
-    doubt("states no unit; seconds are assumed");
-    return *foreign_unit_named("s");
+    return wanted_.quantity == Quantity::length ? unit_of_length() : unit_of_angle();
   }
 
   const ForeignUnit& unit_of_length() {

@@ -155,6 +155,13 @@ FoundEncoding given_encoding(std::string_view bytes, TextEncoding encoding) {
   return {encoding, bytes.starts_with(mark) ? mark.size() : 0, "as given"};
 }
 
+void check_utf8(std::string_view bytes, const std::string& file) {
+  const std::size_t wrong = first_not_utf8(bytes);
+  if (wrong == std::string_view::npos) return;
+  throw InputError({.file = file, .line = text_line(bytes, wrong)},
+                   fmt::format("byte 0x{:02X} is not UTF-8", byte_at(bytes, wrong)), "text in UTF-8");
+}
+
 std::string decoded(std::string_view bytes, TextEncoding encoding, const std::string& file) {
   switch (encoding) {
     case TextEncoding::utf16_le:
@@ -166,11 +173,7 @@ std::string decoded(std::string_view bytes, TextEncoding encoding, const std::st
     case TextEncoding::utf8:
       break;
   }
-  const std::size_t wrong = first_not_utf8(bytes);
-  if (wrong != std::string_view::npos) {
-    throw InputError({.file = file, .line = text_line(bytes, wrong)},
-                     fmt::format("byte 0x{:02X} is not UTF-8", byte_at(bytes, wrong)), "text in UTF-8");
-  }
+  check_utf8(bytes, file);
   return std::string(bytes);
 }
 
@@ -205,7 +208,13 @@ ForeignText decode_foreign_text(std::string_view bytes, const std::string& file,
   result.encoding = found.encoding;
   result.given = options.encoding.has_value();
   result.reason = found.reason;
-  result.text = decoded(bytes.substr(found.mark), found.encoding, file);
+  if (result.packed && found.encoding == TextEncoding::utf8) {
+    check_utf8(bytes, file);
+    unpacked.erase(0, found.mark);
+    result.text = std::move(unpacked);
+  } else {
+    result.text = decoded(bytes.substr(found.mark), found.encoding, file);
+  }
   if (result.text.find_first_not_of(" \t\r\n") == std::string::npos) {
     throw InputError({.file = file}, "the file is empty", "a table of readings");
   }

@@ -6,6 +6,7 @@
 #include "abbe/formats/import/foreign_row.h"
 #include "abbe/formats/text/csv_header.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/list_text.h"
 #include "abbe/formats/text/text_blocks.h"
 #include "abbe/geometry/parallel_blocks.h"
 
@@ -59,9 +60,11 @@ class BlockImporter {
     }
     const std::size_t wanted = found_.names.size();
     row_.drop_empty_behind(wanted);
-    if (row_.fields().size() != wanted) {
-      return refuse(start, "", fmt::format("the row has {} fields", row_.fields().size()),
-                    fmt::format("{} as in the {}", wanted, found_.layout.header_line > 0 ? "header" : "first row"));
+    const bool is_long = found_.short_header && row_.fields().size() == wanted && !row_.fields().back().text.empty();
+    if (row_.fields().size() != wanted || is_long) {
+      return refuse(start, "", "the row has " + counted(row_.fields().size(), "field", "fields"),
+                    fmt::format("{} as in the {}", found_.short_header ? wanted - 1 : wanted,
+                                found_.layout.header_line > 0 ? "header" : "first row"));
     }
     for (const ColumnSource& column : columns_) {
       if (&column != columns_.data()) block_.csv += ',';

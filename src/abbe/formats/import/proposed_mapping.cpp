@@ -85,16 +85,26 @@ class Proposer {
     return fmt::format("{}", fmt::join(names, ", "));
   }
 
+  /// What columns without names have to be.
+  static std::vector<std::string> needed_numbers(const KindMatch& chosen) {
+    std::vector<std::string> bases;
+    for (const ImportColumn& column : chosen.wanted) {
+      if (is_taken_by_order(column)) bases.push_back(column.base);
+    }
+    return bases;
+  }
+
   [[noreturn]] void refuse_missing(const KindMatch& chosen) const {
     const std::string& base = chosen.match.missing.front();
     const auto wanted = std::find_if(chosen.wanted.begin(), chosen.wanted.end(),
                                      [&](const ImportColumn& column) { return column.base == base; });
-    std::string expected = "numbers in their order";
+    std::string expected = "a header";
     if (has_header()) {
-      const std::size_t shown = std::min<std::size_t>(wanted->words.size(), 4);
-      expected = fmt::format(
-          "a name such as {}",
-          fmt::join(wanted->words.begin(), wanted->words.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+      const auto shown = static_cast<std::ptrdiff_t>(std::min<std::size_t>(wanted->words.size(), 4));
+      expected =
+          fmt::format("a name such as {}", fmt::join(wanted->words.begin(), wanted->words.begin() + shown, ", "));
+    } else if (chosen.kind != ImportKind::positioning) {
+      expected = fmt::format("columns of numbers for {}, in their order", fmt::join(needed_numbers(chosen), ", "));
     }
     throw InputError({.file = file_, .line = found_.layout.header_line, .field = base},
                      fmt::format("no column for it was found in {}", header_words()),
@@ -151,6 +161,19 @@ class Proposer {
 ProposedMapping propose_mapping(std::string_view text, const std::string& file, const FoundLayout& found,
                                 std::optional<ImportKind> kind, const Machine* machine, const ImportHints& hints) {
   ProposedMapping result = Proposer(text, file, found, machine, hints).proposed(kind);
+  const auto none = [&](std::string_view base) {
+    return std::none_of(result.columns.begin(), result.columns.end(), [&](const ProposedColumn& column) {
+      return column.column.name.starts_with(fmt::format("{}_", base));
+    });
+  };
+  const auto refuse = [](const char* option, const char* what) {
+    throw InputError({.field = option}, fmt::format("the table has no {}", what), "no such option");
+  };
+  if (hints.clockwise && none("azimuth")) refuse("--azimuth", "azimuth");
+  if (hints.zenith && none("elevation")) refuse("--vertical", "vertical angle");
+  if (!hints.mirrored.empty() && none(hints.mirrored) && none("measured_" + hints.mirrored)) {
+    refuse("--mirrored", "such coordinate");
+  }
   return result;
 }
 

@@ -85,6 +85,7 @@ std::vector<ColumnFacts> column_facts(std::string_view text, const FoundLayout& 
   std::vector<ColumnFacts> columns(found.names.size());
   for (std::size_t i = 0; i < columns.size(); ++i) {
     for (const FactBlock& block : blocks) join_facts(block.columns[i], columns[i]);
+    columns[i].header = found.names[i];
     auto [name, unit] = split_header(found.names[i]);
     columns[i].name = std::move(name);
     const std::string stated(without_brackets(found.units[i]));

@@ -12,6 +12,7 @@ namespace abbe {
 
 struct ColumnFacts {
   static constexpr std::size_t kMostWords = 8;
+  std::string header;           ///< as written
   std::string name;             ///< of the header, without the unit
   std::string unit;             ///< of the row of units or of the header, as written; or empty
   std::size_t numbers = 0;      ///< fields that are numbers in the notation of the layout

@@ -18,14 +18,16 @@ namespace {
 constexpr const char* kExpectedTable =
     "a table of at least two columns, separated by commas, semicolons, tabs or blanks; --separator names them";
 
-/// Texts of a line that may be the header, at most `columns`; empty if it cannot be.
-std::vector<std::string> texts_of(std::string_view line, const TableLayout& layout, std::size_t columns) {
+/// Texts of a line that may be the header, `columns` of them; empty if it cannot be.
+/// @param is_short  becomes true if it has one field less than the rows
+std::vector<std::string> texts_of(std::string_view line, const TableLayout& layout, std::size_t columns,
+                                  bool& is_short) {
   ForeignRow row;
   if (!row.split(without_comment_mark(line, layout.comment), layout.separator)) return {};
   row.drop_empty_behind(columns);
   const std::size_t count = row.fields().size();
   // Rows of some programs end in a separator that their header lacks.
-  const bool is_short = count + 1 == columns && layout.separator != FieldSeparator::blanks && count >= 2;
+  is_short = count + 1 == columns && layout.separator != FieldSeparator::blanks && count >= 2;
   if (count != columns && !is_short) return {};
   std::vector<std::string> texts;
   for (const ForeignField& field : row.fields()) texts.emplace_back(field.text);
@@ -54,9 +56,10 @@ class HeaderFinder {
     found_.names.assign(split_.columns, "");
     found_.units.assign(split_.columns, "");
     std::size_t at = next_above(first, false);
-    if (at < first && are_units(texts(at))) {
+    bool is_short = false;
+    if (at < first && are_units(texts(at, is_short))) {
       found_.layout.unit_line = lines_[at].number;
-      found_.units = texts(at);
+      found_.units = texts(at, is_short);
       at = next_above(at, false);
     }
     if (take_header(at)) return;
@@ -64,8 +67,8 @@ class HeaderFinder {
   }
 
  private:
-  std::vector<std::string> texts(std::size_t line) const {
-    return texts_of(lines_[line].text, found_.layout, split_.columns);
+  std::vector<std::string> texts(std::size_t line, bool& is_short) const {
+    return texts_of(lines_[line].text, found_.layout, split_.columns, is_short);
   }
   bool is_comment(std::size_t line) const {
     const std::string& mark = found_.layout.comment;
@@ -80,8 +83,10 @@ class HeaderFinder {
   }
   bool take_header(std::size_t line) {
     if (line >= lines_.size() || split_.has_number(line)) return false;
-    std::vector<std::string> names = texts(line);
+    bool is_short = false;
+    std::vector<std::string> names = texts(line, is_short);
     if (names.empty()) return false;
+    found_.short_header = is_short;
     found_.names = std::move(names);
     found_.layout.header_line = lines_[line].number;
     return true;
@@ -176,20 +181,21 @@ FoundLayout layout_as_given(std::string_view text, const std::string& file, cons
     throw InputError({.file = file}, fmt::format("there are no rows from line {} on", layout.first_line),
                      "at least one row");
   }
-  const auto texts = [&](std::size_t number) {
+  const auto texts = [&](std::size_t number, bool& is_short) {
     std::size_t at = line_start(text, number);
-    return at < text.size() ? texts_of(csv_next_line(text, at), layout, columns) : std::vector<std::string>();
+    return at < text.size() ? texts_of(csv_next_line(text, at), layout, columns, is_short) : std::vector<std::string>();
   };
   found.names.assign(columns, "");
   found.units.assign(columns, "");
   if (layout.header_line > 0) {
-    found.names = texts(layout.header_line);
+    found.names = texts(layout.header_line, found.short_header);
     if (found.names.empty()) {
       refuse_line(file, layout.header_line, fmt::format("a header of the {} columns of the rows", columns).c_str());
     }
   }
   if (layout.unit_line > 0) {
-    found.units = texts(layout.unit_line);
+    bool ignored = false;
+    found.units = texts(layout.unit_line, ignored);
     if (!are_units(found.units)) refuse_line(file, layout.unit_line, "a row of units");
   }
   return found;

@@ -123,7 +123,7 @@ std::optional<SplitLines> best_split(const std::vector<SampleLine>& lines, const
     if (!(how_good > best_quality)) continue;
     best_quality = how_good;
     best = std::move(split);
-    if (preferred && 2 * best->lines >= with_digits) break;
+    if (preferred && 3 * best->lines >= 2 * with_digits) break;
   }
   return best;
 }

@@ -1,4 +1,4 @@
-// The examples of docs/formats.md are files that the readers accept.
+// The examples of docs/formats.md and docs/import.md are files that the readers accept.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/import/import_mapping.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/readings/measurement_file.h"
@@ -14,8 +15,8 @@
 namespace abbe {
 namespace {
 
-std::vector<std::string> blocks(const std::string& kind) {
-  const std::string text = read_text_file(std::filesystem::path(ABBE_DOCS) / "formats.md");
+std::vector<std::string> blocks(const std::string& kind, const char* page = "formats.md") {
+  const std::string text = read_text_file(std::filesystem::path(ABBE_DOCS) / page);
   const std::string begin = "```" + kind + "\n";
   std::vector<std::string> found;
   for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at)) {
@@ -47,6 +48,10 @@ TEST(DocumentedExamples, AreAccepted) {
 
   EXPECT_EQ(parse_measurements(csv[0], "csv", machine).readings.count(), 2U);
   EXPECT_EQ(parse_measurements(csv[1], "csv", machine).readings.stated, StatedUncertainty::covariance);
+
+  const std::vector<std::string> mapping = blocks("toml", "import.md");
+  ASSERT_EQ(mapping.size(), 1U);
+  EXPECT_EQ(parse_import_mapping(mapping[0], "m.import.toml").columns.size(), 2U);
 
   const Study simulated = parse_study(toml[2], "a.study.toml", machine);
   EXPECT_EQ(simulated.setups[0].plans.size(), 4U);
