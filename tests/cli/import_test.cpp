@@ -134,7 +134,7 @@ TEST_F(Import, AMachineTellsALeftHandedFrameAndTheOrderOfColumns) {
   }
   EXPECT_THAT(imported(left, {"--machine", kMill}), HasSubstr("\n700,0,-10,705.5,7,80\n"));
   const CommandResult shown = abbe({"import", "table.txt", "--machine", kMill});
-  EXPECT_THAT(shown.out, HasSubstr("mirrored: the nominal machine fits to"));
+  EXPECT_THAT(shown.out, HasSubstr("reversed: the nominal machine fits to"));
   // Which coordinate is reversed is a matter of taste; whether one is, is not.
   EXPECT_THAT(imported(left, {"--machine", kMill, "--mirrored", "x"}), HasSubstr("\n700,0,-10,-705.5,-7,80\n"));
   std::string right = "X_mm Y_mm Z_mm x_mm y_mm z_mm\n0 0 0 5 7 90\n";

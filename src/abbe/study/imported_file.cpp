@@ -121,7 +121,7 @@ ProposedColumn* column_of_sense(ImportedTable& result) {
 
 void reverse_sense(ProposedColumn& column) {
   const bool azimuth = column.column.name.starts_with("azimuth_");
-  const ImportConvention reversed = azimuth ? ImportConvention::clockwise : ImportConvention::mirrored;
+  const ImportConvention reversed = azimuth ? ImportConvention::clockwise : ImportConvention::reversed;
   column.column.convention = column.column.convention == reversed ? ImportConvention::as_written : reversed;
 }
 

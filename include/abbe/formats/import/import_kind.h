@@ -25,12 +25,12 @@ std::vector<std::string> import_kind_names();
 /// How the numbers of a column become those of Abbe, beside their unit.
 enum class ImportConvention {
   as_written,
-  mirrored,  ///< times -1: one coordinate of a left-handed frame
+  reversed,  ///< times -1: one coordinate of a left-handed frame, or a deviation counted as target less actual
   zenith,    ///< angles from the zenith become elevations: a quarter turn less the angle
   clockwise  ///< times -1: azimuths that count clockwise seen from above
 };
 
-/// "as-written", "mirrored", "zenith", "clockwise".
+/// "as-written", "reversed", "zenith", "clockwise".
 std::string_view convention_name(ImportConvention convention);
 std::vector<std::string_view> convention_names();
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "abbe/formats/import/foreign_row.h"
 #include "abbe/formats/import/foreign_unit.h"
@@ -93,10 +94,15 @@ class GroupCheck {
     }
     return false;
   }
-  void drop_base(const std::string& base) {
+  /// @returns where it was, or kNoSource
+  std::size_t drop_base(const std::string& base) {
+    std::size_t source = kNoSource;
     for (std::size_t i = 0; i < wanted_.size(); ++i) {
-      if (wanted_[i].base == base) match_.source[i] = kNoSource;
+      if (wanted_[i].base == base && match_.source[i] != kNoSource) {
+        source = std::exchange(match_.source[i], kNoSource);
+      }
     }
+    return source;
   }
 
  private:
@@ -129,14 +135,18 @@ void find_missing(ImportKind kind, const std::vector<ImportColumn>& wanted, Colu
     if (!groups.has_all("point") && !groups.has_all("polar")) match.missing.emplace_back("measured_x");
   }
   if (kind == ImportKind::positioning) {
-    if (groups.has("deviation")) groups.drop_base("actual");
+    if (groups.has("deviation")) match.actual = groups.drop_base("actual");
     if (!groups.has("target")) match.missing.emplace_back("target");
     if (!groups.has("deviation") && !groups.has("actual")) match.missing.emplace_back("deviation");
   }
 }
 
 ColumnMatch empty_match(std::size_t count) {
-  return {std::vector<std::size_t>(count, kNoSource), std::vector<bool>(count), std::vector<std::string>(count), {}};
+  return {std::vector<std::size_t>(count, kNoSource),
+          std::vector<bool>(count),
+          std::vector<std::string>(count),
+          kNoSource,
+          {}};
 }
 
 }  // namespace

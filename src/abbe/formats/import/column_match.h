@@ -17,6 +17,7 @@ struct ColumnMatch {
   std::vector<std::size_t> source;   ///< [columns of the kind] index of the file's column, or kNoSource
   std::vector<bool> own_name;        ///< [columns of the kind] the header is the one that Abbe reads
   std::vector<std::string> doubts;   ///< [columns of the kind] a sentence, or empty
+  std::size_t actual = kNoSource;    ///< of a positioning test: actual positions beside deviations, which are not read
   std::vector<std::string> missing;  ///< bases that are needed and not there; "measured_x" for all of a point
 
   bool is_complete() const { return missing.empty(); }

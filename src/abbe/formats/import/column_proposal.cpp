@@ -16,19 +16,14 @@ namespace {
 constexpr double kWholeTurn = 360, kHalfTurn = 180, kQuarterTurn = 90;  // degrees
 constexpr double kTravelMargin = 1e-6;                                  // mm or rad, as readers of commands allow
 
-double inside_value(const ForeignUnit& unit, double value) {
-  return value * unit.factor * std::pow(10.0, unit.shift + unit_named(unit.quantity, unit.suffix).decimal_shift) *
-         unit_named(unit.quantity, unit.suffix).factor;
-}
-
 std::string range_words(const ColumnFacts& file) {
   return fmt::format("range {:.6g} to {:.6g}", file.smallest, file.largest);
 }
 
 bool is_in_travel(const Axis& axis, const ForeignUnit& unit, const ColumnFacts& file) {
   if (axis.endless) return true;
-  return inside_value(unit, file.smallest) >= axis.travel_min - kTravelMargin &&
-         inside_value(unit, file.largest) <= axis.travel_max + kTravelMargin;
+  return inside_number(unit, file.smallest) >= axis.travel_min - kTravelMargin &&
+         inside_number(unit, file.largest) <= axis.travel_max + kTravelMargin;
 }
 
 class ColumnDecision {
@@ -139,7 +134,7 @@ class ColumnDecision {
 
   /// Angles from the zenith.
   void decide_vertical(const ForeignUnit& unit) {
-    const double to_degrees = inside_value(unit, 1) * kHalfTurn / std::numbers::pi;
+    const double to_degrees = inside_number(unit, 1) * kHalfTurn / std::numbers::pi;
     const double smallest = file_.smallest * to_degrees, largest = file_.largest * to_degrees;
     const bool known = file_.numbers > 0;
     const bool can_be_zenith = !known || (smallest >= 0 && largest <= kHalfTurn);
@@ -175,7 +170,7 @@ class ColumnDecision {
         wanted_.base != "n" + hints_.mirrored) {
       return;
     }
-    result_.column.convention = ImportConvention::mirrored;
+    result_.column.convention = ImportConvention::reversed;
     because("reversed as given: the frame is left-handed");
   }
 

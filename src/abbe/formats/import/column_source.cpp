@@ -114,15 +114,20 @@ class SourceFinder {
     switch (column.convention) {
       case ImportConvention::as_written:
         return;
-      case ImportConvention::mirrored:
-        return need(wanted.holds == ImportColumn::Holds::number && wanted.quantity != Quantity::angle &&
-                        wanted.quantity != Quantity::time,
-                    "a coordinate");
+      case ImportConvention::reversed:
+        return need(wanted.base == "deviation" || is_coordinate(wanted), "a coordinate or a deviation");
       case ImportConvention::zenith:
         return need(wanted.base == "elevation", "elevation");
       case ImportConvention::clockwise:
         return need(wanted.base == "azimuth", "azimuth");
     }
+  }
+
+  /// Coordinates of points, of normals, and of offsets.
+  static bool is_coordinate(const ImportColumn& wanted) {
+    const char letter = wanted.base.back();
+    return wanted.holds == ImportColumn::Holds::number && letter >= 'x' && letter <= 'z' &&
+           wanted.quantity != Quantity::angle;
   }
 
   /// A file that says millimetres is not read in inches.

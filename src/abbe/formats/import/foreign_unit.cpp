@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "abbe/formats/import/foreign_word.h"
 #include "abbe/formats/text/csv_header.h"
@@ -56,6 +57,11 @@ bool take_unit_behind(std::string_view header, std::string_view mark, std::pair<
 }
 
 }  // namespace
+
+double inside_number(const ForeignUnit& unit, double number) {
+  const Unit& read = unit_named(unit.quantity, unit.suffix);
+  return number * unit.factor * std::pow(10.0, unit.shift + read.decimal_shift) * read.factor;
+}
 
 const ForeignUnit* foreign_unit_named(std::string_view name) {
   for (const NamedUnit& one : all_units()) {

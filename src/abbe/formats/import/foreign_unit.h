@@ -21,6 +21,9 @@ struct ForeignUnit {
   bool sexagesimal = false;  ///< degrees, minutes and seconds in one field
 };
 
+/// A number in a unit, in the inside unit of its quantity; rounded.
+double inside_number(const ForeignUnit& unit, double number);
+
 /// The unit of that name, of a mapping file; null if there is none.
 const ForeignUnit* foreign_unit_named(std::string_view name);
 /// The names of all units of a quantity.

@@ -219,7 +219,7 @@ std::optional<ImportKind> import_kind_named(std::string_view name) {
 
 std::vector<std::string> import_kind_names() { return {kImportKinds.begin(), kImportKinds.end()}; }
 
-std::vector<std::string_view> convention_names() { return {"as-written", "mirrored", "zenith", "clockwise"}; }
+std::vector<std::string_view> convention_names() { return {"as-written", "reversed", "zenith", "clockwise"}; }
 
 std::string_view convention_name(ImportConvention convention) {
   return convention_names()[static_cast<std::size_t>(convention)];

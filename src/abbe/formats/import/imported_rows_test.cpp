@@ -67,8 +67,8 @@ TEST(ImportedTableRows, ConvertUnitsExactly) {
   EXPECT_EQ(x_of("12,34", "cm", "x_mm"), "123.4");
   EXPECT_EQ(x_of("1,5", "m", "x_m"), "1.5");
   EXPECT_EQ(x_of("250", "nm", "x_um"), "0.250");
-  EXPECT_EQ(x_of("1,50", "mm", "x_mm", "convention = \"mirrored\"\n"), "-1.50");
-  EXPECT_EQ(x_of("0,0", "mm", "x_mm", "convention = \"mirrored\"\n"), "0.0");
+  EXPECT_EQ(x_of("1,50", "mm", "x_mm", "convention = \"reversed\"\n"), "-1.50");
+  EXPECT_EQ(x_of("0,0", "mm", "x_mm", "convention = \"reversed\"\n"), "0.0");
 }
 
 TEST(ImportedTableRows, TurnZenithAndClockwiseAngles) {
@@ -149,13 +149,13 @@ TEST(ImportMappingFile, IsReadBackAsItWasWritten) {
   mapping.layout = {FieldSeparator::blanks, DecimalMark::comma, ThousandsMark::apostrophe, "//", 3, 4, 6};
   mapping.columns = {{"direction", "Richtung \"A\"", 0, "", ImportConvention::as_written, {"vor", "↑"}, {"rück"}},
                      {"target_mm", "", 3, "inch", ImportConvention::as_written, {}, {}},
-                     {"deviation_um", "", 4, "um", ImportConvention::mirrored, {}, {}}};
+                     {"deviation_um", "", 4, "um", ImportConvention::reversed, {}, {}}};
   const std::string text = import_mapping_text(mapping, {{"a reason\nof two lines"}});
   const ImportMapping read = parse_import_mapping(text, "m.import.toml");
   EXPECT_EQ(import_mapping_text(read), import_mapping_text(mapping));
   EXPECT_EQ(read.layout.thousands, ThousandsMark::apostrophe);
   EXPECT_EQ(read.columns[0].positive, mapping.columns[0].positive);
-  EXPECT_EQ(read.columns[2].convention, ImportConvention::mirrored);
+  EXPECT_EQ(read.columns[2].convention, ImportConvention::reversed);
   EXPECT_EQ(read.encoding, TextEncoding::windows_1252);
 }
 

@@ -6,6 +6,7 @@
 
 #include "abbe/formats/import/column_match.h"
 #include "abbe/formats/import/column_proposal.h"
+#include "abbe/formats/import/deviation_sign.h"
 #include "abbe/formats/import/foreign_row.h"
 #include "abbe/formats/import/foreign_word.h"
 #include "abbe/formats/import/table_facts.h"
@@ -39,6 +40,7 @@ class Proposer {
       if (chosen.match.source[i] != kNoSource) result.columns.push_back(column(chosen, i));
     }
     doubt_handedness(result);
+    if (chosen.match.actual != kNoSource) decide_deviation_sign(chosen.match.actual, result);
     for (std::size_t k = 0; k < facts_.size(); ++k) {
       const auto reads = [&](const ProposedColumn& column) { return column.source == k; };
       if (std::any_of(result.columns.begin(), result.columns.end(), reads)) continue;
@@ -146,6 +148,29 @@ class Proposer {
       }
       return;
     }
+  }
+
+  /// Actual positions beside deviations tell the sign of these.
+  void decide_deviation_sign(std::size_t actual, ProposedMapping& result) const {
+    const auto of_base = [&](std::string_view base) {
+      return std::find_if(result.columns.begin(), result.columns.end(),
+                          [&](const ProposedColumn& column) { return column.column.name.starts_with(base); });
+    };
+    const ProposedColumn& target = *of_base("target_");
+    ProposedColumn& deviation = *of_base("deviation_");
+    PositionColumns columns{target.source,
+                            deviation.source,
+                            actual,
+                            foreign_unit_named(target.column.unit),
+                            foreign_unit_named(deviation.column.unit),
+                            nullptr};
+    columns.actual_unit = foreign_unit(facts_[actual].unit, columns.target_unit->quantity);
+    if (columns.actual_unit == nullptr) columns.actual_unit = columns.target_unit;
+    const int sign = deviation_sign(text_, found_, columns);
+    if (sign == 0) return;
+    deviation.reason += fmt::format("; it is {} by {}", sign > 0 ? "actual less target" : "target less actual",
+                                    column_words(actual + 1, found_.names[actual]));
+    if (sign < 0) deviation.column.convention = ImportConvention::reversed;
   }
 
   std::string_view text_;

@@ -13,6 +13,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 const Machine& table_of_import() {
   static const Machine machine = parse_machine(
@@ -55,7 +56,7 @@ TEST(ProposedColumns, OfPointsAreFoundByNamesOfSeveralPrograms) {
   EXPECT_THAT(points("X,Y,Z\n1.5,2,3\n", {.length_unit = "inch"}),
               ElementsAre("x_mm=1 inch", "y_mm=2 inch", "z_mm=3 inch"));
   EXPECT_THAT(points("x_mm,y_mm,z_mm\n1.5,2,3\n", {.mirrored = "y"}),
-              ElementsAre("x_mm=1 mm", "y_mm=2 mm mirrored", "z_mm=3 mm"));
+              ElementsAre("x_mm=1 mm", "y_mm=2 mm reversed", "z_mm=3 mm"));
   EXPECT_THAT(points("frame: left-handed\nx_mm,y_mm,z_mm\n1.5,2,3\n"),
               ElementsAre("x_mm=1 mm ?", "y_mm=2 mm", "z_mm=3 mm"));
   EXPECT_THAT(points("p1 1.5 2 3\n"), ElementsAre("point=1", "x_mm=2 mm ?", "y_mm=3 mm ?", "z_mm=4 mm ?"));
@@ -126,6 +127,14 @@ TEST(ProposedColumns, OfPositioningKnowDirectionsInTwoLanguages) {
   EXPECT_THAT(columns_of(proposal_for("run,direction,target_mm,actual_mm,deviation_um\n1,+,5.5,6,2\n",
                                       ImportKind::positioning)),
               ElementsAre("run=1", "direction=2", "target_mm=3 mm", "deviation_um=5 um"));
+  const auto sign = [](const std::string& rows) {
+    const std::string text = "direction;target_mm;actual_mm;deviation_um\n" + rows;
+    return proposal_for(text, ImportKind::positioning).columns.back();
+  };
+  EXPECT_THAT(sign("+;10,5;10,503;3\n+;20;19,998;-2\n").reason, HasSubstr("it is actual less target by column 3"));
+  EXPECT_EQ(sign("+;10,5;10,503;-3\n+;20;19,998;2\n").column.convention, ImportConvention::reversed);
+  // Positions of too few digits tell nothing.
+  EXPECT_THAT(sign("+;10,5;10,50;-3\n+;20;20,00;2\n").reason, Not(HasSubstr("less")));
 }
 
 TEST(ProposedColumns, TellTheKindAndWhatIsNotRead) {

@@ -23,6 +23,16 @@ PointCloud cloud_with_normals(Eigen::Index n) {
   return cloud;
 }
 
+TEST(PointCloudFile, NamesOfPointsAreReadAndWrittenAgain) {
+  const PointCloudFile read = parse_point_cloud("point,z_mm,x_mm,y_um\n\"a, b\",3,1,2000\n,6,4,5000\n", "names.csv");
+  EXPECT_EQ(read.names, (std::vector<std::string>{"a, b", ""}));
+  EXPECT_EQ(read.cloud.points.col(1), Eigen::Vector3d(4, 5, 6));
+  const std::string text = point_cloud_csv(read.cloud, {0.5, 0.25}, read.names);
+  EXPECT_EQ(text, "x_mm,y_mm,z_mm,deviation_mm,point\n1,2,3,0.5,\"a, b\"\n4,5,6,0.25,\"\"\n");
+  EXPECT_EQ(parse_point_cloud(text, "names.csv").names, read.names);
+  EXPECT_TRUE(parse_point_cloud("x_mm,y_mm,z_mm\n1,2,3\n", "none.csv").names.empty());
+}
+
 TEST(PointCloudFile, CsvAndPlyReadBackToTheSameBits) {
   const PointCloud cloud = cloud_with_normals(500);
   std::vector<double> deviation;
