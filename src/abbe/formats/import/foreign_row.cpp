@@ -50,7 +50,7 @@ bool ForeignRow::split(std::string_view line, FieldSeparator separator) {
   const char mark = separator_character(separator);
   const bool blanks = separator == FieldSeparator::blanks;
   for (;;) {
-    while (at != end && (*at == ' ' || (*at == '\t' && mark != '\t'))) ++at;
+    while (at != end && (*at == ' ' || (*at == '\t' && mark != '\t') || (*at == '\r' && blanks))) ++at;
     if (blanks && at == end) return true;
     const char* const start = at;
     fields_.push_back({{}, static_cast<std::size_t>(start - line.data())});
@@ -58,7 +58,7 @@ bool ForeignRow::split(std::string_view line, FieldSeparator separator) {
       at = take_quoted(at, end);
       if (at == nullptr) return false;
       if (blanks) {
-        if (at != end && *at != ' ' && *at != '\t') return false;
+        if (at != end && *at != ' ' && *at != '\t' && *at != '\r') return false;
         continue;
       }
       while (at != end && (*at == ' ' || (*at == '\t' && mark != '\t'))) ++at;

@@ -38,6 +38,9 @@ TEST(TableLayoutOfText, FindsSeparatorHeaderUnitsAndRows) {
   EXPECT_EQ(blanks.layout.separator, FieldSeparator::blanks);
   EXPECT_THAT(blanks.names, ElementsAre("x", "y"));
 
+  // A carriage return within a line is a blank.
+  EXPECT_THAT(find_layout("x y\r z\n1.5 2 \r3\n", "t.txt").names, ElementsAre("x", "y", "z"));
+
   const FoundLayout numpy = find_layout("# made by a script\n# x,y,z\n1.5,2,3\n", "t.txt");
   EXPECT_EQ(numpy.layout.comment, "#");
   EXPECT_EQ(numpy.layout.header_line, 2U);
