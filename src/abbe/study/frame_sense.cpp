@@ -75,6 +75,7 @@ FrameSense frame_sense(const Machine& machine, const MeasurementTable& table) {
   if (readings.count() == 0) return {};
   std::optional<double> right, left;
   double extent = 0;
+  std::size_t count = 0;
   for (const bool from_workpiece : {true, false}) {
     std::vector<SensedReading> seen;
     for (const std::size_t i : chosen_readings(readings)) {
@@ -84,6 +85,7 @@ FrameSense frame_sense(const Machine& machine, const MeasurementTable& table) {
            from_workpiece ? nominal_workpiece_from_tool(machine, pose) : nominal_bed_from_tool(machine, pose)});
     }
     extent = extent_of(seen);
+    count = seen.size();
     const std::optional<double> as_read = distance_of_fit(seen, table.reflectors.size());
     for (SensedReading& reading : seen) reading.point.y() = -reading.point.y();
     const std::optional<double> mirrored = distance_of_fit(seen, table.reflectors.size());
@@ -92,7 +94,7 @@ FrameSense frame_sense(const Machine& machine, const MeasurementTable& table) {
       left = std::min(left.value_or(*mirrored), *mirrored);
     }
   }
-  return right ? FrameSense{*right, *left, extent} : FrameSense{};
+  return right ? FrameSense{*right, *left, extent, count} : FrameSense{};
 }
 
 }  // namespace abbe

@@ -59,6 +59,9 @@ TEST(FrameSenseOfReadings, IsFoundWithAnUnknownOffsetOnAFiveAxisMachine) {
   EXPECT_TRUE(right.is_proof());
   EXPECT_LT(right.right_mm, 0.01);
   EXPECT_GT(right.left_mm, 10);
+  FrameSense few = right;
+  few.readings = 5;
+  EXPECT_FALSE(few.is_proof());
   const FrameSense left = frame_sense(machine, seen_by_a_tracker(machine, true));
   EXPECT_TRUE(left.is_left());
   EXPECT_NEAR(left.left_mm, right.right_mm, 1e-6);
