@@ -89,8 +89,9 @@ void bind_clouds(nb::module_& module) {
           "check", [](const NamedPoints& p) { return python_value(cloud_json(check(p))); },
           nb::sig("def check(self) -> dict[str, typing.Any]"), "The same as a dictionary; units in the keys.")
       .def(
-          "csv", [](const NamedPoints& p) { return point_cloud_csv(p.file.cloud, p.file.deviation_mm); },
-          "CSV: x_mm,y_mm,z_mm, then nx,ny,nz and deviation_mm where there are any; reads back to the same bits.")
+          "csv", [](const NamedPoints& p) { return point_cloud_csv(p.file.cloud, p.file.deviation_mm, p.file.names); },
+          "CSV: x_mm,y_mm,z_mm, then nx,ny,nz, deviation_mm and point where there are any; reads back to the same "
+          "bits.")
       .def(
           "write",
           [](const NamedPoints& p, const std::filesystem::path& path, bool overwrite) {
@@ -102,7 +103,7 @@ void bind_clouds(nb::module_& module) {
             write_text(
                 path,
                 ending == ".csv"
-                    ? point_cloud_csv(cloud, p.file.deviation_mm)
+                    ? point_cloud_csv(cloud, p.file.deviation_mm, p.file.names)
                     : ply_bytes({.points = cloud.points, .normals = cloud.normals, .deviation = p.file.deviation_mm}),
                 overwrite);
           },
