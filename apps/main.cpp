@@ -22,6 +22,7 @@ void add_subcommands(CommandLine& line) {
   line.begin_section("Identify");
   add_identify_command(line);
   add_map_command(line);
+  add_compare_command(line);
   line.begin_section("Evaluate");
   add_evaluate_command(line);
   line.begin_section("Compensate");

@@ -239,8 +239,10 @@ export interface Evaluation {
   kind?: string;
   facts?: {name: string; text: string}[];
   figures?: EvaluationFigure[];
-  /// `svg_narrow`: the same for a narrow window
-  drawings?: {caption?: string; svg: string; svg_narrow?: string}[];
+  /// `svg_narrow`: the same for a narrow window; `beside`: small, two in a row
+  drawings?: {caption?: string; svg: string; svg_narrow?: string; beside?: boolean}[];
+  /// Shown before the figures.
+  tables?: DataTable[];
 }
 
 /// Contour error over the length of a curve; u is the standard uncertainty.

@@ -19,10 +19,12 @@ function picture(text: string, caption: string | undefined): SVGSVGElement | und
 
 /// @param wide    for a wide window and for paper
 /// @param narrow  the same for a narrow window; without it the wide one is moved sideways, as letters would become too small
-export function drawing(wide: string, narrow: string | undefined, caption: string | undefined): HTMLElement | undefined {
+/// @param beside  it is narrow itself and stands beside others
+export function drawing(wide: string, narrow: string | undefined, caption: string | undefined, beside = false): HTMLElement | undefined {
   const large = picture(wide, caption);
   if (!large) return undefined;
   const words = caption ? html('figcaption', {}, caption) : undefined;
+  if (beside) return html('figure', {class: 'made beside'}, large, words);
   const small = narrow ? picture(narrow, caption) : undefined;
   const width = large.viewBox?.baseVal.width ?? 0;
   if (!small) {

@@ -4,6 +4,7 @@ import {Evaluation, EvaluationFigure, findQuantity} from './data';
 import {html, section} from './dom';
 import {drawing} from './drawings';
 import {fixed, prose} from './format';
+import {dataTable} from './table';
 
 /// As evaluation_report.cpp names them; "not proven": the tolerance lies within the uncertainty.
 const kVerdicts: Record<string, string> = {
@@ -41,6 +42,7 @@ export function evaluationSection(evaluation: Evaluation): HTMLElement {
       uncertainty && number(find(figure, 'expanded_uncertainty')?.value ? figure : {symbol: ''}, 'expanded_uncertainty', 'uncertainty'), html('td', {role: 'cell'}, value?.unit ?? ''),
       tolerance && number(figure, 'tolerance', 'tolerance'), tolerance && html('td', {role: 'cell', class: `verdict-of ${kVerdicts[verdict] ?? ''}`}, verdict));
   });
+  part.append(...(evaluation.tables ?? []).map((table) => dataTable(table.title, table.columns, table.rows)));
   // A page may have drawings and no figures.
   if (figures.length) {
     part.append(html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Figures'}, html('table', {class: 'figures', role: 'table'},
@@ -48,7 +50,7 @@ export function evaluationSection(evaluation: Evaluation): HTMLElement {
       html('thead', {}, html('tr', {}, ...heads.map((name) => html('th', {scope: 'col', class: numeric.has(name) ? 'number' : ''}, name || html('span', {class: 'unseen'}, 'Symbol'))))),
       html('tbody', {}, ...rows))));
   }
-  const drawings = (evaluation.drawings ?? []).map((made) => drawing(made.svg, made.svg_narrow, made.caption && prose(made.caption)));
+  const drawings = (evaluation.drawings ?? []).map((made) => drawing(made.svg, made.svg_narrow, made.caption && prose(made.caption), made.beside));
   part.append(html('div', {class: 'drawings'}, ...drawings));
   return part;
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace abbe {
 
@@ -32,5 +33,12 @@ double sum_exceedance(std::span<const double> values, double expected);
 /// Probability of `marked_drawn` or more marked items in a draw of `drawn` without replacement from `all` items of
 /// which `marked` are marked.
 double hypergeometric_exceedance(std::size_t all, std::size_t marked, std::size_t drawn, std::size_t marked_drawn);
+
+/// Probabilities of several tests, adjusted so that each may be compared with the level of the family: whoever rejects
+/// where the adjusted one is at most a level rejects any true hypothesis with at most that probability, however the
+/// tests depend on each other. The smallest is multiplied by the number of tests, the next by one less, and so on; none
+/// is below the one before it, none above 1.
+/// Source: S. Holm, A simple sequentially rejective multiple test procedure, Scand. J. Statist. 6 (1979) 65.
+std::vector<double> holm_adjusted(std::span<const double> probabilities);
 
 }  // namespace abbe

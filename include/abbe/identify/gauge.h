@@ -29,6 +29,7 @@ struct GaugeConstraint {
   double value = 0;                      ///< mm or rad
   Eigen::VectorXd direction;             ///< [p]: the unseen direction it fixes; functional . direction = 1
   std::vector<std::size_t> inseparable;  ///< entries of the estimates that this direction mixes, largest first
+  std::string quantity;                  ///< what the equation sets: "constant of EXZ"; empty: has no name
   bool by_convention = true;             ///< false: no convention fits, smallest change from the start (a lack of data)
   std::string inseparable_words;         ///< "constant of EXZ is not separable from tracker1.x, tool_X"
 };

@@ -124,4 +124,18 @@ double hypergeometric_exceedance(std::size_t all, std::size_t marked, std::size_
   return std::clamp(upper ? sum : 1 - sum, 0.0, 1.0);
 }
 
+std::vector<double> holm_adjusted(std::span<const double> probabilities) {
+  std::vector<std::size_t> order(probabilities.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return probabilities[a] < probabilities[b]; });
+  std::vector<double> adjusted(probabilities.size());
+  double before = 0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    before = std::max(before, std::min(1.0, static_cast<double>(order.size() - k) * probabilities[order[k]]));
+    adjusted[order[k]] = before;
+  }
+  return adjusted;
+}
+
 }  // namespace abbe

@@ -214,5 +214,15 @@ TEST(Distributions, hypergeometric_exceedance_agrees_with_counting) {
   EXPECT_NEAR(hypergeometric_exceedance(100000, 1000, 5000, 75) / 0.00038426809174742368053, 1, 1e-9);
 }
 
+TEST(Distributions, holm_multiplies_by_the_tests_that_are_left) {
+  // As R: p.adjust(c(0.01, 0.04, 0.03, 0.005, 0.9), "holm").
+  const std::vector<double> adjusted = holm_adjusted(std::vector<double>{0.01, 0.04, 0.03, 0.005, 0.9});
+  const std::vector<double> expected = {0.04, 0.09, 0.09, 0.025, 0.9};
+  ASSERT_EQ(adjusted.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(adjusted[i], expected[i], 1e-15) << i;
+  EXPECT_TRUE(holm_adjusted({}).empty());
+  EXPECT_EQ(holm_adjusted(std::vector<double>{0.5, 0.5})[1], 1);
+}
+
 }  // namespace
 }  // namespace abbe

@@ -24,9 +24,10 @@ Eigen::VectorXd usable_scale(const Eigen::VectorXd& column_norms) {
   return column_norms.unaryExpr([](double norm) { return norm > 0 ? norm : 1.0; });
 }
 
-/// @param quantity  what the functional is; empty: a combination that has no name
+/// Which parameters the constraint does not tell apart.
 void describe(const std::vector<EstimatedParameter>& parameters, const Eigen::VectorXd& scale,
-              const std::string& quantity, GaugeConstraint& constraint) {
+              GaugeConstraint& constraint) {
+  const std::string& quantity = constraint.quantity;
   constraint.inseparable = largest_entries(constraint.direction.cwiseProduct(scale), kInseparableEntry);
   const double own = constraint.functional.cwiseAbs().maxCoeff();
   std::string others;
@@ -117,7 +118,8 @@ std::vector<GaugeConstraint> fix_gauge(const Problem& problem, const NullSpace& 
   for (Index i = 0; i < q; ++i) {
     GaugeConstraint& constraint = constraints[static_cast<std::size_t>(i)];
     constraint.direction = directions.col(i);
-    describe(parameters, scale, quantities[static_cast<std::size_t>(i)], constraint);
+    constraint.quantity = quantities[static_cast<std::size_t>(i)];
+    describe(parameters, scale, constraint);
   }
   return constraints;
 }

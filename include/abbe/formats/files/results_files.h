@@ -10,6 +10,9 @@ namespace abbe {
 /// @throws InputError if it is no folder
 void require_results(const std::string& results);
 
+/// Whether this is a folder: results are, their files are not.
+bool is_results_folder(const std::string& path);
+
 /// Name of a file that was named, or of the one that the results hold under this name.
 /// @param named       by the user; empty: that of the results
 /// @param results     folder; empty: none

@@ -87,6 +87,7 @@ struct EvaluationTable {
   std::string caption;
   std::vector<std::string> headers;
   std::vector<std::vector<std::string>> rows;
+  bool with_figures = false;  ///< a page shows it with the figures, not among the details
 };
 
 struct EvaluationPlot {
@@ -94,6 +95,7 @@ struct EvaluationPlot {
   std::string caption;  ///< may be empty
   SvgPicture picture;
   bool in_page = false;  ///< the interactive page draws it itself, from `page`
+  bool beside = false;   ///< one of many: the page shows the narrow layout, two in a row
 };
 
 /// All that an evaluation by a standard has to say, whatever the standard.

@@ -9,9 +9,13 @@
 
 namespace abbe {
 
-void require_results(const std::string& results) {
+bool is_results_folder(const std::string& path) {
   std::error_code ignored;
-  if (results.empty() || std::filesystem::is_directory(results, ignored)) return;
+  return std::filesystem::is_directory(path, ignored);
+}
+
+void require_results(const std::string& results) {
+  if (results.empty() || is_results_folder(results)) return;
   throw InputError({.file = results}, "is not a folder", "results of abbe run");
 }
 

@@ -5,6 +5,7 @@
 namespace abbe {
 
 nlohmann::json drawing_data(const EvaluationPlot& plot) {
+  if (plot.beside) return {{"caption", plot.caption}, {"svg", plot.picture.narrow}, {"beside", true}};
   return {{"caption", plot.caption}, {"svg", plot.picture.wide}, {"svg_narrow", plot.picture.narrow}};
 }
 
@@ -35,7 +36,8 @@ nlohmann::json evaluation_data(const EvaluationReport& report) {
   data["assumptions"] = report.notes;
   data["tables"] = nlohmann::json::array();
   for (const EvaluationTable& table : report.tables) {
-    data["tables"].push_back({{"title", table.caption}, {"columns", table.headers}, {"rows", table.rows}});
+    nlohmann::json& place = table.with_figures ? evaluation["tables"] : data["tables"];
+    place.push_back({{"title", table.caption}, {"columns", table.headers}, {"rows", table.rows}});
   }
   if (report.page.is_object()) data.update(report.page);
   return data;

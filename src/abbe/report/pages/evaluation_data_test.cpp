@@ -25,7 +25,8 @@ EvaluationReport small_report() {
   mean.name = "mean";
   mean.missing = "no point counts";
   report.figures = {rms, mean};
-  report.tables = {{"By faces", {"face", "rms"}, {{"1", "12.50"}}}};
+  report.tables = {{"By faces", {"face", "rms"}, {{"1", "12.50"}}},
+                   {"By axes", {"axis", "rms"}, {{"X", "3.10"}}, /*with_figures=*/true}};
   report.notes = {"a note"};
   report.plots = {{"plot", "by angle", {"<svg/>", "<svg width=\"320\"/>"}}};
   report.page = {{"surface", {{"frame", "part"}}}};
@@ -41,6 +42,8 @@ TEST(EvaluationData, HoldsTheFiguresOfTheEvaluationInTheirOrder) {
   EXPECT_EQ(data.at("tables").at(0).at("rows").at(0).at(1), "12.50");
   const nlohmann::json& evaluation = data.at("evaluation");
   EXPECT_EQ(evaluation.at("facts").at(1).at("text"), "12 triangles");
+  EXPECT_EQ(data.at("tables").size(), 1U);
+  EXPECT_EQ(evaluation.at("tables").at(0).at("title"), "By axes");
   ASSERT_EQ(evaluation.at("figures").size(), 2U);
   const nlohmann::json& rms = evaluation.at("figures").at(0);
   EXPECT_EQ(rms.at("symbol"), "rms");
@@ -51,6 +54,11 @@ TEST(EvaluationData, HoldsTheFiguresOfTheEvaluationInTheirOrder) {
   EXPECT_EQ(evaluation.at("drawings").at(0).at("svg"), "<svg/>");
   EXPECT_EQ(evaluation.at("drawings").at(0).at("svg_narrow"), "<svg width=\"320\"/>");
   EXPECT_NO_THROW(report_page(data));
+  EvaluationPlot one_of_many = report.plots.front();
+  one_of_many.beside = true;
+  EXPECT_EQ(drawing_data(one_of_many).at("svg"), "<svg width=\"320\"/>");
+  EXPECT_EQ(drawing_data(one_of_many).at("beside"), true);
+  EXPECT_FALSE(drawing_data(one_of_many).contains("svg_narrow"));
   EvaluationReport other = report;
   other.page["histograms"] = nlohmann::json::array();
   EXPECT_FALSE(evaluation_data(other).at("evaluation").contains("drawings"));
