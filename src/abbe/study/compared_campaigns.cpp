@@ -230,12 +230,12 @@ CompareRequest read_campaigns(const std::vector<std::string>& campaigns, const s
     const std::string results = is_results_folder(path) ? path : std::string();
     IdentifiedCampaign campaign;
     campaign.name = name_of_campaign(path);
-    campaign.errors_file = results.empty() ? path : file_or_of_results("", results, "errors.toml", "--machine");
+    campaign.errors_file = results.empty() ? path : file_of_results(results, "errors.toml");
     if (!machine && results.empty()) {
       throw InputError({.field = "--machine"}, "is missing, and " + path + " is not a results folder",
                        "this option for errors files; or results folders of abbe run");
     }
-    campaign.machine = machine ? *machine : read_machine(file_or_of_results("", results, "machine.toml", "--machine"));
+    campaign.machine = machine ? *machine : read_machine(file_of_results(results, "machine.toml"));
     campaign.errors = read_errors(campaign.errors_file, campaign.machine);
     request.campaigns.push_back(std::move(campaign));
   }

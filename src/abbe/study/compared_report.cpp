@@ -60,7 +60,7 @@ class PairFigures {
       if (size.count > 0) {
         one.value = value;
       } else {
-        one.missing = "no pose is known in both";
+        one.missing = pair_.stated.poses.count() == 0 ? "there is no error to compare" : "no pose is known in both";
       }
       return one;
     };
@@ -265,8 +265,10 @@ void write_comparison_report(const CompareRequest& request, ComparedCampaigns& r
     report.tables.push_back(table_of_drift(result));
   }
   for (const ComparedPair& pair : result.pairs) {
-    report.tables.push_back(table_of_changes(result, pair));
-    report.tables.back().with_figures = is_only_one;
+    EvaluationTable changes = table_of_changes(result, pair);
+    if (changes.rows.empty()) continue;
+    changes.with_figures = is_only_one;
+    report.tables.push_back(std::move(changes));
   }
   for (const ComparedPair& pair : result.pairs) {
     EvaluationTable rest = table_of_the_rest(pair);

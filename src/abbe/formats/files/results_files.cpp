@@ -34,6 +34,13 @@ std::string file_or_of_results(const std::string& named, const std::string& resu
   return path.string();
 }
 
+std::string file_of_results(const std::string& results, const char* in_results) {
+  const std::filesystem::path path = std::filesystem::path(results) / in_results;
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) return path.string();
+  throw InputError({.file = path.string()}, "these results have no such file", "a results folder of abbe run");
+}
+
 std::string results_summary_text(const std::string& results) {
   if (results.empty()) return {};
   const std::filesystem::path path = std::filesystem::path(results) / "summary.json";
