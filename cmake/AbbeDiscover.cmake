@@ -30,6 +30,7 @@ set(abbe_not_unit
   RobustMonteCarlo.* RuntimeTurns.* RuntimeUncertainty.* ScanRegistrationOfARequest.* StepFile.* WangBallBar.* YinMarks.*
   YinResults.* YinSections.*)
 
+# COST: long tests start first, so that the short ones fill up the processors at the end.
 function(abbe_discover_tests program prefix label timeout)
   set(labels ${label})
   if(prefix IN_LIST abbe_parts_prefixes)
@@ -40,11 +41,15 @@ function(abbe_discover_tests program prefix label timeout)
     if(label STREQUAL unit)
       list(JOIN abbe_not_unit ":" slow)
       gtest_discover_tests(${program} TEST_PREFIX "${prefix}" DISCOVERY_MODE PRE_TEST TEST_FILTER "${slow}"
-        PROPERTIES LABELS quick TIMEOUT ${timeout})
+        PROPERTIES LABELS quick TIMEOUT ${timeout} COST 5)
       set(filter TEST_FILTER "-${slow}")
     endif()
+    set(cost 0)
+    if(label STREQUAL long)
+      set(cost 20)
+    endif()
     gtest_discover_tests(${program} TEST_PREFIX "${prefix}" DISCOVERY_MODE PRE_TEST ${filter}
-      PROPERTIES LABELS ${label} TIMEOUT ${timeout})
+      PROPERTIES LABELS ${label} TIMEOUT ${timeout} COST ${cost})
     return()
   endif()
   list(JOIN abbe_not_sanitized ":" left_out)
