@@ -49,7 +49,7 @@ class Bash(InAFolder):
         return sorted(word for word in done.stdout.splitlines() if word)
 
     def test_subcommands(self):
-        self.assertEqual(self.complete("abbe comp"), ["compensate"])
+        self.assertEqual(self.complete("abbe comp"), ["compare", "compensate"])
         self.assertEqual(self.complete("abbe re"), ["register", "reproduce"])
         self.assertEqual(self.complete("abbe compensate t"), ["table"])
         self.assertEqual(self.complete("abbe help compensate fr"), ["freeze"])
