@@ -6,6 +6,7 @@
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/report/pages/evaluation_files.h"
+#include "abbe/report/words/evaluation_text.h"
 #include "abbe/study/compared_campaigns.h"
 #include "command.h"
 #include "errors_for_use.h"
@@ -42,7 +43,7 @@ int run_compare(const CompareCommand& command) {
   if (command.json) {
     fmt::print("{}", json_text(evaluation_json(result.report)));
   } else {
-    fmt::print("{}", comparison_text(result));
+    fmt::print("{}", evaluation_text(result.report));
     if (!command.output.empty()) fmt::print("\nresults in {}\n", command.output);
   }
   if (!result.is_judged()) tell("abbe: not all changes could be judged\n");
@@ -68,7 +69,7 @@ void add_compare_command(CommandLine& line) {
       ->required();
   add_machine(*app, command->machine, "Machine file of all campaigns (default: machine.toml of each results folder)");
   app->add_option("--level-percent", command->level_percent,
-                  "Probability that any error of a pair is called changed if none has")
+                  "Significance level: probability that any error of a pair is called changed if none has")
       ->check(in_range(1e-6, 50.0))
       ->capture_default_str();
   app->add_output_folder("-o,--output", command->output,

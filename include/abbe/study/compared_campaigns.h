@@ -17,7 +17,7 @@
 //       std::printf("%s changed by %.1f +- %.1f %s\n", error.name.c_str(), micro * error.change,
 //                   micro * *error.expanded_uncertainty, error.is_angle ? "urad" : "um");
 //     }
-//     return result.is_judged() ? 0 : 1;  // comparison_text(result) says more
+//     return result.is_judged() ? 0 : 1;  // evaluation_text(result.report) says more
 //   }
 //
 // It prints:
@@ -149,12 +149,9 @@ struct ComparedCampaigns {
 /// Compares campaigns. Opens no file and prints nothing.
 /// @param options  progress: pairs done of all
 /// @throws InputError for fewer than two campaigns, machines of different chains or axes, errors composed in different
-///   orders, a level that is none, and as apply_tolerances()
+///   orders, a level that is not one, and as apply_tolerances()
 /// @throws Stopped
 ComparedCampaigns compare_campaigns(const CompareRequest& request, const JobOptions& options = {});
-
-/// For people: the table of changes and the figures; lines with their ends.
-std::string comparison_text(const ComparedCampaigns& result);
 
 /// Files of the maps of the change, name and contents: change.csv and change.vts (or .vtu), a pair each.
 std::vector<std::pair<std::string, std::string>> comparison_files(const ComparedCampaigns& result);

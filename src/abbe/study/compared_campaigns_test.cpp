@@ -9,6 +9,7 @@
 
 #include "abbe/formats/text/message_of.h"
 #include "abbe/identify/distributions.h"
+#include "abbe/report/words/evaluation_text.h"
 #include "abbe/study/campaigns_for_test.h"
 
 namespace abbe {
@@ -84,7 +85,7 @@ TEST(ComparedCampaigns, AKnownChangeIsFoundWithItsAmountAndNothingElse) {
     const ComparedError& squareness = *find_error(pair, "EC0Y");
     covered += std::abs(squareness.change - 15e-6) <= *squareness.expanded_uncertainty ? 1U : 0U;
     if (k > 0) continue;
-    EXPECT_THAT(comparison_text(result), HasSubstr("2 of 12 errors changed: "));
+    EXPECT_THAT(evaluation_text(result.report), HasSubstr("2 of 12 errors changed: "));
     EXPECT_EQ(result.report.details["pairs"][0]["errors"][0]["verdict"], "changed");
   }
   // 6 um and 15 urad are five standard uncertainties or more.
@@ -150,7 +151,7 @@ TEST(ComparedCampaigns, AnErrorOfOneCampaignIsNeverComparedWithZero) {
   EXPECT_TRUE(changed_errors(pair).empty());
   EXPECT_TRUE(result.is_judged());
   EXPECT_LT(pair.change.statistics.maximum, 1e-12);
-  EXPECT_THAT(comparison_text(result), HasSubstr("identified in A only"));
+  EXPECT_THAT(evaluation_text(result.report), HasSubstr("identified in A only"));
   const ComparedPair other = compare_campaigns(request_of({without, mill_campaign("a")})).pairs.front();
   EXPECT_EQ(other.only_second, std::vector<std::string>{"ECX"});
 }
@@ -172,12 +173,12 @@ TEST(ComparedCampaigns, WithoutUncertaintiesTheChangeIsStatedAndItsSignificanceI
   EXPECT_EQ(changed.verdict, ChangeVerdict::not_known);
   EXPECT_FALSE(changed.expanded_uncertainty || changed.chi_square || pair.chi_square || pair.share);
   EXPECT_GT(pair.change.statistics.maximum, 1e-4);
-  EXPECT_THAT(comparison_text(result), HasSubstr("bare.errors.toml states no uncertainties"));
+  EXPECT_THAT(evaluation_text(result.report), HasSubstr("bare.errors.toml states no uncertainties"));
   // Standard uncertainties alone count as independent, and that is said.
   other.errors.covariance.resize(0, 0);
   const ComparedCampaigns stated = compare_campaigns(request_of({other, other}));
   EXPECT_TRUE(stated.is_judged());
-  EXPECT_THAT(comparison_text(stated), HasSubstr("without correlations"));
+  EXPECT_THAT(evaluation_text(stated.report), HasSubstr("without correlations"));
 }
 
 TEST(ComparedCampaigns, ACovarianceThatIsSingularHasTheRankOfWhatVaries) {
@@ -229,7 +230,7 @@ TEST(ComparedCampaigns, ThreeAreComparedWithTheFirstAndWithTheOneBefore) {
   EXPECT_TRUE(changed_errors(result.pairs[0]).empty());
   EXPECT_EQ(changed_errors(result.pairs[1]), std::vector<std::string>{name});
   EXPECT_EQ(changed_errors(result.pairs[2]), std::vector<std::string>{name});
-  const std::string text = comparison_text(result);
+  const std::string text = evaluation_text(result.report);
   EXPECT_THAT(text, HasSubstr("Changes against at0 (A)"));
   EXPECT_THAT(text, HasSubstr("Changes from each campaign to the next"));
   const nlohmann::ordered_json json = evaluation_json(result.report);
@@ -308,7 +309,8 @@ TEST(ComparedCampaigns, TravelsMayDifferAndTheCommonRangeCounts) {
   EXPECT_NEAR(error.change, 0, 1e-15);
   EXPECT_EQ(error.beyond[0], 0);
   EXPECT_TRUE(changed_errors(result.pairs.front()).empty());
-  EXPECT_THAT(comparison_text(result), HasSubstr("The travels differ; what they have in common counts: X 0 to 500 mm"));
+  EXPECT_THAT(evaluation_text(result.report),
+              HasSubstr("The travels differ; what they have in common counts: X 0 to 500 mm"));
 }
 
 TEST(ReadCampaigns, NamesEachCampaignAndItsMachine) {

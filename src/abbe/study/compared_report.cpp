@@ -163,8 +163,7 @@ void add_notes_on_missing_errors(const ComparedCampaigns& result, EvaluationRepo
     before = pair.partial.missing_names();
     report.notes.push_back(
         fmt::format("{}: {} that move the tool against the workpiece are in both campaigns. What has changed in the "
-                    "others is in no "
-                    "figure: {}.",
+                    "others is in no figure: {}.",
                     pair_words(pair), pair.partial.short_words(), before));
   }
 }
@@ -218,8 +217,7 @@ void add_notes(const CompareRequest& request, ComparedCampaigns& result) {
         100 * result.level, 100 * result.level));
     report.notes.push_back(
         "The campaigns are taken as independent. Uncertainties that they share, as of one laser or one artefact, "
-        "cancel "
-        "in a change: it is then known better than stated.");
+        "cancel in a change, which is then known better than stated.");
   }
   report.notes.push_back(
       "A change is stated where its amount is largest over the range; its probability is that of the whole function.");
@@ -267,7 +265,7 @@ void write_comparison_report(const CompareRequest& request, ComparedCampaigns& r
   for (const ComparedPair& pair : result.pairs) {
     EvaluationTable changes = table_of_changes(result, pair);
     if (changes.rows.empty()) continue;
-    changes.with_figures = is_only_one;
+    changes.with_figures = changes.in_text = is_only_one;
     report.tables.push_back(std::move(changes));
   }
   for (const ComparedPair& pair : result.pairs) {

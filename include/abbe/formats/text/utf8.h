@@ -10,6 +10,9 @@ namespace abbe {
 /// there is none.
 std::size_t utf8_length(std::string_view text, std::size_t at);
 
+/// Columns on a screen: characters, not bytes.
+std::size_t characters_in(std::string_view text);
+
 /// Whether the character that begins there is one that terminals and pages obey instead of showing it: control
 /// characters, also U+0080 to U+009F, separators of lines, and what changes the direction of writing.
 bool is_obeyed(std::string_view text, std::size_t at);

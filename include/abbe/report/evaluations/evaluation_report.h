@@ -88,6 +88,7 @@ struct EvaluationTable {
   std::vector<std::string> headers;
   std::vector<std::vector<std::string>> rows;
   bool with_figures = false;  ///< a page shows it with the figures, not among the details
+  bool in_text = false;       ///< evaluation_text() shows it before the figures
 };
 
 struct EvaluationPlot {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/utf8.h"
 
 namespace abbe {
 namespace {
@@ -88,10 +89,8 @@ class Scanner {
     const std::string_view before = text_.substr(0, at_);
     const std::size_t line_end = before.rfind('\n');
     const std::string_view line = line_end == std::string_view::npos ? before : before.substr(line_end + 1);
-    const auto characters = std::count_if(line.begin(), line.end(),
-                                          [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
     throw InputError({file_, 1 + static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')),
-                      1 + static_cast<std::size_t>(characters), ""},
+                      1 + characters_in(line), ""},
                      problem, expected);
   }
 

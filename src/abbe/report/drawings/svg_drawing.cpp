@@ -95,11 +95,7 @@ std::string xml_text(std::string_view text) {
   return out;
 }
 
-double text_width(std::string_view text, double size) {
-  const auto letters =
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
-  return 0.56 * size * static_cast<double>(letters);
-}
+double text_width(std::string_view text, double size) { return 0.56 * size * static_cast<double>(characters_in(text)); }
 
 std::vector<std::string> text_lines(std::string_view text, double width, double size) {
   std::vector<std::string> lines;

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "abbe/report/words/evaluation_text.h"
+
 namespace abbe {
 namespace {
 
@@ -32,6 +34,20 @@ EvaluationReport small() {
   report.plots = {{"plot", "all & everything", {"<svg></svg>", ""}}};
   report.details["targets"] = {1, 2};
   return report;
+}
+
+TEST(EvaluationText, ShowsTablesThatAreForItWithNumbersInLine) {
+  EvaluationReport report = small();
+  EXPECT_EQ(evaluation_text(report).find("<100>"), std::string::npos);
+  report.tables = {
+      {"changes of \u00e4", {"error", "change", "judged"}, {{"EX\u00e4X", "-1.5", "no"}, {"E", "12.5", "yes"}}}};
+  report.tables[0].in_text = true;
+  EXPECT_THAT(evaluation_text(report), HasSubstr("targets: 11\n\nchanges of \u00e4\n"
+                                                 "  error  change  judged\n"
+                                                 "  EX\u00e4X     -1.5  no\n"
+                                                 "  E        12.5  yes\n\n"));
+  report.tables[0].rows.clear();
+  EXPECT_THAT(evaluation_text(report), HasSubstr("  error  change  judged\n\n"));
 }
 
 TEST(EvaluationFigure, IsShownInItsUnitWithTwoDecimals) {

@@ -6,6 +6,7 @@
 
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
+#include "abbe/formats/text/utf8.h"
 
 namespace abbe {
 namespace {
@@ -19,14 +20,42 @@ std::string joined_symbols(const EvaluationReport& report) {
   return text;
 }
 
-/// Columns on the screen: letters, not bytes.
-std::size_t letters(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(width - std::min(width, characters_in(text)), ' ');
 }
 
-std::string padded(const std::string& text, std::size_t width) {
-  return text + std::string(width - std::min(width, letters(text)), ' ');
+constexpr std::string_view kBeginNumbers = "-<0123456789";
+
+/// Whether the cells of a column are numbers, perhaps with a unit or an uncertainty; or there are none.
+bool holds_numbers(const EvaluationTable& table, std::size_t column) {
+  return std::all_of(table.rows.begin(), table.rows.end(), [&](const std::vector<std::string>& row) {
+    const std::string& cell = row[column];
+    return cell.empty() || cell == "\xE2\x80\x93" || kBeginNumbers.find(cell.front()) != std::string_view::npos;
+  });
+}
+
+/// Columns of numbers end in line, others begin in line.
+std::string table_text(const EvaluationTable& table) {
+  std::vector<std::size_t> widths;
+  std::vector<bool> to_the_right;
+  for (std::size_t c = 0; c < table.headers.size(); ++c) {
+    std::size_t width = characters_in(table.headers[c]);
+    for (const std::vector<std::string>& row : table.rows) width = std::max(width, characters_in(row[c]));
+    widths.push_back(width);
+    to_the_right.push_back(holds_numbers(table, c));
+  }
+  const auto line = [&](const std::vector<std::string>& cells) {
+    std::string text;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      const std::string space(widths[c] - characters_in(cells[c]), ' ');
+      text += "  " + (to_the_right[c] ? space + cells[c] : cells[c] + space);
+    }
+    text.erase(text.find_last_not_of(' ') + 1);
+    return text + "\n";
+  };
+  std::string text = table.caption + "\n" + line(table.headers);
+  for (const std::vector<std::string>& row : table.rows) text += line(row);
+  return text + "\n";
 }
 
 }  // namespace
@@ -36,10 +65,13 @@ std::string evaluation_text(const EvaluationReport& report) {
   text += fmt::format("{}\n{}\n", report.title, report.standard);
   for (const auto& [name, fact] : report.facts) text += fmt::format("  {}: {}\n", name, fact);
   text += "\n";
+  for (const EvaluationTable& table : report.tables) {
+    if (table.in_text) text += table_text(table);
+  }
   std::size_t symbol_width = 0, name_width = 0;
   for (const EvaluationFigure& figure : report.figures) {
-    symbol_width = std::max(symbol_width, letters(figure.symbol));
-    name_width = std::max(name_width, letters(figure.name));
+    symbol_width = std::max(symbol_width, characters_in(figure.symbol));
+    name_width = std::max(name_width, characters_in(figure.name));
   }
   for (const EvaluationFigure& figure : report.figures) {
     text += fmt::format("  {}  {}", padded(figure.symbol, symbol_width), padded(figure.name, name_width));
