@@ -1,6 +1,7 @@
 #include "abbe/formats/import/exact_decimal.h"
 
 #include <algorithm>
+#include <boost/multiprecision/cpp_int.hpp>
 #include <charconv>
 
 #include "abbe/formats/text/ascii_letters.h"
@@ -9,29 +10,14 @@ namespace abbe {
 namespace {
 
 constexpr int kLargestExponent = 60;
+constexpr std::size_t kMostDigits = 1000;
 
-/// Both of the same length: a plus b.
-std::string sum_of_digits(std::string a, std::string_view b) {
-  int carry = 0;
-  for (std::size_t i = a.size(); i-- > 0;) {
-    const int digit = (a[i] - '0') + (b[i] - '0') + carry;
-    a[i] = static_cast<char>('0' + digit % 10);
-    carry = digit / 10;
-  }
-  if (carry > 0) a.insert(a.begin(), static_cast<char>('0' + carry));
-  return a;
-}
+using boost::multiprecision::cpp_int;
 
-/// Both of the same length, a not below b: a minus b.
-std::string difference_of_digits(std::string a, std::string_view b) {
-  int borrowed = 0;
-  for (std::size_t i = a.size(); i-- > 0;) {
-    int digit = (a[i] - '0') - (b[i] - '0') - borrowed;
-    borrowed = digit < 0 ? 1 : 0;
-    if (digit < 0) digit += 10;
-    a[i] = static_cast<char>('0' + digit);
-  }
-  return a;
+/// A leading zero would make it octal.
+cpp_int whole_number(const std::string& digits) {
+  const std::size_t first = digits.find_first_not_of('0');
+  return first == std::string::npos ? cpp_int(0) : cpp_int(digits.substr(first));
 }
 
 }  // namespace
@@ -49,7 +35,7 @@ std::optional<ExactDecimal> ExactDecimal::of(std::string_view text) {
     number.digits_ += text[at];
     if (fraction) --number.exponent_;
   }
-  if (number.digits_.empty()) return std::nullopt;
+  if (number.digits_.empty() || number.digits_.size() > kMostDigits) return std::nullopt;
   if (at < text.size()) {
     if (lower_case(text[at]) != 'e') return std::nullopt;
     ++at;
@@ -64,15 +50,7 @@ std::optional<ExactDecimal> ExactDecimal::of(std::string_view text) {
   return number;
 }
 
-void ExactDecimal::multiply(std::uint32_t factor) {
-  std::uint64_t carry = 0;
-  for (std::size_t i = digits_.size(); i-- > 0;) {
-    carry += static_cast<std::uint64_t>(digits_[i] - '0') * factor;
-    digits_[i] = static_cast<char>('0' + carry % 10);
-    carry /= 10;
-  }
-  for (; carry > 0; carry /= 10) digits_.insert(digits_.begin(), static_cast<char>('0' + carry % 10));
-}
+void ExactDecimal::multiply(std::uint32_t factor) { digits_ = cpp_int(whole_number(digits_) * factor).str(); }
 
 void ExactDecimal::align(int exponent) {
   if (exponent_ <= exponent) return;
@@ -84,17 +62,11 @@ void ExactDecimal::add(const ExactDecimal& other) {
   ExactDecimal more = other;
   align(more.exponent_);
   more.align(exponent_);
-  const std::size_t length = std::max(digits_.size(), more.digits_.size());
-  digits_.insert(0, length - digits_.size(), '0');
-  more.digits_.insert(0, length - more.digits_.size(), '0');
-  if (negative_ == more.negative_) {
-    digits_ = sum_of_digits(digits_, more.digits_);
-  } else if (digits_ >= more.digits_) {
-    digits_ = difference_of_digits(digits_, more.digits_);
-  } else {
-    digits_ = difference_of_digits(more.digits_, digits_);
-    negative_ = more.negative_;
-  }
+  cpp_int sum = whole_number(digits_), added = whole_number(more.digits_);
+  if (negative_) sum = -sum;
+  sum += more.negative_ ? cpp_int(-added) : added;
+  negative_ = sum < 0;
+  digits_ = cpp_int(abs(sum)).str();
 }
 
 bool ExactDecimal::is_negative() const { return negative_ && digits_.find_first_not_of('0') != std::string::npos; }
