@@ -22,8 +22,9 @@ bool is_results_folder(const std::string& path);
 std::string file_or_of_results(const std::string& named, const std::string& results, const char* in_results,
                                const char* option);
 
-/// Name of a file that results of any study hold. @throws InputError if they do not
-std::string file_of_results(const std::string& results, const char* in_results);
+/// Name of a file that results hold. @throws InputError, saying what is expected, if they do not
+std::string file_of_results(const std::string& results, const char* in_results,
+                            const std::string& expected = "a results folder of abbe run");
 
 /// Text of the results' summary.json, or empty where there is none. @param results  folder; empty: none
 std::string results_summary_text(const std::string& results);

@@ -25,20 +25,14 @@ std::string file_or_of_results(const std::string& named, const std::string& resu
   if (results.empty()) {
     throw InputError({.field = option}, "is missing", "this option, or the results folder of abbe run");
   }
-  const std::filesystem::path path = std::filesystem::path(results) / in_results;
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) {
-    throw InputError({.file = path.string()}, "these results have no such file",
-                     fmt::format("results of a simulated study, or {} with a file", option));
-  }
-  return path.string();
+  return file_of_results(results, in_results, fmt::format("results of a simulated study, or {} with a file", option));
 }
 
-std::string file_of_results(const std::string& results, const char* in_results) {
+std::string file_of_results(const std::string& results, const char* in_results, const std::string& expected) {
   const std::filesystem::path path = std::filesystem::path(results) / in_results;
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored)) return path.string();
-  throw InputError({.file = path.string()}, "these results have no such file", "a results folder of abbe run");
+  throw InputError({.file = path.string()}, "these results have no such file", expected);
 }
 
 std::string results_summary_text(const std::string& results) {
