@@ -66,10 +66,6 @@ void check_request(const CompareRequest& request) {
   }
 }
 
-std::vector<double> as_parameters(const Eigen::VectorXd& values) {
-  return {values.data(), values.data() + values.size()};
-}
-
 /// Maps of the change of a pair, of the errors that can be compared: what only one campaign knows, or nobody, is no
 /// change.
 class ChangeMap {
@@ -138,7 +134,7 @@ class ChangeMap {
 
   ErrorSet errors(const Eigen::VectorXd& values) const {
     ErrorSet set = errors_;
-    set.set_parameters(as_parameters(values));
+    set.set_parameters(as_list(values));
     return set;
   }
 
@@ -212,9 +208,9 @@ ComparedPair compared_pair(const CompareRequest& request, const Machine& machine
   pair.second = second;
   pair.apart = model.apart;
   pair.tools_differ = model.tools_differ;
-  bool moved = false;
-  pair.conventions = bring_into_one_gauge(a, b, model, moved);
-  compare_errors(model, request.level, request.page, moved, pair);
+  GaugeChange gauge = bring_into_one_gauge(a, b, model);
+  pair.conventions = std::move(gauge.conventions);
+  compare_errors(model, {.level = request.level, .curves = request.page, .one_gauge = !gauge.is_moved}, pair);
   ChangeMap(model, pair).make();
   take_out_missing(model, pair);
   return pair;
@@ -233,7 +229,7 @@ CompareRequest read_campaigns(const std::vector<std::string>& campaigns, const s
     campaign.errors_file = results.empty() ? path : file_of_results(results, "errors.toml");
     if (!machine && results.empty()) {
       throw InputError({.field = "--machine"}, "is missing, and " + path + " is not a results folder",
-                       "this option for errors files; or results folders of abbe run");
+                       "a machine file for campaigns that are errors files, or results folders of abbe run");
     }
     campaign.machine = machine ? *machine : read_machine(file_of_results(results, "machine.toml"));
     campaign.errors = read_errors(campaign.errors_file, campaign.machine);

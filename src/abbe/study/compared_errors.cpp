@@ -145,10 +145,6 @@ class ErrorComparison {
     return model_.campaigns[c].values.segment(of.first, of.size);
   }
 
-  static std::vector<double> as_list(const Eigen::VectorXd& values) {
-    return {values.data(), values.data() + values.size()};
-  }
-
   std::vector<double> uncertainties(std::size_t c, const ModelledError& of, const Eigen::MatrixXd& functions) const {
     const Eigen::MatrixXd spread = functions * covariance(c, of);
     return as_list(spread.cwiseProduct(functions).rowwise().sum().cwiseMax(0).cwiseSqrt());
@@ -226,8 +222,8 @@ bool is_nothing(const ComparisonModel& model, const ModelledError& error) {
 
 }  // namespace
 
-void compare_errors(const ComparisonModel& model, double level, bool curves, bool moved, ComparedPair& pair) {
-  const ErrorComparison comparison(model, curves);
+void compare_errors(const ComparisonModel& model, const ErrorTests& tests, ComparedPair& pair) {
+  const ErrorComparison comparison(model, tests.curves);
   const Index m = model.campaigns[0].values.size();
   Eigen::MatrixXd all(0, m);
   std::vector<double> probabilities;
@@ -248,9 +244,9 @@ void compare_errors(const ComparisonModel& model, double level, bool curves, boo
   for (ComparedError& error : pair.errors) {
     if (!error.chi_square) continue;
     error.adjusted = adjusted[next++];
-    if (error.adjusted <= level) error.verdict = ChangeVerdict::changed;
+    if (error.adjusted <= tests.level) error.verdict = ChangeVerdict::changed;
   }
-  if (!moved) test_together(model, all, pair);
+  if (tests.one_gauge) test_together(model, all, pair);
 }
 
 }  // namespace abbe

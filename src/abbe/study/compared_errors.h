@@ -5,6 +5,12 @@
 
 namespace abbe {
 
+struct ErrorTests {
+  double level = 0.05;    ///< of significance, of the family of errors
+  bool curves = false;    ///< curves of error motions are wanted
+  bool one_gauge = true;  ///< both campaigns have had one from the beginning
+};
+
 /// Fills errors and the test of all of them, except for `at_tool`.
 ///
 /// A change d = G (x_2 - x_1) has the covariance K = G (C_1 + C_2) G', G orthonormal combinations of the parameters of
@@ -12,8 +18,6 @@ namespace abbe {
 /// All errors are tested together only where both campaigns have one gauge from the beginning: readings can know some
 /// combinations of errors a thousand times better than each of them, better than an S-transformation, which is of first
 /// order, brings them into another gauge.
-/// @param curves  whether curves are wanted
-/// @param moved   whether the campaigns were brought into one gauge
-void compare_errors(const ComparisonModel& model, double level, bool curves, bool moved, ComparedPair& pair);
+void compare_errors(const ComparisonModel& model, const ErrorTests& tests, ComparedPair& pair);
 
 }  // namespace abbe

@@ -84,7 +84,7 @@ std::string place_text(const Machine& machine, const ComparedError& error) {
 
 /// Errors in rows, pairs in columns: "5.01 ± 1.20 *".
 EvaluationTable table_of_pairs(const ComparedCampaigns& result, const std::string& caption, bool against_first) {
-  EvaluationTable table{caption, {"error", "what it is", "unit"}, {}, true};
+  EvaluationTable table{caption, {"error", "what it is", "unit"}, {}, true, true};
   std::vector<const ComparedPair*> pairs;
   for (const ComparedPair& pair : result.pairs) {
     const bool is_drift = pair.second == pair.first + 1;
@@ -194,8 +194,7 @@ EvaluationTable table_of_changes(const ComparedCampaigns& result, const Compared
                                     result.names[pair.second], second),
                         {"error", "what it is", first, second, pair_words(pair), "U (k = 2)", "unit", "at", "p",
                          "p (Holm)", "at the tool / \xC2\xB5m", "verdict"},
-                        {},
-                        true};
+                        {}};
   for (const ComparedError* const error : what_matters_first(pair)) {
     const bool angle = error->is_angle;
     table.rows.push_back({error->name, error->words, micro_text(error->value[0], angle),
@@ -219,7 +218,7 @@ EvaluationTable table_of_drift(const ComparedCampaigns& result) {
 }
 
 EvaluationTable table_of_the_rest(const ComparedPair& pair) {
-  EvaluationTable table{fmt::format("Not compared, {}", pair_words(pair)), {"error", "why"}, {}};
+  EvaluationTable table{fmt::format("Not compared, {}", pair_words(pair)), {"error", "why"}, {}, false, true};
   const std::string first = campaign_letter(pair.first), second = campaign_letter(pair.second);
   for (const std::string& name : pair.only_first) table.rows.push_back({name, "identified in " + first + " only"});
   for (const std::string& name : pair.only_second) table.rows.push_back({name, "identified in " + second + " only"});

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "abbe/errors/actual_pose.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/identify/gauge.h"
-#include "abbe/verify/known_range.h"
+#include "abbe/study/pose_conventions.h"
 
 namespace abbe {
 namespace {
@@ -15,122 +14,12 @@ using Index = Eigen::Index;
 
 // Standard uncertainty of a transformed parameter over its typical size, below which it is rounding of zero: 1e-5 um.
 constexpr double kNoSize = 1e-6;
-// A combination of errors whose effect is below this part of the largest changes no pose. At errors of zero it is
-// either rounding or real.
-constexpr double kNoEffect = 1e-9;
 // Variance of a combination over the sum of the variances of its parts, below which it is rounding of zero.
 constexpr double kNoVariance = 1e-10;
 // Eigenvalues of correlations below this are rounding of zero.
 constexpr double kNoEigenvalue = 1e-11;
 // Part of a direction that counts as lying outside of a space.
 constexpr double kOutside = 1e-5;
-constexpr std::size_t kLeastPoses = 200, kMostPoses = 2000;
-
-/// Equations that fix what changes no pose, as the conventions have it.
-struct Conventions {
-  std::vector<GaugeConstraint> constraints;  ///< functional and direction: [parameters of the errors]
-};
-
-ErrorSet at_zero(ErrorSet errors) {
-  for (ErrorMotion& motion : errors.motions) {
-    if (motion.basis.kind == BasisKind::table_monotone) motion.basis.kind = BasisKind::table_linear;
-  }
-  errors.set_parameters(std::vector<double>(errors.parameter_count(), 0.0));
-  return errors;
-}
-
-/// Derivatives of the tool's pose by the errors at poses over their range, without what one rigid motion of the
-/// workpiece and one of the tool explain.
-/// @param column_norms  [p] before these are taken out
-Eigen::MatrixXd pose_derivatives(const Machine& machine, const ErrorSet& errors, const PoseList& poses,
-                                 Eigen::VectorXd& column_norms) {
-  const Index count = static_cast<Index>(poses.count()), p = static_cast<Index>(errors.parameter_count());
-  Eigen::MatrixXd derivatives(6 * count, p), datum = Eigen::MatrixXd::Zero(6 * count, 12);
-  std::vector<Eigen::Vector3d> points;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (Index k = 0; k < count; ++k) {
-    const std::vector<double> positions = poses.pose(static_cast<std::size_t>(k));
-    Deviation deviation;
-    Eigen::MatrixXd by_parameters;
-    tool_deviation(machine, errors, positions, deviation, &by_parameters);
-    derivatives.middleRows(6 * k, 6) = by_parameters;
-    const RigidTransform pose = nominal_workpiece_from_tool(machine, positions);
-    points.push_back(pose.translation);
-    centre += pose.translation / static_cast<double>(count);
-    datum.block<3, 3>(6 * k, 6) = pose.rotation;
-    datum.block<3, 3>(6 * k + 3, 9) = pose.rotation;
-  }
-  double size = 0;
-  for (const Eigen::Vector3d& point : points) size += (point - centre).squaredNorm() / static_cast<double>(count);
-  size = std::max(std::sqrt(size), 1.0);
-  for (Index k = 0; k < count; ++k) {
-    const Eigen::Vector3d at = points[static_cast<std::size_t>(k)] - centre;
-    datum.block<3, 3>(6 * k, 0).setIdentity();
-    datum.block<3, 3>(6 * k, 3) << 0, at.z(), -at.y(), -at.z(), 0, at.x(), at.y(), -at.x(), 0;
-    datum.block<3, 3>(6 * k, 3) /= size;
-    datum.block<3, 3>(6 * k + 3, 3) = Eigen::Matrix3d::Identity() / size;
-    // A radian weighs as much as the displacement that it makes over the workspace.
-    derivatives.middleRows(6 * k + 3, 3) *= size;
-    datum.middleRows(6 * k + 3, 3) *= size;
-  }
-  column_norms = derivatives.colwise().norm();
-  PivotedQr qr(datum);
-  qr.set_threshold(1e-9);
-  const Eigen::MatrixXd taken = qr.orthonormal(qr.rank());
-  for (int pass = 0; pass < 2; ++pass) derivatives -= taken * (taken.transpose() * derivatives).eval();
-  return derivatives;
-}
-
-Conventions conventions_of(const Machine& machine, const ErrorSet& file_errors) {
-  Conventions conventions;
-  const ErrorSet errors = at_zero(file_errors);
-  const std::vector<AxisRange> ranges = common_known_ranges(machine, {&errors}, 2);
-  if (std::any_of(ranges.begin(), ranges.end(), [](const AxisRange& range) { return range.to < range.from; })) {
-    return conventions;
-  }
-  std::size_t functions = 0;
-  for (const ErrorMotion& motion : errors.motions) functions = std::max(functions, motion.basis.size());
-  const std::size_t count = std::min(kMostPoses, std::max({kLeastPoses, errors.parameter_count(), 20 * functions}));
-  Eigen::VectorXd norms;
-  const Eigen::MatrixXd derivatives = pose_derivatives(machine, errors, random_plan(machine, ranges, count, 1), norms);
-
-  Problem problem;
-  problem.machine = machine;
-  problem.errors = errors;
-  const double largest = norms.size() > 0 ? norms.maxCoeff() : 0;
-  for (Index i = 0; i < norms.size(); ++i) {
-    if (norms[i] > kNoEffect * largest) problem.machine_parameters.push_back(static_cast<std::size_t>(i));
-  }
-  const Index n = static_cast<Index>(problem.machine_parameters.size());
-  if (n == 0) return conventions;
-  NullSpace unseen;
-  unseen.column_norms.resize(n);
-  Eigen::MatrixXd scaled(derivatives.rows(), n);
-  for (Index i = 0; i < n; ++i) {
-    const Index from = static_cast<Index>(problem.machine_parameters[static_cast<std::size_t>(i)]);
-    unseen.column_norms[i] = norms[from];
-    scaled.col(i) = derivatives.col(from) / norms[from];
-  }
-  Qr::in_place(scaled);
-  const Eigen::MatrixXd upper = scaled.topRows(n).triangularView<Eigen::Upper>();
-  const SingularValues<> singular(upper, Eigen::ComputeFullV);
-  Index rank = 0;
-  while (rank < n && singular.values()[rank] > kNoEffect) ++rank;
-  unseen.basis = unseen.column_norms.cwiseInverse().asDiagonal() * singular.v().rightCols(n - rank);
-  unseen.rank = static_cast<std::size_t>(rank);
-  conventions.constraints = fix_gauge(problem, unseen, Eigen::VectorXd::Zero(n), GaugeChoice::iso);
-  for (GaugeConstraint& constraint : conventions.constraints) {
-    Eigen::VectorXd functional = Eigen::VectorXd::Zero(norms.size()), direction = functional;
-    for (Index i = 0; i < n; ++i) {
-      const Index to = static_cast<Index>(problem.machine_parameters[static_cast<std::size_t>(i)]);
-      functional[to] = constraint.functional[i];
-      direction[to] = constraint.direction[i];
-    }
-    constraint.functional = functional;
-    constraint.direction = direction;
-  }
-  return conventions;
-}
 
 /// [m] typical sizes of the parameters.
 Eigen::VectorXd typical_sizes(const Machine& machine, const ErrorSet& errors) {
@@ -201,9 +90,9 @@ SetValue value_of(const Eigen::VectorXd& functional, const Eigen::VectorXd& valu
 
 /// The value that a campaign gives to the quantity of an equation, by its own convention where it has one: the ranges
 /// of the campaigns may differ.
-SetValue value_of_campaign(const GaugeConstraint& constraint, const Conventions& own, const ErrorsFile& file,
-                           const CampaignInModel& in_model) {
-  for (const GaugeConstraint& one : own.constraints) {
+SetValue value_of_campaign(const GaugeConstraint& constraint, const std::vector<GaugeConstraint>& own,
+                           const ErrorsFile& file, const CampaignInModel& in_model) {
+  for (const GaugeConstraint& one : own) {
     if (constraint.quantity.empty() || one.quantity != constraint.quantity) continue;
     const std::vector<double> parameters = file.errors.parameters();
     const Eigen::Map<const Eigen::VectorXd> values(parameters.data(), static_cast<Index>(parameters.size()));
@@ -239,8 +128,8 @@ void choose_what_is_set_anew(std::vector<OpenDirection>& open) {
   }
 }
 
-}  // namespace
-
+/// Symmetric, with variances that are rounding set to zero together with their covariances.
+/// @param none  [m] standard uncertainties up to which they are that
 Eigen::MatrixXd cleaned_covariance(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& none) {
   Eigen::MatrixXd result = (covariance + covariance.transpose()) / 2;
   for (Index i = 0; i < result.rows(); ++i) {
@@ -251,9 +140,11 @@ Eigen::MatrixXd cleaned_covariance(const Eigen::MatrixXd& covariance, const Eige
   return result;
 }
 
-std::vector<std::string> bring_into_one_gauge(const IdentifiedCampaign& first, const IdentifiedCampaign& second,
-                                              ComparisonModel& model, bool& moved) {
-  moved = false;
+}  // namespace
+
+GaugeChange bring_into_one_gauge(const IdentifiedCampaign& first, const IdentifiedCampaign& second,
+                                 ComparisonModel& model) {
+  GaugeChange done;
   std::array<CampaignInModel, 2>& campaigns = model.campaigns;
   if (campaigns[0].covariance.size() == 0 || campaigns[1].covariance.size() == 0) return {};
   const Eigen::VectorXd sizes = typical_sizes(model.machine, model.errors);
@@ -262,12 +153,12 @@ std::vector<std::string> bring_into_one_gauge(const IdentifiedCampaign& first, c
                                               combinations_without_variance(campaigns[1].covariance, sizes)};
   if (have_one_gauge(set[0], set[1], change)) return {};
 
-  const Conventions common = conventions_of(model.machine, model.errors);
-  const std::array<Conventions, 2> own = {conventions_of(first.machine, first.errors.errors),
-                                          conventions_of(second.machine, second.errors.errors)};
+  const std::vector<GaugeConstraint> common = pose_conventions(model.machine, model.errors);
+  const std::array<std::vector<GaugeConstraint>, 2> own = {pose_conventions(first.machine, first.errors.errors),
+                                                           pose_conventions(second.machine, second.errors.errors)};
   const std::array<const ErrorsFile*, 2> files = {&first.errors, &second.errors};
   std::vector<OpenDirection> open;
-  for (const GaugeConstraint& constraint : common.constraints) {
+  for (const GaugeConstraint& constraint : common) {
     OpenDirection one{.constraint = &constraint, .direction = constraint.direction.cwiseQuotient(sizes), .set = {}};
     std::array<SetValue, 2> values;
     bool outside = false;
@@ -288,7 +179,6 @@ std::vector<std::string> bring_into_one_gauge(const IdentifiedCampaign& first, c
   choose_what_is_set_anew(open);
   const Index m = sizes.size();
   Eigen::MatrixXd transform = Eigen::MatrixXd::Identity(m, m);
-  std::vector<std::string> words;
   for (const OpenDirection& one : open) {
     if (!one.is_set_anew) continue;
     transform -= one.constraint->direction * one.constraint->functional.transpose();
@@ -297,15 +187,16 @@ std::vector<std::string> bring_into_one_gauge(const IdentifiedCampaign& first, c
       const SetValue value = value_of(one.constraint->functional, campaign.values, campaign.covariance);
       return value.has_variance || std::abs(value.value) > 1e-9 * one.constraint->functional.cwiseProduct(sizes).norm();
     };
-    if (std::any_of(campaigns.begin(), campaigns.end(), says_otherwise)) words.push_back(one.constraint->words);
-    moved = true;
+    if (std::any_of(campaigns.begin(), campaigns.end(), says_otherwise))
+      done.conventions.push_back(one.constraint->words);
+    done.is_moved = true;
   }
-  if (!moved) return {};
+  if (!done.is_moved) return done;
   for (CampaignInModel& campaign : campaigns) {
     campaign.values = transform * campaign.values;
     campaign.covariance = cleaned_covariance(transform * campaign.covariance * transform.transpose(), kNoSize * sizes);
   }
-  return words;
+  return done;
 }
 
 }  // namespace abbe

@@ -8,6 +8,12 @@
 
 namespace abbe {
 
+/// What was done to bring two campaigns into one gauge.
+struct GaugeChange {
+  bool is_moved = false;                 ///< anything was
+  std::vector<std::string> conventions;  ///< equations that were set for both, in words
+};
+
 /// Brings the errors of both campaigns into one gauge, to first order: an S-transformation of values and covariances.
 ///
 /// Some errors of a machine differ in words only: a slope of the straightness of Y is a squareness, a constant error of
@@ -19,14 +25,8 @@ namespace abbe {
 /// the range in common. A direction that both have determined stays as it is.
 ///
 /// Nothing is done either if one of them states no covariance: what it has set cannot be known.
-/// @param moved  becomes whether anything was done
-/// @returns the equations that were set for both, in words
 /// Source: W. Baarda, S-transformations and criterion matrices (1973); P. Teunissen, Zero order design (1985).
-std::vector<std::string> bring_into_one_gauge(const IdentifiedCampaign& first, const IdentifiedCampaign& second,
-                                              ComparisonModel& model, bool& moved);
-
-/// Symmetric, with variances that are rounding set to zero together with their covariances.
-/// @param none  [m] standard uncertainties up to which they are that
-Eigen::MatrixXd cleaned_covariance(const Eigen::MatrixXd& covariance, const Eigen::VectorXd& none);
+GaugeChange bring_into_one_gauge(const IdentifiedCampaign& first, const IdentifiedCampaign& second,
+                                 ComparisonModel& model);
 
 }  // namespace abbe

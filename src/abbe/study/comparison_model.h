@@ -13,6 +13,8 @@ namespace abbe {
 
 /// Typical errors of a machine, which make mm and rad comparable.
 inline constexpr double kTypicalErrorLength = 0.01, kTypicalErrorAngle = 5e-5;
+/// Descriptions of one machine agree to this, mm or in directions.
+inline constexpr double kSameGeometry = 1e-6;
 
 /// An error of either campaign, and where its parameters are in the model.
 struct ModelledError {
@@ -63,6 +65,9 @@ ComparisonModel comparison_model(const Machine& machine, const IdentifiedCampaig
 /// The machine of all campaigns, with the travel that they have in common.
 /// @throws InputError if chains, axes or orders of composition differ, or an axis has no travel in common
 Machine common_machine(const std::vector<IdentifiedCampaign>& campaigns);
+
+/// The same numbers as a list.
+std::vector<double> as_list(const Eigen::VectorXd& values);
 
 /// Functions of the terms of an error motion side by side, [positions, functions]; linear in the coefficients, or their
 /// derivative by them (monotone tables).

@@ -54,8 +54,8 @@ TEST(ComparisonModel, TakesTheFunctionsOfTheCampaignThatHasFewer) {
 
 TEST(ComparisonModel, AShapeThatOnlyOneCanDescribeIsNoChange) {
   ComparedPair pair;
-  compare_errors(model_of(only_exx(legendre(4), {0, 10, 3, 0, 30}, 0.5), only_exx(legendre(2), {0, 10, 3}, 0.5)), 0.05,
-                 false, false, pair);
+  compare_errors(model_of(only_exx(legendre(4), {0, 10, 3, 0, 30}, 0.5), only_exx(legendre(2), {0, 10, 3}, 0.5)),
+                 {.level = 0.05, .one_gauge = false}, pair);
   ASSERT_FALSE(pair.errors.empty());
   EXPECT_NE(pair.errors[0].verdict, ChangeVerdict::changed) << pair.errors[0].probability;
   EXPECT_GT(pair.errors[0].beyond[0], 25e-3);
