@@ -49,10 +49,7 @@ void take_mapping(const ImportRequest& request, ImportedTable& result) {
     if (taken.source < is_read.size()) is_read[taken.source] = true;
   }
   for (std::size_t k = 0; k < is_read.size(); ++k) {
-    const std::string& name = result.found.names[k];
-    if (is_read[k]) continue;
-    result.not_read.push_back(name.empty() ? fmt::format("column {}", k + 1)
-                                           : fmt::format("column {} '{}'", k + 1, name));
+    if (!is_read[k]) result.not_read.push_back(column_words(k, result.found.names[k]));
   }
 }
 
@@ -163,8 +160,8 @@ bool judge_by_machine(const ImportRequest& request, const Machine& machine, cons
     reverse_sense(*column);
     result.mapping.columns[static_cast<std::size_t>(column - result.columns.data())] = column->column;
   }
-  column->reason += fmt::format("; {}: the nominal machine fits to {:.3g} mm, and to {:.3g} mm with it reversed",
-                                convention_name(column->column.convention), better, worse);
+  column->reason +=
+      fmt::format("; the nominal machine fits to {:.3g} mm, and to {:.3g} mm with it reversed", better, worse);
   if (sense.is_proof()) drop_proved_doubts(machine, table, result);
   return sense.is_left();
 }

@@ -11,14 +11,32 @@ namespace abbe {
 namespace {
 
 std::string source_words(const ImportedTable& result, const ProposedColumn& column) {
-  const std::string& name = result.found.names[column.source];
-  std::string words = fmt::format("column {}", column.source + 1);
-  if (!name.empty()) words += fmt::format(" '{}'", printable(name, 60, LineFeeds::escaped));
+  std::string words = column_words(column.source, result.found.names[column.source]);
   if (!column.column.unit.empty()) words += fmt::format(", {}", column.column.unit);
   if (column.column.convention != ImportConvention::as_written) {
     words += fmt::format(", {}", convention_name(column.column.convention));
   }
   return words;
+}
+
+/// Parts separated by "; " behind the first words, in lines of at most 120 columns where their lengths allow it.
+std::string lines_of_parts(const std::string& first, std::string_view parts, std::size_t indent) {
+  constexpr std::size_t kColumns = 120;
+  std::string text, line = first;
+  bool has_part = false;
+  while (!parts.empty()) {
+    const std::size_t end = std::min(parts.find("; "), parts.size());
+    const std::string_view part = parts.substr(0, end);
+    parts.remove_prefix(std::min(end + 2, parts.size()));
+    if (has_part) line += ';';
+    if (has_part && characters_in(line) + characters_in(part) + 2 > kColumns) {
+      text += line + '\n';
+      line = std::string(indent - 1, ' ');
+    }
+    line += fmt::format(" {}", part);
+    has_part = true;
+  }
+  return text + line + '\n';
 }
 
 nlohmann::ordered_json layout_json(const TableLayout& layout) {
@@ -57,9 +75,11 @@ std::string imported_table_text(const ImportedTable& result) {
   std::size_t width = 0;
   for (const ProposedColumn& column : result.columns) width = std::max(width, column.column.name.size());
   for (const ProposedColumn& column : result.columns) {
-    text += fmt::format("  {:<{}}  {}: {}\n", column.column.name, width, source_words(result, column), column.reason);
+    text += lines_of_parts(fmt::format("  {:<{}}  {}:", column.column.name, width, source_words(result, column)),
+                           column.reason, width + 6);
     for (const std::string& doubt : column.doubts) {
-      text += fmt::format("  {:<{}}  {}: {}\n", "", width, result.doubts_accepted ? "accepted" : "UNCERTAIN", doubt);
+      text += lines_of_parts(fmt::format("  {:<{}}  {}:", "", width, result.doubts_accepted ? "accepted" : "UNCERTAIN"),
+                             doubt, width + 6);
     }
   }
   if (!result.not_read.empty()) text += fmt::format("not read: {}\n", fmt::join(result.not_read, ", "));

@@ -29,7 +29,7 @@ struct ImportedRows {
 ImportedRows imported_rows(std::string_view text, const std::string& file, const FoundLayout& found,
                            const ImportMapping& mapping, const Machine& machine, int threads = 0);
 
-/// Line in the file of a row, both from 1 and from 0.
+/// Line in the file, from 1, of a row, from 0.
 std::size_t imported_line(std::string_view text, const TableLayout& layout, std::size_t row);
 
 }  // namespace abbe

@@ -44,6 +44,9 @@ struct FoundLayout {
   std::vector<std::string> doubts;   ///< what somebody has to look at, a sentence each
 };
 
+/// A column in words for a terminal: "column 4 'X soll'", "column 4" without a name. @param column  from 0
+std::string column_words(std::size_t column, std::string_view name);
+
 /// What the caller knows.
 struct LayoutHints {
   std::optional<FieldSeparator> separator{};

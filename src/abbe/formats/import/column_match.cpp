@@ -9,6 +9,7 @@
 #include "abbe/formats/import/foreign_row.h"
 #include "abbe/formats/import/foreign_unit.h"
 #include "abbe/formats/import/foreign_word.h"
+#include "abbe/formats/text/csv_header.h"
 
 namespace abbe {
 namespace {
@@ -62,6 +63,16 @@ double score_of(const ImportColumn& wanted, const ColumnFacts& file) {
   const auto found = std::find(wanted.words.begin(), wanted.words.end(), word);
   if (found == wanted.words.end()) return 0;
   return kKnownWord - kNextWord * static_cast<double>(found - wanted.words.begin());
+}
+
+/// Name and unit as a header has them where the unit is none that is known: "z_furlong", "X [furlong]".
+std::pair<std::string, std::string> split_at_unknown_unit(const ColumnFacts& file) {
+  if (!file.unit.empty()) return {file.name, file.unit};
+  const std::size_t at = file.header.find_last_of("[(<_/");
+  if (at == std::string::npos || at == 0) return {};
+  const bool is_bracket = std::string_view("[(<").find(file.header[at]) != std::string_view::npos;
+  const std::string rest = file.header.substr(is_bracket ? at : at + 1);
+  return {std::string(csv_trimmed(std::string_view(file.header).substr(0, at))), std::string(without_brackets(rest))};
 }
 
 /// Takes away groups of which only a part was found, and what says the same twice.
@@ -163,6 +174,20 @@ int direction_of_word(const std::string& word) {
   return std::find(kNegative.begin(), kNegative.end(), small) != kNegative.end() ? -1 : 0;
 }
 
+std::optional<WrongUnit> wrong_unit(const ImportColumn& wanted, const std::vector<ColumnFacts>& file) {
+  if (wanted.holds != ImportColumn::Holds::number || wanted.quantity == Quantity::dimensionless) return std::nullopt;
+  for (std::size_t k = 0; k < file.size(); ++k) {
+    ColumnFacts without_unit = file[k];
+    auto [name, unit] = split_at_unknown_unit(file[k]);
+    if (unit.empty() || foreign_unit(unit, wanted.quantity) != nullptr) continue;
+    without_unit.name = name;
+    without_unit.unit.clear();
+    const bool own_name = name == wanted.base && can_be(wanted, without_unit);
+    if (own_name || score_of(wanted, without_unit) > 0) return WrongUnit{k, std::move(unit)};
+  }
+  return std::nullopt;
+}
+
 bool is_taken_by_order(const ImportColumn& column) {
   return column.holds == ImportColumn::Holds::number && (column.required || column.group == "point");
 }
@@ -188,7 +213,7 @@ ColumnMatch match_by_names(ImportKind kind, const std::vector<ImportColumn>& wan
     if (source == kNoSource) break;
     for (std::size_t k = source + 1; k < file.size(); ++k) {
       if (taken[k] || score_of(wanted[column], file[k]) != best) continue;
-      match.doubts[column] = fmt::format("{} has the same name", column_words(k + 1, file[k].name));
+      match.doubts[column] = fmt::format("{} has the same name", column_words(k, file[k].name));
     }
     taken[source] = true;
     match.source[column] = source;

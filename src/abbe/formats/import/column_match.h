@@ -2,6 +2,7 @@
 
 // Internal to formats: which column of a file is which column of a kind, by names.
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,15 @@ ColumnMatch match_by_names(ImportKind kind, const std::vector<ImportColumn>& wan
 /// Of a file without a header: numbers in their order. Everything is in doubt.
 ColumnMatch match_by_order(ImportKind kind, const std::vector<ImportColumn>& wanted,
                            const std::vector<ColumnFacts>& file);
+
+/// A column that has the name of a wanted one and a unit that is none of its quantity.
+struct WrongUnit {
+  std::size_t source = 0;  ///< index of the file's column
+  std::string unit;        ///< as written
+};
+
+/// The first such column, for messages.
+std::optional<WrongUnit> wrong_unit(const ImportColumn& wanted, const std::vector<ColumnFacts>& file);
 
 /// Whether a column is one of those that are taken by their order.
 bool is_taken_by_order(const ImportColumn& column);

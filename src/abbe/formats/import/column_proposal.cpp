@@ -34,7 +34,7 @@ class ColumnDecision {
     if (!asked.doubt.empty()) result_.doubts.push_back(asked.doubt);
     result_.reason = asked.own_name       ? "has the name that Abbe reads"
                      : file_.name.empty() ? "by its place"
-                                          : fmt::format("is called '{}'", file_.name);
+                                          : "by its name";
   }
 
   ProposedColumn decide() {

@@ -1,12 +1,9 @@
 #include "abbe/formats/import/foreign_row.h"
 
-#include <fmt/format.h>
-
 #include <cstring>
 
 #include "abbe/formats/text/csv_header.h"
 #include "abbe/formats/text/line_numbers.h"
-#include "abbe/formats/text/utf8.h"
 
 namespace abbe {
 namespace {
@@ -100,11 +97,6 @@ std::size_t line_start(std::string_view text, std::size_t line) {
 std::string_view without_comment_mark(std::string_view line, std::string_view comment) {
   const std::string_view trimmed = csv_trimmed(line);
   return !comment.empty() && trimmed.starts_with(comment) ? trimmed.substr(comment.size()) : line;
-}
-
-std::string column_words(std::size_t column, std::string_view name) {
-  if (name.empty()) return fmt::format("column {}", column);
-  return fmt::format("column {} '{}'", column, printable(name, 60, LineFeeds::escaped));
 }
 
 }  // namespace abbe

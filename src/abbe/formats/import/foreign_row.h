@@ -44,7 +44,4 @@ std::size_t line_start(std::string_view text, std::size_t line);
 /// A line without the mark of comments in front: headers of some programs are comments.
 std::string_view without_comment_mark(std::string_view line, std::string_view comment);
 
-/// "column 4 'X soll'", "column 4".
-std::string column_words(std::size_t column, std::string_view name);
-
 }  // namespace abbe

@@ -45,7 +45,7 @@ class Proposer {
       const auto reads = [&](const ProposedColumn& column) { return column.source == k; };
       if (std::any_of(result.columns.begin(), result.columns.end(), reads)) continue;
       if (found_.names[k].empty() && facts_[k].numbers + facts_[k].sexagesimal + facts_[k].texts == 0) continue;
-      result.not_read.push_back(column_words(k + 1, found_.names[k]));
+      result.not_read.push_back(column_words(k, found_.names[k]));
     }
     return result;
   }
@@ -96,8 +96,29 @@ class Proposer {
     return bases;
   }
 
+  /// Says so where a column is not found because of its unit. Polar coordinates stand for measured_x, actual positions
+  /// for deviations.
+  void refuse_wrong_unit(const KindMatch& chosen, const std::string& missing) const {
+    for (const ImportColumn& wanted : chosen.wanted) {
+      const bool stands_for_it =
+          (missing == "measured_x" && wanted.group == "polar") || (missing == "deviation" && wanted.base == "actual");
+      if (wanted.base != missing && !stands_for_it) continue;
+      const std::optional<WrongUnit> wrong = wrong_unit(wanted, facts_);
+      if (!wrong) continue;
+      const bool in_row = !found_.units[wrong->source].empty();
+      throw InputError(
+          {.file = file_,
+           .line = in_row ? found_.layout.unit_line : found_.layout.header_line,
+           .field = column_words(wrong->source, found_.names[wrong->source])},
+          fmt::format("'{}' is not a unit of {}", printable(wrong->unit, 40, LineFeeds::escaped),
+                      quantity_words(wanted.quantity)),
+          fmt::format("one of {} for {}", fmt::join(foreign_unit_names(wanted.quantity), ", "), wanted.base));
+    }
+  }
+
   [[noreturn]] void refuse_missing(const KindMatch& chosen) const {
     const std::string& base = chosen.match.missing.front();
+    if (has_header()) refuse_wrong_unit(chosen, base);
     const auto wanted = std::find_if(chosen.wanted.begin(), chosen.wanted.end(),
                                      [&](const ImportColumn& column) { return column.base == base; });
     std::string expected = "a header";
@@ -169,7 +190,7 @@ class Proposer {
     const int sign = deviation_sign(text_, found_, columns);
     if (sign == 0) return;
     deviation.reason += fmt::format("; it is {} by {}", sign > 0 ? "actual less target" : "target less actual",
-                                    column_words(actual + 1, found_.names[actual]));
+                                    column_words(actual, found_.names[actual]));
     if (sign < 0) deviation.column.convention = ImportConvention::reversed;
   }
 

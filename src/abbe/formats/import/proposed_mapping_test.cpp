@@ -158,7 +158,7 @@ TEST(ProposedColumns, ThatAreMissingAreNamed) {
   EXPECT_EQ(message("x,y,h\n1.5,2,3\n", ImportKind::points),
             "t.txt:1: z: no column for it was found in 'x', 'y', 'h'; expected a name such as measured z, z measured, "
             "meas z, z meas, or a mapping file that says which column it is (--mapping)");
-  EXPECT_THAT(message("x [kg],y,z\n1.5,2,3\n", ImportKind::points), HasSubstr("x: no column for it"));
+  EXPECT_THAT(message("kg,y,z\n1.5,2,3\n", ImportKind::points), HasSubstr("x: no column for it"));
   EXPECT_THAT(message("x,y,z\n1.5,2,three\n", ImportKind::points), HasSubstr("z: no column for it"));
   EXPECT_THAT(message("C,X,Z,x,y\n1.5,2,3,4,5\n", ImportKind::tracker), HasSubstr("measured_x: no column for it"));
   EXPECT_THAT(message("1.5 2 3\n", ImportKind::tracker),
@@ -169,6 +169,20 @@ TEST(ProposedColumns, ThatAreMissingAreNamed) {
               HasSubstr("--azimuth: the table has no azimuth"));
   EXPECT_THAT(message("direction,target_mm,deviation_um\n+,1.5,2\n", ImportKind::positioning, {.mirrored = "x"}),
               HasSubstr("--mirrored: the table has no such coordinate"));
+}
+
+TEST(ProposedColumns, WithAUnitOfAnotherQuantityAreNamed) {
+  const auto message = [](const std::string& text, ImportKind kind) {
+    return message_of([&] { proposal_for(text, kind); });
+  };
+  const std::string lengths = "is not a unit of a length; expected one of ";
+  EXPECT_THAT(message("x [kg],y,z\n1.5,2,3\n", ImportKind::points), HasSubstr("'kg' " + lengths));
+  EXPECT_THAT(message("x_mm,y_mm,z_furlong\n1.5,2,3\n", ImportKind::points), HasSubstr("'furlong' " + lengths));
+  EXPECT_THAT(message("x,y,z\nmm,mm,deg\n1.5,2,3\n", ImportKind::points), HasSubstr("'deg' " + lengths));
+  EXPECT_THAT(message("C,X,Z,range [m],azimuth [mm],elevation [deg]\n1.5,2,3,4,5,6\n", ImportKind::tracker),
+              HasSubstr("'mm' is not a unit of an angle; expected one of "));
+  EXPECT_THAT(message("direction,target,actual [kg]\n+,1.5,2\n", ImportKind::positioning),
+              HasSubstr("'kg' is not a unit of "));
 }
 
 }  // namespace

@@ -137,6 +137,11 @@ std::string_view thousands_name(ThousandsMark thousands) {
   return thousands_names()[static_cast<std::size_t>(thousands)];
 }
 
+std::string column_words(std::size_t column, std::string_view name) {
+  const std::string words = fmt::format("column {}", column + 1);
+  return name.empty() ? words : fmt::format("{} '{}'", words, printable(name, 60, LineFeeds::escaped));
+}
+
 FoundLayout find_layout(std::string_view text, const std::string& file, const LayoutHints& hints) {
   const std::vector<SampleLine> lines = sample_lines(text);
   FoundLayout found;
