@@ -57,7 +57,6 @@ QUICK_MINUTES := 15
 PYTHON_MINUTES := 12
 SITE_MINUTES := 10
 
-comma := ,
 say = @printf '\n== %s (%s)\n' "$(1)" "$$(date -u +%H:%M:%S)"
 
 build:
@@ -86,7 +85,7 @@ test:
 	@.ci/build dev -DABBE_WERROR=ON $(WITH_PYTHON)
 	$(call say,3 of 6: build with the address and undefined-behaviour sanitizers)
 	@.ci/build --target abbe_parts asan -DABBE_WERROR=ON
-	$(call say,4 of 6: tests of readers$(comma) compensation and runtime under the sanitizers)
+	$(call say,4 of 6: tests of errors and of the runtime under the sanitizers)
 	@ctest --preset asan-parts -j $(JOBS)
 	$(call say,5 of 6: fuzzing for $(TEST_FUZZ_SECONDS) s per reader)
 	@ABBE_FUZZ_SECONDS=$(TEST_FUZZ_SECONDS) ctest --preset fuzz -j $(JOBS)

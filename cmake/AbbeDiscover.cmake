@@ -4,10 +4,10 @@
 # to start, the program is run as a whole, in ABBE_SHARDS parts, of which ctest runs several at a time.
 set(ABBE_SHARDS 0 CACHE STRING "0: each test is one of ctest's; else the parts in which a test program is run")
 
-# What `make test` builds with the sanitizers: the programs for fuzzing, and the tests of the folders that read files or
-# serve a controller. `make sanitize` builds and runs the others as well.
+# What `make test` builds with the sanitizers: the programs for fuzzing, which run the readers of all files, and the tests of
+# what serves a controller. `make sanitize` builds and runs the others as well.
 add_custom_target(abbe_parts)
-set(abbe_parts_prefixes errors. compensate. formats. runtime.)
+set(abbe_parts_prefixes errors. runtime.)
 
 # Repetitions by the hundred and long simulated programs: minutes each under the sanitizers, which see the same code in the
 # other tests. All run in `make test`.

@@ -21,6 +21,9 @@
 
 namespace abbe::python {
 
+using Triple = std::array<double, 3>;
+inline Eigen::Vector3d vector(const Triple& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
 /// Anything that numpy.asarray(..., dtype=float64) takes; shown as ArrayLike in signatures.
 struct ArrayLike {
   nb::handle source;

@@ -9,11 +9,10 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <numbers>
-
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/geometry/angle_units.h"
 #include "abbe/machine/chain.h"
 #include "abbe/machine/machine_check.h"
 #include "bindings/arrays.h"
@@ -21,11 +20,6 @@
 
 namespace abbe::python {
 namespace {
-
-using Triple = std::array<double, 3>;
-constexpr double kDegree = std::numbers::pi / 180;
-
-Eigen::Vector3d vector(const Triple& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
 Machine machine_of_chain(const std::string& chain) {
   const ParsedChain parsed = parse_chain(chain);

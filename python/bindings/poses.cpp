@@ -121,7 +121,7 @@ nb::object poses_of(const PoseModel& model, const ArrayLike& argument, bool nomi
   return nb::cast(std::move(result));
 }
 
-nb::object points_of(const PoseModel& model, const ArrayLike& argument, const std::optional<ArrayLike>& out) {
+nb::object pose_points(const PoseModel& model, const ArrayLike& argument, const std::optional<ArrayLike>& out) {
   const Positions positions(argument, model.machine());
   const auto fill = [&](PointArrays to) {
     for_blocks(positions, [&](PositionArrays block, std::size_t first) { model.poses(block, from(to, first)); });
@@ -229,7 +229,7 @@ void bind_poses(nb::module_& module) {
           nb::sig("def nominal_poses(self, positions_mm_rad: numpy.typing.ArrayLike, *, out: Poses | None = None) -> "
                   "Poses"),
           "Where the tool would be without errors. out: as in poses().")
-      .def("points", &points_of, nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("out") = nb::none(),
+      .def("points", &pose_points, nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("out") = nb::none(),
            nb::sig("def points(self, positions_mm_rad: numpy.typing.ArrayLike, *, out: numpy.ndarray | None = None) -> "
                    "numpy.ndarray"),
            "The functional point alone, [n, 3], mm: faster than poses().\n\n"

@@ -58,7 +58,7 @@ def paths_below(root, place, ending):
 def violations(root):
     """All violations as (path, line, message)."""
     public = {}
-    for library in [*(f"src/abbe/{name}" for name in ORDER), "apps", *OTHER_PROGRAMS]:
+    for library in [*(f"src/abbe/{name}" for name in ORDER), "apps", *OTHER_PROGRAMS, "python/bindings"]:
         # In the order of the libraries: those before are the ones that this may include.
         for path in paths_below(root, library.replace("src/", "include/", 1), ".h") if library.startswith("src/") else ():
             public.update((name, path) for _, name in names_in(read(root, path)) if "(" not in name)

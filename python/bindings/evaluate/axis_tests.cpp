@@ -8,8 +8,6 @@
 namespace abbe::python {
 namespace {
 
-constexpr double kMostUm = 1e6;
-
 void enter_uncertainty(const std::map<std::string, double>& given, PositioningTest& test) {
   for (const auto& [name, value] : given) {
     const PositioningContribution& contribution = entry_named("uncertainty", name, positioning_contributions());

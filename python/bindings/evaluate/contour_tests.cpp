@@ -12,8 +12,6 @@
 namespace abbe::python {
 namespace {
 
-constexpr double kMostUm = 1e6;
-
 Evaluation of_sections(const ReadingsArgument& argument, const std::string& feature, const std::string& surface,
                        std::optional<double> beam_tilt_deg, bool free_wall, std::optional<double> surface_radius_mm,
                        double u_across_um, double u_height_um, double u_origin_um, const Tolerances& tolerances,
@@ -54,8 +52,9 @@ std::vector<CommandPiece> pieces_of(const CurveArgument& curve, const std::optio
   return commanded_pieces(machine ? curve_on(named, *machine) : named.curve, named.file, closed ? "--closed" : "");
 }
 
-Evaluation of_points(const PointsArgument& points, const CurveArgument& curve, const std::optional<Machine>& machine,
-                     bool closed, double u_origin_um, const Tolerances& tolerances, const std::string& file) {
+Evaluation of_contour_points(const PointsArgument& points, const CurveArgument& curve,
+                             const std::optional<Machine>& machine, bool closed, double u_origin_um,
+                             const Tolerances& tolerances, const std::string& file) {
   ContourPointsTest test;
   test.origin_uncertainty = quantity("u_origin_um", u_origin_um, Quantity::length, "um", 0, kMostUm);
   NamedPoints given = points_of(points, "points_mm", std::nullopt, file);
@@ -114,7 +113,7 @@ void bind_contour_tests(nb::module_& module) {
       "u_...:\n"
       "standard uncertainties. numbers is a SectionNumbers. Raises InputError. Method: docs/contour-error.md.");
   module.def(
-      "evaluate_contour", &of_points, nb::arg("points_mm"), nb::arg("curve"), nb::kw_only(),
+      "evaluate_contour", &of_contour_points, nb::arg("points_mm"), nb::arg("curve"), nb::kw_only(),
       nb::arg("machine") = nb::none(), nb::arg("closed") = false, nb::arg("u_origin_um") = 0.0,
       nb::arg("tolerances") = Tolerances{}, nb::arg("file") = "",
       "Contour error of measured points [n, 3] against a commanded curve: `abbe evaluate contour --curve`.\n\n"

@@ -31,6 +31,9 @@ GivenReadings given_readings(const ReadingsArgument& argument, const char* name 
 /// The path of an argument, or nothing if it is an array.
 std::optional<std::filesystem::path> path_of(nb::handle source);
 
+/// Largest uncertainty of a length that makes sense, um.
+inline constexpr double kMostUm = 1e6;
+
 /// A number in the unit of its name, in the inside unit, as the command reads it. @throws InputError out of range
 double quantity(const char* name, double value, Quantity quantity, const char* unit, double from, double to);
 

@@ -14,7 +14,7 @@ std::optional<double> in_unit(const EvaluationFigure& figure, const std::optiona
   return figure_number(figure, *value);
 }
 
-std::string words_of(const EvaluationFigure& figure) {
+std::string figure_words(const EvaluationFigure& figure) {
   return figure.value ? figure_text(figure, *figure.value) + " " + figure.unit : figure.missing;
 }
 
@@ -87,9 +87,9 @@ void bind_evaluation_reports(nb::module_& module) {
       .def_prop_ro("verdict", &EvaluationFigure::verdict,
                    "'within' or 'exceeded', perhaps with ', not proven'; 'cannot be judged'; '' without a tolerance.")
       .def_prop_ro("exceeds_tolerance", &EvaluationFigure::exceeds_tolerance)
-      .def("text", &words_of, "Value and unit, with the digits of the report.")
+      .def("text", &figure_words, "Value and unit, with the digits of the report.")
       .def("__repr__", [](const EvaluationFigure& f) {
-        return fmt::format("<abbe.EvaluationFigure {}: {}>", f.symbol, words_of(f));
+        return fmt::format("<abbe.EvaluationFigure {}: {}>", f.symbol, figure_words(f));
       });
 }
 

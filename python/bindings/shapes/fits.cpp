@@ -16,8 +16,6 @@
 namespace abbe::python {
 namespace {
 
-constexpr double kMostUm = 1e6;
-
 /// As read_points_to_fit() of a file, and points of arrays and clouds.
 PointsToFit points_to_fit(const PointsArgument& argument, const std::optional<std::string>& unit,
                           const std::string& called, bool in_plane) {

@@ -74,13 +74,13 @@ PointsOfReadings of_arrays(const ErrorsOrMachine& errors, const ArrayLike& posit
   return {points.release({3}, false), covered.release_bools()};
 }
 
-ScannedPoints of_file(const std::filesystem::path& readings, const ErrorsOrMachine& errors,
-                      const std::filesystem::path& output, const std::optional<ArrayLike>& beam_zero_mm,
-                      const std::optional<ArrayLike>& beam,
-                      const std::optional<std::pair<double, double>>& indication_range_mm,
-                      std::map<std::string, std::string> columns, std::vector<std::string> ignore, int decimals,
-                      bool any_travel, bool accept_misfit, const std::string& errors_file, bool overwrite,
-                      const nb::object& progress) {
+ScannedPoints points_of_file(const std::filesystem::path& readings, const ErrorsOrMachine& errors,
+                             const std::filesystem::path& output, const std::optional<ArrayLike>& beam_zero_mm,
+                             const std::optional<ArrayLike>& beam,
+                             const std::optional<std::pair<double, double>>& indication_range_mm,
+                             std::map<std::string, std::string> columns, std::vector<std::string> ignore, int decimals,
+                             bool any_travel, bool accept_misfit, const std::string& errors_file, bool overwrite,
+                             const nb::object& progress) {
   ScannedPointsRequest request;
   request.machine = machine_of(errors);
   request.errors = error_set_of(errors, accept_misfit, errors_file);
@@ -104,7 +104,7 @@ ScannedPoints of_file(const std::filesystem::path& readings, const ErrorsOrMachi
   });
 }
 
-void bind_results(nb::module_& module) {
+void bind_scan_results(nb::module_& module) {
   nb::class_<PointsOfReadings>(module, "ScanPoints", "Points computed from readings. Made by scan_points().")
       .def_ro("points_mm", &PointsOfReadings::points_mm, nb::sig("def points_mm(self) -> numpy.ndarray"),
               "[n, 3] workpiece frame.")
@@ -149,7 +149,7 @@ void bind_results(nb::module_& module) {
 }  // namespace
 
 void bind_scan_points(nb::module_& module) {
-  bind_results(module);
+  bind_scan_results(module);
   module.def(
       "scan_points", &of_arrays, nb::arg("errors"), nb::arg("positions_mm_rad"), nb::arg("indication_mm"),
       nb::kw_only(), nb::arg("beam_zero_mm") = nb::none(), nb::arg("beam") = nb::none(),
@@ -165,7 +165,7 @@ void bind_scan_points(nb::module_& module) {
       ">>> abbe.scan_points(scanner, [[0, 0, 10, 20, 30]], [0.5]).points_mm.tolist()\n"
       "[[10.0, 20.0, 29.5]]\n");
   module.def(
-      "scan_points_file", &of_file, nb::arg("readings"), nb::arg("errors"), nb::arg("output"), nb::kw_only(),
+      "scan_points_file", &points_of_file, nb::arg("readings"), nb::arg("errors"), nb::arg("output"), nb::kw_only(),
       nb::arg("beam_zero_mm") = nb::none(), nb::arg("beam") = nb::none(), nb::arg("indication_range_mm") = nb::none(),
       nb::arg("columns") = std::map<std::string, std::string>{}, nb::arg("ignore") = std::vector<std::string>{},
       nb::arg("decimals") = 9, nb::arg("any_travel") = false, nb::arg("accept_misfit") = false,

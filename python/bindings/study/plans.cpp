@@ -20,7 +20,7 @@ namespace abbe::python {
 namespace {
 
 /// What one set-up reads of the plan, in the order in which it is taken.
-PythonReadings readings_of(const PlanOutcome& outcome, const std::string& name) {
+PythonReadings readings_of_plan(const PlanOutcome& outcome, const std::string& name) {
   const Study& study = *outcome.study;
   for (std::size_t s = 0; s < study.setups.size(); ++s) {
     const Setup& setup = study.setups[s];
@@ -69,7 +69,8 @@ void bind_plans(nb::module_& module) {
             return names;
           },
           "[n] the set-up of each reading.")
-      .def("readings", &readings_of, nb::arg("setup"), "The plan of one set-up, ready to be simulated or measured.")
+      .def("readings", &readings_of_plan, nb::arg("setup"),
+           "The plan of one set-up, ready to be simulated or measured.")
       .def_prop_ro(
           "time_s", [](const PlanOutcome& o) { return o.plan.time; }, "Time that the readings take, s.")
       .def_prop_ro(

@@ -55,9 +55,9 @@ std::shared_ptr<const Study> with_data(const Study& study, const std::map<std::s
   return result;
 }
 
-std::shared_ptr<StudyOutcome> run(const Study& study, const std::map<std::string, PythonReadings>& readings,
-                                  const MachineErrors* truth, bool accept_misfit, bool map,
-                                  const nb::object& progress) {
+std::shared_ptr<StudyOutcome> run_whole(const Study& study, const std::map<std::string, PythonReadings>& readings,
+                                        const MachineErrors* truth, bool accept_misfit, bool map,
+                                        const nb::object& progress) {
   auto outcome = std::make_shared<StudyOutcome>();
   outcome->study = with_data(study, readings, truth);
   run_job(progress, [&](const JobControl& control) {
@@ -128,7 +128,7 @@ void bind_studies(nb::module_& module) {
              }
              return instruments;
            })
-      .def("run", &run, nb::arg("readings"), nb::arg("truth").none(), nb::arg("accept_misfit"), nb::arg("map"),
+      .def("run", &run_whole, nb::arg("readings"), nb::arg("truth").none(), nb::arg("accept_misfit"), nb::arg("map"),
            nb::arg("progress").none())
       .def("gather", &gather, nb::arg("readings"), nb::arg("truth").none(), nb::arg("progress").none())
       .def("plan", &plan, nb::arg("progress").none());

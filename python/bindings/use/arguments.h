@@ -26,8 +26,6 @@
 
 namespace abbe::python {
 
-using Triple = std::array<double, 3>;
-
 /// A position of every axis that is named, with its unit: {"X_mm": 100, "C_deg": 30}.
 using AxisPositions = std::map<std::string, double>;
 /// The same with a position, (from, to) or (from, to, count).

@@ -34,7 +34,7 @@ CorrectedCommands commands_of(const MachineErrors& errors, const ArrayLike& posi
   return computed([&] { return correct_commands(request); });
 }
 
-nb::object statuses(const CorrectedCommands& result) {
+nb::object command_statuses(const CorrectedCommands& result) {
   std::vector<std::uint8_t> values;
   for (const CorrectionStatus status : result.corrected.status) values.push_back(static_cast<std::uint8_t>(status));
   return array_of(std::move(values));
@@ -68,7 +68,7 @@ void bind_corrected_commands(nb::module_& module) {
       .def_prop_ro(
           "positions_mm_rad", [](const CorrectedCommands& r) { return copied_poses(r.corrected.commands); },
           nb::sig("def positions_mm_rad(self) -> numpy.ndarray"), "[n, axes] corrected commands, mm or rad.")
-      .def_prop_ro("status", &statuses, nb::sig("def status(self) -> numpy.ndarray"),
+      .def_prop_ro("status", &command_statuses, nb::sig("def status(self) -> numpy.ndarray"),
                    "[n] index into CORRECTION_STATUSES.")
       .def_prop_ro("reached", &reached, nb::sig("def reached(self) -> numpy.ndarray"),
                    "[n] whether the point is where it is wanted.")

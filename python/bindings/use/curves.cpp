@@ -122,8 +122,6 @@ PieceOfSizes made(Sizes sizes, double feed_mm_per_min, double chord_um, const ch
   return {computed([&] { return test_piece_of(sizes); }), name};
 }
 
-Eigen::Vector3d vector(const Triple& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
-
 /// Sizes that are numbers; what else is wrong of them the library finds.
 template <class Sizes>
 Sizes finite(const Sizes& sizes, std::initializer_list<double> numbers) {

@@ -209,8 +209,8 @@ FrozenPoints points_of_joints(const Compensation& self, const ArrayLike& joints,
   return result;
 }
 
-FrozenUncertainties uncertainties(const Compensation& self, const ArrayLike& positions,
-                                  const std::optional<ArrayLike>& tool) {
+FrozenUncertainties frozen_uncertainties(const Compensation& self, const ArrayLike& positions,
+                                         const std::optional<ArrayLike>& tool) {
   const Rows rows(positions, "positions_mm_rad", self.axes(), kCommands);
   const Tools tools(tool, rows.count());
   std::vector<double> out(rows.count(), kUnknown);
@@ -265,7 +265,7 @@ nb::class_<Result> bind_outcome(nb::module_& module, const char* name, const cha
   return bound;
 }
 
-void bind_results(nb::module_& module) {
+void bind_frozen_results(nb::module_& module) {
   bind_outcome<FrozenCorrections>(module, "FrozenCorrections", "Axis commands of a frozen compensation.")
       .def_ro("positions_mm_rad", &FrozenCorrections::positions_mm_rad,
               nb::sig("def positions_mm_rad(self) -> numpy.ndarray"), "[n, axes] commands, mm or rad.")
@@ -349,7 +349,7 @@ void bind_information(nb::class_<Compensation>& bound) {
 }  // namespace
 
 void bind_frozen_compensation(nb::module_& module) {
-  bind_results(module);
+  bind_frozen_results(module);
   nb::class_<Compensation> bound(
       module, "FrozenCompensation",
       "What a control computes with a frozen compensation, for arrays of poses.\n\n"
@@ -400,7 +400,8 @@ void bind_frozen_compensation(nb::module_& module) {
            "further linear ones; those of the others are not read. With enable=0 the nominal machine.")
       .def("forward", &points_of_joints, nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("tool_mm") = nb::none(),
            nb::arg("enable") = 1.0, "The exact inverse of inverse(): points and words from compensated commands.")
-      .def("uncertainty", &uncertainties, nb::arg("positions_mm_rad"), nb::kw_only(), nb::arg("tool_mm") = nb::none(),
+      .def("uncertainty", &frozen_uncertainties, nb::arg("positions_mm_rad"), nb::kw_only(),
+           nb::arg("tool_mm") = nb::none(),
            "Standard uncertainty of the whole correction of the tool point at nominal commands.\n\n"
            "From the uncertainties of the errors that were frozen (JCGM 100), linear between the nodes of a lattice.")
       .def("tool_of_offset", &tool_of_offset, nb::arg("offset_mm"),

@@ -19,10 +19,10 @@ double not_below_zero(double value, const char* name) {
   throw InputError({.field = name}, fmt::format("is {}", value), "zero or more");
 }
 
-PlannedPath path_of(const Machine& machine, const NamedCurve& curve, const MachineErrors* errors,
-                    const PlacementFile* placement, std::optional<double> feed_mm_per_min, const AxisPositions& hold,
-                    const AxisPositions& start, double retract_mm, double tolerance_um, bool accept_misfit,
-                    const std::string& errors_file, const std::string& placement_file) {
+PlannedPath plan_path_of(const Machine& machine, const NamedCurve& curve, const MachineErrors* errors,
+                         const PlacementFile* placement, std::optional<double> feed_mm_per_min,
+                         const AxisPositions& hold, const AxisPositions& start, double retract_mm, double tolerance_um,
+                         bool accept_misfit, const std::string& errors_file, const std::string& placement_file) {
   PathRequest request;
   request.machine = machine;
   if (errors != nullptr) {
@@ -53,9 +53,9 @@ void require_path(const PlannedPath& planned) {
   if (!planned.has_path()) throw InputError({.field = "refused"}, argument_words(planned.refused));
 }
 
-std::string program(const PlannedPath& planned, const std::string& name,
-                    const std::map<std::string, std::string>& words, int decimals, bool feed_per_minute,
-                    const std::vector<std::string>& comments) {
+std::string program_of_path(const PlannedPath& planned, const std::string& name,
+                            const std::map<std::string, std::string>& words, int decimals, bool feed_per_minute,
+                            const std::vector<std::string>& comments) {
   require_path(planned);
   if (decimals < 1 || decimals > 12) {
     throw InputError({.field = "decimals"}, fmt::format("is {}", decimals), "1 to 12");
@@ -70,7 +70,7 @@ std::string program(const PlannedPath& planned, const std::string& name,
   return planned_path_file(planned, name, options);
 }
 
-std::string page(const PlannedPath& planned, const std::optional<std::filesystem::path>& part) {
+std::string page_of_path(const PlannedPath& planned, const std::optional<std::filesystem::path>& part) {
   require_path(planned);
   return computed([&] {
     if (!part) return planned_path_page(planned);
@@ -79,7 +79,7 @@ std::string page(const PlannedPath& planned, const std::optional<std::filesystem
   });
 }
 
-nb::object commands(const PlannedPath& planned) {
+nb::object path_commands(const PlannedPath& planned) {
   const std::size_t axes = planned.machine.axes.size(), count = planned.commands.size();
   std::vector<double> values;
   for (const std::vector<double>& row : planned.commands) values.insert(values.end(), row.begin(), row.end());
@@ -88,7 +88,7 @@ nb::object commands(const PlannedPath& planned) {
 
 void bind_steps(nb::class_<PlannedPath>& bound) {
   bound
-      .def_prop_ro("positions_mm_rad", &commands, nb::sig("def positions_mm_rad(self) -> numpy.ndarray"),
+      .def_prop_ro("positions_mm_rad", &path_commands, nb::sig("def positions_mm_rad(self) -> numpy.ndarray"),
                    "[steps, axes] commands as the control is to have them, mm or rad.")
       .def_prop_ro(
           "working", [](const PlannedPath& p) { return flags_of_each(p.path.steps, &ToolPathStep::working); },
@@ -170,7 +170,7 @@ void bind_planned_paths(nb::module_& module) {
       .def_prop_ro("has_path", &PlannedPath::has_path,
                    "Whether there is a path, be it one on which axes jump while the tool works.")
       .def_ro("warnings", &PlannedPath::warnings, "Of the placement.")
-      .def("program", &program, nb::kw_only(), nb::arg("name") = "program.ngc",
+      .def("program", &program_of_path, nb::kw_only(), nb::arg("name") = "program.ngc",
            nb::arg("words") = std::map<std::string, std::string>{}, nb::arg("decimals") = 6,
            nb::arg("feed_per_minute") = false, nb::arg("comments") = std::vector<std::string>{},
            "NC program of the path. words: {'C1': 'C'}, words of axes. feed_per_minute: F in mm/min (G94) instead of\n"
@@ -196,14 +196,14 @@ void bind_planned_paths(nb::module_& module) {
             return python_value(planned_path_json(p));
           },
           nb::sig("def to_dict(self) -> dict[str, typing.Any]"), "The same as `abbe path --json`.")
-      .def("page_html", &page, nb::arg("part") = nb::none(),
+      .def("page_html", &page_of_path, nb::arg("part") = nb::none(),
            "The page that plays the path, HTML. part: file of the workpiece (.stl, .ply, .obj, .step).")
       .def(
           "write",
           [](const PlannedPath& p, const std::filesystem::path& path, bool overwrite,
              const std::map<std::string, std::string>& words, int decimals, bool feed_per_minute,
              const std::vector<std::string>& comments) {
-            write_text(path, program(p, path.string(), words, decimals, feed_per_minute, comments), overwrite);
+            write_text(path, program_of_path(p, path.string(), words, decimals, feed_per_minute, comments), overwrite);
           },
           nb::arg("path"), nb::arg("overwrite") = false, nb::kw_only(),
           nb::arg("words") = std::map<std::string, std::string>{}, nb::arg("decimals") = 6,
@@ -217,11 +217,11 @@ void bind_planned_paths(nb::module_& module) {
   bind_steps(bound);
   bind_figures(bound);
   module.def(
-      "plan_path", &path_of, nb::arg("machine"), nb::arg("curve"), nb::kw_only(), nb::arg("errors").none() = nb::none(),
-      nb::arg("placement").none() = nb::none(), nb::arg("feed_mm_per_min") = nb::none(),
-      nb::arg("hold") = AxisPositions{}, nb::arg("start") = AxisPositions{}, nb::arg("retract_mm") = 0.0,
-      nb::arg("tolerance_um") = 0.0, nb::arg("accept_misfit") = false, nb::arg("errors_file") = "errors.toml",
-      nb::arg("placement_file") = "placement.toml",
+      "plan_path", &plan_path_of, nb::arg("machine"), nb::arg("curve"), nb::kw_only(),
+      nb::arg("errors").none() = nb::none(), nb::arg("placement").none() = nb::none(),
+      nb::arg("feed_mm_per_min") = nb::none(), nb::arg("hold") = AxisPositions{}, nb::arg("start") = AxisPositions{},
+      nb::arg("retract_mm") = 0.0, nb::arg("tolerance_um") = 0.0, nb::arg("accept_misfit") = false,
+      nb::arg("errors_file") = "errors.toml", nb::arg("placement_file") = "placement.toml",
       "Axis commands that bring the tool of a calibrated machine along a curve on the workpiece.\n\n"
       "errors: location errors and a tool offset error only. placement: where the workpiece is clamped.\n"
       "feed_mm_per_min: where the curve has none. hold: {'C2_deg': 30}, axes kept at a command. start: where axes "

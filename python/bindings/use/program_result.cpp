@@ -24,7 +24,7 @@ struct Count {
   StatusCount count;
 };
 
-ProgramWordsRequest words_of(const ProgramResult& result, const std::optional<std::string>& output) {
+ProgramWordsRequest words_request(const ProgramResult& result, const std::optional<std::string>& output) {
   const std::string file = output.value_or(result.output);
   return {.program = result.program_file,
           .output = file,
@@ -192,14 +192,14 @@ void bind_program_result(nb::module_& module) {
       .def(
           "text",
           [](const ProgramResult& r, const std::optional<std::string>& output) {
-            return program_text(words_of(r, output), r.machine, r.corrected);
+            return program_text(words_request(r, output), r.machine, r.corrected);
           },
           nb::arg("output") = nb::none(),
           "What `abbe compensate gcode` prints. output: name of the file that is written; without one of a dry run.")
       .def(
           "to_dict",
           [](const ProgramResult& r, const std::optional<std::string>& output) {
-            return python_value(program_json(words_of(r, output), r.machine, r.corrected));
+            return python_value(program_json(words_request(r, output), r.machine, r.corrected));
           },
           nb::arg("output") = nb::none(),
           nb::sig("def to_dict(self, output: str | None = None) -> dict[str, typing.Any]"),

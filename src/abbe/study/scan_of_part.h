@@ -4,6 +4,7 @@
 
 #include "abbe/formats/shapes/mesh_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
+#include "abbe/geometry/rigid_transform.h"
 
 namespace abbe {
 
