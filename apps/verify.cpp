@@ -20,6 +20,7 @@
 #include "progress.h"
 #include "test_piece/sizes.h"
 #include "uncovered_poses.h"
+#include "verify_readings.h"
 
 namespace abbe {
 namespace {
@@ -32,7 +33,7 @@ struct PieceOptions {
 
 struct VerifyOptions {
   VerificationFiles files;
-  std::string output;
+  std::string output, readings;
   std::vector<std::string> ranges;
   std::size_t poses = 1000;
   std::optional<std::size_t> seed;
@@ -86,12 +87,35 @@ VerificationRequest request_of(const VerifyOptions& options) {
   return request;
 }
 
+/// What random poses and test pieces need, and readings have no use for.
+void refuse_beside_readings(const VerifyOptions& options) {
+  const auto refuse = [](bool given, const char* option) {
+    if (given) throw InputError({.field = option}, "has no use with --readings", "no such option, or no --readings");
+  };
+  refuse(!options.files.machine.empty(), "--machine");
+  refuse(!options.files.truth.empty(), "--truth");
+  refuse(options.seed.has_value(), "--seed");
+  refuse(!options.ranges.empty(), "--range");
+  refuse(options.cone.has_value(), "cone-frustum");
+  refuse(options.s.has_value(), "s-shape");
+}
+
 int run_verify(const VerifyOptions& options) {
   if (!options.output.empty()) {
     const std::string extension = std::filesystem::path(options.output).extension().string();
     if (extension != ".html" && extension != ".htm") {
       throw InputError({.file = options.output}, "unknown kind of page", "a name ending in .html");
     }
+  }
+  if (!options.readings.empty()) {
+    refuse_beside_readings(options);
+    return run_verify_readings({.files = options.files,
+                                .study = options.readings,
+                                .least_reduction = options.least_reduction,
+                                .largest_ratio = options.largest_ratio,
+                                .page = options.output,
+                                .json = options.json,
+                                .accept_uncovered = options.accept_uncovered});
   }
   const VerificationRequest request = request_of(options);
   StepProgress progress;
@@ -135,12 +159,17 @@ void add_verify_command(CommandLine& line) {
   auto asked = std::make_shared<Pieces>();
   VerifyOptions& options = asked->options;
   Subcommand* command = line.add(
-      "verify", "Check what a compensation leaves: unseen poses and test pieces, against the simulated truth",
+      "verify",
+      "Check what a compensation leaves: of new readings, or at poses and on test pieces of a simulated machine",
       "  abbe verify examples/aguado/results/aguado\n"
       "  abbe verify --machine examples/machines/trunnion-mill.machine.toml --errors "
       "examples/compensate/trunnion.errors.toml --truth examples/verify/truth.errors.toml -o page.html "
       "cone-frustum --before examples/verify/cone-before.csv --after examples/verify/cone-after.csv s-shape --before "
-      "examples/verify/s-before.csv --after examples/verify/s-after.csv\n\n"
+      "examples/verify/s-before.csv --after examples/verify/s-after.csv\n"
+      "  abbe verify --errors examples/compensate/trunnion.errors.toml --readings "
+      "examples/verify/second-tracker.study.toml\n\n"
+      "With --readings, the readings of a study take the place of a simulated truth: its set-ups are fitted to them,\n"
+      "and what is left is compared with the uncertainties. The study states the machine.\n"
       "Test pieces come last, each with the traces of both runs and its sizes as in abbe test-piece. A trace "
       "is\n"
       "a CSV of what the axes were commanded while the program ran, a row for each servo cycle or so: time_s, X_mm,\n"
@@ -150,6 +179,8 @@ void add_verify_command(CommandLine& line) {
   add_machine(*command, options.files.machine, "Machine file (default: machine.toml of the results)");
   add_errors(*command, options.files.errors, "Identified errors (default: errors.toml of the results)");
   command->add_input_file("--truth", options.files.truth, "True errors (default: truth.errors.toml of the results)");
+  command->add_input_file("--readings", options.readings,
+                          "Study with measured readings that took no part in the identification (*.study.toml)");
   command->add_option("--poses", options.poses, "Number of random poses")
       ->check(in_range(10, 10000))
       ->capture_default_str();

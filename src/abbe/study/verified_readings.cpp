@@ -1,0 +1,181 @@
+#include "abbe/study/verified_readings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "abbe/formats/text/input_error.h"
+#include "abbe/identify/identify.h"
+#include "abbe/identify/trust/trust.h"
+#include "abbe/study/verified_readings_report.h"
+
+namespace abbe {
+namespace {
+
+/// Readings with the unknowns of their set-ups fitted, the errors of the machine held.
+class FittedSetups {
+ public:
+  FittedSetups(const ReadingsToVerify& request, const Campaign& campaign, const ErrorSet& errors,
+               const std::vector<std::vector<std::uint8_t>>& use)
+      : problem_(problem_of(request.study.machine, campaign, errors)) {
+    for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
+      problem_.observations[s].use = use[s];
+      for (const KnownUnknown& known : campaign.setups[s].known_unknowns()) {
+        problem_.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
+      }
+    }
+    if (estimated_count(problem_) == 0) return;
+    IdentifyOptions options;
+    options.solver.threads = request.study.threads;
+    const Identification fitted = identify(problem_, options);
+    if (fitted.converged) return;
+    throw InputError({.file = request.study.name}, "its set-ups cannot be fitted to the readings: " + fitted.message,
+                     "readings that determine where the instruments stood");
+  }
+
+  const Problem& problem() const { return problem_; }
+
+  /// Lengths of measured - modelled of one set-up, [readings], mm; negative: not used, or only angles are read.
+  std::vector<double> lengths(std::size_t setup) const {
+    const SelectedObservations& selected = problem_.observations[setup];
+    std::vector<double> result;
+    for (std::size_t k = 0; k < selected.observations->reading_count(); ++k) {
+      const bool used = selected.use.empty() || selected.use[k] != 0;
+      result.push_back(used ? selected.observations->length_of_deviation(k).value_or(-1) : -1);
+    }
+    return result;
+  }
+
+ private:
+  static Problem problem_of(const Machine& machine, const Campaign& campaign, const ErrorSet& errors) {
+    std::vector<std::shared_ptr<Observations>> observations;
+    for (const CampaignSetup& setup : campaign.setups) observations.push_back(setup.observations(machine, errors));
+    Problem problem = estimate_everything(machine, errors, observations);
+    problem.machine_parameters.clear();
+    return problem;
+  }
+
+  Problem problem_;
+};
+
+/// Readings of which all axes are where the errors are known.
+std::vector<std::uint8_t> covered_readings(const ErrorSet& errors, const PoseList& poses) {
+  std::vector<std::uint8_t> covered(poses.count(), 1);
+  for (std::size_t axis = 0; axis < poses.axis.size(); ++axis) {
+    for (std::size_t k = 0; k < covered.size(); ++k) {
+      if (!errors.covers(axis, poses.axis[axis][k])) covered[k] = 0;
+    }
+  }
+  return covered;
+}
+
+/// Without it, a condition that nothing meets, or everything.
+void check_limit(const char* option, std::optional<double> value) {
+  if (!value || (*value > 0 && std::isfinite(*value))) return;
+  throw InputError({.field = option}, fmt::format("{} is not a condition", *value), "a number above zero");
+}
+
+void judge(const ReadingsToVerify& request, VerifiedReadings& result) {
+  const auto add = [&](const char* name, bool met, std::string text) {
+    result.verdicts.push_back({name, std::move(text), met});
+  };
+  if (!result.after.empty()) {
+    const bool met = result.after_statistics.rms < result.before_statistics.rms;
+    add("improvement", met,
+        fmt::format("the identified errors {} the residuals smaller", met ? "make" : "do NOT make"));
+  }
+  const IndependentReadings& judged = result.judged;
+  if (judged.degrees_of_freedom > 0) {
+    const bool met = judged.p_value >= kNoChance;
+    add("consistency", met,
+        fmt::format("the uncertainties of the readings{} {} what is left (chi-square {:.1f} with {:.0f} degrees of "
+                    "freedom, probability {})",
+                    result.uncertainties_known ? " and of the errors" : " alone", met ? "explain" : "do NOT explain",
+                    judged.chi_square, judged.degrees_of_freedom,
+                    judged.p_value < kNoChance ? std::string("below 1e-06") : fmt::format("{:.2g}", judged.p_value)));
+  }
+  if (request.least_reduction) {
+    const bool met = result.reduction() >= *request.least_reduction;
+    add("reduction", met,
+        fmt::format("the mean residual becomes {:.1f} times smaller: {} the required {:g} times", result.reduction(),
+                    met ? "at least" : "LESS than", *request.least_reduction));
+  }
+  if (request.largest_ratio) {
+    const bool met = result.ratio() > 0 && result.ratio() <= *request.largest_ratio;
+    add("ratio", met,
+        fmt::format("{:.2f} times what the uncertainties explain is left: {} the permitted {:g} times", result.ratio(),
+                    met ? "within" : "ABOVE", *request.largest_ratio));
+  }
+}
+
+}  // namespace
+
+double VerifiedReadings::reduction() const {
+  return after_statistics.mean > 0 ? before_statistics.mean / after_statistics.mean : 0;
+}
+
+double VerifiedReadings::ratio() const {
+  return judged.degrees_of_freedom > 0 ? std::sqrt(judged.chi_square / judged.degrees_of_freedom) : 0;
+}
+
+LeftOutPoses VerifiedReadings::left_out() const {
+  return {.all = readings, .not_covered = not_covered, .what = "readings"};
+}
+
+bool VerifiedReadings::says_no() const {
+  return std::any_of(verdicts.begin(), verdicts.end(), [](const ReadingsVerdict& verdict) { return !verdict.met; });
+}
+
+VerifiedReadings verify_readings(const ReadingsToVerify& request, const JobOptions& options) {
+  check_limit("--least-reduction", request.least_reduction);
+  check_limit("--largest-ratio", request.largest_ratio);
+  const auto progress = stoppable_progress(options);
+  constexpr std::size_t kSteps = 3;
+  progress(0, kSteps);
+  Campaign campaign = gather_readings(request.study);
+  find_start_values(request.study.machine, campaign);
+
+  VerifiedReadings result;
+  const ErrorSet& identified = request.identified.errors;
+  std::vector<std::vector<std::uint8_t>> use;
+  for (const CampaignSetup& setup : campaign.setups) {
+    use.push_back(covered_readings(identified, setup.poses()));
+    result.readings += use.back().size();
+    result.not_covered += static_cast<std::size_t>(std::count(use.back().begin(), use.back().end(), 0));
+  }
+  if (result.not_covered == result.readings) {
+    throw InputError({.file = request.study.name}, "no reading is where all errors are known",
+                     "readings within the ranges of the error motions in " + request.errors_file);
+  }
+  result.warnings = campaign.warnings;
+  progress(1, kSteps);
+  const FittedSetups nominal(request, campaign, ErrorSet{}, use);
+  progress(2, kSteps);
+  const FittedSetups compensated(request, campaign, identified, use);
+  std::vector<SetupResiduals> residuals;
+  for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
+    const SetupResiduals& setup = residuals.emplace_back(SetupResiduals{nominal.lengths(s), compensated.lengths(s)});
+    for (std::size_t k = 0; k < setup.after.size(); ++k) {
+      if (setup.after[k] < 0) continue;
+      result.before.push_back(setup.before[k]);
+      result.after.push_back(setup.after[k]);
+    }
+  }
+  result.before_statistics = sample_statistics(result.before);
+  result.after_statistics = sample_statistics(result.after);
+  Eigen::MatrixXd covariance = covariance_of(request.identified);
+  result.uncertainties_known = covariance.size() > 0;
+  if (!result.uncertainties_known) {
+    const auto count = static_cast<Eigen::Index>(identified.parameter_count());
+    covariance = Eigen::MatrixXd::Zero(count, count);
+  }
+  result.judged = judge_independent_readings(compensated.problem(), covariance, request.study.threads);
+  judge(request, result);
+  write_readings_report(request, campaign, residuals, result);
+  progress(kSteps, kSteps);
+  return result;
+}
+
+}  // namespace abbe
