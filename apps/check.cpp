@@ -18,6 +18,7 @@
 #include "abbe/report/words/machine_check_words.h"
 #include "check_frozen.h"
 #include "check_geometry.h"
+#include "check_study_file.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
@@ -39,12 +40,13 @@ struct OtherKind {
   const char* expected;
 };
 
-constexpr std::array<OtherKind, 4> kOtherKinds = {
+constexpr OtherKind kStudyKind = {".study.toml", {"[[setup]]", "[[setup.data]]"}, "this is a study", ""};
+
+constexpr std::array<OtherKind, 3> kOtherKinds = {
     {{".errors.toml",
       {"[[motion]]", "[[location]]"},
       "this is an errors file",
       "--machine with the file of its machine, and --errors with this one"},
-     {".study.toml", {"[[setup]]", "[[identify]]"}, "this is a study", "abbe run with it, or abbe plan"},
      {".placement.toml",
       {"maps =", "translation_mm ="},
       "this is the placement of a workpiece",
@@ -59,6 +61,12 @@ bool is_of_kind(const OtherKind& kind, const std::string& name, std::string_view
   return std::any_of(kind.lines.begin(), kind.lines.end(), [&](std::string_view line) {
     return contents.starts_with(line) || contents.find("\n" + std::string(line)) != std::string_view::npos;
   });
+}
+
+bool is_study(const std::string& file) {
+  const std::string name = std::filesystem::path(file).filename().string();
+  if (file != kStandardInput && file_extension(file) != ".toml") return false;
+  return is_of_kind(kStudyKind, name, MappedFile(file).text());
 }
 
 /// What is neither a shape nor a frozen compensation is a machine file if it looks like one. @throws InputError
@@ -90,17 +98,22 @@ void add_check_command(CommandLine& line) {
   };
   auto options = std::make_shared<Options>();
   Subcommand* command = line.add(
-      "check", "Validate a machine file, a frozen compensation, a mesh or a point cloud, and show its contents",
+      "check", "Validate a machine, a study with its readings, a frozen compensation, a mesh or a point cloud",
       "  abbe check --machine examples/machines/trunnion-mill.machine.toml\n"
       "  abbe check --machine examples/machines/aguado.machine.toml --errors "
       "examples/aguado/results/aguado/errors.toml\n"
+      "  abbe check examples/aguado/aguado.study.toml\n"
       "  abbe check examples/parts/wedge.stl --unit mm\n"
+      "Of a study, the readings are read and compared with the nominal machine; nothing is identified.\n"
       "A frozen compensation (abbe compensate freeze) is refused here as a controller would refuse it.\n"
-      "Exit code 1: the inside and outside of a mesh cannot be told apart everywhere (turned or branching edges,\n"
-      "duplicate triangles, inside out), or faces were left out. Holes are counted; they are not an error.");
-  command->add_input_file("file", options->file,
-                          "Frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or point cloud (.xyz .asc "
-                          ".pts .csv .ply)");
+      "Exit code 1: the nominal machine does not explain the readings of a study; the inside and outside of a mesh\n"
+      "cannot be told apart everywhere (turned or branching edges, duplicate triangles, inside out); or faces were "
+      "left\n"
+      "out. Holes are counted; they are not an error.");
+  command->add_input_file(
+      "file", options->file,
+      "Study (.study.toml), frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or point cloud (.xyz .asc "
+      ".pts .csv .ply)");
   const Option* const machine_option = add_machine(*command, options->machine);
   const Option* const errors_option =
       add_errors(*command, options->errors, "Also validate an errors file of this machine (*.errors.toml)");
@@ -126,6 +139,12 @@ void add_check_command(CommandLine& line) {
         for (const Option* const option : {errors_option, unit}) refuse_if_given(option, why);
         options->geometry.step.refuse(why);
         return check_frozen(options->file, options->json);
+      }
+      if (!options->file.empty() && is_study(options->file)) {
+        const char* const why = "a study states its machine, errors and units";
+        for (const Option* const option : {errors_option, unit}) refuse_if_given(option, why);
+        options->geometry.step.refuse(why);
+        return check_study_file(options->file, options->json);
       }
       refuse_if_given(unit, "a machine file states its units");
       options->geometry.step.refuse("a machine file has no faces");

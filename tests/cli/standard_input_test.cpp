@@ -105,9 +105,9 @@ TEST_F(StandardInput, FilesForOtherCommandsAreNotTakenForMachines) {
   const std::string errors =
                         "this is an errors file; expected --machine with the file of its machine, and --errors "
                         "with this one\n",
-                    study = "this is a study; expected abbe run with it, or abbe plan\n";
-  for (const auto& [file, words] :
-       {std::pair{"compensate/trunnion.errors.toml", errors}, std::pair{"aguado/aguado.study.toml", study}}) {
+                    placement = "this is the placement of a workpiece; expected abbe path --placement with it\n";
+  for (const auto& [file, words] : {std::pair{"compensate/trunnion.errors.toml", errors},
+                                    std::pair{"laser_engraver/part.placement.toml", placement}}) {
     const CommandResult read = abbe_reads(kExamples + file, "check -"), named = abbe({"check", kExamples + file});
     EXPECT_EQ(read.exit_code, ExitCode::bad_input);
     EXPECT_EQ(read.err, "abbe: <stdin>: " + words);

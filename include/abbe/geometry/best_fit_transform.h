@@ -35,6 +35,9 @@ struct BestFitTransform {
   std::vector<std::uint8_t> inliers;  ///< robust fit: [points], 1 where the point took part in the last step
 };
 
+/// Root mean square distance of points from their mean, mm; 0 without points.
+double extent_of_points(std::span<const Eigen::Vector3d> points);
+
 /// Rotation R that makes the trace of R^T * correlation largest, correlation = sum of target * source^T (centred).
 Eigen::Matrix3d rotation_from_correlation(const Eigen::Matrix3d& correlation);
 

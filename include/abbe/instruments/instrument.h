@@ -57,6 +57,7 @@
 #include "abbe/errors/chain_plan.h"
 #include "abbe/errors/poses.h"
 #include "abbe/instruments/observations.h"
+#include "abbe/instruments/reading_mistakes.h"
 #include "abbe/instruments/setup_quantity.h"
 
 namespace abbe {
@@ -127,9 +128,20 @@ struct ItemLabel {
   std::vector<std::uint16_t> of_item;  ///< [Instrument::items()] index into names
 };
 
+/// A place from which readings were taken, sought by the nominal machine.
+struct StartFit {
+  std::string place;                  ///< "station1"
+  std::vector<std::size_t> readings;  ///< indices
+  bool found = false;                 ///< false: no place explains half of the readings
+  bool determined = true;             ///< false: too few readings, or they lie so that no place can be found
+  bool rough = false;                 ///< other numbers of the set-up are open too: a bad fit proves nothing
+  double extent_mm = 0;               ///< root mean square distance of the points that were seen from their mean
+};
+
 /// A set-up that an identification can start with.
 struct StartedInstrument {
   std::shared_ptr<const Instrument> instrument;
+  std::vector<StartFit> fits{};       ///< of the places that were sought
   std::vector<std::string> warnings;  ///< what there is to say: what is not determined, readings of another reflector
 };
 
@@ -195,6 +207,11 @@ class Instrument : public std::enable_shared_from_this<Instrument> {
 
   /// This instrument with the set-up that an identification starts with: start_values(), unless it knows better.
   virtual StartedInstrument started(const Machine& machine, const InstrumentReadings& readings) const;
+
+  /// Mistakes in its files that the fits of started() show; those with fewer single ones come first.
+  virtual std::vector<ReadingMistake> usual_mistakes() const { return {}; }
+  /// What happened between readings of which each part fits by itself, in words after the name of the place: "moved".
+  virtual const char* interruption_words() const { return "moved"; }
 
   /// How many numbers of the set-up started() fits to the readings so well that a nominal machine can be judged by
   /// what is left; 0: they are a rough start only.

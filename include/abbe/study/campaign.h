@@ -10,6 +10,7 @@
 #include "abbe/formats/study/study.h"
 #include "abbe/identify/trust/reading_facts.h"
 #include "abbe/instruments/instrument.h"
+#include "abbe/study/unexplained_readings.h"
 
 namespace abbe {
 
@@ -33,10 +34,11 @@ struct CampaignSetup {
   std::shared_ptr<const Instrument> start;   ///< as the identification starts: `device` until find_start_values()
   std::shared_ptr<const Instrument> truth;   ///< simulation: as it really is
   InstrumentReadings readings;
-  InstrumentReadings exact;                 ///< simulation: the same readings without noise and outliers
-  std::vector<std::uint32_t> outliers;      ///< simulation: readings made to outliers
-  std::size_t hidden = 0;                   ///< simulation: sights left out for lack of a line of sight
-  std::vector<std::string> contradictions;  ///< in words, where a file of readings and the study differ
+  InstrumentReadings exact;                      ///< simulation: the same readings without noise and outliers
+  std::vector<std::uint32_t> outliers;           ///< simulation: readings made to outliers
+  std::size_t hidden = 0;                        ///< simulation: sights left out for lack of a line of sight
+  std::vector<std::string> contradictions;       ///< in words, where a file of readings and the study differ
+  std::vector<UnexplainedReadings> unexplained;  ///< by find_start_values(): the nominal machine does not explain them
 
   const PoseList& poses() const { return readings.poses; }
   std::size_t reading_count() const { return readings.count(); }

@@ -31,7 +31,7 @@
 //   run_study.h, study_result.h         readings to errors to maps; study_steps.h has the steps
 //   results.h, study_text.h, trust.h    the results folder, the result for people, whether it may be used
 //   planning.h, plan_text.h             `abbe plan`: which readings to take
-//   verification.h, errors_map.h        `abbe verify`, `abbe map`
+//   verification.h, errors_map.h        `abbe verify`, `abbe map`; verified_readings.h: `abbe verify --readings`
 //   corrected_program.h                 `abbe compensate gcode`
 //   corrected_commands.h                `abbe compensate poses`; frozen_errors.h: `abbe compensate freeze`
 //   planned_path.h, planned_scan.h      `abbe path`, `abbe scan plan`

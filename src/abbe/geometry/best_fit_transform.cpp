@@ -41,6 +41,16 @@ const char* best_fit_status_name(BestFitStatus status) {
   return "not run";
 }
 
+double extent_of_points(std::span<const Vector3d> points) {
+  if (points.empty()) return 0;
+  const double count = static_cast<double>(points.size());
+  Vector3d mean = Vector3d::Zero();
+  for (const Vector3d& point : points) mean += point / count;
+  double sum = 0;
+  for (const Vector3d& point : points) sum += (point - mean).squaredNorm();
+  return std::sqrt(sum / count);
+}
+
 Matrix3d rotation_from_correlation(const Matrix3d& correlation) {
   const SingularValues<3> svd(correlation);
   Vector3d signs = Vector3d::Ones();

@@ -263,8 +263,10 @@ void find_start_values(const Machine& machine, Campaign& campaign) {
     const auto tell = [&](const std::string& message) { campaign.warnings.push_back(setup.name + ": " + message); };
     for (const std::string& message : setup.contradictions) tell(message);
     StartedInstrument started = setup.device->started(machine, setup.readings);
-    setup.start = std::move(started.instrument);
     for (const std::string& message : started.warnings) tell(message);
+    setup.unexplained = unexplained_readings(machine, *setup.device, setup.readings, started);
+    for (const UnexplainedReadings& place : setup.unexplained) tell(place.words());
+    setup.start = std::move(started.instrument);
   }
 }
 

@@ -61,11 +61,9 @@ std::optional<double> distance_of_fit(const std::vector<SensedReading>& readings
 }
 
 double extent_of(const std::vector<SensedReading>& readings) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const SensedReading& reading : readings) mean += reading.point / static_cast<double>(readings.size());
-  double sum = 0;
-  for (const SensedReading& reading : readings) sum += (reading.point - mean).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(readings.size()));
+  std::vector<Eigen::Vector3d> points;
+  for (const SensedReading& reading : readings) points.push_back(reading.point);
+  return extent_of_points(points);
 }
 
 }  // namespace

@@ -42,6 +42,8 @@ class LaserTracker : public EquationInstrument<LaserTracker, 9, 3> {
                               std::size_t component) const override;
   /// Poses of the stations that are estimated: find_station_poses().
   StartedInstrument started(const Machine& machine, const InstrumentReadings& readings) const override;
+  /// Mirrored frames, clockwise and zenith angles, swapped angles, and units.
+  std::vector<ReadingMistake> usual_mistakes() const override;
   std::size_t fitted_by_start() const override { return 6 * given_.stations.size(); }
   /// Stated true poses and offsets; what is known within an uncertainty is not drawn.
   std::shared_ptr<const Instrument> truth(RandomStream& random) const override;

@@ -12,6 +12,7 @@ struct StationStart {
   BestFitStatus status = BestFitStatus::not_run;
   RigidTransform body_from_tracker;  ///< as TrackerStation; meaningful for ok, one of many for collinear
   double rms_mm = 0;                 ///< of the readings that took part
+  double extent_mm = 0;              ///< root mean square distance of the reflectors' points from their mean
   std::size_t readings = 0;
   std::size_t outliers = 0;  ///< readings that took no part
   std::string note;          ///< empty, or in words what is not determined and why

@@ -54,6 +54,11 @@ class TrackingInterferometer : public EquationInstrument<TrackingInterferometer,
   /// Positions of stations and dead paths that are open, from the lengths alone: see find_tracking_start().
   std::vector<double> start_values(const Machine& machine, const InstrumentReadings& readings,
                                    std::vector<std::string>& notes) const override;
+  /// The same, with how well they explain the lengths.
+  StartedInstrument started(const Machine& machine, const InstrumentReadings& readings) const override;
+  /// Units, the sign, and optical for geometric lengths.
+  std::vector<ReadingMistake> usual_mistakes() const override;
+  const char* interruption_words() const override { return "moved, or its beam was interrupted"; }
   /// Reflector and station.
   std::optional<MeetingPoints> meeting_points(std::size_t item) const override;
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "abbe/geometry/rotation.h"
@@ -179,8 +180,43 @@ double LaserTracker::standard_uncertainty(const InstrumentReadings& readings, st
 StartedInstrument LaserTracker::started(const Machine& machine, const InstrumentReadings& readings) const {
   TrackerSetup present = setup();
   TrackerStart found = find_station_poses(machine, ErrorSet{}, present, tracker_readings(readings));
+  StartedInstrument result;
+  for (std::size_t s = 0; s < found.stations.size(); ++s) {
+    const StationStart& station = found.stations[s];
+    if (station.readings == 0) continue;
+    StartFit fit{.place = given_.stations[s].name, .readings = {}, .extent_mm = station.extent_mm};
+    for (std::size_t k = 0; k < readings.count(); ++k) {
+      if (station_of(readings.item[k]) != s) continue;
+      fit.readings.push_back(k);
+      const Reflector& reflector = given_.reflectors[target_of(readings.item[k])];
+      fit.rough |= reflector.estimate_offset && reflector.offset_standard_uncertainty.isZero();
+    }
+    fit.found = station.status == BestFitStatus::ok;
+    fit.determined = fit.found || station.status == BestFitStatus::no_consensus;
+    result.fits.push_back(std::move(fit));
+  }
   apply(found, present);
-  return {std::make_shared<LaserTracker>(name_, std::move(present), measure_, stated_), std::move(found.messages)};
+  result.instrument = std::make_shared<LaserTracker>(name_, std::move(present), measure_, stated_);
+  result.warnings = std::move(found.messages);
+  return result;
+}
+
+std::vector<ReadingMistake> LaserTracker::usual_mistakes() const {
+  if (measure_ == TrackerMeasure::cartesian) {
+    const ReadingMistake mirrored{{"the measured coordinates are in a left-handed frame, or two of them are swapped"},
+                                  [](double* reading) { reading[1] = -reading[1]; }};
+    return combined_mistakes({length_unit_mistakes({0, 1, 2}, "the measured coordinates"), {mirrored}});
+  }
+  const ReadingMistake swapped{{"azimuth and elevation are swapped"},
+                               [](double* reading) { std::swap(reading[1], reading[2]); }};
+  const ReadingMistake clockwise{{"the azimuth counts clockwise"}, [](double* reading) { reading[1] = -reading[1]; }};
+  const ReadingMistake zenith{{"the elevation counts from the zenith"},
+                              [](double* reading) { reading[2] = std::numbers::pi / 2 - reading[2]; }};
+  return combined_mistakes({length_unit_mistakes({0}, "the ranges"),
+                            angle_unit_mistakes({1, 2}, "azimuth and elevation"),
+                            {swapped},
+                            {clockwise},
+                            {zenith}});
 }
 
 std::shared_ptr<const Instrument> LaserTracker::truth(RandomStream&) const { return as_planned(); }

@@ -138,6 +138,7 @@ TrackerStart find_station_poses(const Machine& machine, const ErrorSet& errors, 
     const BestFitTransform fit = robust_best_fit_transform(measured, modelled, fit_options);
     result.status = fit.status;
     result.rms_mm = fit.rms;
+    result.extent_mm = extent_of_points(modelled);
     result.note = note_of(fit, station);
     if (!result.note.empty()) start.messages.push_back(result.note);
     if (fit.status == BestFitStatus::ok || fit.status == BestFitStatus::collinear) {

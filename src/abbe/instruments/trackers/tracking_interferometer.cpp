@@ -42,6 +42,38 @@ std::vector<double> TrackingInterferometer::start_values(const Machine& machine,
   return start.values;
 }
 
+StartedInstrument TrackingInterferometer::started(const Machine& machine, const InstrumentReadings& readings) const {
+  TrackingStart start = find_tracking_start(machine, ErrorSet{}, *this, readings);
+  StartedInstrument result;
+  for (std::size_t s = 0; s < start.stations.size(); ++s) {
+    const TrackingStationStart& station = start.stations[s];
+    if (station.status == TrilaterationStatus::not_run) continue;
+    StartFit fit{.place = setup_.stations[s].name, .readings = {}, .extent_mm = station.extent_mm};
+    for (std::size_t k = 0; k < readings.count(); ++k) {
+      const std::size_t run = readings.item[k];
+      if (setup_.runs[run].station != s) continue;
+      fit.readings.push_back(k);
+      fit.rough |= quantities_[items_[run].quantities[kReflector]].knowledge == Knowledge::open;
+    }
+    fit.found = station.status == TrilaterationStatus::ok || station.status == TrilaterationStatus::mirrored;
+    fit.determined = fit.found || station.status == TrilaterationStatus::no_consensus;
+    result.fits.push_back(std::move(fit));
+  }
+  result.instrument = with_values(start.values);
+  result.warnings = std::move(start.messages);
+  return result;
+}
+
+std::vector<ReadingMistake> TrackingInterferometer::usual_mistakes() const {
+  const ReadingMistake reversed{{"the lengths grow towards the interferometer"},
+                                [](double* reading) { reading[0] = -reading[0]; }};
+  std::vector<ReadingMistake> factors = length_unit_mistakes({0}, "the lengths");
+  factors.push_back(
+      {{"the lengths are those of the optical path, twice as long"}, [](double* reading) { reading[0] /= 2; }});
+  factors.push_back({{"the lengths were halved"}, [](double* reading) { reading[0] *= 2; }});
+  return combined_mistakes({factors, {reversed}});
+}
+
 std::optional<MeetingPoints> TrackingInterferometer::meeting_points(std::size_t item) const {
   const auto at = [&](std::size_t first) -> Eigen::Vector3d {
     const std::vector<std::size_t>& q = items_[item].quantities;

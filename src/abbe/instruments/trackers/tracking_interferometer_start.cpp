@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "abbe/errors/chain_plan.h"
+#include "abbe/geometry/best_fit_transform.h"
 #include "abbe/instruments/instrument.h"
 
 namespace abbe {
@@ -136,6 +137,7 @@ TrackingStart find_tracking_start(const Machine& machine, const ErrorSet& errors
     TrackingStationStart result;
     result.position = result.other = station.position.value();
     result.readings = given.readings;
+    result.extent_mm = extent_of_points(given.data.points);
     if (given.items.empty()) {
       start.stations.push_back(result);
       continue;

@@ -13,6 +13,7 @@ struct TrackingStationStart {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();         ///< mm, frame of the station's body
   Eigen::Vector3d other = Eigen::Vector3d::Zero();            ///< mirrored: the position that was not taken
   double rms_mm = 0;                                          ///< of the lengths that took part
+  double extent_mm = 0;  ///< root mean square distance of the reflectors' points from their mean
   std::size_t readings = 0;
   std::size_t outliers = 0;  ///< readings that took no part
 };

@@ -1,0 +1,56 @@
+#include "abbe/study/study_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "abbe/formats/text/list_text.h"
+
+namespace abbe {
+
+bool StudyCheck::is_explained() const {
+  return std::all_of(campaign.setups.begin(), campaign.setups.end(),
+                     [](const CampaignSetup& setup) { return setup.unexplained.empty(); });
+}
+
+StudyCheck check_study(const Study& study, const ProgressCallback& progress) {
+  StudyCheck check{gather_readings(study, progress)};
+  find_start_values(study.machine, check.campaign);
+  return check;
+}
+
+std::string study_check_text(const Study& study, const StudyCheck& check) {
+  std::string text = fmt::format("{}: {}   ({})\n", study.name, study.machine.name, study.machine.chain());
+  const char* const kind = check.campaign.truth ? "simulated " : "";
+  for (const CampaignSetup& setup : check.campaign.setups) {
+    text += fmt::format("{} ({}): {}{}\n", setup.name, setup.instrument, kind,
+                        counted(setup.reading_count(), "reading", "readings"));
+  }
+  for (const std::string& warning : check.campaign.warnings) text += fmt::format("warning: {}\n", warning);
+  if (check.is_explained()) text += "the nominal machine explains the readings of all places that can be judged\n";
+  return text;
+}
+
+nlohmann::ordered_json study_check_json(const Study& study, const StudyCheck& check) {
+  nlohmann::ordered_json json = {{"study", study.name}, {"machine", study.machine.name}};
+  json["simulated"] = check.campaign.truth.has_value();
+  json["setups"] = nlohmann::ordered_json::array();
+  for (const CampaignSetup& setup : check.campaign.setups) {
+    nlohmann::ordered_json one = {{"name", setup.name}, {"instrument", setup.instrument}};
+    one["readings"] = setup.reading_count();
+    one["unexplained"] = nlohmann::ordered_json::array();
+    for (const UnexplainedReadings& place : setup.unexplained) {
+      one["unexplained"].push_back({{"place", place.place},
+                                    {"share", place.share},
+                                    {"causes", place.causes},
+                                    {"rms_mm_without", place.mended_rms_mm}});
+    }
+    json["setups"].push_back(std::move(one));
+  }
+  json["warnings"] = check.campaign.warnings;
+  json["explained"] = check.is_explained();
+  return json;
+}
+
+}  // namespace abbe
