@@ -48,7 +48,7 @@ namespace abbe {
 /// The errors of a machine as they were identified at one time.
 struct IdentifiedCampaign {
   std::string name;         ///< for texts: "march"
-  std::string errors_file;  ///< for messages
+  std::string errors_file;  ///< for messages; the name itself if there is no file
   Machine machine;          ///< as it was described then
   ErrorsFile errors;
 };
@@ -68,6 +68,11 @@ struct CompareRequest {
 /// @param machine_file  of all of them; empty: machine.toml of each results folder
 /// @throws InputError naming the file, or --machine for an errors file without a machine
 CompareRequest read_campaigns(const std::vector<std::string>& campaigns, const std::string& machine_file);
+/// The same of one campaign. @param machine  absent: machine.toml of its results folder
+IdentifiedCampaign read_campaign(const std::string& path, const std::optional<Machine>& machine);
+/// Makes names that are given twice different: by their paths, and if these are the same too, by a number.
+/// @param paths  [campaigns] or other words for them
+void make_names_different(std::vector<IdentifiedCampaign>& campaigns, const std::vector<std::string>& paths);
 
 /// What is said of the change of an error.
 enum class ChangeVerdict {
@@ -82,6 +87,8 @@ enum class ChangeVerdict {
 
 /// Whether a change with this verdict is one: the error was identified in both campaigns.
 bool is_comparable(ChangeVerdict verdict);
+/// For programs: "changed", "not_significant", "not_known", "partly_set", "only_first", "only_second", "by_convention".
+std::string change_verdict_name(ChangeVerdict verdict);
 
 /// An error motion over a range, [n] each; mm or rad. First and second are in the same gauge, in the functions that
 /// both campaigns can describe.

@@ -38,23 +38,6 @@ std::string name_of_campaign(std::string path) {
   return name;
 }
 
-/// Makes names that are given twice different: by their paths, and if these are the same too, by a number.
-void make_names_different(std::vector<IdentifiedCampaign>& campaigns, const std::vector<std::string>& paths) {
-  const auto times = [&](const std::string& name) {
-    return std::count_if(campaigns.begin(), campaigns.end(), [&](const auto& one) { return one.name == name; });
-  };
-  std::vector<bool> twice;
-  for (const IdentifiedCampaign& campaign : campaigns) twice.push_back(times(campaign.name) > 1);
-  for (std::size_t i = 0; i < campaigns.size(); ++i) {
-    if (twice[i]) campaigns[i].name = paths[i];
-  }
-  std::map<std::string, int> seen;
-  for (IdentifiedCampaign& campaign : campaigns) {
-    const int number = ++seen[campaign.name];
-    if (number > 1) campaign.name += fmt::format(" ({})", number);
-  }
-}
-
 void check_request(const CompareRequest& request) {
   if (request.campaigns.size() < 2 || request.campaigns.size() > kMostCampaigns) {
     throw InputError({.field = "campaigns"}, fmt::format("{} to compare", request.campaigns.size()),
@@ -218,23 +201,41 @@ ComparedPair compared_pair(const CompareRequest& request, const Machine& machine
 
 }  // namespace
 
+void make_names_different(std::vector<IdentifiedCampaign>& campaigns, const std::vector<std::string>& paths) {
+  const auto times = [&](const std::string& name) {
+    return std::count_if(campaigns.begin(), campaigns.end(), [&](const auto& one) { return one.name == name; });
+  };
+  std::vector<bool> twice;
+  for (const IdentifiedCampaign& campaign : campaigns) twice.push_back(times(campaign.name) > 1);
+  for (std::size_t i = 0; i < campaigns.size(); ++i) {
+    if (twice[i]) campaigns[i].name = paths[i];
+  }
+  std::map<std::string, int> seen;
+  for (IdentifiedCampaign& campaign : campaigns) {
+    const int number = ++seen[campaign.name];
+    if (number > 1) campaign.name += fmt::format(" ({})", number);
+  }
+}
+
+IdentifiedCampaign read_campaign(const std::string& path, const std::optional<Machine>& machine) {
+  const std::string results = is_results_folder(path) ? path : std::string();
+  IdentifiedCampaign campaign;
+  campaign.name = name_of_campaign(path);
+  campaign.errors_file = results.empty() ? path : file_of_results(results, "errors.toml");
+  if (!machine && results.empty()) {
+    throw InputError({.field = "--machine"}, "is missing, and " + path + " is not a results folder",
+                     "a machine file for campaigns that are errors files, or results folders of abbe run");
+  }
+  campaign.machine = machine ? *machine : read_machine(file_of_results(results, "machine.toml"));
+  campaign.errors = read_errors(campaign.errors_file, campaign.machine);
+  return campaign;
+}
+
 CompareRequest read_campaigns(const std::vector<std::string>& campaigns, const std::string& machine_file) {
   CompareRequest request;
   std::optional<Machine> machine;
   if (!machine_file.empty()) machine = read_machine(machine_file);
-  for (const std::string& path : campaigns) {
-    const std::string results = is_results_folder(path) ? path : std::string();
-    IdentifiedCampaign campaign;
-    campaign.name = name_of_campaign(path);
-    campaign.errors_file = results.empty() ? path : file_of_results(results, "errors.toml");
-    if (!machine && results.empty()) {
-      throw InputError({.field = "--machine"}, "is missing, and " + path + " is not a results folder",
-                       "a machine file for campaigns that are errors files, or results folders of abbe run");
-    }
-    campaign.machine = machine ? *machine : read_machine(file_of_results(results, "machine.toml"));
-    campaign.errors = read_errors(campaign.errors_file, campaign.machine);
-    request.campaigns.push_back(std::move(campaign));
-  }
+  for (const std::string& path : campaigns) request.campaigns.push_back(read_campaign(path, machine));
   make_names_different(request.campaigns, campaigns);
   return request;
 }

@@ -108,7 +108,9 @@ void add_facts(const CompareRequest& request, ComparedCampaigns& result) {
   report.facts.emplace_back("machine", fmt::format("{}, {}", result.machine.name, result.machine.chain()));
   for (std::size_t k = 0; k < request.campaigns.size(); ++k) {
     const IdentifiedCampaign& campaign = request.campaigns[k];
-    report.facts.emplace_back(campaign_letter(k), fmt::format("{} ({})", campaign.name, campaign.errors_file));
+    const bool is_file = campaign.errors_file != campaign.name;
+    report.facts.emplace_back(campaign_letter(k),
+                              campaign.name + (is_file ? " (" + campaign.errors_file + ")" : std::string()));
   }
   for (const ComparedPair& pair : result.pairs) {
     std::string text = changed_words(pair);

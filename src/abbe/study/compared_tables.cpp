@@ -43,27 +43,6 @@ const char* verdict_words(ChangeVerdict verdict) {
   return "";
 }
 
-/// The verdict for programs.
-const char* verdict_word(ChangeVerdict verdict) {
-  switch (verdict) {
-    case ChangeVerdict::changed:
-      return "changed";
-    case ChangeVerdict::not_significant:
-      return "not_significant";
-    case ChangeVerdict::not_known:
-      return "not_known";
-    case ChangeVerdict::partly:
-      return "partly_set";
-    case ChangeVerdict::only_first:
-      return "only_first";
-    case ChangeVerdict::only_second:
-      return "only_second";
-    case ChangeVerdict::by_convention:
-      return "by_convention";
-  }
-  return "";
-}
-
 std::vector<const ComparedError*> what_matters_first(const ComparedPair& pair) {
   std::vector<const ComparedError*> order;
   for (const ComparedError& error : pair.errors) {
@@ -131,7 +110,7 @@ nlohmann::ordered_json error_details(const Machine& machine, const ComparedError
   nlohmann::ordered_json json;
   json["name"] = error.name;
   json["words"] = error.words;
-  json["verdict"] = verdict_word(error.verdict);
+  json["verdict"] = change_verdict_name(error.verdict);
   if (!is_comparable(error.verdict)) return json;
   json["change" + unit] = micro_number(error.change, angle);
   if (error.expanded_uncertainty) {
@@ -158,6 +137,26 @@ nlohmann::ordered_json error_details(const Machine& machine, const ComparedError
 }
 
 }  // namespace
+
+std::string change_verdict_name(ChangeVerdict verdict) {
+  switch (verdict) {
+    case ChangeVerdict::changed:
+      return "changed";
+    case ChangeVerdict::not_significant:
+      return "not_significant";
+    case ChangeVerdict::not_known:
+      return "not_known";
+    case ChangeVerdict::partly:
+      return "partly_set";
+    case ChangeVerdict::only_first:
+      return "only_first";
+    case ChangeVerdict::only_second:
+      return "only_second";
+    case ChangeVerdict::by_convention:
+      return "by_convention";
+  }
+  return "";
+}
 
 std::string campaign_letter(std::size_t campaign) { return std::string(1, static_cast<char>('A' + campaign)); }
 
