@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import html
+import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,10 +13,10 @@ import numpy
 if TYPE_CHECKING:
     import pandas
 
-    from ._core import (Axis, Errors, Evaluation, FittedCircles, FittedShape, Readings, ScanDeviations, StudyPlan,
-                        StudyResult)
+    from ._core import (Axis, ComparedPair, Comparison, Errors, Evaluation, FittedCircles, FittedShape, ImportedTable,
+                        Readings, ScanDeviations, StudyPlan, StudyResult)
 
-    Reported = Evaluation | FittedShape | FittedCircles | ScanDeviations
+    Reported = Comparison | Evaluation | FittedShape | FittedCircles | ScanDeviations
 
 _MOST_ROWS = 40
 
@@ -77,6 +79,48 @@ def readings_frame(readings: Readings) -> pandas.DataFrame:
                 columns[prefix + name] = values[:, index]
     frame: pandas.DataFrame = _pandas().DataFrame(columns)
     return frame
+
+
+def imported_values(table: ImportedTable) -> dict[str, numpy.ndarray | list[str]]:
+    text, columns = table.csv(), table.columns
+    numbers = [index for index, column in enumerate(columns) if not column.is_text]
+    read = numpy.loadtxt(io.StringIO(text), delimiter=",", quotechar='"', comments=None, skiprows=1, usecols=numbers,
+                         ndmin=2)
+    values: dict[str, numpy.ndarray | list[str]] = {}
+    for index, column in enumerate(columns):
+        if column.is_text:
+            rows = csv.reader(io.StringIO(text, newline=""))
+            next(rows)
+            values[column.name] = [row[index] for row in rows]
+        else:
+            values[column.name] = read[:, numbers.index(index)].copy()
+    return values
+
+
+def imported_frame(table: ImportedTable) -> pandas.DataFrame:
+    frame: pandas.DataFrame = _pandas().DataFrame(table.values())
+    return frame
+
+
+def changes_frame(pair: ComparedPair) -> pandas.DataFrame:
+    """A row for each error; values and changes in um or urad."""
+    rows = []
+    for error in pair.errors:
+        factor = 1e6 if error.is_angle else 1e3
+        first, second = error.values_mm_rad or (None, None)
+        numbers = {"first": first, "second": second, "change": error.change_mm_rad,
+                   "U": error.expanded_uncertainty_mm_rad}
+        rows.append({"name": error.name, "what it is": error.words,
+                     **{name: None if number is None else factor * number for name, number in numbers.items()},
+                     "unit": "urad" if error.is_angle else "um", "p": error.probability,
+                     "p_adjusted": error.adjusted_probability,
+                     "at_tool_um": None if error.at_tool_mm is None else 1e3 * error.at_tool_mm,
+                     "verdict": error.verdict})
+    columns = ["name", "what it is", "first", "second", "change", "U", "unit", "p", "p_adjusted", "at_tool_um", "verdict"]
+    frame: pandas.DataFrame = _pandas().DataFrame(rows, columns=columns)
+    for name in ("first", "second", "change", "U", "p", "p_adjusted", "at_tool_um"):
+        frame[name] = frame[name].astype(float)
+    return frame.set_index("name")
 
 
 def plan_frame(plan: StudyPlan) -> pandas.DataFrame:

@@ -16,6 +16,8 @@ void bind_compensation(nb::module_& module);
 void bind_instruments(nb::module_& module);
 void bind_studies(nb::module_& module);
 void bind_study_results(nb::module_& module);
+void bind_comparisons(nb::module_& module);
+void bind_imported_tables(nb::module_& module);
 void bind_plans(nb::module_& module);
 void bind_use_arguments(nb::module_& module);
 void bind_frozen_errors(nb::module_& module);

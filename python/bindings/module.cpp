@@ -61,6 +61,8 @@ NB_MODULE(_core, module) {
   bind_deviations(module);
   bind_scan_points(module);
   bind_planned_scans(module);
+  bind_imported_tables(module);
+  bind_comparisons(module);
 }
 
 }  // namespace

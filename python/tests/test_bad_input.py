@@ -235,7 +235,9 @@ def test_bad_arguments(call):
 
 def test_classes_that_cannot_be_made_say_so():
     for kind in (abbe.StudyResult, abbe.StudyPlan, abbe.Instrument, abbe.Poses, abbe.Corrections, abbe.Evaluation,
-                 abbe.EvaluationFigure, abbe.FittedShape, abbe.ScanRegistration, abbe.ScanDeviations, abbe.PlannedScan):
+                 abbe.EvaluationFigure, abbe.FittedShape, abbe.ScanRegistration, abbe.ScanDeviations, abbe.PlannedScan,
+                 abbe.ImportedTable, abbe.ImportedColumn, abbe.Comparison, abbe.ComparedPair, abbe.ComparedError,
+                 abbe.ComparedCurve):
         with pytest.raises(TypeError):
             kind()
 
@@ -253,6 +255,10 @@ def test_classes_that_cannot_be_made_say_so():
     lambda: abbe.fit(abbe.PointCloud.__new__(abbe.PointCloud), "plane"),
     lambda: abbe.Evaluation.__new__(abbe.Evaluation).numbers,
     lambda: abbe.FittedShape.__new__(abbe.FittedShape).points_mm,
+    lambda: abbe.ImportedTable.__new__(abbe.ImportedTable).values(),
+    lambda: abbe.ImportedTable.__new__(abbe.ImportedTable).csv(),
+    lambda: abbe.Comparison.__new__(abbe.Comparison).pairs,
+    lambda: abbe.compare([abbe.Errors.__new__(abbe.Errors)] * 2),
 ])
 def test_an_object_that_was_never_initialised_is_refused(call):
     with pytest.raises(TypeError):

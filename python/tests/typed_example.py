@@ -69,6 +69,21 @@ def largest_deviation_mm(scan: Path, part: abbe.Mesh | Path) -> float:
     return max(abs(deviations.statistics_mm.minimum), deviations.statistics_mm.maximum)
 
 
+def imported_mm(table: Path | bytes, machine: abbe.Machine | None) -> list[float]:
+    imported: abbe.ImportedTable = abbe.import_table(table, machine=machine, length_unit="mm")
+    if not imported.certain:
+        raise SystemExit("; ".join(column.name for column in imported.columns if column.doubts))
+    numbers = imported.values()["x_mm"]
+    return [float(number) for number in numbers]
+
+
+def largest_change(campaigns: list[Path | abbe.Errors]) -> float | None:
+    found: abbe.Comparison = abbe.compare(campaigns, tolerances={"V_max_um": 10.0}, progress=step)
+    pair: abbe.ComparedPair = found.pairs[0]
+    curve: abbe.ComparedCurve | None = pair["EXX"].curve
+    return None if curve is None else float(numpy.abs(curve.change_mm_rad).max())
+
+
 def distances(part: abbe.Mesh, points: numpy.typing.NDArray[numpy.float64]) -> numpy.ndarray:
     shifted: abbe.BestFit = abbe.best_fit_transform(points, points + 1, weights=numpy.ones(len(points)))
     return part.closest(points + shifted.matrix[:3, 3]).distance_mm

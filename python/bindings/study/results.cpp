@@ -96,14 +96,6 @@ void write(const StudyOutcome& outcome, const std::filesystem::path& folder) {
   write_results(study, outcome.result);
 }
 
-MachineErrors identified(const StudyOutcome& outcome) {
-  if (!outcome.result.usable()) {
-    throw InputError({.field = "errors"}, "there are none: " + identification(outcome).message,
-                     "a study that converged");
-  }
-  return {outcome.study->machine, identified_errors_file(*outcome.study, outcome.result)};
-}
-
 void bind_identification(nb::class_<StudyOutcome>& result) {
   result
       .def_prop_ro(
@@ -126,7 +118,7 @@ void bind_identification(nb::class_<StudyOutcome>& result) {
           },
           "Why the result must not be used as it is, a sentence each.")
       .def_prop_ro("warnings", [](const StudyOutcome& o) { return study_warnings(*o.study, o.result); })
-      .def_prop_ro("errors", &identified,
+      .def_prop_ro("errors", &identified_errors,
                    "The identified errors with their covariance. Raises InputError if there are none.")
       .def_prop_ro(
           "names",
@@ -192,6 +184,14 @@ void bind_identification(nb::class_<StudyOutcome>& result) {
 }
 
 }  // namespace
+
+MachineErrors identified_errors(const StudyOutcome& outcome) {
+  if (!outcome.result.usable()) {
+    throw InputError({.field = "errors"}, "there are none: " + identification(outcome).message,
+                     "a study that converged");
+  }
+  return {outcome.study->machine, identified_errors_file(*outcome.study, outcome.result)};
+}
 
 void bind_study_results(nb::module_& module) {
   nb::class_<StudyOutcome> result(module, "StudyResult", "Everything that a study has computed.", nb::dynamic_attr());

@@ -10,6 +10,7 @@
 #include "abbe/study/planning.h"
 #include "abbe/study/study_result.h"
 #include "bindings/bindings.h"
+#include "bindings/machine_errors.h"
 
 namespace abbe::python {
 
@@ -32,6 +33,9 @@ struct StudyOutcome {
   std::shared_ptr<const Study> study;
   StudyResult result;
 };
+
+/// The errors that a study identified, as in its errors file. @throws InputError if there are none
+MachineErrors identified_errors(const StudyOutcome& outcome);
 
 struct PlanOutcome {
   std::shared_ptr<const Study> study;

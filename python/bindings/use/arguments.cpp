@@ -135,7 +135,7 @@ std::string argument_words(const std::string& text) {
       name += text[i] == '-' ? '_' : text[i];
     }
     --i;
-    words += name == "for" ? "format" : name == "word" ? "words" : name;
+    words += name == "for" ? "format" : name == "word" ? "words" : name == "as" ? "kind" : name;
   }
   return words;
 }
