@@ -19,6 +19,8 @@ from violations_report import report  # noqa: E402
 CONSTANT = re.compile(r"^(?:inline |static )?(?:constexpr|const) [\w:<>, *&]+?[ *](\w+)(?:\[[^\]]*\])*\s*(?:=|\{|$)")
 FUNCTION = re.compile(r"^[A-Za-z][\w:<>,*& ]*?[ *&](\w+)\(((?:[^;{}()]|\([^()]*\))*)\)(?: noexcept)? \{", re.MULTILINE)
 
+ADDRESS = re.compile(r"[(,] ?&(\w+)[,)]")
+
 
 def parameters(text):
     """Types of the parameters of a function, without names and default values."""
@@ -63,9 +65,14 @@ def violations(root):
         for path in paths_below(root, library.replace("src/", "include/", 1), ".h") if library.startswith("src/") else ():
             public.update((name, path) for _, name in names_in(read(root, path)) if "(" not in name)
         own = {}
+        addressed = set()
+        for path in paths_below(root, library, ".cpp"):
+            addressed.update(ADDRESS.findall(read(root, path)))
         for path in paths_below(root, library, ".cpp"):
             for number, name in names_in(read(root, path)):
-                other = own.setdefault(name, path)
+                # The address of a function with overloads in the same unit is ambiguous.
+                plain = name.split("(")[0]
+                other = own.setdefault(plain if plain in addressed else name, path)
                 if other != path:
                     yield path, number, f"'{name}' is also in {other}, and both may be compiled in one unit"
                 elif name in public:

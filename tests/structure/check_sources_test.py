@@ -33,6 +33,11 @@ class CheckSources(unittest.TestCase):
         self.assertEqual(self.found({**header, A: "constexpr double kTurn = 6;\n"}),
                          [f"{A}:1: 'kTurn' is also in include/abbe/geometry/turn.h, which a source of the same unit may include"])
 
+    def test_overloads_of_which_the_address_is_taken_are_found(self):
+        files = {"python/bindings/a.cpp": "void f(int a) {\n}\n", "python/bindings/b.cpp": "void f(double a) {\n  def(\"f\", &f);\n"}
+        self.assertEqual(self.found(files),
+                         ["python/bindings/b.cpp:1: 'f(double)' is also in python/bindings/a.cpp, and both may be compiled in one unit"])
+
     def test_names_that_never_meet_are_in_order(self):
         constant = "constexpr double kTurn = 6;\n"
         for files in ({A: constant, "src/abbe/errors/b.cpp": constant, "apps/c.cpp": constant, "src/abbe/machine/d_test.cpp": constant},

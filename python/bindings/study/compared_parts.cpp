@@ -47,7 +47,7 @@ const ComparedError& error_named(const ComparedPair& pair, const std::string& na
   throw nb::key_error(fmt::format("there is no error '{}' to compare", name).c_str());
 }
 
-void bind_curve(nb::module_& module) {
+void bind_compared_curve(nb::module_& module) {
   using Curve = ComparedCurve;
   const auto uncertainty = nb::sig("def u_first_mm_rad(self) -> numpy.ndarray | None");
   nb::class_<Curve>(module, "ComparedCurve",
@@ -203,7 +203,7 @@ void bind_pair(nb::module_& module) {
 }  // namespace
 
 void bind_compared_parts(nb::module_& module) {
-  bind_curve(module);
+  bind_compared_curve(module);
   bind_error(module);
   bind_pair(module);
 }
