@@ -81,11 +81,11 @@ void require_machine_file(const std::string& file) {
   }
   if (file == kStandardInput) {
     refuse_contents(file, contents.text(), "a file",
-                    {".toml", ".abbec", ".stl", ".ply", ".obj", ".step", ".csv", ".xyz"});
+                    {".toml", ".abbec", ".stl", ".ply", ".obj", ".step", ".csv", ".pcd", ".e57", ".xyz"});
   }
   throw InputError({.file = file}, "its name does not tell its kind",
-                   "a name ending in .abbec, .stl, .ply, .obj, .step, .stp, .xyz, .asc, .pts or .csv, or --machine "
-                   "with a machine file");
+                   "a name ending in .abbec, .stl, .ply, .obj, .step, .stp, .xyz, .asc, .pts, .csv, .pcd or .e57, or "
+                   "--machine with a machine file");
 }
 
 }  // namespace
@@ -114,6 +114,11 @@ void add_check_command(CommandLine& line) {
       "file", options->file,
       "Study (.study.toml), frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or point cloud (.xyz .asc "
       ".pts .csv .ply)");
+      "Exit code 1: the inside and outside of a mesh cannot be told apart everywhere (turned or branching edges,\n"
+      "duplicate triangles, inside out), or faces were left out. Holes are counted; they are not an error.");
+  command->add_input_file("file", options->file,
+                          "Frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or point cloud (.xyz .asc "
+                          ".pts .csv .ply .pcd .e57)");
   const Option* const machine_option = add_machine(*command, options->machine);
   const Option* const errors_option =
       add_errors(*command, options->errors, "Also validate an errors file of this machine (*.errors.toml)");

@@ -151,7 +151,7 @@ void add_fit_command(CommandLine& line) {
       "  abbe fit examples/fit/scanned-ball.xyz --shape sphere --method robust --unit mm --json\n"
       "  abbe fit examples/fit/scanned-ball.xyz --shape sphere --method robust --fixed-radius-mm 12.7 --unit mm\n"
       "  abbe fit examples/fit/step-1.csv examples/fit/step-2.csv --shape coaxial-circles\n\n"
-      "Files: csv (x_mm,y_mm,z_mm), xyz, ply, obj, stl (corners). docs/fits.md says what the figures mean.");
+      "Files: csv (x_mm,y_mm,z_mm), xyz, ply, pcd, e57, obj, stl (corners). docs/fits.md says what the figures mean.");
   std::vector<std::string> known = names(shapes_by_name());
   known.emplace_back("coaxial-circles");
   app->add_input_file("file", command->files, "Points; one file per circle for coaxial circles")->required();

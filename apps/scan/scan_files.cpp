@@ -18,7 +18,8 @@ MeshFile ScanFiles::read_part() const {
 }
 
 void add_scan_files(Subcommand* command, ScanFiles& files) {
-  command->add_input_file("scan", files.scan, "Points of the scan (.csv .xyz .ply .obj; docs/geometry-files.md)")
+  command
+      ->add_input_file("scan", files.scan, "Points of the scan (.csv .xyz .ply .pcd .e57 .obj; docs/geometry-files.md)")
       ->required();
   command->add_input_file("part", files.part, "Surface of the part (.stl .ply .obj .step)")->required();
   const Check units = one_of(file_length_names());

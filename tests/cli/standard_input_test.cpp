@@ -126,7 +126,7 @@ TEST_F(StandardInput, ContentsThatCannotBeToldAreRefusedWithWhatToDo) {
                         "PLY file ('ply'), an OBJ file ('v X Y Z') or a STEP file ('ISO-10303-21;')",
                     cloud =
                         "a point cloud that begins like an XYZ file (numbers), a CSV file ('x_mm,y_mm,z_mm'), a "
-                        "PLY file ('ply') or an OBJ file ('v X Y Z')",
+                        "PLY file ('ply'), a PCD file ('# .PCD'), an E57 file ('ASTM-E57') or an OBJ file ('v X Y Z')",
                     named = "; or give the name of a file, whose extension tells its kind\n";
   const auto said = [&](const std::string& file, const std::string& words) {
     const CommandResult result = abbe_reads(file, words);
@@ -137,7 +137,8 @@ TEST_F(StandardInput, ContentsThatCannotBeToldAreRefusedWithWhatToDo) {
             untold +
                 "a file that begins like a machine file ('name = ...'), a frozen compensation (byte 0x89, 'ABBEC'), an "
                 "STL file ('solid', or 80 bytes and the number of triangles), a PLY file ('ply'), an OBJ file ('v X Y "
-                "Z'), a STEP file ('ISO-10303-21;'), a CSV file ('x_mm,y_mm,z_mm') or an XYZ file (numbers)" +
+                "Z'), a STEP file ('ISO-10303-21;'), a CSV file ('x_mm,y_mm,z_mm'), a PCD file ('# .PCD'), an E57 file "
+                "('ASTM-E57') or an XYZ file (numbers)" +
                 named);
   EXPECT_EQ(said(text, "scan plan - --machine " + kExamples + "machines/liu-scanner.machine.toml"),
             untold + mesh + named);
@@ -159,7 +160,7 @@ TEST_F(StandardInput, ContentsThatCannotBeToldAreRefusedWithWhatToDo) {
   // A file has a name, which has to tell.
   EXPECT_EQ(abbe({"check", "text"}).err,
             "abbe: text: its name does not tell its kind; expected a name ending in .abbec, .stl, .ply, "
-            ".obj, .step, .stp, .xyz, .asc, .pts or .csv, or --machine with a machine file\n");
+            ".obj, .step, .stp, .xyz, .asc, .pts, .csv, .pcd or .e57, or --machine with a machine file\n");
   EXPECT_EQ(abbe({"check", "none"}).err, "abbe: none: there is no such file\n");
 }
 

@@ -54,7 +54,8 @@ void bind_clouds(nb::module_& module) {
           },
           nb::arg("path"), nb::kw_only(), nb::arg("unit") = nb::none(),
           nb::arg("columns") = std::map<std::string, std::string>{}, nb::arg("ignore") = std::vector<std::string>{},
-          "From a file: csv, xyz, ply, obj (docs/geometry-files.md). unit: 'mm', 'm' or 'inch', for a file that\n"
+          "From a file: csv, xyz, ply, pcd, e57, obj (docs/geometry-files.md). unit: 'mm', 'm' or 'inch', for a file "
+          "that\n"
           "states none (default: mm). columns: {'x_mm': 'East'}, for a CSV file with other names; ignore: its columns "
           "to\n"
           "skip. Raises InputError.")
@@ -81,6 +82,11 @@ void bind_clouds(nb::module_& module) {
       .def_prop_ro(
           "unit", [](const NamedPoints& p) { return unit_words(p.file.unit); },
           "Unit of the file, and how it is known.")
+      .def_prop_ro(
+          "left_out", [](const NamedPoints& p) { return p.file.left_out; },
+          "Number of points of the file that are not in the cloud, because they have no coordinates (PCD, E57).")
+      .def_prop_ro(
+          "notes", [](const NamedPoints& p) { return p.file.notes; }, "Sentences on what was left out of the file.")
       .def_ro("name", &NamedPoints::name)
       .def(
           "check_text", [](const NamedPoints& p) { return cloud_text(check(p)); },

@@ -30,7 +30,8 @@ PointsToFit points_to_fit(const PointsArgument& argument, const std::optional<st
     return points;
   }
   NamedPoints points = points_of(argument, "points_mm", unit, called, in_plane);
-  return {points.name, std::move(points.file.cloud), points.file.format + ", " + unit_words(points.file.unit)};
+  std::string fact = cloud_words(points.file);
+  return {points.name, std::move(points.file.cloud), std::move(fact)};
 }
 
 std::optional<double> half_angle(const std::optional<double>& degrees) {

@@ -106,7 +106,8 @@ PointsToFit read_points_to_fit(const std::string& file, const PointCloudOptions&
             mesh.format + ", corners, " + unit_words(mesh.unit)};
   }
   PointCloudFile read = read_point_cloud(file, options);
-  return {file, std::move(read.cloud), read.format + ", " + unit_words(read.unit), std::move(read.names)};
+  std::string fact = cloud_words(read);
+  return {file, std::move(read.cloud), std::move(fact), std::move(read.names)};
 }
 
 FittedShape fit_points(ShapeFitRequest request) {

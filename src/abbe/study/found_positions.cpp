@@ -29,6 +29,7 @@ PlacedWorkpiece lay_on_mesh(const PositionsRequest& request, const JobOptions& o
   }
   PlacedWorkpiece result;
   if (!request.part->left_out.empty()) result.warnings.push_back("the part is " + incomplete_words(*request.part));
+  for (const std::string& note : request.scan->notes) result.warnings.push_back("the scan: " + note);
   RegistrationOptions registration;
   registration.noise_mm = request.scans.workpiece->noise;
   const RegistrationTarget target(request.part->mesh, registration);

@@ -8,7 +8,7 @@
 namespace abbe {
 
 /// The extension of files that begin like these contents, even if the rest is missing: ".step", ".ply", ".stl",
-/// ".toml", ".csv", ".obj" or ".xyz"; empty where nothing tells.
+/// ".pcd", ".e57", ".toml", ".csv", ".obj" or ".xyz"; empty where nothing tells.
 std::string ending_of(std::string_view contents);
 
 /// The name of a file of a shape or curve with an ending that says of what kind it is. Of standard input

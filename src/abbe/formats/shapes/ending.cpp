@@ -7,6 +7,8 @@
 
 #include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/shapes/e57_file.h"
+#include "abbe/formats/shapes/pcd_header.h"
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/shapes/step_file.h"
 #include "abbe/formats/shapes/stl_file.h"
@@ -22,11 +24,13 @@ struct ContentsKind {
   std::string_view ending, name, beginning;
 };
 
-constexpr std::array<ContentsKind, 9> kContentsKinds = {
+constexpr std::array<ContentsKind, 11> kContentsKinds = {
     {{".toml", "a machine file", "'name = ...'"},
      {".abbec", "a frozen compensation", "byte 0x89, 'ABBEC'"},
      {".stl", "an STL file", "'solid', or 80 bytes and the number of triangles"},
      {".ply", "a PLY file", "'ply'"},
+     {".pcd", "a PCD file", "'# .PCD'"},
+     {".e57", "an E57 file", "'ASTM-E57'"},
      {".obj", "an OBJ file", "'v X Y Z'"},
      {".step", "a STEP file", "'ISO-10303-21;'"},
      {".csv", "a CSV file", "'x_mm,y_mm,z_mm'"},
@@ -84,6 +88,8 @@ std::string ending_of(std::string_view contents) {
   // Files that were cut short are of their kind too: what is missing is then said.
   if (is_step(contents) || contents.starts_with("ISO-10303")) return ".step";
   if (is_ply(contents)) return ".ply";
+  if (is_e57(contents)) return ".e57";
+  if (is_pcd(contents)) return ".pcd";
   if (is_binary_stl(contents) || is_ascii_stl(contents) || begins_like_binary_stl(contents)) return ".stl";
   const std::string_view line = first_line(contents);
   if (is_toml(line)) return ".toml";
@@ -103,7 +109,9 @@ std::string with_ending(const std::filesystem::path& path) {
 
 bool can_be_program(std::string_view contents) {
   const std::string ending = ending_of(contents);
-  if (ending == ".step" || ending == ".ply" || ending == ".stl" || ending == ".xyz") return false;
+  for (const char* const other : {".step", ".ply", ".stl", ".pcd", ".e57", ".xyz"}) {
+    if (ending == other) return false;
+  }
   const std::string_view line = first_line(contents);
   if (line.find('\0') != std::string_view::npos || line.starts_with('[')) return false;
   // One letter of a mistyped word is no reason to look no further; three make a word of a text.

@@ -8,8 +8,11 @@
 #include "abbe/formats/files/file_extension.h"
 #include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/shapes/e57_file.h"
 #include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/shapes/obj_file.h"
+#include "abbe/formats/shapes/pcd_file.h"
+#include "abbe/formats/shapes/pcd_header.h"
 #include "abbe/formats/shapes/ply_file.h"
 #include "abbe/formats/shapes/point_normals.h"
 #include "abbe/formats/shapes/stl_file.h"
@@ -71,6 +74,8 @@ PointCloudFile parse_csv_cloud(std::string_view contents, const std::string& fil
 
 PointCloudFile parse_point_cloud(std::string_view contents, const std::string& file, const PointCloudOptions& options) {
   const std::string extension = file_extension(with_ending(file, contents));
+  if (is_e57(contents) || extension == ".e57") return parse_e57(contents, file, options.unit, options.threads);
+  if (is_pcd(contents) || extension == ".pcd") return parse_pcd(contents, file, options.unit);
   PointCloudFile result;
   if (is_ply(contents)) {
     PlyContents ply = parse_ply(contents, file, options.unit);
@@ -93,10 +98,10 @@ PointCloudFile parse_point_cloud(std::string_view contents, const std::string& f
     return parse_csv_cloud(contents, file, options);
   }
   if (extension == ".stl" || is_binary_stl(contents)) {
-    throw InputError({file, 0, 0, ""}, "this is an STL file, a mesh", "a point cloud: XYZ, CSV, PLY or OBJ");
+    throw InputError({file, 0, 0, ""}, "this is an STL file, a mesh", "a point cloud: XYZ, CSV, PLY, PCD, E57 or OBJ");
   }
   if (file == kStandardInput && extension != ".xyz") {
-    refuse_contents(file, contents, "a point cloud", {".xyz", ".csv", ".ply", ".obj"});
+    refuse_contents(file, contents, "a point cloud", {".xyz", ".csv", ".ply", ".pcd", ".e57", ".obj"});
   }
   if (extension == ".ply") throw InputError({file, 1, 0, ""}, "this is not a PLY file", "a first line 'ply'");
   result.unit = agreed_unit(std::nullopt, options.unit, file);
@@ -114,7 +119,14 @@ PointCloudFile read_point_cloud(const std::filesystem::path& path, const PointCl
 
 bool has_point_cloud_extension(const std::filesystem::path& path) {
   const std::string extension = file_extension(path);
-  return extension == ".xyz" || extension == ".asc" || extension == ".pts" || extension == ".csv";
+  return extension == ".xyz" || extension == ".asc" || extension == ".pts" || extension == ".csv" ||
+         extension == ".pcd" || extension == ".e57";
+}
+
+std::string cloud_words(const PointCloudFile& file) {
+  std::string words = file.format + ", " + unit_words(file.unit);
+  for (const std::string& note : file.notes) words += "; " + note;
+  return words;
 }
 
 std::string point_cloud_csv(const PointCloud& cloud, const std::vector<double>& deviation_mm,

@@ -138,18 +138,21 @@ std::string cloud_text(const CheckedCloud& checked) {
   text += fmt::format("{:<22} {}\n", "normals", checked.file.cloud.has_normals() ? "yes" : "no");
   text += box_text(checked.lower, checked.upper);
   text += fmt::format("{:<22} {} mm\n", "centroid", coordinates(checked.centroid));
+  for (const std::string& note : checked.file.notes) text += fmt::format("note: {}\n", note);
   return text;
 }
 
 nlohmann::ordered_json cloud_json(const CheckedCloud& checked) {
   Json json = head_json("point_cloud", checked.file.format, checked.file.unit);
   json["points"] = checked.file.cloud.size();
+  json["points_left_out"] = checked.file.left_out;
   json["repeated_points"] = checked.repeated;
   json["normals"] = checked.file.cloud.has_normals();
   json["deviations"] = !checked.file.deviation_mm.empty();
   json["lower_mm"] = vector_json(checked.lower);
   json["upper_mm"] = vector_json(checked.upper);
   json["centroid_mm"] = vector_json(checked.centroid);
+  json["notes"] = checked.file.notes;
   return json;
 }
 

@@ -18,7 +18,7 @@ std::string incomplete_words(const MeshFile& mesh) {
 }
 
 std::vector<std::pair<std::string, std::string>> facts_of(const PointCloudFile& scan, const MeshFile& part) {
-  return {{"scan", fmt::format("{} points, {}, {}", scan.cloud.size(), scan.format, unit_words(scan.unit))},
+  return {{"scan", fmt::format("{} points, {}", scan.cloud.size(), cloud_words(scan))},
           {"part", fmt::format("{} triangles, {}, {}{}{}", part.mesh.size(), part.format, unit_words(part.unit),
                                part.left_out.empty() ? "" : "; ", incomplete_words(part))}};
 }

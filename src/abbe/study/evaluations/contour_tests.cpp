@@ -72,7 +72,7 @@ Evaluation evaluated(const ContourPointsTest& test, const std::string& file) {
   ContourPointsEvaluation found = evaluate_contour_points(test.pieces, measured.cloud.points, test.origin_uncertainty);
   Evaluation result;
   result.report = contour_points_report(contour_title(file), test.pieces, found);
-  result.report.facts.front().second += fmt::format(", {}, {}", measured.format, unit_words(measured.unit));
+  result.report.facts.front().second += ", " + cloud_words(measured);
   result.found = std::move(found);
   return result;
 }
