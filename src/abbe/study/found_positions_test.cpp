@@ -49,12 +49,15 @@ TEST(FoundPositionsOfScans, AreThoseOfScannerAndWorkpiece) {
 TEST(FoundPositionsOfScans, AWorkpieceOnAMeshIsLaidOnIt) {
   PositionsRequest request = bracket_positions();
   request.part->left_out = {"#78 could not be converted"};
+  request.scan->notes = {"2 points are left out: the file marks their coordinates as invalid"};
   std::size_t told = 0;
   const FoundPositions found = find_positions(request, {.progress = [&](std::size_t, std::size_t) { ++told; }});
   ASSERT_TRUE(found.is_ok()) << found.problem;
   EXPECT_GT(told, 0U);
-  ASSERT_EQ(found.workpiece->warnings.size(), 1U);
+  ASSERT_EQ(found.workpiece->warnings.size(), 2U);
   EXPECT_THAT(found.workpiece->warnings[0], testing::StartsWith("the part is incomplete: "));
+  EXPECT_EQ(found.workpiece->warnings[1],
+            "the scan: 2 points are left out: the file marks their coordinates as invalid");
   EXPECT_THAT(found_placement_file(found), HasSubstr("#78 could not be converted"));
   std::stop_source source;
   const auto stopping = [&](std::size_t, std::size_t) { source.request_stop(); };

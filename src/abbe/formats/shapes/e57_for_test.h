@@ -3,6 +3,7 @@
 // For tests: E57 files of any scans and fields.
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -116,6 +117,7 @@ inline std::string e57_section_for_test(const E57ScanForTest& scan, std::uint64_
   std::string packets;
   const auto add_packet = [&](std::string packet) {
     packet.resize((packet.size() + 3) / 4 * 4, '\0');
+    assert(packet.size() <= 65536);
     const auto length = static_cast<std::uint16_t>(packet.size() - 1);
     std::memcpy(packet.data() + 2, &length, 2);
     packets += packet;
