@@ -107,18 +107,12 @@ void add_check_command(CommandLine& line) {
       "Of a study, the readings are read and compared with the nominal machine; nothing is identified.\n"
       "A frozen compensation (abbe compensate freeze) is refused here as a controller would refuse it.\n"
       "Exit code 1: the nominal machine does not explain the readings of a study; the inside and outside of a mesh\n"
-      "cannot be told apart everywhere (turned or branching edges, duplicate triangles, inside out); or faces were "
-      "left\n"
-      "out. Holes are counted; they are not an error.");
+      "cannot be told apart everywhere (turned or branching edges, duplicate triangles, inside out); or faces were\n"
+      "left out. Holes are counted; they are not an error.");
   command->add_input_file(
       "file", options->file,
       "Study (.study.toml), frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or point cloud (.xyz .asc "
-      ".pts .csv .ply)");
-      "Exit code 1: the inside and outside of a mesh cannot be told apart everywhere (turned or branching edges,\n"
-      "duplicate triangles, inside out), or faces were left out. Holes are counted; they are not an error.");
-  command->add_input_file("file", options->file,
-                          "Frozen compensation (.abbec), mesh (.stl .ply .obj .step .stp) or point cloud (.xyz .asc "
-                          ".pts .csv .ply .pcd .e57)");
+      ".pts .csv .ply .pcd .e57)");
   const Option* const machine_option = add_machine(*command, options->machine);
   const Option* const errors_option =
       add_errors(*command, options->errors, "Also validate an errors file of this machine (*.errors.toml)");
