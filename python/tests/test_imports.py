@@ -101,7 +101,6 @@ def test_inches_become_millimetres():
     assert values["x_mm"][0] == pytest.approx(25.4 * 1.84039, rel=1e-15) and values["point"][0] == "bore 1"
 
 
-@bad_input
 def test_what_is_uncertain_is_not_written(tmp_path):
     (tmp_path / "table.csv").write_bytes(NO_UNITS)
     asked = ["import", "table.csv", "-o", "wanted.csv", "--write-mapping", "wanted.import.toml"]
