@@ -17,19 +17,10 @@
 #include "abbe/formats/shapes/found_points.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
+#include "abbe/instruments/trackers/tracker.h"
 
 namespace abbe {
 namespace {
-
-constexpr double kMillimetresPerMetre = 1000;
-
-/// Source: ASTM E2807-11, 6.7: azimuth from x towards y, elevation from the xy plane towards z.
-Eigen::Vector3d cartesian(const Eigen::Vector3d& range_azimuth_elevation) {
-  const double range = range_azimuth_elevation[0], azimuth = range_azimuth_elevation[1],
-               elevation = range_azimuth_elevation[2];
-  return range * Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                                 std::sin(elevation));
-}
 
 class E57PointReader {
  public:
@@ -95,8 +86,9 @@ class E57PointReader {
         found.leave_out_not_finite();
         continue;
       }
-      if (scan.is_spherical) point = cartesian(point);
-      point = kMillimetresPerMetre * (scan.file_from_scan * point);
+      // Azimuth from x towards y, elevation from the xy plane: ASTM E2807-11, 6.7.
+      if (scan.is_spherical) point = point_from_range_and_angles(point);
+      point = millimetres(FileLength::metre) * (scan.file_from_scan * point);
       for (int k = 0; k < 3; ++k) {
         if (!(std::abs(point[k]) <= kLargestInput)) refuse_large(scan, i, point[k], "xyz"[k]);
       }

@@ -20,7 +20,7 @@ constexpr std::string_view kE57Signature = "ASTM-E57";
 /// Pages that are checked together.
 constexpr std::size_t kPagesTogether = 1024;
 
-/// Table k is the remainder of a byte with k zero bytes behind it: eight bytes at a time (M. Kounavis, F. Berry,
+/// Table k is the remainder of a byte with k zero bytes after it: eight bytes at a time (M. Kounavis, F. Berry,
 /// "A systematic approach to building high performance software-based CRC generators", ISCC 2005).
 constexpr std::array<std::array<std::uint32_t, 256>, 8> crc32c_tables() {
   std::array<std::array<std::uint32_t, 256>, 8> tables{};

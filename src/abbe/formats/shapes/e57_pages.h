@@ -27,7 +27,7 @@ class E57Pages {
 
   /// Number of logical bytes.
   std::uint64_t size() const { return std::uint64_t{contents_.size()} / kE57PageBytes * kE57PageData; }
-  /// Logical place of a byte of the file; none for a checksum or behind the end.
+  /// Logical place of a byte of the file; none for a checksum or after the end.
   std::optional<std::uint64_t> logical(std::uint64_t physical) const;
   /// Byte of the file at a logical place, for messages.
   static std::uint64_t physical(std::uint64_t logical) {

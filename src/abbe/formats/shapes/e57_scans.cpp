@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -206,17 +207,12 @@ class E57ScanReader {
 
   void read_pose(const E57Element& pose) {
     if (const E57Element* turn = pose.child("rotation"); turn != nullptr) {
-      Eigen::Vector4d q(pose_number(*turn, "w", 1), pose_number(*turn, "x", 0), pose_number(*turn, "y", 0),
-                        pose_number(*turn, "z", 0));
-      const double length = q.norm();
-      if (!(std::abs(length - 1) <= kUnitQuaternion)) {
-        fail("pose/rotation", *turn, fmt::format("the quaternion has the length {:g}", length), "1");
+      const Eigen::Quaterniond q(pose_number(*turn, "w", 1), pose_number(*turn, "x", 0), pose_number(*turn, "y", 0),
+                                 pose_number(*turn, "z", 0));
+      if (!(std::abs(q.norm() - 1) <= kUnitQuaternion)) {
+        fail("pose/rotation", *turn, fmt::format("the quaternion has the length {:g}", q.norm()), "1");
       }
-      q /= length;
-      const double w = q[0], x = q[1], y = q[2], z = q[3];
-      scan_.file_from_scan.rotation << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
-          2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x),
-          1 - 2 * (x * x + y * y);
+      scan_.file_from_scan.rotation = q.normalized().toRotationMatrix();
     }
     if (const E57Element* shift = pose.child("translation"); shift != nullptr) {
       const double x = pose_number(*shift, "x", 0), y = pose_number(*shift, "y", 0), z = pose_number(*shift, "z", 0);

@@ -18,7 +18,7 @@ constexpr std::uint8_t kPointSection = 1;
 enum E57Packet : std::uint8_t { kIndexPacket = 0, kDataPacket = 1, kEmptyPacket = 2 };
 constexpr std::uint8_t kRestarts = 1;
 
-/// Bits that a byte stream may have behind its last value: writers of integers fill a word of at most 64 bits up.
+/// Bits that a byte stream may have after its last value: writers of integers fill a word of at most 64 bits up.
 std::uint64_t most_left(const E57Field& field) {
   switch (field.kind) {
     case E57Field::Kind::integer:
@@ -37,7 +37,7 @@ class E57Values {
       : field_(field), out_(target.first), stride_(target.stride), left_(count) {}
 
   bool is_wanted() const { return out_ != nullptr; }
-  /// Room for the next piece of `size` bytes, behind what is left of the one before.
+  /// Room for the next piece of `size` bytes, after what is left of the one before.
   char* piece(std::size_t size) {
     held_ = waiting_ + size;
     // Behind the bytes a word is read that need not be there.

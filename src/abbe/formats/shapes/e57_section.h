@@ -16,7 +16,7 @@ namespace abbe {
 /// The section of one scan.
 ///
 /// Its points are in packets of up to 64 KiB. A packet has one piece of the byte stream of every field; the pieces of a
-/// stream, one behind the other, are its values as bits, the lowest first.
+/// stream, one after the other, are its values as bits, the lowest first.
 class E57Section {
  public:
   /// Reads the header of the section. @throws InputError

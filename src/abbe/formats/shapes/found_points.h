@@ -21,7 +21,7 @@ class FoundPoints {
   Eigen::Matrix3Xd& points() { return cloud_.points; }
   Eigen::Matrix3Xd& normals() { return cloud_.normals; }
 
-  /// Keeps a point: the next column, which may not be behind that of the point in the arrays.
+  /// Keeps a point: the next column, which may not come after that of the point in the arrays.
   void keep(const Eigen::Vector3d& point) { cloud_.points.col(kept_++) = point; }
   void keep(const Eigen::Vector3d& point, Eigen::Vector3d normal) {
     if (!make_unit(normal)) ++without_normal_;

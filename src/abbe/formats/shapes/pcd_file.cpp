@@ -122,7 +122,7 @@ class PcdReader {
   /// What the header promises must fit into the file before memory is taken for it.
   void require_room() const {
     const std::size_t left = contents_.size() - header_.data;
-    // A digit and a space; the last value of a file may have nothing behind it.
+    // A digit and a space; the last value of a file may have nothing after it.
     std::uint64_t room = (left + 1) / (2 * header_.point_words), least = 2 * header_.point_words;
     if (header_.form != PcdForm::ascii) {
       least = header_.point_bytes;
@@ -136,11 +136,11 @@ class PcdReader {
                                                                 : fmt::format("at least {} bytes for each", least));
   }
 
-  /// Behind the points there may be zeros and line ends only, so that no number of points is too small.
+  /// After the points there may be zeros and line ends only, so that no number of points is too small.
   void require_end(std::size_t end) const {
     const std::size_t more = contents_.find_first_not_of(std::string_view("\0\r\n \t", 5), end);
     if (more == std::string_view::npos) return;
-    refuse("POINTS", fmt::format("at byte {}: the file goes on behind its {} points", more, header_.points),
+    refuse("POINTS", fmt::format("at byte {}: the file goes on after its {} points", more, header_.points),
            "the end of the file");
   }
 

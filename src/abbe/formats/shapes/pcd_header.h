@@ -25,7 +25,7 @@ struct PcdHeader {
   std::uint64_t points = 0;
   PcdForm form = PcdForm::ascii;
   std::size_t line = 0;         ///< of the number of points, from 1
-  std::size_t data = 0;         ///< byte behind the header
+  std::size_t data = 0;         ///< first byte after the header
   std::size_t point_bytes = 0;  ///< of all fields
   std::size_t point_words = 0;
 };
