@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -87,17 +88,19 @@ VerificationRequest request_of(const VerifyOptions& options) {
   return request;
 }
 
-/// What random poses and test pieces need, and readings have no use for.
-void refuse_beside_readings(const VerifyOptions& options) {
-  const auto refuse = [](bool given, const char* option) {
-    if (given) throw InputError({.field = option}, "has no use with --readings", "no such option, or no --readings");
+/// Options of random poses and test pieces, which readings have no use for.
+constexpr std::array<const char*, 6> kNotWithReadings = {"--machine", "--truth", "--poses",
+                                                         "--seed",    "--range", "--reach-mm"};
+
+void refuse_beside_readings(const Subcommand& command, const VerifyOptions& options) {
+  const auto refuse = [](const char* option) {
+    throw InputError({.field = option}, "cannot be combined with --readings", "one of them");
   };
-  refuse(!options.files.machine.empty(), "--machine");
-  refuse(!options.files.truth.empty(), "--truth");
-  refuse(options.seed.has_value(), "--seed");
-  refuse(!options.ranges.empty(), "--range");
-  refuse(options.cone.has_value(), "cone-frustum");
-  refuse(options.s.has_value(), "s-shape");
+  for (const char* const option : kNotWithReadings) {
+    if (command.count(option) > 0) refuse(option);
+  }
+  if (options.cone) refuse("cone-frustum");
+  if (options.s) refuse("s-shape");
 }
 
 int run_verify(const VerifyOptions& options) {
@@ -108,7 +111,6 @@ int run_verify(const VerifyOptions& options) {
     }
   }
   if (!options.readings.empty()) {
-    refuse_beside_readings(options);
     return run_verify_readings({.files = options.files,
                                 .study = options.readings,
                                 .least_reduction = options.least_reduction,
@@ -212,13 +214,14 @@ void add_verify_command(CommandLine& line) {
       add_piece(*command, "s-shape", "Wall in the shape of an S (in the manner of ISO 10791-7, M4)",
                 "--before examples/verify/s-before.csv --after examples/verify/s-after.csv", asked->s);
   add_s_shape_sizes(*s, asked->s.sizes);
-  command->callback([&line, asked, reduction, ratio, cone, s] {
-    line.run = [asked, reduction, ratio, cone, s] {
+  command->callback([&line, command, asked, reduction, ratio, cone, s] {
+    line.run = [command, asked, reduction, ratio, cone, s] {
       VerifyOptions all = asked->options;
       if (reduction->count() > 0) all.least_reduction = asked->reduction;
       if (ratio->count() > 0) all.largest_ratio = asked->ratio;
       if (cone->parsed()) all.cone = asked->cone;
       if (s->parsed()) all.s = asked->s;
+      if (!all.readings.empty()) refuse_beside_readings(*command, all);
       return run_verify(all);
     };
   });

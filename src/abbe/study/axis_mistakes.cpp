@@ -2,30 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <utility>
 
-#include "abbe/geometry/angle_units.h"
+#include "abbe/instruments/reading_mistakes.h"
 
 namespace abbe {
-namespace {
-
-struct MistakenCommands {
-  AxisKind kind;
-  const char* words;
-  double factor;  // right = factor * read
-};
-
-constexpr std::array<MistakenCommands, 6> kMistakenCommands = {
-    {{AxisKind::linear, "the commands of the linear axes are in inch, not in mm", 25.4},
-     {AxisKind::linear, "the commands of the linear axes are in mm, not in inch", 1 / 25.4},
-     {AxisKind::linear, "the commands of the linear axes are in m, not in mm", 1000},
-     {AxisKind::linear, "the commands of the linear axes are in mm, not in m", 1e-3},
-     {AxisKind::rotary, "the commands of the rotary axes are in degrees, not in radians", kDegree},
-     {AxisKind::rotary, "the commands of the rotary axes are in radians, not in degrees", 1 / kDegree}}};
-
-}  // namespace
-
 std::vector<AxisMistake> axis_mistakes(const Machine& machine) {
   std::vector<AxisMistake> all;
   const std::size_t axes = machine.axes.size();
@@ -33,23 +14,25 @@ std::vector<AxisMistake> axis_mistakes(const Machine& machine) {
     for (std::size_t j = i + 1; j < axes; ++j) {
       if (machine.axes[i].kind != machine.axes[j].kind) continue;
       all.push_back({fmt::format("the commands of {} and {} are swapped", machine.axes[i].name, machine.axes[j].name),
-                     [i, j](std::vector<double>& pose) { std::swap(pose[i], pose[j]); }});
+                     [i, j](double* pose) { std::swap(pose[i], pose[j]); }});
     }
   }
   for (std::size_t i = 0; i < axes; ++i) {
     all.push_back({fmt::format("axis {} counts in the other direction", machine.axes[i].name),
-                   [i](std::vector<double>& pose) { pose[i] = -pose[i]; }});
+                   [i](double* pose) { pose[i] = -pose[i]; }});
   }
-  for (const MistakenCommands& unit : kMistakenCommands) {
+  const auto add_units = [&](AxisKind kind, const char* name, const auto& mistakes_of) {
     std::vector<std::size_t> of_kind;
     for (std::size_t i = 0; i < axes; ++i) {
-      if (machine.axes[i].kind == unit.kind) of_kind.push_back(i);
+      if (machine.axes[i].kind == kind) of_kind.push_back(i);
     }
-    if (of_kind.empty()) continue;
-    all.push_back({unit.words, [of_kind, factor = unit.factor](std::vector<double>& pose) {
-                     for (const std::size_t i : of_kind) pose[i] *= factor;
-                   }});
-  }
+    if (of_kind.empty()) return;
+    for (ReadingMistake& mistake : mistakes_of(of_kind, fmt::format("the commands of the {} axes", name))) {
+      all.push_back({mistake.words.front(), std::move(mistake.undo)});
+    }
+  };
+  add_units(AxisKind::linear, "linear", length_unit_mistakes);
+  add_units(AxisKind::rotary, "rotary", angle_unit_mistakes);
   all.push_back({"each reading has the commands of the row before", {}, 1});
   all.push_back({"each reading has the commands of the row after", {}, -1});
   return all;

@@ -11,9 +11,9 @@ namespace abbe {
 
 /// A mistake in axis commands, and what undoes it.
 struct AxisMistake {
-  std::string words;                               ///< a clause: "axis X is reversed"
-  std::function<void(std::vector<double>&)> undo;  ///< commands in chain order, mm or rad; null: they stay
-  int shift = 0;                                   ///< reading k was taken with the commands of row k + shift
+  std::string words;                         ///< a clause: "axis X is reversed"
+  std::function<void(double* pose)> undo{};  ///< commands in chain order, mm or rad; empty: they stay
+  int shift = 0;                             ///< reading k was taken with the commands of row k + shift
 };
 
 /// Swapped and reversed axes, other units, and commands of the row before or after.

@@ -107,7 +107,7 @@ class MistakeSearch {
     for (std::size_t i = 0; i < kept.size(); ++i) {
       if (axes != nullptr) {
         std::vector<double> pose = readings_.poses.pose(kept[i] + static_cast<std::size_t>(shift));
-        if (axes->undo) axes->undo(pose);
+        if (axes->undo) axes->undo(pose.data());
         for (std::size_t a = 0; a < pose.size(); ++a) changed.poses.axis[a][i] = pose[a];
       }
       if (mistake == nullptr) continue;
@@ -228,7 +228,7 @@ std::string UnexplainedReadings::words() const {
   if (causes.empty()) return text + "; none of the usual mistakes would explain that";
   text += fmt::format("; they fit to {:.3g} mm if ", mended_rms_mm);
   if (causes.size() == 1) return text + causes.front();
-  return text + fmt::format("one of these is so: {}", fmt::join(causes, "; "));
+  return text + fmt::format("one of these holds: {}", fmt::join(causes, "; "));
 }
 
 std::vector<UnexplainedReadings> unexplained_readings(const Machine& machine, const Instrument& instrument,

@@ -10,6 +10,7 @@
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/study/predicted_readings.h"
 #include "abbe/study/random_poses.h"
+#include "abbe/study/setups_problem.h"
 #include "abbe/study/study_steps.h"
 #include "abbe/verify/compensated_poses.h"
 #include "abbe/verify/error_map.h"
@@ -69,16 +70,12 @@ std::vector<AxisRange> known_ranges(const Study& study, const StudyResult& resul
 std::vector<double> nominal_errors(const Study& study, const StudyResult& result, std::size_t s,
                                    const InstrumentReadings& readings) {
   const CampaignSetup& setup = result.campaign.setups[s];
-  const std::unique_ptr<Observations> all = setup.observations(study.machine, ErrorSet{});
-  Problem problem = estimate_everything(study.machine, ErrorSet{}, {borrowed(*all)});
-  problem.machine_parameters.clear();
-  problem.observations[0].use = result.model.problem.observations[s].use;
-  for (const KnownUnknown& known : setup.known_unknowns()) {
-    problem.priors.push_back({{0, known.unknown}, known.value, known.standard_uncertainty});
-  }
-  if (!all->unknowns().empty()) identify(problem, identify_options(study));
+  Problem problem =
+      setups_problem(study.machine, ErrorSet{}, {&setup, 1}, {&result.model.problem.observations[s].use, 1});
+  const Observations& all = *problem.observations[0].observations;
+  if (!all.unknowns().empty()) identify(problem, identify_options(study));
   const std::unique_ptr<Observations> apart = setup.start->observations(study.machine, ErrorSet{}, readings);
-  apart->set_parameters(ErrorSet{}.parameters(), all->unknown_values());
+  apart->set_parameters(ErrorSet{}.parameters(), all.unknown_values());
   std::vector<double> lengths;
   for (std::size_t k = 0; k < apart->reading_count(); ++k) append_length(*apart, k, lengths);
   return lengths;

@@ -13,18 +13,13 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/study/random_poses.h"
 #include "abbe/study/test_piece_sizes.h"
+#include "abbe/study/verification_condition.h"
 
 namespace abbe {
 namespace {
 
 /// So fine that the lines between the points of a piece are not seen in the figures, mm.
 constexpr double kPieceTolerance = 1e-5;
-
-/// Without it, a condition that nothing meets, or everything.
-void check_condition(const char* option, std::optional<double> value) {
-  if (!value || (*value > 0 && std::isfinite(*value))) return;
-  throw InputError({.field = option}, fmt::format("{} is not a condition", *value), "a number above zero");
-}
 
 PoseList poses_to_verify(const VerificationRequest& request, Verification& result) {
   const ErrorSet &identified = request.identified.errors, &truth = request.truth.errors;
@@ -180,8 +175,8 @@ VerificationRequest read_verification(const VerificationFiles& files) {
 }
 
 Verification verify_compensation(const VerificationRequest& request, const VerificationOptions& options) {
-  check_condition("--least-reduction", request.least_reduction);
-  check_condition("--largest-ratio", request.largest_ratio);
+  require_condition("--least-reduction", request.least_reduction);
+  require_condition("--largest-ratio", request.largest_ratio);
   const auto tell = [&options](VerificationStep step, std::size_t done, std::size_t total) {
     stop_if_asked(options.stop);
     if (options.progress) options.progress(step, done, total);

@@ -9,6 +9,8 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/identify/identify.h"
 #include "abbe/identify/trust/trust.h"
+#include "abbe/study/setups_problem.h"
+#include "abbe/study/verification_condition.h"
 #include "abbe/study/verified_readings_report.h"
 
 namespace abbe {
@@ -19,13 +21,7 @@ class FittedSetups {
  public:
   FittedSetups(const ReadingsToVerify& request, const Campaign& campaign, const ErrorSet& errors,
                const std::vector<std::vector<std::uint8_t>>& use)
-      : problem_(problem_of(request.study.machine, campaign, errors)) {
-    for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
-      problem_.observations[s].use = use[s];
-      for (const KnownUnknown& known : campaign.setups[s].known_unknowns()) {
-        problem_.priors.push_back({{s, known.unknown}, known.value, known.standard_uncertainty});
-      }
-    }
+      : problem_(setups_problem(request.study.machine, errors, campaign.setups, use)) {
     if (estimated_count(problem_) == 0) return;
     IdentifyOptions options;
     options.solver.threads = request.study.threads;
@@ -49,14 +45,6 @@ class FittedSetups {
   }
 
  private:
-  static Problem problem_of(const Machine& machine, const Campaign& campaign, const ErrorSet& errors) {
-    std::vector<std::shared_ptr<Observations>> observations;
-    for (const CampaignSetup& setup : campaign.setups) observations.push_back(setup.observations(machine, errors));
-    Problem problem = estimate_everything(machine, errors, observations);
-    problem.machine_parameters.clear();
-    return problem;
-  }
-
   Problem problem_;
 };
 
@@ -69,12 +57,6 @@ std::vector<std::uint8_t> covered_readings(const ErrorSet& errors, const PoseLis
     }
   }
   return covered;
-}
-
-/// Without it, a condition that nothing meets, or everything.
-void check_limit(const char* option, std::optional<double> value) {
-  if (!value || (*value > 0 && std::isfinite(*value))) return;
-  throw InputError({.field = option}, fmt::format("{} is not a condition", *value), "a number above zero");
 }
 
 void judge(const ReadingsToVerify& request, VerifiedReadings& result) {
@@ -105,8 +87,8 @@ void judge(const ReadingsToVerify& request, VerifiedReadings& result) {
   if (request.largest_ratio) {
     const bool met = result.ratio() > 0 && result.ratio() <= *request.largest_ratio;
     add("ratio", met,
-        fmt::format("{:.2f} times what the uncertainties explain is left: {} the permitted {:g} times", result.ratio(),
-                    met ? "within" : "ABOVE", *request.largest_ratio));
+        fmt::format("what is left is {:.2f} times what the uncertainties explain: {} the permitted {:g} times",
+                    result.ratio(), met ? "within" : "ABOVE", *request.largest_ratio));
   }
 }
 
@@ -129,8 +111,8 @@ bool VerifiedReadings::says_no() const {
 }
 
 VerifiedReadings verify_readings(const ReadingsToVerify& request, const JobOptions& options) {
-  check_limit("--least-reduction", request.least_reduction);
-  check_limit("--largest-ratio", request.largest_ratio);
+  require_condition("--least-reduction", request.least_reduction);
+  require_condition("--largest-ratio", request.largest_ratio);
   const auto progress = stoppable_progress(options);
   constexpr std::size_t kSteps = 3;
   progress(0, kSteps);

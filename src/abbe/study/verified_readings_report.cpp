@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostDrawn = 1500;  // points of a plot
 
-EvaluationFigure& add_figure(EvaluationReport& report, const char* symbol, const std::string& name) {
+EvaluationFigure& add_figure(EvaluationReport& report, const std::string& symbol, const std::string& name) {
   EvaluationFigure figure;
   figure.symbol = symbol;
   figure.name = name;
@@ -36,7 +36,7 @@ void add_number(EvaluationReport& report, const char* symbol, const std::string&
 void add_statistics(EvaluationReport& report, const std::string& when, const std::string& of,
                     const SampleStatistics& statistics) {
   const auto add = [&](const char* ending, const std::string& name, double value) {
-    EvaluationFigure& figure = add_figure(report, (when + ending).c_str(), name + ", " + of);
+    EvaluationFigure& figure = add_figure(report, when + ending, name + ", " + of);
     if (statistics.count > 0) {
       figure.value = value;
     } else {

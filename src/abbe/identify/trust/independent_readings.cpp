@@ -15,31 +15,37 @@ using Index = Eigen::Index;
 constexpr double kOwnShare = 1e-9;      // variance that the fit of the set-ups leaves a residual: less is rounding
 constexpr double kIndependent = 1e-10;  // of scaled columns
 
-/// Columns that span a symmetric, positive semi-definite matrix, A = F F'.
-Eigen::MatrixXd root_of(const Eigen::MatrixXd& matrix) {
-  const Eigen::VectorXd scale =
-      matrix.diagonal().cwiseMax(0).cwiseSqrt().unaryExpr([](double s) { return s > 0 ? s : 1.0; });
-  const Eigen::VectorXd inverse = scale.cwiseInverse();
+/// The range of a symmetric, positive semi-definite matrix A = S V E V' S, scaled to a unit diagonal.
+struct ScaledRange {
+  Eigen::VectorXd scale;    ///< of S; 0 where the diagonal of A is
+  Eigen::MatrixXd vectors;  ///< V, [n, rank]
+  Eigen::VectorXd values;   ///< of E, [rank]
+};
+
+ScaledRange scaled_range(const Eigen::MatrixXd& matrix) {
+  ScaledRange range;
+  range.scale = matrix.diagonal().cwiseMax(0).cwiseSqrt();
+  const Eigen::VectorXd inverse = range.scale.unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
   const SymmetricEigen<> eigen(inverse.asDiagonal() * matrix * inverse.asDiagonal());
   const double least = kIndependent * std::max(eigen.eigenvalues().maxCoeff(), 0.0);
   Index first = 0;
   while (first < matrix.rows() && eigen.eigenvalues()[first] <= least) ++first;
-  const Index rank = matrix.rows() - first;
-  return scale.asDiagonal() * eigen.eigenvectors().rightCols(rank) *
-         eigen.eigenvalues().tail(rank).cwiseSqrt().asDiagonal();
+  range.vectors = eigen.eigenvectors().rightCols(matrix.rows() - first);
+  range.values = eigen.eigenvalues().tail(matrix.rows() - first);
+  return range;
+}
+
+/// F with A = F F'.
+Eigen::MatrixXd root_of(const Eigen::MatrixXd& matrix) {
+  const ScaledRange range = scaled_range(matrix);
+  return range.scale.asDiagonal() * range.vectors * range.values.cwiseSqrt().asDiagonal();
 }
 
 /// W with W'AW = I that spans the range of A in scaled coordinates.
 Eigen::MatrixXd whitening_of(const Eigen::MatrixXd& matrix) {
-  const Eigen::VectorXd inverse =
-      matrix.diagonal().unaryExpr([](double square) { return square > 0 ? 1 / std::sqrt(square) : 0.0; });
-  const SymmetricEigen<> eigen(inverse.asDiagonal() * matrix * inverse.asDiagonal());
-  const double least = kIndependent * std::max(eigen.eigenvalues().maxCoeff(), 0.0);
-  Index first = 0;
-  while (first < matrix.rows() && eigen.eigenvalues()[first] <= least) ++first;
-  const Index rank = matrix.rows() - first;
-  return inverse.asDiagonal() * eigen.eigenvectors().rightCols(rank) *
-         eigen.eigenvalues().tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+  const ScaledRange range = scaled_range(matrix);
+  const Eigen::VectorXd inverse = range.scale.unaryExpr([](double s) { return s > 0 ? 1 / s : 0.0; });
+  return inverse.asDiagonal() * range.vectors * range.values.cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
 /// Everything by the uncertain combinations of the errors, z with covariance I, and by whitened unknowns of the
