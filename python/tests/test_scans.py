@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import signal
 import threading
 import time
@@ -126,11 +125,8 @@ def test_closest_points():
     ("position_mm", lambda: abbe.plan_scan(cube(), machine("liu-scanner"), position_mm=(0, 0, numpy.nan))),
     ("mesh", lambda: abbe.plan_scan(abbe.Mesh(CUBE, CUBE_TRIANGLES[1:]), machine("liu-scanner"))),
 ])
-def test_bad_arguments_are_named(name, call, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(abbe.InputError) as error:
-        call()
-    assert name in str(error.value) and not re.search("--[a-z]", str(error.value))
+def test_bad_arguments_are_named(name, call, names_argument):
+    names_argument(name, call)
 
 
 @bad_input
