@@ -191,13 +191,15 @@ void add_verify_command(CommandLine& line) {
       ->add_option("--range", options.ranges,
                    "AXIS_unit=from:to or AXIS_unit=position; repeatable (default: where the errors are known)")
       ->allow_extra_args(false);
-  Option* const reduction =
-      command->add_option("--least-reduction", asked->reduction,
-                          "Exit code 1 unless the mean volumetric error becomes this many times smaller");
+  Option* const reduction = command->add_option(
+      "--least-reduction", asked->reduction,
+      "Exit code 1 unless the mean volumetric error (of --readings: the mean residual) becomes this "
+      "many times smaller");
   Option* const ratio =
       command->add_option("--largest-ratio", asked->ratio,
                           "Exit code 1 if the volumetric error (root mean square) is more than this many times its "
-                          "predicted standard uncertainty");
+                          "predicted standard uncertainty; of --readings: what is left, than what the uncertainties "
+                          "explain");
   command
       ->add_option("--reach-mm", options.reach_mm, "A sample farther from the test piece's tool path does not cut it")
       ->check(in_range(0.01, 10.0))
