@@ -4,12 +4,13 @@
 #   make build     set-up, release build: build/release/bin/abbe and the programs that it starts
 #   make demo      set-up, build the command alone, run the main study of examples/, say where the report is
 #   make closed-loop  measure, identify, compensate, run in LinuxCNC, verify: examples/closed_loop
-#   make test      set-up, all tests, the most important ones under the sanitizers too, short fuzzing
-#   make sanitize  all quick tests under the sanitizers; continuous integration runs it after make test
+#   make test      set-up, unit and quick tests, those of Python, the most important ones under the sanitizers, short fuzzing
+#   make long      the other tests: runs in LinuxCNC, published studies, simulated campaigns, the site
+#   make sanitize  all quick tests under the sanitizers; continuous integration runs make test, make long and this
 #   make python    set-up, the Python package and its tests
 #   make site      set-up, documentation and reference of the Python package as a site: build/site/index.html
 #   make unit      build and run the tests of single folders
-#   make quick     the same, longer ones, and the tests of the command and of the pages
+#   make quick     the same, and the tests of the command and of the pages
 #   make lint      formatting, structure and static analysis
 #   make format    rewrite the sources in the project's format
 #   make bench     speed and accuracy benchmarks
@@ -24,7 +25,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := build
-.PHONY: build demo closed-loop test sanitize python site unit quick lint format bench bench-python fuzz coverage package package-test install install-linuxcnc clean
+.PHONY: build demo closed-loop test long sanitize python site unit quick lint format bench bench-python fuzz coverage package package-test install install-linuxcnc clean
 
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
@@ -38,7 +39,7 @@ LOOP_RESULTS ?= build/closed-loop
 # OFF: make test leaves the Python package out, where pip cannot fetch what it needs.
 ABBE_PYTHON ?= ON
 SET_UP_PYTHON := $(if $(filter ON,$(ABBE_PYTHON)),python)
-# OFF: make test leaves the site out, which needs more from pip.
+# OFF: make long leaves the site out, which needs more from pip.
 ABBE_SITE ?= $(ABBE_PYTHON)
 SET_UP_SITE := $(if $(filter ON,$(ABBE_SITE)),site)
 WITH_PYTHON := -DABBE_PYTHON=$(ABBE_PYTHON) $(if $(SET_UP_PYTHON),-DPython_EXECUTABLE=$(CURDIR)/build/python-venv/bin/python)
@@ -51,7 +52,8 @@ export CTEST_OUTPUT_ON_FAILURE := 1
 BUILD_MINUTES := 6
 DEMO_MINUTES := 7
 LOOP_MINUTES := 3
-TEST_MINUTES := 28
+TEST_MINUTES := 25
+LONG_MINUTES := 17
 SANITIZE_MINUTES := 15
 QUICK_MINUTES := 15
 PYTHON_MINUTES := 12
@@ -76,8 +78,8 @@ closed-loop:
 	examples/closed_loop/run $(LOOP_RESULTS)
 
 test:
-	@.ci/set-up test $(SET_UP_PYTHON) $(SET_UP_SITE)
-	@echo "make $@ checks the format, makes two builds, runs all tests and the fuzzing: from nothing it takes about" \
+	@.ci/set-up test $(SET_UP_PYTHON)
+	@echo "make $@ checks the format, makes two builds, runs the tests and the fuzzing: from nothing it takes about" \
 	  "$(TEST_MINUTES) minutes on 2 cores"
 	$(call say,1 of 6: formatting)
 	@.ci/format --check
@@ -89,8 +91,14 @@ test:
 	@ctest --preset asan-parts -j $(JOBS)
 	$(call say,5 of 6: fuzzing for $(TEST_FUZZ_SECONDS) s per reader)
 	@ABBE_FUZZ_SECONDS=$(TEST_FUZZ_SECONDS) ctest --preset fuzz -j $(JOBS)
-	$(call say,6 of 6: all tests)
-	@$(if $(SET_UP_SITE),ABBE_SITE_RUNS_NOTEBOOKS=1 )ctest --preset dev -j $(TEST_JOBS)
+	$(call say,6 of 6: tests)
+	@ctest --preset dev -j $(TEST_JOBS) -LE 'long|site'
+	@echo "All passed. Runs in LinuxCNC, published studies, simulated campaigns and the site are tested by: make long"
+
+long:
+	@.ci/set-up test $(SET_UP_PYTHON) $(SET_UP_SITE)
+	@.ci/build --expect $(LONG_MINUTES) "make $@ makes the development build and runs the long tests" dev -DABBE_WERROR=ON $(WITH_PYTHON)
+	@$(if $(SET_UP_SITE),ABBE_SITE_RUNS_NOTEBOOKS=1 )ctest --preset dev -j $(TEST_JOBS) -L 'long|site'
 
 sanitize:
 	@.ci/set-up test $(SET_UP_PYTHON)

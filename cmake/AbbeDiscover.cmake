@@ -10,7 +10,7 @@ add_custom_target(abbe_parts)
 set(abbe_parts_prefixes errors. runtime.)
 
 # Repetitions by the hundred and long simulated programs: minutes each under the sanitizers, which see the same code in the
-# other tests. All run in `make test`.
+# other tests. All run in `make test` or `make long`.
 set(abbe_not_sanitized
   FineRegistration.CovarianceIsThatOfManyRepetitions
   FitRivals.EveryRivalIsBetterThanAllShapesBesideIt

@@ -2,7 +2,7 @@
 #
 # abbe_cross_test(NAME SOURCES a_test.cpp ... LINK abbe::identify ... [LABEL quick|long] [TIMEOUT seconds] [USES_COMMAND])
 #
-# Quick tests run on every build and under the sanitizers; long ones only in `make test`. USES_COMMAND: the test runs the
+# Quick tests run on every build and under the sanitizers; long ones only in `make long`. USES_COMMAND: the test runs the
 # `abbe` command, which may start its companion programs, and is given its path as ABBE_COMMAND. Every test gets ABBE_SOURCE_DIR, to find examples/ and tests/golden/.
 function(abbe_cross_test name)
   cmake_parse_arguments(ARG "USES_COMMAND" "LABEL;TIMEOUT" "SOURCES;LINK" ${ARGN})
