@@ -74,6 +74,7 @@ std::vector<double> held_radii(const FitCommand& command, std::size_t count) {
 PointCloudOptions reading_options(const FitCommand& command) {
   PointCloudOptions options;
   options.unit = file_length_named(command.unit);
+  options.mapping = command.options.columns.mapping();
   options.threads = command.threads;
   return options;
 }
@@ -172,6 +173,7 @@ void add_fit_command(CommandLine& line) {
              "Standard uncertainty of a point across the shape; default: from the residuals");
   app->add_option("--unit", command->unit, "Unit of files that state none: mm (default), m, inch")
       ->check(one_of(file_length_names()));
+  add_columns(app, command->options.columns, "x_mm=East");
   app->add_output_file("--residuals", command->residuals, "CSV file to write: the points with their deviation_mm");
   app->add_output_folder("-o,--output", command->options.output,
                          "Results folder to write: evaluation.json, plot.svg, report.html; default: print only");

@@ -16,7 +16,7 @@ struct CircularCommand {
 
 int run(const CircularCommand& command) {
   CircularTest test = command.test;
-  test.readings = read_circular(command.options.file, test.nominal_radius);
+  test.readings = read_circular(command.options.file, test.nominal_radius, command.options.columns.mapping());
   test.centre = command.centre == "instrument"     ? CircularCentre::instrument
                 : command.centre == "minimum-zone" ? CircularCentre::minimum_zone
                                                    : CircularCentre::least_squares;
@@ -35,6 +35,7 @@ void add_evaluate_circular(Subcommand& evaluate, CommandLine& line) {
                      "  direction   cw or ccw\n"
                      "  angle_deg   with deviation_um (from the nominal radius) or radius_mm: ball bar\n"
                      "  X_mm, Y_mm  or Y_mm, Z_mm or Z_mm, X_mm, from the centre of the nominal circle: grid encoder",
+                     "deviation_um=radial",
                      "  abbe evaluate circular examples/evaluate/circular.csv --radius-mm 150 --u-reading-um 0.2 "
                      "--skip-reversal-deg 6 "
                      "--output results/circular --tolerance G_b_um=15",

@@ -46,7 +46,9 @@ int run(const ContourCommand& command) {
   if (command.has("--curve")) {
     ContourPointsTest test;
     test.pieces = read_commanded_pieces(command.curve, command.machine, command.closed);
-    test.readings = read_point_cloud(command.options.file);
+    PointCloudOptions reading;
+    reading.mapping = command.options.columns.mapping();
+    test.readings = read_point_cloud(command.options.file, reading);
     test.origin_uncertainty = command.sections.origin_uncertainty;
     return run_evaluation(std::move(test), command.options);
   }
@@ -56,7 +58,7 @@ int run(const ContourCommand& command) {
   test.options.edge.surface = command.surface == "right" ? EdgeSide::right : EdgeSide::left;
   test.options.edge.surface_curvature = command.surface_radius == 0 ? 0 : 1 / command.surface_radius;
   if (command.has("--beam-tilt-deg")) test.beam_tilt = command.beam_tilt;
-  test.readings = read_sections(command.options.file);
+  test.readings = read_sections(command.options.file, command.options.columns.mapping());
   return run_evaluation(std::move(test), command.options);
 }
 
@@ -73,6 +75,7 @@ void add_evaluate_contour(Subcommand& evaluate, CommandLine& line) {
       "  beam_tilt_deg            direction of the laser from the height towards across, optional\n"
       "With --curve: x_mm, y_mm, z_mm, points of the engraved curve in the frame of the commanded one; or a .ply,\n"
       ".obj or .xyz file. Moves on which the tool does not work are not part of that curve.",
+      "height_mm=z",
       "  abbe evaluate contour examples/laser_engraver/sections.csv --u-height-um 2 --u-across-um 1\n"
       "  abbe evaluate contour examples/laser_engraver/engraved.csv --curve examples/laser_engraver/table-a4.csv "
       "--tolerance contour_max_um=50\n"

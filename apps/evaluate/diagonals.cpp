@@ -12,9 +12,12 @@ void add_evaluate_diagonals(Subcommand& evaluate, CommandLine& line) {
       "  target_mm       distance along the diagonal\n"
       "  deviation_um    actual minus target; or actual_mm\n"
       "  run             optional: number or name of the run",
+      "deviation_um=error",
       "  abbe evaluate diagonals examples/evaluate/diagonals.csv --tolerance E_d_um=30 -o results/diagonals", *options);
   command->callback([&line, options] {
-    line.run = [options] { return run_evaluation(DiagonalsTest{read_diagonals(options->file)}, *options); };
+    line.run = [options] {
+      return run_evaluation(DiagonalsTest{read_diagonals(options->file, options->columns.mapping())}, *options);
+    };
   });
 }
 

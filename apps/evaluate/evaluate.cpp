@@ -13,7 +13,8 @@
 
 namespace abbe {
 Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const std::string& description,
-                           const std::string& columns, const std::string& example, EvaluationOptions& options) {
+                           const std::string& columns, const std::string& renamed, const std::string& example,
+                           EvaluationOptions& options) {
   Subcommand* command = evaluate.add_subcommand(kind, description);
   command->footer("Columns of the file:\n" + columns + "\n\nExample:\n" + example);
   command->add_input_file("file", options.file, "Readings (*.csv)")->required();
@@ -23,6 +24,7 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
       ->add_option("--tolerance", options.tolerances,
                    "Largest permitted value of a figure, such as A_um=10; repeatable. Exit code 1 if exceeded")
       ->allow_extra_args(false);
+  add_columns(command, options.columns, renamed);
   command->add_flag("--json", options.json, "Print JSON for programs");
   return command;
 }

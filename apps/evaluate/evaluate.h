@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "abbe/study/evaluations/evaluation.h"
+#include "column_options.h"
 
 namespace abbe {
 
@@ -16,6 +17,7 @@ struct CommandLine;
 struct EvaluationOptions {
   std::string file;                     ///< readings
   std::string output;                   ///< results folder; empty: print only
+  ColumnOptions columns;                ///< of the file
   std::vector<std::string> tolerances;  ///< "A_um=10"
   bool json = false;
 };
@@ -23,8 +25,10 @@ struct EvaluationOptions {
 /// `abbe evaluate KIND`: adds the subcommand with the options of every kind; its own options come behind it.
 /// @param evaluate  the command `evaluate`
 /// @param columns   of the file, shown by --help
+/// @param renamed   example of a column with another name: "deviation_um=error"
 Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const std::string& description,
-                           const std::string& columns, const std::string& example, EvaluationOptions& options);
+                           const std::string& columns, const std::string& renamed, const std::string& example,
+                           EvaluationOptions& options);
 
 /// Prints the report for people or programs and writes the results folder: evaluation.json, one SVG file per plot,
 /// report.html. @returns kNegative if a tolerance is exceeded or a figure with one could not be evaluated, else kDone

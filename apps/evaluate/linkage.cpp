@@ -20,7 +20,7 @@ struct LinkageCommand {
 
 int run_linkage(const LinkageCommand& command) {
   LinkageTest test;
-  test.readings = read_linkage(command.options.file);
+  test.readings = read_linkage(command.options.file, command.options.columns.mapping());
   test.readings.exit_to_axis = command.exit_to_axis;
   test.readings.board_thickness = command.board;
   test.accuracy = command.accuracy;
@@ -46,6 +46,7 @@ void add_evaluate_linkage(Subcommand& evaluate, CommandLine& line) {
       "  mark_x_mm, mark_y_mm     place of l3, l5 (x), l4, l6 (y) and circle (both), frame of the table\n"
       "  turn_deg                 by which the focus has turned about the table's axis, seen from the board (circle)\n"
       "Leave a field empty if it does not belong to the row; leave out a column if all its fields are empty.",
+      "height_mm=h",
       "  abbe evaluate linkage examples/laser_engraver/five-steps.csv --machine "
       "examples/machines/yin-engraver-u.machine.toml --exit-to-axis-mm 120 --board-mm 4 --u-x-um 2.77 --u-y-um 1.55 "
       "--u-z-um 3.55 --u-mark-um 2 --u-width-um 2",

@@ -16,7 +16,7 @@ struct PositioningCommand {
 
 int run(const PositioningCommand& command) {
   PositioningTest test;
-  test.readings = read_positioning(command.options.file);
+  test.readings = read_positioning(command.options.file, command.options.columns.mapping());
   for (std::size_t i = 0; i < command.contributions.size(); ++i) {
     const PositioningContribution& contribution = positioning_contributions()[i];
     (test.*contribution.axis).*contribution.value = command.contributions[i] * contribution.unit;
@@ -34,6 +34,7 @@ void add_evaluate_positioning(Subcommand& evaluate, CommandLine& line) {
       "  target_mm       target position; target_deg for a rotary axis\n"
       "  deviation_um    actual minus target; or actual_mm. deviation_arcsec or actual_deg for a rotary axis\n"
       "  run             optional: number or name of the run",
+      "deviation_um=error",
       "  abbe evaluate positioning examples/evaluate/linear.csv\n"
       "  abbe evaluate positioning examples/evaluate/rotary.csv --tolerance A_arcsec=20 -o results/c\n"
       "  abbe evaluate positioning examples/evaluate/linear.csv --instrument-um-per-m 0.6 --misalignment-mm 1 "

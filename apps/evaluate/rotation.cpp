@@ -22,6 +22,7 @@ void add_evaluate_rotation(Subcommand& evaluate, CommandLine& line) {
       "  x2_um, y2_um    the same in a second plane (tilt, with --plane-distance-mm)\n"
       "  axial_um        on the axis\n"
       "  face_um         parallel to the axis at a radius",
+      "x1_um=ch1",
       "  abbe evaluate rotation examples/evaluate/rotation.csv --plane-distance-mm 80 --u-reading-um 0.02 --output "
       "results/spindle",
       command->options);
@@ -33,7 +34,9 @@ void add_evaluate_rotation(Subcommand& evaluate, CommandLine& line) {
              "Standard uncertainty of one displacement");
   app->callback([&line, command] {
     line.run = [command] {
-      return run_evaluation(RotationTest{read_rotation(command->options.file), command->rotation}, command->options);
+      return run_evaluation(
+          RotationTest{read_rotation(command->options.file, command->options.columns.mapping()), command->rotation},
+          command->options);
     };
   });
 }

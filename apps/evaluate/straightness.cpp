@@ -17,13 +17,13 @@ struct LineCommand {
 };
 
 int run_straightness(const LineCommand& command) {
-  return run_evaluation(
-      StraightnessTest{read_straightness(command.options.file), command.line(), command.squareness.reading_uncertainty},
-      command.options);
+  return run_evaluation(StraightnessTest{read_straightness(command.options.file, command.options.columns.mapping()),
+                                         command.line(), command.squareness.reading_uncertainty},
+                        command.options);
 }
 
 int run_squareness(const LineCommand& command) {
-  SquarenessTest test{read_squareness(command.options.file), command.squareness};
+  SquarenessTest test{read_squareness(command.options.file, command.options.columns.mapping()), command.squareness};
   test.options.reference = command.line();
   return run_evaluation(std::move(test), command.options);
 }
@@ -43,6 +43,7 @@ void add_evaluate_straightness(Subcommand& evaluate, CommandLine& line) {
       evaluate, "straightness", "Straightness error (ISO 230-1) by least squares and by the minimum zone",
       "  position_mm    along the line; may repeat\n"
       "  deviation_um   across it",
+      "deviation_um=error",
       "  abbe evaluate straightness examples/evaluate/straightness.csv --u-reading-um 0.3 --reference minimum-zone "
       "--tolerance straightness_mz_um=5",
       command->options);
@@ -57,6 +58,7 @@ void add_evaluate_squareness(Subcommand& evaluate, CommandLine& line) {
       "  line           name of the line, such as X and Y: two of them\n"
       "  position_mm    along the line\n"
       "  deviation_um   across it, positive along the other line",
+      "deviation_um=error",
       "  abbe evaluate squareness examples/evaluate/squareness.csv --u-reading-um 0.3 --u-square-urad 1",
       command->options);
   add_common_options(app, *command);

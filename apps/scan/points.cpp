@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "abbe/formats/machine/machine_file.h"
-#include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/study/scanned_points.h"
+#include "column_options.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
@@ -26,24 +26,9 @@ struct PointsOptions {
   ScannedPointsRequest request;
   std::string machine;
   std::vector<double> zero, beam, range;
-  std::vector<std::string> columns, ignore;
+  ColumnOptions columns;
   bool any_travel = false, json = false, accept_misfit = false, accept_uncovered = false;
 };
-
-/// "indication_um=h": our name with its unit = name in the file.
-void read_mapping(const PointsOptions& options, ColumnMapping& mapping) {
-  for (const std::string& text : options.columns) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
-      throw InputError({.field = "--column " + text}, "not understood", "NAME_unit=COLUMN, such as indication_um=h");
-    }
-    if (!mapping.columns.emplace(text.substr(0, equals), text.substr(equals + 1)).second) {
-      throw InputError({.field = "--column " + text}, "this name is given twice");
-    }
-  }
-  mapping.ignore = options.ignore;
-  mapping.ignored_by = "--ignore";
-}
 
 Eigen::Vector3d vector_of(const std::vector<double>& numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
@@ -53,7 +38,7 @@ int run_points(const PointsOptions& options) {
   if (!request.errors_file.empty()) {
     request.errors = read_errors_for_use(request.errors_file, request.machine, options.accept_misfit).errors;
   }
-  read_mapping(options, request.scan.mapping);
+  request.scan.mapping = options.columns.mapping();
   request.scan.check_travel = !options.any_travel;
   if (!options.zero.empty()) request.beam_zero = vector_of(options.zero);
   if (!options.beam.empty()) request.beam = vector_of(options.beam);
@@ -105,12 +90,7 @@ void add_scan_points(Subcommand& scan, CommandLine& line) {
       ->add_option("--indication-range-mm", options->range,
                    "Leave out indications outside this range: they are not measurements")
       ->expected(2);
-  command
-      ->add_option("--column", options->columns,
-                   "Column that has another name: NAME_unit=COLUMN, such as indication_um=h")
-      ->expected(1)
-      ->take_all();
-  command->add_option("--ignore", options->ignore, "Column that is not read")->expected(1)->take_all();
+  add_columns(command, options->columns, "indication_um=h");
   command->add_option("--decimals", options->request.scan.decimals, "Decimals of a coordinate in CSV (default 9)")
       ->check(in_range(0, 12));
   command->add_flag("--any-travel", options->any_travel, "Accept positions outside the travel of an axis");

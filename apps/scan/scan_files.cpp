@@ -8,6 +8,7 @@ namespace abbe {
 PointCloudFile ScanFiles::read_scan() const {
   PointCloudOptions options;
   options.unit = file_length_named(scan_unit);
+  options.mapping = columns.mapping();
   options.threads = threads;
   return read_point_cloud(scan, options);
 }
@@ -24,6 +25,7 @@ void add_scan_files(Subcommand* command, ScanFiles& files) {
   command->add_input_file("part", files.part, "Surface of the part (.stl .ply .obj .step)")->required();
   const Check units = one_of(file_length_names());
   command->add_option("--scan-unit", files.scan_unit, "Unit of a scan file that states none (mm)")->check(units);
+  add_columns(command, files.columns, "x_mm=East");
   command->add_option("--part-unit", files.part_unit, "Unit of a part file that states none (mm)")->check(units);
   files.step.add_to(command);
   command->add_option("--threads", files.threads, "Threads; the result does not depend on them (default: all)")

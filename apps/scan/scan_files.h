@@ -4,6 +4,7 @@
 
 #include "abbe/formats/shapes/mesh_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
+#include "column_options.h"
 #include "step_reading.h"
 
 namespace abbe {
@@ -14,6 +15,7 @@ class Subcommand;
 struct ScanFiles {
   std::string scan, part;
   std::string scan_unit, part_unit;  ///< "mm", "m", "inch", or empty
+  ColumnOptions columns;             ///< of the scan
   int threads = 0;
   StepReading step;
 

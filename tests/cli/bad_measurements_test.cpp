@@ -115,7 +115,9 @@ TEST_F(BadMeasurements, DecimalCommasAreNotTakenForColumns) {
   std::string text = good();
   for (char& c : text) c = c == ',' ? ';' : c == '.' ? ',' : c;
   folder.write("r.csv", text);
-  expect_refused("the columns are not separated by commas; expected commas between columns and a decimal point");
+  expect_refused(
+      "the columns are not separated by commas; expected commas between columns and a decimal point (abbe import "
+      "converts other tables)");
 }
 
 TEST_F(BadMeasurements, ByteOrderMarkAndCarriageReturnsChangeNothing) {

@@ -149,13 +149,14 @@ class CircularReader {
 
 }  // namespace
 
-CircularFile read_circular(const std::filesystem::path& path, double nominal_radius) {
+CircularFile read_circular(const std::filesystem::path& path, double nominal_radius, const ColumnMapping& mapping) {
   const MappedFile file(path);
-  return parse_circular(file.text(), path.string(), nominal_radius);
+  return parse_circular(file.text(), path.string(), nominal_radius, mapping);
 }
 
-CircularFile parse_circular(std::string_view text, const std::string& file, double nominal_radius) {
-  return CircularReader({text, file, circular_columns()}, nominal_radius).read();
+CircularFile parse_circular(std::string_view text, const std::string& file, double nominal_radius,
+                            const ColumnMapping& mapping) {
+  return CircularReader({text, file, circular_columns(), mapping}, nominal_radius).read();
 }
 
 CircularFile parse_circular(const NamedColumns& columns, double nominal_radius) {

@@ -70,24 +70,25 @@ std::array<LineReadings, 2> squareness_of(const PlacedTable& csv) {
 
 }  // namespace
 
-LineReadings read_straightness(const std::filesystem::path& path) {
+LineReadings read_straightness(const std::filesystem::path& path, const ColumnMapping& mapping) {
   const MappedFile file(path);
-  return parse_straightness(file.text(), path.string());
+  return parse_straightness(file.text(), path.string(), mapping);
 }
 
-LineReadings parse_straightness(std::string_view text, const std::string& file) {
-  return straightness_of({text, file, line_columns(false)});
+LineReadings parse_straightness(std::string_view text, const std::string& file, const ColumnMapping& mapping) {
+  return straightness_of({text, file, line_columns(false), mapping});
 }
 
 LineReadings parse_straightness(const NamedColumns& columns) { return straightness_of({columns, line_columns(false)}); }
 
-std::array<LineReadings, 2> read_squareness(const std::filesystem::path& path) {
+std::array<LineReadings, 2> read_squareness(const std::filesystem::path& path, const ColumnMapping& mapping) {
   const MappedFile file(path);
-  return parse_squareness(file.text(), path.string());
+  return parse_squareness(file.text(), path.string(), mapping);
 }
 
-std::array<LineReadings, 2> parse_squareness(std::string_view text, const std::string& file) {
-  return squareness_of({text, file, line_columns(true)});
+std::array<LineReadings, 2> parse_squareness(std::string_view text, const std::string& file,
+                                             const ColumnMapping& mapping) {
+  return squareness_of({text, file, line_columns(true), mapping});
 }
 
 std::array<LineReadings, 2> parse_squareness(const NamedColumns& columns) {

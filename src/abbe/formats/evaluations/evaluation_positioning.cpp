@@ -169,30 +169,31 @@ std::vector<DiagonalReadings> diagonals_of(const PositioningReader& reader) {
 
 }  // namespace
 
-PositioningFile parse_positioning(std::string_view text, const std::string& file) {
-  return positioning_readings_of({{text, file, wanted_columns(false)}, false});
+PositioningFile parse_positioning(std::string_view text, const std::string& file, const ColumnMapping& mapping) {
+  return positioning_readings_of({{text, file, wanted_columns(false), mapping}, false});
 }
 
 PositioningFile parse_positioning(const NamedColumns& columns) {
   return positioning_readings_of({{columns, wanted_columns(false)}, false});
 }
 
-std::vector<DiagonalReadings> parse_diagonals(std::string_view text, const std::string& file) {
-  return diagonals_of({{text, file, wanted_columns(true)}, true});
+std::vector<DiagonalReadings> parse_diagonals(std::string_view text, const std::string& file,
+                                              const ColumnMapping& mapping) {
+  return diagonals_of({{text, file, wanted_columns(true), mapping}, true});
 }
 
 std::vector<DiagonalReadings> parse_diagonals(const NamedColumns& columns) {
   return diagonals_of({{columns, wanted_columns(true)}, true});
 }
 
-PositioningFile read_positioning(const std::filesystem::path& path) {
+PositioningFile read_positioning(const std::filesystem::path& path, const ColumnMapping& mapping) {
   const MappedFile file(path);
-  return parse_positioning(file.text(), path.string());
+  return parse_positioning(file.text(), path.string(), mapping);
 }
 
-std::vector<DiagonalReadings> read_diagonals(const std::filesystem::path& path) {
+std::vector<DiagonalReadings> read_diagonals(const std::filesystem::path& path, const ColumnMapping& mapping) {
   const MappedFile file(path);
-  return parse_diagonals(file.text(), path.string());
+  return parse_diagonals(file.text(), path.string(), mapping);
 }
 
 }  // namespace abbe

@@ -60,13 +60,13 @@ RotationReadings rotation_of(PlacedTable csv) {
 
 }  // namespace
 
-RotationReadings read_rotation(const std::filesystem::path& path) {
+RotationReadings read_rotation(const std::filesystem::path& path, const ColumnMapping& mapping) {
   const MappedFile file(path);
-  return parse_rotation(file.text(), path.string());
+  return parse_rotation(file.text(), path.string(), mapping);
 }
 
-RotationReadings parse_rotation(std::string_view text, const std::string& file) {
-  return rotation_of({text, file, rotation_columns()});
+RotationReadings parse_rotation(std::string_view text, const std::string& file, const ColumnMapping& mapping) {
+  return rotation_of({text, file, rotation_columns(), mapping});
 }
 
 RotationReadings parse_rotation(const NamedColumns& columns) { return rotation_of({columns, rotation_columns()}); }

@@ -59,13 +59,14 @@ std::vector<SectionReadings> sections_of(const PlacedTable& csv) {
 
 }  // namespace
 
-std::vector<SectionReadings> read_sections(const std::filesystem::path& path) {
+std::vector<SectionReadings> read_sections(const std::filesystem::path& path, const ColumnMapping& mapping) {
   const MappedFile file(path);
-  return parse_sections(file.text(), path.string());
+  return parse_sections(file.text(), path.string(), mapping);
 }
 
-std::vector<SectionReadings> parse_sections(std::string_view text, const std::string& file) {
-  return sections_of({text, file, section_columns()});
+std::vector<SectionReadings> parse_sections(std::string_view text, const std::string& file,
+                                            const ColumnMapping& mapping) {
+  return sections_of({text, file, section_columns(), mapping});
 }
 
 std::vector<SectionReadings> parse_sections(const NamedColumns& columns) {

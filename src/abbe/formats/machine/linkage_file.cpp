@@ -192,17 +192,17 @@ class LinkageReader {
 
 }  // namespace
 
-LinkageReadings parse_linkage(std::string_view text, const std::string& file) {
-  return LinkageReader({text, file, linkage_columns()}).read();
+LinkageReadings parse_linkage(std::string_view text, const std::string& file, const ColumnMapping& mapping) {
+  return LinkageReader({text, file, linkage_columns(), mapping}).read();
 }
 
 LinkageReadings parse_linkage(const NamedColumns& columns) {
   return LinkageReader({columns, linkage_columns()}).read();
 }
 
-LinkageReadings read_linkage(const std::filesystem::path& path) {
+LinkageReadings read_linkage(const std::filesystem::path& path, const ColumnMapping& mapping) {
   const MappedFile file(path);
-  return parse_linkage(file.text(), path.string());
+  return parse_linkage(file.text(), path.string(), mapping);
 }
 
 std::string linkage_text(const LinkageReadings& r) {

@@ -74,6 +74,10 @@ PointCloudFile parse_csv_cloud(std::string_view contents, const std::string& fil
 
 PointCloudFile parse_point_cloud(std::string_view contents, const std::string& file, const PointCloudOptions& options) {
   const std::string extension = file_extension(with_ending(file, contents));
+  if (extension != ".csv" && !(options.mapping.columns.empty() && options.mapping.ignore.empty())) {
+    throw InputError({file, 0, 0, ""}, "its columns cannot be named or left out: this is not a CSV file",
+                     "a CSV file, whose first line has the names of its columns");
+  }
   if (is_e57(contents) || extension == ".e57") return parse_e57(contents, file, options.unit, options.threads);
   if (is_pcd(contents) || extension == ".pcd") return parse_pcd(contents, file, options.unit);
   PointCloudFile result;

@@ -146,7 +146,8 @@ std::vector<CsvFileColumn> csv_match_header(std::string_view header, const std::
     const InputError::Place place{file, line, position, column.name};
     if (field.empty()) throw InputError(place, fmt::format("column {} has no name", columns.size() + 1));
     if (field.find(';') != std::string_view::npos || field.find('\t') != std::string_view::npos) {
-      throw InputError(place, "the columns are not separated by commas", "commas between columns and a decimal point");
+      throw InputError(place, "the columns are not separated by commas",
+                       "commas between columns and a decimal point (abbe import converts other tables)");
     }
     for (const CsvFileColumn& other : columns) {
       if (other.name == column.name) throw InputError(place, "this column is given twice");

@@ -90,7 +90,7 @@ TEST(CsvReader, RefusesWrongUnitsAndColumns) {
             "m.csv:1:12: stadion: unknown column (did you mean station?); expected one of X, C, station, u");
   EXPECT_EQ(message_of_csv("X_mm;C_deg\n1,5;2\n"),
             "m.csv:1:1: X_mm;C_deg: the columns are not separated by commas; expected commas between columns and a "
-            "decimal point");
+            "decimal point (abbe import converts other tables)");
   EXPECT_EQ(message_of_csv("X_mm,,C_deg\n1,2,3\n"), "m.csv:1:6: column 2 has no name");
 }
 

@@ -6,8 +6,9 @@
 
 namespace abbe {
 
-PlacedTable::PlacedTable(std::string_view text, std::string file, const std::vector<CsvColumn>& wanted)
-    : CsvTable(read_csv(text, file, wanted)), text_(text), file_(std::move(file)), is_file_(true) {}
+PlacedTable::PlacedTable(std::string_view text, std::string file, const std::vector<CsvColumn>& wanted,
+                         const ColumnMapping& mapping)
+    : CsvTable(read_csv(text, file, wanted, mapping)), text_(text), file_(std::move(file)), is_file_(true) {}
 
 PlacedTable::PlacedTable(const NamedColumns& given, const std::vector<CsvColumn>& wanted)
     : CsvTable(table_of_columns(given, wanted)), is_file_(false) {}

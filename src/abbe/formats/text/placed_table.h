@@ -14,7 +14,8 @@ namespace abbe {
 class PlacedTable : public CsvTable {
  public:
   /// As read_csv(). @param text  must outlive the table
-  PlacedTable(std::string_view text, std::string file, const std::vector<CsvColumn>& wanted);
+  PlacedTable(std::string_view text, std::string file, const std::vector<CsvColumn>& wanted,
+              const ColumnMapping& mapping);
   /// As table_of_columns().
   PlacedTable(const NamedColumns& given, const std::vector<CsvColumn>& wanted);
 
