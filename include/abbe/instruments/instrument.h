@@ -83,7 +83,7 @@ struct InstrumentReadings {
   std::vector<std::vector<double>> measured;     ///< [components][count], mm or rad; a plan has none
   std::vector<std::vector<double>> uncertainty;  ///< [components][count] standard uncertainties, or empty: noise model
   /// [components (components + 1) / 2][count] or empty: variances, then covariances (xx, yy, zz, xy, xz, yz), where the
-  /// data state them; `uncertainty` is then empty. Only for instruments whose observations() take them.
+  /// data state them; `uncertainty` is then empty.
   std::vector<std::vector<double>> covariance;
   std::vector<double> time_s;           ///< [count] or empty
   std::vector<std::string> point_name;  ///< [count] name of the point in the input, or empty: it gives none

@@ -10,8 +10,9 @@ namespace abbe {
 ///
 /// Unknowns are the quantities that are not exact, in their order. Residual = (measured - modelled) / standard
 /// uncertainty, the uncertainty from the data where they state it, else from the instrument's noise model; it stays
-/// fixed. Components of one reading are taken as uncorrelated. Known numbers (Knowledge::within) enter the
-/// identification as priors: see setup_priors() of the problem.
+/// fixed. Where the data state covariances, residuals are W (measured - modelled) with W'W the inverse of the reading's
+/// covariance; else the components of one reading are taken as uncorrelated. Known numbers (Knowledge::within) enter
+/// the identification as priors: see setup_priors() of the problem.
 class InstrumentObservations : public Observations {
  public:
   /// @param instrument  not changed; its quantities are the start values

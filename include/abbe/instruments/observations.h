@@ -22,8 +22,10 @@ struct SetupUnknown {
 
 /// One number of a reading: "length", "x", "pitch".
 struct ReadingComponent {
-  std::string name;       ///< as in files: "length" of length_mm
-  bool is_angle = false;  ///< rad if true, mm if false
+  std::string name;             ///< as in files: "length" of length_mm
+  bool is_angle = false;        ///< rad if true, mm if false
+  bool is_pure_number = false;  ///< neither mm nor rad: an element of a quaternion
+  bool is_relative = false;  ///< counts from a known number of the reading: 0 where it was measured, no column in files
 };
 
 /// All readings of one set-up of one instrument, as weighted residuals of the machine's errors and the set-up's

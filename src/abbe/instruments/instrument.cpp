@@ -130,6 +130,7 @@ std::unique_ptr<Observations> Instrument::observations(const Machine& machine, c
 std::unique_ptr<Observations> Instrument::observations_in_um(const Machine& machine, const ErrorSet& errors,
                                                              InstrumentReadings readings) const {
   readings.uncertainty.assign(components_.size(), std::vector<double>(readings.count(), 1e-3));
+  readings.covariance.clear();
   return observations(machine, errors, readings);
 }
 
@@ -222,13 +223,14 @@ void check_readings(const Machine& machine, const Instrument& instrument, const 
     }
   }
   check_columns(readings.inputs, instrument.inputs().size(), count, "inputs");
-  if (!readings.covariance.empty()) {
-    throw std::invalid_argument(instrument.name() + ": covariances of readings; expected standard uncertainties");
-  }
   if (measured) {
     check_columns(readings.measured, instrument.components().size(), count, "measured values");
     if (!readings.uncertainty.empty()) {
       check_columns(readings.uncertainty, instrument.components().size(), count, "standard uncertainties");
+    }
+    if (!readings.covariance.empty()) {
+      const std::size_t components = instrument.components().size();
+      check_columns(readings.covariance, components * (components + 1) / 2, count, "elements of covariances");
     }
   }
   for (std::size_t k = 0; k < count; ++k) {

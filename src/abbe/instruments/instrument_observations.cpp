@@ -1,10 +1,15 @@
 #include "abbe/instruments/instrument_observations.h"
 
+#include <fmt/format.h>
+
+#include <Eigen/Core>
 #include <algorithm>
 #include <cassert>
+#include <optional>
 #include <stdexcept>
 
 #include "abbe/errors/reversal.h"
+#include "abbe/instruments/reading_covariance.h"
 
 namespace abbe {
 namespace {
@@ -40,7 +45,9 @@ struct InstrumentObservations::Implementation {
 
   std::shared_ptr<const Instrument> instrument;
   InstrumentReadings readings;
-  std::vector<std::vector<double>> weight;  ///< [rows][count] 1 / standard uncertainty
+  std::vector<std::vector<double>> weight;  ///< [rows][count] 1 / standard uncertainty; none with covariances
+  /// [rows (rows + 1) / 2][count] or empty: lower triangle, row by row, of W with W'W the inverse of the covariance.
+  std::vector<std::vector<double>> whitening;
   std::vector<BodyPair> pairs;
   std::vector<std::size_t> pair_of;  ///< [items]
   std::vector<SetupUnknown> unknowns;
@@ -52,6 +59,21 @@ struct InstrumentObservations::Implementation {
   ReversalShift reversal;
 
   std::size_t rows() const { return instrument->components().size(); }
+  static std::size_t lower(std::size_t row, std::size_t column) { return row * (row + 1) / 2 + column; }
+  /// Row of W times the components of a reading, value(component).
+  template <typename Value>
+  double weighted(std::size_t row, std::size_t reading, const Value& value) const {
+    if (whitening.empty()) return weight[row][reading] * value(row);
+    double sum = 0;
+    for (std::size_t column = 0; column <= row; ++column) {
+      sum += whitening[lower(row, column)][reading] * value(column);
+    }
+    return sum;
+  }
+  void take_uncertainties();
+  void take_covariances();
+  /// From residuals of one reading to its deviations, mm or rad.
+  void unweight(std::size_t reading, double* components) const;
   std::size_t find_members(std::size_t first, std::size_t count, std::size_t pair, InstrumentScratch& s) const;
   void load(const BodyPair& pair, std::size_t first, std::size_t members, InstrumentScratch& s) const;
   void see(const BodyPair& pair, std::size_t members, InstrumentScratch& s) const;
@@ -148,10 +170,14 @@ void InstrumentObservations::Implementation::model_item(std::size_t begin, std::
   for (std::size_t row = 0; row < rows(); ++row) {
     for (std::size_t k = 0; k < n; ++k) {
       const std::size_t at = s.at[begin + k];
-      const double w = weight[row][first + at];
-      residuals[row * count + at] = w * (readings.measured[row][first + at] - s.value[row * n + k]);
+      const std::size_t reading = first + at;
+      residuals[row * count + at] =
+          weighted(row, reading, [&](std::size_t r) { return readings.measured[r][reading] - s.value[r * n + k]; });
       if (jacobian == nullptr) continue;
-      for (std::size_t j = 0; j < 6; ++j) s.force[row][j][begin + k] = w * s.by_motion[(row * 6 + j) * n + k];
+      for (std::size_t j = 0; j < 6; ++j) {
+        s.force[row][j][begin + k] =
+            weighted(row, reading, [&](std::size_t r) { return s.by_motion[(r * 6 + j) * n + k]; });
+      }
     }
   }
   if (jacobian == nullptr) return;
@@ -162,7 +188,10 @@ void InstrumentObservations::Implementation::model_item(std::size_t begin, std::
       double* column = jacobian + (setup_column + i) * stride + row * count;
       for (std::size_t k = 0; k < n; ++k) {
         const std::size_t at = s.at[begin + k];
-        column[at] = q < used.size() ? weight[row][first + at] * s.by_quantity[(row * used.size() + q) * n + k] : 0.0;
+        column[at] =
+            q < used.size()
+                ? weighted(row, first + at, [&](std::size_t r) { return s.by_quantity[(r * used.size() + q) * n + k]; })
+                : 0.0;
       }
     }
   }
@@ -220,6 +249,46 @@ void InstrumentObservations::Implementation::evaluate_pair(const BodyPair& pair,
   }
 }
 
+void InstrumentObservations::Implementation::take_uncertainties() {
+  weight.assign(rows(), std::vector<double>(readings.count()));
+  for (std::size_t row = 0; row < rows(); ++row) {
+    for (std::size_t k = 0; k < readings.count(); ++k) {
+      const double u = readings.uncertainty.empty() ? instrument->standard_uncertainty(readings, k, row)
+                                                    : readings.uncertainty[row][k];
+      if (!(u > 0)) throw std::invalid_argument(instrument->name() + ": standard uncertainty not above 0");
+      weight[row][k] = 1 / u;
+    }
+  }
+}
+
+void InstrumentObservations::Implementation::take_covariances() {
+  whitening.assign(rows() * (rows() + 1) / 2, std::vector<double>(readings.count()));
+  for (std::size_t k = 0; k < readings.count(); ++k) {
+    const std::optional<Eigen::MatrixXd> factor = inverse_covariance_factor(covariance_of(readings, rows(), k));
+    if (!factor) {
+      throw std::invalid_argument(fmt::format("reading {}: its covariance is not positive definite", k));
+    }
+    for (std::size_t row = 0; row < rows(); ++row) {
+      for (std::size_t column = 0; column <= row; ++column) {
+        whitening[lower(row, column)][k] = (*factor)(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column));
+      }
+    }
+  }
+}
+
+void InstrumentObservations::Implementation::unweight(std::size_t reading, double* components) const {
+  for (std::size_t row = 0; row < rows(); ++row) {
+    if (whitening.empty()) {
+      components[row] /= weight[row][reading];
+      continue;
+    }
+    for (std::size_t column = 0; column < row; ++column) {
+      components[row] -= whitening[lower(row, column)][reading] * components[column];
+    }
+    components[row] /= whitening[lower(row, row)][reading];
+  }
+}
+
 InstrumentObservations::InstrumentObservations(const Machine& machine, const ErrorSet& errors,
                                                std::shared_ptr<const Instrument> instrument,
                                                InstrumentReadings readings)
@@ -228,19 +297,14 @@ InstrumentObservations::InstrumentObservations(const Machine& machine, const Err
   Implementation& own = *implementation_;
   own.instrument = std::move(instrument);
   own.readings = std::move(readings);
-  const std::size_t count = own.readings.count();
   assert(own.rows() >= 1 && own.rows() <= kMaxRows);
   own.tool_parameter = errors.parameter_count() - 3;
   own.tool_offset_error = errors.tool_offset_error;
   own.reversal = ReversalShift(errors);
-  own.weight.assign(own.rows(), std::vector<double>(count));
-  for (std::size_t row = 0; row < own.rows(); ++row) {
-    for (std::size_t k = 0; k < count; ++k) {
-      const double u = own.readings.uncertainty.empty() ? own.instrument->standard_uncertainty(own.readings, k, row)
-                                                        : own.readings.uncertainty[row][k];
-      if (!(u > 0)) throw std::invalid_argument(own.instrument->name() + ": standard uncertainty not above 0");
-      own.weight[row][k] = 1 / u;
-    }
+  if (own.readings.covariance.empty()) {
+    own.take_uncertainties();
+  } else {
+    own.take_covariances();
   }
   // Only pairs of bodies that occur get a plan.
   std::vector<std::uint8_t> occurs(own.instrument->items().size(), 0);
@@ -344,7 +408,7 @@ bool InstrumentObservations::displacement_rows(std::size_t first, std::size_t co
 std::vector<double> InstrumentObservations::deviation(std::size_t reading) const {
   std::vector<double> result(implementation_->rows());
   evaluate(reading, 1, {}, {}, result.data(), nullptr, 0);
-  for (std::size_t row = 0; row < result.size(); ++row) result[row] /= implementation_->weight[row][reading];
+  implementation_->unweight(reading, result.data());
   return result;
 }
 
@@ -355,10 +419,11 @@ std::vector<std::vector<double>> InstrumentObservations::modelled() const {
   for (std::size_t first = 0; first < own.readings.count(); first += kBlockSize) {
     const std::size_t n = std::min(kBlockSize, own.readings.count() - first);
     evaluate(first, n, {}, {}, residuals.data(), nullptr, 0);
-    for (std::size_t row = 0; row < own.rows(); ++row) {
-      for (std::size_t k = 0; k < n; ++k) {
-        result[row][first + k] -= residuals[row * n + k] / own.weight[row][first + k];
-      }
+    for (std::size_t k = 0; k < n; ++k) {
+      double deviations[kMaxRows];
+      for (std::size_t row = 0; row < own.rows(); ++row) deviations[row] = residuals[row * n + k];
+      own.unweight(first + k, deviations);
+      for (std::size_t row = 0; row < own.rows(); ++row) result[row][first + k] -= deviations[row];
     }
   }
   return result;

@@ -42,6 +42,7 @@ std::shared_ptr<Instrument> read_board_marks(TomlTable& table, const InstrumentC
 std::shared_ptr<Instrument> read_dials(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_grid_encoder(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_level(TomlTable& table, const InstrumentContext& context);
+std::shared_ptr<Instrument> read_pose_tracker(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_polygon(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_r_test(TomlTable& table, const InstrumentContext& context);
 std::shared_ptr<Instrument> read_surface_probe(TomlTable& table, const InstrumentContext& context);

@@ -40,10 +40,8 @@ InstrumentFile given_readings(const InstrumentReadings& readings, const Machine&
     throw InputError({.file = setup}, "the study takes the noise from the readings, but they state no uncertainties",
                      "standard uncertainties of the readings");
   }
-  InstrumentReadings without_covariance = file.readings;  // only some instruments take them; observations() checks
-  without_covariance.covariance.clear();
   try {
-    check_readings(machine, *device, without_covariance);
+    check_readings(machine, *device, file.readings);
   } catch (const std::invalid_argument& error) {
     throw InputError({.file = setup}, error.what(), "");
   }

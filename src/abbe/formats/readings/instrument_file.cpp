@@ -7,15 +7,12 @@
 
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/readings/axis_columns.h"
+#include "abbe/formats/readings/component_columns.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
 
 namespace abbe {
 namespace {
-
-Quantity quantity_of(const ReadingComponent& component) {
-  return component.is_angle ? Quantity::angle : Quantity::length;
-}
 
 std::string all_of(const std::vector<std::string>& targets) {
   std::string names;
@@ -64,12 +61,6 @@ std::vector<std::uint16_t> take_items(std::string_view text, const std::string& 
   return items;
 }
 
-std::vector<std::vector<double>> take_columns(CsvTable& table, std::size_t first, std::size_t count) {
-  std::vector<std::vector<double>> columns;
-  for (std::size_t i = 0; i < count; ++i) columns.push_back(std::move(table.columns[first + i].numbers));
-  return columns;
-}
-
 struct WrittenColumn {
   std::string header;
   const std::vector<double>* numbers;
@@ -80,22 +71,10 @@ struct WrittenColumn {
 
 InstrumentReadings parse_instrument_readings(std::string_view text, const std::string& file, const Machine& machine,
                                              const Instrument& instrument, const MeasurementOptions& options) {
-  const std::size_t rows_each = instrument.components().size();
   std::vector<CsvColumn> wanted = axis_columns(machine);
   const std::size_t item = wanted.size();
   wanted.push_back({"item", Quantity::dimensionless, true, false, CsvColumn::Range::any});
-  const std::size_t input = wanted.size();
-  for (const ReadingComponent& known : instrument.inputs()) {
-    wanted.push_back({known.name, quantity_of(known), false, true, CsvColumn::Range::any});
-  }
-  const std::size_t component = wanted.size();
-  for (const ReadingComponent& one : instrument.components()) {
-    wanted.push_back({one.name, quantity_of(one), false, true, CsvColumn::Range::any});
-  }
-  const std::size_t uncertainty = wanted.size();
-  for (const ReadingComponent& one : instrument.components()) {
-    wanted.push_back({"u_" + one.name, quantity_of(one), false, false, CsvColumn::Range::positive});
-  }
+  const ComponentColumns components(instrument, wanted);
   const std::size_t time = wanted.size();
   wanted.push_back({"time", Quantity::time, false, false, CsvColumn::Range::any});
   const std::size_t point = wanted.size();
@@ -108,23 +87,7 @@ InstrumentReadings parse_instrument_readings(std::string_view text, const std::s
   readings.poses = take_poses(text, file, machine, table, options.check_travel);
   readings.poses.approach = take_approach(text, file, machine, table, approach);
   readings.item = take_items(text, file, machine, instrument, targets, readings.poses);
-  readings.inputs = take_columns(table, input, instrument.inputs().size());
-  readings.measured = take_columns(table, component, rows_each);
-  std::size_t stated = 0, absent = uncertainty;
-  for (std::size_t i = uncertainty; i < uncertainty + rows_each; ++i) {
-    if (table.columns[i].present) {
-      ++stated;
-    } else {
-      absent = i;
-    }
-  }
-  if (stated == rows_each) {
-    readings.uncertainty = take_columns(table, uncertainty, rows_each);
-  } else if (stated > 0) {
-    throw InputError({file, 0, 0, wanted[absent].base}, "missing column",
-                     accepted_names(wanted[absent].base, wanted[absent].quantity) +
-                         ": the uncertainties of all components, or of none");
-  }
+  components.take(text, file, table, readings);
   readings.point_name = std::move(table.columns[point].labels);
   if (table.columns[time].present) readings.time_s = std::move(table.columns[time].numbers);
   return readings;
@@ -142,7 +105,8 @@ InstrumentFile read_instrument_file(const std::filesystem::path& path, const Mac
   InstrumentFile file{device, read_instrument_readings(path, machine, *device, options), {}};
   if (!noise_from_data) {
     file.readings.uncertainty.clear();
-  } else if (file.readings.uncertainty.empty()) {
+    file.readings.covariance.clear();
+  } else if (file.readings.uncertainty.empty() && file.readings.covariance.empty()) {
     const ReadingComponent& first = device->components().front();
     throw InputError({.file = path.string()},
                      "the study takes the noise from the data, but the file states no uncertainties",
@@ -156,7 +120,8 @@ std::string instrument_readings_text(const Machine& machine, const Instrument& i
   std::vector<WrittenColumn> columns;
   const auto add = [&](const std::string& base, Quantity quantity, const char* suffix,
                        const std::vector<double>& numbers) {
-    columns.push_back({csv_field(base + "_" + suffix), &numbers, &unit_named(quantity, suffix)});
+    const std::string name = *suffix == '\0' ? base : base + "_" + suffix;
+    columns.push_back({csv_field(name), &numbers, &unit_named(quantity, suffix)});
   };
   for (std::size_t i = 0; i < machine.axes.size(); ++i) {
     const bool linear = machine.axes[i].kind == AxisKind::linear;
@@ -168,15 +133,23 @@ std::string instrument_readings_text(const Machine& machine, const Instrument& i
   for (const std::vector<std::int8_t>& sides : readings.poses.approach) approach.push_back(approach_numbers(sides));
   for (std::size_t i = 0; i < instrument.inputs().size(); ++i) {
     const ReadingComponent& known = instrument.inputs()[i];
-    add(known.name, quantity_of(known), known.is_angle ? "deg" : "mm", readings.inputs[i]);
+    add(known.name, component_quantity(known),
+        known.is_pure_number ? ""
+        : known.is_angle     ? "deg"
+                             : "mm",
+        readings.inputs[i]);
   }
   for (std::size_t i = 0; i < instrument.components().size(); ++i) {
     const ReadingComponent& one = instrument.components()[i];
-    add(one.name, quantity_of(one), one.is_angle ? "arcsec" : "mm", readings.measured[i]);
+    if (!one.is_relative) add(one.name, component_quantity(one), one.is_angle ? "arcsec" : "mm", readings.measured[i]);
   }
   for (std::size_t i = 0; i < readings.uncertainty.size(); ++i) {
     const ReadingComponent& one = instrument.components()[i];
-    add("u_" + one.name, quantity_of(one), one.is_angle ? "arcsec" : "um", readings.uncertainty[i]);
+    add("u_" + one.name, component_quantity(one), one.is_angle ? "arcsec" : "um", readings.uncertainty[i]);
+  }
+  const std::vector<ComponentCovariance> covariances = component_covariances(instrument);
+  for (std::size_t i = 0; i < readings.covariance.size(); ++i) {
+    add(covariances[i].base, covariances[i].quantity, covariances[i].unit, readings.covariance[i]);
   }
   if (!readings.time_s.empty()) add("time", Quantity::time, "s", readings.time_s);
 

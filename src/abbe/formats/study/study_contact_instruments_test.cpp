@@ -228,6 +228,34 @@ TEST(StudyContactInstruments, ReadBoardMarks) {
   EXPECT_EQ(read(kMarks)->planned_inputs(0).size(), 2U);
 }
 
+const std::string kPoseTracker = R"(instrument = "pose-tracker"
+true_pose = { position_mm = [900, 0, 300], angles_deg = [0, 0, 90] }
+noise = { xyz_um = 4, xyz_um_per_m = 3, turn_arcsec = 5 }
+[[setup.target]]
+name = "frame"
+offset_mm = [30, 0, -60]
+estimate_offset = true
+angles_deg = [0, 0, 180]
+true_angles_deg = [0, 1, 180]
+)";
+
+TEST(StudyContactInstruments, ReadAPoseTracker) {
+  const auto device = read(kPoseTracker);
+  ASSERT_EQ(device->components().size(), 6U);
+  EXPECT_EQ(quantity_of(*device, "frame.offset_x").knowledge, Knowledge::open);
+  EXPECT_EQ(quantity_of(*device, "frame.rz").knowledge, Knowledge::open);
+  EXPECT_EQ(quantity_of(*device, "s.ry").knowledge, Knowledge::open);
+  EXPECT_SAYS(
+      message_of_setup_with(kPoseTracker, "true_pose = { position_mm = [900, 0, 300], angles_deg = [0, 0, 90] }", ""),
+      "a simulation needs the true pose");
+  EXPECT_SAYS(message_of_setup_with(kPoseTracker, ", turn_arcsec = 5", ""), "turn");
+  EXPECT_SAYS(message_of_setup_with(kPoseTracker, "name = \"frame\"", "name = \"frame\"\nmounted_on = \"workpiece\""),
+              "the target and the instrument are on the same body");
+  EXPECT_SAYS(message_of_setup_with(kPoseTracker, "angles_deg = [0, 0, 180]\n", "estimate_angles = false\n"),
+              "angles that are not estimated have to be given");
+  EXPECT_SAYS(message_of_setup_with(kPoseTracker, "[[setup.target]]", "[[setup.reflector]]"), "reflector");
+}
+
 TEST(StudyContactInstruments, ReadingsOfAllComeBackFromTheirFile) {
   const Machine machine = test::endless_turntable();
   for (const std::string& setup : {kRTest, kProbe, kDials, kLevel, kCollimator, kMarks}) {

@@ -19,6 +19,7 @@ constexpr InstrumentForm kForms[] = {
     {"board-marks", read_board_marks},
     {"polygon", read_polygon},
     {"grid-encoder", read_grid_encoder},
+    {"pose-tracker", read_pose_tracker},
     {"interferometer", read_interferometer},
     {"tracking-interferometer", read_tracking_interferometer},
 };

@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "abbe/formats/study/study_instrument.h"
+#include "abbe/formats/study/study_pose.h"
 #include "abbe/formats/text/toml_vector.h"
-#include "abbe/geometry/rotation.h"
 #include "abbe/instruments/trackers/laser_tracker.h"
 
 namespace abbe {
@@ -13,34 +13,14 @@ namespace {
 constexpr double kMicrometresPerMillimetre = 1e3;
 constexpr double kMicrometresPerMetre = 1e6;  // of mm per mm
 
-/// Position and attitude: rotation Rz(c) Ry(b) Rx(a).
-RigidTransform read_pose(TomlTable table) {
-  Eigen::Vector3d angles = Eigen::Vector3d::Zero();
-  const Eigen::Vector3d position = vector_of(table.numbers("position", Quantity::length, 3));
-  if (const auto stated = table.optional_numbers("angles", Quantity::angle, 3)) angles = vector_of(*stated);
-  table.finish();
-  return {rotation_from_error_angles(angles), position};
-}
-
 TrackerStation read_station(TomlTable& table, bool simulated) {
   TrackerStation station;
   station.name = table.text("name");
-  bool find = !table.has("pose");
-  if (table.has("pose") && table.is_text("pose")) {
-    find = true;
-    if (table.text("pose") != "find") table.fail("pose", "unknown word", "\"find\" or { position_mm, angles_deg }");
-  } else if (auto pose = table.optional_table("pose")) {
-    station.body_from_tracker = read_pose(*pose);
-  }
-  station.pose_is_known = !find;
-  station.estimate_pose = table.boolean_or("estimate_pose", true);
-  if (!station.estimate_pose && find) {
-    table.fail("estimate_pose", "a pose that is not estimated has to be given", "pose = { position_mm, angles_deg }");
-  }
-  if (auto pose = table.optional_table("true_pose")) {
-    if (!simulated) table.fail("true_pose", "belongs to a simulation only", "[simulate]");
-    station.true_pose = read_pose(*pose);
-  }
+  const StatedPose pose = read_station_pose(table, simulated);
+  station.body_from_tracker = pose.body_from_station;
+  station.pose_is_known = pose.is_known;
+  station.estimate_pose = pose.estimate;
+  station.true_pose = pose.truth;
   const auto limits = [&](const char* name, Quantity quantity, double& smallest, double& largest) {
     const auto values = table.optional_numbers(name, quantity, 2);
     if (!values) return;
@@ -50,10 +30,6 @@ TrackerStation read_station(TomlTable& table, bool simulated) {
   };
   limits("elevation", Quantity::angle, station.elevation_min, station.elevation_max);
   limits("range", Quantity::length, station.range_min, station.range_max);
-  if (simulated && !station.pose_is_known && !station.true_pose) {
-    table.fail("", "a simulation needs the true pose",
-               "true_pose = { position_mm = [x, y, z], angles_deg = [a, b, c] }");
-  }
   table.finish();
   return station;
 }

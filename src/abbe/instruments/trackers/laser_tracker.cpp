@@ -15,33 +15,17 @@
 #include "abbe/instruments/trackers/tracker_simulation.h"
 #include "abbe/instruments/trackers/tracker_start.h"
 #include "abbe/instruments/trackers/tracker_whitening.h"
+#include "abbe/instruments/trackers/turned_vector.h"
 
 namespace abbe {
 namespace {
 
 using Eigen::Vector3d;
-// Below this square of an angle the series is exact to rounding.
-constexpr double kSmallTurn = 1e-6;
 
 std::string growing(double at_zero, double per_metre) {
   if (per_metre == 0) return fmt::format("{:.3g} um", at_zero);
   if (at_zero == 0) return fmt::format("{:.3g} um/m", per_metre);
   return fmt::format("{:.3g} um + {:.3g} um/m", at_zero, per_metre);
-}
-
-/// exp(-w) v.
-template <typename S>
-Eigen::Matrix<S, 3, 1> turned_back(const Eigen::Matrix<S, 3, 1>& w, const Eigen::Matrix<S, 3, 1>& v) {
-  using std::cos, std::sin, std::sqrt;
-  const S square = w.dot(w);
-  S first = S(1) - square / S(6), second = S(0.5) - square / S(24);
-  if (value_of(square) > kSmallTurn) {
-    const S angle = sqrt(square);
-    first = sin(angle) / angle;
-    second = (S(1) - cos(angle)) / square;
-  }
-  const Eigen::Matrix<S, 3, 1> across = w.cross(v);
-  return v - first * across + second * w.cross(across);
 }
 
 TrackerSetup true_setup(TrackerSetup setup) {
