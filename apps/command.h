@@ -31,6 +31,7 @@ void add_identify_command(CommandLine& line);
 void add_import_command(CommandLine& line);
 void add_map_command(CommandLine& line);
 void add_compare_command(CommandLine& line);
+void add_history_command(CommandLine& line);
 void add_path_command(CommandLine& line);
 void add_position_command(CommandLine& line);
 void add_run_command(CommandLine& line);

@@ -23,6 +23,7 @@ void add_subcommands(CommandLine& line) {
   add_identify_command(line);
   add_map_command(line);
   add_compare_command(line);
+  add_history_command(line);
   line.begin_section("Evaluate");
   add_evaluate_command(line);
   line.begin_section("Compensate");

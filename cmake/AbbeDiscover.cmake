@@ -26,7 +26,7 @@ set(abbe_not_sanitized
 set(abbe_not_unit
   ChainPlanJacobian.* DamagedStepFile.* EdgeSection.* EvaluationOfAContour.* FineRegistration.* FitRivals.* FitSimulation.*
   FrozenErrorsOfARequest.* LeastSquaresFit.CovarianceIs* LineTables.* LiuPlan.* MonteCarlo.* MoveSplitting.*
-  OrderSelection.* ProgramCorrection.* ProgramReversals.* Registration.* ResultsFolder.WritersKilled* RobustFit.*
+  MachineTrends.ErrorsThatStandStill* OrderSelection.* ProgramCorrection.* ProgramReversals.* Registration.* ResultsFolder.WritersKilled* RobustFit.*
   RobustMonteCarlo.* RuntimeTurns.* RuntimeUncertainty.* ScanRegistrationOfARequest.* StepFile.* WangBallBar.* YinMarks.*
   YinResults.* YinSections.*)
 

@@ -15,11 +15,12 @@ function(abbe_library name)
     add_library(abbe_${name} STATIC)
     abbe_units(abbe_${name} ${PROJECT_SOURCE_DIR}/src SOURCES ${ARG_SOURCES} ALONE ${ARG_ALONE} FAST "${ARG_FAST}" PRECOMPILED abbe_precompiled)
     set(scope PUBLIC)
-    # In the static programs fmt, Highway, zlib and Expat are others (AbbeStatic.cmake); a consumer links the shared ones.
+    # In the static programs fmt, Highway, zlib, Expat and SQLite are others (AbbeStatic.cmake); a consumer links the shared ones.
     list(TRANSFORM ARG_PRIVATE_LINK REPLACE "^fmt::fmt$" "$<BUILD_INTERFACE:abbe_fmt>;$<INSTALL_INTERFACE:fmt::fmt>")
     list(TRANSFORM ARG_PRIVATE_LINK REPLACE "^hwy::hwy$" "$<BUILD_INTERFACE:abbe_highway>;$<INSTALL_INTERFACE:hwy::hwy>")
     list(TRANSFORM ARG_PRIVATE_LINK REPLACE "^ZLIB::ZLIB$" "$<BUILD_INTERFACE:abbe_zlib>;$<INSTALL_INTERFACE:ZLIB::ZLIB>")
     list(TRANSFORM ARG_PRIVATE_LINK REPLACE "^EXPAT::EXPAT$" "$<BUILD_INTERFACE:abbe_expat>;$<INSTALL_INTERFACE:EXPAT::EXPAT>")
+    list(TRANSFORM ARG_PRIVATE_LINK REPLACE "^SQLite::SQLite3$" "$<BUILD_INTERFACE:abbe_sqlite>;$<INSTALL_INTERFACE:SQLite::SQLite3>")
     target_link_libraries(abbe_${name} PRIVATE $<BUILD_INTERFACE:abbe_flags> ${ARG_PRIVATE_LINK})
     set_target_properties(abbe_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON EXPORT_NAME ${name})
     target_include_directories(abbe_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)

@@ -16,7 +16,7 @@ function(abbe_either_library name static shared source)
 endfunction()
 abbe_either_library(abbe_fmt abbe_static_fmt fmt::fmt fmt.cpp)
 abbe_either_library(abbe_highway abbe_static_highway hwy::hwy highway.cpp)
-# The static libraries of zlib and Expat are in the same packages as the shared ones; on other systems they may be missing.
+# The static libraries of zlib, Expat and SQLite are in the same packages as the shared ones; on other systems they may be missing.
 function(abbe_static_archive name shared archive libraries include_folders)
   string(TOUPPER "ABBE_STATIC_${archive}" variable)
   list(GET libraries 0 first)
@@ -33,6 +33,7 @@ function(abbe_static_archive name shared archive libraries include_folders)
 endfunction()
 abbe_static_archive(abbe_zlib ZLIB::ZLIB libz "${ZLIB_LIBRARIES}" "${ZLIB_INCLUDE_DIRS}")
 abbe_static_archive(abbe_expat EXPAT::EXPAT libexpat "${EXPAT_LIBRARIES}" "${EXPAT_INCLUDE_DIRS}")
+abbe_static_archive(abbe_sqlite SQLite::SQLite3 libsqlite3 "${SQLite3_LIBRARIES}" "${SQLite3_INCLUDE_DIRS}")
 
 # abbe_static_program(NAME SOURCE LIBRARY): NAME linked statically, as a target abbe_static_NAME. Its addresses are chosen at
 # each start, as those of other programs.

@@ -10,7 +10,7 @@ function(install_licence package)
 endfunction()
 
 foreach(package IN ITEMS libc6-dev libstdc++-12-dev libfmt-dev libhwy-dev libeigen3-dev libcli11-dev libtomlplusplus-dev
-        nlohmann-json3-dev zlib1g-dev libexpat1-dev)
+        nlohmann-json3-dev zlib1g-dev libexpat1-dev libsqlite3-dev)
   install_licence(${package})
 endforeach()
 # The pages of the reports, which are part of the programs, contain three.js.

@@ -18,9 +18,9 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from violations_report import report  # noqa: E402
 
 ORDER = ["geometry", "machine", "errors", "instruments", "identify", "plan", "compensate", "verify", "formats",
-         "report", "controls", "runtime", "study"]
+         "report", "controls", "runtime", "study", "history"]
 STRANGERS = {("identify", "compensate"), ("compensate", "identify")}
-TOUCH_FILES = {"formats", "report"}
+TOUCH_FILES = {"formats", "report", "history"}
 FILE_HEADERS = {"fstream", "cstdio", "stdio.h", "filesystem", "fcntl.h", "unistd.h", "sys/stat.h", "sys/mman.h"}
 MEANINGLESS = {"util", "utils", "common", "core", "helper", "helpers", "misc", "manager", "managers"}
 MAX_LINES = 500

@@ -10,7 +10,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 REAL = ["bash", "cat", "dirname", "env", "find", "grep", "mkdir", "sort"]
 BUILD_TOOLS = ["g++", "cmake", "ninja", "git", "python3", "npm", "ccache"]
 BUILD_LIBRARIES = ["libeigen3-dev", "libfmt-dev", "libtomlplusplus-dev", "nlohmann-json3-dev", "libcli11-dev", "libhwy-dev",
-                   "libboost-dev", "zlib1g-dev", "libexpat1-dev", "libocct-data-exchange-dev"]
+                   "libboost-dev", "zlib1g-dev", "libexpat1-dev", "libsqlite3-dev", "libocct-data-exchange-dev"]
 OPTIONAL = ["ccache", "libocct-data-exchange-dev"]
 
 
@@ -83,7 +83,7 @@ class SetUp(unittest.TestCase):
     def test_without_root_and_sudo_one_message_says_what_to_install(self):
         self.machine.remove("g++", "ninja", "ccache")
         self.machine.install("libeigen3-dev", "libfmt-dev", "libtomlplusplus-dev", "nlohmann-json3-dev", "libcli11-dev",
-                             "libboost-dev", "zlib1g-dev", "libexpat1-dev")
+                             "libboost-dev", "zlib1g-dev", "libexpat1-dev", "libsqlite3-dev")
         code, out, err, called = self.machine.set_up("build")
         self.assertEqual((code, out, called), (1, "", []))
         self.assertEqual(self.lines_with(err, "apt-get install"), [

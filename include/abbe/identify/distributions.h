@@ -25,6 +25,8 @@ double fisher_quantile(double exceedance, double upper, double lower);
 
 /// Probability that Student's t with `degrees_of_freedom` exceeds `t` (one-sided).
 double student_exceedance(double t, double degrees_of_freedom);
+/// Value that Student's t exceeds with this probability, 0 < exceedance < 1.
+double student_quantile(double exceedance, double degrees_of_freedom);
 
 /// Probability that independent values have so large a sum by chance if their expected sum is `expected` or less:
 /// Student's t of their mean, one-sided, with the scatter that they show. 1 for fewer than three values.

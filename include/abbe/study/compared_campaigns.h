@@ -61,6 +61,7 @@ struct CompareRequest {
   double level = 0.05;                        ///< --level-percent: of the family of errors of a pair, 0 to 0.5
   std::vector<std::string> tolerances;        ///< --tolerance: "V_max_um=10", as apply_tolerances() takes them
   bool page = false;                          ///< the report is to have plots and the map, for its page
+  bool curves = false;                        ///< the error motions are to have their curves, as for a page
 };
 
 /// Opens the files of campaigns.
@@ -103,12 +104,13 @@ struct ComparedError {
   std::string words;  ///< "positioning error motion of X"
   std::size_t axis = 0;
   bool is_angle = false;
-  bool is_motion = false;          ///< a function of the position of its axis: has a curve, a range and a place
-  double from = 0, to = 0;         ///< range in which both know it
-  double change = 0;               ///< second - first where its amount is largest; tool offset: length of the change
-  double at = 0;                   ///< there
-  std::array<double, 2> value{};   ///< of first and second there
-  std::array<double, 2> beyond{};  ///< largest amount of what the functions of the other campaign cannot describe
+  bool is_motion = false;           ///< a function of the position of its axis: has a curve, a range and a place
+  double from = 0, to = 0;          ///< range in which both know it
+  double change = 0;                ///< second - first where its amount is largest; tool offset: length of the change
+  double at = 0;                    ///< there
+  std::array<double, 2> value{};    ///< of first and second there
+  std::array<double, 2> u_value{};  ///< their standard uncertainties, where both campaigns state them
+  std::array<double, 2> beyond{};   ///< largest amount of what the functions of the other campaign cannot describe
   std::optional<double> expanded_uncertainty;  ///< of `change`, k = 2
   std::optional<double> chi_square;            ///< of the whole function; none where it cannot be judged
   std::size_t rank = 0;                        ///< its degrees of freedom

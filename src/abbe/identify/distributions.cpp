@@ -77,6 +77,13 @@ double student_exceedance(double t, double degrees_of_freedom) {
   return cdf(complement(Student(degrees_of_freedom), t));
 }
 
+double student_quantile(double exceedance, double degrees_of_freedom) {
+  if (exceedance > 0.5) return -student_quantile(1 - exceedance, degrees_of_freedom);
+  if (exceedance == 0.5) return 0;
+  // The square of t has Fisher's distribution with one degree of freedom above.
+  return std::sqrt(fisher_quantile(2 * exceedance, 1, degrees_of_freedom));
+}
+
 double sum_exceedance(std::span<const double> values, double expected) {
   const auto n = static_cast<double>(values.size());
   if (values.size() < 3) return 1;

@@ -193,7 +193,8 @@ ComparedPair compared_pair(const CompareRequest& request, const Machine& machine
   pair.tools_differ = model.tools_differ;
   GaugeChange gauge = bring_into_one_gauge(a, b, model);
   pair.conventions = std::move(gauge.conventions);
-  compare_errors(model, {.level = request.level, .curves = request.page, .one_gauge = !gauge.is_moved}, pair);
+  compare_errors(
+      model, {.level = request.level, .curves = request.page || request.curves, .one_gauge = !gauge.is_moved}, pair);
   ChangeMap(model, pair).make();
   take_out_missing(model, pair);
   return pair;

@@ -169,6 +169,7 @@ class ErrorComparison {
         curve.u_change.push_back(std::hypot(curve.u_first[i], curve.u_second[i]));
       }
       error.expanded_uncertainty = 2 * curve.u_change[at];
+      error.u_value = {curve.u_first[at], curve.u_second[at]};
     }
     error.change = curve.change[at];
     error.value = {curve.first[at], curve.second[at]};

@@ -1,0 +1,90 @@
+#pragma once
+
+// Campaigns of one machine over the years, as `abbe history` keeps them:
+//
+//   #include <abbe/history/machine_history.h>
+//   #include <abbe/history/machine_trends.h>
+//
+//   #include <cstdio>
+//   #include <filesystem>
+//
+//   int main() {
+//     const std::filesystem::path file = std::filesystem::temp_directory_path() / "abbe_example.history";
+//     std::filesystem::remove(file);
+//     const std::string machine = "examples/machines/three-axis-mill.machine.toml";
+//     const char* const dates[] = {"2026-03-02", "2026-06-01", "2026-10-05"};
+//     const char* const months[] = {"march", "june", "october"};
+//     std::vector<abbe::CampaignToKeep> campaigns;
+//     for (int i = 0; i < 3; ++i) {
+//       const std::string errors = std::string("examples/compare/") + months[i] + ".errors.toml";
+//       campaigns.push_back(abbe::campaign_to_keep(errors, machine, abbe::date_of(dates[i])));
+//     }
+//     abbe::add_to_history(file.string(), campaigns);
+//     abbe::TrendRequest request;
+//     request.campaigns = abbe::read_history(file.string());
+//     const abbe::MachineTrends trends = abbe::find_trends(request);
+//     for (const abbe::ErrorTrend& trend : trends.errors) {
+//       if (!trend.drifts) continue;
+//       std::printf("%s drifts by %.1f +- %.1f um/year\n", trend.name.c_str(), 1e3 * trend.per_year,
+//                   1e3 * trend.expanded_per_year);
+//     }
+//     std::filesystem::remove(file);
+//     return 0;
+//   }
+//
+// It prints:
+//
+//   EXX drifts by 13.0 +- 2.6 um/year
+//
+// A history is one file, a database of SQLite, to which several programs may add at a time. Method: docs/history.md.
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "abbe/study/compared_campaigns.h"
+
+namespace abbe {
+
+using Date = std::chrono::sys_days;
+
+/// A day as files and options write it, "2026-03-02". @throws InputError for anything else. @param field  for messages
+Date date_of(const std::string& text, const std::string& field = "--date");
+std::string date_text(Date date);
+
+/// A campaign that is to be added.
+struct CampaignToKeep {
+  IdentifiedCampaign campaign;
+  Date measured{};
+  std::string source;   ///< where it came from, for people
+  std::string summary;  ///< summary.json of its results folder, or empty
+};
+
+/// Opens the files of a campaign.
+/// @param path          results folder of `abbe run`, or an errors file
+/// @param machine_file  empty: machine.toml of the results folder
+/// @throws InputError as read_campaign()
+CampaignToKeep campaign_to_keep(const std::string& path, const std::string& machine_file, Date measured);
+
+/// A campaign of a history.
+struct KeptCampaign {
+  std::int64_t number = 0;  ///< in the order in which they were added, from 1
+  IdentifiedCampaign campaign;
+  Date measured{};
+  std::string source, summary;
+  std::string added;         ///< when, UTC: "2026-03-02T08:15:00Z"
+  std::string abbe_version;  ///< of the program that added it
+};
+
+/// Adds campaigns, all or none. A history that does not exist is made.
+/// @return their numbers
+/// @throws InputError for a file that is no history, another machine than that of the history, and a campaign that is
+///   in it already
+std::vector<std::int64_t> add_to_history(const std::string& path, const std::vector<CampaignToKeep>& campaigns);
+
+/// All campaigns, in the order in which they were measured. @throws InputError also for a history that does not exist
+std::vector<KeptCampaign> read_history(const std::string& path);
+
+}  // namespace abbe

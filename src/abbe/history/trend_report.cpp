@@ -1,0 +1,209 @@
+#include "abbe/history/trend_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "abbe/geometry/angle_units.h"
+#include "abbe/report/drawings/svg_plot.h"
+
+namespace abbe {
+namespace {
+
+constexpr std::size_t kMostPlots = 40;
+
+double shown(const ErrorTrend& trend, double value) { return value * (trend.is_angle ? 1e6 : 1e3); }
+const char* unit_of(const ErrorTrend& trend) { return trend.is_angle ? "urad" : "um"; }
+
+/// "-3.2 +- 1.1 um", rounded as in tables.
+std::string with_uncertainty(const ErrorTrend& trend, double value, double expanded) {
+  return fmt::format("{:.1f} +- {:.1f}", shown(trend, value) + 0.0, shown(trend, expanded));
+}
+
+std::string place_of(const ErrorTrend& trend) {
+  if (!trend.at) return "";
+  return trend.at_is_angle ? fmt::format("{:.1f} deg", *trend.at / kDegree) : fmt::format("{:.1f} mm", *trend.at);
+}
+
+std::string due_words(const ErrorTrend& trend, double limit_mm) {
+  if (!(limit_mm > 0)) return "";
+  if (!(trend.at_tool > 0)) return "no effect at the tool";
+  return trend.due ? date_text(*trend.due) : "not in 20 years";
+}
+
+std::string verdict_words(const ErrorTrend& trend) {
+  std::string words = trend.drifts ? "drifts" : "no drift proven";
+  if (trend.expected && !trend.expected->is_within) words += "; last value unexpected";
+  return words;
+}
+
+EvaluationTable trend_table(const MachineTrends& trends, double limit_mm) {
+  EvaluationTable table{
+      .caption = "Errors over the campaigns, largest drift at the tool first",
+      .headers = {"error", "at", "unit", "change since first", "drift per year", "scatter", "verdict"},
+      .rows = {},
+      .in_text = true};
+  if (limit_mm > 0) table.headers.emplace_back("limit reached");
+  std::vector<const ErrorTrend*> order;
+  for (const ErrorTrend& one : trends.errors) {
+    if (!one.not_followed) order.push_back(&one);
+  }
+  std::stable_sort(order.begin(), order.end(), [](const ErrorTrend* a, const ErrorTrend* b) {
+    return std::abs(a->per_year) * a->at_tool > std::abs(b->per_year) * b->at_tool;
+  });
+  for (const ErrorTrend* const one : order) {
+    const TimedValue& last = one->values.back();
+    const double u = std::hypot(last.uncertainty, one->values.front().uncertainty);
+    table.rows.push_back({one->name, place_of(*one), unit_of(*one), with_uncertainty(*one, last.value, 2 * u),
+                          with_uncertainty(*one, one->per_year, one->expanded_per_year),
+                          one->trend.scatter ? fmt::format("{:.1f}", shown(*one, *one->trend.scatter)) : "not known",
+                          verdict_words(*one)});
+    if (limit_mm > 0) table.rows.back().push_back(due_words(*one, limit_mm));
+  }
+  return table;
+}
+
+EvaluationTable campaign_table(const MachineTrends& trends) {
+  EvaluationTable table{.caption = "Campaigns", .headers = {"day", "campaign"}, .rows = {}, .with_figures = true};
+  for (std::size_t k = 0; k < trends.names.size(); ++k) {
+    table.rows.push_back({date_text(trends.dates[k]), trends.names[k]});
+  }
+  return table;
+}
+
+EvaluationPlot trend_plot(const MachineTrends& trends, const ErrorTrend& trend) {
+  XyPlot plot(fmt::format("{}: {}", trend.name, trend.words),
+              fmt::format("years since {}", date_text(trends.dates.front())),
+              fmt::format("change of {} in {}", trend.name, unit_of(trend)));
+  const double last = trend.values.back().time, first = trend.values.front().time;
+  const double until = last + 0.25 * (last - first);
+  std::vector<double> x, low, high;
+  std::vector<PlotPoint> line;
+  constexpr int kSteps = 40;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double t = first + (until - first) * i / kSteps;
+    const double value = trend.trend.at(t - last), u = trend.trend.u_at(t - last);
+    const double scatter = trend.trend.scatter.value_or(0);
+    const double expanded = trend.trend.coverage_factor * std::hypot(u, scatter);
+    x.push_back(t / kDaysPerYear);
+    low.push_back(shown(trend, value - expanded));
+    high.push_back(shown(trend, value + expanded));
+    line.push_back({t / kDaysPerYear, shown(trend, value)});
+  }
+  plot.band(x, low, high, {PlotColour::first, 1, false, 0.2}, "trend with its band of k = 2 and the scatter");
+  plot.line(line, {PlotColour::first, 1.5, false, 1});
+  std::vector<PlotPoint> points;
+  for (const TimedValue& one : trend.values) {
+    const double t = one.time / kDaysPerYear;
+    points.push_back({t, shown(trend, one.value)});
+    plot.line({{t, shown(trend, one.value - 2 * one.uncertainty)}, {t, shown(trend, one.value + 2 * one.uncertainty)}},
+              {PlotColour::second, 1, false, 1});
+  }
+  plot.points(points, Marker::circle, {PlotColour::second, 1, false, 1}, "campaigns, k = 2");
+  return {.name = "trend-" + trend.name,
+          .caption = trend.at ? fmt::format("Change since the first campaign at {}", place_of(trend))
+                              : "Change since the first campaign",
+          .picture = plot.picture(),
+          .in_page = false,
+          .beside = true};
+}
+
+void add_notes(const MachineTrends& trends, double limit_mm, EvaluationReport& report) {
+  if (trends.names.size() == 2) {
+    report.notes.emplace_back(
+        "Two campaigns are on a line, so the scatter from campaign to campaign is not known: what is called a drift "
+        "may "
+        "be one.");
+  }
+  for (const ErrorTrend& one : trends.errors) {
+    if (one.not_followed) report.notes.push_back(fmt::format("{} is not followed: {}.", one.name, *one.not_followed));
+    if (!one.expected || one.expected->is_within) continue;
+    report.notes.push_back(fmt::format("{} is {} {} in the last campaign, where {} were expected from those before.",
+                                       one.name, fmt::format("{:.1f}", shown(one, one.values.back().value)),
+                                       unit_of(one),
+                                       with_uncertainty(one, one.expected->value, one.expected->expanded)));
+  }
+  if (limit_mm > 0 && trends.next) {
+    report.notes.push_back(
+        fmt::format("Measure again by {}: then {} alone may have changed the tool by {:g} um since the last campaign.",
+                    date_text(*trends.next), trends.next_error, 1e3 * limit_mm));
+  }
+}
+
+nlohmann::ordered_json trend_json(const ErrorTrend& one, double limit_mm) {
+  const std::string unit = unit_of(one);
+  nlohmann::ordered_json json{{"name", one.name}, {"words", one.words}};
+  if (one.not_followed) {
+    json["not_followed"] = *one.not_followed;
+    return json;
+  }
+  if (one.at) json[one.at_is_angle ? "at_deg" : "at_mm"] = one.at_is_angle ? *one.at / kDegree : *one.at;
+  for (const TimedValue& value : one.values) {
+    json["days"].push_back(value.time);
+    json["change_" + unit].push_back(shown(one, value.value));
+    json["standard_uncertainty_" + unit].push_back(shown(one, value.uncertainty));
+  }
+  json["drift_" + unit + "_per_year"] = shown(one, one.per_year);
+  json["drift_expanded_uncertainty_" + unit + "_per_year"] = shown(one, one.expanded_per_year);
+  json["coverage_factor"] = one.trend.coverage_factor;
+  json["scatter_" + unit] = one.trend.scatter ? nlohmann::ordered_json(shown(one, *one.trend.scatter)) : nullptr;
+  json["drifts"] = one.drifts;
+  json["expected_" + unit] = shown(one, one.expected->value);
+  json["expected_expanded_uncertainty_" + unit] = shown(one, one.expected->expanded);
+  json["last_is_expected"] = one.expected->is_within;
+  if (limit_mm > 0) json["limit_reached"] = one.due ? nlohmann::ordered_json(date_text(*one.due)) : nullptr;
+  return json;
+}
+
+}  // namespace
+
+EvaluationReport trend_report(const MachineTrends& trends, const TrendRequest& request) {
+  EvaluationReport report;
+  report.kind = "history";
+  report.title = "Errors of a machine over its campaigns";
+  const auto add_count = [&](const char* symbol, const char* name, std::size_t count) {
+    EvaluationFigure figure;
+    figure.symbol = symbol;
+    figure.name = name;
+    figure.quantity = Quantity::dimensionless;
+    figure.unit = "";
+    figure.decimals = 0;
+    figure.value = static_cast<double>(count);
+    report.figures.push_back(std::move(figure));
+  };
+  std::size_t followed = 0, drifting = 0, unexpected = 0;
+  for (const ErrorTrend& one : trends.errors) {
+    followed += one.not_followed ? 0U : 1U;
+    drifting += one.drifts ? 1U : 0U;
+    unexpected += one.expected && !one.expected->is_within ? 1U : 0U;
+  }
+  add_count("followed", "errors that could be followed", followed);
+  add_count("drifting", "of these, with a drift that is no chance (95 %)", drifting);
+  add_count("unexpected", "of these, with a last value outside what the earlier ones let expect", unexpected);
+  report.facts = {{"campaigns", fmt::format("{}, {} to {}", trends.names.size(), date_text(trends.dates.front()),
+                                            date_text(trends.dates.back()))}};
+  if (request.limit_mm > 0) {
+    report.facts.emplace_back("limit", fmt::format("{:g} um at the tool, for each error", 1e3 * request.limit_mm));
+    report.facts.emplace_back("measure again by", trends.next ? date_text(*trends.next) : "not in 20 years");
+  }
+  report.tables = {trend_table(trends, request.limit_mm), campaign_table(trends)};
+  add_notes(trends, request.limit_mm, report);
+  for (std::size_t k = 0; k < trends.names.size(); ++k) {
+    report.details["campaigns"].push_back({{"name", trends.names[k]}, {"day", date_text(trends.dates[k])}});
+  }
+  if (request.limit_mm > 0) {
+    report.details["limit_um"] = 1e3 * request.limit_mm;
+    report.details["measure_again_by"] = trends.next ? nlohmann::ordered_json(date_text(*trends.next)) : nullptr;
+  }
+  for (const ErrorTrend& one : trends.errors) report.details["errors"].push_back(trend_json(one, request.limit_mm));
+  if (request.page) {
+    for (const ErrorTrend& one : trends.errors) {
+      if (!one.not_followed && report.plots.size() < kMostPlots) report.plots.push_back(trend_plot(trends, one));
+    }
+  }
+  return report;
+}
+
+}  // namespace abbe
