@@ -69,8 +69,7 @@ int run_list(const HistoryCommand& command) {
     return kDone;
   }
   for (const KeptCampaign& one : campaigns) {
-    fmt::print("{:4}  {}  {}  from {}, added {}\n", one.number, date_text(one.measured), one.campaign.name, one.source,
-               one.added);
+    fmt::print("{:4}  {}  {}  from {}\n", one.number, date_text(one.measured), one.campaign.name, one.source);
   }
   return kDone;
 }
@@ -133,16 +132,19 @@ void add_history_command(CommandLine& line) {
   auto command = std::make_shared<HistoryCommand>();
   Subcommand* history = line.add(
       "history", "Keep the campaigns of a machine over the years: trends, control limits, when to measure again",
-      "  abbe history add mill.history results/march results/june --date 2026-03-02 --date 2026-06-01\n"
+      "  abbe history add mill.history examples/compare/march.errors.toml examples/compare/june.errors.toml "
+      "examples/compare/october.errors.toml --date 2026-03-02 --date 2026-06-01 --date 2026-10-05 --machine "
+      "examples/machines/three-axis-mill.machine.toml\n"
       "  abbe history trends mill.history --limit-um 20 -o results/trends\n\n"
       "A history is one file. Several programs may add to it at a time. Method: docs/history.md.");
   history->require_subcommand(1);
 
-  Subcommand* add = add_part(
-      *history, line, command, "add", "Add campaigns: all of them, or none",
-      "  abbe history add mill.history examples/compare/march.errors.toml examples/compare/june.errors.toml --date "
-      "2026-03-02 --date 2026-06-01 --machine examples/machines/three-axis-mill.machine.toml",
-      run_add);
+  Subcommand* add =
+      add_part(*history, line, command, "add", "Add campaigns: all of them, or none",
+               "  abbe history add mill.history examples/compare/march.errors.toml examples/compare/june.errors.toml "
+               "examples/compare/october.errors.toml --date 2026-03-02 --date 2026-06-01 --date 2026-10-05 --machine "
+               "examples/machines/three-axis-mill.machine.toml",
+               run_add);
   add->add_input_file("campaigns", command->campaigns,
                       "Results folders of abbe run, or errors files (*.errors.toml) with --machine")
       ->required();

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/files/results_files.h"
+#include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/json_text.h"

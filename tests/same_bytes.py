@@ -106,8 +106,8 @@ def examples(abbe, words=()):
 def digest(folder):
     result = {}
     for path in sorted(folder.rglob("*")):
-        # Which files belong to results is seen from the files.
-        if path.is_file() and path.name != ".abbe-results":
+        # Which files belong to results is seen from the files. A history says when its campaigns were added.
+        if path.is_file() and path.name != ".abbe-results" and path.suffix != ".history":
             result[str(path.relative_to(folder))] = hashlib.sha256(path.read_bytes()).hexdigest()
     return result
 
