@@ -29,7 +29,7 @@ namespace {
 struct HistoryCommand {
   std::string history, machine, output;
   std::vector<std::string> campaigns, dates;
-  std::int64_t number = 0;
+  int number = 0;
   TrendRequest trends;
   bool json = false;
 };

@@ -79,7 +79,8 @@ TEST_P(ColumnOptions, GiveTheAnswerOfTheFileWithOurNames) {
   EXPECT_EQ(unread.exit_code, ExitCode::bad_input);
   EXPECT_THAT(unread.err, HasSubstr("remark"));
   EXPECT_THAT(unread.err, HasSubstr("--ignore"));
-  const CommandResult missing = run({"--column", test.ours + "=elsewhere", "--ignore", "remark"});
+  const CommandResult missing =
+      run({"--column", test.ours + "=elsewhere", "--ignore", "remark", "--ignore", test.theirs});
   EXPECT_EQ(missing.exit_code, ExitCode::bad_input);
   EXPECT_THAT(missing.err, HasSubstr("there is no such column to be read as " + test.ours));
 }

@@ -7,26 +7,24 @@
 //
 //   #include <cstdio>
 //   #include <filesystem>
+//   #include <utility>
 //
 //   int main() {
-//     const std::filesystem::path file = std::filesystem::temp_directory_path() / "abbe_example.history";
+//     const std::string file = (std::filesystem::temp_directory_path() / "abbe_example.history").string();
 //     std::filesystem::remove(file);
-//     const std::string machine = "examples/machines/three-axis-mill.machine.toml";
-//     const char* const dates[] = {"2026-03-02", "2026-06-01", "2026-10-05"};
-//     const char* const months[] = {"march", "june", "october"};
 //     std::vector<abbe::CampaignToKeep> campaigns;
-//     for (int i = 0; i < 3; ++i) {
-//       const std::string errors = std::string("examples/compare/") + months[i] + ".errors.toml";
-//       campaigns.push_back(abbe::campaign_to_keep(errors, machine, abbe::date_of(dates[i])));
-//     }
-//     abbe::add_to_history(file.string(), campaigns);
+//     for (const auto& [month, day] : {std::pair("march", "2026-03-02"), {"june", "2026-06-01"}, {"october",
+//     "2026-10-05"}})
+//       campaigns.push_back(abbe::campaign_to_keep(std::string("examples/compare/") + month + ".errors.toml",
+//                                                  "examples/machines/three-axis-mill.machine.toml",
+//                                                  abbe::date_of(day)));
+//     abbe::add_to_history(file, campaigns);
 //     abbe::TrendRequest request;
-//     request.campaigns = abbe::read_history(file.string());
-//     const abbe::MachineTrends trends = abbe::find_trends(request);
-//     for (const abbe::ErrorTrend& trend : trends.errors) {
-//       if (!trend.drifts) continue;
-//       std::printf("%s drifts by %.1f +- %.1f um/year\n", trend.name.c_str(), 1e3 * trend.per_year,
-//                   1e3 * trend.expanded_per_year);
+//     request.campaigns = abbe::read_history(file);
+//     for (const abbe::ErrorTrend& trend : abbe::find_trends(request).errors) {
+//       if (!trend.expected || trend.expected->is_within) continue;
+//       std::printf("%s: %.1f um, at most %.1f um from where it was were expected\n", trend.name.c_str(),
+//                   1e3 * trend.values.back().value, 1e3 * trend.expected->expanded);
 //     }
 //     std::filesystem::remove(file);
 //     return 0;
@@ -34,7 +32,7 @@
 //
 // It prints:
 //
-//   EXX drifts by 13.0 +- 2.6 um/year
+//   EXX: 7.6 um, at most 3.4 um from where it was were expected
 //
 // A history is one file, a database of SQLite, to which several programs may add at a time. Method: docs/history.md.
 

@@ -15,11 +15,15 @@ namespace {
 constexpr std::size_t kMostPlots = 40;
 
 double shown(const ErrorTrend& trend, double value) { return value * (trend.is_angle ? 1e6 : 1e3); }
+
+/// With one decimal, and no minus before a zero.
+std::string tenths(double value) { return fmt::format("{:.1f}", std::round(10 * value) / 10 + 0.0); }
+
 const char* unit_of(const ErrorTrend& trend) { return trend.is_angle ? "urad" : "um"; }
 
 /// "-3.2 +- 1.1 um", rounded as in tables.
 std::string with_uncertainty(const ErrorTrend& trend, double value, double expanded) {
-  return fmt::format("{:.1f} +- {:.1f}", shown(trend, value) + 0.0, shown(trend, expanded));
+  return tenths(shown(trend, value)) + " +- " + tenths(shown(trend, expanded));
 }
 
 std::string place_of(const ErrorTrend& trend) {
@@ -58,7 +62,7 @@ EvaluationTable trend_table(const MachineTrends& trends, double limit_mm) {
     const double u = std::hypot(last.uncertainty, one->values.front().uncertainty);
     table.rows.push_back({one->name, place_of(*one), unit_of(*one), with_uncertainty(*one, last.value, 2 * u),
                           with_uncertainty(*one, one->per_year, one->expanded_per_year),
-                          one->trend.scatter ? fmt::format("{:.1f}", shown(*one, *one->trend.scatter)) : "not known",
+                          one->trend.scatter ? tenths(shown(*one, *one->trend.scatter)) : "not known",
                           verdict_words(*one)});
     if (limit_mm > 0) table.rows.back().push_back(due_words(*one, limit_mm));
   }
@@ -121,8 +125,7 @@ void add_notes(const MachineTrends& trends, double limit_mm, EvaluationReport& r
     if (one.not_followed) report.notes.push_back(fmt::format("{} is not followed: {}.", one.name, *one.not_followed));
     if (!one.expected || one.expected->is_within) continue;
     report.notes.push_back(fmt::format("{} is {} {} in the last campaign, where {} were expected from those before.",
-                                       one.name, fmt::format("{:.1f}", shown(one, one.values.back().value)),
-                                       unit_of(one),
+                                       one.name, tenths(shown(one, one.values.back().value)), unit_of(one),
                                        with_uncertainty(one, one.expected->value, one.expected->expanded)));
   }
   if (limit_mm > 0 && trends.next) {
