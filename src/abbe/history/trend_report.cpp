@@ -48,6 +48,7 @@ EvaluationTable trend_table(const MachineTrends& trends, double limit_mm) {
       .caption = "Errors over the campaigns, largest drift at the tool first",
       .headers = {"error", "at", "unit", "change since first", "drift per year", "scatter", "verdict"},
       .rows = {},
+      .with_figures = true,
       .in_text = true};
   if (limit_mm > 0) table.headers.emplace_back("limit reached");
   std::vector<const ErrorTrend*> order;
