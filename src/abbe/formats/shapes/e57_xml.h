@@ -1,26 +1,16 @@
 #pragma once
 
 // Internal to formats: the XML section of an E57 file as a tree.
-#include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
+
+#include "abbe/formats/text/xml_tree.h"
 
 namespace abbe {
 
-struct E57Element {
-  std::string name;  ///< of E57: "cartesianX"; of its extension for normals: "nor:normalX"; of others with their URI
-  std::vector<std::pair<std::string, std::string>> attributes;
-  std::string text;
-  std::vector<E57Element> children;
-  std::size_t line = 0;  ///< of the XML section, from 1
-
-  /// The first child with that name, or null.
-  const E57Element* child(std::string_view wanted) const;
-  /// An attribute, or null.
-  const std::string* attribute(std::string_view wanted) const;
-};
+/// Its name is that of E57, "cartesianX", of its extension for normals, "nor:normalX", or of others with their URI; its
+/// line is that of the XML section.
+using E57Element = XmlElement;
 
 /// @param file  name for messages
 /// @return the root
