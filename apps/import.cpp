@@ -22,7 +22,7 @@ namespace abbe {
 namespace {
 
 struct ImportCommand {
-  std::string file, machine, mapping, output, written_mapping;
+  std::string file, format, machine, mapping, output, written_mapping;
   std::string kind, encoding, separator, decimal, length_unit, angle_unit, azimuth, vertical, mirrored;
   bool accept_uncertain = false, json = false;
 };
@@ -41,6 +41,7 @@ std::vector<std::string> texts(const std::vector<std::string_view>& words) { ret
 ImportRequest request_of(const ImportCommand& command) {
   ImportRequest request;
   request.file = command.file;
+  request.format = command.format;
   request.kind = import_kind_named(command.kind);
   if (!command.machine.empty()) request.machine = read_machine(command.machine);
   std::optional<TextEncoding> encoding = encoding_named(command.encoding);
@@ -85,21 +86,29 @@ int run_import(const ImportCommand& command) {
 void add_import_command(CommandLine& line) {
   auto command = std::make_shared<ImportCommand>();
   Subcommand* app = line.add(
-      "import", "Turn a table of readings that another program wrote into a file that abbe reads",
+      "import", "Turn a table of another program, or a file of an instrument, into a file that abbe reads",
       "  abbe import examples/import/total-station.txt --machine examples/machines/three-axis-mill.machine.toml "
       "--azimuth clockwise -o readings.csv --write-mapping total-station.import.toml\n"
       "  abbe import examples/import/total-station.txt --machine examples/machines/three-axis-mill.machine.toml "
       "--mapping examples/import/total-station.import.toml -o readings-again.csv\n"
       "  abbe import examples/import/positioning.csv -o positioning.csv\n"
-      "  abbe import examples/import/points-inch.txt --as points\n\n"
+      "  abbe import examples/import/points-inch.txt --as points\n"
+      "  abbe import examples/import/laser.rtl --length-unit mm -o positioning.csv\n"
+      "  abbe import examples/import/probe-log.txt --format linuxcnc-probe --length-unit mm -o points.csv\n\n"
       "It finds encoding, separator, decimal mark, header and units, proposes where each column comes from, and says "
-      "why.\n"
+      "why. Files of instruments are recognised by their contents.\n"
       "Exit code 1: something is uncertain and the table is not written; the text says what. docs/import.md.");
-  app->add_input_file("file", command->file, "Table as text, also compressed by gzip")->required();
-  app->add_option("--as", command->kind, "What it becomes: points, tracker or positioning (default: by its columns)")
+  app->add_input_file("file", command->file, "Table or file of an instrument, as text, also compressed by gzip")
+      ->required();
+  app->add_option("--as", command->kind,
+                  "What it becomes: points, tracker, positioning or circular (default: by its columns)")
       ->check(one_of(import_kind_names()));
   add_machine(*app, command->machine, "Machine whose commands the table of a tracker has (*.machine.toml)");
   app->add_input_file("--mapping", command->mapping, "Mapping to use: nothing is proposed (*.import.toml)");
+  app->add_option("--format", command->format,
+                  "Form of the file (default: by its contents): a table, or what an instrument or a control writes")
+      ->check(one_of(import_format_names()))
+      ->excludes("--mapping");
   app->add_option("--encoding", command->encoding,
                   "Encoding (default: from the bytes): utf-8, utf-16le, utf-16be, windows-1252 (also for Latin-1)")
       ->check(one_of(encoding_names()));

@@ -1,5 +1,5 @@
-// Tables of other programs: any bytes give a table or an InputError. The mapping that was proposed gives the same
-// bytes again, and readers of Abbe take them (import_table() reads them back itself).
+// Tables of other programs and files of instruments: any bytes give a table or an InputError. The mapping that was
+// proposed gives the same bytes again, and readers of Abbe take them (import_table() reads them back itself).
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -23,6 +23,9 @@ abbe::ImportRequest request_of(std::uint8_t choice) {
   if ((choice & 4U) != 0) request.hints.layout.decimal = abbe::DecimalMark::comma;
   if ((choice & 8U) != 0) request.hints.length_unit = "inch";
   if ((choice & 16U) != 0) request.hints.angle_unit = "gon";
+  constexpr unsigned kByContents = 2;
+  const unsigned form = choice >> 5U;
+  if (form != kByContents) request.format = abbe::import_format_names()[form < kByContents ? form : form - 1];
   return request;
 }
 
@@ -43,6 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (found) {
     if (abbe::imported_table_text(*found).empty()) std::abort();
     request.kind.reset();
+    request.format.clear();
     try {
       request.mapping = abbe::parse_import_mapping(abbe::imported_mapping_text(*found), "fuzz.import.toml");
       if (abbe::import_table(request).rows.csv != found->rows.csv) std::abort();

@@ -43,15 +43,18 @@
 #include "abbe/formats/import/foreign_text.h"
 #include "abbe/formats/import/import_mapping.h"
 #include "abbe/formats/import/imported_rows.h"
+#include "abbe/formats/import/instrument_format.h"
 #include "abbe/formats/import/proposed_mapping.h"
 #include "abbe/machine/machine.h"
 
 namespace abbe {
 
-/// A table and what is known of it. Messages name a field by the option of `abbe import` that sets it, given below.
+/// A table, or a file of an instrument, and what is known of it. Messages name a field by the option of `abbe import`
+/// that sets it, given below.
 struct ImportRequest {
   ForeignText text;
   std::string file;                      ///< name for texts and messages
+  std::string format{};                  ///< --format: of import_format_names(); empty: found from the contents
   std::optional<ImportKind> kind;        ///< --as; absent: found from the columns
   std::optional<Machine> machine;        ///< --machine: of a tracker's commands
   std::optional<ImportMapping> mapping;  ///< --mapping: nothing is proposed, and nothing is in doubt
@@ -65,12 +68,15 @@ struct ImportedTable {
   std::string file;
   TextEncoding encoding = TextEncoding::utf8;
   std::string encoding_reason;
-  bool packed = false;    ///< it was compressed by gzip
-  FoundLayout found;      ///< with reasons and doubts
-  ImportMapping mapping;  ///< as it was used
+  bool packed = false;               ///< it was compressed by gzip
+  std::string format{kTableFormat};  ///< of import_format_names()
+  std::string format_reason;         ///< of a form of an instrument
+  FoundLayout found;                 ///< with reasons and doubts; of a file of an instrument only the columns count
+  ImportMapping mapping;             ///< as it was used
   std::string kind_reason;
   std::vector<ProposedColumn> columns;  ///< with reasons and doubts, in the order of the mapping
-  std::vector<std::string> not_read;    ///< other columns, in words
+  std::vector<std::string> not_read;    ///< other columns and parts, in words
+  std::vector<InstrumentFact> facts;    ///< what a file of an instrument says beside its readings
   ImportedRows rows;                    ///< its CSV was read back by the reader of its kind
   bool doubts_accepted = false;
 

@@ -6,17 +6,21 @@
 #include <optional>
 #include <utility>
 
+#include "abbe/formats/evaluations/evaluation_circular_file.h"
 #include "abbe/formats/evaluations/evaluation_positioning.h"
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/unit.h"
 #include "abbe/study/frame_sense.h"
+#include "abbe/study/imported_instrument.h"
 
 namespace abbe {
 namespace {
 
 constexpr const char* kWrittenName = "imported.csv";
+// Radial deviations are added to a nominal radius, which a table of them need not state. Beside this one none is large.
+constexpr double kAnyRadius = 1e9;
 
 const Machine& machine_of_import(const ImportRequest& request) {
   static const Machine none;
@@ -78,12 +82,16 @@ std::optional<MeasurementTable> read_back(const ImportedTable& result, const Mac
     case ImportKind::positioning:
       parse_positioning(csv, kWrittenName);
       return std::nullopt;
+    case ImportKind::circular:
+      parse_circular(csv, kWrittenName, kAnyRadius);
+      return std::nullopt;
   }
   return std::nullopt;
 }
 
 /// What the reader says of the CSV, with the line and the column of the table.
-[[noreturn]] void refuse_as_read(const ImportRequest& request, const ImportedTable& result, const InputError& error) {
+[[noreturn]] void refuse_table_as_read(const ImportRequest& request, const ImportedTable& result,
+                                       const InputError& error) {
   InputError::Place place{.file = request.file};
   if (error.place().line >= 2) {
     place.line = imported_line(request.text.text, result.found.layout, error.place().line - 2);
@@ -103,7 +111,22 @@ std::optional<MeasurementTable> convert(const ImportRequest& request, const Mach
   try {
     return read_back(result, machine, request.threads);
   } catch (const InputError& error) {
-    refuse_as_read(request, result, error);
+    refuse_table_as_read(request, result, error);
+  }
+}
+
+/// The same of a file of an instrument.
+void convert(const ImportRequest& request, const InstrumentRows& rows, ImportedTable& result) {
+  try {
+    result.rows = imported_rows(rows.text, request.file, result.found, result.mapping, Machine(), request.threads);
+  } catch (const InputError& error) {
+    if (error.place().file != request.file) throw;
+    refuse_in_file(request, rows, error, 1);
+  }
+  try {
+    read_back(result, Machine(), request.threads);
+  } catch (const InputError& error) {
+    refuse_in_file(request, rows, error, 2);  // below a header
   }
 }
 
@@ -183,6 +206,10 @@ ImportedTable import_table(const ImportRequest& request) {
   result.encoding_reason = request.text.reason;
   result.packed = request.text.packed;
   result.doubts_accepted = request.accept_doubts;
+  if (const std::optional<InstrumentRows> rows = take_instrument(request, result)) {
+    convert(request, *rows, result);
+    return result;
+  }
   if (request.mapping) {
     take_mapping(request, result);
   } else {

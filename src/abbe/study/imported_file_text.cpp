@@ -11,7 +11,9 @@ namespace abbe {
 namespace {
 
 std::string source_words(const ImportedTable& result, const ProposedColumn& column) {
-  std::string words = column_words(column.source, result.found.names[column.source]);
+  const std::string& name = result.found.names[column.source];
+  std::string words = result.format == kTableFormat ? column_words(column.source, name)
+                                                    : fmt::format("'{}'", printable(name, 40, LineFeeds::escaped));
   if (!column.column.unit.empty()) words += fmt::format(", {}", column.column.unit);
   if (column.column.convention != ImportConvention::as_written) {
     words += fmt::format(", {}", convention_name(column.column.convention));
@@ -70,6 +72,9 @@ std::string imported_mapping_text(const ImportedTable& result) {
 std::string imported_table_text(const ImportedTable& result) {
   std::string text = fmt::format("{}: {}{} ({})\n", result.file, result.packed ? "gzip, " : "",
                                  encoding_name(result.encoding), result.encoding_reason);
+  if (const InstrumentFormat* const format = instrument_format_named(result.format)) {
+    text += fmt::format("  {}: {}\n", format->words, result.format_reason);
+  }
   for (const std::string& reason : result.found.reasons) text += fmt::format("  {}\n", reason);
   text += fmt::format("\nread as {} ({}):\n", import_kind_name(result.mapping.kind), result.kind_reason);
   std::size_t width = 0;
@@ -81,6 +86,10 @@ std::string imported_table_text(const ImportedTable& result) {
       text += lines_of_parts(fmt::format("  {:<{}}  {}:", "", width, result.doubts_accepted ? "accepted" : "UNCERTAIN"),
                              doubt, width + 6);
     }
+  }
+  for (const InstrumentFact& fact : result.facts) {
+    text += fmt::format("stated: {}: {}\n", printable(fact.name, 60, LineFeeds::escaped),
+                        printable(fact.value, 100, LineFeeds::escaped));
   }
   if (!result.not_read.empty()) text += fmt::format("not read: {}\n", fmt::join(result.not_read, ", "));
   for (const std::string& doubt : result.found.doubts) {
@@ -103,7 +112,9 @@ nlohmann::ordered_json imported_table_json(const ImportedTable& result) {
                                  {"encoding", encoding_name(result.encoding)},
                                  {"encoding_reason", result.encoding_reason},
                                  {"gzip", result.packed}};
-  json["layout"] = layout_json(result.found.layout);
+  json["format"] = result.format;
+  json["format_reason"] = result.format_reason;
+  json["layout"] = result.format == kTableFormat ? layout_json(result.found.layout) : nlohmann::ordered_json();
   json["layout_reasons"] = result.found.reasons;
   json["layout_doubts"] = result.found.doubts;
   json["columns"] = nlohmann::ordered_json::array();
@@ -118,6 +129,10 @@ nlohmann::ordered_json imported_table_json(const ImportedTable& result) {
     one["reason"] = column.reason;
     one["doubts"] = column.doubts;
     json["columns"].push_back(std::move(one));
+  }
+  json["facts"] = nlohmann::ordered_json::array();
+  for (const InstrumentFact& fact : result.facts) {
+    json["facts"].push_back({{"name", fact.name}, {"value", fact.value}});
   }
   json["not_read"] = result.not_read;
   json["certain"] = result.is_certain();

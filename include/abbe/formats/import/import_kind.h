@@ -12,12 +12,13 @@ namespace abbe {
 
 /// What a table of another program becomes.
 enum class ImportKind {
-  points,      ///< x, y, z: a point cloud, as abbe fit and abbe register read it
-  tracker,     ///< commands of a machine and what a tracker measured there (measurement_file.h)
-  positioning  ///< deviations at target positions, as abbe evaluate positioning reads them
+  points,       ///< x, y, z: a point cloud, as abbe fit and abbe register read it
+  tracker,      ///< commands of a machine and what a tracker measured there (measurement_file.h)
+  positioning,  ///< deviations at target positions, as abbe evaluate positioning reads them
+  circular      ///< ball bar or grid encoder on a circle, as abbe evaluate circular reads them
 };
 
-/// "points", "tracker", "positioning".
+/// "points", "tracker", "positioning", "circular".
 std::string_view import_kind_name(ImportKind kind);
 std::optional<ImportKind> import_kind_named(std::string_view name);
 std::vector<std::string> import_kind_names();
@@ -38,9 +39,10 @@ std::vector<std::string_view> convention_names();
 struct ImportColumn {
   enum class Holds {
     number,
-    name,      ///< a text that may not be empty
-    label,     ///< a text of its own in every row, which may be empty
-    direction  ///< + or -
+    name,       ///< a text that may not be empty
+    label,      ///< a text of its own in every row, which may be empty
+    direction,  ///< + or -
+    rotation    ///< cw or ccw
   };
   std::string base;  ///< "measured_x"; a number's unit follows in the header
   Quantity quantity = Quantity::dimensionless;
@@ -50,6 +52,11 @@ struct ImportColumn {
   std::vector<std::string> words{};  ///< what other programs call it, in small letters, the surest first
   std::string exact_word{};          ///< what it is only called with these capitals: "X" beside "x"
 };
+
+/// Whether a column holds one of two directions.
+inline bool holds_direction(const ImportColumn& column) {
+  return column.holds == ImportColumn::Holds::direction || column.holds == ImportColumn::Holds::rotation;
+}
 
 /// The columns of a kind, in the order in which they are written. A base may be there with two quantities.
 /// @param machine  of a tracker's commands; not used by other kinds

@@ -20,15 +20,16 @@ struct MappedColumn {
   std::size_t from_column = 0;  ///< from 1; 0: by name
   std::string unit;             ///< of the file, such as "inch"; empty for texts and numbers without one
   ImportConvention convention = ImportConvention::as_written;
-  std::vector<std::string> positive, negative;  ///< of a direction: the words of the file
+  std::vector<std::string> positive, negative;  ///< of a direction: the words of the file; ccw is positive
 };
 
 /// How tables of one program are read: everything that abbe import decides, so that the next file is read likewise.
 struct ImportMapping {
   ImportKind kind = ImportKind::points;
+  std::string format{};                  ///< of an instrument, by its name; empty: a table, which has a layout
   std::optional<TextEncoding> encoding;  ///< absent: found from the bytes of each file
-  TableLayout layout;
-  std::vector<MappedColumn> columns;
+  TableLayout layout{};
+  std::vector<MappedColumn> columns{};
   std::string file{};  ///< it was read from, for messages; empty: none
 };
 

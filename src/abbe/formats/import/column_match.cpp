@@ -23,9 +23,10 @@ bool holds_numbers(const ColumnFacts& file) {
   return numbers > 0 && numbers >= file.texts;
 }
 
-bool holds_directions(const ColumnFacts& file) {
+bool holds_directions(ImportColumn::Holds holds, const ColumnFacts& file) {
   return !file.more_words && !file.words.empty() &&
-         std::all_of(file.words.begin(), file.words.end(), [](const auto& w) { return direction_of_word(w) != 0; });
+         std::all_of(file.words.begin(), file.words.end(),
+                     [holds](const auto& word) { return direction_of_word(holds, word) != 0; });
 }
 
 /// Whether the rows and the unit of a file's column can be what is wanted.
@@ -38,7 +39,8 @@ bool can_be(const ImportColumn& wanted, const ColumnFacts& file) {
     case ImportColumn::Holds::label:
       return file.unit.empty();
     case ImportColumn::Holds::direction:
-      return holds_directions(file);
+    case ImportColumn::Holds::rotation:
+      return holds_directions(wanted.holds, file);
   }
   if (!holds_numbers(file)) return false;
   if (wanted.quantity == Quantity::dimensionless) return file.unit.empty();
@@ -134,6 +136,21 @@ void follow_target(const std::vector<ImportColumn>& wanted, const std::vector<Co
   }
 }
 
+/// A ball bar has angles with radii or deviations, a grid encoder two coordinates. A radius says more than a deviation.
+void find_missing_of_circle(GroupCheck& groups, ColumnMatch& match) {
+  const bool is_ball_bar = groups.has("angle") && (groups.has("radius") || groups.has("deviation"));
+  int coordinates = 0;
+  for (const char* const letter : {"X", "Y", "Z"}) coordinates += groups.has(letter) ? 1 : 0;
+  if (is_ball_bar) {
+    for (const char* const letter : {"X", "Y", "Z"}) groups.drop_base(letter);
+    if (groups.has("radius")) groups.drop_base("deviation");
+  } else if (coordinates == 2) {
+    for (const char* const base : {"angle", "radius", "deviation"}) groups.drop_base(base);
+  } else {
+    match.missing.emplace_back(groups.has("angle") ? "deviation" : "angle");
+  }
+}
+
 void find_missing(ImportKind kind, const std::vector<ImportColumn>& wanted, ColumnMatch& match) {
   GroupCheck groups(wanted, match);
   groups.drop_parts();
@@ -150,6 +167,7 @@ void find_missing(ImportKind kind, const std::vector<ImportColumn>& wanted, Colu
     if (!groups.has("target")) match.missing.emplace_back("target");
     if (!groups.has("deviation") && !groups.has("actual")) match.missing.emplace_back("deviation");
   }
+  if (kind == ImportKind::circular) find_missing_of_circle(groups, match);
 }
 
 ColumnMatch empty_match(std::size_t count) {
@@ -160,9 +178,20 @@ ColumnMatch empty_match(std::size_t count) {
           {}};
 }
 
+int rotation_of_word(const std::string& small) {
+  constexpr std::array<std::string_view, 10> kAnticlockwise = {
+      "ccw", "counterclockwise",   "counter-clockwise",  "anticlockwise", "anti-clockwise", "acw", "g3",
+      "g03", "gegenuhrzeigersinn", "gegen uhrzeigersinn"};
+  constexpr std::array<std::string_view, 6> kClockwise = {"cw",  "clockwise",     "g2",
+                                                          "g02", "uhrzeigersinn", "im uhrzeigersinn"};
+  if (std::find(kAnticlockwise.begin(), kAnticlockwise.end(), small) != kAnticlockwise.end()) return 1;
+  return std::find(kClockwise.begin(), kClockwise.end(), small) != kClockwise.end() ? -1 : 0;
+}
+
 }  // namespace
 
-int direction_of_word(const std::string& word) {
+int direction_of_word(ImportColumn::Holds holds, const std::string& word) {
+  if (holds == ImportColumn::Holds::rotation) return rotation_of_word(small_letters(word));
   constexpr std::array<std::string_view, 16> kPositive = {"+",   "positive", "pos",     "forward", "forwards", "fwd",
                                                           "vor", "vorwärts", "hin",     "up",      "auf",      "1",
                                                           "+1",  "↑",        "positiv", "aufwärts"};

@@ -42,7 +42,7 @@ std::optional<WrongUnit> wrong_unit(const ImportColumn& wanted, const std::vecto
 /// Whether a column is one of those that are taken by their order.
 bool is_taken_by_order(const ImportColumn& column);
 
-/// What a word of a column of directions means: +1, -1, or 0 for any other word.
-int direction_of_word(const std::string& word);
+/// What a word of a column of directions means: +1, -1, or 0 for any other word. Counter-clockwise is +1.
+int direction_of_word(ImportColumn::Holds holds, const std::string& word);
 
 }  // namespace abbe

@@ -47,7 +47,7 @@ class ColumnDecision {
       if (wanted_.base == "elevation") decide_vertical(unit);
       decide_mirror();
     }
-    if (wanted_.holds == ImportColumn::Holds::direction) decide_directions();
+    if (holds_direction(wanted_)) decide_directions();
     result_.column.name = import_header(wanted_, suffix);
     return std::move(result_);
   }
@@ -175,19 +175,20 @@ class ColumnDecision {
   }
 
   void decide_directions() {
+    const bool rotation = wanted_.holds == ImportColumn::Holds::rotation;
     bool usual = true;
     for (const std::string& word : file_.words) {
-      const bool positive = direction_of_word(word) > 0;
+      const bool positive = direction_of_word(wanted_.holds, word) > 0;
       (positive ? result_.column.positive : result_.column.negative).push_back(word);
-      usual = usual && (word == "+" || word == "-");
+      usual = usual && (rotation ? word == "cw" || word == "ccw" : word == "+" || word == "-");
     }
     if (usual) {
       result_.column.positive.clear();
       result_.column.negative.clear();
       return;
     }
-    because(fmt::format("+ is {}, - is {}", fmt::join(result_.column.positive, ", "),
-                        fmt::join(result_.column.negative, ", ")));
+    because(fmt::format("{} is {}, {} is {}", rotation ? "ccw" : "+", fmt::join(result_.column.positive, ", "),
+                        rotation ? "cw" : "-", fmt::join(result_.column.negative, ", ")));
   }
 
   const ColumnCase& asked_;

@@ -80,7 +80,7 @@ class SourceFinder {
       fail("name", fmt::format("numbers in {} are written in {}", unit->name, unit->suffix),
            import_header(*found, unit->suffix));
     }
-    const bool direction = found->holds == ImportColumn::Holds::direction;
+    const bool direction = holds_direction(*found);
     if (!direction && !(column.positive.empty() && column.negative.empty())) {
       fail(column.positive.empty() ? "negative" : "positive", "this column has no directions", "no such key");
     }

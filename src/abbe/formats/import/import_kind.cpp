@@ -14,7 +14,7 @@ namespace {
 using Words = std::vector<std::string>;
 using Holds = ImportColumn::Holds;
 
-constexpr std::array<std::string_view, 3> kImportKinds = {"points", "tracker", "positioning"};
+constexpr std::array<std::string_view, 4> kImportKinds = {"points", "tracker", "positioning", "circular"};
 
 /// "soll ?" for one letter or name of an axis.
 Words with_name(std::initializer_list<const char*> patterns, std::string_view name) {
@@ -162,22 +162,52 @@ std::vector<ImportColumn> tracker_columns(const Machine& machine) {
   return columns;
 }
 
+const Words kDeviationWords = {"deviation",
+                               "abweichung",
+                               "positionsabweichung",
+                               "positionierabweichung",
+                               "error",
+                               "position error",
+                               "positioning error",
+                               "fehler",
+                               "err",
+                               "dev",
+                               "difference",
+                               "differenz"};
+
+std::vector<ImportColumn> circular_columns_of_import() {
+  Words deviation = {"radial deviation", "radial error", "radiusabweichung", "radialabweichung"};
+  deviation.insert(deviation.end(), kDeviationWords.begin(), kDeviationWords.end());
+  std::vector<ImportColumn> columns = {
+      {"direction",
+       Quantity::dimensionless,
+       Holds::rotation,
+       true,
+       "",
+       {"direction", "dir", "richtung", "drehrichtung", "drehsinn", "rotation", "sense", "cw ccw"}},
+      {"angle",
+       Quantity::angle,
+       Holds::number,
+       false,
+       "",
+       {"angle", "winkel", "path angle", "bahnwinkel", "commanded angle", "sollwinkel", "position"}},
+      {"deviation", Quantity::length, Holds::number, false, "", std::move(deviation)},
+      {"radius",
+       Quantity::length,
+       Holds::number,
+       false,
+       "",
+       {"radius", "measured radius", "actual radius", "istradius", "bar length", "length", "länge", "laenge"}}};
+  for (const char* const letter : {"X", "Y", "Z"}) {
+    columns.push_back({letter, Quantity::length, Holds::number, false, "", coordinate_words(small_letters(letter))});
+  }
+  return columns;
+}
+
 std::vector<ImportColumn> positioning_columns() {
   const Words target = {"target",       "target position",  "soll",         "sollposition", "sollwert",
                         "nominal",      "nominal position", "commanded",    "command",      "programmed",
                         "zielposition", "zielpunkt",        "messposition", "position",     "pos"};
-  const Words deviation = {"deviation",
-                           "abweichung",
-                           "positionsabweichung",
-                           "positionierabweichung",
-                           "error",
-                           "position error",
-                           "positioning error",
-                           "fehler",
-                           "err",
-                           "dev",
-                           "difference",
-                           "differenz"};
   const Words actual = {"actual",   "actual position",   "ist",     "istposition", "istwert",
                         "measured", "measured position", "reading", "messwert",    "gemessen"};
   std::vector<ImportColumn> columns = {
@@ -198,7 +228,7 @@ std::vector<ImportColumn> positioning_columns() {
     columns.push_back({"target", quantity, Holds::number, false, "", target});
   }
   for (const Quantity quantity : {Quantity::length, Quantity::angle}) {
-    columns.push_back({"deviation", quantity, Holds::number, false, "", deviation});
+    columns.push_back({"deviation", quantity, Holds::number, false, "", kDeviationWords});
   }
   for (const Quantity quantity : {Quantity::length, Quantity::angle}) {
     columns.push_back({"actual", quantity, Holds::number, false, "", actual});
@@ -231,6 +261,8 @@ std::vector<ImportColumn> import_columns(ImportKind kind, const Machine& machine
       return point_columns();
     case ImportKind::tracker:
       return tracker_columns(machine);
+    case ImportKind::circular:
+      return circular_columns_of_import();
     case ImportKind::positioning:
       break;
   }

@@ -6,6 +6,7 @@
 
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/import/foreign_unit.h"
+#include "abbe/formats/import/instrument_format.h"
 #include "abbe/formats/text/toml_table.h"
 #include "abbe/formats/text/utf8.h"
 
@@ -71,6 +72,19 @@ MappedColumn read_mapped_column(TomlTable& table) {
   return column;
 }
 
+std::string layout_text(const TableLayout& layout) {
+  std::string text = fmt::format("\n[layout]\nseparator = \"{}\"\ndecimal = \"{}\"\n", separator_name(layout.separator),
+                                 decimal_name(layout.decimal));
+  if (layout.thousands != ThousandsMark::none) {
+    text += fmt::format("thousands = \"{}\"\n", thousands_name(layout.thousands));
+  }
+  if (!layout.comment.empty()) text += fmt::format("comment = {}\n", toml_string(layout.comment));
+  if (layout.header_line > 0) text += fmt::format("header_line = {}\n", layout.header_line);
+  if (layout.unit_line > 0) text += fmt::format("unit_line = {}\n", layout.unit_line);
+  text += fmt::format("first_line = {}\n", layout.first_line);
+  return text;
+}
+
 std::string words_line(std::string_view key, const std::vector<std::string>& words) {
   if (words.empty()) return "";
   std::string list;
@@ -96,14 +110,20 @@ ImportMapping parse_import_mapping(const std::string& text, const std::string& f
     mapping.encoding =
         encoding_named(known[root.word("encoding", std::vector<std::string_view>(known.begin(), known.end()))]);
   }
-  mapping.layout = read_table_layout(root.table("layout"));
+  if (root.has("format")) {
+    std::vector<std::string_view> known;
+    for (const InstrumentFormat& format : instrument_formats()) known.push_back(format.name);
+    mapping.format = known[root.word("format", known)];
+  } else {
+    mapping.layout = read_table_layout(root.table("layout"));
+  }
   std::vector<std::string> names;
   for (TomlTable& table : root.tables("column")) {
     MappedColumn column = read_mapped_column(table);
     if (std::find(names.begin(), names.end(), column.name) != names.end()) {
       table.fail("name", "this column is written twice", "each column once");
     }
-    if (!column.from.empty() && mapping.layout.header_line == 0) {
+    if (!column.from.empty() && mapping.format.empty() && mapping.layout.header_line == 0) {
       table.fail("from", "the layout has no header_line", "from_column, or the header_line of the layout");
     }
     names.push_back(column.name);
@@ -119,18 +139,13 @@ ImportMapping read_import_mapping(const std::filesystem::path& path) {
 }
 
 std::string import_mapping_text(const ImportMapping& mapping, const std::vector<std::vector<std::string>>& remarks) {
-  const TableLayout& layout = mapping.layout;
   std::string text = fmt::format("kind = \"{}\"\n", import_kind_name(mapping.kind));
   if (mapping.encoding) text += fmt::format("encoding = \"{}\"\n", encoding_name(*mapping.encoding));
-  text += fmt::format("\n[layout]\nseparator = \"{}\"\ndecimal = \"{}\"\n", separator_name(layout.separator),
-                      decimal_name(layout.decimal));
-  if (layout.thousands != ThousandsMark::none) {
-    text += fmt::format("thousands = \"{}\"\n", thousands_name(layout.thousands));
+  if (!mapping.format.empty()) {
+    text += fmt::format("format = \"{}\"\n", mapping.format);
+  } else {
+    text += layout_text(mapping.layout);
   }
-  if (!layout.comment.empty()) text += fmt::format("comment = {}\n", toml_string(layout.comment));
-  if (layout.header_line > 0) text += fmt::format("header_line = {}\n", layout.header_line);
-  if (layout.unit_line > 0) text += fmt::format("unit_line = {}\n", layout.unit_line);
-  text += fmt::format("first_line = {}\n", layout.first_line);
   for (std::size_t i = 0; i < mapping.columns.size(); ++i) {
     const MappedColumn& column = mapping.columns[i];
     text += '\n';

@@ -49,15 +49,20 @@ bool has_word(const std::vector<std::string>& words, std::string_view field) {
 
 std::string append_direction(std::string_view field, const ColumnSource& column, std::string& out,
                              std::string& expected) {
+  const bool rotation = column.holds == ImportColumn::Holds::rotation;
+  const std::string_view plus = rotation ? "ccw" : "+", minus = rotation ? "cw" : "-";
   const bool usual = column.positive.empty() && column.negative.empty();
-  const bool positive = usual ? field == "+" || field == "positive" : has_word(column.positive, field);
-  if (!positive && !(usual ? field == "-" || field == "negative" : has_word(column.negative, field))) {
-    expected =
-        usual ? "+ or -"
-              : fmt::format("{} for +, {} for -", fmt::join(column.positive, ", "), fmt::join(column.negative, ", "));
+  const auto is_usual = [&](std::string_view own, std::string_view word) {
+    return field == own || (!rotation && field == word);
+  };
+  const bool positive = usual ? is_usual(plus, "positive") : has_word(column.positive, field);
+  if (!positive && !(usual ? is_usual(minus, "negative") : has_word(column.negative, field))) {
+    expected = usual ? fmt::format("{} or {}", plus, minus)
+                     : fmt::format("{} for {}, {} for {}", fmt::join(column.positive, ", "), plus,
+                                   fmt::join(column.negative, ", "), minus);
     return fmt::format("'{}' is not a direction", shown_field(field));
   }
-  out += positive ? '+' : '-';
+  out += positive ? plus : minus;
   return "";
 }
 
@@ -67,6 +72,7 @@ std::string append_imported(std::string_view field, const ColumnSource& column, 
                             std::string& buffer, std::string& out, std::string& expected) {
   switch (column.holds) {
     case ImportColumn::Holds::direction:
+    case ImportColumn::Holds::rotation:
       return append_direction(field, column, out, expected);
     case ImportColumn::Holds::name:
       if (field.empty()) {

@@ -69,15 +69,17 @@ class Proposer {
   KindMatch only_complete() const {
     if (machine_ != nullptr) return match(ImportKind::tracker);
     std::vector<KindMatch> complete;
-    for (const ImportKind kind : {ImportKind::points, ImportKind::positioning}) {
+    for (const ImportKind kind : {ImportKind::points, ImportKind::positioning, ImportKind::circular}) {
       KindMatch one = match(kind);
       if (has_header() && one.match.is_complete()) complete.push_back(std::move(one));
     }
     if (complete.size() == 1) return std::move(complete.front());
     throw InputError({.file = file_, .line = found_.layout.header_line},
-                     complete.empty() ? "the columns do not tell what the table is: " + header_words()
-                                      : "the table has the columns of points and of a positioning test",
-                     "--as points, --as positioning, or --as tracker with --machine");
+                     complete.empty()
+                         ? "the columns do not tell what the table is: " + header_words()
+                         : fmt::format("the table has the columns of {} and of {}", import_kind_name(complete[0].kind),
+                                       import_kind_name(complete[1].kind)),
+                     "--as points, --as positioning, --as circular, or --as tracker with --machine");
   }
 
   std::string header_words() const {
@@ -126,7 +128,7 @@ class Proposer {
       const auto shown = static_cast<std::ptrdiff_t>(std::min<std::size_t>(wanted->words.size(), 4));
       expected =
           fmt::format("a name such as {}", fmt::join(wanted->words.begin(), wanted->words.begin() + shown, ", "));
-    } else if (chosen.kind != ImportKind::positioning) {
+    } else if (chosen.kind == ImportKind::points || chosen.kind == ImportKind::tracker) {
       expected = fmt::format("columns of numbers for {}, in their order", fmt::join(needed_numbers(chosen), ", "));
     }
     throw InputError({.file = file_, .line = found_.layout.header_line, .field = base},

@@ -147,7 +147,7 @@ TEST(ProposedColumns, TellTheKindAndWhatIsNotRead) {
   };
   EXPECT_THAT(message("a,b\n1.5,2\n"),
               HasSubstr("t.txt:1: the columns do not tell what the table is: 'a', 'b'; expected "
-                        "--as points, --as positioning, or --as tracker with --machine"));
+                        "--as points, --as positioning, --as circular, or --as tracker with --machine"));
   EXPECT_THAT(message("1.5,2\n"), HasSubstr("2 columns without names"));
 }
 

@@ -1,0 +1,31 @@
+#pragma once
+
+// Internal to formats: the readers of instrument_formats(), each in a file of its own. Where the forms are described:
+// docs/import.md.
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "abbe/formats/import/instrument_format.h"
+
+namespace abbe {
+
+std::optional<Recognition> recognise_renishaw_laser(std::string_view text);
+InstrumentTable read_renishaw_laser(std::string_view text, const std::string& file, const ImportHints& hints);
+
+std::optional<Recognition> recognise_renishaw_ballbar(std::string_view text);
+InstrumentTable read_renishaw_ballbar(std::string_view text, const std::string& file, const ImportHints& hints);
+
+std::optional<Recognition> recognise_linuxcnc_probe(std::string_view text);
+InstrumentTable read_linuxcnc_probe(std::string_view text, const std::string& file, const ImportHints& hints);
+
+std::optional<Recognition> recognise_qif_results(std::string_view text);
+InstrumentTable read_qif_results(std::string_view text, const std::string& file, const ImportHints& hints);
+
+std::optional<Recognition> recognise_mtconnect_streams(std::string_view text);
+InstrumentTable read_mtconnect_streams(std::string_view text, const std::string& file, const ImportHints& hints);
+
+std::optional<Recognition> recognise_dmis_output(std::string_view text);
+InstrumentTable read_dmis_output(std::string_view text, const std::string& file, const ImportHints& hints);
+
+}  // namespace abbe
