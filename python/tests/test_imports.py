@@ -29,6 +29,12 @@ TABLES = {
                            {"machine": machine("three-axis-mill"), "azimuth": "clockwise", "vertical": "zenith",
                             "separator": "semicolon", "decimal": "comma", "angle_unit": "gon", "length_unit": "mm",
                             "encoding": "windows-1252"}),
+    "laser": (IMPORT / "laser.rtl", ["--length-unit", "mm"], {"length_unit": "mm"}),
+    "probe log": (IMPORT / "probe-log.txt", ["--format", "linuxcnc-probe", "--length-unit", "mm"],
+                  {"format": "linuxcnc-probe", "length_unit": "mm"}),
+    "qif": (IMPORT / "results.qif", [], {}),
+    "mtconnect": (IMPORT / "streams.xml", [], {}),
+    "dmis": (IMPORT / "results.dmo", ["--as", "points"], {"kind": "points"}),
     "tracker by a mapping": (STATION, ["--machine", MILL, "--mapping", IMPORT / "total-station.import.toml"],
                              {"machine": MILL, "mapping": IMPORT / "total-station.import.toml"}),
 }
@@ -93,6 +99,21 @@ def test_values_are_evaluated_as_the_file_is(tmp_path):
     from_file = abbe.evaluate_positioning(tmp_path / "positioning.csv", file="x")
     for values in (result.values(), result.to_dataframe()):
         assert abbe.evaluate_positioning(values, file="x").json_text() == from_file.json_text()
+
+
+def test_files_of_instruments_say_what_they_are():
+    laser = abbe.import_table(IMPORT / "laser.rtl", length_unit="mm")
+    assert (laser.format, laser.kind, laser.certain) == ("renishaw-laser", "positioning", True)
+    assert "HEADER::" in laser.format_reason and ("Axis", "X") in laser.facts
+    assert any("Flags" in part for part in laser.not_read)
+    table = abbe.import_table(POSITIONING)
+    assert (table.format, table.format_reason, table.facts) == ("table", "", [])
+    # The same readings.
+    figures = [abbe.evaluate_positioning(one.values(), file="x").to_dict()["figures"] for one in (laser, table)]
+    assert figures[0] == figures[1]
+    assert not abbe.import_table(IMPORT / "laser.rtl").certain
+    with pytest.raises(abbe.InputError, match="format"):
+        abbe.import_table(IMPORT / "laser.rtl", format="laser")
 
 
 def test_inches_become_millimetres():

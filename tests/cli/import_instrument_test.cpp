@@ -128,6 +128,11 @@ TEST_F(ImportOfInstruments, RefusesOptionsAndKindsThatAreOfNoUse) {
   refused({"--format", "laser"}, "--format");
 }
 
+TEST_F(ImportOfInstruments, OfALeftHandedFrameAreReversed) {
+  imported(kSamples + "results.dmo", {"--mirrored", "z", "-o", "mirrored.csv"});
+  EXPECT_THAT(folder.read("mirrored.csv"), HasSubstr("\nP2,-10.0002,17.3206,-5.0013,0,0,-1\n"));
+}
+
 TEST_F(ImportOfInstruments, SpeaksWithTheLineOfTheFile) {
   std::string text = folder.read(kSamples + "results.dmo");
   const std::string vector = "20.0003,0.0001,5.0021,0,0,1";

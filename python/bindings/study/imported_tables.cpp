@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/variant.h>
@@ -120,10 +121,13 @@ ForeignText text_of(const TableArgument& table, const std::string& file, std::op
   return computed([&] { return decode_foreign_text(bytes, file, {.encoding = encoding}); });
 }
 
-ImportedTable imported(const TableArgument& table, const std::optional<std::string>& kind,
-                       const std::optional<ImportMachine>& machine, const std::optional<MappingArgument>& mapping,
-                       const HintArguments& given, const std::string& file) {
+ImportedTable imported(const TableArgument& table, const std::optional<std::string>& format,
+                       const std::optional<std::string>& kind, const std::optional<ImportMachine>& machine,
+                       const std::optional<MappingArgument>& mapping, const HintArguments& given,
+                       const std::string& file) {
   ImportRequest request;
+  indexed_word<int>("format", format, import_format_names());
+  request.format = format.value_or("");
   request.kind = indexed_word<ImportKind>("kind", kind, import_kind_names());
   request.hints = hints_of(given);
   request.accept_doubts = given.accept_uncertain;
@@ -190,10 +194,11 @@ void bind_columns(nb::module_& module) {
 
 void bind_table(nb::module_& module) {
   using Table = ImportedTable;
-  nb::class_<Table> bound(module, "ImportedTable",
-                          "A table of another program as Abbe reads it. Made by import_table().\n\n"
-                          "Look at certain first. What is uncertain and was not accepted is neither written nor given\n"
-                          "as values: readings in the wrong unit look like readings.");
+  nb::class_<Table> bound(
+      module, "ImportedTable",
+      "A table of another program, or a file of an instrument, as Abbe reads it. Made by import_table().\n\n"
+      "Look at certain first. What is uncertain and was not accepted is neither written nor given\n"
+      "as values: readings in the wrong unit look like readings.");
   add_json(bound, &imported_table_json);
   add_tables(bound, "imported_frame", nullptr);
   bound.def_prop_ro("certain", &Table::is_certain, "Whether nothing is in doubt that was not accepted.")
@@ -203,8 +208,18 @@ void bind_table(nb::module_& module) {
       .def_ro("file", &Table::file, "Its name for texts and messages.")
       .def_prop_ro(
           "kind", [](const Table& t) { return std::string(import_kind_name(t.mapping.kind)); },
-          "'points', 'tracker' or 'positioning'.")
+          "'points', 'tracker', 'positioning' or 'circular'.")
       .def_ro("kind_reason", &Table::kind_reason, "Why.")
+      .def_ro("format", &Table::format, "'table', or the form of a file of an instrument: docs/import.md.")
+      .def_ro("format_reason", &Table::format_reason, "How such a form is known; '' for a table.")
+      .def_prop_ro(
+          "facts",
+          [](const Table& t) {
+            std::vector<std::pair<std::string, std::string>> facts;
+            for (const InstrumentFact& fact : t.facts) facts.emplace_back(fact.name, fact.value);
+            return facts;
+          },
+          "What a file of an instrument says beside its readings: names and values, as it has them.")
       .def_prop_ro(
           "encoding", [](const Table& t) { return std::string(encoding_name(t.encoding)); },
           "'utf-8', 'utf-16le', 'utf-16be' or 'windows-1252'.")
@@ -267,25 +282,28 @@ void bind_imported_tables(nb::module_& module) {
   bind_table(module);
   module.def(
       "import_table",
-      [](const TableArgument& table, const std::optional<std::string>& kind,
+      [](const TableArgument& table, const std::optional<std::string>& format, const std::optional<std::string>& kind,
          const std::optional<ImportMachine>& machine, const std::optional<MappingArgument>& mapping,
          std::optional<std::string> encoding, std::optional<std::string> separator, std::optional<std::string> decimal,
          std::optional<std::string> length_unit, std::optional<std::string> angle_unit,
          std::optional<std::string> azimuth, std::optional<std::string> vertical, std::optional<std::string> mirrored,
          bool accept_uncertain, const std::string& file) {
         return imported(
-            table, kind, machine, mapping,
+            table, format, kind, machine, mapping,
             {std::move(encoding), std::move(separator), std::move(decimal), std::move(length_unit),
              std::move(angle_unit), std::move(azimuth), std::move(vertical), std::move(mirrored), accept_uncertain},
             file);
       },
-      nb::arg("table"), nb::kw_only(), nb::arg("kind") = nb::none(), nb::arg("machine") = nb::none(),
-      nb::arg("mapping") = nb::none(), nb::arg("encoding") = nb::none(), nb::arg("separator") = nb::none(),
-      nb::arg("decimal") = nb::none(), nb::arg("length_unit") = nb::none(), nb::arg("angle_unit") = nb::none(),
-      nb::arg("azimuth") = nb::none(), nb::arg("vertical") = nb::none(), nb::arg("mirrored") = nb::none(),
-      nb::arg("accept_uncertain") = false, nb::arg("file") = "",
-      "A table of readings that another program wrote, as Abbe reads it: `abbe import`.\n\n"
-      "table: a file, or its contents as bytes. kind: 'points', 'tracker', 'positioning'; default: by the columns.\n"
+      nb::arg("table"), nb::kw_only(), nb::arg("format") = nb::none(), nb::arg("kind") = nb::none(),
+      nb::arg("machine") = nb::none(), nb::arg("mapping") = nb::none(), nb::arg("encoding") = nb::none(),
+      nb::arg("separator") = nb::none(), nb::arg("decimal") = nb::none(), nb::arg("length_unit") = nb::none(),
+      nb::arg("angle_unit") = nb::none(), nb::arg("azimuth") = nb::none(), nb::arg("vertical") = nb::none(),
+      nb::arg("mirrored") = nb::none(), nb::arg("accept_uncertain") = false, nb::arg("file") = "",
+      "A table of readings that another program wrote, or a file of an instrument, as Abbe reads it: `abbe import`.\n\n"
+      "table: a file, or its contents as bytes. format: 'table', 'renishaw-laser', 'linuxcnc-probe', 'qif',\n"
+      "'mtconnect', 'dmis'; default: by the contents. kind: 'points', 'tracker', 'positioning', 'circular'; default: "
+      "by\n"
+      "the columns.\n"
       "machine: a Machine or its file, whose commands the table of a tracker has. mapping: a mapping file, its "
       "contents\n"
       "as bytes, or an ImportedTable; then nothing is proposed, and nothing is in doubt. encoding: 'utf-8', "
