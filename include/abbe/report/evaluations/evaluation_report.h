@@ -51,6 +51,7 @@
 
 #include "abbe/formats/text/unit.h"
 #include "abbe/report/drawings/svg_drawing.h"
+#include "abbe/verify/evaluations/conformity.h"
 
 namespace abbe {
 
@@ -68,7 +69,9 @@ struct EvaluationFigure {
 
   /// The magnitude is larger than the tolerance; a figure that is not known does not satisfy any.
   bool exceeds_tolerance() const { return tolerance && (!value || std::abs(*value) > *tolerance); }
-  /// Within the uncertainty of its tolerance: neither conformity nor nonconformity is proven (ISO 14253-1).
+  /// What the value proves by ISO 14253-1; not judged without a tolerance, a value or an uncertainty.
+  Conformity conformity() const;
+  /// Too close to its tolerance for its uncertainty: neither conformity nor nonconformity is proven.
   bool is_undecided() const;
   /// "within" or "exceeded", with ", not proven" if undecided; "cannot be judged" without a value; empty without a
   /// tolerance.

@@ -24,8 +24,11 @@ std::string EvaluationFigure::verdict() const {
   return is_undecided() ? "within, not proven" : "within";
 }
 
-bool EvaluationFigure::is_undecided() const {
-  return tolerance && value && uncertainty && std::abs(std::abs(*value) - *tolerance) < *uncertainty;
+bool EvaluationFigure::is_undecided() const { return conformity() == Conformity::not_proven; }
+
+Conformity EvaluationFigure::conformity() const {
+  if (!tolerance || !value || !uncertainty) return Conformity::not_judged;
+  return abbe::conformity(*value, 0.5 * *uncertainty, *tolerance);
 }
 
 bool EvaluationReport::exceeds_tolerance() const {
