@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "abbe/errors/error_set.h"
+#include "abbe/formats/study/report_facts.h"
 #include "abbe/formats/study/study_planning.h"
 #include "abbe/formats/text/csv_reader.h"
 #include "abbe/identify/robust_loss.h"
@@ -148,7 +149,8 @@ struct MapPlan {
 
 struct ReportOptions {
   bool page = true;
-  std::string title;  ///< empty: the study's name
+  std::string title;                   ///< empty: the study's name
+  std::optional<ReportFacts> facts{};  ///< of the customer report; absent: none is wanted
 };
 
 /// A whole job: what is given, what is measured or simulated, what is identified and what is reported. Plain data.

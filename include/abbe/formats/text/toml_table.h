@@ -78,6 +78,8 @@ class TomlTable {
   /// Refuses keys that nobody asked for, with the nearest spelling or the accepted units.
   void finish();
 
+  /// Where a key stands, for messages about it that come later.
+  InputError::Place place(std::string_view key) const;
   /// Throws InputError at a key (any key of this table, or empty for the table itself).
   [[noreturn]] void fail(std::string_view key, const std::string& problem, const std::string& expected = "") const;
   /// As fail, for a quantity: finds the key as it was written with its unit.

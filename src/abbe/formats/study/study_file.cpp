@@ -104,6 +104,7 @@ ReportOptions read_report(TomlTable& table) {
   ReportOptions report;
   report.page = table.boolean_or("page", true);
   report.title = table.text_or("title", "");
+  report.facts = read_report_facts(table);
   table.finish();
   return report;
 }

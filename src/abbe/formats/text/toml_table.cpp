@@ -377,6 +377,10 @@ void TomlTable::finish() {
   }
 }
 
+InputError::Place TomlTable::place(std::string_view key) const {
+  return state_->document->place(state_->position(key), state_->name(key));
+}
+
 void TomlTable::fail(std::string_view key, const std::string& problem, const std::string& expected) const {
   state_->fail(key, problem, expected);
 }

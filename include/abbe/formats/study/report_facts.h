@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <compare>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "abbe/formats/text/input_error.h"
+
+namespace abbe {
+
+class TomlTable;
+
+/// Language of a customer report: its words, numbers and dates.
+enum class ReportLanguage { english, german, chinese, japanese };
+inline constexpr int kReportLanguageCount = 4;
+
+/// "en", "de", "zh", "ja".
+const char* language_code(ReportLanguage language);
+
+/// A day of the Gregorian calendar.
+struct ReportDate {
+  int year = 0, month = 0, day = 0;
+  auto operator<=>(const ReportDate&) const = default;
+};
+
+/// Of "2026-11-28" (ISO 8601). @returns nothing for what is no such day
+std::optional<ReportDate> parse_report_date(const std::string& text);
+
+/// An instrument with the certificate of its calibration; empty texts are not stated.
+struct ReportInstrument {
+  std::string name, serial_number, certificate;
+  std::optional<ReportDate> valid_until;
+};
+
+/// A tolerance as it was stated: "A_um", 10.
+struct ReportTolerance {
+  std::string name;  ///< figure and unit
+  double value = 0;  ///< in the unit that the name says, above zero
+  InputError::Place place;
+};
+
+/// What a customer report states beside its results. Empty texts and absent values were not stated, and the report says
+/// so: nothing is made up.
+struct ReportFacts {
+  ReportLanguage language = ReportLanguage::english;
+  std::string number;  ///< of the report
+  std::string customer, customer_address;
+  std::string maker, model, serial_number;  ///< of the machine
+  std::string place, operator_name;
+  std::optional<ReportDate> date;                          ///< of the measurement
+  std::optional<double> temperature;                       ///< mean, degC
+  std::optional<std::array<double, 2>> temperature_range;  ///< smallest and largest, degC
+  std::string standard;                                    ///< applied; empty: that of the evaluation
+  std::vector<std::string> remarks;
+  std::vector<ReportInstrument> instruments;
+  std::vector<ReportTolerance> tolerances;
+};
+
+/// Reads the facts of a table [report], if it states any. Its other keys stay for their reader, and finish() too.
+std::optional<ReportFacts> read_report_facts(TomlTable& table);
+
+/// Facts from a file of their own that has the table [report] and nothing else. @throws InputError
+ReportFacts read_report_facts(const std::filesystem::path& path);
+
+}  // namespace abbe
