@@ -1,10 +1,15 @@
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/text/input_error.h"
+#include "abbe/study/customer_study.h"
 #include "abbe/study/results.h"
 #include "abbe/study/run_study.h"
 #include "abbe/study/summary.h"
 #include "command.h"
+#include "customer_report_file.h"
 #include "exit_code.h"
 #include "options.h"
 #include "progress.h"
@@ -16,7 +21,7 @@ namespace abbe {
 void add_run_command(CommandLine& line) {
   struct Options {
     std::string study, output;
-    bool accept_uncovered = false, accept_misfit = false, all_values = false, json = false;
+    bool accept_uncovered = false, accept_misfit = false, all_values = false, json = false, pdf = false;
   };
   auto options = std::make_shared<Options>();
   Subcommand* command =
@@ -29,6 +34,8 @@ void add_run_command(CommandLine& line) {
   command->add_flag("--all-values", options->all_values,
                     "Print every identified value, outlier and direction that the readings do not determine");
   command->add_flag("--json", options->json, "Print the summary as JSON for programs");
+  command->add_flag("--pdf", options->pdf,
+                    "Write the customer report as PDF, too; [report] of the study states its facts");
   command->add_flag("--accept-misfit", options->accept_misfit,
                     "End with exit code 0 and usable errors although the result is not to be trusted");
   command->callback([&line, options] {
@@ -36,6 +43,10 @@ void add_run_command(CommandLine& line) {
       Study study = read_study(options->study);
       if (!options->output.empty()) study.output = options->output;
       check_results_folder(study.output);
+      if (options->pdf && !study.report.facts) {
+        throw InputError({.file = options->study, .field = "report"}, "states no facts of a customer report",
+                         "customer, machine, date and others, or no --pdf");
+      }
       StepProgress progress;
       const StudyResult result =
           run_study(study, {.accept_misfit = options->accept_misfit,
@@ -43,13 +54,21 @@ void add_run_command(CommandLine& line) {
                               progress.show(step_words(study, step), done, total);
                             }});
       progress.end();
-      const std::string summary = write_results(study, result);
+      PrintedPage printed;
+      std::optional<CustomerReport> customer;
+      if (study.report.facts) customer = study_customer_report(study, result);
+      if (options->pdf) printed = printed_customer_report(*customer);
+      const std::string summary = write_results(study, result, printed.pdf);
       if (options->json) {
         fmt::print("{}", summary);
       } else {
         fmt::print("{}", study_text(study, result, options->all_values ? nullptr : "--all-values, or summary.json"));
         fmt::print("\nresults in {}\n", study.output.string());
         if (study.report.page) fmt::print("report:    {}\n", (study.output / "report.html").string());
+        if (customer) {
+          const char* const name = printed.pdf.empty() ? "customer-report.html" : "customer-report.pdf";
+          fmt::print("customer:  {}\n", (study.output / name).string());
+        }
       }
       tell_distrust(study, result);
       int code = study_exit_code(study, result);
@@ -57,6 +76,8 @@ void add_run_command(CommandLine& line) {
         const int uncovered = tell_left_out(result.map->left_out(), options->accept_uncovered);
         if (code == kDone) code = uncovered;
       }
+      if (customer && tell_exceeded_tolerances(*customer) && code == kDone) code = kNegative;
+      require_printed(study.output / "customer-report.pdf", study.output / "customer-report.html", printed);
       return code;
     };
   });

@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "options.h"
@@ -14,9 +16,13 @@ void add_evaluate_diagonals(Subcommand& evaluate, CommandLine& line) {
       "  run             optional: number or name of the run",
       "deviation_um=error",
       "  abbe evaluate diagonals examples/evaluate/diagonals.csv --tolerance E_d_um=30 -o results/diagonals", *options);
+  add_customer_report_options(*command, *options);
   command->callback([&line, options] {
     line.run = [options] {
-      return run_evaluation(DiagonalsTest{read_diagonals(options->file, options->columns.mapping())}, *options);
+      const ColumnMapping columns = options->columns.mapping();
+      std::optional<TestToEvaluate> before;
+      if (!options->before.empty()) before = DiagonalsTest{read_diagonals(options->before, columns)};
+      return run_evaluation(DiagonalsTest{read_diagonals(options->file, columns)}, *options, before);
     };
   });
 }

@@ -4,10 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/files/file_name.h"
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/report/pages/evaluation_files.h"
 #include "abbe/report/words/evaluation_text.h"
+#include "abbe/study/evaluations/customer_evaluation.h"
+#include "customer_report_file.h"
 #include "exit_code.h"
 #include "options.h"
 
@@ -46,9 +49,43 @@ int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& o
   return report.exceeds_tolerance() ? kNegative : kDone;
 }
 
-int run_evaluation(TestToEvaluate test, const EvaluationOptions& options) {
-  const Evaluation result = evaluate_readings({options.file, std::move(test), options.tolerances});
+void add_customer_report_options(Subcommand& command, EvaluationOptions& options) {
+  command
+      .add_output_file("--customer-report", options.customer_report,
+                       "Customer report to write, 2 to 4 sheets: *.pdf (printed by Chromium) or *.html")
+      ->group("Customer report");
+  command
+      .add_input_file("--facts", options.facts,
+                      "Its facts: a TOML file with the table [report] (customer, machine, tolerances, language, ...)")
+      ->needs("--customer-report")
+      ->group("Customer report");
+  command.add_input_file("--before", options.before, "Readings before a correction, for figures before and after")
+      ->needs("--customer-report")
+      ->group("Customer report");
+}
+
+int run_evaluation(TestToEvaluate test, const EvaluationOptions& options, const std::optional<TestToEvaluate>& before) {
+  if (!options.customer_report.empty()) check_customer_report_name(options.customer_report);
+  ReportFacts facts;
+  if (!options.facts.empty()) facts = read_report_facts(options.facts);
+  const Evaluation result = evaluate_readings({options.file, std::move(test), options.tolerances, facts.tolerances});
+  PrintedPage printed;
+  if (!options.customer_report.empty()) {
+    std::optional<Evaluation> earlier;
+    std::vector<std::string> files = {file_name(options.file)};
+    if (before) {
+      earlier = evaluate_readings({options.before, *before, {}, {}});
+      files.insert(files.begin(), file_name(options.before));
+    }
+    const CustomerReport report = customer_evaluation(facts, result, earlier ? &*earlier : nullptr, files);
+    printed = write_customer_report(report, options.customer_report);
+  }
   const int code = finish_evaluation(result.report, options, result.files);
+  if (!options.customer_report.empty() && !options.json) {
+    fmt::print("\ncustomer report: {}\n",
+               printed.problem.empty() ? options.customer_report : html_beside(options.customer_report).string());
+  }
+  require_printed(options.customer_report, html_beside(options.customer_report), printed);
   return result.refused.empty() ? code : static_cast<int>(kNegative);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,9 @@ struct EvaluationOptions {
   ColumnOptions columns;                ///< of the file
   std::vector<std::string> tolerances;  ///< "A_um=10"
   bool json = false;
+  std::string customer_report;  ///< file to write; empty: none
+  std::string facts;            ///< of it; empty: none are stated
+  std::string before;           ///< readings before a correction; empty: none
 };
 
 /// `abbe evaluate KIND`: adds the subcommand with the options of every kind; its own options come behind it.
@@ -30,6 +34,9 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
                            const std::string& columns, const std::string& renamed, const std::string& example,
                            EvaluationOptions& options);
 
+/// Options of a customer report, of the kinds that have one.
+void add_customer_report_options(Subcommand& command, EvaluationOptions& options);
+
 /// Prints the report for people or programs and writes the results folder: evaluation.json, one SVG file per plot,
 /// report.html. @returns kNegative if a tolerance is exceeded or a figure with one could not be evaluated, else kDone
 /// @param files  more for the results folder: name, contents
@@ -37,7 +44,9 @@ int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& o
                       const std::vector<std::pair<std::string, std::string>>& files = {});
 
 /// Evaluates readings and finishes with them. @returns kNegative also if the evaluation is refused
-int run_evaluation(TestToEvaluate test, const EvaluationOptions& options);
+/// @param before  the same test with the readings before a correction, for the customer report
+int run_evaluation(TestToEvaluate test, const EvaluationOptions& options,
+                   const std::optional<TestToEvaluate>& before = std::nullopt);
 
 // One per kind; each leaves its work in line.run.
 void add_evaluate_positioning(Subcommand& evaluate, CommandLine& line);

@@ -1,4 +1,5 @@
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "command.h"
@@ -14,14 +15,21 @@ struct PositioningCommand {
   std::vector<double> contributions = std::vector<double>(positioning_contributions().size());
 };
 
-int run(const PositioningCommand& command) {
+/// The same test with the readings of a file.
+PositioningTest test_of(const PositioningCommand& command, const std::string& file) {
   PositioningTest test;
-  test.readings = read_positioning(command.options.file, command.options.columns.mapping());
+  test.readings = read_positioning(file, command.options.columns.mapping());
   for (std::size_t i = 0; i < command.contributions.size(); ++i) {
     const PositioningContribution& contribution = positioning_contributions()[i];
     (test.*contribution.axis).*contribution.value = command.contributions[i] * contribution.unit;
   }
-  return run_evaluation(std::move(test), command.options);
+  return test;
+}
+
+int run(const PositioningCommand& command) {
+  std::optional<TestToEvaluate> before;
+  if (!command.options.before.empty()) before = test_of(command, command.options.before);
+  return run_evaluation(test_of(command, command.options.file), command.options, before);
 }
 
 }  // namespace
@@ -38,8 +46,12 @@ void add_evaluate_positioning(Subcommand& evaluate, CommandLine& line) {
       "  abbe evaluate positioning examples/evaluate/linear.csv\n"
       "  abbe evaluate positioning examples/evaluate/rotary.csv --tolerance A_arcsec=20 -o results/c\n"
       "  abbe evaluate positioning examples/evaluate/linear.csv --instrument-um-per-m 0.6 --misalignment-mm 1 "
-      "--environment-um 1.2",
+      "--environment-um 1.2\n"
+      "  abbe evaluate positioning examples/customer_report/after.csv --before examples/customer_report/before.csv "
+      "--instrument-um-per-m 0.4 --environment-um 0.3 --facts examples/customer_report/facts.toml --customer-report "
+      "report.pdf",
       command->options);
+  add_customer_report_options(*app, command->options);
   for (std::size_t i = 0; i < command->contributions.size(); ++i) {
     const PositioningContribution& contribution = positioning_contributions()[i];
     app->add_option(contribution.option, command->contributions[i], contribution.words)

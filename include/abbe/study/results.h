@@ -11,9 +11,10 @@ namespace abbe {
 /// Writes everything a study has computed into its results folder, whole or not at all.
 ///
 /// machine.toml, errors.toml with errors.covariance.csv, summary.json, residuals.csv, readings (simulated studies),
-/// maps/, report.html.
+/// maps/, report.html, customer-report.html (studies that state its facts).
+/// @param customer_pdf  of print_page(), written as customer-report.pdf; empty: there is none
 /// @returns the text of summary.json
-std::string write_results(const Study& study, const StudyResult& result);
+std::string write_results(const Study& study, const StudyResult& result, const std::string& customer_pdf = "");
 
 /// Map as the files hold it.
 /// @param after, uncertainty  may be null

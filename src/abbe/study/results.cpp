@@ -14,6 +14,7 @@
 #include "abbe/formats/text/json_text.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/report.h"
+#include "abbe/study/customer_study.h"
 #include "abbe/study/report_data.h"
 #include "abbe/study/report_residuals.h"
 #include "abbe/study/summary.h"
@@ -104,7 +105,7 @@ std::string residuals_csv(const Study& study, const StudyResult& result) {
   return text;
 }
 
-std::string write_results(const Study& study, const StudyResult& result) {
+std::string write_results(const Study& study, const StudyResult& result, const std::string& customer_pdf) {
   const nlohmann::ordered_json summary = study_summary(study, result);
   std::string summary_text = json_text(summary);
   ResultsFolder folder(study.output);
@@ -135,6 +136,10 @@ std::string write_results(const Study& study, const StudyResult& result) {
   }
   if (study.report.page)
     folder.write("report.html", report_page(nlohmann::json(study_report_data(study, result, summary))));
+  if (study.report.facts) {
+    folder.write("customer-report.html", customer_page(study_customer_report(study, result)));
+  }
+  if (!customer_pdf.empty()) folder.write("customer-report.pdf", customer_pdf);
   folder.commit();
   return summary_text;
 }

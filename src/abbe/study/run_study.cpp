@@ -1,6 +1,7 @@
 #include "abbe/study/run_study.h"
 
 #include "abbe/study/advice.h"
+#include "abbe/study/customer_study.h"
 #include "abbe/study/study_steps.h"
 
 namespace abbe {
@@ -29,6 +30,7 @@ const char* step_words(const Study& study, StudyStep step) {
 }
 
 StudyResult run_study(const Study& study, const RunOptions& options) {
+  check_customer_report(study);
   StudyResult result;
   result.misfit_accepted = options.accept_misfit;
   const auto begin = [&](StudyStep step) {

@@ -38,6 +38,7 @@
 #include <variant>
 #include <vector>
 
+#include "abbe/formats/study/report_facts.h"
 #include "abbe/report/evaluations/evaluation_report.h"
 #include "abbe/study/evaluations/axis_tests.h"
 #include "abbe/study/evaluations/contour_tests.h"
@@ -55,7 +56,8 @@ using TestToEvaluate = std::variant<PositioningTest, DiagonalsTest, CircularTest
 struct EvaluationRequest {
   std::string file;  ///< of the readings: name for texts and messages
   TestToEvaluate test;
-  std::vector<std::string> tolerances;  ///< --tolerance: "A_um=10", as apply_tolerances() takes them
+  std::vector<std::string> tolerances;               ///< --tolerance: "A_um=10", as apply_tolerances() takes them
+  std::vector<ReportTolerance> report_tolerances{};  ///< those of a customer report, in addition
 };
 
 /// The numerical results of a test, from which its report is made; mm and rad.

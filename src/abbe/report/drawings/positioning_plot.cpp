@@ -6,8 +6,6 @@
 namespace abbe {
 namespace {
 
-const char* const kSides[] = {"positive approach", "negative approach"};
-
 /// From inside units to those drawn.
 struct Scale {
   double position = 1, deviation = 1e3;
@@ -23,7 +21,8 @@ std::vector<PlotPoint> means(const PositioningEvaluation& evaluation, std::size_
   return points;
 }
 
-void draw_side(XyPlot& plot, const PositioningEvaluation& evaluation, std::size_t side, const Scale& scale) {
+void draw_side(XyPlot& plot, const PositioningEvaluation& evaluation, std::size_t side, const Scale& scale,
+               const PositioningPlotWords& words) {
   const PlotColour colour = side == 0 ? PlotColour::first : PlotColour::second;
   if (evaluation.unidirectional_repeatability[side].is_evaluated()) {
     std::vector<double> x, low, high;
@@ -32,28 +31,40 @@ void draw_side(XyPlot& plot, const PositioningEvaluation& evaluation, std::size_
       low.push_back((target.mean[side] - 2 * target.deviation[side]) * scale.deviation);
       high.push_back((target.mean[side] + 2 * target.deviation[side]) * scale.deviation);
     }
-    plot.band(x, low, high, {colour, 0, false, 0.16}, "mean \xC2\xB1 2s");
+    plot.band(x, low, high, {colour, 0, false, 0.16}, words.band);
   }
   const std::vector<PlotPoint> points = means(evaluation, side, scale);
   if (points.empty()) return;
-  plot.line(points, {colour, 1.8}, std::string("mean, ") + kSides[side]);
+  plot.line(points, {colour, 1.8}, words.means[side]);
   plot.points(points, side == 0 ? Marker::up : Marker::down, {colour});
 }
 
 }  // namespace
 
+PositioningPlotWords english_plot_words(bool rotary) {
+  return {.position = rotary ? "target position in \xC2\xB0" : "target position in mm",
+          .deviation = rotary ? "deviation in arcsec" : "deviation in \xC2\xB5m",
+          .means = {"mean, positive approach", "mean, negative approach"},
+          .band = "mean \xC2\xB1 2s",
+          .bidirectional_mean = "bidirectional mean"};
+}
+
 SvgPicture positioning_plot(const PositioningEvaluation& evaluation, bool rotary, const std::string& title) {
+  return positioning_plot(evaluation, rotary, title, english_plot_words(rotary));
+}
+
+SvgPicture positioning_plot(const PositioningEvaluation& evaluation, bool rotary, const std::string& title,
+                            const PositioningPlotWords& words) {
   const Scale scale(rotary);
-  XyPlot plot(title, rotary ? "target position in \xC2\xB0" : "target position in mm",
-              rotary ? "deviation in arcsec" : "deviation in \xC2\xB5m");
+  XyPlot plot(title, words.position, words.deviation);
   if (rotary) plot.divide_x_in_degrees();
-  for (const std::size_t side : {0U, 1U}) draw_side(plot, evaluation, side, scale);
+  for (const std::size_t side : {0U, 1U}) draw_side(plot, evaluation, side, scale, words);
   if (evaluation.mean_bidirectional.figure.is_evaluated()) {
     std::vector<PlotPoint> points;
     for (const PositioningTarget& target : evaluation.targets) {
       points.push_back({target.position * scale.position, target.mean_bidirectional.value * scale.deviation});
     }
-    plot.line(points, {PlotColour::soft, 1.2, true}, "bidirectional mean");
+    plot.line(points, {PlotColour::soft, 1.2, true}, words.bidirectional_mean);
   }
   const auto at = [&](std::size_t target, double deviation) {
     return PlotPoint{evaluation.targets[target].position * scale.position, deviation * scale.deviation};

@@ -95,7 +95,15 @@ std::string xml_text(std::string_view text) {
   return out;
 }
 
-double text_width(std::string_view text, double size) { return 0.56 * size * static_cast<double>(characters_in(text)); }
+double text_width(std::string_view text, double size) {
+  // Letters of Chinese and Japanese (U+3000 to U+D7FF, U+F900 to U+FFFF) are as wide as they are high.
+  const auto is_wide = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return byte >= 0xE3 && byte <= 0xEF && byte != 0xEE;
+  };
+  const auto wide = static_cast<double>(std::count_if(text.begin(), text.end(), is_wide));
+  return size * (0.56 * (static_cast<double>(characters_in(text)) - wide) + wide);
+}
 
 std::vector<std::string> text_lines(std::string_view text, double width, double size) {
   std::vector<std::string> lines;

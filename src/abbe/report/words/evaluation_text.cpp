@@ -88,7 +88,7 @@ std::string evaluation_text(const EvaluationReport& report) {
                                 : figure.exceeds_tolerance() ? "EXCEEDS the tolerance"
                                                              : "within the tolerance";
       text += fmt::format("   {} {}", words, limit);
-      if (figure.is_undecided()) text += ", not proven: closer to it than the uncertainty";
+      if (figure.is_undecided()) text += ", not proven: closer to it than 1.65 u";
     }
     text += "\n";
   }
@@ -101,39 +101,51 @@ std::string evaluation_text(const EvaluationReport& report) {
   return text;
 }
 
+namespace {
+
+/// @param place  where the tolerance is stated
+void apply_tolerance(const std::string& text, const InputError::Place& place, EvaluationReport& report) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) {
+    throw InputError(place, "there is no '='", "FIGURE_unit=value, with one of " + joined_symbols(report));
+  }
+  const std::string name = text.substr(0, equals);
+  EvaluationFigure* found = nullptr;
+  const Unit* unit = nullptr;
+  for (EvaluationFigure& figure : report.figures) {
+    unit = unit_of_name(name, figure.symbol, figure.quantity);
+    if (unit == nullptr && name == figure.symbol) {
+      throw InputError(place, "the unit is missing", accepted_names(figure.symbol, figure.quantity));
+    }
+    if (unit == nullptr && name.starts_with(figure.symbol + "_") && without_unit(name) == figure.symbol) {
+      throw InputError(place,
+                       fmt::format("'{}' is not a unit of {}", name.substr(figure.symbol.size() + 1),
+                                   quantity_words(figure.quantity)),
+                       accepted_names(figure.symbol, figure.quantity));
+    }
+    if (unit == nullptr) continue;
+    found = &figure;
+    break;
+  }
+  if (found == nullptr) throw InputError(place, "there is no such figure", "one of " + joined_symbols(report));
+  double value = 0;
+  if (parse_quantity(std::string_view(text).substr(equals + 1), *unit, value) != NumberProblem::none || value <= 0) {
+    throw InputError(place, fmt::format("'{}' is not a number above zero", text.substr(equals + 1)),
+                     name + "=10, with a decimal point");
+  }
+  if (found->tolerance) throw InputError(place, "this figure has two tolerances", "one");
+  found->tolerance = value;
+}
+
+}  // namespace
+
 void apply_tolerances(const std::vector<std::string>& tolerances, EvaluationReport& report) {
-  for (const std::string& text : tolerances) {
-    const InputError::Place place{.field = "--tolerance " + text};
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos) {
-      throw InputError(place, "there is no '='", "FIGURE_unit=value, with one of " + joined_symbols(report));
-    }
-    const std::string name = text.substr(0, equals);
-    EvaluationFigure* found = nullptr;
-    const Unit* unit = nullptr;
-    for (EvaluationFigure& figure : report.figures) {
-      unit = unit_of_name(name, figure.symbol, figure.quantity);
-      if (unit == nullptr && name == figure.symbol) {
-        throw InputError(place, "the unit is missing", accepted_names(figure.symbol, figure.quantity));
-      }
-      if (unit == nullptr && name.starts_with(figure.symbol + "_") && without_unit(name) == figure.symbol) {
-        throw InputError(place,
-                         fmt::format("'{}' is not a unit of {}", name.substr(figure.symbol.size() + 1),
-                                     quantity_words(figure.quantity)),
-                         accepted_names(figure.symbol, figure.quantity));
-      }
-      if (unit == nullptr) continue;
-      found = &figure;
-      break;
-    }
-    if (found == nullptr) throw InputError(place, "there is no such figure", "one of " + joined_symbols(report));
-    double value = 0;
-    if (parse_quantity(std::string_view(text).substr(equals + 1), *unit, value) != NumberProblem::none || value <= 0) {
-      throw InputError(place, fmt::format("'{}' is not a number above zero", text.substr(equals + 1)),
-                       name + "=10, with a decimal point");
-    }
-    if (found->tolerance) throw InputError(place, "this figure has two tolerances", "one");
-    found->tolerance = value;
+  for (const std::string& text : tolerances) apply_tolerance(text, {.field = "--tolerance " + text}, report);
+}
+
+void apply_report_tolerances(const std::vector<ReportTolerance>& tolerances, EvaluationReport& report) {
+  for (const ReportTolerance& tolerance : tolerances) {
+    apply_tolerance(fmt::format("{}={}", tolerance.name, tolerance.value), tolerance.place, report);
   }
 }
 

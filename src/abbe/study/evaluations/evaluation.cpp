@@ -28,6 +28,7 @@ void require_readings(bool there_are, const std::string& file) {
 Evaluation evaluate_readings(const EvaluationRequest& request) {
   Evaluation result = std::visit([&](const auto& test) { return evaluated(test, request.file); }, request.test);
   apply_tolerances(request.tolerances, result.report);
+  apply_report_tolerances(request.report_tolerances, result.report);
   add_contour_limits(result.report);
   return result;
 }

@@ -1,0 +1,58 @@
+#include "customer_report_file.h"
+
+#include <fmt/format.h>
+
+#include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/text/input_error.h"
+#include "messages.h"
+
+namespace abbe {
+
+void check_customer_report_name(const std::string& name) {
+  const std::string extension = std::filesystem::path(name).extension().string();
+  if (extension == ".pdf" || extension == ".html") return;
+  throw InputError({.file = name, .field = "--customer-report"}, "is the name of neither a PDF nor a page",
+                   "a name that ends in .pdf or .html");
+}
+
+PrintedPage printed_customer_report(const CustomerReport& report) {
+  PrintSettings settings;
+  settings.language = language_code(report.facts.language);
+  if (const auto& date = report.facts.date) {
+    settings.date = fmt::format("{:04}{:02}{:02}", date->year, date->month, date->day);
+  }
+  return print_page(customer_page(report), settings);
+}
+
+PrintedPage write_customer_report(const CustomerReport& report, const std::string& name) {
+  if (std::filesystem::path(name).extension() == ".html") {
+    write_file_atomically(name, customer_page(report));
+    return {};
+  }
+  PrintedPage printed = printed_customer_report(report);
+  if (printed.problem.empty()) {
+    write_file_atomically(name, printed.pdf);
+  } else {
+    write_file_atomically(html_beside(name), customer_page(report));
+  }
+  return printed;
+}
+
+std::filesystem::path html_beside(const std::filesystem::path& pdf) {
+  return std::filesystem::path(pdf).replace_extension(".html");
+}
+
+void require_printed(const std::filesystem::path& pdf, const std::filesystem::path& html, const PrintedPage& printed) {
+  if (printed.problem.empty()) return;
+  throw InputError({.file = pdf.string()},
+                   fmt::format("not written, {}; {} is written instead", printed.problem, html.filename().string()));
+}
+
+bool tell_exceeded_tolerances(const CustomerReport& report) {
+  const std::string symbols = exceeded_tolerances(report);
+  if (symbols.empty()) return false;
+  tell("abbe: out of tolerance: {}\n", symbols);
+  return true;
+}
+
+}  // namespace abbe

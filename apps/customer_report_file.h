@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "abbe/formats/files/printed_page.h"
+#include "abbe/report/customer/customer_report.h"
+
+namespace abbe {
+
+/// @throws InputError for the name of a customer report that ends in neither .pdf nor .html
+void check_customer_report_name(const std::string& name);
+
+/// The report as PDF, stating the day of the measurement as its date.
+PrintedPage printed_customer_report(const CustomerReport& report);
+
+/// Writes a report by the ending of its name. Where no PDF can be printed, the page is written in its place, under
+/// html_beside(). @returns what was printed; without a problem for a page
+PrintedPage write_customer_report(const CustomerReport& report, const std::string& name);
+
+/// "report.html" of "report.pdf".
+std::filesystem::path html_beside(const std::filesystem::path& pdf);
+
+/// For the end of a command: everything else is done, and the page is there.
+/// @throws InputError if printing had a problem
+void require_printed(const std::filesystem::path& pdf, const std::filesystem::path& html, const PrintedPage& printed);
+
+/// Tells on standard error which figures exceed their tolerance. @returns whether there are any
+bool tell_exceeded_tolerances(const CustomerReport& report);
+
+}  // namespace abbe

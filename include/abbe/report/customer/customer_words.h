@@ -1,0 +1,124 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "abbe/formats/study/report_facts.h"
+
+namespace abbe {
+
+/// Texts of a customer report. Some have places "{}" for what they are about.
+enum class CustomerWord {
+  report,       ///< heading of every report
+  linear_axis,  ///< what was tested
+  rotary_axis,
+  diagonals,
+  geometry,
+  report_number,
+  customer,
+  machine,
+  serial_number,
+  place,
+  operator_name,
+  date,
+  temperature,
+  temperature_mean,   ///< {} degC
+  temperature_range,  ///< {} to {} degC
+  standard,
+  remarks,
+  not_stated,
+  instruments,
+  instrument,
+  certificate,
+  valid_until,
+  certificate_not_valid,  ///< {}: name of the instrument
+  verdict,                ///< heading
+  conformity_proven,      ///< {}: symbols of figures, in this and the next two
+  nonconformity_proven,
+  not_proven,
+  no_verdict,  ///< {}: reason
+  short_conformity_proven,
+  short_nonconformity_proven,
+  short_not_proven,
+  short_no_verdict,
+  without_tolerance,    ///< a reason, like those that follow
+  without_uncertainty,  ///< {}: symbols
+  without_value,        ///< {}: symbols
+  without_measurement,  ///< of a prediction
+  without_simulation,   ///< of a simulated machine
+  without_trust,        ///< of a result that must not be used
+  only_identified,      ///< {}: symbols
+  decision_rule,
+  figures,
+  symbol,
+  figure,
+  tolerance,
+  before,
+  after,
+  measured,
+  predicted_after,
+  uncertainty_note,
+  predicted_note,
+  range_note,
+  convention_note,
+  target_errors,  ///< caption of a table
+  axis_errors,    ///< {}: name of the axis
+  position,
+  target,
+  diagonal,
+  mean_positive,
+  mean_negative,
+  scatter_positive,
+  scatter_negative,
+  reversal,
+  mean_both,
+  deviation,
+  positive_approach,
+  negative_approach,
+  mean_with_scatter,
+  there,
+  back,
+  drawing_linear,  ///< errors along the linear axes
+  drawing_rotary,
+  must_not_be_used,
+  out_of_tolerance,
+  simulated,
+  notes,
+  notes_in_english,
+  signatures,
+  tested_by,
+  accepted_by,
+  place_and_date,
+  name,
+  signature,
+  produced_by,  ///< {}: name and version of the program
+  files,
+  positioning_motion,
+  straightness_motion,  ///< {}: direction
+  angular_motion,       ///< {}: direction
+  radial_motion,        ///< {}: direction
+  axial_motion,
+  tilt_motion,  ///< {}: direction
+  rotary_positioning_motion,
+  other_motion,
+  orientation,  ///< {}: axis, {}: direction
+  offset,       ///< {}: axis, {}: direction
+  reversal_value,
+  volumetric_mean,
+  volumetric_largest,
+  count_  ///< number of words
+};
+
+/// A text in a language; never empty.
+std::string_view customer_word(CustomerWord word, ReportLanguage language);
+
+/// The same with its places filled.
+std::string customer_text(CustomerWord word, ReportLanguage language, const std::string& first);
+std::string customer_text(CustomerWord word, ReportLanguage language, const std::string& first,
+                          const std::string& second);
+
+/// Name of a figure of ISO 230-2 or ISO 230-6 by its symbol ("A", "R+", "E_d"): as the national editions of the
+/// standard call it. Empty for another symbol.
+std::string_view positioning_figure_name(std::string_view symbol, ReportLanguage language);
+
+}  // namespace abbe

@@ -1,0 +1,166 @@
+#include "abbe/report/customer/customer_positioning.h"
+
+#include <algorithm>
+
+#include "abbe/geometry/angle_units.h"
+#include "abbe/report/customer/customer_words.h"
+#include "abbe/report/customer/local_numbers.h"
+#include "abbe/report/drawings/positioning_plot.h"
+
+namespace abbe {
+namespace {
+
+using Word = CustomerWord;
+
+constexpr const char* kNone = "–";
+
+/// Names and units of one report, in its language.
+struct Language {
+  ReportLanguage language;
+  bool rotary;
+
+  std::string word(Word word) const { return std::string(customer_word(word, language)); }
+  const char* position_unit() const { return rotary ? "°" : "mm"; }
+  const char* deviation_unit() const { return rotary ? "″" : "µm"; }
+  std::string position(double value) const { return local_short_number(value * (rotary ? 1 / kDegree : 1), language); }
+  std::string deviation(double value) const { return local_number(value * (rotary ? 1 / kArcsec : 1e3), 2, language); }
+  std::string with_unit(Word word, const char* unit) const { return this->word(word) + " / " + unit; }
+};
+
+/// The standard marks directions with arrows: "A↑" of "A+".
+std::string standard_symbol(std::string symbol) {
+  if (symbol.ends_with('+')) return symbol.substr(0, symbol.size() - 1) + "↑";
+  if (symbol.ends_with('-')) return symbol.substr(0, symbol.size() - 1) + "↓";
+  return symbol;
+}
+
+CustomerValue customer_value(const EvaluationFigure& figure) {
+  CustomerValue value;
+  if (!figure.value) return value;
+  value.value = figure_number(figure, *figure.value);
+  if (figure.uncertainty) value.expanded_uncertainty = figure_number(figure, *figure.uncertainty);
+  return value;
+}
+
+/// Figures of one or two states; those before are found by their symbols.
+void add_figures(const EvaluationReport& now, const EvaluationReport* before, const Language& in,
+                 CustomerReport& report) {
+  for (const EvaluationFigure& figure : now.figures) {
+    CustomerFigure shown;
+    shown.symbol = standard_symbol(figure.symbol);
+    shown.name = positioning_figure_name(figure.symbol, in.language);
+    if (shown.name.empty()) shown.name = figure.name;
+    shown.unit = in.deviation_unit();
+    shown.decimals = figure.decimals;
+    if (before != nullptr) {
+      const auto same = std::find_if(before->figures.begin(), before->figures.end(),
+                                     [&](const EvaluationFigure& other) { return other.symbol == figure.symbol; });
+      shown.states.push_back(same == before->figures.end() ? CustomerValue() : customer_value(*same));
+    }
+    shown.states.push_back(customer_value(figure));
+    if (figure.tolerance) shown.tolerance = figure_number(figure, *figure.tolerance);
+    report.figures.push_back(std::move(shown));
+  }
+}
+
+CustomerReport begun_report(const ReportFacts& facts, const EvaluationReport& now, const EvaluationReport* before,
+                            const Language& in, Word subject) {
+  CustomerReport report;
+  report.facts = facts;
+  report.subject = in.word(subject);
+  report.standard = now.standard;
+  if (before == nullptr) {
+    report.states = {{in.word(Word::measured), ""}};
+  } else {
+    report.states = {{in.word(Word::before), ""}, {in.word(Word::after), ""}};
+  }
+  add_figures(now, before, in, report);
+  const auto add_notes = [&](const EvaluationReport& evaluated, const char* of) {
+    for (const std::string& note : evaluated.notes) report.notes.push_back(of + note);
+    for (const EvaluationFigure& figure : evaluated.figures) {
+      if (!figure.value) report.notes.push_back(of + figure.symbol + ": " + figure.missing);
+    }
+  };
+  if (before != nullptr) add_notes(*before, "before: ");
+  add_notes(now, before != nullptr ? "after: " : "");
+  return report;
+}
+
+CustomerTable targets_table(const PositioningEvaluation& evaluation, const std::string& state, const Language& in) {
+  const char* const unit = in.deviation_unit();
+  CustomerTable table;
+  table.caption = in.word(Word::target_errors) + (state.empty() ? "" : " – " + state);
+  table.headers = {in.with_unit(Word::target, in.position_unit()),
+                   in.with_unit(Word::mean_positive, unit),
+                   in.with_unit(Word::scatter_positive, unit),
+                   in.with_unit(Word::mean_negative, unit),
+                   in.with_unit(Word::scatter_negative, unit),
+                   in.with_unit(Word::reversal, unit),
+                   in.with_unit(Word::mean_both, unit)};
+  for (const PositioningTarget& target : evaluation.targets) {
+    const auto mean = [&](std::size_t side) {
+      return target.runs[side] > 0 ? in.deviation(target.mean[side]) : std::string(kNone);
+    };
+    const auto scatter = [&](std::size_t side) {
+      return target.runs[side] > 1 ? in.deviation(target.deviation[side]) : std::string(kNone);
+    };
+    const auto figure = [&](const EvaluatedFigure& found) {
+      return found.is_evaluated() ? in.deviation(found.value) : std::string(kNone);
+    };
+    table.rows.push_back({in.position(target.position), mean(0), scatter(0), mean(1), scatter(1),
+                          figure(target.reversal), figure(target.mean_bidirectional)});
+  }
+  return table;
+}
+
+PositioningPlotWords plot_words(const Language& in) {
+  return {.position = in.with_unit(Word::target, in.position_unit()),
+          .deviation = in.with_unit(Word::deviation, in.deviation_unit()),
+          .means = {in.word(Word::positive_approach), in.word(Word::negative_approach)},
+          .band = in.word(Word::mean_with_scatter),
+          .bidirectional_mean = in.word(Word::mean_both)};
+}
+
+}  // namespace
+
+CustomerReport customer_positioning(const ReportFacts& facts, bool rotary, const CustomerPositioning& now,
+                                    const CustomerPositioning* before) {
+  const Language in{facts.language, rotary};
+  CustomerReport report = begun_report(facts, now.report, before != nullptr ? &before->report : nullptr, in,
+                                       rotary ? Word::rotary_axis : Word::linear_axis);
+  const auto add_state = [&](const PositioningEvaluation& evaluation, const std::string& state) {
+    report.drawings.push_back(
+        {in.word(Word::target_errors) + (state.empty() ? "" : " – " + state),
+         positioning_plot(evaluation, rotary, state.empty() ? report.subject : state, plot_words(in)).wide});
+    report.tables.push_back(targets_table(evaluation, state, in));
+  };
+  if (before != nullptr) add_state(before->evaluation, in.word(Word::before));
+  add_state(now.evaluation, before != nullptr ? in.word(Word::after) : "");
+  return report;
+}
+
+CustomerReport customer_diagonals(const ReportFacts& facts, const EvaluationReport& report,
+                                  const DiagonalsEvaluation& evaluation, const EvaluationReport* before) {
+  const Language in{facts.language, false};
+  CustomerReport shown = begun_report(facts, report, before, in, Word::diagonals);
+  CustomerTable table;
+  const char* const unit = in.deviation_unit();
+  table.caption = in.word(Word::target_errors) + (before != nullptr ? " – " + in.word(Word::after) : "");
+  table.headers = {in.word(Word::diagonal),
+                   in.with_unit(Word::target, "mm"),
+                   in.with_unit(Word::mean_positive, unit),
+                   in.with_unit(Word::mean_negative, unit),
+                   in.with_unit(Word::reversal, unit),
+                   in.with_unit(Word::mean_both, unit)};
+  for (const DiagonalEvaluation& diagonal : evaluation.diagonals) {
+    const CustomerTable one = targets_table(diagonal.positioning, "", in);
+    for (const std::vector<std::string>& row : one.rows) {
+      table.rows.push_back({diagonal.name, row[0], row[1], row[3], row[5], row[6]});
+    }
+  }
+  shown.tables.push_back(std::move(table));
+  shown.drawings.push_back({in.word(Word::target_errors), diagonals_plot(evaluation, shown.subject).wide});
+  return shown;
+}
+
+}  // namespace abbe

@@ -1,0 +1,217 @@
+// Customer reports of `abbe evaluate` and `abbe run`, as pages and printed by the browser that is installed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+#include "abbe/formats/files/printed_page.h"
+#include "cli/command_test.h"
+
+namespace abbe {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kCustomerExamples = ABBE_SOURCE_DIR "/examples/customer_report/";
+
+class CustomerReportCommand : public CommandTest {
+ protected:
+  /// Words of the evaluation before and after a correction. @param language  of the report
+  std::vector<std::string> evaluation(const std::string& language, const std::string& output) const {
+    std::string facts = text_of(kCustomerExamples + "facts.toml");
+    const std::string english = "language = \"en\"";
+    facts.replace(facts.find(english), english.size(), "language = \"" + language + "\"");
+    folder.write("facts.toml", facts);
+    return {"evaluate",
+            "positioning",
+            kCustomerExamples + "after.csv",
+            "--before",
+            kCustomerExamples + "before.csv",
+            "--instrument-um-per-m",
+            "0.4",
+            "--environment-um",
+            "0.3",
+            "--facts",
+            "facts.toml",
+            "--customer-report",
+            output};
+  }
+
+  static std::string text_of(const std::string& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  }
+};
+
+TEST_F(CustomerReportCommand, EvaluationsWriteAPageInTheLanguageOfItsFacts) {
+  const CommandResult result = abbe(evaluation("de", "report.html"));
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("customer report: report.html"));
+  const std::string page = folder.read("report.html");
+  for (const char* text : {"<html lang=\"de\">", "Example Tooling Ltd", "SM-0417", "28.11.2026", "K-2026-0815",
+                           "beidseitige Positioniergenauigkeit", "Die Nichtkonformität mit der Spezifikation ist",
+                           "Die Konformität mit der Spezifikation ist nachgewiesen: A, R, B.", "21,03 ± 0,54"}) {
+    EXPECT_THAT(page, HasSubstr(text));
+  }
+}
+
+TEST_F(CustomerReportCommand, ToleranceOfTheFactsDecideTheExitCode) {
+  folder.write("tight.toml", "[report]\ntolerances = { A_um = 2 }\n");
+  const std::vector<std::string> words = {"evaluate",   "positioning", kCustomerExamples + "after.csv",
+                                          "--facts",    "tight.toml",  "--customer-report",
+                                          "report.html"};
+  const CommandResult result = abbe(words);
+  EXPECT_EQ(result.exit_code, computation_says_no);
+  const std::string page = folder.read("report.html");
+  EXPECT_THAT(page, HasSubstr("Figures exceed their tolerance: A."));
+  EXPECT_THAT(page, HasSubstr("No verdict: the measurement uncertainty is not known (A)."));
+  EXPECT_EQ(abbe(words).exit_code, bad_input) << "the file exists";
+}
+
+TEST_F(CustomerReportCommand, WrongFactsFilesAndNamesAreRefusedBeforeAnythingIsWritten) {
+  folder.write("facts.toml", "[report]\nplace = \"a\"\n\ntolerances = { Q_um = 2 }\n");
+  const std::string readings = kCustomerExamples + "after.csv";
+  CommandResult result =
+      abbe({"evaluate", "positioning", readings, "--facts", "facts.toml", "--customer-report", "a.html"});
+  EXPECT_EQ(result.exit_code, bad_input);
+  EXPECT_THAT(result.err, HasSubstr("facts.toml:4:16: report.tolerances.Q_um: there is no such figure"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "a.html"));
+  result = abbe({"evaluate", "positioning", readings, "--customer-report", "a.txt"});
+  EXPECT_EQ(result.exit_code, bad_input);
+  EXPECT_THAT(result.err, HasSubstr("expected a name that ends in .pdf or .html"));
+  EXPECT_EQ(abbe({"evaluate", "positioning", readings, "--facts", "facts.toml"}).exit_code, bad_input)
+      << "without a report to write";
+  result = abbe({"evaluate", "positioning", readings, "--before", ABBE_SOURCE_DIR "/examples/evaluate/rotary.csv",
+                 "--customer-report", "a.html"});
+  EXPECT_EQ(result.exit_code, bad_input);
+  EXPECT_THAT(result.err, HasSubstr("--before: the readings are of another kind of axis"));
+}
+
+TEST_F(CustomerReportCommand, WithoutABrowserThePageIsWrittenAndTheExitCodeSaysSo) {
+  const CommandResult result = abbe(evaluation("en", "report.pdf"), {"PATH=/nowhere", "ABBE_BROWSER="});
+  EXPECT_EQ(result.exit_code, bad_input);
+  EXPECT_THAT(result.err, HasSubstr("report.pdf: not written, no browser that prints is installed: install chromium"));
+  EXPECT_THAT(result.err, HasSubstr("complete before that: report.html"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "report.pdf"));
+  EXPECT_THAT(folder.read("report.html"), HasSubstr("Example Tooling Ltd"));
+}
+
+TEST_F(CustomerReportCommand, StudiesWriteAPageAmongTheirResults) {
+  const CommandResult result = abbe({"run", kCustomerExamples + "mill.study.toml", "-o", "out"});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("customer:  out/customer-report.html"));
+  const std::string page = folder.read("out/customer-report.html");
+  EXPECT_THAT(page, HasSubstr("Neither conformity nor nonconformity is proven: V_max."));
+  EXPECT_THAT(page, HasSubstr("Errors of axis Z at positions"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/customer-report.pdf"));
+}
+
+TEST_F(CustomerReportCommand, StudiesWithoutABrowserKeepTheirOtherResults) {
+  const CommandResult result =
+      abbe({"run", kCustomerExamples + "mill.study.toml", "-o", "out", "--pdf"}, {"PATH=/nowhere", "ABBE_BROWSER="});
+  EXPECT_EQ(result.exit_code, bad_input);
+  EXPECT_THAT(result.err, HasSubstr("out/customer-report.pdf: not written"));
+  EXPECT_THAT(folder.read("out/customer-report.html"), HasSubstr("Example Tooling Ltd"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/errors.toml"));
+}
+
+TEST_F(CustomerReportCommand, AStudyOutOfToleranceEndsWithExitCodeOne) {
+  std::filesystem::copy(ABBE_SOURCE_DIR "/examples/machines", folder.path() / "machines");
+  std::filesystem::copy(kCustomerExamples, folder.path() / "study");
+  std::string study = folder.read("study/mill.study.toml");
+  const std::string wide = "EXX_um = 10";
+  study.replace(study.find(wide), wide.size(), "EXX_um = 1");
+  folder.write("study/mill.study.toml", study);
+  const CommandResult result = abbe({"run", "study/mill.study.toml", "-o", "out"});
+  EXPECT_EQ(result.exit_code, computation_says_no);
+  EXPECT_THAT(result.err, HasSubstr("out of tolerance: EXX"));
+  EXPECT_THAT(folder.read("out/customer-report.html"),
+              HasSubstr("Nonconformity with the specification is proven: EXX."));
+}
+
+TEST_F(CustomerReportCommand, AStudyWithoutFactsHasNoneToPrint) {
+  const CommandResult result =
+      abbe({"run", ABBE_SOURCE_DIR "/examples/three_axis/dials.study.toml", "-o", "out", "--pdf"});
+  EXPECT_EQ(result.exit_code, bad_input);
+  EXPECT_THAT(result.err, HasSubstr("states no facts of a customer report"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+/// Printed by the browser that is installed; skipped, visibly, without one and without fonts of the language.
+class PrintedCustomerReport : public CustomerReportCommand, public testing::WithParamInterface<const char*> {
+ protected:
+  void SetUp() override {
+    if (find_browser().empty()) GTEST_SKIP() << "no browser that prints is installed";
+  }
+
+  /// @returns whether it was printed; else the test is skipped for lack of fonts, or failed
+  bool printed(const CommandResult& result) {
+    if (result.exit_code == done) return true;
+    has_no_font_ = result.err.find("no font with the letters") != std::string::npos;
+    EXPECT_TRUE(has_no_font_) << result.err;
+    return false;
+  }
+
+  /// Checks the sheets, and the text where pdftotext is installed. @param words  that have to be in it
+  void expect_report(const std::string& name, const std::vector<std::string>& words) {
+    const std::string pdf = folder.read(name);
+    EXPECT_TRUE(pdf.starts_with("%PDF-"));
+    const std::size_t pages = pdf_page_count(pdf);
+    EXPECT_GE(pages, 2U);
+    EXPECT_LE(pages, 4U);
+    EXPECT_THAT(pdf, HasSubstr("/CreationDate (D:20261128000000"));
+    if (!std::filesystem::exists("/usr/bin/pdftotext")) return;
+    const CommandResult text = run_program("/usr/bin/pdftotext", {name, "-"}, folder.path());
+    ASSERT_EQ(text.exit_code, 0) << text.err;
+    for (const std::string& word : words) EXPECT_NE(text.out.find(word), std::string::npos) << word;
+    EXPECT_TRUE(std::regex_search(text.out, std::regex("1 ?/ ?" + std::to_string(pages)))) << "number of the sheet";
+  }
+
+  bool has_no_font_ = false;
+};
+
+std::string name_of_accuracy(const std::string& language) {
+  if (language == "de") return "beidseitige Positioniergenauigkeit";
+  if (language == "zh") return "双向定位精度";
+  if (language == "ja") return "両方向位置決めの正確さ";
+  return "bidirectional accuracy of positioning";
+}
+
+TEST_P(PrintedCustomerReport, OfAnEvaluationHasTwoToFourSheetsWithText) {
+  const std::string language = GetParam();
+  if (!printed(abbe(evaluation(language, "report.pdf")))) {
+    if (has_no_font_) GTEST_SKIP() << "no font for " << language;
+    return;
+  }
+  expect_report("report.pdf", {name_of_accuracy(language), "Example Tooling Ltd", "SM-0417", "K-2026-0815"});
+}
+
+TEST_P(PrintedCustomerReport, OfAStudyHasTwoToFourSheetsWithText) {
+  const std::string language = GetParam();
+  std::filesystem::copy(ABBE_SOURCE_DIR "/examples/machines", folder.path() / "machines");
+  std::filesystem::copy(kCustomerExamples, folder.path() / "study");
+  const std::string study = std::regex_replace(folder.read("study/mill.study.toml"), std::regex("language = \"en\""),
+                                               "language = \"" + language + "\"");
+  folder.write("study/mill.study.toml", study);
+  if (!printed(abbe({"run", "study/mill.study.toml", "-o", "out", "--pdf"}))) {
+    if (has_no_font_) GTEST_SKIP() << "no font for " << language;
+    return;
+  }
+  expect_report("out/customer-report.pdf", {"Example Tooling Ltd", "SM-0418", "EXX", "EC0Y", "V_max"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Languages, PrintedCustomerReport, testing::Values("en", "de", "zh", "ja"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+TEST_F(CustomerReportCommand, PrintedTwiceHasTheSameBytes) {
+  if (find_browser().empty()) GTEST_SKIP() << "no browser that prints is installed";
+  ASSERT_EQ(abbe(evaluation("en", "first.pdf")).exit_code, done);
+  ASSERT_EQ(abbe(evaluation("en", "second.pdf")).exit_code, done);
+  EXPECT_TRUE(folder.read("first.pdf") == folder.read("second.pdf"));
+}
+
+}  // namespace
+}  // namespace abbe
