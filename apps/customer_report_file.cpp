@@ -4,15 +4,16 @@
 
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/report/customer/calibration_certificate.h"
 #include "messages.h"
 
 namespace abbe {
 
 void check_customer_report_name(const std::string& name) {
   const std::string extension = std::filesystem::path(name).extension().string();
-  if (extension == ".pdf" || extension == ".html") return;
-  throw InputError({.file = name, .field = "--customer-report"}, "is the name of neither a PDF nor a page",
-                   "a name that ends in .pdf or .html");
+  if (extension == ".pdf" || extension == ".html" || extension == ".xml") return;
+  throw InputError({.file = name, .field = "--customer-report"}, "is the name of no PDF, no page and no certificate",
+                   "a name that ends in .pdf, .html, or .xml for a digital calibration certificate");
 }
 
 PrintedPage printed_customer_report(const CustomerReport& report) {
@@ -25,6 +26,15 @@ PrintedPage printed_customer_report(const CustomerReport& report) {
 }
 
 PrintedPage write_customer_report(const CustomerReport& report, const std::string& name) {
+  if (std::filesystem::path(name).extension() == ".xml") {
+    const std::vector<std::string> missing = missing_for_certificate(report.facts);
+    if (!missing.empty()) {
+      throw InputError({.file = name}, fmt::format("a certificate also needs {} in [report]", fmt::join(missing, ", ")),
+                       "docs/customer-report.md");
+    }
+    write_file_atomically(name, calibration_certificate(report));
+    return {};
+  }
   if (std::filesystem::path(name).extension() == ".html") {
     write_file_atomically(name, customer_page(report));
     return {};

@@ -8,14 +8,14 @@
 
 namespace abbe {
 
-/// @throws InputError for the name of a customer report that ends in neither .pdf nor .html
+/// @throws InputError for the name of a customer report that ends in none of .pdf, .html and .xml
 void check_customer_report_name(const std::string& name);
 
 /// The report as PDF, stating the day of the measurement as its date.
 PrintedPage printed_customer_report(const CustomerReport& report);
 
-/// Writes a report by the ending of its name. Where no PDF can be printed, the page is written in its place, under
-/// html_beside(). @returns what was printed; without a problem for a page
+/// Writes a report by the ending of its name; .xml is a digital calibration certificate. Where no PDF can be printed,
+/// the page is written in its place, under html_beside(). @returns what was printed; without a problem for a page
 PrintedPage write_customer_report(const CustomerReport& report, const std::string& name);
 
 /// "report.html" of "report.pdf".

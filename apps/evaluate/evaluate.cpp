@@ -51,8 +51,10 @@ int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& o
 
 void add_customer_report_options(Subcommand& command, EvaluationOptions& options) {
   command
-      .add_output_file("--customer-report", options.customer_report,
-                       "Customer report to write, 2 to 4 sheets: *.pdf (printed by Chromium) or *.html")
+      .add_output_file(
+          "--customer-report", options.customer_report,
+          "Customer report to write, 2 to 4 sheets: *.pdf (printed by Chromium) or *.html; *.xml: a digital "
+          "calibration certificate")
       ->group("Customer report");
   command
       .add_input_file("--facts", options.facts,

@@ -81,13 +81,35 @@ TEST_F(CustomerReportCommand, WrongFactsFilesAndNamesAreRefusedBeforeAnythingIsW
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "a.html"));
   result = abbe({"evaluate", "positioning", readings, "--customer-report", "a.txt"});
   EXPECT_EQ(result.exit_code, bad_input);
-  EXPECT_THAT(result.err, HasSubstr("expected a name that ends in .pdf or .html"));
+  EXPECT_THAT(result.err, HasSubstr("expected a name that ends in .pdf, .html, or .xml"));
   EXPECT_EQ(abbe({"evaluate", "positioning", readings, "--facts", "facts.toml"}).exit_code, bad_input)
       << "without a report to write";
   result = abbe({"evaluate", "positioning", readings, "--before", ABBE_SOURCE_DIR "/examples/evaluate/rotary.csv",
                  "--customer-report", "a.html"});
   EXPECT_EQ(result.exit_code, bad_input);
   EXPECT_THAT(result.err, HasSubstr("--before: the readings are of another kind of axis"));
+}
+
+TEST_F(CustomerReportCommand, CertificatesNeedTheFactsOfTheirSchema) {
+  std::vector<std::string> arguments = evaluation("de", "certificate.xml");
+  const CommandResult result = abbe(arguments);
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  const std::string certificate = folder.read("certificate.xml");
+  for (const char* text : {"schemaVersion=\"3.2.1\"", "<dcc:uniqueIdentifier>2026-117</dcc:uniqueIdentifier>",
+                           "<dcc:content lang=\"de\">A: beidseitige Positioniergenauigkeit</dcc:content>",
+                           "<si:unit>\\micro\\metre</si:unit>", "<dcc:conformity>fail</dcc:conformity>",
+                           "<dcc:conformity>pass</dcc:conformity>", "<dcc:value>K-2026-0815</dcc:value>"}) {
+    EXPECT_THAT(certificate, HasSubstr(text));
+  }
+  std::string facts = folder.read("facts.toml");
+  facts = std::regex_replace(facts, std::regex("laboratory = [^\n]*\n"), "");
+  folder.write("facts.toml", std::regex_replace(facts, std::regex("number = \"2026-117\"\n"), ""));
+  arguments.back() = "other.xml";
+  const CommandResult missing = abbe(arguments);
+  EXPECT_EQ(missing.exit_code, bad_input);
+  EXPECT_THAT(missing.err, HasSubstr("other.xml: a certificate also needs number, laboratory.name, laboratory.address, "
+                                     "laboratory.country in [report]"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "other.xml"));
 }
 
 TEST_F(CustomerReportCommand, WithoutABrowserThePageIsWrittenAndTheExitCodeSaysSo) {
@@ -107,6 +129,15 @@ TEST_F(CustomerReportCommand, StudiesWriteAPageAmongTheirResults) {
   EXPECT_THAT(page, HasSubstr("Neither conformity nor nonconformity is proven: V_max."));
   EXPECT_THAT(page, HasSubstr("Errors of axis Z at positions"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "out/customer-report.pdf"));
+}
+
+TEST_F(CustomerReportCommand, StudiesThatNameALaboratoryWriteACertificate) {
+  const CommandResult result = abbe({"run", kCustomerExamples + "mill.study.toml", "-o", "results"});
+  ASSERT_NE(result.exit_code, bad_input) << result.err;
+  const std::string certificate = folder.read("results/calibration-certificate.xml");
+  EXPECT_THAT(certificate, HasSubstr("The readings are simulated."));
+  EXPECT_THAT(certificate, HasSubstr("<si:ellipsoidalRegionXMLList>"));
+  EXPECT_THAT(certificate, HasSubstr("EC0Y"));
 }
 
 TEST_F(CustomerReportCommand, StudiesWithoutABrowserKeepTheirOtherResults) {

@@ -26,4 +26,8 @@ void check_customer_report(const Study& study);
 /// @param study  with facts
 CustomerReport study_customer_report(const Study& study, const StudyResult& result);
 
+/// The same as a digital calibration certificate, with all identified errors and their covariance.
+/// @param study  whose facts name a laboratory, as check_customer_report() wants them
+std::string study_certificate(const Study& study, const StudyResult& result);
+
 }  // namespace abbe

@@ -11,7 +11,8 @@ namespace abbe {
 /// Writes everything a study has computed into its results folder, whole or not at all.
 ///
 /// machine.toml, errors.toml with errors.covariance.csv, summary.json, residuals.csv, readings (simulated studies),
-/// maps/, report.html, customer-report.html (studies that state its facts).
+/// maps/, report.html, customer-report.html (studies that state its facts),
+/// calibration-certificate.xml (those that name a laboratory).
 /// @param customer_pdf  of print_page(), written as customer-report.pdf; empty: there is none
 /// @returns the text of summary.json
 std::string write_results(const Study& study, const StudyResult& result, const std::string& customer_pdf = "");

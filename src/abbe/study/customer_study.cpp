@@ -8,6 +8,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/report/customer/calibration_certificate.h"
 #include "abbe/report/customer/customer_words.h"
 #include "abbe/report/customer/local_numbers.h"
 #include "abbe/study/customer_errors.h"
@@ -124,6 +125,13 @@ void check_customer_report(const Study& study) {
     for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
     throw InputError(tolerance.place, "there is no such figure in this unit", "one of " + known);
   }
+  if (study.report.facts->laboratory.empty()) return;
+  const std::vector<std::string> missing = missing_for_certificate(*study.report.facts);
+  if (missing.empty()) return;
+  throw InputError({.field = "report"},
+                   fmt::format("with a laboratory, it asks for a calibration certificate, which also needs {}",
+                               fmt::join(missing, ", ")),
+                   "these facts, or no laboratory");
 }
 
 CustomerReport study_customer_report(const Study& study, const StudyResult& result) {
@@ -162,6 +170,24 @@ CustomerReport study_customer_report(const Study& study, const StudyResult& resu
   for (std::string& note : notes_of(study, result)) report.notes.push_back(std::move(note));
   report.files = files_of(study);
   return report;
+}
+
+std::string study_certificate(const Study& study, const StudyResult& result) {
+  const ErrorSet& identified = result.identification.errors;
+  CertifiedErrors errors;
+  errors.names = parameter_names(study.machine, identified);
+  errors.is_angle = parameters_are_angles(study.machine, identified);
+  errors.values = identified.parameters();
+  errors.covariance = machine_covariance(result.identification, identified.parameter_count());
+  for (std::size_t i = 0; i < errors.values.size(); ++i) {
+    const double scale = micro_per_unit(errors.is_angle[i]);
+    errors.values[i] *= scale;
+    errors.covariance.row(static_cast<Eigen::Index>(i)) *= scale;
+    errors.covariance.col(static_cast<Eigen::Index>(i)) *= scale;
+    // Labels stand in a list, between blanks.
+    std::replace(errors.names[i].begin(), errors.names[i].end(), ' ', '_');
+  }
+  return calibration_certificate(study_customer_report(study, result), errors);
 }
 
 }  // namespace abbe

@@ -139,6 +139,9 @@ std::string write_results(const Study& study, const StudyResult& result, const s
   if (study.report.facts) {
     folder.write("customer-report.html", customer_page(study_customer_report(study, result)));
   }
+  if (study.report.facts && !study.report.facts->laboratory.empty()) {
+    folder.write("calibration-certificate.xml", study_certificate(study, result));
+  }
   if (!customer_pdf.empty()) folder.write("customer-report.pdf", customer_pdf);
   folder.commit();
   return summary_text;

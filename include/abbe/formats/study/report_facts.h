@@ -50,10 +50,11 @@ struct ReportFacts {
   std::string customer, customer_address;
   std::string maker, model, serial_number;  ///< of the machine
   std::string place, operator_name;
-  std::optional<ReportDate> date;                          ///< of the measurement
-  std::optional<double> temperature;                       ///< mean, degC
-  std::optional<std::array<double, 2>> temperature_range;  ///< smallest and largest, degC
-  std::string standard;                                    ///< applied; empty: that of the evaluation
+  std::string laboratory, laboratory_address, laboratory_country;  ///< who calibrated; two letters of ISO 3166-1
+  std::optional<ReportDate> date;                                  ///< of the measurement
+  std::optional<double> temperature;                               ///< mean, degC
+  std::optional<std::array<double, 2>> temperature_range;          ///< smallest and largest, degC
+  std::string standard;                                            ///< applied; empty: that of the evaluation
   std::vector<std::string> remarks;
   std::vector<ReportInstrument> instruments;
   std::vector<ReportTolerance> tolerances;

@@ -17,19 +17,10 @@ constexpr std::array<const char*, kReportLanguageCount> kLanguageCodes = {"en", 
 constexpr const char* kDateExpected = "a day such as \"2026-11-28\"";
 
 /// A table [report] with none of them asks for no customer report.
-constexpr const char* kFactKeys[] = {"language",
-                                     "number",
-                                     "customer",
-                                     "machine",
-                                     "place",
-                                     "operator",
-                                     "date",
-                                     "temperature_degC",
-                                     "temperature_range_degC",
-                                     "standard",
-                                     "remarks",
-                                     "instruments",
-                                     "tolerances"};
+constexpr const char* kFactKeys[] = {
+    "language", "number",   "customer",    "machine",          "laboratory",
+    "place",    "operator", "date",        "temperature_degC", "temperature_range_degC",
+    "standard", "remarks",  "instruments", "tolerances"};
 
 std::optional<ReportDate> read_date(TomlTable& table, const char* key) {
   if (!table.has(key)) {
@@ -61,6 +52,22 @@ void read_temperatures(TomlTable& table, ReportFacts& facts) {
     table.fail(kMean, "is outside temperature_range_degC", "a mean within it");
   }
   facts.temperature_range = {range->front(), range->back()};
+}
+
+void read_laboratory(TomlTable& table, ReportFacts& facts) {
+  auto laboratory = table.optional_table("laboratory");
+  if (!laboratory) return;
+  facts.laboratory = laboratory->text_or("name", "");
+  facts.laboratory_address = laboratory->text_or("address", "");
+  facts.laboratory_country = laboratory->text_or("country", "");
+  const std::string& country = facts.laboratory_country;
+  const bool is_code =
+      country.size() == 2 && std::all_of(country.begin(), country.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+  if (!country.empty() && !is_code) {
+    laboratory->fail("country", fmt::format("\"{}\" is no country", country),
+                     "two letters of ISO 3166-1, such as \"DE\"");
+  }
+  laboratory->finish();
 }
 
 void read_instruments(TomlTable& table, ReportFacts& facts) {
@@ -123,6 +130,7 @@ std::optional<ReportFacts> read_report_facts(TomlTable& table) {
     facts.serial_number = machine->text_or("serial_number", "");
     machine->finish();
   }
+  read_laboratory(table, facts);
   facts.place = table.text_or("place", "");
   facts.operator_name = table.text_or("operator", "");
   facts.date = read_date(table, "date");
