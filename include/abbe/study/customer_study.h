@@ -26,7 +26,8 @@ void check_customer_report(const Study& study);
 /// @param study  with facts
 CustomerReport study_customer_report(const Study& study, const StudyResult& result);
 
-/// The same as a digital calibration certificate, with all identified errors and their covariance.
+/// The same as a digital calibration certificate, with all identified errors and their covariance, and without what is
+/// predicted.
 /// @param study  whose facts name a laboratory, as check_customer_report() wants them
 std::string study_certificate(const Study& study, const StudyResult& result);
 

@@ -187,7 +187,11 @@ std::string study_certificate(const Study& study, const StudyResult& result) {
     // Labels stand in a list, between blanks.
     std::replace(errors.names[i].begin(), errors.names[i].end(), ' ', '_');
   }
-  return calibration_certificate(study_customer_report(study, result), errors);
+  CustomerReport report = study_customer_report(study, result);
+  // A prediction is no measurement.
+  report.states.resize(1);
+  for (CustomerFigure& figure : report.figures) figure.states.resize(1);
+  return calibration_certificate(report, errors);
 }
 
 }  // namespace abbe
