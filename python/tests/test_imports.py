@@ -34,6 +34,7 @@ TABLES = {
                   {"format": "linuxcnc-probe", "length_unit": "mm"}),
     "qif": (IMPORT / "results.qif", [], {}),
     "mtconnect": (IMPORT / "streams.xml", [], {}),
+    "heidenhain": (IMPORT / "points.tab", [], {}),
     "dmis": (IMPORT / "results.dmo", ["--as", "points"], {"kind": "points"}),
     "tracker by a mapping": (STATION, ["--machine", MILL, "--mapping", IMPORT / "total-station.import.toml"],
                              {"machine": MILL, "mapping": IMPORT / "total-station.import.toml"}),

@@ -95,13 +95,19 @@ TEST_F(ImportOfInstruments, ProbedPointsOfLinuxCncAreFitted) {
   EXPECT_EQ(folder.read("table.csv"), folder.read("points.csv"));
 }
 
-TEST_F(ImportOfInstruments, TheSamePointsInThreeForms) {
+TEST_F(ImportOfInstruments, TheSamePointsInFourForms) {
   imported(kSamples + "results.qif", {"-o", "qif.csv"});
   imported(kSamples + "streams.xml", {"-o", "streams.csv"});
   imported(kSamples + "results.dmo", {"-o", "dmis.csv"});
+  const CommandResult tab = imported(kSamples + "points.tab", {"-o", "tab.csv", "--write-mapping", "tab.import.toml"});
+  EXPECT_THAT(tab.out, HasSubstr("table of a Heidenhain control: BEGIN FLANGE.TAB MM in line 1"));
+  EXPECT_THAT(tab.out, HasSubstr("not read: description of the columns, lines 2 to 19, columns DOC"));
+  EXPECT_THAT(folder.read("tab.csv"), HasSubstr("point,x_mm,y_mm,z_mm\n0,20.0003,0.0001,5.0021\n"));
+  imported(kSamples + "points.tab", {"--mapping", "tab.import.toml", "-o", "tab-again.csv"});
+  EXPECT_EQ(folder.read("tab-again.csv"), folder.read("tab.csv"));
   EXPECT_THAT(folder.read("qif.csv"), HasSubstr("point,x_mm,y_mm,z_mm\nP1,20.0003,0.0001,5.0021\n"));
   EXPECT_THAT(folder.read("dmis.csv"), HasSubstr("point,x_mm,y_mm,z_mm,nx,ny,nz\nP1,20.0003,0.0001,5.0021,0,0,1\n"));
-  for (const char* const file : {"qif.csv", "streams.csv", "dmis.csv"}) {
+  for (const char* const file : {"qif.csv", "streams.csv", "dmis.csv", "tab.csv"}) {
     const nlohmann::json figures = evaluated({"fit", file, "--shape", "plane", "--json"}).at("figures");
     // Least squares of z by the normal equations, in Python; the slopes are too small to make a difference.
     EXPECT_NEAR(figures.at("form").at("value_um").get<double>(), 2.0333235, 1e-6) << file;

@@ -43,6 +43,7 @@ const std::vector<InstrumentFormat>& instrument_formats() {
       {"qif", "file of QIF results", recognise_qif_results, read_qif_results},
       {"mtconnect", "answer of an MTConnect agent", recognise_mtconnect_streams, read_mtconnect_streams},
       {"dmis", "DMIS output file", recognise_dmis_output, read_dmis_output},
+      {"heidenhain-table", "table of a Heidenhain control", recognise_heidenhain_table, read_heidenhain_table},
       {"linuxcnc-probe", "probe log of LinuxCNC", recognise_linuxcnc_probe, read_linuxcnc_probe},
   };
   return formats;

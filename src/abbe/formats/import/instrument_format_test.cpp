@@ -35,6 +35,9 @@ TEST(InstrumentFormats, AreRecognisedByTheirContents) {
   EXPECT_EQ(recognised_name("<MTConnectStreams>"), "mtconnect");
   EXPECT_EQ(recognised_name("$$ output\nfilnam/'a',5.3\n"), "dmis");
   EXPECT_EQ(recognised_name("$$ no header\nFA(P1)=FEAT/POINT,CART,1,2,3,0,0,1\n"), "dmis");
+  EXPECT_EQ(recognised_name("BEGIN POINTS.TAB MM\n"), "heidenhain-table");
+  EXPECT_EQ(recognised_name("BEGIN POINTS 2.PNT INCH Version: 'Update:1.0'\r\n"), "heidenhain-table");
+  EXPECT_EQ(recognised_name("BEGIN POINTS.TAB\n"), "heidenhain-table");
   EXPECT_EQ(recognised_name("<BALLBAR><FEATURE NAME=\"AF_CIRCULARITY\" DT=\"UT_LENGTH_UM\">4</FEATURE></BALLBAR>"),
             "renishaw-ballbar");
   EXPECT_EQ(recognised_name("1.000000 2.000000 3.000000 0.000000 0.000000 0.000000 0.000000 0.000000 0.000000\n"),
@@ -52,12 +55,19 @@ TEST(InstrumentFormats, AreNotSeenInTables) {
   EXPECT_EQ(recognised_name("$$ a comment\nx y z\n1 2 3\n"), "");
   EXPECT_EQ(recognised_name("1.0 2.0 3.0 0.0 0.0 0.0 0.0 0.0 0.0\n"), "");
   EXPECT_EQ(recognised_name("1.000000 2.000000 3.000000\n"), "");
+  EXPECT_EQ(recognised_name("BEGIN PGM POINTS MM\n"), "");
+  EXPECT_EQ(recognised_name("BEGIN PGM A.H MM\n"), "");
+  EXPECT_EQ(recognised_name("BEGIN x,y,z MM\n1,2,3\n"), "");
+  EXPECT_EQ(recognised_name("BEGIN .TAB MM\n"), "");
+  EXPECT_EQ(recognised_name("BEGIN  MM"), "");
 }
 
 TEST(InstrumentFormats, PutWhatIsCertainBeforeWhatIsPossible) {
   const std::string log = "1.000000 2.000000 3.000000 0.000000 0.000000 0.000000 0.000000 0.000000 0.000000\n";
   EXPECT_FALSE(recognise_instrument(log)->recognition.certain);
   EXPECT_TRUE(recognise_instrument("HEADER::\nFile type: rtl\n")->recognition.certain);
+  EXPECT_TRUE(recognise_instrument("BEGIN A.TAB MM\n")->recognition.certain);
+  EXPECT_FALSE(recognise_instrument("BEGIN A.TAB\n")->recognition.certain);
 }
 
 TEST(BallBarResults, AreRefusedWithWhatCanBeDone) {

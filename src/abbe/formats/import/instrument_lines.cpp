@@ -15,7 +15,8 @@ namespace abbe {
 
 bool InstrumentLines::next() {
   while (at_ < text_.size()) {
-    line_ = csv_trimmed(csv_next_line(text_, at_));
+    whole_ = csv_next_line(text_, at_);
+    line_ = csv_trimmed(whole_);
     ++number_;
     if (!line_.empty()) return true;
   }

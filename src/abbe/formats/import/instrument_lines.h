@@ -18,10 +18,12 @@ class InstrumentLines {
   bool next();
   /// Without blanks around it and without its end.
   std::string_view text() const { return line_; }
+  /// With the blanks around it.
+  std::string_view whole() const { return whole_; }
   std::size_t number() const { return number_; }  ///< from 1
 
  private:
-  std::string_view text_, line_;
+  std::string_view text_, line_, whole_;
   std::size_t at_ = 0, number_ = 0;
 };
 

@@ -19,6 +19,9 @@ InstrumentTable read_renishaw_ballbar(std::string_view text, const std::string& 
 std::optional<Recognition> recognise_linuxcnc_probe(std::string_view text);
 InstrumentTable read_linuxcnc_probe(std::string_view text, const std::string& file, const ImportHints& hints);
 
+std::optional<Recognition> recognise_heidenhain_table(std::string_view text);
+InstrumentTable read_heidenhain_table(std::string_view text, const std::string& file, const ImportHints& hints);
+
 std::optional<Recognition> recognise_qif_results(std::string_view text);
 InstrumentTable read_qif_results(std::string_view text, const std::string& file, const ImportHints& hints);
 
