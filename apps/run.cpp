@@ -20,7 +20,7 @@ namespace abbe {
 
 void add_run_command(CommandLine& line) {
   struct Options {
-    std::string study, output;
+    std::string study, output, before;
     bool accept_uncovered = false, accept_misfit = false, all_values = false, json = false, pdf = false;
   };
   auto options = std::make_shared<Options>();
@@ -36,12 +36,16 @@ void add_run_command(CommandLine& line) {
   command->add_flag("--json", options->json, "Print the summary as JSON for programs");
   command->add_flag("--pdf", options->pdf,
                     "Write the customer report as PDF, too; [report] of the study states its facts");
+  command->add_option("--before", options->before,
+                      "Results of the same machine before its correction, for the customer report: a results folder "
+                      "of abbe run, or an errors file");
   command->add_flag("--accept-misfit", options->accept_misfit,
                     "End with exit code 0 and usable errors although the result is not to be trusted");
   command->callback([&line, options] {
     line.run = [options]() -> int {
       Study study = read_study(options->study);
       if (!options->output.empty()) study.output = options->output;
+      if (!options->before.empty()) study.report.before = options->before;
       check_results_folder(study.output);
       if (options->pdf && !study.report.facts) {
         throw InputError({.file = options->study, .field = "report"}, "states no facts of a customer report",

@@ -165,6 +165,23 @@ TEST_F(CustomerReportCommand, AStudyOutOfToleranceEndsWithExitCodeOne) {
               HasSubstr("Nonconformity with the specification is proven: EXX."));
 }
 
+TEST_F(CustomerReportCommand, StudiesShowResultsBeforeACorrection) {
+  const std::string study = kCustomerExamples + "mill.study.toml";
+  ASSERT_EQ(abbe({"run", study, "-o", "first"}).exit_code, done);
+  for (const char* before : {"first", "first/errors.toml"}) {
+    ASSERT_EQ(abbe({"run", study, "-o", "second", "--before", before}).exit_code, done);
+    const std::string page = folder.read("second/customer-report.html");
+    EXPECT_THAT(page, HasSubstr("<b>Before correction: </b>Conformity"));
+    EXPECT_THAT(page, HasSubstr("<b>After correction: </b>Conformity"));
+  }
+  EXPECT_EQ(abbe({"run", study, "-o", "third", "--before", "nowhere"}).exit_code, bad_input);
+  const CommandResult without =
+      abbe({"run", ABBE_SOURCE_DIR "/examples/three_axis/dials.study.toml", "-o", "third", "--before", "first"});
+  EXPECT_EQ(without.exit_code, bad_input);
+  EXPECT_THAT(without.err, HasSubstr("before: is of a customer report, whose facts are missing"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "third"));
+}
+
 TEST_F(CustomerReportCommand, AStudyWithoutFactsHasNoneToPrint) {
   const CommandResult result =
       abbe({"run", ABBE_SOURCE_DIR "/examples/three_axis/dials.study.toml", "-o", "out", "--pdf"});

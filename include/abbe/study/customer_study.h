@@ -15,6 +15,9 @@ std::vector<std::string> customer_tolerance_names(const Study& study);
 /// @throws InputError for facts of a study that identifies nothing, and for a tolerance of a figure that there is not
 void check_customer_report(const Study& study);
 
+/// Opens the result before a correction that the study names. @throws InputError
+EarlierResult read_earlier_result(const Study& study);
+
 /// Customer report on an identification: volumetric error, error motions, location errors and reversal values of the
 /// machine as measured with their expanded uncertainties, what is predicted after correction, and the errors of each
 /// axis at positions.
@@ -22,7 +25,9 @@ void check_customer_report(const Study& study);
 /// The figure of an error motion is its largest minus its smallest value at 121 positions over the range in which it is
 /// known; its uncertainty is that of the difference of the values at these two positions, from the covariance of the
 /// identified errors. The extremes are taken as fixed. The largest volumetric error is over the poses of
-/// StudyResult::volumetric, with its uncertainty at its pose. Verdicts are given on measured machines only.
+/// StudyResult::volumetric, with its uncertainty at its pose. Verdicts are given on measured machines only. With a
+/// result before a correction, its figures stand in place of the predicted ones: those of errors that both have
+/// identified.
 /// @param study  with facts
 CustomerReport study_customer_report(const Study& study, const StudyResult& result);
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/formats/machine/errors_file.h"
 #include "abbe/identify/order_selection.h"
 #include "abbe/identify/strategies.h"
 #include "abbe/identify/trust/monte_carlo.h"
@@ -35,6 +36,13 @@ struct StudyMap {
   LeftOutPoses left_out() const { return {.all = poses.count(), .not_covered = before.statistics.excluded}; }
 };
 
+/// What was identified of the same machine before a correction, for its customer report.
+struct EarlierResult {
+  std::string name;  ///< of its folder or file
+  ErrorsFile errors;
+  bool is_simulated = false;
+};
+
 /// Everything that a study has computed.
 struct StudyResult {
   Campaign campaign;
@@ -48,10 +56,11 @@ struct StudyResult {
   std::optional<VolumetricFigures> volumetric;  ///< over the grid of all commands; usable results only
   std::optional<StudyMap> map;
   std::vector<std::string> warnings;
-  std::vector<Advice> advice;        ///< what the readings do not see, and what would show it
-  NotIdentified not_identified;      ///< errors of the machine that are not in the model; empty unless usable
-  std::vector<Distrust> distrusted;  ///< why a usable result must not be used as it is, see judge_trust()
-  bool misfit_accepted = false;      ///< the user wants to use it nevertheless
+  std::vector<Advice> advice;           ///< what the readings do not see, and what would show it
+  NotIdentified not_identified;         ///< errors of the machine that are not in the model; empty unless usable
+  std::vector<Distrust> distrusted;     ///< why a usable result must not be used as it is, see judge_trust()
+  bool misfit_accepted = false;         ///< the user wants to use it nevertheless
+  std::optional<EarlierResult> before;  ///< where the study names one
 
   /// True if the result may be used: converged and nothing impossible.
   bool usable() const { return identification.status == IdentifyStatus::converged; }

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <optional>
 
-#include "abbe/identify/trust/prediction.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/customer/customer_words.h"
 #include "abbe/report/customer/local_numbers.h"
 #include "abbe/report/drawings/svg_plot.h"
-#include "abbe/study/study_result.h"
 
 namespace abbe {
 namespace {
@@ -56,7 +54,7 @@ class IdentifiedCurve {
   }
   /// d(value)/d(parameters of the error set).
   Eigen::VectorXd derivatives(double position) const {
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(covariance_.rows());
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(errors_.parameter_count()));
     for (const Term& term : terms_) {
       const ErrorMotion& motion = errors_.motions[term.motion];
       motion.basis.values(position, motion.coefficients, {row.data() + term.first, motion.basis.size()});
@@ -64,6 +62,7 @@ class IdentifiedCurve {
     return row;
   }
   double expanded_uncertainty(const Eigen::VectorXd& row) const {
+    if (covariance_.size() == 0) return 0;  // not stated
     return 2 * std::sqrt(std::max(0.0, row.dot(covariance_ * row)));
   }
   double position(std::size_t index, std::size_t count) const {
@@ -159,11 +158,8 @@ CustomerFigure curve_figure(const Machine& machine, std::size_t axis, Component 
 
 }  // namespace
 
-std::vector<CustomerFigure> customer_error_figures(const Study& study, const StudyResult& result) {
-  const Machine& machine = study.machine;
-  const ErrorSet& errors = result.identification.errors;
-  const ReportLanguage language = study.report.facts->language;
-  const Eigen::MatrixXd covariance = machine_covariance(result.identification, errors.parameter_count());
+std::vector<CustomerFigure> customer_error_figures(const CustomerErrors& of) {
+  const auto& [machine, errors, covariance, language] = of;
   std::vector<CustomerFigure> figures;
   for (std::size_t axis = 0; axis < machine.axes.size(); ++axis) {
     for (int c = 0; c < kComponentCount; ++c) {
@@ -174,8 +170,8 @@ std::vector<CustomerFigure> customer_error_figures(const Study& study, const Stu
   for (const LocationError& location : errors.locations) {
     const bool angle = is_rotation(location.component);
     const std::string direction = letter(component_at(static_cast<int>(location.component) % 3));
-    const std::string name =
-        customer_text(angle ? Word::orientation : Word::offset, language, machine.axes[location.axis].name, direction);
+    const std::string name = customer_text(angle ? Word::orientation : Word::offset, language,
+                                           {machine.axes[location.axis].name, direction});
     const double expanded = 2 * location.standard_uncertainty;
     figures.push_back(micro_figure(location_error_name(machine, location.axis, location.component), name, angle,
                                    location.value, expanded, expanded));
@@ -190,11 +186,8 @@ std::vector<CustomerFigure> customer_error_figures(const Study& study, const Stu
   return figures;
 }
 
-std::vector<CustomerTable> customer_error_tables(const Study& study, const StudyResult& result) {
-  const Machine& machine = study.machine;
-  const ErrorSet& errors = result.identification.errors;
-  const ReportLanguage language = study.report.facts->language;
-  const Eigen::MatrixXd covariance = machine_covariance(result.identification, errors.parameter_count());
+std::vector<CustomerTable> customer_error_tables(const CustomerErrors& of) {
+  const auto& [machine, errors, covariance, language] = of;
   // A report on five axes has four sheets as well.
   const std::size_t positions = machine.axes.size() <= 3 ? 11 : 7;
   std::vector<CustomerTable> tables;
@@ -246,12 +239,9 @@ std::vector<CustomerTable> customer_error_tables(const Study& study, const Study
   return tables;
 }
 
-std::vector<CustomerDrawing> customer_error_drawings(const Study& study, const StudyResult& result) {
+std::vector<CustomerDrawing> customer_error_drawings(const CustomerErrors& of) {
   constexpr PlotColour kColours[] = {PlotColour::first, PlotColour::second, PlotColour::third};
-  const Machine& machine = study.machine;
-  const ErrorSet& errors = result.identification.errors;
-  const ReportLanguage language = study.report.facts->language;
-  const Eigen::MatrixXd covariance = machine_covariance(result.identification, errors.parameter_count());
+  const auto& [machine, errors, covariance, language] = of;
   std::vector<CustomerDrawing> drawings;
   for (const AxisKind kind : {AxisKind::linear, AxisKind::rotary}) {
     const bool rotary = kind == AxisKind::rotary;

@@ -1,21 +1,30 @@
 #pragma once
 
+#include <Eigen/Core>
+
+#include "abbe/errors/error_set.h"
 #include "abbe/report/customer/customer_report.h"
 
 namespace abbe {
 
-struct Study;
-struct StudyResult;
+// Parts of a study's customer report.
 
-// Parts of a study's customer report; the result is usable.
+/// Identified errors of a machine in one state.
+struct CustomerErrors {
+  const Machine& machine;
+  const ErrorSet& errors;
+  Eigen::MatrixXd covariance;  ///< of the parameters of the errors, mm and rad; 0 x 0: not stated
+  ReportLanguage language;
+};
 
-/// Ranges of the error motions, location errors and reversal values, in chain order of their axes.
-std::vector<CustomerFigure> customer_error_figures(const Study& study, const StudyResult& result);
+/// Ranges of the error motions, location errors and reversal values, in chain order of their axes. Two states: as
+/// measured, and what is predicted to be left.
+std::vector<CustomerFigure> customer_error_figures(const CustomerErrors& of);
 
 /// A table for every axis with error motions: their values with expanded uncertainties at evenly spaced positions.
-std::vector<CustomerTable> customer_error_tables(const Study& study, const StudyResult& result);
+std::vector<CustomerTable> customer_error_tables(const CustomerErrors& of);
 
 /// Positioning error motions of the linear and of the rotary axes with their bands; of each kind that there is.
-std::vector<CustomerDrawing> customer_error_drawings(const Study& study, const StudyResult& result);
+std::vector<CustomerDrawing> customer_error_drawings(const CustomerErrors& of);
 
 }  // namespace abbe

@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "abbe/formats/files/results_files.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/customer/calibration_certificate.h"
 #include "abbe/report/customer/customer_words.h"
 #include "abbe/report/customer/local_numbers.h"
+#include "abbe/report/evaluations/partial_errors.h"
+#include "abbe/study/compared_campaigns.h"
 #include "abbe/study/customer_errors.h"
 #include "abbe/study/summary.h"
 #include "abbe/study/trust.h"
@@ -26,51 +30,112 @@ constexpr const char* kMeanVolumetric = "V_mean";
 /// "EXX_um" of a figure whose unit is shown as "µm".
 std::string tolerance_name(const std::string& symbol, bool angle) { return symbol + "_" + micro_unit(angle); }
 
-/// Largest and mean volumetric error as identified, and what is predicted to remain.
-std::vector<CustomerFigure> volumetric_figures_of(const Study& study, const StudyResult& result) {
-  if (!result.volumetric || !result.volumetric->predicted_before) return {};
-  const VolumetricFigures& volumetric = *result.volumetric;
-  const ErrorSet& identified = result.identification.errors;
-  std::vector<const ErrorSet*> known = {&identified};
-  if (result.campaign.truth) known.push_back(&*result.campaign.truth);
-  const StatedPoses stated = stated_grid(study.machine, known);
+CustomerErrors identified_errors(const Study& study, const StudyResult& result) {
+  const ErrorSet& errors = result.identification.errors;
+  return {study.machine, errors, machine_covariance(result.identification, errors.parameter_count()),
+          study.report.facts->language};
+}
+
+CustomerErrors earlier_errors(const Study& study, const EarlierResult& before) {
+  return {study.machine, before.errors.errors, covariance_of(before.errors), study.report.facts->language};
+}
+
+/// Of the poses, the largest with its expanded uncertainty, and the mean; um. In two states, the second without values.
+/// @param poses  over which both are stated
+/// @param is_incomplete  the uncertainty does not cover all errors of the machine
+std::vector<CustomerFigure> volumetric_customer_figures(const CustomerErrors& of, const StatedPoses& poses,
+                                                        bool is_incomplete, int threads) {
   ParameterCovariance covariance;
-  covariance.covariance = machine_covariance(result.identification, identified.parameter_count());
-  for (std::size_t p = 0; p < identified.parameter_count(); ++p) covariance.parameters.push_back(p);
+  covariance.covariance = of.covariance;
+  for (std::size_t p = 0; p < of.errors.parameter_count(); ++p) covariance.parameters.push_back(p);
+  const bool is_uncertain = of.covariance.size() > 0;
   ErrorMapOptions options;
   options.orientation = false;
   options.remove_rigid_motion = true;
-  options.covariance = &covariance;
-  options.threads = study.threads;
-  const ErrorMap map = error_map(study.machine, identified, nullptr, pose_source(stated.poses), options);
+  options.covariance = is_uncertain ? &covariance : nullptr;
+  options.threads = threads;
+  const ErrorMap map = error_map(of.machine, of.errors, nullptr, pose_source(poses.poses), options);
+  if (map.statistics.count == 0) return {};
   std::size_t largest = 0;
   for (std::size_t k = 0; k < map.count(); ++k) {
     if (map.covered[k] != 0 && (map.covered[largest] == 0 || map.norm[k] > map.norm[largest])) largest = k;
   }
-  const ReportLanguage language = study.report.facts->language;
-  const bool is_incomplete = !prediction_covers(result).empty();
-  const double expanded = 2e3 * map.norm_uncertainty[largest];
-  const int decimals = decimals_for(expanded);
-  const auto after = [&](double SampleStatistics::*statistic) {
-    CustomerValue value;
-    if (volumetric.predicted_after) value.value = 1e3 * (*volumetric.predicted_after).*statistic;
-    return value;
-  };
+  std::optional<double> expanded;
+  if (is_uncertain) expanded = 2e3 * map.norm_uncertainty[largest];
   CustomerFigure most, mean;
   most.symbol = kLargestVolumetric;
-  most.name = customer_word(Word::volumetric_largest, language);
-  most.states = {{1e3 * map.norm[largest], expanded, is_incomplete}, after(&SampleStatistics::maximum)};
+  most.name = customer_word(Word::volumetric_largest, of.language);
+  most.states = {{1e3 * map.norm[largest], expanded, is_incomplete}, {}};
   mean.symbol = kMeanVolumetric;
-  mean.name = customer_word(Word::volumetric_mean, language);
-  mean.states = {{1e3 * volumetric.predicted_before->mean, std::nullopt, is_incomplete},
-                 after(&SampleStatistics::mean)};
+  mean.name = customer_word(Word::volumetric_mean, of.language);
+  mean.states = {{1e3 * map.statistics.mean, std::nullopt, is_incomplete}, {}};
   std::vector<CustomerFigure> figures = {most, mean};
-  for (CustomerFigure& figure : figures) figure.unit = "µm", figure.decimals = decimals;
+  for (CustomerFigure& figure : figures) figure.unit = "µm", figure.decimals = decimals_for(expanded.value_or(0));
   return figures;
+}
+
+/// Poses in the range that both results know; those of the volumetric figures where there is none before.
+StatedPoses poses_of(const Study& study, const StudyResult& result) {
+  std::vector<const ErrorSet*> known = {&result.identification.errors};
+  if (result.campaign.truth) known.push_back(&*result.campaign.truth);
+  if (result.before) known.push_back(&result.before->errors.errors);
+  return stated_grid(study.machine, known);
+}
+
+/// All figures of the machine as measured, with what is predicted to remain.
+std::vector<CustomerFigure> measured_figures(const Study& study, const StudyResult& result) {
+  const CustomerErrors now = identified_errors(study, result);
+  std::vector<CustomerFigure> figures =
+      volumetric_customer_figures(now, poses_of(study, result), !prediction_covers(result).empty(), study.threads);
+  if (!figures.empty() && result.volumetric && result.volumetric->predicted_after) {
+    figures[0].states[1].value = 1e3 * result.volumetric->predicted_after->maximum;
+    figures[1].states[1].value = 1e3 * result.volumetric->predicted_after->mean;
+  }
+  for (CustomerFigure& figure : customer_error_figures(now)) figures.push_back(std::move(figure));
+  return figures;
+}
+
+/// Puts the figures before a correction in front, in place of what is predicted.
+void add_figures_before(const Study& study, const StudyResult& result, std::vector<CustomerFigure>& figures) {
+  const CustomerErrors then = earlier_errors(study, *result.before);
+  const bool is_incomplete = partial_errors(study.machine, result.before->errors).is_partial();
+  std::vector<CustomerFigure> before =
+      volumetric_customer_figures(then, poses_of(study, result), is_incomplete, study.threads);
+  for (CustomerFigure& figure : customer_error_figures(then)) before.push_back(std::move(figure));
+  for (CustomerFigure& figure : figures) {
+    CustomerValue value;
+    for (const CustomerFigure& earlier : before) {
+      if (earlier.symbol == figure.symbol) value = earlier.states[0];
+    }
+    figure.states = {value, figure.states[0]};
+  }
+}
+
+/// Why nothing is proven of a state; empty: verdicts are given.
+std::string without_verdict(bool is_refused, bool is_simulated, ReportLanguage language) {
+  if (is_refused) return std::string(customer_word(Word::without_trust, language));
+  return is_simulated ? std::string(customer_word(Word::without_simulation, language)) : std::string();
+}
+
+std::vector<CustomerState> states_of(const StudyResult& result, bool is_refused, ReportLanguage language) {
+  const auto word = [&](Word what) { return std::string(customer_word(what, language)); };
+  const std::string now = without_verdict(is_refused, result.campaign.truth.has_value(), language);
+  if (!result.before) {
+    return {{word(Word::measured), now}, {word(Word::predicted_after), word(Word::without_measurement)}};
+  }
+  const ErrorsFile& before = result.before->errors;
+  const bool was_refused = !before.distrusted.empty() && !before.misfit_accepted;
+  return {{word(Word::before), without_verdict(was_refused, result.before->is_simulated, language)},
+          {word(Word::after), now}};
 }
 
 std::vector<std::string> notes_of(const Study& study, const StudyResult& result) {
   std::vector<std::string> notes;
+  if (result.before) {
+    for (const std::string& reason : result.before->errors.distrusted) {
+      notes.push_back("before: not to be trusted: " + reason);
+    }
+  }
   if (result.usable()) notes.push_back(study_verdict(study, result));
   for (const std::string& warning : study_warnings(study, result)) notes.push_back(warning);
   if (result.map && result.map->before.statistics.excluded > 0) notes.push_back(left_out_words(result.map->left_out()));
@@ -81,8 +146,9 @@ std::vector<std::string> notes_of(const Study& study, const StudyResult& result)
   return notes;
 }
 
-std::vector<std::string> files_of(const Study& study) {
+std::vector<std::string> files_of(const Study& study, const StudyResult& result) {
   std::vector<std::string> files = {study.machine_file.filename().string()};
+  if (result.before) files.push_back(result.before->name);
   for (const Setup& setup : study.setups) {
     for (const SetupData& data : setup.data) {
       if (!data.file.empty()) files.push_back(data.file.filename().string());
@@ -114,7 +180,11 @@ std::vector<std::string> customer_tolerance_names(const Study& study) {
 }
 
 void check_customer_report(const Study& study) {
-  if (!study.report.facts) return;
+  if (!study.report.facts) {
+    if (!study.report.before) return;
+    throw InputError({.field = "before"}, "is of a customer report, whose facts are missing",
+                     "customer, machine, date and others in [report]");
+  }
   if (!study.identification) {
     throw InputError({.field = "report"}, "there is nothing to report to a customer", "a study with [identify]");
   }
@@ -134,6 +204,18 @@ void check_customer_report(const Study& study) {
                    "these facts, or no laboratory");
 }
 
+EarlierResult read_earlier_result(const Study& study) {
+  const std::string path = study.report.before->string();
+  const IdentifiedCampaign campaign = read_campaign(path, study.machine);
+  EarlierResult before{campaign.name, campaign.errors};
+  if (is_results_folder(path)) {
+    const std::string summary = results_summary_text(path);
+    const nlohmann::json json = nlohmann::json::parse(summary, nullptr, false);
+    before.is_simulated = json.is_object() && json.contains("true_volumetric_error");
+  }
+  return before;
+}
+
 CustomerReport study_customer_report(const Study& study, const StudyResult& result) {
   CustomerReport report;
   report.facts = *study.report.facts;
@@ -147,28 +229,27 @@ CustomerReport study_customer_report(const Study& study, const StudyResult& resu
   }
   report.is_simulated = result.campaign.truth.has_value();
   const bool is_refused = !result.usable() || (!result.distrusted.empty() && !result.misfit_accepted);
-  report.states = {{word(Word::measured), is_refused            ? word(Word::without_trust)
-                                          : report.is_simulated ? word(Word::without_simulation)
-                                                                : ""},
-                   {word(Word::predicted_after), word(Word::without_measurement)}};
+  report.states = states_of(result, is_refused, language);
   if (!result.usable()) report.refusals.push_back(study_verdict(study, result));
   for (const Distrust& reason : result.distrusted) {
     (is_refused ? report.refusals : report.notes).push_back("Not to be trusted: " + reason.text + ".");
   }
   if (result.usable()) {
-    report.figures = volumetric_figures_of(study, result);
-    for (CustomerFigure& figure : customer_error_figures(study, result)) report.figures.push_back(std::move(figure));
+    report.figures = measured_figures(study, result);
+    if (result.before) add_figures_before(study, result, report.figures);
     for (const ReportTolerance& tolerance : report.facts.tolerances) {
       for (CustomerFigure& figure : report.figures) {
         if (tolerance.name == tolerance_name(figure.symbol, figure.unit == "µrad")) figure.tolerance = tolerance.value;
       }
     }
-    report.tables = customer_error_tables(study, result);
-    report.drawings = customer_error_drawings(study, result);
-    report.explanations = {word(Word::range_note), word(Word::convention_note), word(Word::predicted_note)};
+    const CustomerErrors now = identified_errors(study, result);
+    report.tables = customer_error_tables(now);
+    report.drawings = customer_error_drawings(now);
+    report.explanations = {word(Word::range_note), word(Word::convention_note)};
+    if (!result.before) report.explanations.push_back(word(Word::predicted_note));
   }
   for (std::string& note : notes_of(study, result)) report.notes.push_back(std::move(note));
-  report.files = files_of(study);
+  report.files = files_of(study, result);
   return report;
 }
 

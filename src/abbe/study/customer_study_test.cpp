@@ -8,6 +8,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/identify/trust/prediction.h"
 #include "abbe/study/run_study.h"
+#include "abbe/study/trust.h"
 
 namespace abbe {
 namespace {
@@ -128,6 +129,41 @@ TEST_F(CustomerStudy, AnUncertaintyThatCoversAPartOfTheErrorsProvesNothingOfTheV
   const CustomerReport report = study_customer_report(*study, partial);
   EXPECT_THAT(customer_verdict(report, 0),
               Contains(testing::Pair(Conformity::not_judged, HasSubstr("does not cover all errors of the machine"))));
+}
+
+TEST_F(CustomerStudy, AResultBeforeACorrectionStandsBesideTheMeasuredOne) {
+  StudyResult corrected = *result;
+  EarlierResult& before = corrected.before.emplace();
+  before.errors = identified_errors_file(*study, *result);
+  for (ErrorMotion& motion : before.errors.errors.motions) {
+    const bool is_exx = motion.axis == study->machine.find_axis("X") && motion.component == Component::X;
+    for (double& coefficient : motion.coefficients) coefficient *= is_exx ? 10 : 1;
+  }
+  const CustomerReport report = study_customer_report(*study, corrected);
+  ASSERT_EQ(report.states.size(), 2U);
+  EXPECT_EQ(report.states[0].name, "Before correction");
+  const CustomerFigure& positioning = figure_named(report, "EXX");
+  EXPECT_NEAR(*positioning.states[0].value, 10 * *positioning.states[1].value, 1e-9);
+  EXPECT_NEAR(*positioning.states[0].expanded_uncertainty, *positioning.states[1].expanded_uncertainty, 1e-9);
+  EXPECT_THAT(customer_verdict(report, 0), Contains(testing::Pair(Conformity::nonconformity_proven, HasSubstr("EXX"))));
+  EXPECT_THAT(customer_verdict(report, 1), Contains(testing::Pair(Conformity::proven, HasSubstr("EXX"))));
+  EXPECT_EQ(exceeded_tolerances(report), "") << "the machine is as it is after";
+
+  before.errors.distrusted = {"the residuals are too large"};
+  const CustomerReport doubtful = study_customer_report(*study, corrected);
+  EXPECT_THAT(customer_verdict(doubtful, 0), Contains(testing::Pair(Conformity::not_judged, HasSubstr("must not be"))));
+  EXPECT_THAT(doubtful.notes, Contains(HasSubstr("before: not to be trusted: the residuals are too large")));
+}
+
+TEST_F(CustomerStudy, FiguresBeforeWithoutUncertaintyProveNothing) {
+  StudyResult corrected = *result;
+  corrected.before.emplace().errors.errors = result->identification.errors;
+  for (LocationError& location : corrected.before->errors.errors.locations) location.standard_uncertainty = 0;
+  for (ErrorMotion& motion : corrected.before->errors.errors.motions) motion.standard_uncertainty.clear();
+  const CustomerReport report = study_customer_report(*study, corrected);
+  EXPECT_FALSE(figure_named(report, "EXX").states[0].expanded_uncertainty);
+  EXPECT_FALSE(figure_named(report, "V_max").states[0].expanded_uncertainty);
+  EXPECT_THAT(customer_verdict(report, 0), Contains(testing::Pair(Conformity::not_judged, HasSubstr("not known"))));
 }
 
 TEST(CustomerReportOfAStudy, OfSimulatedReadingsHasNoVerdict) {

@@ -32,6 +32,7 @@ const char* step_words(const Study& study, StudyStep step) {
 StudyResult run_study(const Study& study, const RunOptions& options) {
   check_customer_report(study);
   StudyResult result;
+  if (study.report.before) result.before = read_earlier_result(study);
   result.misfit_accepted = options.accept_misfit;
   const auto begin = [&](StudyStep step) {
     ProgressCallback progress = progress_of(options, step);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/text/list_text.h"
+#include "abbe/study/customer_study.h"
 
 namespace abbe {
 
@@ -15,6 +16,7 @@ bool StudyCheck::is_explained() const {
 }
 
 StudyCheck check_study(const Study& study, const ProgressCallback& progress) {
+  check_customer_report(study);
   StudyCheck check{gather_readings(study, progress)};
   find_start_values(study.machine, check.campaign);
   return check;

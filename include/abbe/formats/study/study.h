@@ -151,6 +151,9 @@ struct ReportOptions {
   bool page = true;
   std::string title;                   ///< empty: the study's name
   std::optional<ReportFacts> facts{};  ///< of the customer report; absent: none is wanted
+  /// Results of the same machine before a correction, for its figures before and after: a folder of `abbe run`, or an
+  /// errors file.
+  std::optional<std::filesystem::path> before{};
 };
 
 /// A whole job: what is given, what is measured or simulated, what is identified and what is reported. Plain data.

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "abbe/formats/study/report_facts.h"
 
@@ -83,6 +84,15 @@ enum class CustomerWord {
   must_not_be_used,
   out_of_tolerance,
   simulated,
+  few_runs,     ///< {}: fewest
+  uneven_runs,  ///< {}: fewest, {}: most
+  few_targets,  ///< {}: wanted, {}: travel, {}: found
+  equal_spacing,
+  no_readings,  ///< why a figure is not evaluated, like those that follow
+  needs_two_runs,
+  needs_both_directions,
+  needs_this_direction,
+  needs_two_positions,
   notes,
   notes_in_english,
   signatures,
@@ -112,10 +122,9 @@ enum class CustomerWord {
 /// A text in a language; never empty.
 std::string_view customer_word(CustomerWord word, ReportLanguage language);
 
-/// The same with its places filled.
-std::string customer_text(CustomerWord word, ReportLanguage language, const std::string& first);
-std::string customer_text(CustomerWord word, ReportLanguage language, const std::string& first,
-                          const std::string& second);
+/// The same with its places filled, in their order. @param places  as many texts as it has places
+std::string customer_text(CustomerWord word, ReportLanguage language, const std::vector<std::string>& places);
+std::string customer_text(CustomerWord word, ReportLanguage language, const std::string& place);
 
 /// Name of a figure of ISO 230-2 or ISO 230-6 by its symbol ("A", "R+", "E_d"): as the national editions of the
 /// standard call it. Empty for another symbol.

@@ -15,7 +15,22 @@ EvaluationFigure report_figure(const std::string& symbol, const std::string& nam
 EvaluationReport positioning_report(const PositioningEvaluation& evaluation, bool rotary, const std::string& file,
                                     const PositioningUncertainty* uncertainty);
 
-/// What ISO 230-2 asks of targets and runs and these readings do not have, in words; empty if all is there.
+/// Something that ISO 230-2 asks of targets and runs and readings do not have.
+struct PositioningShortfall {
+  enum class Kind {
+    few_runs,      ///< fewest
+    uneven_runs,   ///< fewest, most
+    few_targets,   ///< wanted, travel with its unit, found
+    equal_spacing  ///< no numbers
+  };
+  Kind kind = Kind::few_runs;
+  std::vector<std::string> numbers;  ///< in the order above
+};
+
+/// What there is of that, in the order above.
+std::vector<PositioningShortfall> positioning_shortfalls(const PositioningEvaluation& evaluation, bool rotary);
+
+/// The same in words; empty if all is there.
 std::vector<std::string> positioning_notes(const PositioningEvaluation& evaluation, bool rotary);
 
 /// The target positions for programs: one object each, units in the keys.

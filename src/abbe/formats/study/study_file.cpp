@@ -100,11 +100,13 @@ MapPlan read_map(TomlTable& table, const std::filesystem::path& folder, const Ma
   return map;
 }
 
-ReportOptions read_report(TomlTable& table) {
+ReportOptions read_report(TomlTable& table, const std::filesystem::path& folder) {
   ReportOptions report;
   report.page = table.boolean_or("page", true);
   report.title = table.text_or("title", "");
   report.facts = read_report_facts(table);
+  if (table.has("before")) report.before = folder / table.text("before");
+  table.text_or("before", "");
   table.finish();
   return report;
 }
@@ -162,7 +164,7 @@ Study parse_study(const std::string& text, const std::filesystem::path& path, co
   }
   if (auto table = root.optional_table("identify")) study.identification = read_identification(*table, folder, machine);
   if (auto table = root.optional_table("map")) study.map = read_map(*table, folder, machine);
-  if (auto table = root.optional_table("report")) study.report = read_report(*table);
+  if (auto table = root.optional_table("report")) study.report = read_report(*table, folder);
   root.finish();
   if (study.identification && study.setups.empty()) root.fail("identify", "there are no readings", "a [[setup]]");
   if (study.setups.empty() && !study.map) root.fail("", "nothing to do", "[[setup]] and [identify], or [map]");

@@ -76,9 +76,9 @@ class CustomerPage {
     const auto degrees = [&](double value) { return local_number(value, 1, language_); };
     if (facts.temperature) text = customer_text(Word::temperature_mean, language_, degrees(*facts.temperature));
     if (facts.temperature_range) {
-      text += (text.empty() ? "" : ", ") + customer_text(Word::temperature_range, language_,
-                                                         degrees((*facts.temperature_range)[0]),
-                                                         degrees((*facts.temperature_range)[1]));
+      text += (text.empty() ? "" : ", ") +
+              customer_text(Word::temperature_range, language_,
+                            {degrees((*facts.temperature_range)[0]), degrees((*facts.temperature_range)[1])});
     }
     return text;
   }
@@ -252,13 +252,21 @@ class CustomerPage {
   }
 
   std::string notes() const {
-    if (report_.notes.empty()) return "";
+    if (report_.notes.empty() && report_.conditions.empty()) return "";
+    const auto list = [](const std::vector<std::string>& lines, const char* attribute) {
+      std::string text = fmt::format("<ul{}>\n", attribute);
+      for (const std::string& line : lines) text += fmt::format("<li>{}</li>\n", xml_text(line));
+      return text + "</ul>\n";
+    };
     std::string text = fmt::format("<section class=\"notes\">\n<h2>{}</h2>\n", word(Word::notes));
-    if (language_ != ReportLanguage::english)
-      text += fmt::format("<p>{}{}</p>\n", word(Word::notes_in_english), colon());
-    text += "<ul lang=\"en\">\n";
-    for (const std::string& note : report_.notes) text += fmt::format("<li>{}</li>\n", xml_text(note));
-    return text + "</ul>\n</section>\n";
+    if (!report_.conditions.empty()) text += list(report_.conditions, "");
+    if (!report_.notes.empty()) {
+      if (language_ != ReportLanguage::english) {
+        text += fmt::format("<p>{}{}</p>\n", word(Word::notes_in_english), colon());
+      }
+      text += list(report_.notes, " lang=\"en\"");
+    }
+    return text + "</section>\n";
   }
 
   std::string signatures() const {

@@ -1,11 +1,13 @@
 #include "abbe/report/customer/customer_positioning.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "abbe/geometry/angle_units.h"
 #include "abbe/report/customer/customer_words.h"
 #include "abbe/report/customer/local_numbers.h"
 #include "abbe/report/drawings/positioning_plot.h"
+#include "abbe/report/evaluations/positioning_report.h"
 
 namespace abbe {
 namespace {
@@ -24,6 +26,8 @@ struct Language {
   const char* deviation_unit() const { return rotary ? "″" : "µm"; }
   std::string position(double value) const { return local_short_number(value * (rotary ? 1 / kDegree : 1), language); }
   std::string deviation(double value) const { return local_number(value * (rotary ? 1 / kArcsec : 1e3), 2, language); }
+  /// Before a sentence on one of several things.
+  static std::string prefix(const std::string& of) { return of.empty() ? "" : of + ": "; }
   std::string with_unit(Word word, const char* unit) const { return this->word(word) + " / " + unit; }
 };
 
@@ -75,15 +79,43 @@ CustomerReport begun_report(const ReportFacts& facts, const EvaluationReport& no
     report.states = {{in.word(Word::before), ""}, {in.word(Word::after), ""}};
   }
   add_figures(now, before, in, report);
-  const auto add_notes = [&](const EvaluationReport& evaluated, const char* of) {
-    for (const std::string& note : evaluated.notes) report.notes.push_back(of + note);
-    for (const EvaluationFigure& figure : evaluated.figures) {
-      if (!figure.value) report.notes.push_back(of + figure.symbol + ": " + figure.missing);
-    }
-  };
-  if (before != nullptr) add_notes(*before, "before: ");
-  add_notes(now, before != nullptr ? "after: " : "");
   return report;
+}
+
+/// Why a figure is not evaluated, in the language of the report; as it is where there are no words for it.
+std::string missing_words(const std::string& missing, const Language& in) {
+  constexpr std::pair<FigureStatus, Word> kReasons[] = {
+      {FigureStatus::no_readings, Word::no_readings},
+      {FigureStatus::needs_two_runs, Word::needs_two_runs},
+      {FigureStatus::needs_both_directions, Word::needs_both_directions},
+      {FigureStatus::needs_this_direction, Word::needs_this_direction},
+      {FigureStatus::needs_two_positions, Word::needs_two_positions}};
+  for (const auto& [status, word] : kReasons) {
+    if (missing == figure_status_words(status)) return in.word(word);
+  }
+  return missing;
+}
+
+/// What readings lack of what the standard asks. @param of  what they are of: a state, a diagonal; or empty
+void add_shortfalls(const PositioningEvaluation& evaluation, const std::string& of, const Language& in,
+                    CustomerReport& report) {
+  for (const PositioningShortfall& one : positioning_shortfalls(evaluation, in.rotary)) {
+    using Kind = PositioningShortfall::Kind;
+    const Word word = one.kind == Kind::few_runs      ? Word::few_runs
+                      : one.kind == Kind::uneven_runs ? Word::uneven_runs
+                      : one.kind == Kind::few_targets ? Word::few_targets
+                                                      : Word::equal_spacing;
+    report.conditions.push_back(in.prefix(of) + customer_text(word, in.language, one.numbers));
+  }
+}
+
+/// Which figures are not evaluated, and why.
+void add_missing(const EvaluationReport& evaluated, const std::string& of, const Language& in, CustomerReport& report) {
+  for (const EvaluationFigure& figure : evaluated.figures) {
+    if (figure.value) continue;
+    report.conditions.push_back(in.prefix(of) + standard_symbol(figure.symbol) + ": " +
+                                missing_words(figure.missing, in));
+  }
 }
 
 CustomerTable targets_table(const PositioningEvaluation& evaluation, const std::string& state, const Language& in) {
@@ -128,14 +160,17 @@ CustomerReport customer_positioning(const ReportFacts& facts, bool rotary, const
   const Language in{facts.language, rotary};
   CustomerReport report = begun_report(facts, now.report, before != nullptr ? &before->report : nullptr, in,
                                        rotary ? Word::rotary_axis : Word::linear_axis);
-  const auto add_state = [&](const PositioningEvaluation& evaluation, const std::string& state) {
+  const auto add_state = [&](const CustomerPositioning& of, const std::string& state) {
+    const PositioningEvaluation& evaluation = of.evaluation;
+    add_shortfalls(evaluation, state, in, report);
+    add_missing(of.report, state, in, report);
     report.drawings.push_back(
         {in.word(Word::target_errors) + (state.empty() ? "" : " – " + state),
          positioning_plot(evaluation, rotary, state.empty() ? report.subject : state, plot_words(in)).wide});
     report.tables.push_back(targets_table(evaluation, state, in));
   };
-  if (before != nullptr) add_state(before->evaluation, in.word(Word::before));
-  add_state(now.evaluation, before != nullptr ? in.word(Word::after) : "");
+  if (before != nullptr) add_state(*before, in.word(Word::before));
+  add_state(now, before != nullptr ? in.word(Word::after) : "");
   return report;
 }
 
@@ -153,11 +188,13 @@ CustomerReport customer_diagonals(const ReportFacts& facts, const EvaluationRepo
                    in.with_unit(Word::reversal, unit),
                    in.with_unit(Word::mean_both, unit)};
   for (const DiagonalEvaluation& diagonal : evaluation.diagonals) {
+    add_shortfalls(diagonal.positioning, diagonal.name, in, shown);
     const CustomerTable one = targets_table(diagonal.positioning, "", in);
     for (const std::vector<std::string>& row : one.rows) {
       table.rows.push_back({diagonal.name, row[0], row[1], row[3], row[5], row[6]});
     }
   }
+  add_missing(report, "", in, shown);
   shown.tables.push_back(std::move(table));
   shown.drawings.push_back({in.word(Word::target_errors), diagonals_plot(evaluation, shown.subject).wide});
   return shown;

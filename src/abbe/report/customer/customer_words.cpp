@@ -1,7 +1,5 @@
 #include "abbe/report/customer/customer_words.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <cassert>
 
@@ -169,6 +167,40 @@ constexpr WordInLanguages kWords[] = {
       "Simuliert: Die Messwerte sind berechnet; es wurde keine Maschine gemessen.",
       "仿真：读数由计算得到，未对任何机床进行测量。",
       "シミュレーション：測定値は計算によるもので、機械は測定していません。"}},
+    {Word::few_runs,
+     {"ISO 230-2 asks for at least five runs from each side; the fewest here is {}.",
+      "ISO 230-2 verlangt mindestens fünf Anfahrten von jeder Seite; hier sind es an einer Stelle {}.",
+      "ISO 230-2 要求每个方向至少五次趋近；此处最少为 {} 次。",
+      "ISO 230-2 は各方向から 5 回以上の位置決めを求めていますが、最少は {} 回です。"}},
+    {Word::uneven_runs,
+     {"The number of readings from one side differs between positions: {} to {}.",
+      "Die Anzahl der Messwerte von einer Seite ist nicht an allen Positionen gleich: {} bis {}.",
+      "各位置单方向的读数数量不同：{} 至 {}。", "一方向の測定回数が位置によって異なります：{} ～ {}。"}},
+    {Word::few_targets,
+     {"ISO 230-2 asks for at least {} target positions on a travel of {}; there are {}.",
+      "ISO 230-2 verlangt mindestens {} Zielpositionen auf einem Weg von {}; es sind {}.",
+      "ISO 230-2 要求至少 {} 个目标位置（行程 {}）；此处为 {} 个。",
+      "ISO 230-2 は {} 点以上の目標位置（移動量 {}）を求めていますが、{} 点です。"}},
+    {Word::equal_spacing,
+     {"The targets are equally spaced: deviations that repeat with their distance, or a whole fraction of it, do not "
+      "show.",
+      "Die Ziele haben gleiche Abstände: Abweichungen, die sich mit diesem Abstand oder einem ganzen Teil davon "
+      "wiederholen, sind nicht erkennbar.",
+      "目标位置等间距：以该间距或其整数分之一为周期的偏差无法显现。",
+      "目標位置が等間隔です：その間隔又は整数分の一の周期をもつ偏差は現れません。"}},
+    {Word::no_readings, {"there are no readings", "keine Messwerte", "没有读数", "測定値がありません"}},
+    {Word::needs_two_runs,
+     {"a position was read once only", "eine Position wurde nur einmal gemessen", "某位置仅测量一次",
+      "1 回しか測定していない位置があります"}},
+    {Word::needs_both_directions,
+     {"a position was approached from one side only", "eine Position wurde nur von einer Seite angefahren",
+      "某位置仅从一个方向趋近", "一方向からしか位置決めしていない位置があります"}},
+    {Word::needs_this_direction,
+     {"a position was not approached from this side", "eine Position wurde von dieser Seite nicht angefahren",
+      "某位置未从该方向趋近", "この方向から位置決めしていない位置があります"}},
+    {Word::needs_two_positions,
+     {"a span needs two positions", "eine Spannweite braucht zwei Positionen", "范围需要两个位置",
+      "範囲には 2 点以上の位置が必要です"}},
     {Word::notes, {"Conditions and notes", "Bedingungen und Hinweise", "条件与说明", "条件及び注記"}},
     {Word::notes_in_english,
      {"Of the evaluation", "Der Auswertung (englisch)", "评定说明（英文）", "評価に関する注記（英文）"}},
@@ -270,13 +302,22 @@ std::string_view customer_word(CustomerWord word, ReportLanguage language) {
   return entry.texts[static_cast<std::size_t>(language)];
 }
 
-std::string customer_text(CustomerWord word, ReportLanguage language, const std::string& first) {
-  return fmt::format(fmt::runtime(customer_word(word, language)), first);
+std::string customer_text(CustomerWord word, ReportLanguage language, const std::vector<std::string>& places) {
+  constexpr std::string_view kPlace = "{}";
+  const std::string_view text = customer_word(word, language);
+  std::string filled;
+  std::size_t at = 0;
+  for (const std::string& place : places) {
+    const std::size_t found = text.find(kPlace, at);
+    assert(found != std::string_view::npos);
+    filled += std::string(text.substr(at, found - at)) + place;
+    at = found + kPlace.size();
+  }
+  return filled + std::string(text.substr(at));
 }
 
-std::string customer_text(CustomerWord word, ReportLanguage language, const std::string& first,
-                          const std::string& second) {
-  return fmt::format(fmt::runtime(customer_word(word, language)), first, second);
+std::string customer_text(CustomerWord word, ReportLanguage language, const std::string& place) {
+  return customer_text(word, language, std::vector<std::string>{place});
 }
 
 std::string_view positioning_figure_name(std::string_view symbol, ReportLanguage language) {

@@ -59,7 +59,9 @@ TEST(CustomerWords, FiguresOfPositioningHaveNamesInEveryLanguage) {
 }
 
 TEST(CustomerWords, TextsAreFilledInTheirPlaces) {
-  EXPECT_EQ(customer_text(CustomerWord::temperature_range, ReportLanguage::german, "19,8", "20,9"), "19,8 bis 20,9 °C");
+  EXPECT_EQ(
+      customer_text(CustomerWord::temperature_range, ReportLanguage::german, std::vector<std::string>{"19,8", "20,9"}),
+      "19,8 bis 20,9 °C");
   EXPECT_EQ(customer_text(CustomerWord::axis_errors, ReportLanguage::japanese, "X"), "X 軸の各位置における誤差");
 }
 

@@ -92,16 +92,14 @@ EvaluationFigure report_figure(const std::string& symbol, const std::string& nam
   return result;
 }
 
-std::vector<std::string> positioning_notes(const PositioningEvaluation& evaluation, bool rotary) {
-  std::vector<std::string> notes;
+std::vector<PositioningShortfall> positioning_shortfalls(const PositioningEvaluation& evaluation, bool rotary) {
+  using Kind = PositioningShortfall::Kind;
+  std::vector<PositioningShortfall> found;
   const double span = rounded_position(evaluation.span(), rotary);
-  if ((rotary || span <= 2000) && evaluation.fewest_runs < 5) {
-    notes.push_back(fmt::format("ISO 230-2 asks for at least five runs from each side; the fewest here is {}",
-                                evaluation.fewest_runs));
-  }
+  const std::string fewest = std::to_string(evaluation.fewest_runs);
+  if ((rotary || span <= 2000) && evaluation.fewest_runs < 5) found.push_back({Kind::few_runs, {fewest}});
   if (evaluation.fewest_runs != evaluation.most_runs) {
-    notes.push_back(fmt::format("the number of readings from one side differs between positions: {} to {}",
-                                evaluation.fewest_runs, evaluation.most_runs));
+    found.push_back({Kind::uneven_runs, {fewest, std::to_string(evaluation.most_runs)}});
   }
   std::size_t wanted = 0;
   if (rotary) {
@@ -110,14 +108,37 @@ std::vector<std::string> positioning_notes(const PositioningEvaluation& evaluati
     wanted = std::max<std::size_t>(5, static_cast<std::size_t>(std::ceil(5 * span / 1000)));
   }
   if (evaluation.targets.size() < wanted) {
-    notes.push_back(
-        fmt::format("ISO 230-2 asks for at least {} target positions on a travel of {:.6g} {}; there are {}", wanted,
-                    span, rotary ? "\xC2\xB0" : "mm", evaluation.targets.size()));
+    found.push_back({Kind::few_targets,
+                     {std::to_string(wanted), fmt::format("{:.6g} {}", span, rotary ? "\xC2\xB0" : "mm"),
+                      std::to_string(evaluation.targets.size())}});
   }
-  if (equally_spaced(evaluation.targets)) {
-    notes.push_back(
-        "the targets are equally spaced: deviations that repeat with their distance or a whole fraction of it (pitch "
-        "of a screw, of a scale) do not show");
+  if (equally_spaced(evaluation.targets)) found.push_back({Kind::equal_spacing, {}});
+  return found;
+}
+
+std::vector<std::string> positioning_notes(const PositioningEvaluation& evaluation, bool rotary) {
+  using Kind = PositioningShortfall::Kind;
+  std::vector<std::string> notes;
+  for (const PositioningShortfall& one : positioning_shortfalls(evaluation, rotary)) {
+    const std::vector<std::string>& n = one.numbers;
+    switch (one.kind) {
+      case Kind::few_runs:
+        notes.push_back("ISO 230-2 asks for at least five runs from each side; the fewest here is " + n[0]);
+        break;
+      case Kind::uneven_runs:
+        notes.push_back(
+            fmt::format("the number of readings from one side differs between positions: {} to {}", n[0], n[1]));
+        break;
+      case Kind::few_targets:
+        notes.push_back(fmt::format("ISO 230-2 asks for at least {} target positions on a travel of {}; there are {}",
+                                    n[0], n[1], n[2]));
+        break;
+      case Kind::equal_spacing:
+        notes.emplace_back(
+            "the targets are equally spaced: deviations that repeat with their distance or a whole fraction of it "
+            "(pitch of a screw, of a scale) do not show");
+        break;
+    }
   }
   return notes;
 }

@@ -63,6 +63,25 @@ TEST(CustomerEvaluation, NumbersInTheTableFollowTheLanguage) {
   EXPECT_THAT(report.tables[0].rows[0][1], HasSubstr(","));
 }
 
+TEST(CustomerEvaluation, ConditionsAreInTheLanguageOfTheReport) {
+  PositioningTest test;
+  for (const double target : {0.0, 100.0, 200.0}) {
+    test.readings.readings.push_back({target, 1e-3, ApproachDirection::positive});
+  }
+  const Evaluation evaluation = evaluate_readings({"short.csv", test, {}, {}});
+  ReportFacts facts;
+  facts.language = ReportLanguage::german;
+  const CustomerReport report = customer_evaluation(facts, evaluation, nullptr, {});
+  EXPECT_THAT(report.conditions, testing::Contains("ISO 230-2 verlangt mindestens fünf Anfahrten von jeder Seite; hier "
+                                                   "sind es an einer Stelle 1."));
+  EXPECT_THAT(report.conditions, testing::Contains("ISO 230-2 verlangt mindestens 5 Zielpositionen auf einem Weg von "
+                                                   "200 mm; es sind 3."));
+  EXPECT_THAT(report.conditions, testing::Contains(HasSubstr("Die Ziele haben gleiche Abstände")));
+  EXPECT_THAT(report.conditions, testing::Contains("B: eine Position wurde nur von einer Seite angefahren"));
+  EXPECT_THAT(report.notes, testing::IsEmpty());
+  EXPECT_FALSE(report.figures[0].states[0].value);
+}
+
 TEST(CustomerEvaluation, DiagonalsHaveARowForEachTarget) {
   DiagonalsTest test{read_diagonals(kExamples + "evaluate/diagonals.csv")};
   std::size_t targets = 0;
