@@ -66,7 +66,7 @@ TEST_F(CustomerReportCommand, ToleranceOfTheFactsDecideTheExitCode) {
   const CommandResult result = abbe(words);
   EXPECT_EQ(result.exit_code, computation_says_no);
   const std::string page = folder.read("report.html");
-  EXPECT_THAT(page, HasSubstr("Figures exceed their tolerance: A."));
+  EXPECT_THAT(page, HasSubstr("Beyond the tolerance, or not evaluated: A."));
   EXPECT_THAT(page, HasSubstr("No verdict: the measurement uncertainty is not known (A)."));
   EXPECT_EQ(abbe(words).exit_code, bad_input) << "the file exists";
 }

@@ -117,7 +117,10 @@ class CustomerPage {
   /// @param cells  of a caption, headers and rows: HTML
   static std::string table(const std::string& caption, const std::vector<std::string>& headers,
                            const std::vector<std::vector<std::string>>& rows, const char* kind) {
-    std::string text = fmt::format("<table class=\"{}\">\n<caption>{}</caption>\n<thead><tr>", kind, caption);
+    // A short table stays whole, so that no head is alone at the foot of a sheet.
+    constexpr std::size_t kShort = 15;
+    std::string text = fmt::format("<table class=\"{}{}\">\n<caption>{}</caption>\n<thead><tr>", kind,
+                                   rows.size() <= kShort ? " short" : "", caption);
     for (const std::string& header : headers) text += "<th scope=\"col\">" + header + "</th>";
     text += "</tr></thead>\n<tbody>\n";
     for (const std::vector<std::string>& row : rows) {

@@ -39,6 +39,7 @@ th:first-child,td:first-child,.texts th,.texts td,.figures th:nth-child(2),.figu
 .figures td:nth-last-child(2):not(:nth-child(2)){padding-left:0}
 .numbers{font-size:8pt}
 thead{display:table-header-group}
+.short{break-inside:avoid}
 tr,figure,section.verdict,section.warning,section.signatures{break-inside:avoid}
 .small{font-size:7.5pt;color:var(--soft);margin:1.5mm 0 0}
 .warning{border:1.2pt solid var(--refuted);padding:1.5mm 3mm;margin:3mm 0}
@@ -51,12 +52,12 @@ tr,figure,section.verdict,section.warning,section.signatures{break-inside:avoid}
 .open{color:var(--open)}
 .none{color:var(--soft)}
 figure{margin:4mm 0}
-figure svg{display:block;width:100%;height:auto;max-height:82mm}
+figure svg{display:block;width:100%;height:auto;max-height:74mm}
 figcaption{font-size:8pt;color:var(--soft)}
 .notes{font-size:8pt}
 .notes ul{margin:0;padding-left:5mm}
 .signatures>div{display:grid;grid-template-columns:1fr 1fr;gap:10mm}
-.signatures p{margin:9mm 0 0;border-top:.6pt solid var(--ink);font-size:7.5pt;color:var(--soft);padding-top:.5mm}
+.signatures p{margin:7.5mm 0 0;border-top:.6pt solid var(--ink);font-size:7.5pt;color:var(--soft);padding-top:.5mm}
 )css";
 
 }  // namespace
