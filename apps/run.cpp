@@ -27,7 +27,8 @@ void add_run_command(CommandLine& line) {
   Subcommand* command =
       line.add("run", "Run a whole study: simulate or read, identify, verify, map, report",
                "  abbe run examples/aguado/aguado.study.toml\n"
-               "  abbe run examples/three_axis/level-and-autocollimator.study.toml -o results/level --json");
+               "  abbe run examples/three_axis/level-and-autocollimator.study.toml -o results/level --json\n"
+               "  abbe run examples/customer_report/mill.study.toml -o results/mill --pdf");
   command->add_input_file("study", options->study, "Study file (*.study.toml)")->required();
   command->add_output_folder("-o,--output", options->output, "Results folder (default: as in the study)");
   command->add_flag("--accept-uncovered", options->accept_uncovered, kAcceptUncoveredWords);

@@ -16,6 +16,9 @@ using Word = CustomerWord;
 
 constexpr const char* kNone = "–";
 
+/// Rows of the table of targets, and of each of two such tables.
+constexpr std::size_t kMostRows = 60, kMostRowsOfTwo = 30;
+
 /// Names and units of one report, in its language.
 struct Language {
   ReportLanguage language;
@@ -118,6 +121,17 @@ void add_missing(const EvaluationReport& evaluated, const std::string& of, const
   }
 }
 
+/// Leaves rows evenly out, the first and the last never, where there are too many for a short form; the caption then
+/// says how many of how many are shown.
+void thin_rows(std::size_t most, CustomerTable& table) {
+  const std::size_t all = table.rows.size();
+  if (all <= most) return;
+  std::vector<std::vector<std::string>> kept;
+  for (std::size_t i = 0; i < most; ++i) kept.push_back(std::move(table.rows[i * (all - 1) / (most - 1)]));
+  table.rows = std::move(kept);
+  table.caption += " (" + std::to_string(most) + " / " + std::to_string(all) + ")";
+}
+
 CustomerTable targets_table(const PositioningEvaluation& evaluation, const std::string& state, const Language& in) {
   const char* const unit = in.deviation_unit();
   CustomerTable table;
@@ -168,6 +182,7 @@ CustomerReport customer_positioning(const ReportFacts& facts, bool rotary, const
         {in.word(Word::target_errors) + (state.empty() ? "" : " – " + state),
          positioning_plot(evaluation, rotary, state.empty() ? report.subject : state, plot_words(in)).wide});
     report.tables.push_back(targets_table(evaluation, state, in));
+    thin_rows(before != nullptr ? kMostRowsOfTwo : kMostRows, report.tables.back());
   };
   if (before != nullptr) add_state(*before, in.word(Word::before));
   add_state(now, before != nullptr ? in.word(Word::after) : "");
@@ -195,6 +210,7 @@ CustomerReport customer_diagonals(const ReportFacts& facts, const EvaluationRepo
     }
   }
   add_missing(report, "", in, shown);
+  thin_rows(kMostRows, table);
   shown.tables.push_back(std::move(table));
   shown.drawings.push_back({in.word(Word::target_errors), diagonals_plot(evaluation, shown.subject).wide});
   return shown;

@@ -82,6 +82,19 @@ TEST(CustomerEvaluation, ConditionsAreInTheLanguageOfTheReport) {
   EXPECT_FALSE(report.figures[0].states[0].value);
 }
 
+TEST(CustomerEvaluation, OfManyTargetsSomeAreShownAndTheCaptionSaysSo) {
+  PositioningTest test;
+  for (int i = 0; i < 300; ++i) test.readings.readings.push_back({1.0 * i * i, 1e-3, ApproachDirection::positive});
+  const Evaluation evaluation = evaluate_readings({"long.csv", test, {}, {}});
+  const CustomerTable table = customer_evaluation({}, evaluation, nullptr, {}).tables.front();
+  EXPECT_EQ(table.rows.size(), 60U);
+  EXPECT_THAT(table.caption, HasSubstr("(60 / 300)"));
+  EXPECT_EQ(table.rows.front()[0], "0");
+  EXPECT_EQ(table.rows.back()[0], "89401");
+  const CustomerReport both = customer_evaluation({}, evaluation, &evaluation, {});
+  EXPECT_EQ(both.tables[0].rows.size() + both.tables[1].rows.size(), 60U);
+}
+
 TEST(CustomerEvaluation, DiagonalsHaveARowForEachTarget) {
   DiagonalsTest test{read_diagonals(kExamples + "evaluate/diagonals.csv")};
   std::size_t targets = 0;
