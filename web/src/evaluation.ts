@@ -6,7 +6,7 @@ import {drawing} from './drawings';
 import {fixed, prose} from './format';
 import {dataTable} from './table';
 
-/// As evaluation_report.cpp names them; "not proven": the tolerance lies within the uncertainty.
+/// As evaluation_report.cpp names them; "not proven": the tolerance lies within the guard band.
 const kVerdicts: Record<string, string> = {
   within: 'agrees', 'within, not proven': 'undecided', 'exceeded, not proven': 'exceeded', exceeded: 'exceeded', 'cannot be judged': 'exceeded',
 };
