@@ -173,6 +173,11 @@ TEST_F(CustomerReportCommand, StudiesShowResultsBeforeACorrection) {
     const std::string page = folder.read("second/customer-report.html");
     EXPECT_THAT(page, HasSubstr("<b>Before correction: </b>Conformity"));
     EXPECT_THAT(page, HasSubstr("<b>After correction: </b>Conformity"));
+    const std::string certificate = folder.read("second/calibration-certificate.xml");
+    const std::size_t after = certificate.find("After correction");
+    ASSERT_NE(after, std::string::npos);
+    EXPECT_LT(certificate.find("Before correction"), after);
+    EXPECT_LT(after, certificate.find("<si:ellipsoidalRegionXMLList>")) << "the errors are those of the machine now";
   }
   EXPECT_EQ(abbe({"run", study, "-o", "third", "--before", "nowhere"}).exit_code, bad_input);
   const CommandResult without =

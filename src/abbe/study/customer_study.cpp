@@ -269,9 +269,11 @@ std::string study_certificate(const Study& study, const StudyResult& result) {
     std::replace(errors.names[i].begin(), errors.names[i].end(), ' ', '_');
   }
   CustomerReport report = study_customer_report(study, result);
-  // A prediction is no measurement.
-  report.states.resize(1);
-  for (CustomerFigure& figure : report.figures) figure.states.resize(1);
+  if (!result.before) {
+    // The second state is predicted, which is no measurement.
+    report.states.resize(1);
+    for (CustomerFigure& figure : report.figures) figure.states.resize(1);
+  }
   return calibration_certificate(report, errors);
 }
 

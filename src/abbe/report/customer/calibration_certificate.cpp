@@ -263,8 +263,8 @@ class CertificateWriter {
     if (is_empty) english("dcc:text", {"No figure could be evaluated."});
     xml_.close();
     xml_.close();
-    // The errors are those of the machine as measured: of the first state.
-    if (errors_ && state == 0) write_errors();
+    // The errors are those of the machine as it is now: of the last state.
+    if (errors_ && state + 1 == report_.states.size()) write_errors();
     xml_.close();
     xml_.close();
   }
