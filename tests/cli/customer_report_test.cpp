@@ -2,10 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <thread>
 
 #include "abbe/formats/files/printed_page.h"
 #include "cli/command_test.h"
@@ -193,6 +196,33 @@ TEST_F(CustomerReportCommand, AStudyWithoutFactsHasNoneToPrint) {
   EXPECT_EQ(result.exit_code, bad_input);
   EXPECT_THAT(result.err, HasSubstr("states no facts of a customer report"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST_F(CustomerReportCommand, AnInterruptionEndsTheBrowserAndLeavesNothing) {
+  // It writes again and again to its folder, as a browser does to its profile.
+  folder.write("browser",
+               "#!/bin/sh\nfor word; do case $word in --user-data-dir=*) profile=${word#*=};; esac; done\n"
+               "while true; do mkdir -p $profile; echo > $profile/written; done\n");
+  std::filesystem::permissions(folder.path() / "browser", std::filesystem::perms::owner_all);
+  const std::filesystem::path temporary = folder.path() / "temporary";
+  std::filesystem::create_directory(temporary);
+  const auto is_printing = [&](pid_t) {
+    for (const auto& entry : std::filesystem::directory_iterator(temporary)) {
+      if (std::filesystem::exists(entry.path() / "profile" / "written")) return true;
+    }
+    return false;
+  };
+  const std::string browser = "ABBE_BROWSER=" + (folder.path() / "browser").string();
+  const CommandResult result =
+      run_and_signal("/usr/bin/env",
+                     {browser, "TMPDIR=" + temporary.string(), ABBE_COMMAND, "evaluate", "positioning",
+                      kCustomerExamples + "after.csv", "--customer-report", "report.pdf"},
+                     folder.path(), SIGTERM, is_printing);
+  EXPECT_TRUE(result.signalled);
+  EXPECT_EQ(result.exit_code, 128 + SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_TRUE(std::filesystem::is_empty(temporary)) << "the browser still runs";
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "report.pdf"));
 }
 
 /// Printed by the browser that is installed; skipped, visibly, without one and without fonts of the language.

@@ -30,9 +30,16 @@ class MemoryFile {
 
 /// Runs a program without a shell, its outputs into memory, its input empty, and waits for its end.
 ///
-/// It is killed when the time is over, and must itself ask for being killed with its parent (PR_SET_PDEATHSIG).
+/// It is killed when the time is over, and must itself ask for being killed with its parent (PR_SET_PDEATHSIG) or have
+/// a group of its own.
 class ChildProcess {
  public:
+  /// Where a program and the processes that it starts belong.
+  enum class Group {
+    of_parent,
+    own  ///< all of it is killed when the time is over, and by an interruption (interruption.h)
+  };
+
   /// @param words         path of the program, arguments
   /// @param most_seconds  of the clock on the wall
   /// @param listen        called with each whole line on standard error, some time after it was written, by this
@@ -40,7 +47,7 @@ class ChildProcess {
   /// @throws InputError if the program cannot be started, std::runtime_error if the system gives no memory for its
   /// output, what listen() throws
   ChildProcess(const std::vector<std::string>& words, double most_seconds,
-               const std::function<void(std::string_view line)>& listen = {});
+               const std::function<void(std::string_view line)>& listen = {}, Group group = Group::of_parent);
 
   bool timed_out() const { return timed_out_; }
   int signal() const;                                                 ///< that ended it, or 0

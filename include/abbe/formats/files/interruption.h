@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -35,6 +37,19 @@ class UnfinishedPath {
 
  private:
   std::filesystem::path path_;
+};
+
+/// Processes that are killed, before anything is removed, if this one is interrupted while this lives.
+class UnfinishedProcesses {
+ public:
+  /// @param group  number of their process group, of which this process is no part
+  explicit UnfinishedProcesses(pid_t group);
+  ~UnfinishedProcesses();
+  UnfinishedProcesses(const UnfinishedProcesses&) = delete;
+  UnfinishedProcesses& operator=(const UnfinishedProcesses&) = delete;
+
+ private:
+  pid_t group_;
 };
 
 }  // namespace abbe

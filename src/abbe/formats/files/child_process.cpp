@@ -12,15 +12,17 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
+#include "abbe/formats/files/interruption.h"
 #include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {
 
-pid_t start(const std::vector<std::string>& words, int output, int messages) {
+pid_t start(const std::vector<std::string>& words, int output, int messages, bool own_group) {
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
@@ -35,7 +37,9 @@ pid_t start(const std::vector<std::string>& words, int output, int messages) {
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes,
+                           static_cast<short>(POSIX_SPAWN_SETSIGMASK | (own_group ? POSIX_SPAWN_SETPGROUP : 0)));
   pid_t child = 0;
   const int problem = ::posix_spawn(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
   posix_spawnattr_destroy(&attributes);
@@ -97,9 +101,17 @@ void MemoryFile::map() {
 }
 
 ChildProcess::ChildProcess(const std::vector<std::string>& words, double most_seconds,
-                           const std::function<void(std::string_view line)>& listen) {
+                           const std::function<void(std::string_view line)>& listen, Group group) {
   using Clock = std::chrono::steady_clock;
-  const pid_t child = start(words, output_.descriptor(), messages_.descriptor());
+  const bool own_group = group == Group::own;
+  std::optional<UnfinishedProcesses> noted;
+  pid_t child = 0;
+  {
+    std::optional<UninterruptedSteps> together;
+    if (own_group) together.emplace();
+    child = start(words, output_.descriptor(), messages_.descriptor(), own_group);
+    if (own_group) noted.emplace(child);
+  }
   const Clock::time_point begin = Clock::now();
   GrowingLines lines(messages_.descriptor());
   Clock::time_point next = begin;
@@ -110,13 +122,14 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, double most_se
     if (ended < 0 && errno != EINTR) throw std::runtime_error(fmt::format("{} is lost", words[0]));
     if (!timed_out_ && std::chrono::duration<double>(Clock::now() - begin).count() > most_seconds) {
       timed_out_ = true;
-      ::kill(child, SIGKILL);
+      ::kill(own_group ? -child : child, SIGKILL);
       continue;
     }
     if (listen && Clock::now() > next) {
       try {
         lines.pass_on(listen);
       } catch (...) {
+        if (own_group) ::kill(-child, SIGKILL);
         end(child);
         throw;
       }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <thread>
 #include <vector>
@@ -18,11 +19,21 @@ struct Unfinished {
   std::mutex steps;  ///< held while files are made, renamed or removed
   std::mutex list;
   std::vector<std::filesystem::path> paths;
+  std::vector<pid_t> groups;
 };
 
 Unfinished& unfinished() {
   static auto* const all = new Unfinished;
   return *all;
+}
+
+/// What still runs would write again what is removed. Killed processes that nobody has waited for yet count as running,
+/// so the wait has an end.
+void kill_groups(const std::vector<pid_t>& groups) {
+  for (const pid_t group : groups) {
+    ::kill(-group, SIGKILL);
+    for (int i = 0; i < 100 && ::kill(-group, 0) == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
 }
 
 sigset_t signals_of_interruption() {
@@ -52,6 +63,7 @@ void end_cleanly_when_interrupted(std::function<void(int signal)> before) {
     all.steps.lock();
     if (before) before(signal);
     all.list.lock();
+    kill_groups(all.groups);
     for (const std::filesystem::path& path : all.paths) remove_unfinished(path);
     ::_exit(128 + signal);
   }).detach();
@@ -69,6 +81,18 @@ UnfinishedPath::~UnfinishedPath() {
   std::vector<std::filesystem::path>& paths = unfinished().paths;
   const auto found = std::find(paths.begin(), paths.end(), path_);
   if (found != paths.end()) paths.erase(found);
+}
+
+UnfinishedProcesses::UnfinishedProcesses(pid_t group) : group_(group) {
+  const std::lock_guard<std::mutex> lock(unfinished().list);
+  unfinished().groups.push_back(group_);
+}
+
+UnfinishedProcesses::~UnfinishedProcesses() {
+  const std::lock_guard<std::mutex> lock(unfinished().list);
+  std::vector<pid_t>& groups = unfinished().groups;
+  const auto found = std::find(groups.begin(), groups.end(), group_);
+  if (found != groups.end()) groups.erase(found);
 }
 
 }  // namespace abbe

@@ -142,7 +142,8 @@ PrintedPage print_page(const std::string& html, const PrintSettings& settings) {
   }
   const TemporaryPlace place;
   std::ofstream(place.path() / "page.html", std::ios::binary) << html;
-  const ChildProcess process(browser_command(browser, place.path()), settings.most_seconds);
+  const ChildProcess process(browser_command(browser, place.path()), settings.most_seconds, {},
+                             ChildProcess::Group::own);
   if (process.timed_out()) {
     printed.problem = fmt::format("{} did not finish within {:g} s", browser.string(), settings.most_seconds);
     return printed;
