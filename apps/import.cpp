@@ -93,8 +93,8 @@ void add_import_command(CommandLine& line) {
       "--mapping examples/import/total-station.import.toml -o readings-again.csv\n"
       "  abbe import examples/import/positioning.csv -o positioning.csv\n"
       "  abbe import examples/import/points-inch.txt --as points\n"
-      "  abbe import examples/import/laser.rtl --length-unit mm -o positioning.csv\n"
-      "  abbe import examples/import/probe-log.txt --format linuxcnc-probe --length-unit mm -o points.csv\n\n"
+      "  abbe import examples/import/laser.rtl --length-unit mm -o laser.csv\n"
+      "  abbe import examples/import/probe-log.txt --format linuxcnc-probe --length-unit mm -o probed.csv\n\n"
       "It finds encoding, separator, decimal mark, header and units, proposes where each column comes from, and says "
       "why. Files of instruments are recognised by their contents.\n"
       "Exit code 1: something is uncertain and the table is not written; the text says what. docs/import.md.");
