@@ -5,7 +5,7 @@
 #   make demo      set-up, build the command alone, run the main study of examples/, say where the report is
 #   make closed-loop  measure, identify, compensate, run in LinuxCNC, verify: examples/closed_loop
 #   make test      set-up, unit and quick tests, those of Python, the most important ones under the sanitizers, short fuzzing
-#   make long      the other tests: runs in LinuxCNC, published studies, simulated campaigns, the site
+#   make long      the other tests: LinuxCNC, published studies, simulated campaigns, notebooks, long pages, the site
 #   make sanitize  all quick tests under the sanitizers; continuous integration runs make test, make long and this
 #   make python    set-up, the Python package and its tests
 #   make site      set-up, documentation and reference of the Python package as a site: build/site/index.html
@@ -93,7 +93,8 @@ test:
 	@ABBE_FUZZ_SECONDS=$(TEST_FUZZ_SECONDS) ctest --preset fuzz -j $(JOBS)
 	$(call say,6 of 6: tests)
 	@ctest --preset dev -j $(TEST_JOBS) -LE 'long|site'
-	@echo "All passed. Runs in LinuxCNC, published studies, simulated campaigns and the site are tested by: make long"
+	@echo "All passed. Runs in LinuxCNC, published studies, simulated campaigns, notebooks, long pages and the site are" \
+	  "tested by: make long"
 
 long:
 	@.ci/set-up test $(SET_UP_PYTHON) $(SET_UP_SITE)
