@@ -10,6 +10,7 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
+#include "abbe/formats/text/list_text.h"
 #include "abbe/history/machine_history.h"
 #include "abbe/history/machine_trends.h"
 #include "abbe/report/pages/evaluation_files.h"
@@ -37,9 +38,9 @@ struct HistoryCommand {
 int run_add(const HistoryCommand& command) {
   if (command.dates.size() != command.campaigns.size()) {
     throw InputError({.field = "--date"},
-                     fmt::format("{} for {} campaign{}", command.dates.size(), command.campaigns.size(),
-                                 command.campaigns.size() == 1 ? "" : "s"),
-                     "the day of every campaign, in their order");
+                     fmt::format("{} for {}", counted(command.dates.size(), "date", "dates"),
+                                 counted(command.campaigns.size(), "campaign", "campaigns")),
+                     "one date for each campaign, in their order");
   }
   std::vector<CampaignToKeep> campaigns;
   for (std::size_t i = 0; i < command.campaigns.size(); ++i) {
@@ -140,7 +141,7 @@ void add_history_command(CommandLine& line) {
   history->require_subcommand(1);
 
   Subcommand* add =
-      add_part(*history, line, command, "add", "Add campaigns: all of them, or none",
+      add_part(*history, line, command, "add", "Add campaigns to a history, all or none",
                "  abbe history add mill.history examples/compare/march.errors.toml examples/compare/june.errors.toml "
                "examples/compare/october.errors.toml --date 2026-03-02 --date 2026-06-01 --date 2026-10-05 --machine "
                "examples/machines/three-axis-mill.machine.toml",
@@ -148,7 +149,8 @@ void add_history_command(CommandLine& line) {
   add->add_input_file("campaigns", command->campaigns,
                       "Results folders of abbe run, or errors files (*.errors.toml) with --machine")
       ->required();
-  add->add_option("--date", command->dates, "Day on which a campaign was measured, year-month-day; one per campaign")
+  add->add_option("--date", command->dates,
+                  "Date of the measurement, such as 2026-03-02; one for each campaign, in their order")
       ->expected(1)
       ->take_all()
       ->required();
@@ -158,14 +160,16 @@ void add_history_command(CommandLine& line) {
                               "  abbe history list mill.history", run_list);
   list->add_flag("--json", command->json, "Print JSON for programs");
 
-  Subcommand* trends = add_part(
-      *history, line, command, "trends", "Follow every error: drift with uncertainty, unexpected values, next campaign",
-      "  abbe history trends mill.history\n"
-      "  abbe history trends mill.history --limit-um 20 -o results/trends\n\n"
-      "Exit code 1: an error of the last campaign is outside what the earlier campaigns let expect.",
-      run_trends);
-  add_number(trends, "--limit-um", Quantity::length, "um", {0, 1e6}, command->trends.limit_mm,
-             "Change at the tool by one error that is tolerated since the last campaign: says when to measure again");
+  Subcommand* trends =
+      add_part(*history, line, command, "trends",
+               "Follow every error: drift with uncertainty, unexpected values, when to measure again",
+               "  abbe history trends mill.history\n"
+               "  abbe history trends mill.history --limit-um 20 -o results/trends\n\n"
+               "Exit code 1: an error of the last campaign is outside what the earlier campaigns predict.",
+               run_trends);
+  add_number(
+      trends, "--limit-um", Quantity::length, "um", {0, 1e6}, command->trends.limit_mm,
+      "Tolerated change at the tool by one error since the last campaign: the output says when to measure again");
   trends->add_option("--last", command->trends.last, "Only the newest campaigns (default 26, the most)")
       ->check(in_range(2, 26));
   trends->add_output_folder("-o,--output", command->output,

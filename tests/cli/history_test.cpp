@@ -57,7 +57,10 @@ TEST_F(HistoryCommandTest, ExportsACampaignThatOtherCommandsRead) {
   const CommandResult same = abbe({"compare", "back", example("compare/march.errors.toml"), "--machine",
                                    example("machines/three-axis-mill.machine.toml"), "--json"});
   ASSERT_EQ(same.exit_code, ExitCode::done) << same.err;
-  for (const nlohmann::json& error : nlohmann::json::parse(same.out)["pairs"][0]["errors"]) {
+  const nlohmann::json comparison = nlohmann::json::parse(same.out);
+  const nlohmann::json& errors = comparison.at("pairs").at(0).at("errors");
+  EXPECT_FALSE(errors.empty());
+  for (const nlohmann::json& error : errors) {
     EXPECT_NE(error["verdict"], "changed") << error.dump();
   }
   const CommandResult missing = abbe({"history", "export", "mill.history", "--campaign", "9", "-o", "none"});
@@ -68,10 +71,11 @@ TEST_F(HistoryCommandTest, ExportsACampaignThatOtherCommandsRead) {
 TEST_F(HistoryCommandTest, SaysWhatIsMissingOrWrong) {
   CommandResult result = add({"march", "june"}, {"2026-03-02"});
   EXPECT_EQ(result.exit_code, ExitCode::bad_input);
-  EXPECT_THAT(result.err, HasSubstr("--date: 1 for 2 campaigns; expected the day of every campaign, in their order"));
+  EXPECT_THAT(result.err,
+              HasSubstr("--date: 1 date for 2 campaigns; expected one date for each campaign, in their order"));
   result = add({"march"}, {"2.3.2026"});
   EXPECT_EQ(result.exit_code, ExitCode::bad_input);
-  EXPECT_THAT(result.err, HasSubstr("--date: '2.3.2026' is not a day; expected year-month-day, such as 2026-03-02"));
+  EXPECT_THAT(result.err, HasSubstr("--date: '2.3.2026' is not a date; expected year-month-day, such as 2026-03-02"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "mill.history"));
   ASSERT_EQ(add({"march"}, {"2026-03-02"}).exit_code, ExitCode::done);
   result = add({"march"}, {"2026-03-03"});

@@ -23,8 +23,8 @@
 //     request.campaigns = abbe::read_history(file);
 //     for (const abbe::ErrorTrend& trend : abbe::find_trends(request).errors) {
 //       if (!trend.expected || trend.expected->is_within) continue;
-//       std::printf("%s: %.1f um, at most %.1f um from where it was were expected\n", trend.name.c_str(),
-//                   1e3 * trend.values.back().value, 1e3 * trend.expected->expanded);
+//       std::printf("%s: changed by %.1f um, predicted were %.1f um +- %.1f um\n", trend.name.c_str(),
+//                   1e3 * trend.values.back().value, 1e3 * trend.expected->value, 1e3 * trend.expected->expanded);
 //     }
 //     std::filesystem::remove(file);
 //     return 0;

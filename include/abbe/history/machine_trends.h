@@ -46,7 +46,7 @@ struct MachineTrends {
   std::string next_error;    ///< which error decides it
   EvaluationReport report;
 
-  /// Whether no error is outside what its earlier values let expect.
+  /// Whether no error is outside what its earlier values predict.
   bool is_in_control() const;
 };
 

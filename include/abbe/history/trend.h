@@ -26,7 +26,7 @@ struct Trend {
   double coverage_factor = 2;     ///< for 95.45 %: of Student's t with n - 2 degrees of freedom if there is a scatter
   std::optional<double> probability;  ///< of so large a slope without a drift
 
-  /// Whether the slope is no chance, at 95.45 %.
+  /// Whether the slope is significant, at 95.45 %.
   bool drifts() const;
   /// Value at a time and its standard uncertainty, without the scatter.
   double at(double time_from_last) const { return level + slope * time_from_last; }
@@ -37,7 +37,7 @@ struct Trend {
 /// @throws std::invalid_argument otherwise
 Trend fit_trend(const std::vector<TimedValue>& values);
 
-/// What the earlier values let expect at the time of the last one, and whether it is there.
+/// What the earlier values predict for the time of the last one, and whether the last one agrees.
 struct Expected {
   double value = 0;     ///< of the trend of the earlier ones; with one earlier value: that value
   double expanded = 0;  ///< of the difference to the last value: trend, scatter and the last value's own uncertainty

@@ -4,13 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <utility>
 
 #include "abbe/formats/files/results_files.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/text/calendar_date.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/history/sqlite_database.h"
 #include "abbe/report/version.h"
@@ -18,11 +18,8 @@
 namespace abbe {
 namespace {
 
-using std::chrono::day, std::chrono::month, std::chrono::year, std::chrono::year_month_day;
-
 constexpr std::int64_t kApplication = 0x41626265;  // "Abbe", in the header of the file
 constexpr std::int64_t kForm = 1;
-constexpr std::size_t kDateLength = 10;
 
 std::string now_text() {
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
@@ -118,34 +115,19 @@ std::int64_t add_one(SqliteDatabase& database, const CampaignToKeep& one, const 
 
 void require_file_name(const std::string& path) {
   if (path.empty() || path == "-") {
-    throw InputError({.field = "history"}, "is no name of a file", "a file such as mill.history");
+    throw InputError({.field = "history"}, "is not the name of a file", "a file such as mill.history");
   }
 }
 
 }  // namespace
 
 Date date_of(const std::string& text, const std::string& field) {
-  int y = 0;
-  unsigned m = 0, d = 0;
-  const char* const at = text.data();
-  const auto read = [](const char* from, const char* to, auto& number) {
-    const auto [end, problem] = std::from_chars(from, to, number);
-    return problem == std::errc() && end == to;
-  };
-  const bool is_form = text.size() == kDateLength && text[4] == '-' && text[7] == '-';
-  if (is_form && read(at, at + 4, y) && read(at + 5, at + 7, m) && read(at + 8, at + 10, d) && y > 0) {
-    const year_month_day date{year(y), month(m), day(d)};
-    if (date.ok()) return date;
-  }
-  throw InputError({.field = field}, fmt::format("'{}' is not a day", text.substr(0, 40)),
+  if (const std::optional<CalendarDate> date = parse_calendar_date(text)) return *date;
+  throw InputError({.field = field}, fmt::format("'{}' is not a date", text.substr(0, 40)),
                    "year-month-day, such as 2026-03-02");
 }
 
-std::string date_text(Date date) {
-  const year_month_day parts(date);
-  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(parts.year()), static_cast<unsigned>(parts.month()),
-                     static_cast<unsigned>(parts.day()));
-}
+std::string date_text(Date date) { return calendar_date_text(date); }
 
 CampaignToKeep campaign_to_keep(const std::string& path, const std::string& machine_file, Date measured) {
   std::optional<Machine> machine;

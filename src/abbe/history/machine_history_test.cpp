@@ -108,7 +108,7 @@ TEST_F(MachineHistory, LeavesFilesOfOthersAlone) {
   EXPECT_FALSE(std::filesystem::exists(file()));
   EXPECT_THAT(message_of([&] { add_to_history((folder_ / "no/mill.history").string(), {numbered(1)}); }),
               HasSubstr("cannot be opened"));
-  EXPECT_THAT(message_of([&] { read_history("-"); }), HasSubstr("is no name of a file"));
+  EXPECT_THAT(message_of([&] { read_history("-"); }), HasSubstr("is not the name of a file"));
   std::ofstream(file()) << "X_mm,Y_mm\n1,2\n" << std::string(2000, 'x');
   const std::string before = bytes_of_file(file());
   EXPECT_THAT(message_of([&] { add_to_history(file(), {numbered(1)}); }), HasSubstr("this is not a history"));

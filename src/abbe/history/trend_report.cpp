@@ -97,7 +97,7 @@ EvaluationPlot trend_plot(const MachineTrends& trends, const ErrorTrend& trend) 
     high.push_back(shown(trend, value + expanded));
     line.push_back({t / kDaysPerYear, shown(trend, value)});
   }
-  plot.band(x, low, high, {PlotColour::first, 1, false, 0.2}, "trend with its band of k = 2 and the scatter");
+  plot.band(x, low, high, {PlotColour::first, 1, false, 0.2}, "trend with its expanded uncertainty and the scatter");
   plot.line(line, {PlotColour::first, 1.5, false, 1});
   std::vector<PlotPoint> points;
   for (const TimedValue& one : trend.values) {
@@ -118,20 +118,21 @@ EvaluationPlot trend_plot(const MachineTrends& trends, const ErrorTrend& trend) 
 void add_notes(const MachineTrends& trends, double limit_mm, EvaluationReport& report) {
   if (trends.names.size() == 2) {
     report.notes.emplace_back(
-        "Two campaigns are on a line, so the scatter from campaign to campaign is not known: what is called a drift "
-        "may "
-        "be one.");
+        "Two campaigns always lie on a line, so the scatter from campaign to campaign is not known, and what is called "
+        "a "
+        "drift may be such scatter.");
   }
   for (const ErrorTrend& one : trends.errors) {
     if (one.not_followed) report.notes.push_back(fmt::format("{} is not followed: {}.", one.name, *one.not_followed));
     if (!one.expected || one.expected->is_within) continue;
-    report.notes.push_back(fmt::format("{} is {} {} in the last campaign, where {} were expected from those before.",
-                                       one.name, tenths(shown(one, one.values.back().value)), unit_of(one),
-                                       with_uncertainty(one, one.expected->value, one.expected->expanded)));
+    report.notes.push_back(
+        fmt::format("{} has changed by {} {} up to the last campaign; the earlier campaigns predict {}.", one.name,
+                    tenths(shown(one, one.values.back().value)), unit_of(one),
+                    with_uncertainty(one, one.expected->value, one.expected->expanded)));
   }
   if (limit_mm > 0 && trends.next) {
     report.notes.push_back(
-        fmt::format("Measure again by {}: then {} alone may have changed the tool by {:g} um since the last campaign.",
+        fmt::format("Measure again by {}: by then {} alone may have moved the tool by {:g} um since the last campaign.",
                     date_text(*trends.next), trends.next_error, 1e3 * limit_mm));
   }
 }
@@ -184,8 +185,8 @@ EvaluationReport trend_report(const MachineTrends& trends, const TrendRequest& r
     unexpected += one.expected && !one.expected->is_within ? 1U : 0U;
   }
   add_count("followed", "errors that could be followed", followed);
-  add_count("drifting", "of these, with a drift that is no chance (95 %)", drifting);
-  add_count("unexpected", "of these, with a last value outside what the earlier ones let expect", unexpected);
+  add_count("drifting", "of these, with a significant drift (95 %)", drifting);
+  add_count("unexpected", "of these, with a last value outside what the earlier ones predict", unexpected);
   report.facts = {{"campaigns", fmt::format("{}, {} to {}", trends.names.size(), date_text(trends.dates.front()),
                                             date_text(trends.dates.back()))}};
   if (request.limit_mm > 0) {
@@ -205,6 +206,9 @@ EvaluationReport trend_report(const MachineTrends& trends, const TrendRequest& r
   if (request.page) {
     for (const ErrorTrend& one : trends.errors) {
       if (!one.not_followed && report.plots.size() < kMostPlots) report.plots.push_back(trend_plot(trends, one));
+    }
+    if (followed > kMostPlots) {
+      report.notes.push_back(fmt::format("Of {} errors, the first {} have a plot.", followed, kMostPlots));
     }
   }
   return report;

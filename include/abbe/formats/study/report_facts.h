@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "abbe/formats/text/calendar_date.h"
 #include "abbe/formats/text/input_error.h"
 
 namespace abbe {
@@ -20,19 +21,10 @@ inline constexpr int kReportLanguageCount = 4;
 /// "en", "de", "zh", "ja".
 const char* language_code(ReportLanguage language);
 
-/// A day of the Gregorian calendar.
-struct ReportDate {
-  int year = 0, month = 0, day = 0;
-  auto operator<=>(const ReportDate&) const = default;
-};
-
-/// Of "2026-11-28" (ISO 8601). @returns nothing for what is no such day
-std::optional<ReportDate> parse_report_date(const std::string& text);
-
 /// An instrument with the certificate of its calibration; empty texts are not stated.
 struct ReportInstrument {
   std::string name, serial_number, certificate;
-  std::optional<ReportDate> valid_until;
+  std::optional<CalendarDate> valid_until;
 };
 
 /// A tolerance as it was stated: "A_um", 10.
@@ -51,7 +43,7 @@ struct ReportFacts {
   std::string maker, model, serial_number;  ///< of the machine
   std::string place, operator_name;
   std::string laboratory, laboratory_address, laboratory_country;  ///< who calibrated; two letters of ISO 3166-1
-  std::optional<ReportDate> date;                                  ///< of the measurement
+  std::optional<CalendarDate> date;                                ///< of the measurement
   std::optional<double> temperature;                               ///< mean, degC
   std::optional<std::array<double, 2>> temperature_range;          ///< smallest and largest, degC
   std::string standard;                                            ///< applied; empty: that of the evaluation

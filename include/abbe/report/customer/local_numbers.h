@@ -3,6 +3,7 @@
 #include <string>
 
 #include "abbe/formats/study/report_facts.h"
+#include "abbe/formats/text/calendar_date.h"
 
 namespace abbe {
 
@@ -14,7 +15,7 @@ std::string local_number(double value, int decimals, ReportLanguage language);
 std::string local_short_number(double value, ReportLanguage language);
 
 /// "2026-11-28", "28.11.2026", "2026年11月28日".
-std::string local_date(const ReportDate& date, ReportLanguage language);
+std::string local_date(const CalendarDate& date, ReportLanguage language);
 
 /// A drawing whose numbers have the decimal sign of the language: texts that are nothing but a number.
 std::string local_drawing(std::string svg, ReportLanguage language);

@@ -107,7 +107,9 @@ TEST(QifResults, AreRefusedWhereTheyAreNotWhole) {
             "t:9: Location: it has 2 numbers; expected three coordinates in the LinearUnit of the file");
   EXPECT_EQ(qif_refusal("1.50 -2 3e1", "1.50 -2 north"),
             "t:10: Location: 'north' is not a number; expected three coordinates in the LinearUnit of the file");
-  EXPECT_THAT(qif_refusal("</QIFDocument>", ""), HasSubstr("t:21:1: no element found; expected a document of QIF"));
+  EXPECT_THAT(
+      qif_refusal("</QIFDocument>", ""),
+      HasSubstr("t:21:1: the document ends within QIFDocument, so it is incomplete; expected a document of QIF"));
   EXPECT_THAT(qif_refusal("?>\n", "?>\n<!DOCTYPE a [<!ENTITY b \"c\">]>\n"), HasSubstr("a DOCTYPE"));
   EXPECT_EQ(refusal_of("qif", "<a/>"), "t:1: the root is a; expected QIFDocument");
   EXPECT_EQ(refusal_of("qif", "<QIFDocument/>"),

@@ -48,9 +48,7 @@ const XmlElement* xml_at(const XmlElement& root, const std::vector<std::string_v
 std::string xml_text_at(const XmlElement& root, const std::vector<std::string_view>& path) {
   const XmlElement* const element = xml_at(root, path);
   if (element == nullptr) return "";
-  const std::string_view text = element->text;
-  const std::size_t first = text.find_first_not_of(" \t\r\n"), last = text.find_last_not_of(" \t\r\n");
-  return first == std::string_view::npos ? "" : std::string(text.substr(first, last - first + 1));
+  return std::string(xml_trimmed(element->text));
 }
 
 std::string xml_attribute(const XmlElement& element, std::string_view name) {

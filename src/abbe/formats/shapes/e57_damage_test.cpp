@@ -67,7 +67,8 @@ TEST(DamagedE57, TheXmlSectionSaysWhatIsWrong) {
   const std::string good = e57_for_test({small_scan(5)});
   EXPECT_THAT(e57_message(replaced(good, "</data3D>", "</data4D>")),
               HasSubstr("a.e57: XML section: in its line 16, column 3: mismatched tag; expected XML as ASTM E2807"));
-  EXPECT_THAT(e57_message(replaced(good, "</e57Root>", "          ")), HasSubstr("no element found"));
+  EXPECT_THAT(e57_message(replaced(good, "</e57Root>", "          ")),
+              HasSubstr("the document ends within e57Root, so it is incomplete"));
   EXPECT_EQ(e57_message(replaced(good, "cartesianY", "cartesianQ")),
             "a.e57: scan 1: prototype: in line 5 of the XML section: it has 2 of three fields; expected cartesianX, "
             "cartesianY and cartesianZ, or none of them");

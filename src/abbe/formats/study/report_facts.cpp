@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <string_view>
 
 #include "abbe/formats/files/text_file.h"
@@ -22,14 +21,14 @@ constexpr const char* kFactKeys[] = {
     "place",    "operator", "date",        "temperature_degC", "temperature_range_degC",
     "standard", "remarks",  "instruments", "tolerances"};
 
-std::optional<ReportDate> read_date(TomlTable& table, const char* key) {
+std::optional<CalendarDate> read_date(TomlTable& table, const char* key) {
   if (!table.has(key)) {
     table.text_or(key, "");  // so that it is among the accepted keys
     return std::nullopt;
   }
   const std::string text = table.text(key);
-  const std::optional<ReportDate> date = parse_report_date(text);
-  if (!date) table.fail(key, fmt::format("\"{}\" is no date", text), kDateExpected);
+  const std::optional<CalendarDate> date = parse_calendar_date(text);
+  if (!date) table.fail(key, fmt::format("\"{}\" is not a date", text), kDateExpected);
   return date;
 }
 
@@ -40,13 +39,13 @@ void read_temperatures(TomlTable& table, ReportFacts& facts) {
   const std::string expected = fmt::format("degrees Celsius from {:g} to {:g}", kColdest, kHottest);
   facts.temperature = table.optional_number(kMean, Quantity::dimensionless);
   if (facts.temperature && (*facts.temperature < kColdest || *facts.temperature > kHottest)) {
-    table.fail(kMean, fmt::format("{:g} is no temperature of a workshop", *facts.temperature), expected);
+    table.fail(kMean, fmt::format("{:g} is not the temperature of a workshop", *facts.temperature), expected);
   }
   const auto range = table.optional_numbers(kRange, Quantity::dimensionless, 2);
   if (!range) return;
   if (range->front() > range->back()) table.fail(kRange, "is falling", "[smallest, largest]");
   if (range->front() < kColdest || range->back() > kHottest) {
-    table.fail(kRange, "is no range of temperatures of a workshop", expected);
+    table.fail(kRange, "is not the range of temperatures of a workshop", expected);
   }
   if (facts.temperature && (*facts.temperature < range->front() || *facts.temperature > range->back())) {
     table.fail(kMean, "is outside temperature_range_degC", "a mean within it");
@@ -64,7 +63,7 @@ void read_laboratory(TomlTable& table, ReportFacts& facts) {
   const bool is_code =
       country.size() == 2 && std::all_of(country.begin(), country.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
   if (!country.empty() && !is_code) {
-    laboratory->fail("country", fmt::format("\"{}\" is no country", country),
+    laboratory->fail("country", fmt::format("\"{}\" is not a country code", country),
                      "two letters of ISO 3166-1, such as \"DE\"");
   }
   laboratory->finish();
@@ -96,20 +95,6 @@ void read_tolerances(TomlTable& table, ReportFacts& facts) {
 }  // namespace
 
 const char* language_code(ReportLanguage language) { return kLanguageCodes[static_cast<std::size_t>(language)]; }
-
-std::optional<ReportDate> parse_report_date(const std::string& text) {
-  constexpr std::string_view kPattern = "0000-00-00";
-  if (text.size() != kPattern.size()) return std::nullopt;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool is_digit = text[i] >= '0' && text[i] <= '9';
-    if (kPattern[i] == '0' ? !is_digit : text[i] != kPattern[i]) return std::nullopt;
-  }
-  const ReportDate date{std::stoi(text.substr(0, 4)), std::stoi(text.substr(5, 2)), std::stoi(text.substr(8, 2))};
-  const std::chrono::year_month_day day{std::chrono::year(date.year),
-                                        std::chrono::month(static_cast<unsigned>(date.month)),
-                                        std::chrono::day(static_cast<unsigned>(date.day))};
-  return date.year > 0 && day.ok() ? std::optional(date) : std::nullopt;
-}
 
 std::optional<ReportFacts> read_report_facts(TomlTable& table) {
   const bool are_stated =

@@ -25,6 +25,18 @@ class XmlTreeBuilder {
     XML_SetStartDoctypeDeclHandler(parser, doctype);
   }
 
+  /// Why expat does not accept the document, in words.
+  std::string problem(bool is_last) const {
+    if (refusal != nullptr) return refusal;
+    const XML_Error error = XML_GetErrorCode(parser_);
+    const bool is_unfinished = error == XML_ERROR_NO_ELEMENTS || error == XML_ERROR_UNCLOSED_TOKEN ||
+                               error == XML_ERROR_UNCLOSED_CDATA_SECTION || error == XML_ERROR_PARTIAL_CHAR;
+    if (is_last && is_unfinished && !open_.empty()) {
+      return "the document ends within " + open_.back()->name + ", so it is incomplete";
+    }
+    return XML_ErrorString(error);
+  }
+
   std::exception_ptr exception;
   const char* refusal = nullptr;
   XmlElement root;
@@ -114,7 +126,7 @@ XmlTree parse_xml(std::string_view xml, std::string (*plain_name)(std::string_vi
     if (builder.exception) std::rethrow_exception(builder.exception);
     if (status != XML_STATUS_OK || builder.refusal != nullptr) {
       result.problem = {XML_GetCurrentLineNumber(parser.get()), XML_GetCurrentColumnNumber(parser.get()) + 1,
-                        builder.refusal != nullptr ? builder.refusal : XML_ErrorString(XML_GetErrorCode(parser.get()))};
+                        builder.problem(is_last)};
       return result;
     }
     if (is_last) break;
@@ -122,6 +134,13 @@ XmlTree parse_xml(std::string_view xml, std::string (*plain_name)(std::string_vi
   }
   result.root = std::move(builder.root);
   return result;
+}
+
+std::string_view xml_trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
 std::string local_xml_name(std::string_view name) {

@@ -42,6 +42,9 @@ inline constexpr char kBehindXmlUri = '|';
 /// @param encoding    of the bytes, whatever the document says; null: as it says
 XmlTree parse_xml(std::string_view xml, std::string (*plain_name)(std::string_view), const char* encoding = nullptr);
 
+/// Without the blanks of XML around it: space, tab, line feed, carriage return.
+std::string_view xml_trimmed(std::string_view text);
+
 /// The name without its URI.
 std::string local_xml_name(std::string_view name);
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "abbe/formats/text/calendar_date.h"
+#include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/decompositions.h"
 #include "abbe/identify/distributions.h"
 #include "abbe/report/customer/xml_writer.h"
@@ -31,18 +33,14 @@ std::string si_unit(const std::string& shown) {
   return "\\one";
 }
 
-/// The shortest decimal that is the number.
-std::string decimal_text(double value) { return fmt::format("{}", value + 0.0); }
+/// Without a minus before zero.
+std::string decimal_text(double value) { return shortest_text(value + 0.0); }
 
-/// Without blanks at its ends, which the schema does not allow.
+/// The schema allows no blanks around a text.
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) return "";
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
-std::string day_text(const ReportDate& date) {
-  return fmt::format("{:04}-{:02}-{:02}", date.year, date.month, date.day);
 }
 
 const char* conformity_word(Conformity conformity) {
@@ -113,8 +111,8 @@ class CertificateWriter {
     if (language_ != "en") xml_.element("dcc:usedLangCodeISO639_1", "en");
     xml_.element("dcc:mandatoryLangCodeISO639_1", language_);
     xml_.element("dcc:uniqueIdentifier", trimmed(facts_.number));
-    xml_.element("dcc:beginPerformanceDate", day_text(*facts_.date));
-    xml_.element("dcc:endPerformanceDate", day_text(*facts_.date));
+    xml_.element("dcc:beginPerformanceDate", calendar_date_text(*facts_.date));
+    xml_.element("dcc:endPerformanceDate", calendar_date_text(*facts_.date));
     // Machines are calibrated where they stand.
     xml_.element("dcc:performanceLocation", "customer");
     xml_.close();

@@ -25,7 +25,7 @@ ReportFacts complete_facts() {
   facts.model = " SM 1000 ";
   facts.serial_number = "SM-0417";
   facts.operator_name = "A. Tester";
-  facts.date = ReportDate{2026, 11, 28};
+  facts.date = std::chrono::year{2026} / 11 / 28;
   facts.temperature = 20.3;
   facts.laboratory = "Sample Laboratory";
   facts.laboratory_address = "2 Sample Street";

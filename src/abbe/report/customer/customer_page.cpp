@@ -140,7 +140,7 @@ class CustomerPage {
     }
     const std::string exceeded = exceeded_tolerances(report_);
     if (!exceeded.empty()) lines.push_back(xml_text(customer_text(Word::out_of_tolerance, language_, exceeded)));
-    const std::optional<ReportDate>& date = report_.facts.date;
+    const std::optional<CalendarDate>& date = report_.facts.date;
     for (const ReportInstrument& instrument : report_.facts.instruments) {
       if (!date || !instrument.valid_until || *instrument.valid_until >= *date) continue;
       lines.push_back(xml_text(customer_text(Word::certificate_not_valid, language_, instrument.name)));

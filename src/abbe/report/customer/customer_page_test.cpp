@@ -33,10 +33,10 @@ TEST(CustomerPage, ShowsEveryFactThatIsStated) {
   report.facts.model = "M1";
   report.facts.serial_number = "4711";
   report.facts.operator_name = "An Operator";
-  report.facts.date = ReportDate{2026, 11, 28};
+  report.facts.date = std::chrono::year{2026} / 11 / 28;
   report.facts.temperature = 20.31;
   report.facts.temperature_range = {19.8, 20.9};
-  report.facts.instruments = {{"laser", "L1", "C-9", ReportDate{2027, 1, 31}}};
+  report.facts.instruments = {{"laser", "L1", "C-9", std::chrono::year{2027} / 1 / 31}};
   const std::string page = customer_page(report);
   for (const char* text : {"Werk &lt;Nord&gt;", "Maker M1", "4711", "An Operator", "2026-11-28",
                            "mean 20.3 °C, 19.8 to 20.9 °C", "C-9", "2027-01-31", "9.25 ± 0.50", "<td>12</td>",
@@ -56,8 +56,9 @@ TEST(CustomerPage, WhatIsNotStatedIsShownAsNotStated) {
 
 TEST(CustomerPage, WarnsOnItsFirstSheet) {
   CustomerReport report = small_customer_report(ReportLanguage::english);
-  report.facts.date = ReportDate{2026, 11, 28};
-  report.facts.instruments = {{"laser", "L1", "C-9", ReportDate{2026, 11, 27}}, {"level", "", "", std::nullopt}};
+  report.facts.date = std::chrono::year{2026} / 11 / 28;
+  report.facts.instruments = {{"laser", "L1", "C-9", std::chrono::year{2026} / 11 / 27},
+                              {"level", "", "", std::nullopt}};
   report.is_simulated = true;
   report.refusals = {"misfit <5>"};
   report.figures[0].tolerance = 5;
@@ -75,8 +76,8 @@ TEST(CustomerPage, WarnsOnItsFirstSheet) {
 
 TEST(CustomerPage, ACertificateIsValidOnItsLastDay) {
   CustomerReport report = small_customer_report(ReportLanguage::english);
-  report.facts.date = ReportDate{2026, 11, 28};
-  report.facts.instruments = {{"laser", "L1", "C-9", ReportDate{2026, 11, 28}}};
+  report.facts.date = std::chrono::year{2026} / 11 / 28;
+  report.facts.instruments = {{"laser", "L1", "C-9", std::chrono::year{2026} / 11 / 28}};
   EXPECT_THAT(customer_page(report), Not(HasSubstr("class=\"warning\"")));
 }
 

@@ -37,17 +37,19 @@ std::string local_short_number(double value, ReportLanguage language) {
   return with_local_signs(fmt::format("{:.6g}", value), language);
 }
 
-std::string local_date(const ReportDate& date, ReportLanguage language) {
+std::string local_date(const CalendarDate& date, ReportLanguage language) {
+  const int year = static_cast<int>(date.year());
+  const unsigned month = static_cast<unsigned>(date.month()), day = static_cast<unsigned>(date.day());
   switch (language) {
     case ReportLanguage::german:
-      return fmt::format("{:02}.{:02}.{:04}", date.day, date.month, date.year);
+      return fmt::format("{:02}.{:02}.{:04}", day, month, year);
     case ReportLanguage::chinese:
     case ReportLanguage::japanese:
-      return fmt::format("{}年{}月{}日", date.year, date.month, date.day);
+      return fmt::format("{}年{}月{}日", year, month, day);
     case ReportLanguage::english:
       break;
   }
-  return fmt::format("{:04}-{:02}-{:02}", date.year, date.month, date.day);
+  return calendar_date_text(date);
 }
 
 std::string local_drawing(std::string svg, ReportLanguage language) {

@@ -29,7 +29,7 @@ TEST(LocalNumber, ShortNumbersHaveTheDecimalsTheyNeed) {
 }
 
 TEST(LocalDate, FollowsTheLanguage) {
-  const ReportDate date{2026, 3, 5};
+  const CalendarDate date = std::chrono::year{2026} / 3 / 5;
   EXPECT_EQ(local_date(date, kEnglish), "2026-03-05");
   EXPECT_EQ(local_date(date, kGerman), "05.03.2026");
   EXPECT_EQ(local_date(date, kChinese), "2026年3月5日");
