@@ -23,8 +23,8 @@
 //     request.campaigns = abbe::read_history(file);
 //     for (const abbe::ErrorTrend& trend : abbe::find_trends(request).errors) {
 //       if (!trend.expected || trend.expected->is_within) continue;
-//       std::printf("%s: changed by %.1f um, predicted were %.1f um +- %.1f um\n", trend.name.c_str(),
-//                   1e3 * trend.values.back().value, 1e3 * trend.expected->value, 1e3 * trend.expected->expanded);
+//       std::printf("%s changed by %.1f um, which the campaigns before do not predict\n", trend.name.c_str(),
+//                   1e3 * trend.values.back().value);
 //     }
 //     std::filesystem::remove(file);
 //     return 0;
@@ -32,7 +32,7 @@
 //
 // It prints:
 //
-//   EXX: 7.6 um, at most 3.4 um from where it was were expected
+//   EXX changed by 7.6 um, which the campaigns before do not predict
 //
 // A history is one file, a database of SQLite, to which several programs may add at a time. Method: docs/history.md.
 

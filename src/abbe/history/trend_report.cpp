@@ -126,9 +126,9 @@ void add_notes(const MachineTrends& trends, double limit_mm, EvaluationReport& r
     if (one.not_followed) report.notes.push_back(fmt::format("{} is not followed: {}.", one.name, *one.not_followed));
     if (!one.expected || one.expected->is_within) continue;
     report.notes.push_back(
-        fmt::format("{} has changed by {} {} up to the last campaign; the earlier campaigns predict {}.", one.name,
+        fmt::format("{} has changed by {} {} up to the last campaign; the earlier campaigns predict {} {}.", one.name,
                     tenths(shown(one, one.values.back().value)), unit_of(one),
-                    with_uncertainty(one, one.expected->value, one.expected->expanded)));
+                    with_uncertainty(one, one.expected->value, one.expected->expanded), unit_of(one)));
   }
   if (limit_mm > 0 && trends.next) {
     report.notes.push_back(
