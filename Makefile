@@ -98,7 +98,8 @@ test:
 
 long:
 	@.ci/set-up test $(SET_UP_PYTHON) $(SET_UP_SITE)
-	@.ci/build --expect $(LONG_MINUTES) "make $@ makes the development build and runs the long tests" dev -DABBE_WERROR=ON $(WITH_PYTHON)
+	@.ci/build --target all --target abbe_long_programs --expect $(LONG_MINUTES) "make $@ makes the development build and runs the long tests" \
+	  dev -DABBE_WERROR=ON $(WITH_PYTHON)
 	@$(if $(SET_UP_SITE),ABBE_SITE_RUNS_NOTEBOOKS=1 )ctest --preset dev -j $(TEST_JOBS) -L 'long|site'
 
 sanitize:

@@ -9,6 +9,13 @@ set(ABBE_SHARDS 0 CACHE STRING "0: each test is one of ctest's; else the parts i
 add_custom_target(abbe_parts)
 set(abbe_parts_prefixes errors. runtime.)
 
+# Programs that only `make long` builds and runs.
+add_custom_target(abbe_long_programs)
+function(abbe_long_program program)
+  set_target_properties(${program} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+  add_dependencies(abbe_long_programs ${program})
+endfunction()
+
 # Repetitions by the hundred and long simulated programs: minutes each under the sanitizers, which see the same code in the
 # other tests. All run in `make test` or `make long`.
 set(abbe_not_sanitized
@@ -50,6 +57,15 @@ function(abbe_discover_tests program prefix label timeout)
     endif()
     gtest_discover_tests(${program} TEST_PREFIX "${prefix}" DISCOVERY_MODE PRE_TEST ${filter}
       PROPERTIES LABELS ${label} TIMEOUT ${timeout} COST ${cost})
+    if(label STREQUAL long)
+      # A program that is not built is one failing test, which is of the long ones too.
+      set(labelled ${CMAKE_CURRENT_BINARY_DIR}/${program}_not_built.cmake)
+      file(GENERATE OUTPUT ${labelled} CONTENT "if(NOT EXISTS \"$<TARGET_FILE:${program}>\")
+  set_tests_properties(${program}_NOT_BUILT PROPERTIES LABELS long)
+endif()
+")
+      set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labelled})
+    endif()
     return()
   endif()
   list(JOIN abbe_not_sanitized ":" left_out)
