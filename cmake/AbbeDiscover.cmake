@@ -31,11 +31,11 @@ set(abbe_not_sanitized
 # Slow tests, with many repetitions, shapes or commands: two thirds of the time of all unit tests. `make quick` runs them;
 # `make unit`, which is for every change, does not.
 set(abbe_not_unit
-  ChainPlanJacobian.* DamagedStepFile.* EdgeSection.* EvaluationOfAContour.* FineRegistration.* FitRivals.* FitSimulation.*
+  ChainPlanJacobian.* ComparedCampaigns.AKnownChange* ComparedCampaigns.WithoutAChange* DamagedStepFile.* EdgeSection.* EvaluationOfAContour.* FineRegistration.* FitRivals.* FitSimulation.*
   FrozenErrorsOfARequest.* LeastSquaresFit.CovarianceIs* LineTables.* LiuPlan.* MonteCarlo.* MoveSplitting.*
-  MachineTrends.ErrorsThatStandStill* OrderSelection.* ProgramCorrection.* ProgramReversals.* Registration.* ResultsFolder.WritersKilled* RobustFit.*
-  RobustMonteCarlo.* RuntimeTurns.* RuntimeUncertainty.* ScanRegistrationOfARequest.* StepFile.* WangBallBar.* YinMarks.*
-  YinResults.* YinSections.*)
+  MachineTrends.ErrorsThatStandStill* OrderSelection.* ProgramCorrection.* ProgramReversals.* Registration.*
+  ResultsFolder.WritersKilled* RobustFit.* RobustMonteCarlo.* RuntimeTurns.* RuntimeUncertainty.*
+  ScanRegistrationOfARequest.* StepFile.* UnexplainedReadings.* WangBallBar.* YinMarks.* YinResults.* YinSections.*)
 
 # COST: long tests start first, so that the short ones fill up the processors at the end.
 function(abbe_discover_tests program prefix label timeout)

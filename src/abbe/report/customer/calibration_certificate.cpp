@@ -179,13 +179,19 @@ class CertificateWriter {
   }
 
   void write_method() {
-    const std::string& standard = facts_.standard.empty() ? report_.standard : facts_.standard;
-    if (standard.empty()) return;
     xml_.open("dcc:usedMethods");
-    xml_.open("dcc:usedMethod");
-    text("dcc:name", report_.subject);
-    xml_.element("dcc:norm", trimmed(standard));
+    xml_.open("dcc:usedMethod", {{"refType", "basic_uncertainty"}});
+    english("dcc:name", {"Expanded uncertainty"});
+    english("dcc:description", {"Standard uncertainty multiplied by the coverage factor that stands beside it."});
+    xml_.element("dcc:norm", "JCGM 100:2008");
     xml_.close();
+    const std::string& standard = facts_.standard.empty() ? report_.standard : facts_.standard;
+    if (!standard.empty()) {
+      xml_.open("dcc:usedMethod");
+      text("dcc:name", report_.subject);
+      xml_.element("dcc:norm", trimmed(standard));
+      xml_.close();
+    }
     xml_.close();
   }
 
@@ -193,7 +199,7 @@ class CertificateWriter {
     if (facts_.instruments.empty()) return;
     xml_.open("dcc:measuringEquipments");
     for (const ReportInstrument& instrument : facts_.instruments) {
-      xml_.open("dcc:measuringEquipment");
+      xml_.open("dcc:measuringEquipment", {{"refType", "basic_normalUsed"}});
       text("dcc:name", instrument.name);
       if (!instrument.serial_number.empty() || !instrument.certificate.empty()) {
         xml_.open("dcc:identifications");
@@ -213,7 +219,7 @@ class CertificateWriter {
   void write_temperature() {
     if (!facts_.temperature) return;
     xml_.open("dcc:influenceConditions");
-    xml_.open("dcc:influenceCondition");
+    xml_.open("dcc:influenceCondition", {{"refType", "basic_temperature"}});
     english("dcc:name", {"Mean temperature"});
     xml_.open("dcc:data");
     xml_.open("dcc:quantity");
@@ -279,7 +285,7 @@ class CertificateWriter {
     const Conformity conformity = customer_conformity(report_, index, state);
     if (conformity != Conformity::not_judged) {
       xml_.open("dcc:measurementMetaData");
-      xml_.open("dcc:metaData");
+      xml_.open("dcc:metaData", {{"refType", "basic_conformity"}});
       xml_.element("dcc:norm", "ISO 14253-1:2017");
       if (conformity == Conformity::not_proven) {
         english("dcc:declaration", {"Neither conformity nor nonconformity is proven."});

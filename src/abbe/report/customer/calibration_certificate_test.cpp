@@ -122,6 +122,18 @@ TEST(CalibrationCertificate, GivesBackFactsFiguresAndVerdicts) {
   EXPECT_EQ(all_named(*after[0], "conformity")[0]->text, "pass");
 }
 
+TEST(CalibrationCertificate, NamesWhatProgramsLookForAsTheExamplesOfPtbDo) {
+  const XmlElement root = parsed_certificate(calibration_certificate(a_report()));
+  const auto reference = [&](const char* element) {
+    const std::string* const found = all_named(root, element)[0]->attribute("refType");
+    return found == nullptr ? "" : *found;
+  };
+  EXPECT_EQ(reference("usedMethod"), "basic_uncertainty");
+  EXPECT_EQ(reference("measuringEquipment"), "basic_normalUsed");
+  EXPECT_EQ(reference("influenceCondition"), "basic_temperature");
+  EXPECT_EQ(reference("metaData"), "basic_conformity");
+}
+
 TEST(CalibrationCertificate, WarningsOfTheReportAreStatements) {
   CustomerReport report = a_report();
   report.is_simulated = true;
