@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "abbe/formats/controls/table_aerotech.h"
 #include "abbe/formats/controls/table_fanuc.h"
 #include "abbe/formats/controls/table_fanuc_lattice.h"
 #include "abbe/formats/controls/table_heidenhain.h"
@@ -70,6 +71,44 @@ void check_fanuc_lattice(std::string_view parameters, std::string_view points) {
   }
 }
 
+void check_aerotech_1d(std::string_view text) {
+  const std::vector<abbe::AxisTable> tables = abbe::parse_aerotech_1d(text, "fuzz", kNumbers);
+  check(tables);
+  // Steps so small that their digits are not written cannot be read again.
+  for (const abbe::AxisTable& table : tables) {
+    if (table.positions[1] - table.positions[0] < 1e-3) return;
+  }
+  const std::vector<abbe::AxisTable> again =
+      abbe::parse_aerotech_1d(abbe::aerotech_1d_text(tables, kNumbers), "fuzz", kNumbers);
+  if (again.size() != tables.size()) std::abort();
+  for (std::size_t t = 0; t < tables.size(); ++t) {
+    if (again[t].input != tables[t].input || again[t].output != tables[t].output ||
+        again[t].forward.size() != tables[t].forward.size()) {
+      std::abort();
+    }
+  }
+}
+
+void check_aerotech_2d(std::string_view text) {
+  const std::vector<abbe::CorrectionLattice> lattices = abbe::parse_aerotech_2d(text, "fuzz", kNumbers);
+  for (const abbe::CorrectionLattice& lattice : lattices) {
+    check(lattice);
+    for (const std::vector<double>& nodes : lattice.positions) {
+      if (std::adjacent_find(nodes.begin(), nodes.end(), std::greater_equal<>()) != nodes.end()) std::abort();
+      if (nodes[1] - nodes[0] < 1e-3) return;
+    }
+  }
+  const std::vector<abbe::CorrectionLattice> again =
+      abbe::parse_aerotech_2d(abbe::aerotech_2d_text(lattices, kNumbers), "fuzz", kNumbers);
+  if (again.size() != lattices.size()) std::abort();
+  for (std::size_t t = 0; t < lattices.size(); ++t) {
+    if (again[t].inputs != lattices[t].inputs || again[t].outputs != lattices[t].outputs ||
+        again[t].count() != lattices[t].count()) {
+      std::abort();
+    }
+  }
+}
+
 void check(const abbe::ErrorTables& tables) {
   const abbe::ErrorSet errors = abbe::errors_of(tables);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -90,7 +129,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
   const std::string file = "fuzz";
   try {
-    switch (data[0] % 13) {
+    switch (data[0] % 15) {
       case 0:
         check({abbe::parse_linuxcnc(text, file, false, abbe::LinuxCncCompensation::trim)});
         break;
@@ -133,6 +172,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         check_fanuc_lattice(text.substr(0, end), points);
         break;
       }
+      case 13:
+        check_aerotech_1d(text);
+        break;
+      case 14:
+        check_aerotech_2d(text);
+        break;
       default:
         check(abbe::parse_siemens_eec(text, file, kAxes));
         break;

@@ -150,9 +150,11 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   Subcommand* const command =
       compensate.add_subcommand("table", "Write tables for a control, and report what they cannot carry");
   command->footer(formats +
-                  "\nExample:\n"
+                  "\nExamples:\n"
                   "  abbe compensate table --machine examples/machines/three-axis-mill.machine.toml --errors "
                   "examples/compensate/mill.errors.toml --for linuxcnc --limit-um 100 -o comp\n"
+                  "  abbe compensate table --machine examples/machines/three-axis-mill.machine.toml --errors "
+                  "examples/compensate/mill.errors.toml --for aerotech-2d --interpolation-um 1 -o mill.cal\n"
                   "Signs, units and sources of every format: docs/controller-tables.md");
   add_machine_and_errors(*command, options->machine, options->errors);
   command->add_option("--for", options->format, "Format, see below")->required()->suggest(names);
@@ -188,9 +190,8 @@ void add_compensate_table(Subcommand& compensate, CommandLine& line) {
   command->add_option("--first-table", options->first_table, "siemens-cec: index of the first table (default 0)");
   command->add_option("--encoder", options->encoder, "siemens-eec: measuring system, 0 or 1 (default 0)");
   command->add_flag("--negate", options->negate,
-                    "siemens-cec, heidenhain, fanuc-pitch, fanuc-3d: write values with the other sign (the sign of the "
-                    "control is not "
-                    "verified)");
+                    "siemens-cec, heidenhain, fanuc-pitch, fanuc-3d, aerotech-1d, aerotech-2d: write values with the "
+                    "other sign (the sign of the control is not verified)");
   command->add_option(
       "--detection-unit-um", options->unit_um,
       "fanuc-pitch, fanuc-3d: unit of the data, um, or thousandths of a degree for rotary axes (default 1)");

@@ -48,6 +48,13 @@ TEST_F(ControlTablesOfTheCommand, AreThoseOfTheLibrary) {
          request.detection_unit_mm = 0.5e-3;
          request.reference_position = {{request.machine.find_axis("Y"), 50}};
        }},
+      {"aerotech-2d",
+       {"--interpolation-um", "1", "--name", "X=4", "--negate"},
+       [](ControlTableRequest& request) {
+         request.tolerance_mm = 1e-3;
+         request.names = {{"X", "4"}};
+         request.negate = true;
+       }},
       {"etalon",
        {"--leave-out-below-uncertainty", "5"},
        [](ControlTableRequest& request) { request.leave_out_below = 5; }},

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "abbe/compensate/point_correction.h"
 #include "abbe/formats/text/input_error.h"
@@ -66,11 +67,31 @@ LatticeOptions lattice_options(const Machine& machine, const ErrorSet& errors, c
   return options;
 }
 
+WrittenTable lattice_summary(const Machine& machine, const BuiltLattice& built, const LatticeOptions& options,
+                             std::size_t output, const std::string& name, LatticeOfErrors function) {
+  const CorrectionLattice& lattice = built.lattice;
+  const std::size_t axis = lattice.outputs[output];
+  std::vector<std::size_t> indices;
+  WrittenTable summary;
+  summary.name = name;
+  summary.nodes = lattice.count();
+  summary.is_angle = machine.axes[axis].kind == AxisKind::rotary;
+  summary.interpolation_error = built.interpolation_error[output];
+  summary.within = summary.interpolation_error <= (summary.is_angle ? options.tolerance_rad : options.tolerance_mm);
+  for (const double value : lattice.corrections[output]) summary.largest = std::max(summary.largest, std::abs(value));
+  summary.values = [poses = some_nodes(machine, lattice, options.reference, indices), axis,
+                    function = std::move(function)](const ErrorSet& errors) {
+    PoseList found;
+    function(errors)->evaluate(poses, found);
+    return found.axis[axis];
+  };
+  for (const std::size_t k : indices) summary.corrections.push_back(lattice.corrections[output][k]);
+  return summary;
+}
+
 void add_lattice_summaries(const Machine& machine, const BuiltLattice& built, const LatticeOptions& options,
                            WrittenTables& made) {
   const CorrectionLattice& lattice = built.lattice;
-  std::vector<std::size_t> indices;
-  const PoseList poses = some_nodes(machine, lattice, options.reference, indices);
   std::string grid;
   for (std::size_t a = 0; a < lattice.inputs.size(); ++a) {
     grid +=
@@ -78,21 +99,11 @@ void add_lattice_summaries(const Machine& machine, const BuiltLattice& built, co
   }
   made.remarks.push_back("grid of " + grid + ", " + fmt::format("{} nodes; other axes as --at says", lattice.count()));
   for (std::size_t o = 0; o < lattice.outputs.size(); ++o) {
-    const std::size_t output = lattice.outputs[o];
-    WrittenTable summary;
-    summary.name = "correction of " + machine.axes[output].name;
-    summary.nodes = lattice.count();
-    summary.is_angle = machine.axes[output].kind == AxisKind::rotary;
-    summary.interpolation_error = built.interpolation_error[o];
-    summary.within = built.interpolation_error[o] <= (summary.is_angle ? options.tolerance_rad : options.tolerance_mm);
-    for (const double value : lattice.corrections[o]) summary.largest = std::max(summary.largest, std::abs(value));
-    for (const std::size_t k : indices) summary.corrections.push_back(lattice.corrections[o][k]);
-    summary.values = [&machine, options, poses, output](const ErrorSet& errors) {
-      PoseList found;
-      LatticeFunction(machine, errors, options).evaluate(poses, found);
-      return found.axis[output];
-    };
-    made.tables.push_back(std::move(summary));
+    made.tables.push_back(lattice_summary(machine, built, options, o,
+                                          "correction of " + machine.axes[lattice.outputs[o]].name,
+                                          [&machine, options](const ErrorSet& errors) {
+                                            return std::make_unique<LatticeFunction>(machine, errors, options);
+                                          }));
   }
 }
 

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <functional>
+#include <memory>
+#include <string>
+
 #include "abbe/compensate/tables/correction_lattice.h"
 #include "abbe/controls/table_format.h"
 
@@ -11,6 +15,13 @@ namespace abbe {
 /// @throws InputError for more than `most_inputs` axes, or none
 LatticeOptions lattice_options(const Machine& machine, const ErrorSet& errors, const WriterRequest& request,
                                const TableFormat& format, std::size_t most_inputs, bool linear_only);
+
+/// What a lattice would say for other errors.
+using LatticeOfErrors = std::function<std::unique_ptr<CommandCorrection>(const ErrorSet&)>;
+/// What is said of one corrected axis of a lattice.
+/// @param output  index into CorrectionLattice::outputs
+WrittenTable lattice_summary(const Machine& machine, const BuiltLattice& built, const LatticeOptions& options,
+                             std::size_t output, const std::string& name, LatticeOfErrors function);
 
 /// A summary per corrected axis, and the grid as a remark.
 void add_lattice_summaries(const Machine& machine, const BuiltLattice& built, const LatticeOptions& options,

@@ -17,7 +17,9 @@
   FORMAT(marlin_format)            \
   FORMAT(heidenhain_format)        \
   FORMAT(fanuc_pitch_format)       \
-  FORMAT(fanuc_lattice_format)
+  FORMAT(fanuc_lattice_format)     \
+  FORMAT(aerotech_1d_format)       \
+  FORMAT(aerotech_2d_format)
 
 namespace abbe {
 

@@ -73,11 +73,17 @@ struct BuiltLattice {
 /// Source: tensor product interpolation, de Boor, A Practical Guide to Splines, ch. XVII.
 std::vector<std::vector<double>> lattice_nodes(const Machine& machine, const ErrorSet& errors,
                                                const LatticeOptions& options);
+/// The same for another function of the inputs, which gives the corrections of the outputs.
+std::vector<std::vector<double>> lattice_nodes(const Machine& machine, const ErrorSet& errors,
+                                               const LatticeOptions& options, const CommandCorrection& function);
 
 /// Lattice over these nodes, [inputs][nodes]. What is stated of its interpolation was looked at in 4000 places between
 /// them, half of them middles of cells.
 BuiltLattice lattice_over(const Machine& machine, const ErrorSet& errors, const LatticeOptions& options,
                           std::vector<std::vector<double>> positions);
+/// The same for another function of the inputs.
+BuiltLattice lattice_over(const Machine& machine, const ErrorSet& errors, const LatticeOptions& options,
+                          std::vector<std::vector<double>> positions, const CommandCorrection& function);
 
 /// lattice_over() lattice_nodes().
 BuiltLattice build_lattice(const Machine& machine, const ErrorSet& errors, const LatticeOptions& options);

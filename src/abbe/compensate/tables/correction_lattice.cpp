@@ -31,7 +31,7 @@ PlaceInInterval place_of(const std::vector<double>& nodes, bool modulo, double p
 }
 
 /// Nodes that one axis needs on lines through the corners and the middle of the others' travel.
-TableNodes nodes_along(const LatticeFunction& function, const LatticeOptions& options, std::size_t input,
+TableNodes nodes_along(const CommandCorrection& function, const LatticeOptions& options, std::size_t input,
                        const std::vector<KnownTravel>& travels, std::size_t axes, const std::vector<double>& tolerance,
                        std::vector<double> kinks) {
   std::vector<std::vector<double>> lines;
@@ -94,7 +94,7 @@ void fit_into(std::vector<std::vector<double>>& positions, std::size_t most) {
 
 /// Largest differences between lattice and function over random places, half of them in middles of cells.
 std::vector<double> found_errors(const Machine& machine, const CorrectionLattice& lattice,
-                                 const LatticeFunction& function, const std::vector<double>& reference) {
+                                 const CommandCorrection& function, const std::vector<double>& reference) {
   RandomStream random(1, 0);
   PoseList commands;
   for (std::size_t i = 0; i < machine.axes.size(); ++i) commands.axis.emplace_back(kChecked, reference[i]);
@@ -195,7 +195,11 @@ std::vector<double> output_tolerance(const Machine& machine, const LatticeOption
 
 std::vector<std::vector<double>> lattice_nodes(const Machine& machine, const ErrorSet& errors,
                                                const LatticeOptions& options) {
-  const LatticeFunction function(machine, errors, options);
+  return lattice_nodes(machine, errors, options, LatticeFunction(machine, errors, options));
+}
+
+std::vector<std::vector<double>> lattice_nodes(const Machine& machine, const ErrorSet& errors,
+                                               const LatticeOptions& options, const CommandCorrection& function) {
   std::vector<KnownTravel> travels;
   for (const std::size_t input : options.inputs) travels.push_back(known_travel(machine, errors, input));
   const std::vector<double> tolerance = output_tolerance(machine, options);
@@ -211,7 +215,11 @@ std::vector<std::vector<double>> lattice_nodes(const Machine& machine, const Err
 
 BuiltLattice lattice_over(const Machine& machine, const ErrorSet& errors, const LatticeOptions& options,
                           std::vector<std::vector<double>> positions) {
-  const LatticeFunction function(machine, errors, options);
+  return lattice_over(machine, errors, options, std::move(positions), LatticeFunction(machine, errors, options));
+}
+
+BuiltLattice lattice_over(const Machine& machine, const ErrorSet& errors, const LatticeOptions& options,
+                          std::vector<std::vector<double>> positions, const CommandCorrection& function) {
   const std::vector<double> tolerance = output_tolerance(machine, options);
   BuiltLattice built;
   CorrectionLattice& lattice = built.lattice;
