@@ -9,7 +9,7 @@ from display_job import do_job, numbers, write
 
 def drive(operation, job, say):
     joints = [f"joint.{j}.motor-pos-cmd" for j in range(5)]
-    world = [f"axis.{letter}.pos-cmd" for letter in "xyzac"]
+    world = [f"axis.{letter}.pos-cmd" for letter in job["letters"].lower()]
     operation.switch_on()
     operation.mdi("G21 G90 G49 G61")
     operation.mdi("T1 M6")
@@ -18,9 +18,9 @@ def drive(operation, job, say):
     def places_of(names):
         return [hal.get_value(name) for name in names]
 
-    def go(x, y, z, a, c):
-        operation.mdi(f"G0 X{x} Y{y} Z{z} A{a} C{c}")
-        wanted = [x, y, z + job["length_mm"], a, c]
+    def go(*place):
+        operation.mdi("G0 " + " ".join(f"{letter}{at}" for letter, at in zip(job["letters"], place)))
+        wanted = [at + job["length_mm"] if letter == "Z" else at for letter, at in zip(job["letters"], place)]
         operation.until(lambda: max(abs(at - to) for at, to in zip(places_of(world), wanted)) < 1e-6, "the world")
         before = None
         while (now := places_of(joints)) != before:

@@ -180,6 +180,23 @@ TEST_F(KinematicValuesTest, OfATrunnionWithItsTableAxisOffByTenMicrometresAreTho
               HasSubstr("C,A,x_mm,0.000000,0.010000,0.000800\nC,A,y_mm,-0.020000,-0.020000,0.000000\n"));
 }
 
+TEST_F(KinematicValuesTest, OfATableInACradleAboutYHaveTheOffsetAlongX) {
+  KinematicValuesRequest request = request_for("linuxcnc", "trunnion-mill");
+  Axis& cradle = request.machine.axes[request.machine.find_axis("A")];
+  cradle.name = "B";
+  cradle.direction = Eigen::Vector3d::UnitY();
+  cradle.point = {0.03, 0, 50};
+  for (Axis& axis : request.machine.axes) axis.primed = axis.name == "Y";
+  request.errors.locations.push_back({.axis = 1, .component = Component::X, .value = 0.01});
+  request.errors.locations.push_back({.axis = 1, .component = Component::Z, .value = -0.02});
+  const KinematicValues made = make_kinematic_values(request);
+  EXPECT_NEAR(actual(made, "xyzbc-trt-kins.x-offset"), 0.04, 1e-9);
+  EXPECT_NEAR(actual(made, "xyzbc-trt-kins.z-offset"), 49.98, 1e-9);
+  EXPECT_LT(made.after.position_statistics.maximum, 1e-6);
+  // By the right-hand rule, as the modules turn by themselves.
+  EXPECT_EQ(made.file.text.find("conventional-directions"), std::string::npos);
+}
+
 TEST_F(KinematicValuesTest, TheSimulatedControlIsTheOneThatItsManualDescribes) {
   for (const std::string format : {"siemens", "linuxcnc"}) {
     KinematicValuesRequest request = request_for(format, "trunnion-mill");
