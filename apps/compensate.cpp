@@ -13,6 +13,8 @@ void add_compensate_command(CommandLine& line) {
       "examples/compensate/trunnion.errors.toml -o cone-corrected.ngc\n"
       "  abbe compensate table --machine examples/machines/three-axis-mill.machine.toml --errors "
       "examples/compensate/mill.errors.toml --for linuxcnc -o comp\n"
+      "  abbe compensate kinematics --machine examples/machines/trunnion-mill.machine.toml --errors "
+      "examples/compensate/trunnion.errors.toml --for siemens -o TRAFO5.INI\n"
       "  abbe compensate freeze --machine examples/machines/trunnion-mill.machine.toml --errors "
       "examples/trunnion/table.errors.toml -o mill.abbec\n"
       "  abbe compensate poses examples/compensate/poses.csv --machine examples/machines/trunnion-mill.machine.toml "
@@ -22,6 +24,7 @@ void add_compensate_command(CommandLine& line) {
   add_compensate_freeze(*command, line);
   add_compensate_gcode(*command, line);
   add_compensate_poses(*command, line);
+  add_compensate_kinematics(*command, line);
   add_compensate_table(*command, line);
 }
 

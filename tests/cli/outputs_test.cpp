@@ -91,6 +91,7 @@ std::vector<FileOutput> file_outputs() {
           {{"compensate", "gcode", "program", "--machine", "machine", "--errors", "errors"}, "-o"},
           {{"compensate", "freeze", "--machine", "machine", "--errors", "errors"}, "-o"},
           {{"compensate", "poses", "poses", "--machine", "machine", "--errors", "errors"}, "-o"},
+          {{"compensate", "kinematics", "--machine", "machine", "--errors", "errors", "--for", "siemens"}, "-o"},
           {table, "-o"},
           {table, "--map"}};
 }

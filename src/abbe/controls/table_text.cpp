@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "abbe/controls/carried_text.h"
 #include "abbe/controls/table_format.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
@@ -25,53 +26,13 @@ std::string position_text(double value, bool is_angle) {
   return is_angle ? fmt::format("{:.6g} deg", value / kDegree) : fmt::format("{:.6g} mm", value);
 }
 
-/// What becomes of one error, in a word.
-const char* carried_word(const CarriedError& error) {
-  if (error.effect_before < 1e-9) {
-    if (error.turn_before < 1e-12) return "no effect";
-    return error.turn_after < 0.05 * error.turn_before ? "carried" : "not carried";
-  }
-  const double share = error.carried();
-  if (share >= 0.95) return "carried";
-  return share > 0.05 ? "in part" : "not carried";
-}
-
 std::string errors_carried_text(const ControlTables& made) {
   std::string text;
   text += "each error by itself, without and with its tables (shift of the functional point, rms over the grid):\n";
-  for (const CarriedError& error : made.errors) {
-    text +=
-        fmt::format("  {:<8} {:>14}  {:<12} {:8.3f} -> {:.3f} um", error.name, size_words(error.size, error.is_angle),
-                    carried_word(error), in_um(error.effect_before), in_um(error.effect_after));
-    if (error.turn_before > 1e-12) {
-      text += fmt::format(", direction {:.2f} -> {:.2f} urad", in_micro(error.turn_before), in_micro(error.turn_after));
-    }
-    text += "\n";
-  }
+  text += carried_errors_lines(made.errors);
   text += fmt::format("  limits of the format: {}\n", made.format->cannot);
   for (const auto& [name, words] : made.reversals) text += fmt::format("  {}: {}\n", name, words);
   return text;
-}
-
-std::string deviations_text(const char* name, const PoseDeviations& deviations) {
-  std::string text;
-  const SampleStatistics& p = deviations.position_statistics;
-  const SampleStatistics& o = deviations.orientation_statistics;
-  text += fmt::format(
-      "  {:<22} mean {:.3f}  95 % {:.3f}  max {:.3f} um;  tool direction mean {:.2f}  95 % {:.2f}  max {:.2f} urad\n",
-      name, in_um(p.mean), in_um(p.p95), in_um(p.maximum), in_micro(o.mean), in_micro(o.p95), in_micro(o.maximum));
-  return text;
-}
-
-nlohmann::ordered_json statistics_json(const PoseDeviations& deviations) {
-  const SampleStatistics& p = deviations.position_statistics;
-  const SampleStatistics& o = deviations.orientation_statistics;
-  return {{"mean_um", in_um(p.mean)},
-          {"p95_um", in_um(p.p95)},
-          {"max_um", in_um(p.maximum)},
-          {"direction_mean_urad", in_micro(o.mean)},
-          {"direction_p95_urad", in_micro(o.p95)},
-          {"direction_max_urad", in_micro(o.maximum)}};
 }
 
 }  // namespace
@@ -116,9 +77,9 @@ std::string table_text(const TableReport& report) {
       "displacement of the tool at {} poses between the nodes, datum unchanged, worse direction of "
       "approach:\n",
       made.poses.count());
-  text += deviations_text("without tables", made.before);
-  text += deviations_text("with these tables", made.after);
-  text += deviations_text("ideal compensation", made.ideal);
+  text += deviations_line("without tables", made.before);
+  text += deviations_line("with these tables", made.after);
+  text += deviations_line("ideal compensation", made.ideal);
   if (made.ideal_not_reached > 0) {
     text += fmt::format("  (ideal: the point is not reached at {} poses)\n", made.ideal_not_reached);
   }
@@ -170,14 +131,7 @@ nlohmann::ordered_json table_json(const TableReport& report) {
   json["refused"] = made.refused;
   json["errors"] = nlohmann::ordered_json::array();
   for (const CarriedError& error : made.errors) {
-    nlohmann::ordered_json one;
-    one["name"] = error.name;
-    one[error.is_angle ? "size_urad" : "size_um"] = error.is_angle ? in_micro(error.size) : in_um(error.size);
-    one["carried"] = carried_word(error);
-    one["rms_before_um"] = in_um(error.effect_before);
-    one["rms_after_um"] = in_um(error.effect_after);
-    one["direction_rms_before_urad"] = in_micro(error.turn_before);
-    one["direction_rms_after_urad"] = in_micro(error.turn_after);
+    nlohmann::ordered_json one = carried_error_json(error);
     for (const auto& [name, words] : made.reversals) {
       if (name == error.name) one["control"] = words;
     }
@@ -187,9 +141,9 @@ nlohmann::ordered_json table_json(const TableReport& report) {
   json["poses"] = made.poses.count();
   add_volumetric_figures(made.volumetric, json);
   json["volumetric_error_left_by_tables_um"] = statistics_um(made.left_by_tables);
-  json["before"] = statistics_json(made.before);
-  json["after"] = statistics_json(made.after);
-  json["ideal"] = statistics_json(made.ideal);
+  json["before"] = deviations_json(made.before);
+  json["after"] = deviations_json(made.after);
+  json["ideal"] = deviations_json(made.ideal);
   json["ideal_not_reached"] = made.ideal_not_reached;
   if (made.uncertainty) json["standard_uncertainty_um"] = statistics_um(*made.uncertainty);
   add_partial_errors(report.partial, json);
