@@ -89,8 +89,8 @@ KinematicFormat fanuc_kinematic_values() {
       "mm in steps of 0.001 (IS-B), in the machine coordinate system: the gauge point with all axes at zero is its "
       "origin";
   format.unverified =
-      "the form of the blocks for parameters with decimals; that the machine coordinate system has its zero where the "
-      "machine file has it";
+      "the numbers 19700 to 19702, whose page of the manual is not public; the form of the blocks for parameters with "
+      "decimals; that the machine coordinate system has its zero where the machine file has it";
   format.cannot =
       "the parameters have positions of rotary axes; inclinations (19698, 19699 and others) are not written. Zero "
       "positions, error motions and linear axes are not in them";
