@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <vector>
 
 #include "abbe/formats/evaluations/trace_file.h"
 #include "abbe/formats/readings/planned_poses.h"
