@@ -113,7 +113,7 @@ class ProbingPlanner {
     for (std::size_t i = 0; i < pose.size(); ++i) {
       const Axis& axis = machine_.axes[i];
       if (axis.kind == AxisKind::rotary || ((*moved)[i] >= axis.travel_min && (*moved)[i] <= axis.travel_max)) continue;
-      refuse(fmt::format("the ball is out of reach: {}{:.3f} mm is outside the travel of {:g} to {:g} mm", axis.name,
+      refuse(fmt::format("the ball is out of reach: {} {:.3f} mm is outside the travel of {:g} to {:g} mm", axis.name,
                          (*moved)[i], axis.travel_min, axis.travel_max));
       return std::nullopt;
     }
