@@ -34,6 +34,7 @@ void add_compare_command(CommandLine& line);
 void add_history_command(CommandLine& line);
 void add_path_command(CommandLine& line);
 void add_position_command(CommandLine& line);
+void add_program_command(CommandLine& line);
 void add_run_command(CommandLine& line);
 void add_fit_command(CommandLine& line);
 void add_evaluate_command(CommandLine& line);

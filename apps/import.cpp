@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -8,7 +9,10 @@
 #include <vector>
 
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/nc/path_program.h"
+#include "abbe/formats/readings/planned_touches.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/study/imported_file.h"
@@ -22,7 +26,8 @@ namespace abbe {
 namespace {
 
 struct ImportCommand {
-  std::string file, format, machine, mapping, output, written_mapping;
+  std::string file, format, machine, mapping, output, written_mapping, touches;
+  std::vector<std::string> words;
   std::string kind, encoding, separator, decimal, length_unit, angle_unit, azimuth, vertical, mirrored;
   bool accept_uncertain = false, json = false;
 };
@@ -62,7 +67,28 @@ ImportRequest request_of(const ImportCommand& command) {
   return request;
 }
 
+/// A log of LinuxCNC and the touches that its program planned.
+int run_touches(const ImportCommand& command) {
+  if (command.machine.empty()) {
+    throw InputError({.field = "--machine"}, "missing", "the machine whose touches they are (*.machine.toml)");
+  }
+  const Machine machine = read_machine(command.machine);
+  const std::map<std::string, std::string> words = axis_words(machine, command.words, "--word");
+  const std::vector<PlannedTouch> touches = read_planned_touches(command.touches, machine);
+  const MappedFile log(command.file);
+  const std::string readings = probed_touches_csv(machine, touches, command.touches, log.text(), command.file, words);
+  if (!command.output.empty()) write_file_atomically(command.output, readings);
+  if (command.json) {
+    fmt::print("{}", json_text({{"format", "abbe-touches/1"}, {"file", command.file}, {"touches", touches.size()}}));
+    return kDone;
+  }
+  fmt::print("{}: {} touches, each where {} has it\n", command.file, touches.size(), command.touches);
+  if (!command.output.empty()) fmt::print("{} written\n", command.output);
+  return kDone;
+}
+
 int run_import(const ImportCommand& command) {
+  if (!command.touches.empty()) return run_touches(command);
   const ImportedTable result = import_table(request_of(command));
   // A mapping is written with what is in doubt, to be looked at; readings that may be wrong are not.
   if (!command.written_mapping.empty()) write_file_atomically(command.written_mapping, imported_mapping_text(result));
@@ -138,6 +164,18 @@ void add_import_command(CommandLine& line) {
   app->add_output_file("--write-mapping", command->written_mapping, "Mapping to write (*.import.toml)");
   app->add_output_file("-o,--output", command->output, "CSV to write; default: only say what was found");
   app->add_flag("--json", command->json, "Print JSON for programs");
+  Option* const touches = app->add_input_file(
+      "--touches", command->touches,
+      "The file is a log of LinuxCNC, and these are the touches of its program (abbe program --touches): they become "
+      "readings of a touch probe");
+  // The form of a log and of its touches is known.
+  for (const char* other :
+       {"--as", "--mapping", "--format", "--encoding", "--separator", "--decimal", "--length-unit", "--angle-unit",
+        "--azimuth", "--vertical", "--mirrored", "--accept-uncertain", "--write-mapping"}) {
+    touches->excludes(other);
+  }
+  app->add_option("--word", command->words, "Word of an axis in that program, AXIS=WORD (C1=C); repeatable")
+      ->needs("--touches");
   app->callback([&line, command] { line.run = [command] { return run_import(*command); }; });
 }
 

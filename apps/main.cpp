@@ -15,6 +15,7 @@ void add_subcommands(CommandLine& line) {
   add_check_command(line);
   line.begin_section("Measure");
   add_plan_command(line);
+  add_program_command(line);
   add_simulate_command(line);
   add_scan_command(line);
   add_position_command(line);

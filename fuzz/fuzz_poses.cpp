@@ -1,14 +1,17 @@
-// Files of poses of a fixed machine, traces of programs and planned poses of a tracker and of a ball bar: any bytes
-// give poses that fit what they name, or an InputError.
+// Files of poses of a fixed machine, traces of programs, planned poses of a tracker and of a ball bar, lists of
+// readings, and touches with their log: any bytes give poses that fit what they name, or an InputError.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <vector>
 
 #include "abbe/formats/evaluations/trace_file.h"
 #include "abbe/formats/readings/planned_poses.h"
+#include "abbe/formats/readings/planned_touches.h"
+#include "abbe/formats/readings/reading_list.h"
 #include "abbe/formats/study/study_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/instruments/trackers/laser_tracker.h"
@@ -71,6 +74,24 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       }
     } catch (const abbe::InputError&) {
     }
+  }
+  try {
+    const abbe::ReadingList list = abbe::parse_reading_list(text, "readings.csv", machine);
+    if (list.readings.empty()) std::abort();
+    for (const abbe::ListedReading& reading : list.readings) {
+      if (reading.pose.size() != machine.axes.size() || reading.line == 0) std::abort();
+    }
+  } catch (const abbe::InputError&) {
+  }
+  std::vector<abbe::PlannedTouch> touches(1);
+  touches[0].pose.assign(machine.axes.size(), 0.0);
+  try {
+    touches = abbe::parse_planned_touches(text, "touches.csv", machine);
+  } catch (const abbe::InputError&) {
+  }
+  try {
+    if (abbe::probed_touches_csv(machine, touches, "touches.csv", text, "log.txt").empty()) std::abort();
+  } catch (const abbe::InputError&) {
   }
   return 0;
 }

@@ -195,10 +195,11 @@ def limit_lines(minimum, maximum):
     return [f"{name} = {value:.9f}" for name, value in named if value is not None]
 
 
-def hal_text(joint_count, recorded, lines=(), period_us=1000):
+def hal_text(joint_count, recorded, lines=(), period_us=1000, wired=()):
     """Wiring: drives that are where they shall be, tools that are changed at once, and `lines`.
 
     @param recorded  for each recorder (operating.Recorder, by number) the float output pins that it records
+    @param wired     further pairs of an output pin and an input pin
     """
     sinks = {f"joint.{j}.motor-pos-cmd": [f"joint.{j}.motor-pos-fb"] for j in range(joint_count)}
     sinks |= {"iocontrol.0.user-enable-out": ["iocontrol.0.emc-enable-in"],
@@ -208,6 +209,8 @@ def hal_text(joint_count, recorded, lines=(), period_us=1000):
     for number, pins in enumerate(recorded):
         for k, pin in enumerate(pins):
             sinks.setdefault(pin, []).append(f"sampler.{number}.pin.{k}")
+    for source, sink in wired:
+        sinks.setdefault(source, []).append(sink)
     depths = ",".join("16384" for _ in recorded)
     kinds = ",".join("f" * len(pins) for pins in recorded)
     text = ["loadrt [KINS]KINEMATICS",

@@ -1,0 +1,44 @@
+#include "abbe/plan/ways/linear_motion.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace abbe {
+
+std::optional<std::vector<double>> moved_linearly(const Machine& machine, const std::vector<double>& pose,
+                                                  const Eigen::Vector3d& displacement) {
+  // Motion of the tool over the workpiece per mm of each linear axis.
+  std::vector<Eigen::Vector3d> motion(pose.size(), Eigen::Vector3d::Zero());
+  // A direction that no axis has gets this instead of zero, so that the matrix can be inverted.
+  constexpr double kNoAxis = 1e-12;
+  Eigen::Matrix3d all = kNoAxis * Eigen::Matrix3d::Identity();
+  const auto take = [&](std::size_t i, Eigen::Matrix3d& turned) {
+    const Axis& axis = machine.axes[i];
+    if (axis.kind == AxisKind::rotary) {
+      turned = turned * nominal_motion(axis, pose[i]).rotation;
+    } else if (!axis.setting) {
+      motion[i] = (axis.side == ChainSide::tool ? 1 : -1) * axis.sense() * (turned * axis.direction);
+      all += motion[i] * motion[i].transpose();
+    }
+  };
+  const std::size_t workpiece_side = machine.workpiece_axis_count();
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
+  for (std::size_t i = workpiece_side; i-- > 0;) take(i, turned);
+  turned = Eigen::Matrix3d::Identity();
+  for (std::size_t i = workpiece_side; i < machine.axes.size(); ++i) take(i, turned);
+
+  const Eigen::Vector3d share = all.inverse() * displacement;
+  Eigen::Vector3d reached = Eigen::Vector3d::Zero();
+  std::vector<double> moved = pose;
+  for (std::size_t i = 0; i < pose.size(); ++i) {
+    const double length = motion[i].dot(share);
+    // What rounding leaves of an axis across the way is no motion.
+    if (std::abs(length) < 1e-12 * displacement.norm()) continue;
+    moved[i] += length;
+    reached += length * motion[i];
+  }
+  if ((reached - displacement).norm() > 1e-6 * displacement.norm()) return std::nullopt;
+  return moved;
+}
+
+}  // namespace abbe
