@@ -53,8 +53,8 @@ void add_customer_report_options(Subcommand& command, EvaluationOptions& options
   command
       .add_output_file(
           "--customer-report", options.customer_report,
-          "Customer report to write, 2 to 4 sheets: *.pdf (printed by Chromium) or *.html; *.xml: a digital "
-          "calibration certificate")
+          "Customer report to write, 2 to 4 sheets: *.pdf (printed by Chromium or WeasyPrint) or *.html; *.xml: a "
+          "digital calibration certificate")
       ->group("Customer report");
   command
       .add_input_file("--facts", options.facts,
