@@ -92,7 +92,7 @@ TEST_F(CustomerReportCommand, WrongFactsFilesAndNamesAreRefusedBeforeAnythingIsW
   result = abbe({"evaluate", "positioning", readings, "--before", ABBE_SOURCE_DIR "/examples/evaluate/rotary.csv",
                  "--customer-report", "a.html"});
   EXPECT_EQ(result.exit_code, bad_input);
-  EXPECT_THAT(result.err, HasSubstr("--before: the readings are of another kind of axis"));
+  EXPECT_THAT(result.err, HasSubstr("--before: the readings are of another test or of other axes"));
 }
 
 TEST_F(CustomerReportCommand, CertificatesNeedTheFactsOfTheirSchema) {
@@ -115,6 +115,109 @@ TEST_F(CustomerReportCommand, CertificatesNeedTheFactsOfTheirSchema) {
   EXPECT_THAT(missing.err, HasSubstr("other.xml: a certificate also needs number, laboratory.name, laboratory.address, "
                                      "laboratory.country in [report]"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "other.xml"));
+}
+
+TEST_F(CustomerReportCommand, EvaluationsWriteTheirFiguresInQif) {
+  std::vector<std::string> words = evaluation("de", "report.html");
+  words.insert(words.end(), {"--qif", "results.qif"});
+  const CommandResult result = abbe(words);
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("QIF: results.qif"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "report.html"));
+  const std::string qif = folder.read("results.qif");
+  for (const char* text :
+       {"versionQIF=\"3.0.0\"", "<MeasurementResultsSet n=\"2\">", "<SerialNumber>SM-0417</SerialNumber>",
+        "<CharacteristicStatusEnum>FAIL</CharacteristicStatusEnum>",
+        "<CharacteristicStatusEnum>PASS</CharacteristicStatusEnum>",
+        "<InspectionStart>2026-11-28T00:00:00</InspectionStart>",
+        "<WhatToMeasure>beidseitige Positioniergenauigkeit</WhatToMeasure>"}) {
+    EXPECT_THAT(qif, HasSubstr(text));
+  }
+  // The value of A after the correction is that of the evaluation.
+  const CommandResult json = abbe({"evaluate", "positioning", kCustomerExamples + "after.csv", "--json"});
+  std::smatch value;
+  ASSERT_TRUE(std::regex_search(json.out, value, std::regex("\"A\": \\{[^}]*\"value_um\": ([0-9.]+)"))) << json.out;
+  EXPECT_THAT(qif, HasSubstr(">" + value[1].str() + "</Value>"));
+  const CommandResult alone =
+      abbe({"evaluate", "positioning", kCustomerExamples + "after.csv", "--qif", "alone.qif", "--json"});
+  EXPECT_EQ(alone.exit_code, done) << alone.err;
+  EXPECT_THAT(folder.read("alone.qif"), HasSubstr("<InspectionStatusEnum>NOT_CALCULATED</InspectionStatusEnum>"));
+  EXPECT_EQ(abbe({"evaluate", "positioning", kCustomerExamples + "after.csv", "--qif", "alone.qif"}).exit_code,
+            bad_input)
+      << "the file exists";
+  const CommandResult name = abbe({"evaluate", "positioning", kCustomerExamples + "after.csv", "--qif", "a.xml"});
+  EXPECT_EQ(name.exit_code, bad_input);
+  EXPECT_THAT(name.err, HasSubstr("expected a name that ends in .qif"));
+}
+
+TEST_F(CustomerReportCommand, QifIsRecognisedByTheImport) {
+  ASSERT_EQ(abbe({"evaluate", "positioning", kCustomerExamples + "after.csv", "--qif", "a.qif"}).exit_code, done);
+  const CommandResult result = abbe({"import", "a.qif", "-o", "points.csv"});
+  EXPECT_EQ(result.exit_code, bad_input);
+  EXPECT_THAT(result.err, HasSubstr("there are no measured points")) << "figures are no points";
+}
+
+TEST_F(CustomerReportCommand, StudiesWriteTheirFiguresInQif) {
+  const CommandResult result = abbe({"run", kCustomerExamples + "mill.study.toml", "-o", "out", "--qif", "mill.qif"});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("QIF:       mill.qif"));
+  const std::string qif = folder.read("mill.qif");
+  EXPECT_THAT(qif, HasSubstr("<MeasurementResultsSet n=\"1\">")) << "a prediction is no measurement";
+  EXPECT_THAT(qif, HasSubstr("<Name>EC0Y</Name>"));
+  EXPECT_THAT(qif, HasSubstr("<CharacteristicStatusEnum>INDETERMINATE</CharacteristicStatusEnum>"));
+  const CommandResult without =
+      abbe({"run", ABBE_SOURCE_DIR "/examples/three_axis/dials.study.toml", "-o", "other", "--qif", "dials.qif"});
+  EXPECT_EQ(without.exit_code, bad_input);
+  EXPECT_THAT(without.err, HasSubstr("states no facts of a customer report"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "other"));
+}
+
+TEST_F(CustomerReportCommand, EveryKindOfEvaluationHasOne) {
+  const std::string examples = ABBE_SOURCE_DIR "/examples/";
+  const std::string engraver = examples + "laser_engraver/";
+  folder.write("facts.toml", "[report]\nlanguage = \"de\"\nnumber = \"7\"\n");
+  struct Kind {
+    std::vector<std::string> words;
+    const char *subject, *table;
+  };
+  const Kind kinds[] = {
+      {{"circular", examples + "evaluate/circular.csv", "--radius-mm", "150", "--u-reading-um", "0.2", "--tolerance",
+        "G_b_um=15"},
+       "Kreisformprüfung",
+       "Radialabweichungen der Messwerte"},
+      {{"rotation", examples + "evaluate/rotation.csv", "--plane-distance-mm", "80", "--u-reading-um", "0.02"},
+       "Bewegungsabweichungen einer Drehachse",
+       "Synchrone Bewegungsabweichungen an Winkeln"},
+      {{"straightness", examples + "evaluate/straightness.csv", "--u-reading-um", "0.3"},
+       "Geradheit einer Linie",
+       "von der Minimumzone / µm"},
+      {{"squareness", examples + "evaluate/squareness.csv", "--u-reading-um", "0.3"},
+       "Rechtwinkligkeit zweier Linien",
+       "Abweichungen von der Bezugsgeraden Y"},
+      {{"contour", engraver + "sections.csv", "--u-height-um", "2", "--u-across-um", "1"},
+       "Konturabweichung einer gravierten Kurve",
+       "Konturabweichung der Schnitte"},
+      {{"contour", engraver + "engraved.csv", "--curve", engraver + "table-a4.csv"},
+       "Konturabweichung einer gravierten Kurve",
+       "Abweichungen der Punkte von der Kurve"},
+      {{"linkage", engraver + "five-steps.csv", "--exit-to-axis-mm", "120", "--board-mm", "4"},
+       "Geometriegrößen einer Lasergraviermaschine",
+       "Versatz des Strahls gegen die Achse A"},
+  };
+  int number = 0;
+  for (const Kind& kind : kinds) {
+    const std::string name = "report-" + std::to_string(++number);
+    std::vector<std::string> words = {"evaluate"};
+    words.insert(words.end(), kind.words.begin(), kind.words.end());
+    words.insert(words.end(), {"--facts", "facts.toml", "--customer-report", name + ".html", "--qif", name + ".qif"});
+    const CommandResult result = abbe(words);
+    ASSERT_EQ(result.exit_code, done) << kind.subject << ": " << result.err;
+    const std::string page = folder.read(name + ".html");
+    EXPECT_THAT(page, HasSubstr(std::string("<p>") + kind.subject + "</p>"));
+    EXPECT_THAT(page, HasSubstr(kind.table));
+    EXPECT_THAT(folder.read(name + ".qif"), HasSubstr("<CharacteristicMeasurements"));
+  }
+  EXPECT_THAT(folder.read("report-1.html"), HasSubstr("Die Konformität mit der Spezifikation ist nachgewiesen: G_b."));
 }
 
 TEST_F(CustomerReportCommand, WithoutAProgramThatPrintsThePageIsWrittenAndTheExitCodeSaysSo) {

@@ -122,6 +122,20 @@ TEST(CalibrationCertificate, GivesBackFactsFiguresAndVerdicts) {
   EXPECT_EQ(all_named(*after[0], "conformity")[0]->text, "pass");
 }
 
+TEST(CalibrationCertificate, HasTheUnitsOfAllKindsOfEvaluations) {
+  CustomerReport report = a_report();
+  report.figures.resize(1);
+  const std::pair<const char*, const char*> kUnits[] = {{"µm/m", "\\micro\\metre\\per\\metre"},
+                                                        {"ms", "\\milli\\second"},
+                                                        {"mm", "\\milli\\metre"},
+                                                        {"″", "\\arcsecond"}};
+  for (const auto& [shown, unit] : kUnits) {
+    report.figures[0].unit = shown;
+    const XmlElement root = parsed_certificate(calibration_certificate(report));
+    EXPECT_EQ(all_named(*all_named(root, "measurementResult")[0]->child("results"), "unit")[0]->text, unit);
+  }
+}
+
 TEST(CalibrationCertificate, WarningsOfTheReportAreStatements) {
   CustomerReport report = a_report();
   report.is_simulated = true;
