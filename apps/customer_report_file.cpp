@@ -17,6 +17,12 @@ void check_customer_report_name(const std::string& name) {
                    "a name that ends in .pdf, .html, or .xml for a digital calibration certificate");
 }
 
+void check_qif_name(const std::string& name) {
+  const std::string extension = std::filesystem::path(name).extension().string();
+  if (extension == ".qif" || extension == ".QIF") return;
+  throw InputError({.file = name, .field = "--qif"}, "is not the name of results in QIF", "a name that ends in .qif");
+}
+
 PrintedPage printed_customer_report(const CustomerReport& report) {
   PrintSettings settings;
   settings.language = language_code(report.facts.language);

@@ -11,6 +11,9 @@ namespace abbe {
 /// @throws InputError for the name of a customer report that ends in none of .pdf, .html and .xml
 void check_customer_report_name(const std::string& name);
 
+/// @throws InputError for the name of results in QIF that does not end in .qif
+void check_qif_name(const std::string& name);
+
 /// The report as PDF, stating the day of the measurement as its date.
 PrintedPage printed_customer_report(const CustomerReport& report);
 

@@ -20,7 +20,7 @@ namespace abbe {
 
 void add_run_command(CommandLine& line) {
   struct Options {
-    std::string study, output, before;
+    std::string study, output, before, qif;
     bool accept_uncovered = false, accept_misfit = false, all_values = false, json = false, pdf = false;
   };
   auto options = std::make_shared<Options>();
@@ -37,6 +37,8 @@ void add_run_command(CommandLine& line) {
   command->add_flag("--json", options->json, "Print the summary as JSON for programs");
   command->add_flag("--pdf", options->pdf,
                     "Write the customer report as PDF, too; [report] of the study states its facts");
+  command->add_output_file("--qif", options->qif,
+                           "Results in QIF 3.0 to write, with the figures of the customer report; *.qif");
   command->add_option("--before", options->before,
                       "Results of the same machine before its correction, for the customer report: a results folder "
                       "of abbe run, or an errors file");
@@ -48,9 +50,10 @@ void add_run_command(CommandLine& line) {
       if (!options->output.empty()) study.output = options->output;
       if (!options->before.empty()) study.report.before = options->before;
       check_results_folder(study.output);
-      if (options->pdf && !study.report.facts) {
+      if (!options->qif.empty()) check_qif_name(options->qif);
+      if ((options->pdf || !options->qif.empty()) && !study.report.facts) {
         throw InputError({.file = options->study, .field = "report"}, "states no facts of a customer report",
-                         "customer, machine, date and others, or no --pdf");
+                         fmt::format("customer, machine, date and others, or no {}", options->pdf ? "--pdf" : "--qif"));
       }
       StepProgress progress;
       const StudyResult result =
@@ -64,6 +67,7 @@ void add_run_command(CommandLine& line) {
       if (study.report.facts) customer = study_customer_report(study, result);
       if (options->pdf) printed = printed_customer_report(*customer);
       const std::string summary = write_results(study, result, printed.pdf);
+      if (!options->qif.empty()) write_file_atomically(options->qif, study_qif_results(study, result));
       if (options->json) {
         fmt::print("{}", summary);
       } else {
@@ -74,6 +78,7 @@ void add_run_command(CommandLine& line) {
           const char* const name = printed.pdf.empty() ? "customer-report.html" : "customer-report.pdf";
           fmt::print("customer:  {}\n", (study.output / name).string());
         }
+        if (!options->qif.empty()) fmt::print("QIF:       {}\n", options->qif);
       }
       tell_distrust(study, result);
       int code = study_exit_code(study, result);

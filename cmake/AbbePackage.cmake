@@ -97,5 +97,5 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SUGGESTS abbe)
 set(CPACK_DEBIAN_MODULE_PACKAGE_DEPENDS "linuxcnc-uspace (>= 2.9~), linuxcnc-uspace (<< 2.10~)")
 set(CPACK_DEBIAN_MODULE_PACKAGE_RECOMMENDS abbe)
-set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "libabbe-dev, abbe-linuxcnc, chromium, fonts-noto-cjk")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "libabbe-dev, abbe-linuxcnc, chromium | weasyprint, fonts-noto-cjk")
 include(CPack)

@@ -14,15 +14,20 @@ struct CircularCommand {
   bool length_unknown = false;
 };
 
-int run(const CircularCommand& command) {
+/// The same test with the readings of a file.
+CircularTest circular_test(const CircularCommand& command, const std::string& file) {
   CircularTest test = command.test;
-  test.readings = read_circular(command.options.file, test.nominal_radius, command.options.columns.mapping());
+  test.readings = read_circular(file, test.nominal_radius, command.options.columns.mapping());
   test.centre = command.centre == "instrument"     ? CircularCentre::instrument
                 : command.centre == "minimum-zone" ? CircularCentre::minimum_zone
                                                    : CircularCentre::least_squares;
   test.length_calibrated = !command.length_unknown;
   test.feed = command.feed_mm / 60;
-  return run_evaluation(std::move(test), command.options);
+  return test;
+}
+
+int run(const CircularCommand& command) {
+  return run_evaluation(command.options, [&](const std::string& file) { return circular_test(command, file); });
 }
 
 }  // namespace
@@ -40,6 +45,7 @@ void add_evaluate_circular(Subcommand& evaluate, CommandLine& line) {
                      "--skip-reversal-deg 6 "
                      "--output results/circular --tolerance G_b_um=15",
                      command->options);
+  add_customer_report_options(*app, command->options);
   add_number(app, "--radius-mm", Quantity::length, "mm", {0.001, 1e6}, command->test.nominal_radius, "Nominal radius")
       ->required();
   app->add_option("--plane", command->test.plane,

@@ -41,25 +41,33 @@ void refuse_without_effect(const ContourCommand& command) {
   }
 }
 
-int run(const ContourCommand& command) {
-  refuse_without_effect(command);
-  if (command.has("--curve")) {
-    ContourPointsTest test;
-    test.pieces = read_commanded_pieces(command.curve, command.machine, command.closed);
-    PointCloudOptions reading;
-    reading.mapping = command.options.columns.mapping();
-    test.readings = read_point_cloud(command.options.file, reading);
-    test.origin_uncertainty = command.sections.origin_uncertainty;
-    return run_evaluation(std::move(test), command.options);
-  }
+ContourPointsTest points_test(const ContourCommand& command, const std::string& file) {
+  ContourPointsTest test;
+  test.pieces = read_commanded_pieces(command.curve, command.machine, command.closed);
+  PointCloudOptions reading;
+  reading.mapping = command.options.columns.mapping();
+  test.readings = read_point_cloud(file, reading);
+  test.origin_uncertainty = command.sections.origin_uncertainty;
+  return test;
+}
+
+SectionsTest sections_test(const ContourCommand& command, const std::string& file) {
   SectionsTest test;
   test.options = command.sections;
   test.options.groove = command.feature == "groove";
   test.options.edge.surface = command.surface == "right" ? EdgeSide::right : EdgeSide::left;
   test.options.edge.surface_curvature = command.surface_radius == 0 ? 0 : 1 / command.surface_radius;
   if (command.has("--beam-tilt-deg")) test.beam_tilt = command.beam_tilt;
-  test.readings = read_sections(command.options.file, command.options.columns.mapping());
-  return run_evaluation(std::move(test), command.options);
+  test.readings = read_sections(file, command.options.columns.mapping());
+  return test;
+}
+
+int run(const ContourCommand& command) {
+  refuse_without_effect(command);
+  return run_evaluation(command.options, [&](const std::string& file) -> TestToEvaluate {
+    if (command.has("--curve")) return points_test(command, file);
+    return sections_test(command, file);
+  });
 }
 
 }  // namespace
@@ -83,6 +91,7 @@ void add_evaluate_contour(Subcommand& evaluate, CommandLine& line) {
       "--machine examples/machines/yin-engraver-u.machine.toml\n\n"
       "Exit code 1: a tolerance is exceeded, or a section could not be evaluated.",
       command->options);
+  add_customer_report_options(*app, command->options);
   app->add_option("--feature", command->feature, "edge (default), or groove: the middle between its two edges")
       ->check(one_of({"edge", "groove"}));
   app->add_option("--surface", command->surface,

@@ -1,5 +1,3 @@
-#include <optional>
-
 #include "command.h"
 #include "evaluate/evaluate.h"
 #include "options.h"
@@ -19,10 +17,9 @@ void add_evaluate_diagonals(Subcommand& evaluate, CommandLine& line) {
   add_customer_report_options(*command, *options);
   command->callback([&line, options] {
     line.run = [options] {
-      const ColumnMapping columns = options->columns.mapping();
-      std::optional<TestToEvaluate> before;
-      if (!options->before.empty()) before = DiagonalsTest{read_diagonals(options->before, columns)};
-      return run_evaluation(DiagonalsTest{read_diagonals(options->file, columns)}, *options, before);
+      return run_evaluation(*options, [&](const std::string& file) {
+        return DiagonalsTest{read_diagonals(file, options->columns.mapping())};
+      });
     };
   });
 }

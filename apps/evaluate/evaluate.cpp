@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "abbe/formats/files/file_name.h"
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
+#include "abbe/report/customer/quality_results.h"
 #include "abbe/report/pages/evaluation_files.h"
 #include "abbe/report/words/evaluation_text.h"
 #include "abbe/study/evaluations/customer_evaluation.h"
@@ -53,39 +56,59 @@ void add_customer_report_options(Subcommand& command, EvaluationOptions& options
   command
       .add_output_file(
           "--customer-report", options.customer_report,
-          "Customer report to write, 2 to 4 sheets: *.pdf (printed by Chromium) or *.html; *.xml: a digital "
-          "calibration certificate")
+          "Customer report to write, 2 to 4 sheets: *.pdf (printed by Chromium or WeasyPrint) or *.html; *.xml: a "
+          "digital calibration certificate")
+      ->group("Customer report");
+  command.add_output_file("--qif", options.qif, "The same figures as results in QIF 3.0 to write; *.qif")
       ->group("Customer report");
   command
       .add_input_file("--facts", options.facts,
                       "Its facts: a TOML file with the table [report] (customer, machine, tolerances, language, ...)")
-      ->needs("--customer-report")
       ->group("Customer report");
   command.add_input_file("--before", options.before, "Readings before a correction, for figures before and after")
-      ->needs("--customer-report")
       ->group("Customer report");
 }
 
-int run_evaluation(TestToEvaluate test, const EvaluationOptions& options, const std::optional<TestToEvaluate>& before) {
+namespace {
+
+/// Before anything is computed. @throws InputError
+void check_customer_options(const EvaluationOptions& options) {
   if (!options.customer_report.empty()) check_customer_report_name(options.customer_report);
+  if (!options.qif.empty()) check_qif_name(options.qif);
+  if (!options.customer_report.empty() || !options.qif.empty()) return;
+  const char* const lone = !options.facts.empty() ? "--facts" : !options.before.empty() ? "--before" : nullptr;
+  if (lone == nullptr) return;
+  throw InputError({.field = lone}, "is of a customer report, which is not asked for", "--customer-report or --qif");
+}
+
+}  // namespace
+
+int run_evaluation(const EvaluationOptions& options,
+                   const std::function<TestToEvaluate(const std::string& file)>& test_of) {
+  check_customer_options(options);
   ReportFacts facts;
   if (!options.facts.empty()) facts = read_report_facts(options.facts);
-  const Evaluation result = evaluate_readings({options.file, std::move(test), options.tolerances, facts.tolerances});
+  const Evaluation result =
+      evaluate_readings({options.file, test_of(options.file), options.tolerances, facts.tolerances});
   PrintedPage printed;
-  if (!options.customer_report.empty()) {
+  if (!options.customer_report.empty() || !options.qif.empty()) {
     std::optional<Evaluation> earlier;
     std::vector<std::string> files = {file_name(options.file)};
-    if (before) {
-      earlier = evaluate_readings({options.before, *before, {}, {}});
+    if (!options.before.empty()) {
+      earlier = evaluate_readings({options.before, test_of(options.before), {}, {}});
       files.insert(files.begin(), file_name(options.before));
     }
     const CustomerReport report = customer_evaluation(facts, result, earlier ? &*earlier : nullptr, files);
-    printed = write_customer_report(report, options.customer_report);
+    if (!options.qif.empty()) write_file_atomically(options.qif, qif_results(report));
+    if (!options.customer_report.empty()) printed = write_customer_report(report, options.customer_report);
   }
   const int code = finish_evaluation(result.report, options, result.files);
-  if (!options.customer_report.empty() && !options.json) {
-    fmt::print("\ncustomer report: {}\n",
-               printed.problem.empty() ? options.customer_report : html_beside(options.customer_report).string());
+  if (!options.json) {
+    if (!options.customer_report.empty()) {
+      fmt::print("\ncustomer report: {}\n",
+                 printed.problem.empty() ? options.customer_report : html_beside(options.customer_report).string());
+    }
+    if (!options.qif.empty()) fmt::print("\nQIF: {}\n", options.qif);
   }
   require_printed(options.customer_report, html_beside(options.customer_report), printed);
   return result.refused.empty() ? code : static_cast<int>(kNegative);

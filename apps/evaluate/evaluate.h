@@ -1,7 +1,7 @@
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,7 +22,8 @@ struct EvaluationOptions {
   std::vector<std::string> tolerances;  ///< "A_um=10"
   bool json = false;
   std::string customer_report;  ///< file to write; empty: none
-  std::string facts;            ///< of it; empty: none are stated
+  std::string qif;              ///< the same as results in QIF: file to write; empty: none
+  std::string facts;            ///< of both; empty: none are stated
   std::string before;           ///< readings before a correction; empty: none
 };
 
@@ -34,7 +35,7 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
                            const std::string& columns, const std::string& renamed, const std::string& example,
                            EvaluationOptions& options);
 
-/// Options of a customer report, of the kinds that have one.
+/// Options of a customer report.
 void add_customer_report_options(Subcommand& command, EvaluationOptions& options);
 
 /// Prints the report for people or programs and writes the results folder: evaluation.json, one SVG file per plot,
@@ -43,10 +44,11 @@ void add_customer_report_options(Subcommand& command, EvaluationOptions& options
 int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& options,
                       const std::vector<std::pair<std::string, std::string>>& files = {});
 
-/// Evaluates readings and finishes with them. @returns kNegative also if the evaluation is refused
-/// @param before  the same test with the readings before a correction, for the customer report
-int run_evaluation(TestToEvaluate test, const EvaluationOptions& options,
-                   const std::optional<TestToEvaluate>& before = std::nullopt);
+/// Evaluates the readings of the file and finishes with them; writes the customer report, which also shows the same
+/// test with the readings before a correction. @returns kNegative also if the evaluation is refused
+/// @param test_of  the test with the readings of a file
+int run_evaluation(const EvaluationOptions& options,
+                   const std::function<TestToEvaluate(const std::string& file)>& test_of);
 
 // One per kind; each leaves its work in line.run.
 void add_evaluate_positioning(Subcommand& evaluate, CommandLine& line);

@@ -18,9 +18,9 @@ struct LinkageCommand {
   bool convention_given = false;
 };
 
-int run_linkage(const LinkageCommand& command) {
+LinkageTest linkage_test(const LinkageCommand& command, const std::string& file) {
   LinkageTest test;
-  test.readings = read_linkage(command.options.file, command.options.columns.mapping());
+  test.readings = read_linkage(file, command.options.columns.mapping());
   test.readings.exit_to_axis = command.exit_to_axis;
   test.readings.board_thickness = command.board;
   test.accuracy = command.accuracy;
@@ -30,7 +30,7 @@ int run_linkage(const LinkageCommand& command) {
     test.convention =
         command.convention == "head-moves" ? LinkageConvention::head_moves : LinkageConvention::table_moves;
   }
-  return run_evaluation(std::move(test), command.options);
+  return test;
 }
 
 }  // namespace
@@ -51,6 +51,7 @@ void add_evaluate_linkage(Subcommand& evaluate, CommandLine& line) {
       "examples/machines/yin-engraver-u.machine.toml --exit-to-axis-mm 120 --board-mm 4 --u-x-um 2.77 --u-y-um 1.55 "
       "--u-z-um 3.55 --u-mark-um 2 --u-width-um 2",
       command->options);
+  add_customer_report_options(*app, command->options);
   add_number(app, "--exit-to-axis-mm", Quantity::length, "mm", {0, 1e5}, command->exit_to_axis,
              "d: from the exit of the beam to the axis of A")
       ->required();
@@ -67,7 +68,9 @@ void add_evaluate_linkage(Subcommand& evaluate, CommandLine& line) {
   }
   app->callback([&line, app, command] {
     command->convention_given = app->count("--convention") > 0;
-    line.run = [command] { return run_linkage(*command); };
+    line.run = [command] {
+      return run_evaluation(command->options, [&](const std::string& file) { return linkage_test(*command, file); });
+    };
   });
 }
 

@@ -1,5 +1,4 @@
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "command.h"
@@ -16,7 +15,7 @@ struct PositioningCommand {
 };
 
 /// The same test with the readings of a file.
-PositioningTest test_of(const PositioningCommand& command, const std::string& file) {
+PositioningTest positioning_test(const PositioningCommand& command, const std::string& file) {
   PositioningTest test;
   test.readings = read_positioning(file, command.options.columns.mapping());
   for (std::size_t i = 0; i < command.contributions.size(); ++i) {
@@ -27,9 +26,7 @@ PositioningTest test_of(const PositioningCommand& command, const std::string& fi
 }
 
 int run(const PositioningCommand& command) {
-  std::optional<TestToEvaluate> before;
-  if (!command.options.before.empty()) before = test_of(command, command.options.before);
-  return run_evaluation(test_of(command, command.options.file), command.options, before);
+  return run_evaluation(command.options, [&](const std::string& file) { return positioning_test(command, file); });
 }
 
 }  // namespace

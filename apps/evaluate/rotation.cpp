@@ -26,6 +26,7 @@ void add_evaluate_rotation(Subcommand& evaluate, CommandLine& line) {
       "  abbe evaluate rotation examples/evaluate/rotation.csv --plane-distance-mm 80 --u-reading-um 0.02 --output "
       "results/spindle",
       command->options);
+  add_customer_report_options(*app, command->options);
   add_number(app, "--plane-distance-mm", Quantity::length, "mm", {0.001, 1e6}, command->rotation.plane_distance,
              "Distance from the first to the second plane, in the positive direction of the axis");
   add_number(app, "--sensitive-deg", Quantity::angle, "deg", {-360, 360}, command->rotation.sensitive_angle,
@@ -34,9 +35,9 @@ void add_evaluate_rotation(Subcommand& evaluate, CommandLine& line) {
              "Standard uncertainty of one displacement");
   app->callback([&line, command] {
     line.run = [command] {
-      return run_evaluation(
-          RotationTest{read_rotation(command->options.file, command->options.columns.mapping()), command->rotation},
-          command->options);
+      return run_evaluation(command->options, [&](const std::string& file) {
+        return RotationTest{read_rotation(file, command->options.columns.mapping()), command->rotation};
+      });
     };
   });
 }

@@ -17,18 +17,22 @@ struct LineCommand {
 };
 
 int run_straightness(const LineCommand& command) {
-  return run_evaluation(StraightnessTest{read_straightness(command.options.file, command.options.columns.mapping()),
-                                         command.line(), command.squareness.reading_uncertainty},
-                        command.options);
+  return run_evaluation(command.options, [&](const std::string& file) {
+    return StraightnessTest{read_straightness(file, command.options.columns.mapping()), command.line(),
+                            command.squareness.reading_uncertainty};
+  });
 }
 
 int run_squareness(const LineCommand& command) {
-  SquarenessTest test{read_squareness(command.options.file, command.options.columns.mapping()), command.squareness};
-  test.options.reference = command.line();
-  return run_evaluation(std::move(test), command.options);
+  return run_evaluation(command.options, [&](const std::string& file) {
+    SquarenessTest test{read_squareness(file, command.options.columns.mapping()), command.squareness};
+    test.options.reference = command.line();
+    return test;
+  });
 }
 
 void add_common_options(Subcommand* app, LineCommand& command) {
+  add_customer_report_options(*app, command.options);
   app->add_option("--reference", command.reference, "Reference line (default least-squares)")
       ->check(one_of({"least-squares", "minimum-zone"}));
   add_number(app, "--u-reading-um", Quantity::length, "um", {0, 1e6}, command.squareness.reading_uncertainty,

@@ -1,4 +1,4 @@
-// Customer reports of `abbe evaluate` and `abbe run`, as pages and printed by the browser that is installed.
+// Customer reports of `abbe evaluate` and `abbe run`, as pages and printed by the programs that are installed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +10,7 @@
 #include <iterator>
 #include <regex>
 #include <thread>
+#include <tuple>
 
 #include "abbe/formats/files/printed_page.h"
 #include "cli/command_test.h"
@@ -91,7 +92,7 @@ TEST_F(CustomerReportCommand, WrongFactsFilesAndNamesAreRefusedBeforeAnythingIsW
   result = abbe({"evaluate", "positioning", readings, "--before", ABBE_SOURCE_DIR "/examples/evaluate/rotary.csv",
                  "--customer-report", "a.html"});
   EXPECT_EQ(result.exit_code, bad_input);
-  EXPECT_THAT(result.err, HasSubstr("--before: the readings are of another kind of axis"));
+  EXPECT_THAT(result.err, HasSubstr("--before: the readings are of another test or of other axes"));
 }
 
 TEST_F(CustomerReportCommand, CertificatesNeedTheFactsOfTheirSchema) {
@@ -116,10 +117,114 @@ TEST_F(CustomerReportCommand, CertificatesNeedTheFactsOfTheirSchema) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "other.xml"));
 }
 
-TEST_F(CustomerReportCommand, WithoutABrowserThePageIsWrittenAndTheExitCodeSaysSo) {
+TEST_F(CustomerReportCommand, EvaluationsWriteTheirFiguresInQif) {
+  std::vector<std::string> words = evaluation("de", "report.html");
+  words.insert(words.end(), {"--qif", "results.qif"});
+  const CommandResult result = abbe(words);
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("QIF: results.qif"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "report.html"));
+  const std::string qif = folder.read("results.qif");
+  for (const char* text :
+       {"versionQIF=\"3.0.0\"", "<MeasurementResultsSet n=\"2\">", "<SerialNumber>SM-0417</SerialNumber>",
+        "<CharacteristicStatusEnum>FAIL</CharacteristicStatusEnum>",
+        "<CharacteristicStatusEnum>PASS</CharacteristicStatusEnum>",
+        "<InspectionStart>2026-11-28T00:00:00</InspectionStart>",
+        "<WhatToMeasure>beidseitige Positioniergenauigkeit</WhatToMeasure>"}) {
+    EXPECT_THAT(qif, HasSubstr(text));
+  }
+  // The value of A after the correction is that of the evaluation.
+  const CommandResult json = abbe({"evaluate", "positioning", kCustomerExamples + "after.csv", "--json"});
+  std::smatch value;
+  ASSERT_TRUE(std::regex_search(json.out, value, std::regex("\"A\": \\{[^}]*\"value_um\": ([0-9.]+)"))) << json.out;
+  EXPECT_THAT(qif, HasSubstr(">" + value[1].str() + "</Value>"));
+  const CommandResult alone =
+      abbe({"evaluate", "positioning", kCustomerExamples + "after.csv", "--qif", "alone.qif", "--json"});
+  EXPECT_EQ(alone.exit_code, done) << alone.err;
+  EXPECT_THAT(folder.read("alone.qif"), HasSubstr("<InspectionStatusEnum>NOT_CALCULATED</InspectionStatusEnum>"));
+  EXPECT_EQ(abbe({"evaluate", "positioning", kCustomerExamples + "after.csv", "--qif", "alone.qif"}).exit_code,
+            bad_input)
+      << "the file exists";
+  const CommandResult name = abbe({"evaluate", "positioning", kCustomerExamples + "after.csv", "--qif", "a.xml"});
+  EXPECT_EQ(name.exit_code, bad_input);
+  EXPECT_THAT(name.err, HasSubstr("expected a name that ends in .qif"));
+}
+
+TEST_F(CustomerReportCommand, QifIsRecognisedByTheImport) {
+  ASSERT_EQ(abbe({"evaluate", "positioning", kCustomerExamples + "after.csv", "--qif", "a.qif"}).exit_code, done);
+  const CommandResult result = abbe({"import", "a.qif", "-o", "points.csv"});
+  EXPECT_EQ(result.exit_code, bad_input);
+  EXPECT_THAT(result.err, HasSubstr("there are no measured points")) << "figures are no points";
+}
+
+TEST_F(CustomerReportCommand, StudiesWriteTheirFiguresInQif) {
+  const CommandResult result = abbe({"run", kCustomerExamples + "mill.study.toml", "-o", "out", "--qif", "mill.qif"});
+  ASSERT_EQ(result.exit_code, done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("QIF:       mill.qif"));
+  const std::string qif = folder.read("mill.qif");
+  EXPECT_THAT(qif, HasSubstr("<MeasurementResultsSet n=\"1\">")) << "a prediction is no measurement";
+  EXPECT_THAT(qif, HasSubstr("<Name>EC0Y</Name>"));
+  EXPECT_THAT(qif, HasSubstr("<CharacteristicStatusEnum>INDETERMINATE</CharacteristicStatusEnum>"));
+  const CommandResult without =
+      abbe({"run", ABBE_SOURCE_DIR "/examples/three_axis/dials.study.toml", "-o", "other", "--qif", "dials.qif"});
+  EXPECT_EQ(without.exit_code, bad_input);
+  EXPECT_THAT(without.err, HasSubstr("states no facts of a customer report"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "other"));
+}
+
+TEST_F(CustomerReportCommand, EveryKindOfEvaluationHasOne) {
+  const std::string examples = ABBE_SOURCE_DIR "/examples/";
+  const std::string engraver = examples + "laser_engraver/";
+  folder.write("facts.toml", "[report]\nlanguage = \"de\"\nnumber = \"7\"\n");
+  struct Kind {
+    std::vector<std::string> words;
+    const char *subject, *table;
+  };
+  const Kind kinds[] = {
+      {{"circular", examples + "evaluate/circular.csv", "--radius-mm", "150", "--u-reading-um", "0.2", "--tolerance",
+        "G_b_um=15"},
+       "Kreisformprüfung",
+       "Radialabweichungen der Messwerte"},
+      {{"rotation", examples + "evaluate/rotation.csv", "--plane-distance-mm", "80", "--u-reading-um", "0.02"},
+       "Bewegungsabweichungen einer Drehachse",
+       "Synchrone Bewegungsabweichungen an Winkeln"},
+      {{"straightness", examples + "evaluate/straightness.csv", "--u-reading-um", "0.3"},
+       "Geradheit einer Linie",
+       "von der Minimumzone / µm"},
+      {{"squareness", examples + "evaluate/squareness.csv", "--u-reading-um", "0.3"},
+       "Rechtwinkligkeit zweier Linien",
+       "Abweichungen von der Bezugsgeraden Y"},
+      {{"contour", engraver + "sections.csv", "--u-height-um", "2", "--u-across-um", "1"},
+       "Konturabweichung einer gravierten Kurve",
+       "Konturabweichung der Schnitte"},
+      {{"contour", engraver + "engraved.csv", "--curve", engraver + "table-a4.csv"},
+       "Konturabweichung einer gravierten Kurve",
+       "Abweichungen der Punkte von der Kurve"},
+      {{"linkage", engraver + "five-steps.csv", "--exit-to-axis-mm", "120", "--board-mm", "4"},
+       "Geometriegrößen einer Lasergraviermaschine",
+       "Versatz des Strahls gegen die Achse A"},
+  };
+  int number = 0;
+  for (const Kind& kind : kinds) {
+    const std::string name = "report-" + std::to_string(++number);
+    std::vector<std::string> words = {"evaluate"};
+    words.insert(words.end(), kind.words.begin(), kind.words.end());
+    words.insert(words.end(), {"--facts", "facts.toml", "--customer-report", name + ".html", "--qif", name + ".qif"});
+    const CommandResult result = abbe(words);
+    ASSERT_EQ(result.exit_code, done) << kind.subject << ": " << result.err;
+    const std::string page = folder.read(name + ".html");
+    EXPECT_THAT(page, HasSubstr(std::string("<p>") + kind.subject + "</p>"));
+    EXPECT_THAT(page, HasSubstr(kind.table));
+    EXPECT_THAT(folder.read(name + ".qif"), HasSubstr("<CharacteristicMeasurements"));
+  }
+  EXPECT_THAT(folder.read("report-1.html"), HasSubstr("Die Konformität mit der Spezifikation ist nachgewiesen: G_b."));
+}
+
+TEST_F(CustomerReportCommand, WithoutAProgramThatPrintsThePageIsWrittenAndTheExitCodeSaysSo) {
   const CommandResult result = abbe(evaluation("en", "report.pdf"), {"PATH=/nowhere", "ABBE_BROWSER="});
   EXPECT_EQ(result.exit_code, bad_input);
-  EXPECT_THAT(result.err, HasSubstr("report.pdf: not written, no browser that prints is installed: install chromium"));
+  EXPECT_THAT(result.err, HasSubstr("report.pdf: not written, no program that prints pages is installed: install "
+                                    "chromium or weasyprint"));
   EXPECT_THAT(result.err, HasSubstr("complete before that: report.html"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "report.pdf"));
   EXPECT_THAT(folder.read("report.html"), HasSubstr("Example Tooling Ltd"));
@@ -226,12 +331,27 @@ TEST_F(CustomerReportCommand, AnInterruptionEndsTheBrowserAndLeavesNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "report.pdf"));
 }
 
-/// Printed by the browser that is installed; skipped, visibly, without one and without fonts of the language.
-class PrintedCustomerReport : public CustomerReportCommand, public testing::WithParamInterface<const char*> {
+/// Programs that print, by their command.
+const char* const kPrinters[] = {"chromium", "weasyprint"};
+
+/// Where a program is; empty: it is not installed.
+std::string installed_printer(const std::string& command) {
+  const std::string path = "/usr/bin/" + command;
+  return std::filesystem::exists(path) ? path : "";
+}
+
+/// Printed by a program in a language; skipped, visibly, without the program and without fonts of the language.
+class PrintedCustomerReport : public CustomerReportCommand,
+                              public testing::WithParamInterface<std::tuple<const char*, const char*>> {
  protected:
   void SetUp() override {
-    if (find_browser().empty()) GTEST_SKIP() << "no browser that prints is installed";
+    printer_ = installed_printer(std::get<0>(GetParam()));
+    if (printer_.empty()) GTEST_SKIP() << std::get<0>(GetParam()) << " is not installed";
   }
+
+  std::string language() const { return std::get<1>(GetParam()); }
+
+  CommandResult print(const std::vector<std::string>& words) { return abbe(words, {"ABBE_BROWSER=" + printer_}); }
 
   /// @returns whether it was printed; else the test is skipped for lack of fonts, or failed
   bool printed(const CommandResult& result) {
@@ -256,6 +376,7 @@ class PrintedCustomerReport : public CustomerReportCommand, public testing::With
     EXPECT_TRUE(std::regex_search(text.out, std::regex("1 ?/ ?" + std::to_string(pages)))) << "number of the sheet";
   }
 
+  std::string printer_;
   bool has_no_font_ = false;
 };
 
@@ -267,35 +388,54 @@ std::string name_of_accuracy(const std::string& language) {
 }
 
 TEST_P(PrintedCustomerReport, OfAnEvaluationHasTwoToFourSheetsWithText) {
-  const std::string language = GetParam();
-  if (!printed(abbe(evaluation(language, "report.pdf")))) {
-    if (has_no_font_) GTEST_SKIP() << "no font for " << language;
+  if (!printed(print(evaluation(language(), "report.pdf")))) {
+    if (has_no_font_) GTEST_SKIP() << "no font for " << language();
     return;
   }
-  expect_report("report.pdf", {name_of_accuracy(language), "Example Tooling Ltd", "SM-0417", "K-2026-0815"});
+  expect_report("report.pdf", {name_of_accuracy(language()), "Example Tooling Ltd", "SM-0417", "K-2026-0815"});
 }
 
 TEST_P(PrintedCustomerReport, OfAStudyHasTwoToFourSheetsWithText) {
-  const std::string language = GetParam();
   std::filesystem::copy(ABBE_SOURCE_DIR "/examples/machines", folder.path() / "machines");
   std::filesystem::copy(kCustomerExamples, folder.path() / "study");
   const std::string study = std::regex_replace(folder.read("study/mill.study.toml"), std::regex("language = \"en\""),
-                                               "language = \"" + language + "\"");
+                                               "language = \"" + language() + "\"");
   folder.write("study/mill.study.toml", study);
-  if (!printed(abbe({"run", "study/mill.study.toml", "-o", "out", "--pdf"}))) {
-    if (has_no_font_) GTEST_SKIP() << "no font for " << language;
+  if (!printed(print({"run", "study/mill.study.toml", "-o", "out", "--pdf"}))) {
+    if (has_no_font_) GTEST_SKIP() << "no font for " << language();
     return;
   }
   expect_report("out/customer-report.pdf", {"Example Tooling Ltd", "SM-0418", "EXX", "EC0Y", "V_max"});
 }
 
-INSTANTIATE_TEST_SUITE_P(Languages, PrintedCustomerReport, testing::Values("en", "de", "zh", "ja"),
-                         [](const auto& tested) { return std::string(tested.param); });
+std::vector<std::tuple<const char*, const char*>> printers_and_languages() {
+  std::vector<std::tuple<const char*, const char*>> all;
+  for (const char* const language : {"en", "de", "zh", "ja"}) all.emplace_back("chromium", language);
+  // WeasyPrint 57 takes 20 s of a processor to reduce a font with Chinese or Japanese letters.
+  for (const char* const language : {"en", "de"}) all.emplace_back("weasyprint", language);
+  return all;
+}
 
-TEST_F(CustomerReportCommand, PrintedTwiceHasTheSameBytes) {
-  if (find_browser().empty()) GTEST_SKIP() << "no browser that prints is installed";
+INSTANTIATE_TEST_SUITE_P(Languages, PrintedCustomerReport, testing::ValuesIn(printers_and_languages()),
+                         [](const auto& tested) {
+                           return std::string(std::get<0>(tested.param)) + "_" + std::get<1>(tested.param);
+                         });
+
+class CustomerReportPrinter : public CustomerReportCommand, public testing::WithParamInterface<const char*> {
+ protected:
+  void SetUp() override {
+    printer_ = installed_printer(GetParam());
+    if (printer_.empty()) GTEST_SKIP() << GetParam() << " is not installed";
+  }
+
+  std::string printer_;
+};
+
+TEST_P(CustomerReportPrinter, PrintsTwiceTheSameBytes) {
   for (const char* name : {"first.pdf", "second.pdf"}) {
-    const CommandResult result = abbe(evaluation("en", name));
+    // The clock has to go on between the two.
+    if (*name == 's') std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    const CommandResult result = abbe(evaluation("en", name), {"ABBE_BROWSER=" + printer_});
     ASSERT_EQ(result.exit_code, done) << result.err;
   }
   const std::string first = folder.read("first.pdf"), second = folder.read("second.pdf");
@@ -304,6 +444,30 @@ TEST_F(CustomerReportCommand, PrintedTwiceHasTheSameBytes) {
                                << differ - first.begin() << ": "
                                << std::string(differ, differ + std::min<std::ptrdiff_t>(80, first.end() - differ));
 }
+
+TEST_P(CustomerReportPrinter, LeavesNothingWhenInterrupted) {
+  const std::filesystem::path temporary = folder.path() / "temporary";
+  std::filesystem::create_directory(temporary);
+  const auto is_printing = [&](pid_t) {
+    for (const auto& entry : std::filesystem::directory_iterator(temporary)) {
+      if (std::filesystem::exists(entry.path() / "page.html")) return true;
+    }
+    return false;
+  };
+  const CommandResult result =
+      run_and_signal("/usr/bin/env",
+                     {"ABBE_BROWSER=" + printer_, "TMPDIR=" + temporary.string(), ABBE_COMMAND, "evaluate",
+                      "positioning", kCustomerExamples + "after.csv", "--customer-report", "report.pdf"},
+                     folder.path(), SIGTERM, is_printing);
+  EXPECT_TRUE(result.signalled);
+  EXPECT_EQ(result.exit_code, 128 + SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_TRUE(std::filesystem::is_empty(temporary));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "report.pdf"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Printers, CustomerReportPrinter, testing::ValuesIn(kPrinters),
+                         [](const auto& tested) { return std::string(tested.param); });
 
 }  // namespace
 }  // namespace abbe

@@ -76,7 +76,7 @@ TEST_F(HelpExamples, RunFromTheRepositoryAsTheyStand) {
   std::stable_partition(order.begin(), order.end(), is_first);
   int run = 0;
   for (const std::string& line : order) {
-    if (is_long(line) || (prints(line) && find_browser().empty())) continue;
+    if (is_long(line) || (prints(line) && find_page_printer().program.empty())) continue;
     std::vector<std::string> arguments = words(line);
     arguments.erase(arguments.begin());
     const CommandResult result = abbe(arguments);

@@ -36,4 +36,7 @@ CustomerReport study_customer_report(const Study& study, const StudyResult& resu
 /// @param study  whose facts name a laboratory, as check_customer_report() wants them
 std::string study_certificate(const Study& study, const StudyResult& result);
 
+/// The same as results in QIF, without what is predicted. @param study  with facts
+std::string study_qif_results(const Study& study, const StudyResult& result);
+
 }  // namespace abbe

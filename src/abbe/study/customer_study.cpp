@@ -13,6 +13,7 @@
 #include "abbe/report/customer/calibration_certificate.h"
 #include "abbe/report/customer/customer_words.h"
 #include "abbe/report/customer/local_numbers.h"
+#include "abbe/report/customer/quality_results.h"
 #include "abbe/report/evaluations/partial_errors.h"
 #include "abbe/study/compared_campaigns.h"
 #include "abbe/study/customer_errors.h"
@@ -157,6 +158,15 @@ std::vector<std::string> files_of(const Study& study, const StudyResult& result)
   return files;
 }
 
+/// Without what is predicted, which is no measurement.
+CustomerReport measured_customer_report(const Study& study, const StudyResult& result) {
+  CustomerReport report = study_customer_report(study, result);
+  if (result.before) return report;
+  report.states.resize(1);
+  for (CustomerFigure& figure : report.figures) figure.states.resize(1);
+  return report;
+}
+
 }  // namespace
 
 std::vector<std::string> customer_tolerance_names(const Study& study) {
@@ -253,6 +263,10 @@ CustomerReport study_customer_report(const Study& study, const StudyResult& resu
   return report;
 }
 
+std::string study_qif_results(const Study& study, const StudyResult& result) {
+  return qif_results(measured_customer_report(study, result));
+}
+
 std::string study_certificate(const Study& study, const StudyResult& result) {
   const ErrorSet& identified = result.identification.errors;
   CertifiedErrors errors;
@@ -268,13 +282,7 @@ std::string study_certificate(const Study& study, const StudyResult& result) {
     // Labels stand in a list, between blanks.
     std::replace(errors.names[i].begin(), errors.names[i].end(), ' ', '_');
   }
-  CustomerReport report = study_customer_report(study, result);
-  if (!result.before) {
-    // The second state is predicted, which is no measurement.
-    report.states.resize(1);
-    for (CustomerFigure& figure : report.figures) figure.states.resize(1);
-  }
-  return calibration_certificate(report, errors);
+  return calibration_certificate(measured_customer_report(study, result), errors);
 }
 
 }  // namespace abbe

@@ -37,17 +37,21 @@ class ChildProcess {
   /// Where a program and the processes that it starts belong.
   enum class Group {
     of_parent,
-    own  ///< all of it is killed when the time is over, and by an interruption (interruption.h)
+    /// All of it is killed when the time is over, by an interruption (interruption.h), and when the program has ended:
+    /// nothing that it started outlives it.
+    own
   };
 
   /// @param words         path of the program, arguments
   /// @param most_seconds  of the clock on the wall
   /// @param listen        called with each whole line on standard error, some time after it was written, by this
   ///                      thread; if it throws, the program is killed
+  /// @param variables     of its environment, "NAME=value", in place of those of this process
   /// @throws InputError if the program cannot be started, std::runtime_error if the system gives no memory for its
   /// output, what listen() throws
   ChildProcess(const std::vector<std::string>& words, double most_seconds,
-               const std::function<void(std::string_view line)>& listen = {}, Group group = Group::of_parent);
+               const std::function<void(std::string_view line)>& listen = {}, Group group = Group::of_parent,
+               const std::vector<std::string>& variables = {});
 
   bool timed_out() const { return timed_out_; }
   int signal() const;                                                 ///< that ended it, or 0

@@ -116,6 +116,43 @@ enum class CustomerWord {
   reversal_value,
   volumetric_mean,
   volumetric_largest,
+  circular_test,  ///< what was tested, like those that follow
+  rotation_motions,
+  straightness_test,
+  squareness_test,
+  contour_test,
+  linkage_test,
+  clockwise,
+  counterclockwise,
+  angle,
+  radial_deviation,
+  radial_near_angles,     ///< caption of a table, of the readings nearest to angles
+  synchronous_at_angles,  ///< caption of a table
+  synchronous,
+  total,
+  line_deviations,  ///< caption of a table; {}: name of the line, or empty
+  from_least_squares,
+  from_minimum_zone,
+  from_reference_line,
+  section,
+  section_errors,  ///< caption of a table
+  contour_error,
+  rounding,
+  along,         ///< where on a curve
+  point_errors,  ///< caption of a table
+  across,
+  out_of_surface,
+  distance,
+  plane_fact,  ///< a condition, like those that follow; {}: text
+  radius_fact,
+  centre_fact,
+  lines_fact,
+  turns_fact,
+  length_fact,
+  reading_count_fact,
+  centre_least_squares,
+  centre_minimum_zone,
+  centre_instrument,
   count_  ///< number of words
 };
 

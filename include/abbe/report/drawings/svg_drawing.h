@@ -56,6 +56,10 @@ class SvgDrawing {
   std::string title_, elements_;
 };
 
+/// A picture of SvgDrawing in the colours of light paper, whatever the screen, and without variables of style sheets,
+/// which not every program that prints understands.
+std::string svg_for_paper(std::string svg);
+
 /// One drawing in two layouts.
 struct SvgPicture {
   std::string wide;    ///< for a file, for paper and for a wide window

@@ -66,6 +66,7 @@ struct EvaluationFigure {
   std::string missing;                ///< without a value: why, in words
   std::optional<double> uncertainty;  ///< expanded, k = 2; like the value
   std::optional<double> tolerance;    ///< largest permitted magnitude; like the value
+  std::vector<std::string> about{};   ///< axes or lines that the name speaks of, for names in other languages
 
   /// The magnitude is larger than the tolerance; a figure that is not known does not satisfy any.
   bool exceeds_tolerance() const { return tolerance && (!value || std::abs(*value) > *tolerance); }

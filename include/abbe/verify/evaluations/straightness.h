@@ -30,7 +30,8 @@ struct StraightLine {
 struct Straightness {
   StraightnessStatus status = StraightnessStatus::not_run;
   StraightLine line;
-  std::vector<double> deviations;  ///< [n] from the line, in the order of the readings
+  std::vector<double> positions;   ///< [n] mm, in the order of the readings
+  std::vector<double> deviations;  ///< [n] from the line, in the same order
   double value = 0;                ///< straightness error: largest less smallest deviation, never negative
   double largest = 0, smallest = 0;
   std::size_t largest_at = 0, smallest_at = 0;  ///< readings that touch the zone

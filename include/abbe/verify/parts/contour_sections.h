@@ -29,6 +29,8 @@ struct SectionOptions {
 
 /// What one section says.
 struct SectionAnswer {
+  std::string name;             ///< of the section
+  std::optional<double> along;  ///< mm, where on the curve
   bool groove = false;
   EdgeFit first, second;  ///< the edge, or the left and the right one of a groove
   bool ok = false;

@@ -1,10 +1,14 @@
 #include "abbe/formats/files/printed_page.h"
 
 #include <fmt/format.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cstdlib>
 #include <fstream>
 #include <optional>
@@ -26,6 +30,7 @@ namespace fs = std::filesystem;
 constexpr const char* kBrowserVariable = "ABBE_BROWSER";
 constexpr const char* kBrowserNames[] = {"chromium", "chromium-browser", "google-chrome", "google-chrome-stable",
                                          "chromium-headless-shell"};
+constexpr const char* kWeasyPrint = "weasyprint";
 constexpr std::size_t kLongestMessage = 300;
 
 bool is_program(const fs::path& path) {
@@ -81,21 +86,46 @@ class TemporaryPlace {
   std::optional<UnfinishedPath> noted_;
 };
 
-std::vector<std::string> browser_command(const fs::path& browser, const fs::path& folder) {
+/// A program with its options and what its environment has to have.
+struct PrintCommand {
+  std::vector<std::string> words, variables;
+};
+
+PrintCommand browser_command(const fs::path& browser, const fs::path& folder) {
   std::vector<std::string> words = {
       browser.string(), "--headless", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
       "--no-default-browser-check", "--disable-extensions", "--disable-sync", "--disable-breakpad",
       "--disable-background-networking", "--disable-component-update", "--disable-default-apps",
       // Nothing is fetched: the page names no other file, and no name has an address.
       "--host-resolver-rules=MAP * ~NOTFOUND", "--user-data-dir=" + (folder / "profile").string(),
-      "--no-pdf-header-footer", "--print-to-pdf=" + (folder / "page.pdf").string()};
+      "--crash-dumps-dir=" + (folder / "crashes").string(), "--no-pdf-header-footer",
+      "--print-to-pdf=" + (folder / "page.pdf").string()};
   // Chromium refuses to run as root with its sandbox.
   if (::geteuid() == 0) words.emplace_back("--no-sandbox");
   words.push_back("file://" + (folder / "page.html").string());
-  return words;
+  // It makes a folder for a socket beside its profile, and leaves it when it is killed. A path that is too long for a
+  // socket ends it.
+  constexpr std::string_view kSocket = "/org.chromium.Chromium.XXXXXX/SingletonSocket";
+  if (folder.string().size() + kSocket.size() >= sizeof(sockaddr_un::sun_path)) return {words, {}};
+  return {words, {"TMPDIR=" + folder.string()}};
 }
 
-/// The last line that a browser said, for messages.
+PrintCommand weasyprint_command(const fs::path& program, const fs::path& folder) {
+  return {{program.string(), "--encoding", "utf-8", (folder / "page.html").string(), (folder / "page.pdf").string()},
+          // Fonts state when they were made smaller: by the clock, unless the environment says when. Its own temporary
+          // files are removed with the folder.
+          {"SOURCE_DATE_EPOCH=0", "TMPDIR=" + folder.string()}};
+}
+
+void write_page(const fs::path& path, const std::string& html) {
+  std::ofstream file(path, std::ios::binary);
+  file << html;
+  file.close();
+  // A part of a page would be printed as if it were the whole.
+  if (!file) throw std::runtime_error(fmt::format("{} cannot be written", path.string()));
+}
+
+/// The last line that a program said, for messages.
 std::string last_line(std::string_view messages) {
   while (!messages.empty() && std::isspace(static_cast<unsigned char>(messages.back())) != 0) messages.remove_suffix(1);
   const std::size_t begin = messages.rfind('\n');
@@ -108,28 +138,66 @@ std::string contents_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+std::size_t largest_page_tree(std::string_view objects) {
+  constexpr std::string_view kTree = "/Type /Pages", kCount = "/Count ";
+  std::size_t most = 0;
+  for (std::size_t at = objects.find(kTree); at != std::string_view::npos; at = objects.find(kTree, at + 1)) {
+    const std::size_t end = objects.find("endobj", at);
+    const std::size_t count = objects.find(kCount, at);
+    if (count == std::string_view::npos || count > end) continue;
+    std::size_t pages = 0;
+    const std::string_view digits = objects.substr(count + kCount.size());
+    std::from_chars(digits.data(), digits.data() + digits.size(), pages);
+    most = std::max(most, pages);
+  }
+  return most;
+}
+
+/// The objects that newer versions of WeasyPrint pack together; empty if they cannot be unpacked.
+/// @param at  within the dictionary of their stream
+std::string unpacked_objects(const std::string& pdf, std::size_t at) {
+  constexpr std::string_view kBegin = "stream\n";
+  const std::size_t word = pdf.find(kBegin, at), begin = word + kBegin.size();
+  const std::size_t end = word == std::string::npos ? word : pdf.find("endstream", begin);
+  if (end == std::string::npos) return "";
+  constexpr std::size_t kMost = std::size_t{1} << 26U;
+  for (std::size_t size = 16 * (end - begin) + 1024; size <= kMost; size *= 4) {
+    std::string objects(size, '\0');
+    uLongf written = size;
+    const int code = ::uncompress(reinterpret_cast<Bytef*>(objects.data()), &written,
+                                  reinterpret_cast<const Bytef*>(pdf.data() + begin), end - begin);
+    if (code == Z_BUF_ERROR) continue;
+    objects.resize(code == Z_OK ? written : 0);
+    return objects;
+  }
+  return "";
+}
+
 }  // namespace
 
-fs::path find_browser() {
+PagePrinter find_page_printer() {
   if (const char* named = std::getenv(kBrowserVariable); named != nullptr && *named != '\0') {
-    if (is_program(named)) return named;
-    throw InputError({.field = kBrowserVariable}, fmt::format("{} is not a program", named),
-                     "the path of Chromium, or no such variable");
+    if (!is_program(named)) {
+      throw InputError({.field = kBrowserVariable}, fmt::format("{} is not a program", named),
+                       "the path of Chromium or WeasyPrint, or no such variable");
+    }
+    const bool is_weasyprint = fs::path(named).filename().string().starts_with(kWeasyPrint);
+    return {named, is_weasyprint ? PagePrinter::Kind::weasyprint : PagePrinter::Kind::browser};
   }
   for (const char* name : kBrowserNames) {
     const fs::path found = program_on_path(name);
-    if (!found.empty()) return found;
+    if (!found.empty()) return {found, PagePrinter::Kind::browser};
   }
-  return {};
+  return {program_on_path(kWeasyPrint), PagePrinter::Kind::weasyprint};
 }
 
 PrintedPage print_page(const std::string& html, const PrintSettings& settings) {
   PrintedPage printed;
-  const fs::path browser = find_browser();
-  if (browser.empty()) {
+  const PagePrinter printer = find_page_printer();
+  if (printer.program.empty()) {
     printed.problem = fmt::format(
-        "no browser that prints is installed: install chromium (Debian: apt-get install chromium fonts-noto-cjk), or "
-        "let {} name one",
+        "no program that prints pages is installed: install chromium or weasyprint (Debian: apt-get install chromium "
+        "fonts-noto-cjk, or apt-get install weasyprint fonts-noto-cjk), or let {} name one",
         kBrowserVariable);
     return printed;
   }
@@ -141,11 +209,13 @@ PrintedPage print_page(const std::string& html, const PrintSettings& settings) {
     return printed;
   }
   const TemporaryPlace place;
-  std::ofstream(place.path() / "page.html", std::ios::binary) << html;
-  const ChildProcess process(browser_command(browser, place.path()), settings.most_seconds, {},
-                             ChildProcess::Group::own);
+  write_page(place.path() / "page.html", html);
+  const PrintCommand command = printer.kind == PagePrinter::Kind::weasyprint
+                                   ? weasyprint_command(printer.program, place.path())
+                                   : browser_command(printer.program, place.path());
+  const ChildProcess process(command.words, settings.most_seconds, {}, ChildProcess::Group::own, command.variables);
   if (process.timed_out()) {
-    printed.problem = fmt::format("{} did not finish within {:g} s", browser.string(), settings.most_seconds);
+    printed.problem = fmt::format("{} did not finish within {:g} s", printer.program.string(), settings.most_seconds);
     return printed;
   }
   std::string pdf = contents_of(place.path() / "page.pdf");
@@ -153,7 +223,7 @@ PrintedPage print_page(const std::string& html, const PrintSettings& settings) {
   printed.pages = is_whole ? pdf_page_count(pdf) : 0;
   if (process.signal() != 0 || process.exit_code() != 0 || printed.pages == 0) {
     const std::string said = last_line(process.messages());
-    printed.problem = fmt::format("{} ended with {} and printed no PDF{}", browser.string(),
+    printed.problem = fmt::format("{} ended with {} and printed no PDF{}", printer.program.string(),
                                   process.signal() != 0 ? fmt::format("signal {}", process.signal())
                                                         : fmt::format("exit code {}", process.exit_code()),
                                   said.empty() ? "" : ": " + said);
@@ -166,31 +236,34 @@ PrintedPage print_page(const std::string& html, const PrintSettings& settings) {
 }
 
 std::size_t pdf_page_count(const std::string& pdf) {
-  constexpr std::string_view kTree = "/Type /Pages", kCount = "/Count ";
-  std::size_t most = 0;
-  for (std::size_t at = pdf.find(kTree); at != std::string::npos; at = pdf.find(kTree, at + 1)) {
-    const std::size_t end = pdf.find("endobj", at);
-    const std::size_t count = pdf.find(kCount, at);
-    if (count == std::string::npos || count > end) continue;
-    most = std::max<std::size_t>(most, std::strtoul(pdf.c_str() + count + kCount.size(), nullptr, 10));
+  std::size_t most = largest_page_tree(pdf);
+  constexpr std::string_view kPacked = "/Type /ObjStm";
+  for (std::size_t at = pdf.find(kPacked); at != std::string::npos; at = pdf.find(kPacked, at + 1)) {
+    most = std::max(most, largest_page_tree(unpacked_objects(pdf, at)));
   }
   return most;
 }
 
 void set_pdf_date(const std::string& date, std::string& pdf) {
+  // Whole moments of the format, from the most exact to the day alone: as much as there is room for.
+  const std::string moments[] = {"D:" + date + "000000+00'00'", "D:" + date + "000000", "D:" + date};
   for (const std::string_view key : {"/CreationDate", "/ModDate"}) {
     for (std::size_t at = pdf.find(key); at != std::string::npos; at = pdf.find(key, at + key.size())) {
-      const std::size_t begin = pdf.find_first_not_of(' ', at + key.size());
-      if (begin == std::string::npos || pdf.compare(begin, 3, "(D:") != 0) continue;
-      const std::size_t end = pdf.find(')', begin);
-      if (end == std::string::npos) continue;
+      const std::size_t open = pdf.find_first_not_of(' ', at + key.size());
+      if (open == std::string::npos || pdf[open] != '(') continue;
+      const std::size_t begin = open + 1, end = pdf.find(')', begin);
+      const bool is_moment = pdf.compare(begin, 2, "D:") == 0 || std::isdigit(static_cast<unsigned char>(pdf[begin]));
+      if (end == std::string::npos || !is_moment) continue;
       if (date.empty()) {
         pdf.replace(at, end + 1 - at, end + 1 - at, ' ');
         continue;
       }
-      std::string text = "(D:" + date + "000000+00'00'";
-      text.resize(end - begin, ' ');
-      pdf.replace(begin, end - begin, text);
+      for (std::string moment : moments) {
+        if (moment.size() > end - begin) continue;
+        moment.resize(end - begin, ' ');
+        pdf.replace(begin, end - begin, moment);
+        break;
+      }
     }
   }
 }

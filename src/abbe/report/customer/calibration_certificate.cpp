@@ -24,9 +24,14 @@ constexpr double kNoVariance = 1e-9;
 
 /// A unit as D-SI writes it.
 std::string si_unit(const std::string& shown) {
-  static constexpr std::pair<const char*, const char*> kUnits[] = {
-      {"µm", "\\micro\\metre"}, {"mm", "\\milli\\metre"}, {"µrad", "\\micro\\radian"},           {"″", "\\arcsecond"},
-      {"°", "\\degree"},        {"m", "\\metre"},         {"µm/m", "\\micro\\metre\\per\\metre"}};
+  static constexpr std::pair<const char*, const char*> kUnits[] = {{"µm", "\\micro\\metre"},
+                                                                   {"mm", "\\milli\\metre"},
+                                                                   {"µrad", "\\micro\\radian"},
+                                                                   {"″", "\\arcsecond"},
+                                                                   {"°", "\\degree"},
+                                                                   {"m", "\\metre"},
+                                                                   {"µm/m", "\\micro\\metre\\per\\metre"},
+                                                                   {"ms", "\\milli\\second"}};
   for (const auto& [name, unit] : kUnits) {
     if (shown == name) return unit;
   }

@@ -134,6 +134,20 @@ TEST(CalibrationCertificate, NamesWhatProgramsLookForAsTheExamplesOfPtbDo) {
   EXPECT_EQ(reference("metaData"), "basic_conformity");
 }
 
+TEST(CalibrationCertificate, HasTheUnitsOfAllKindsOfEvaluations) {
+  CustomerReport report = a_report();
+  report.figures.resize(1);
+  const std::pair<const char*, const char*> kUnits[] = {{"µm/m", "\\micro\\metre\\per\\metre"},
+                                                        {"ms", "\\milli\\second"},
+                                                        {"mm", "\\milli\\metre"},
+                                                        {"″", "\\arcsecond"}};
+  for (const auto& [shown, unit] : kUnits) {
+    report.figures[0].unit = shown;
+    const XmlElement root = parsed_certificate(calibration_certificate(report));
+    EXPECT_EQ(all_named(*all_named(root, "measurementResult")[0]->child("results"), "unit")[0]->text, unit);
+  }
+}
+
 TEST(CalibrationCertificate, WarningsOfTheReportAreStatements) {
   CustomerReport report = a_report();
   report.is_simulated = true;

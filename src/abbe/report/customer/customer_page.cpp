@@ -25,8 +25,8 @@ class CustomerPage {
         "<!doctype html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<meta name=\"generator\" content=\"{}\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n",
-        language_code(language_), producer(), xml_text(title()), customer_style(foot()));
+        "<meta name=\"generator\" content=\"{}\">\n{}<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n",
+        language_code(language_), producer(), created(), xml_text(title()), customer_style(foot()));
     page += head() + warnings() + verdict() + figures() + drawings();
     for (const CustomerTable& table : report_.tables) page += detail_table(table);
     page += notes() + signatures();
@@ -40,6 +40,13 @@ class CustomerPage {
 
  private:
   static std::string producer() { return std::string("abbe ") + version_text(); }
+
+  /// The day that a PDF of the page states as that on which it was made.
+  std::string created() const {
+    const std::optional<CalendarDate>& date = report_.facts.date;
+    if (!date) return "";
+    return fmt::format("<meta name=\"dcterms.created\" content=\"{}T00:00:00+00:00\">\n", calendar_date_text(*date));
+  }
 
   std::string word(Word word) const { return xml_text(customer_word(word, language_)); }
 
@@ -118,7 +125,7 @@ class CustomerPage {
   static std::string table(const std::string& caption, const std::vector<std::string>& headers,
                            const std::vector<std::vector<std::string>>& rows, const char* kind) {
     // A short table stays whole, so that no head is alone at the foot of a sheet.
-    constexpr std::size_t kShort = 15;
+    constexpr std::size_t kShort = 25;
     std::string text = fmt::format("<table class=\"{}{}\">\n<caption>{}</caption>\n<thead><tr>", kind,
                                    rows.size() <= kShort ? " short" : "", caption);
     for (const std::string& header : headers) text += "<th scope=\"col\">" + header + "</th>";
@@ -238,8 +245,8 @@ class CustomerPage {
   std::string drawings() const {
     std::string text;
     for (const CustomerDrawing& drawing : report_.drawings) {
-      text += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", local_drawing(drawing.svg, language_),
-                          xml_text(drawing.caption));
+      text += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
+                          local_drawing(svg_for_paper(drawing.svg), language_), xml_text(drawing.caption));
     }
     return text;
   }

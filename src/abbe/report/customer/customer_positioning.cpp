@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "abbe/geometry/angle_units.h"
+#include "abbe/report/customer/customer_parts.h"
 #include "abbe/report/customer/customer_words.h"
 #include "abbe/report/customer/local_numbers.h"
 #include "abbe/report/drawings/positioning_plot.h"
@@ -13,11 +14,6 @@ namespace abbe {
 namespace {
 
 using Word = CustomerWord;
-
-constexpr const char* kNone = "–";
-
-/// Rows of the table of targets, and of each of two such tables.
-constexpr std::size_t kMostRows = 60, kMostRowsOfTwo = 30;
 
 /// Names and units of one report, in its language.
 struct Language {
@@ -41,48 +37,13 @@ std::string standard_symbol(std::string symbol) {
   return symbol;
 }
 
-CustomerValue customer_value(const EvaluationFigure& figure) {
-  CustomerValue value;
-  if (!figure.value) return value;
-  value.value = figure_number(figure, *figure.value);
-  if (figure.uncertainty) value.expanded_uncertainty = figure_number(figure, *figure.uncertainty);
-  return value;
-}
-
-/// Figures of one or two states; those before are found by their symbols.
-void add_figures(const EvaluationReport& now, const EvaluationReport* before, const Language& in,
-                 CustomerReport& report) {
-  for (const EvaluationFigure& figure : now.figures) {
-    CustomerFigure shown;
-    shown.symbol = standard_symbol(figure.symbol);
-    shown.name = positioning_figure_name(figure.symbol, in.language);
-    if (shown.name.empty()) shown.name = figure.name;
-    shown.unit = in.deviation_unit();
-    shown.decimals = figure.decimals;
-    if (before != nullptr) {
-      const auto same = std::find_if(before->figures.begin(), before->figures.end(),
-                                     [&](const EvaluationFigure& other) { return other.symbol == figure.symbol; });
-      shown.states.push_back(same == before->figures.end() ? CustomerValue() : customer_value(*same));
-    }
-    shown.states.push_back(customer_value(figure));
-    if (figure.tolerance) shown.tolerance = figure_number(figure, *figure.tolerance);
-    report.figures.push_back(std::move(shown));
-  }
-}
-
 CustomerReport begun_report(const ReportFacts& facts, const EvaluationReport& now, const EvaluationReport* before,
                             const Language& in, Word subject) {
-  CustomerReport report;
-  report.facts = facts;
-  report.subject = in.word(subject);
-  report.standard = now.standard;
-  if (before == nullptr) {
-    report.states = {{in.word(Word::measured), ""}};
-  } else {
-    report.states = {{in.word(Word::before), ""}, {in.word(Word::after), ""}};
-  }
-  add_figures(now, before, in, report);
-  return report;
+  return begun_customer_report(facts, now, before, subject, [&](const EvaluationFigure& figure) {
+    const std::string_view name = positioning_figure_name(figure.symbol, in.language);
+    return ShownFigure{standard_symbol(figure.symbol), name.empty() ? figure.name : std::string(name),
+                       in.deviation_unit()};
+  });
 }
 
 /// Why a figure is not evaluated, in the language of the report; as it is where there are no words for it.
@@ -121,17 +82,6 @@ void add_missing(const EvaluationReport& evaluated, const std::string& of, const
   }
 }
 
-/// Leaves rows evenly out, the first and the last never, where there are too many for a short form; the caption then
-/// says how many of how many are shown.
-void thin_rows(std::size_t most, CustomerTable& table) {
-  const std::size_t all = table.rows.size();
-  if (all <= most) return;
-  std::vector<std::vector<std::string>> kept;
-  for (std::size_t i = 0; i < most; ++i) kept.push_back(std::move(table.rows[i * (all - 1) / (most - 1)]));
-  table.rows = std::move(kept);
-  table.caption += " (" + std::to_string(most) + " / " + std::to_string(all) + ")";
-}
-
 CustomerTable targets_table(const PositioningEvaluation& evaluation, const std::string& state, const Language& in) {
   const char* const unit = in.deviation_unit();
   CustomerTable table;
@@ -145,13 +95,13 @@ CustomerTable targets_table(const PositioningEvaluation& evaluation, const std::
                    in.with_unit(Word::mean_both, unit)};
   for (const PositioningTarget& target : evaluation.targets) {
     const auto mean = [&](std::size_t side) {
-      return target.runs[side] > 0 ? in.deviation(target.mean[side]) : std::string(kNone);
+      return target.runs[side] > 0 ? in.deviation(target.mean[side]) : std::string(kNothingShown);
     };
     const auto scatter = [&](std::size_t side) {
-      return target.runs[side] > 1 ? in.deviation(target.deviation[side]) : std::string(kNone);
+      return target.runs[side] > 1 ? in.deviation(target.deviation[side]) : std::string(kNothingShown);
     };
     const auto figure = [&](const EvaluatedFigure& found) {
-      return found.is_evaluated() ? in.deviation(found.value) : std::string(kNone);
+      return found.is_evaluated() ? in.deviation(found.value) : std::string(kNothingShown);
     };
     table.rows.push_back({in.position(target.position), mean(0), scatter(0), mean(1), scatter(1),
                           figure(target.reversal), figure(target.mean_bidirectional)});
@@ -182,7 +132,7 @@ CustomerReport customer_positioning(const ReportFacts& facts, bool rotary, const
         {in.word(Word::target_errors) + (state.empty() ? "" : " – " + state),
          positioning_plot(evaluation, rotary, state.empty() ? report.subject : state, plot_words(in)).wide});
     report.tables.push_back(targets_table(evaluation, state, in));
-    thin_rows(before != nullptr ? kMostRowsOfTwo : kMostRows, report.tables.back());
+    thin_table_rows(before != nullptr ? kMostRowsOfTwoTables : kMostTableRows, report.tables.back());
   };
   if (before != nullptr) add_state(*before, in.word(Word::before));
   add_state(now, before != nullptr ? in.word(Word::after) : "");
@@ -210,7 +160,7 @@ CustomerReport customer_diagonals(const ReportFacts& facts, const EvaluationRepo
     }
   }
   add_missing(report, "", in, shown);
-  thin_rows(kMostRows, table);
+  thin_table_rows(kMostTableRows, table);
   shown.tables.push_back(std::move(table));
   shown.drawings.push_back({in.word(Word::target_errors), diagonals_plot(evaluation, shown.subject).wide});
   return shown;

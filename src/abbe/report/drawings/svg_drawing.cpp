@@ -13,14 +13,31 @@ namespace {
 
 constexpr std::array<const char*, 9> kColourNames = {"s1", "s2", "s3", "s4", "s5", "s6", "ink", "soft", "limit"};
 
-constexpr const char* kStyleSheet =
-    ".abbe-plot{--paper:#fff;--ink:#1a2127;--soft:#56616b;--grid:#e3e7ea;--limit:#b3261e;"
-    "--s1:#0b6e75;--s2:#b4551d;--s3:#4a5fa5;--s4:#8a3d7c;--s5:#66741a;--s6:#7d5a3c;"
+/// A colour of the style sheet on light and on dark paper.
+struct NamedColour {
+  const char *name, *light, *dark;
+};
+constexpr NamedColour kPalette[] = {
+    {"paper", "#fff", "#12171b"},   {"ink", "#1a2127", "#e6eaed"},   {"soft", "#56616b", "#a3adb6"},
+    {"grid", "#e3e7ea", "#2b343b"}, {"limit", "#b3261e", "#ff8a80"}, {"s1", "#0b6e75", "#5cc3c9"},
+    {"s2", "#b4551d", "#e9965b"},   {"s3", "#4a5fa5", "#93a7f0"},    {"s4", "#8a3d7c", "#d68fca"},
+    {"s5", "#66741a", "#b8c85c"},   {"s6", "#7d5a3c", "#c9a27e"}};
+
+constexpr const char* kFont =
     "font-family:Inter,'Segoe UI',system-ui,-apple-system,'Helvetica Neue','Liberation Sans',Arial,sans-serif;"
-    "font-variant-numeric:tabular-nums}"
-    "@media screen and (prefers-color-scheme:dark){.abbe-plot{--paper:#12171b;--ink:#e6eaed;--soft:#a3adb6;"
-    "--grid:#2b343b;--limit:#ff8a80;--s1:#5cc3c9;--s2:#e9965b;--s3:#93a7f0;--s4:#d68fca;--s5:#b8c85c;--s6:#c9a27e}}"
-    ".abbe-plot path,.abbe-plot circle{stroke-linejoin:round;stroke-linecap:round}";
+    "font-variant-numeric:tabular-nums";
+
+constexpr const char* kJoins = ".abbe-plot path,.abbe-plot circle{stroke-linejoin:round;stroke-linecap:round}";
+
+std::string style_sheet() {
+  std::string light, dark;
+  for (const NamedColour& colour : kPalette) {
+    light += fmt::format("--{}:{};", colour.name, colour.light);
+    dark += fmt::format("{}--{}:{}", dark.empty() ? "" : ";", colour.name, colour.dark);
+  }
+  return fmt::format(".abbe-plot{{{}{}}}@media screen and (prefers-color-scheme:dark){{.abbe-plot{{{}}}}}{}", light,
+                     kFont, dark, kJoins);
+}
 
 const char* colour_name(PlotColour colour) { return kColourNames[static_cast<std::size_t>(colour)]; }
 
@@ -260,7 +277,21 @@ std::string SvgDrawing::svg() const {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"abbe-plot\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
       "height=\"{1}\" role=\"img\">\n<title>{2}</title>\n<style>{3}</style>\n"
       "<rect width=\"{0}\" height=\"{1}\" fill=\"var(--paper)\"/>\n{4}</svg>\n",
-      w, h, title_, kStyleSheet, elements_);
+      w, h, title_, style_sheet(), elements_);
+}
+
+std::string svg_for_paper(std::string svg) {
+  const std::string screen = style_sheet();
+  if (const std::size_t at = svg.find(screen); at != std::string::npos) {
+    svg.replace(at, screen.size(), fmt::format(".abbe-plot{{{}}}{}", kFont, kJoins));
+  }
+  for (const NamedColour& colour : kPalette) {
+    const std::string variable = fmt::format("var(--{})", colour.name);
+    for (std::size_t at = svg.find(variable); at != std::string::npos; at = svg.find(variable, at)) {
+      svg.replace(at, variable.size(), colour.light);
+    }
+  }
+  return svg;
 }
 
 }  // namespace abbe

@@ -276,5 +276,17 @@ TEST(TextLines, BreakAtSpaces) {
 
 TEST(SvgDrawing, TheSameElementsGiveTheSameBytes) { EXPECT_EQ(every_element().svg(), every_element().svg()); }
 
+TEST(SvgPlot, ForPaperItHasTheLightColoursAndNoVariables) {
+  XyPlot plot("a", "x", "y");
+  plot.line({{0, 0}, {1, 1}}, {PlotColour::second});
+  const std::string screen = plot.svg(), paper = svg_for_paper(screen);
+  EXPECT_NE(screen.find("var(--"), std::string::npos);
+  EXPECT_EQ(paper.find("var("), std::string::npos);
+  EXPECT_EQ(paper.find("--"), std::string::npos);
+  EXPECT_EQ(paper.find("prefers-color-scheme"), std::string::npos);
+  EXPECT_NE(paper.find("stroke=\"#b4551d\""), std::string::npos);
+  EXPECT_NE(paper.find("<style>.abbe-plot{font-family"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace abbe

@@ -83,33 +83,44 @@ struct CauseName {
   std::string symbol, name;
   Quantity quantity = Quantity::length;
   const char* unit = "um";
+  std::vector<std::string> about{};
 };
 
 CauseName name_of(CircularCause cause, const std::string& plane) {
   const std::string first(1, plane[0]), second(1, plane[1]);
   switch (cause) {
     case CircularCause::centre_first:
-      return {"centre_" + first, "centre of the path along " + first + " (set-up)"};
+      return {"centre_" + first, "centre of the path along " + first + " (set-up)", Quantity::length, "um", {first}};
     case CircularCause::centre_second:
-      return {"centre_" + second, "centre of the path along " + second + " (set-up)"};
+      return {"centre_" + second, "centre of the path along " + second + " (set-up)", Quantity::length, "um", {second}};
     case CircularCause::radius:
       return {"radius", "mean radius less nominal radius"};
     case CircularCause::scale_mismatch:
-      return {"scale_mismatch", "scale error of " + first + " less that of " + second, Quantity::length_per_length,
-              "um_per_m"};
+      return {"scale_mismatch",
+              "scale error of " + first + " less that of " + second,
+              Quantity::length_per_length,
+              "um_per_m",
+              {first, second}};
     case CircularCause::scale_first:
-      return {"scale_" + first, "scale error of " + first, Quantity::length_per_length, "um_per_m"};
+      return {"scale_" + first, "scale error of " + first, Quantity::length_per_length, "um_per_m", {first}};
     case CircularCause::scale_second:
-      return {"scale_" + second, "scale error of " + second, Quantity::length_per_length, "um_per_m"};
+      return {"scale_" + second, "scale error of " + second, Quantity::length_per_length, "um_per_m", {second}};
     case CircularCause::squareness:
-      return {"squareness", "angle between +" + first + " and +" + second + " less 90\xC2\xB0", Quantity::angle,
-              "urad"};
+      return {"squareness",
+              "angle between +" + first + " and +" + second + " less 90\xC2\xB0",
+              Quantity::angle,
+              "urad",
+              {first, second}};
     case CircularCause::reversal_first:
-      return {"reversal_" + first, "reversal value B of " + first};
+      return {"reversal_" + first, "reversal value B of " + first, Quantity::length, "um", {first}};
     case CircularCause::reversal_second:
-      return {"reversal_" + second, "reversal value B of " + second};
+      return {"reversal_" + second, "reversal value B of " + second, Quantity::length, "um", {second}};
     case CircularCause::servo_mismatch:
-      return {"servo_mismatch", "following error of " + first + " less that of " + second};
+      return {"servo_mismatch",
+              "following error of " + first + " less that of " + second,
+              Quantity::length,
+              "um",
+              {first, second}};
   }
   return {};
 }
@@ -127,6 +138,7 @@ void add_causes(const CircularRequest& request, const CircularDiagnosis& diagnos
     EvaluationFigure entry = named_figure(name.symbol, name.name);
     entry.quantity = name.quantity;
     entry.unit = name.unit;
+    entry.about = name.about;
     const bool is_scale = cause == CircularCause::scale_first || cause == CircularCause::scale_second;
     if (value.separable) {
       entry.value = value.value;

@@ -107,12 +107,15 @@ EvaluationReport squareness_report(const std::string& file, const std::array<Lin
   report.figures.push_back(
       angle_figure("squareness", fmt::format("angle between +{} and +{} less 90\xC2\xB0", lines[0].name, lines[1].name),
                    result.value, result.uncertainty));
+  report.figures.back().about = {lines[0].name, lines[1].name};
   for (std::size_t k = 0; k < 2; ++k) {
     const std::string number = std::to_string(k + 1);
     report.figures.push_back(straightness_figure("straightness_" + number, "straightness error of " + lines[k].name,
                                                  result.lines[k], options.reading_uncertainty > 0));
+    report.figures.back().about = {lines[k].name};
     report.figures.push_back(angle_figure("slope_" + number, "slope of " + lines[k].name + " against the square",
                                           result.lines[k].line.slope, result.lines[k].slope_uncertainty));
+    report.figures.back().about = {lines[k].name};
     report.plots.push_back(
         zone_plot(lines[k], result.lines[k], lines[k].name + " against the square", "line-" + number));
   }

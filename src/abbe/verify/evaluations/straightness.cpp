@@ -123,6 +123,7 @@ Straightness straightness(std::span<const double> positions, std::span<const dou
   }
   std::vector<double>& rest = result.deviations;
   rest.resize(n);
+  result.positions.assign(positions.begin(), positions.end());
   if (spread > 0) line.slope = product / spread;
   double squares = 0;
   for (std::size_t i = 0; i < n; ++i) {

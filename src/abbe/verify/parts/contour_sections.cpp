@@ -17,6 +17,8 @@ SectionAnswer evaluate_section(const SectionReadings& section, const SectionOpti
   EdgeOptions edge = options.edge;
   if (section.beam_tilt) edge.beam_tilt = *section.beam_tilt;
   SectionAnswer answer;
+  answer.name = section.name;
+  answer.along = section.along;
   answer.groove = options.groove;
   if (options.groove) {
     const GrooveFit groove = fit_groove(section.points, edge);

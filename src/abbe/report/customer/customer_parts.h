@@ -1,0 +1,41 @@
+#pragma once
+
+// Internal to report: what customer reports on evaluations have in common.
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "abbe/report/customer/customer_report.h"
+#include "abbe/report/customer/customer_words.h"
+#include "abbe/report/evaluations/evaluation_report.h"
+
+namespace abbe {
+
+/// Without anything to show.
+inline constexpr const char* kNothingShown = "\xE2\x80\x93";
+
+/// Rows of the table of an evaluation, and of each of two such tables.
+inline constexpr std::size_t kMostTableRows = 60, kMostRowsOfTwoTables = 30;
+
+/// A word in a language as a text.
+std::string local_word(CustomerWord word, ReportLanguage language);
+/// "Target / mm".
+std::string local_word_with_unit(CustomerWord word, const std::string& unit, ReportLanguage language);
+
+/// Name and unit of a figure as a customer report shows them.
+struct ShownFigure {
+  std::string symbol, name, unit;
+};
+
+/// A report with its states and figures; those before are found by their symbols.
+/// @param before  null: one state only
+/// @param shown   of each figure
+CustomerReport begun_customer_report(const ReportFacts& facts, const EvaluationReport& now,
+                                     const EvaluationReport* before, CustomerWord subject,
+                                     const std::function<ShownFigure(const EvaluationFigure& figure)>& shown);
+
+/// Leaves rows evenly out, the first and the last never, where there are too many for a short form; the caption then
+/// says how many of how many are shown.
+void thin_table_rows(std::size_t most, CustomerTable& table);
+
+}  // namespace abbe
