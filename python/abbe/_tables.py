@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     import pandas
 
     from ._core import (Axis, ComparedPair, Comparison, Errors, Evaluation, FittedCircles, FittedShape, ImportedTable,
-                        Readings, ScanDeviations, StudyPlan, StudyResult)
+                        Readings, ScanDeviations, StudyPlan, StudyResult, VerifiedReadings)
 
-    Reported = Comparison | Evaluation | FittedShape | FittedCircles | ScanDeviations
+    Reported = Comparison | Evaluation | FittedShape | FittedCircles | ScanDeviations | VerifiedReadings
 
 _MOST_ROWS = 40
 

@@ -84,6 +84,14 @@ def largest_change(campaigns: list[Path | abbe.Errors]) -> float | None:
     return None if curve is None else float(numpy.abs(curve.change_mm_rad).max())
 
 
+def verified(study: abbe.Study, errors: abbe.Errors, readings: abbe.Readings) -> float | None:
+    check: abbe.StudyCheck = study.check({"tracker": readings})
+    if not check.explained:
+        raise SystemExit("; ".join(cause for place in check.unexplained for cause in place.causes))
+    result: abbe.VerifiedReadings = study.verify(errors, {"tracker": readings}, largest_ratio=1.5)
+    return None if result.says_no else result.coverage
+
+
 def distances(part: abbe.Mesh, points: numpy.typing.NDArray[numpy.float64]) -> numpy.ndarray:
     shifted: abbe.BestFit = abbe.best_fit_transform(points, points + 1, weights=numpy.ones(len(points)))
     return part.closest(points + shifted.matrix[:3, 3]).distance_mm
