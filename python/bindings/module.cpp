@@ -63,6 +63,7 @@ NB_MODULE(_core, module) {
   bind_planned_scans(module);
   bind_imported_tables(module);
   bind_comparisons(module);
+  bind_histories(module);
 }
 
 }  // namespace
