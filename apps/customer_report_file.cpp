@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "abbe/formats/files/results_folder.h"
-#include "abbe/formats/text/calendar_date.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/customer/calibration_certificate.h"
 #include "messages.h"
@@ -15,16 +14,6 @@ void check_customer_report_name(const std::string& name) {
   if (extension == ".pdf" || extension == ".html" || extension == ".xml") return;
   throw InputError({.file = name, .field = "--customer-report"}, "is not the name of a PDF, a page or a certificate",
                    "a name that ends in .pdf, .html, or .xml for a digital calibration certificate");
-}
-
-PrintedPage printed_customer_report(const CustomerReport& report) {
-  PrintSettings settings;
-  settings.language = language_code(report.facts.language);
-  if (const auto& date = report.facts.date) {
-    settings.date = calendar_date_text(*date);
-    std::erase(settings.date, '-');
-  }
-  return print_page(customer_page(report), settings);
 }
 
 PrintedPage write_customer_report(const CustomerReport& report, const std::string& name) {

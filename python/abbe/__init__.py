@@ -16,6 +16,9 @@ from ._core import (
     CorrectedProgram,
     Corrections,
     Curve,
+    CustomerFigure,
+    CustomerReport,
+    CustomerState,
     ErrorMap,
     ErrorTrend,
     Errors,
@@ -113,6 +116,7 @@ from ._core import (
     verify_results,
     volumetric_figures,
 )
+from ._customer import customer_report
 from ._errors import InputError, Stopped
 from ._positions import grid, positions
 from ._reproduce import PAPERS, Reproduction, reproduce
@@ -134,6 +138,9 @@ __all__ = [
     "CorrectedProgram",
     "Corrections",
     "Curve",
+    "CustomerFigure",
+    "CustomerReport",
+    "CustomerState",
     "ErrorMap",
     "ErrorTrend",
     "Errors",
@@ -201,6 +208,7 @@ __all__ = [
     "correct_commands",
     "correct_program",
     "correct_program_file",
+    "customer_report",
     "evaluate_circular",
     "evaluate_contour",
     "evaluate_diagonals",

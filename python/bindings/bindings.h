@@ -34,6 +34,7 @@ void bind_placements(nb::module_& module);
 void bind_planned_paths(nb::module_& module);
 void bind_evaluation_reports(nb::module_& module);
 void bind_evaluations(nb::module_& module);
+void bind_customer_reports(nb::module_& module);
 void bind_histories(nb::module_& module);
 
 }  // namespace abbe::python

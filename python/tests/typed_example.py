@@ -106,6 +106,12 @@ def verified(study: abbe.Study, errors: abbe.Errors, readings: abbe.Readings) ->
     return None if result.says_no else result.coverage
 
 
+def reported(test: abbe.Evaluation, earlier: abbe.Evaluation | None) -> dict[str, list[str]]:
+    report: abbe.CustomerReport = abbe.customer_report(test, {"date": datetime.date(2026, 11, 28)}, before=earlier)
+    report.write("report.html", overwrite=True)
+    return {figure.symbol: figure.verdicts for figure in report.figures}
+
+
 def distances(part: abbe.Mesh, points: numpy.typing.NDArray[numpy.float64]) -> numpy.ndarray:
     shifted: abbe.BestFit = abbe.best_fit_transform(points, points + 1, weights=numpy.ones(len(points)))
     return part.closest(points + shifted.matrix[:3, 3]).distance_mm
