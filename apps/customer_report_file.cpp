@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "abbe/formats/files/results_folder.h"
-#include "abbe/formats/text/calendar_date.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/customer/calibration_certificate.h"
 #include "messages.h"
@@ -21,16 +20,6 @@ void check_qif_name(const std::string& name) {
   const std::string extension = std::filesystem::path(name).extension().string();
   if (extension == ".qif" || extension == ".QIF") return;
   throw InputError({.file = name, .field = "--qif"}, "is not the name of results in QIF", "a name that ends in .qif");
-}
-
-PrintedPage printed_customer_report(const CustomerReport& report) {
-  PrintSettings settings;
-  settings.language = language_code(report.facts.language);
-  if (const auto& date = report.facts.date) {
-    settings.date = calendar_date_text(*date);
-    std::erase(settings.date, '-');
-  }
-  return print_page(customer_page(report), settings);
 }
 
 PrintedPage write_customer_report(const CustomerReport& report, const std::string& name) {

@@ -3,8 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "abbe/formats/files/printed_page.h"
-#include "abbe/report/customer/customer_report.h"
+#include "abbe/report/customer/printed_report.h"
 
 namespace abbe {
 
@@ -13,9 +12,6 @@ void check_customer_report_name(const std::string& name);
 
 /// @throws InputError for the name of results in QIF that does not end in .qif
 void check_qif_name(const std::string& name);
-
-/// The report as PDF, stating the day of the measurement as its date.
-PrintedPage printed_customer_report(const CustomerReport& report);
 
 /// Writes a report by the ending of its name; .xml is a digital calibration certificate. Where no PDF can be printed,
 /// the page is written in its place, under html_beside(). @returns what was printed; without a problem for a page

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "abbe/formats/files/results_folder.h"
-#include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/formats/text/list_text.h"
@@ -99,14 +98,7 @@ int run_export(const HistoryCommand& command) {
   for (const KeptCampaign& one : read_history(command.history)) {
     if (one.number != command.number) continue;
     ResultsFolder folder(command.output);
-    folder.write("machine.toml", machine_text(one.campaign.machine));
-    const bool has_covariance = one.campaign.errors.covariance.size() > 0;
-    folder.write("errors.toml",
-                 errors_text(one.campaign.machine, one.campaign.errors, has_covariance ? "errors.covariance.csv" : ""));
-    if (has_covariance) {
-      folder.write("errors.covariance.csv", covariance_text(one.campaign.machine, one.campaign.errors));
-    }
-    if (!one.summary.empty()) folder.write("summary.json", one.summary);
+    for (const auto& [name, contents] : campaign_files(one)) folder.write(name, contents);
     folder.commit();
     fmt::print("{} of {} in {}\n", one.campaign.name, date_text(one.measured), command.output);
     return kDone;

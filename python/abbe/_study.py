@@ -12,7 +12,7 @@ from typing import Any, Union
 import tomli_w
 
 from . import _core
-from ._core import Errors, Instrument, Machine, Readings, StudyPlan, StudyResult
+from ._core import Errors, Instrument, Machine, Readings, StudyCheck, StudyPlan, StudyResult, VerifiedReadings
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -136,6 +136,59 @@ class Study:
     def plan(self, *, progress: Progress = None) -> StudyPlan:
         """Chooses the readings that determine the errors best; the study has a ``plan`` table."""
         return self._data.plan(progress)
+
+    def check(self, readings: Mapping[str, Readings] | None = None, *, truth: Errors | None = None,
+              progress: Progress = None) -> StudyCheck:
+        """Whether the nominal machine explains the readings, and which mistake would if not; nothing is identified.
+
+        ``readings`` and ``truth`` as in :meth:`run`. Found are, for example, mirrored coordinates, a clockwise azimuth,
+        zenith angles, swapped or reversed axes, wrong units and a station that moved. ``progress(step, done, total)`` is
+        called while readings are read or simulated; Ctrl-C takes effect then. Raises :class:`abbe.InputError`.
+
+        >>> import abbe, numpy
+        >>> mill = abbe.Machine.from_chain("w X' Y' b Z t")
+        >>> study = abbe.Study(mill, {"setup": [{
+        ...     "name": "room", "instrument": "tracker", "noise": {"xyz_um": 5},
+        ...     "station": [{"name": "left", "pose": "find"}], "reflector": [{"name": "spindle", "offset_mm": [0, 0, 0]}]}]})
+        >>> commands = abbe.grid(mill, X_mm=[-200, 0, 150], Y_mm=[-100, 0, 200], Z_mm=[-100, 0, 50])
+        >>> points = abbe.nominal_poses(mill, commands).points_mm
+        >>> tracker = study.instruments["room"]
+        >>> study.check({"room": abbe.Readings(tracker, commands, points)}).explained
+        True
+        >>> swapped = study.check({"room": abbe.Readings(tracker, commands, points[:, [1, 0, 2]])})
+        >>> swapped.explained, len(swapped.unexplained)
+        (False, 1)
+        """
+        return self._data.check(dict(readings or {}), truth, progress)
+
+    def verify(self, errors: Errors, readings: Mapping[str, Readings] | None = None, *, truth: Errors | None = None,
+               least_reduction: float | None = None, largest_ratio: float | None = None,
+               errors_file: str = "errors.toml", progress: Progress = None) -> VerifiedReadings:
+        """What identified errors leave of readings that took no part in their identification: ``abbe verify --readings``.
+
+        ``errors``: of this machine, with their covariance if it is known. ``readings`` and ``truth`` as in :meth:`run`.
+        The unknowns of the set-ups are fitted to the readings while the errors are held. ``least_reduction``: the mean
+        residual has to become so many times smaller. ``largest_ratio``: of what is left to what the uncertainties explain.
+        ``errors_file``: name for texts. ``progress(step, done, total)`` is called after each of three steps; Ctrl-C takes
+        effect then. Raises :class:`abbe.InputError`, also for readings that do not determine where the instruments stood,
+        and warns of errors that are marked as not to be trusted.
+
+        >>> import abbe, numpy
+        >>> mill = abbe.Machine.from_chain("w X' Y' b Z t")
+        >>> study = abbe.Study(mill, {"setup": [{
+        ...     "name": "bar", "instrument": "ball-bar", "spindle_ball_mm": [0, 0, -100],
+        ...     "ball": [{"name": "table", "centre_mm": [0, 0, 0]}], "noise": {"length_um": 0.2}}]})
+        >>> turn = numpy.radians(numpy.arange(0, 360, 6))
+        >>> commands = abbe.positions(mill, X_mm=100 * numpy.cos(turn), Y_mm=100 * numpy.sin(turn), Z_mm=100)
+        >>> truth, identified = abbe.Errors(mill), abbe.Errors(mill)
+        >>> truth.add_location("EC0Y", value_urad=30)
+        >>> identified.add_location("EC0Y", value_urad=29, u_urad=1)
+        >>> october = abbe.Readings(study.instruments["bar"], commands).simulate(truth, seed=10)
+        >>> result = study.verify(identified, {"bar": october}, least_reduction=3)
+        >>> result.says_no, [verdict.name for verdict in result.verdicts]
+        (False, ['improvement', 'consistency', 'reduction'])
+        """
+        return self._data.verify(errors, dict(readings or {}), truth, least_reduction, largest_ratio, errors_file, progress)
 
     def __repr__(self) -> str:
         kind = "simulated" if self.simulated else "measured"

@@ -13,10 +13,10 @@ import numpy
 if TYPE_CHECKING:
     import pandas
 
-    from ._core import (Axis, ComparedPair, Comparison, Errors, Evaluation, FittedCircles, FittedShape, ImportedTable,
-                        Readings, ScanDeviations, StudyPlan, StudyResult)
+    from ._core import (Axis, ComparedPair, Comparison, Errors, Evaluation, FittedCircles, FittedShape, HistoryTrends,
+                        ImportedTable, Readings, ScanDeviations, StudyPlan, StudyResult, VerifiedReadings)
 
-    Reported = Comparison | Evaluation | FittedShape | FittedCircles | ScanDeviations
+    Reported = Comparison | Evaluation | FittedShape | FittedCircles | HistoryTrends | ScanDeviations | VerifiedReadings
 
 _MOST_ROWS = 40
 
@@ -119,6 +119,27 @@ def changes_frame(pair: ComparedPair) -> pandas.DataFrame:
     columns = ["name", "what it is", "first", "second", "change", "U", "unit", "p", "p_adjusted", "at_tool_um", "verdict"]
     frame: pandas.DataFrame = _pandas().DataFrame(rows, columns=columns)
     for name in ("first", "second", "change", "U", "p", "p_adjusted", "at_tool_um"):
+        frame[name] = frame[name].astype(float)
+    return frame.set_index("name")
+
+
+def trends_frame(trends: HistoryTrends) -> pandas.DataFrame:
+    """A row for each error that is followed; changes and drifts in um or urad."""
+    rows = []
+    for error in trends.errors.values():
+        if error.not_followed is not None:
+            continue
+        factor = 1e6 if error.is_angle else 1e3
+        numbers = {"change": error.changes_mm_rad[-1], "drift_per_year": error.drift_mm_rad_per_year,
+                   "U_drift": error.drift_expanded_uncertainty_mm_rad_per_year, "scatter": error.scatter_mm_rad,
+                   "expected": error.expected_mm_rad, "U_expected": error.expected_expanded_uncertainty_mm_rad}
+        rows.append({"name": error.name, "what it is": error.words, "unit": "urad" if error.is_angle else "um",
+                     **{name: None if number is None else factor * number for name, number in numbers.items()},
+                     "drifts": error.drifts, "last_is_expected": error.last_is_expected, "due": error.due})
+    of_numbers = ["change", "drift_per_year", "U_drift", "scatter", "expected", "U_expected"]
+    columns = ["name", "what it is", "unit", *of_numbers, "drifts", "last_is_expected", "due"]
+    frame: pandas.DataFrame = _pandas().DataFrame(rows, columns=columns)
+    for name in of_numbers:
         frame[name] = frame[name].astype(float)
     return frame.set_index("name")
 

@@ -15,7 +15,9 @@ void bind_inverse(nb::module_& module);
 void bind_compensation(nb::module_& module);
 void bind_instruments(nb::module_& module);
 void bind_studies(nb::module_& module);
+void bind_study_checks(nb::module_& module);
 void bind_study_results(nb::module_& module);
+void bind_verified_readings(nb::module_& module);
 void bind_comparisons(nb::module_& module);
 void bind_imported_tables(nb::module_& module);
 void bind_plans(nb::module_& module);
@@ -32,5 +34,7 @@ void bind_placements(nb::module_& module);
 void bind_planned_paths(nb::module_& module);
 void bind_evaluation_reports(nb::module_& module);
 void bind_evaluations(nb::module_& module);
+void bind_customer_reports(nb::module_& module);
+void bind_histories(nb::module_& module);
 
 }  // namespace abbe::python

@@ -63,6 +63,8 @@ NB_MODULE(_core, module) {
   bind_planned_scans(module);
   bind_imported_tables(module);
   bind_comparisons(module);
+  bind_histories(module);
+  bind_customer_reports(module);
 }
 
 }  // namespace

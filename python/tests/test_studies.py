@@ -106,6 +106,9 @@ def test_mistakes_in_readings_are_named(mill):
         study.run({"other": abbe.Readings(bar, good, numpy.ones(4))})
     with pytest.raises(abbe.InputError, match="a plan"):
         study.run({"bar": abbe.Readings(bar, good)})
+    for call in (abbe.Readings(bar, good).csv, lambda: abbe.Readings(bar, good).write("plan.csv")):
+        with pytest.raises(abbe.InputError, match="a plan"):
+            call()
     for wrong in (numpy.ones(3), numpy.ones((4, 2)), "abcd", numpy.full(4, numpy.nan)):
         with pytest.raises(abbe.InputError):
             abbe.Readings(bar, good, wrong)

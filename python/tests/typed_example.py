@@ -1,6 +1,7 @@
 """A program with types, for mypy --strict (test_types.py)."""
 from __future__ import annotations
 
+import datetime
 from pathlib import Path
 
 import numpy
@@ -82,6 +83,33 @@ def largest_change(campaigns: list[Path | abbe.Errors]) -> float | None:
     pair: abbe.ComparedPair = found.pairs[0]
     curve: abbe.ComparedCurve | None = pair["EXX"].curve
     return None if curve is None else float(numpy.abs(curve.change_mm_rad).max())
+
+
+def due_dates(history: abbe.History, campaigns: list[abbe.Errors | Path], days: list[datetime.date]) -> dict[str, datetime.date]:
+    numbers: list[int] = history.add(campaigns, days, names=[day.isoformat() for day in days])
+    numbers += history.add(campaigns[:0], numpy.array(["2026-03-02"], dtype="datetime64[D]")[:0])
+    trends: abbe.HistoryTrends = history.trends(limit_um=20 if numbers else None, progress=step)
+    return {name: trend.due for name, trend in trends.errors.items() if trend.due is not None}
+
+
+def drift_um(trend: abbe.ErrorTrend, days: numpy.typing.NDArray[numpy.datetime64]) -> numpy.ndarray:
+    values, expanded = trend.predict(days)
+    largest: numpy.ndarray = 1e3 * numpy.maximum(numpy.abs(values), expanded)
+    return largest
+
+
+def verified(study: abbe.Study, errors: abbe.Errors, readings: abbe.Readings) -> float | None:
+    check: abbe.StudyCheck = study.check({"tracker": readings})
+    if not check.explained:
+        raise SystemExit("; ".join(cause for place in check.unexplained for cause in place.causes))
+    result: abbe.VerifiedReadings = study.verify(errors, {"tracker": readings}, largest_ratio=1.5)
+    return None if result.says_no else result.coverage
+
+
+def reported(test: abbe.Evaluation, earlier: abbe.Evaluation | None) -> dict[str, list[str]]:
+    report: abbe.CustomerReport = abbe.customer_report(test, {"date": datetime.date(2026, 11, 28)}, before=earlier)
+    report.write("report.html", overwrite=True)
+    return {figure.symbol: figure.verdicts for figure in report.figures}
 
 
 def distances(part: abbe.Mesh, points: numpy.typing.NDArray[numpy.float64]) -> numpy.ndarray:

@@ -40,6 +40,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "abbe/study/compared_campaigns.h"
@@ -84,5 +85,9 @@ std::vector<std::int64_t> add_to_history(const std::string& path, const std::vec
 
 /// All campaigns, in the order in which they were measured. @throws InputError also for a history that does not exist
 std::vector<KeptCampaign> read_history(const std::string& path);
+
+/// Files of a results folder of this campaign, name and contents, as `abbe history export` writes them: machine.toml,
+/// errors.toml, its covariance and summary.json, as far as there are any.
+std::vector<std::pair<std::string, std::string>> campaign_files(const KeptCampaign& campaign);
 
 }  // namespace abbe

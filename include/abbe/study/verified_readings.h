@@ -58,6 +58,12 @@ struct ReadingsVerdict {
   bool met = true;
 };
 
+/// Residuals of one set-up, [readings]: length of measured - modelled, mm; negative: left out, or without a length.
+struct SetupResiduals {
+  std::string name;
+  std::vector<double> before, after;  ///< of the nominal machine, and with the identified errors
+};
+
 /// What identified errors leave of readings. It needs nothing of the request that it answers.
 struct VerifiedReadings {
   std::size_t readings = 0;     ///< with those left out
@@ -66,7 +72,8 @@ struct VerifiedReadings {
   /// machine, and of the machine with the identified errors.
   std::vector<double> before, after;
   SampleStatistics before_statistics, after_statistics;
-  bool uncertainties_known = true;  ///< false: the errors have none, so only those of the readings count
+  std::vector<SetupResiduals> setups;  ///< the same by set-up, as in judged.norm
+  bool uncertainties_known = true;     ///< false: the errors have none, so only those of the readings count
   IndependentReadings judged;
   std::vector<ReadingsVerdict> verdicts;
   std::vector<std::string> warnings;

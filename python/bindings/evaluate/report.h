@@ -31,9 +31,9 @@ ResultFiles report_files(const EvaluationReport& report, const ResultFiles& more
 const EvaluationFigure& figure_named(const EvaluationReport& report, const std::string& symbol);
 std::string plot_of(const EvaluationReport& report, const std::string& name);
 
-/// Adds the members that show the report. @param more  files beyond those of the report
+/// Adds the members that show the report, all but its results folder.
 template <class Class, class Result>
-void add_report(Class& bound, EvaluationReport Result::*report, ResultFiles (*more)(const Result&)) {
+void add_report_of_one_page(Class& bound, EvaluationReport Result::*report) {
   bound
       .def_prop_ro(
           "kind", [=](const Result& r) { return (r.*report).kind; }, "What was evaluated, such as 'circular'.")
@@ -75,10 +75,16 @@ void add_report(Class& bound, EvaluationReport Result::*report, ResultFiles (*mo
           nb::arg("name") = "plot", "A plot of the page as SVG. Raises KeyError.");
   add_json(bound, [=](const Result& r) { return evaluation_json(r.*report); });
   add_page(bound, [=](const Result& r) { return evaluation_page(r.*report); });
+  add_tables(bound, "figures_frame", "figures_html");
+}
+
+/// Adds the members that show the report. @param more  files beyond those of the report
+template <class Class, class Result>
+void add_report(Class& bound, EvaluationReport Result::*report, ResultFiles (*more)(const Result&)) {
+  add_report_of_one_page(bound, report);
   add_files(
       bound, [=](const Result& r) { return report_files(r.*report, more(r)); },
       "Writes the results folder that the command writes with -o, whole or not at all.");
-  add_tables(bound, "figures_frame", "figures_html");
 }
 
 }  // namespace abbe::python

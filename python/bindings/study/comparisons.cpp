@@ -1,100 +1,30 @@
 #include <fmt/format.h>
-#include <nanobind/stl/filesystem.h>
-#include <nanobind/stl/optional.h>
-#include <nanobind/stl/shared_ptr.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/variant.h>
-#include <nanobind/stl/vector.h>
 
-#include <algorithm>
-#include <set>
-
-#include "abbe/formats/machine/machine_file.h"
 #include "abbe/study/compared_campaigns.h"
-#include "abbe/study/results.h"
 #include "bindings/evaluate/report.h"
 #include "bindings/job.h"
+#include "bindings/study/campaign_arguments.h"
 #include "bindings/study/compared_parts.h"
-#include "bindings/study/study_objects.h"
 
 namespace abbe::python {
 namespace {
 
-/// A results folder or an errors file, errors, or the result of a study.
-using CampaignArgument = std::variant<MachineErrors, std::shared_ptr<StudyOutcome>, std::filesystem::path>;
-using MachineArgument = std::variant<Machine, std::filesystem::path>;
-
-/// The machine of campaigns that are files.
-std::optional<Machine> machine_of_files(const std::optional<MachineArgument>& argument,
-                                        const std::vector<CampaignArgument>& campaigns) {
-  if (!argument) return std::nullopt;
-  const bool is_used = std::any_of(campaigns.begin(), campaigns.end(), [](const CampaignArgument& campaign) {
-    return std::holds_alternative<std::filesystem::path>(campaign);
-  });
-  if (!is_used) {
-    throw InputError({.field = "machine"}, "has no effect on campaigns that are no files", "no machine, or files");
-  }
-  if (const auto* const machine = std::get_if<Machine>(&*argument)) return *machine;
-  return computed([&] { return read_machine(std::get<std::filesystem::path>(*argument)); });
-}
-
-/// @param number  from 1
-IdentifiedCampaign campaign_of(const CampaignArgument& argument, const std::optional<Machine>& machine,
-                               std::size_t number) {
-  if (const auto* const path = std::get_if<std::filesystem::path>(&argument)) {
-    return computed([&] { return read_campaign(path->string(), machine); });
-  }
-  const auto in_memory = [](const std::string& name, const MachineErrors& errors) {
-    return IdentifiedCampaign{name, name, errors.machine, errors.file};
-  };
-  if (const auto* const errors = std::get_if<MachineErrors>(&argument)) {
-    return in_memory(fmt::format("campaign {}", number), *errors);
-  }
-  const auto& outcome = std::get<std::shared_ptr<StudyOutcome>>(argument);
-  if (!outcome) throw nb::type_error("a campaign is None; expected a path, Errors or a StudyResult");
-  return in_memory(outcome->study->name, identified_errors(*outcome));
-}
-
-/// Names that are given take the place of those of files; a campaign in memory is called so in messages too.
-void give_names(const std::vector<std::string>& names, std::vector<IdentifiedCampaign>& campaigns) {
-  if (names.size() != campaigns.size()) {
-    throw InputError({.field = "names"}, fmt::format("has {}", names.size()),
-                     fmt::format("{}, one for each campaign", campaigns.size()));
-  }
-  if (std::set<std::string>(names.begin(), names.end()).size() != names.size()) {
-    throw InputError({.field = "names"}, "has a name twice", "another name for each campaign");
-  }
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    if (names[k].empty()) throw InputError({.field = "names"}, "has an empty text", "a name for each campaign");
-    if (campaigns[k].errors_file == campaigns[k].name) campaigns[k].errors_file = names[k];
-    campaigns[k].name = names[k];
-  }
-}
-
-std::vector<IdentifiedCampaign> campaigns_of(const std::vector<CampaignArgument>& arguments,
-                                             const std::optional<MachineArgument>& machine,
-                                             const std::optional<std::vector<std::string>>& names) {
-  const std::optional<Machine> of_files = machine_of_files(machine, arguments);
-  std::vector<IdentifiedCampaign> campaigns;
-  std::vector<std::string> paths;
-  for (const CampaignArgument& argument : arguments) {
-    campaigns.push_back(campaign_of(argument, of_files, campaigns.size() + 1));
-    const auto* const path = std::get_if<std::filesystem::path>(&argument);
-    paths.push_back(path ? path->string() : campaigns.back().name);
-  }
+/// With names that are all different.
+std::vector<IdentifiedCampaign> named_campaigns(const std::vector<CampaignArgument>& arguments,
+                                                const std::optional<MachineArgument>& machine,
+                                                const std::optional<std::vector<std::string>>& names) {
+  std::vector<IdentifiedCampaign> campaigns = campaigns_of(arguments, machine);
   if (names) {
     give_names(*names, campaigns);
-  } else {
-    make_names_different(campaigns, paths);
+    return campaigns;
   }
+  std::vector<std::string> paths;
+  for (std::size_t k = 0; k < campaigns.size(); ++k) {
+    const std::filesystem::path* const path = file_of_campaign(arguments[k]);
+    paths.push_back(path ? path->string() : campaigns[k].name);
+  }
+  make_names_different(campaigns, paths);
   return campaigns;
-}
-
-void warn_of_distrusted(const IdentifiedCampaign& campaign) {
-  for (const std::string& reason : campaign.errors.distrusted) {
-    const std::string text = fmt::format("{}: marked as not to be trusted: {}", campaign.errors_file, reason);
-    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw nb::python_error();
-  }
 }
 
 ComparedCampaigns comparison_of(const std::vector<CampaignArgument>& campaigns,
@@ -105,7 +35,7 @@ ComparedCampaigns comparison_of(const std::vector<CampaignArgument>& campaigns,
   request.level = level_percent / 100;
   request.tolerances = tolerance_texts(tolerances);
   request.page = page;
-  request.campaigns = campaigns_of(campaigns, machine, names);
+  request.campaigns = named_campaigns(campaigns, machine, names);
   for (const IdentifiedCampaign& campaign : request.campaigns) warn_of_distrusted(campaign);
   return job_result(progress, [&](const JobControl& control) {
     return naming_arguments([&] { return compare_campaigns(request, control.options("comparing campaigns")); });

@@ -7,6 +7,8 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "abbe/formats/readings/instrument_file.h"
 #include "abbe/formats/study/study_instrument.h"
@@ -22,14 +24,15 @@
 namespace abbe::python {
 namespace {
 
-using Items = std::variant<std::string, std::vector<std::string>>;
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-std::string unit_of(const ReadingComponent& component) { return component.is_angle ? "rad" : "mm"; }
+using Items = std::variant<std::string, std::vector<std::string>>;
 
 std::vector<std::string> names_of(const std::vector<ReadingComponent>& components) {
   std::vector<std::string> names;
   for (const ReadingComponent& component : components) {
-    names.push_back(fmt::format("{}_{}", component.name, unit_of(component)));
+    const char* const unit = component.is_pure_number ? "" : component.is_angle ? "_rad" : "_mm";
+    names.push_back(component.name + unit);
   }
   return names;
 }
@@ -95,6 +98,41 @@ nb::object array_of_columns(const std::vector<std::vector<double>>& columns, std
   return result.release({columns.size()}, false);
 }
 
+/// Orientations of readings, which have all been measured. @throws InputError
+void require_orientations(const Instrument& device, const InstrumentReadings& readings) {
+  const std::optional<BadOrientation> bad = first_bad_orientation(device, readings);
+  if (!bad) return;
+  const std::string what = std::isnan(bad->length) ? "the orientation is missing"
+                                                   : fmt::format("the quaternion has the length {:.6g}", bad->length);
+  throw InputError({.field = "inputs_mm_rad"}, fmt::format("row {}: {}", bad->reading, what),
+                   "the measured orientation as a quaternion qw, qx, qy, qz of length 1");
+}
+
+/// Orientations of a plan: none, or NaN in a row, where nothing is measured yet. The library has zeros there.
+/// @throws InputError
+void plan_orientations(const Instrument& device, InstrumentReadings& plan) {
+  const std::size_t numbers = device.inputs().size();
+  if (plan.inputs.empty()) plan.inputs.assign(numbers, std::vector<double>(plan.count(), kNotMeasured));
+  InstrumentReadings stated;
+  stated.inputs.resize(numbers);
+  std::vector<std::size_t> rows;
+  for (std::size_t k = 0; k < plan.count(); ++k) {
+    const auto is_missing = [k](const std::vector<double>& column) { return std::isnan(column[k]); };
+    if (std::all_of(plan.inputs.begin(), plan.inputs.end(), is_missing)) {
+      for (std::vector<double>& column : plan.inputs) column[k] = 0;
+      continue;
+    }
+    rows.push_back(k);
+    for (std::size_t i = 0; i < numbers; ++i) stated.inputs[i].push_back(plan.inputs[i][k]);
+    stated.item.push_back(plan.item[k]);
+  }
+  const std::optional<BadOrientation> bad = first_bad_orientation(device, stated);
+  if (!bad) return;
+  throw InputError({.field = "inputs_mm_rad"},
+                   fmt::format("row {}: the quaternion has the length {:.6g}", rows[bad->reading], bad->length),
+                   "a quaternion qw, qx, qy, qz of length 1, or NaN where no orientation is measured yet");
+}
+
 PythonReadings make_readings(const MachineInstrument& instrument, const ArrayLike& positions_argument,
                              const std::optional<ArrayLike>& measured, const std::optional<Items>& items,
                              const std::optional<ArrayLike>& inputs, const std::optional<ArrayLike>& uncertainty,
@@ -122,16 +160,39 @@ PythonReadings make_readings(const MachineInstrument& instrument, const ArrayLik
   if (time_s) readings.time_s = columns_of(time_s, "time_s", count, 1).front();
   // As plans and as readings: what is wrong with them is said here and not when they are used.
   if (!readings.measured.empty()) {
+    if (!readings.inputs.empty()) require_orientations(device, readings);
     return {instrument, given_readings(readings, instrument.machine, instrument.device, instrument.setup,
                                        !readings.uncertainty.empty())
                             .readings};
   }
+  if (has_orientation(device)) plan_orientations(device, readings);
   try {
     check_readings(instrument.machine, device, readings, false);
   } catch (const std::invalid_argument& error) {
     throw InputError({.field = "readings"}, error.what(), "");
   }
   return {instrument, std::move(readings)};
+}
+
+/// [n, inputs]; NaN where a plan has no orientation.
+nb::object inputs_of(const PythonReadings& self) {
+  std::vector<std::vector<double>> inputs = self.readings.inputs;
+  for (std::size_t k = 0; has_orientation(*self.instrument.device) && k < self.readings.count(); ++k) {
+    if (std::any_of(inputs.begin(), inputs.end(), [k](const std::vector<double>& column) { return column[k] != 0; })) {
+      continue;
+    }
+    for (std::vector<double>& column : inputs) column[k] = kNotMeasured;
+  }
+  return array_of_columns(inputs, self.readings.count());
+}
+
+/// A measurement file. @throws InputError for a plan
+std::string text_of_readings(const PythonReadings& self) {
+  if (self.readings.measured.empty()) {
+    throw InputError({.field = "readings"}, "are a plan, nothing is measured", "measured readings, or simulate() them");
+  }
+  return instrument_form(self.instrument.word)
+      .readings.text(self.instrument.machine, *self.instrument.device, self.readings);
 }
 
 PythonReadings simulate(const PythonReadings& plan, const MachineErrors& errors, std::uint64_t seed, bool noise,
@@ -181,7 +242,9 @@ void bind_readings(nb::module_& module) {
           nb::arg("time_s") = nb::none(),
           "positions [n, axes] commands; measured [n, components], or None for a plan; items: name of what each "
           "reading is\n"
-          "taken on, or one name for all; inputs [n, inputs]: known numbers of each reading; standard uncertainties\n"
+          "taken on, or one name for all; inputs [n, inputs]: known numbers of each reading, of a pose tracker the "
+          "measured\n"
+          "orientation as a quaternion of length 1 (NaN in a plan: not measured yet); standard uncertainties\n"
           "[n, components], in place of the instrument's own; approach [n, axes]: +1, -1 or 0, the side from which an "
           "axis\n"
           "came. Raises InputError for other shapes, commands outside the travel and numbers that are not finite.")
@@ -195,6 +258,10 @@ void bind_readings(nb::module_& module) {
           "measured_mm_rad",
           [](const PythonReadings& self) { return array_of_columns(self.readings.measured, self.readings.count()); },
           nb::sig("def measured_mm_rad(self) -> numpy.ndarray | None"), "[n, components] readings; None for a plan.")
+      .def_prop_ro("inputs_mm_rad", &inputs_of, nb::sig("def inputs_mm_rad(self) -> numpy.ndarray | None"),
+                   "[n, inputs] known numbers of each reading, as Instrument.inputs names them; NaN: an orientation "
+                   "that is not\n"
+                   "measured yet. None: the instrument has no inputs.")
       .def_prop_ro(
           "standard_uncertainties_mm_rad",
           [](const PythonReadings& self) { return array_of_columns(self.readings.uncertainty, self.readings.count()); },
@@ -209,22 +276,14 @@ void bind_readings(nb::module_& module) {
             return result;
           },
           "Name of what each reading is taken on.")
-      .def(
-          "csv",
-          [](const PythonReadings& self) {
-            return instrument_form(self.instrument.word)
-                .readings.text(self.instrument.machine, *self.instrument.device, self.readings);
-          },
-          "Text of a measurement file (docs/formats.md).")
+      .def("csv", &text_of_readings, "Text of a measurement file (docs/formats.md). Raises InputError for a plan.")
       .def(
           "write",
           [](const PythonReadings& self, const std::filesystem::path& path, bool overwrite) {
-            write_text(path,
-                       instrument_form(self.instrument.word)
-                           .readings.text(self.instrument.machine, *self.instrument.device, self.readings),
-                       overwrite);
+            write_text(path, text_of_readings(self), overwrite);
           },
-          nb::arg("path"), nb::arg("overwrite") = false, "Writes a measurement file, whole or not at all.")
+          nb::arg("path"), nb::arg("overwrite") = false,
+          "Writes a measurement file, whole or not at all. Raises InputError for a plan.")
       .def("simulate", &simulate, nb::arg("errors"), nb::kw_only(), nb::arg("seed") = 1, nb::arg("noise") = true,
            nb::arg("progress") = nb::none(),
            "What the instrument would read at these poses on a machine with these errors.\n\n"

@@ -18,9 +18,55 @@
 namespace abbe::python {
 namespace {
 
-/// A copy of the study in which the readings and the truth that were given take the place of files.
-std::shared_ptr<const Study> with_data(const Study& study, const std::map<std::string, PythonReadings>& readings,
-                                       const MachineErrors* truth) {
+std::shared_ptr<StudyOutcome> run_whole(const Study& study, const std::map<std::string, PythonReadings>& readings,
+                                        const MachineErrors* truth, bool accept_misfit, bool map,
+                                        const nb::object& progress) {
+  auto outcome = std::make_shared<StudyOutcome>();
+  outcome->study = study_with_data(study, readings, truth);
+  run_job(progress, [&](const JobControl& control) {
+    RunOptions options;
+    options.accept_misfit = accept_misfit;
+    options.map = map;
+    options.stop = control.stop;
+    options.progress = [&](StudyStep step, std::size_t done, std::size_t total) {
+      control.progress(step_words(*outcome->study, step), done, total);
+    };
+    outcome->result = run_study(*outcome->study, options);
+  });
+  return outcome;
+}
+
+std::map<std::string, PythonReadings> gather(const Study& study, const std::map<std::string, PythonReadings>& readings,
+                                             const MachineErrors* truth, const nb::object& progress) {
+  const auto complete = study_with_data(study, readings, truth);
+  const Campaign campaign = job_result(progress, [&](const JobControl& control) {
+    const JobOptions job = control.options(step_words(*complete, StudyStep::gather));
+    return gather_readings(*complete, stoppable_progress(job));
+  });
+  std::map<std::string, PythonReadings> result;
+  for (const CampaignSetup& setup : campaign.setups) {
+    result.emplace(setup.name,
+                   PythonReadings{{setup.name, setup.instrument, setup.device, study.machine}, setup.readings});
+  }
+  return result;
+}
+
+std::shared_ptr<PlanOutcome> plan(const Study& study, const nb::object& progress) {
+  auto outcome = std::make_shared<PlanOutcome>();
+  outcome->study = std::make_shared<Study>(study);
+  run_job(progress, [&](const JobControl& control) {
+    outcome->plan = plan_study(*outcome->study, [&](double share) {
+      stop_if_asked(control.stop);
+      control.progress("planning", static_cast<std::size_t>(1000 * share), 1000);
+    });
+  });
+  return outcome;
+}
+
+}  // namespace
+
+std::shared_ptr<const Study> study_with_data(const Study& study, const std::map<std::string, PythonReadings>& readings,
+                                             const MachineErrors* truth) {
   auto result = std::make_shared<Study>(study);
   for (const auto& [name, given] : readings) {
     const auto setup = std::find_if(result->setups.begin(), result->setups.end(),
@@ -55,60 +101,15 @@ std::shared_ptr<const Study> with_data(const Study& study, const std::map<std::s
   return result;
 }
 
-std::shared_ptr<StudyOutcome> run_whole(const Study& study, const std::map<std::string, PythonReadings>& readings,
-                                        const MachineErrors* truth, bool accept_misfit, bool map,
-                                        const nb::object& progress) {
-  auto outcome = std::make_shared<StudyOutcome>();
-  outcome->study = with_data(study, readings, truth);
-  run_job(progress, [&](const JobControl& control) {
-    RunOptions options;
-    options.accept_misfit = accept_misfit;
-    options.map = map;
-    options.stop = control.stop;
-    options.progress = [&](StudyStep step, std::size_t done, std::size_t total) {
-      control.progress(step_words(*outcome->study, step), done, total);
-    };
-    outcome->result = run_study(*outcome->study, options);
-  });
-  return outcome;
-}
-
-std::map<std::string, PythonReadings> gather(const Study& study, const std::map<std::string, PythonReadings>& readings,
-                                             const MachineErrors* truth, const nb::object& progress) {
-  const auto complete = with_data(study, readings, truth);
-  const Campaign campaign = job_result(progress, [&](const JobControl& control) {
-    const JobOptions job = control.options(step_words(*complete, StudyStep::gather));
-    return gather_readings(*complete, stoppable_progress(job));
-  });
-  std::map<std::string, PythonReadings> result;
-  for (const CampaignSetup& setup : campaign.setups) {
-    result.emplace(setup.name,
-                   PythonReadings{{setup.name, setup.instrument, setup.device, study.machine}, setup.readings});
-  }
-  return result;
-}
-
-std::shared_ptr<PlanOutcome> plan(const Study& study, const nb::object& progress) {
-  auto outcome = std::make_shared<PlanOutcome>();
-  outcome->study = std::make_shared<Study>(study);
-  run_job(progress, [&](const JobControl& control) {
-    outcome->plan = plan_study(*outcome->study, [&](double share) {
-      stop_if_asked(control.stop);
-      control.progress("planning", static_cast<std::size_t>(1000 * share), 1000);
-    });
-  });
-  return outcome;
-}
-
-}  // namespace
-
 nb::object python_of_json(const std::string& text) {
   return nb::module_::import_("json").attr("loads")(nb::str(text.c_str(), text.size()));
 }
 
 void bind_studies(nb::module_& module) {
-  nb::class_<Study>(module, "StudyData", "A study that has been checked against its machine; behind abbe.Study.")
-      .def_static("read", &read_study, nb::arg("path"))
+  bind_study_checks(module);
+  bind_verified_readings(module);
+  nb::class_<Study> bound(module, "StudyData", "A study that has been checked against its machine; behind abbe.Study.");
+  bound.def_static("read", &read_study, nb::arg("path"))
       .def_static(
           "parse",
           [](const std::string& text, const std::filesystem::path& path, const Machine& machine) {
@@ -132,6 +133,8 @@ void bind_studies(nb::module_& module) {
            nb::arg("progress").none())
       .def("gather", &gather, nb::arg("readings"), nb::arg("truth").none(), nb::arg("progress").none())
       .def("plan", &plan, nb::arg("progress").none());
+  add_study_check(bound);
+  add_study_verification(bound);
 }
 
 }  // namespace abbe::python

@@ -1,6 +1,7 @@
 #pragma once
 
 // What stands behind the classes of studies in Python.
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,16 @@ struct StudyOutcome {
   std::shared_ptr<const Study> study;
   StudyResult result;
 };
+
+/// A copy of the study in which the readings and the truth that were given take the place of files.
+/// @param readings  by the name of the set-up  @param truth  null: that of the study
+/// @throws InputError, KeyError of Python
+std::shared_ptr<const Study> study_with_data(const Study& study, const std::map<std::string, PythonReadings>& readings,
+                                             const MachineErrors* truth);
+
+/// Adds methods that look at the readings of a study without identifying anything.
+void add_study_check(nb::class_<Study>& bound);
+void add_study_verification(nb::class_<Study>& bound);
 
 /// The errors that a study identified, as in its errors file. @throws InputError if there are none
 MachineErrors identified_errors(const StudyOutcome& outcome);

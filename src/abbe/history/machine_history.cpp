@@ -197,4 +197,17 @@ std::vector<KeptCampaign> read_history(const std::string& path) {
   return result;
 }
 
+std::vector<std::pair<std::string, std::string>> campaign_files(const KeptCampaign& campaign) {
+  const Machine& machine = campaign.campaign.machine;
+  const ErrorsFile& errors = campaign.campaign.errors;
+  const bool has_covariance = errors.covariance.size() > 0;
+  constexpr const char* kCovariance = "errors.covariance.csv";
+  std::vector<std::pair<std::string, std::string>> files = {
+      {"machine.toml", machine_text(machine)},
+      {"errors.toml", errors_text(machine, errors, has_covariance ? kCovariance : "")}};
+  if (has_covariance) files.emplace_back(kCovariance, covariance_text(machine, errors));
+  if (!campaign.summary.empty()) files.emplace_back("summary.json", campaign.summary);
+  return files;
+}
+
 }  // namespace abbe

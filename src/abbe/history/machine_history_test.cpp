@@ -75,6 +75,25 @@ TEST_F(MachineHistory, GivesBackWhatWasAddedInTheOrderOfTime) {
   EXPECT_FALSE(kept[1].abbe_version.empty());
 }
 
+TEST_F(MachineHistory, ACampaignIsFilesOfAResultsFolder) {
+  add_to_history(file(), {numbered(2)});
+  KeptCampaign kept = read_history(file()).front();
+  const auto names = [&] {
+    std::vector<std::string> all;
+    for (const auto& [name, contents] : campaign_files(kept)) all.push_back(name);
+    return all;
+  };
+  EXPECT_THAT(names(), ElementsAre("machine.toml", "errors.toml", "errors.covariance.csv", "summary.json"));
+  for (const auto& [name, contents] : campaign_files(kept)) std::ofstream(folder_ / name) << contents;
+  const IdentifiedCampaign back = read_campaign(folder_.string(), std::nullopt);
+  EXPECT_EQ(back.machine.chain(), kept.campaign.machine.chain());
+  EXPECT_EQ(back.errors.errors.parameters(), kept.campaign.errors.errors.parameters());
+  EXPECT_TRUE(back.errors.covariance.isApprox(kept.campaign.errors.covariance, 1e-12));
+  kept.campaign.errors.covariance.resize(0, 0);
+  kept.summary.clear();
+  EXPECT_THAT(names(), ElementsAre("machine.toml", "errors.toml"));
+}
+
 TEST_F(MachineHistory, RefusesTheSameErrorsTwiceAndAddsNothingThen) {
   add_to_history(file(), {numbered(1)});
   EXPECT_THAT(message_of([&] {

@@ -136,9 +136,9 @@ VerifiedReadings verify_readings(const ReadingsToVerify& request, const JobOptio
   const FittedSetups nominal(request, campaign, ErrorSet{}, use);
   progress(2, kSteps);
   const FittedSetups compensated(request, campaign, identified, use);
-  std::vector<SetupResiduals> residuals;
   for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
-    const SetupResiduals& setup = residuals.emplace_back(SetupResiduals{nominal.lengths(s), compensated.lengths(s)});
+    const SetupResiduals& setup =
+        result.setups.emplace_back(SetupResiduals{campaign.setups[s].name, nominal.lengths(s), compensated.lengths(s)});
     for (std::size_t k = 0; k < setup.after.size(); ++k) {
       if (setup.after[k] < 0) continue;
       result.before.push_back(setup.before[k]);
@@ -155,7 +155,7 @@ VerifiedReadings verify_readings(const ReadingsToVerify& request, const JobOptio
   }
   result.judged = judge_independent_readings(compensated.problem(), covariance, request.study.threads);
   judge(request, result);
-  write_readings_report(request, campaign, residuals, result);
+  write_readings_report(request, campaign, result);
   progress(kSteps, kSteps);
   return result;
 }

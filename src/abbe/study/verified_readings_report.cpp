@@ -124,8 +124,7 @@ nlohmann::ordered_json details_of(const VerifiedReadings& result) {
 
 }  // namespace
 
-void write_readings_report(const ReadingsToVerify& request, const Campaign& campaign,
-                           const std::vector<SetupResiduals>& residuals, VerifiedReadings& result) {
+void write_readings_report(const ReadingsToVerify& request, const Campaign& campaign, VerifiedReadings& result) {
   EvaluationReport& report = result.report;
   const Study& study = request.study;
   report.kind = "readings";
@@ -157,7 +156,7 @@ void write_readings_report(const ReadingsToVerify& request, const Campaign& camp
              judged.degrees_of_freedom > 0 ? std::optional<double>(result.ratio()) : std::nullopt,
              "there are no more readings than unknowns of the set-ups");
   if (has_lengths) {
-    report.tables.push_back(table_of_labels(campaign, residuals));
+    report.tables.push_back(table_of_labels(campaign, result.setups));
     report.plots.push_back(plot_of(result));
   }
   report.notes.push_back(

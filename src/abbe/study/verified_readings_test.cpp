@@ -92,6 +92,18 @@ TEST(VerifiedReadings, WhereErrorsAreNotKnownAreLeftOut) {
   const VerifiedReadings result = verify_readings(request);
   EXPECT_GT(result.left_out().count(), 0U);
   EXPECT_LT(result.left_out().count(), result.readings);
+  std::vector<double> of_setups;
+  std::size_t left_out = 0;
+  for (std::size_t i = 0; i < result.setups.size(); ++i) {
+    EXPECT_EQ(result.setups[i].name, request.study.setups[i].name);
+    ASSERT_EQ(result.setups[i].after.size(), result.judged.norm[i].size());
+    for (std::size_t k = 0; k < result.setups[i].after.size(); ++k) {
+      left_out += result.judged.norm[i][k] < 0 ? 1U : 0U;
+      if (result.setups[i].after[k] >= 0) of_setups.push_back(result.setups[i].after[k]);
+    }
+  }
+  EXPECT_EQ(left_out, result.not_covered);
+  EXPECT_EQ(of_setups, result.after);
   for (ErrorMotion& motion : request.identified.errors.motions) {
     if (motion.axis == 0) motion.basis.from = 1000, motion.basis.to = 1001;
   }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -50,10 +51,22 @@ InstrumentFile read_instrument_file(const std::filesystem::path& path, const Mac
                                     const std::shared_ptr<const Instrument>& device, const std::string& setup,
                                     bool noise_from_data, const MeasurementOptions& options);
 
-/// The same of readings that somebody has already.
+/// Whether a reading of the instrument carries its orientation as a quaternion: inputs qw, qx, qy, qz.
+bool has_orientation(const Instrument& instrument);
+
+/// A reading whose quaternion is none of a rotation.
+struct BadOrientation {
+  std::size_t reading = 0;
+  double length = 0;  ///< of the quaternion; NaN if a number of it is missing
+};
+
+/// The first reading whose quaternion is not of length 1 within 1e-3; nothing if the instrument reads no orientations.
+std::optional<BadOrientation> first_bad_orientation(const Instrument& instrument, const InstrumentReadings& readings);
+
+/// As read_instrument_file(), of readings that somebody has already.
 /// @param setup  name of the set-up, for messages
 /// @throws InputError for another number of axes, items or components, commands outside an axis's travel, numbers that
-///   are not finite, and missing uncertainties
+///   are not finite, orientations that were not measured, and missing uncertainties
 InstrumentFile given_readings(const InstrumentReadings& readings, const Machine& machine,
                               const std::shared_ptr<const Instrument>& device, const std::string& setup,
                               bool noise_from_data);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "abbe/formats/readings/instrument_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/geometry/rotation.h"
 #include "abbe/instruments/reading_covariance.h"
@@ -16,7 +17,6 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-constexpr double kQuaternionLength = 1e-3;
 
 std::vector<std::vector<double>> take_columns(CsvTable& table, std::size_t first, std::size_t count) {
   std::vector<std::vector<double>> columns;
@@ -55,7 +55,7 @@ std::vector<ComponentCovariance> component_covariances(const Instrument& instrum
 }
 
 ComponentColumns::ComponentColumns(const Instrument& instrument, std::vector<CsvColumn>& wanted)
-    : instrument_(instrument), has_orientation_(!instrument.inputs().empty() && instrument.inputs()[0].name == "qw") {
+    : instrument_(instrument), has_orientation_(has_orientation(instrument)) {
   input_ = wanted.size();
   for (const ReadingComponent& known : instrument.inputs()) {
     wanted.push_back({known.name, component_quantity(known), false, !has_orientation_});

@@ -11,6 +11,9 @@
 
 namespace abbe {
 
+/// How much the length of a quaternion may differ from 1.
+inline constexpr double kQuaternionLength = 1e-3;
+
 Quantity component_quantity(const ReadingComponent& component);
 
 /// Groups of columns, added to those that are wanted of a file, and taken from its table.

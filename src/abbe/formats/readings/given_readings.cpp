@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "abbe/formats/readings/axis_columns.h"
+#include "abbe/formats/readings/component_columns.h"
 #include "abbe/formats/readings/instrument_file.h"
 
 namespace abbe {
@@ -27,7 +28,30 @@ void require_travel(const InstrumentReadings& readings, const Machine& machine, 
   }
 }
 
+void require_orientations(const Instrument& device, const InstrumentReadings& readings, const std::string& setup) {
+  const std::optional<BadOrientation> bad = first_bad_orientation(device, readings);
+  if (!bad) return;
+  throw InputError({.file = setup, .field = "inputs"},
+                   fmt::format("reading {}: the quaternion has the length {:.6g}", bad->reading, bad->length),
+                   "a length of 1");
+}
+
 }  // namespace
+
+bool has_orientation(const Instrument& instrument) {
+  return !instrument.inputs().empty() && instrument.inputs()[0].name == "qw";
+}
+
+std::optional<BadOrientation> first_bad_orientation(const Instrument& instrument, const InstrumentReadings& readings) {
+  if (!has_orientation(instrument)) return std::nullopt;
+  for (std::size_t k = 0; k < readings.count(); ++k) {
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) sum += readings.inputs[i][k] * readings.inputs[i][k];
+    const double length = std::sqrt(sum);
+    if (!(std::abs(length - 1) <= kQuaternionLength)) return BadOrientation{k, length};
+  }
+  return std::nullopt;
+}
 
 InstrumentFile given_readings(const InstrumentReadings& readings, const Machine& machine,
                               const std::shared_ptr<const Instrument>& device, const std::string& setup,
@@ -50,6 +74,7 @@ InstrumentFile given_readings(const InstrumentReadings& readings, const Machine&
   require_finite(readings.measured, setup, "measured");
   require_finite(readings.uncertainty, setup, "uncertainty");
   require_finite(readings.covariance, setup, "covariance");
+  require_orientations(*device, readings, setup);
   require_travel(readings, machine, setup);
   return file;
 }

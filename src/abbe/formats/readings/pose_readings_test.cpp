@@ -110,5 +110,26 @@ TEST(PoseReadings, CovariancesThatCannotBeAreRefusedWithTheirLine) {
               HasSubstr("cov_turn_z_turn_z: missing column"));
 }
 
+TEST(PoseReadings, GivenReadingsNeedAnOrientationOfLengthOne) {
+  const auto device = std::make_shared<const PoseTracker>(pose_tracker());
+  InstrumentReadings readings;
+  readings.inputs.resize(4);
+  for (int k = 0; k < 3; ++k) readings.append({0, 1, 2}, 0, {1, 0, 0, 0});
+  readings.measured.assign(6, {0, 0, 0});
+  const auto message = [&] {
+    return message_of([&] { static_cast<void>(given_readings(readings, carriage(), device, "cameras", false)); });
+  };
+  EXPECT_NO_THROW(static_cast<void>(given_readings(readings, carriage(), device, "cameras", false)));
+  EXPECT_FALSE(first_bad_orientation(*device, readings));
+  readings.inputs[0][1] = 0;  // of a plan
+  EXPECT_THAT(message(),
+              HasSubstr("cameras: inputs: reading 1: the quaternion has the length 0; expected a length of 1"));
+  EXPECT_EQ(first_bad_orientation(*device, readings)->reading, 1U);
+  readings.inputs[0][1] = 1.0011;
+  EXPECT_THAT(message(), HasSubstr("reading 1: the quaternion has the length 1.0011"));
+  readings.inputs[0][1] = -1.0009;
+  EXPECT_FALSE(first_bad_orientation(*device, readings));
+}
+
 }  // namespace
 }  // namespace abbe
