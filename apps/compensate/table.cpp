@@ -16,6 +16,7 @@
 #include "abbe/formats/machine/map_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
+#include "axis_option.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "compensate/table_options.h"
