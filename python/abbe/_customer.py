@@ -36,15 +36,14 @@ def _facts(facts: Facts) -> _core._ReportFacts:
 def customer_report(result: Evaluation | StudyResult, facts: Facts | None = None, *,
                     before: Evaluation | Errors | StudyResult | PathLike | None = None,
                     files: Sequence[str] = ()) -> CustomerReport:
-    """A customer report on a test of positioning or of diagonals, or on an identification.
+    """A customer report on an evaluation or on an identification.
 
     ``facts``: a dictionary with the keys of ``[report]`` (docs/customer-report.md), or a file with that table; of a study
     also those in its document. Days are texts or :class:`datetime.date`. ``tolerances`` among them are added to those of
     the evaluation. What is not stated is shown as not stated. ``before``: the same before a correction, an evaluation, or
     of a study errors, a result or its folder. ``files``: names of the readings, for the last lines; a study knows its own.
 
-    Raises :class:`abbe.InputError` with the fact that is wrong, for tolerances of figures that there are not, and for
-    evaluations of another kind.
+    Raises :class:`abbe.InputError` with the fact that is wrong, and for tolerances of figures that there are not.
 
     >>> import abbe
     >>> rows = {'direction': ['+', '-'] * 10, 'target_mm': [0, 0, 100, 100] * 5,
