@@ -18,7 +18,6 @@
 namespace abbe {
 namespace {
 
-constexpr double kMostGridPoses = 1e6;
 /// With the values the displacement may be larger by this share before they are refused.
 constexpr double kLarger = 0.02;
 constexpr double kNothingThere = 1e-6;  // mm, root mean square
@@ -32,24 +31,8 @@ const KinematicFormat& kinematic_format(const std::string& name) {
   throw InputError({.field = "--for"}, fmt::format("unknown format '{}'", name), names);
 }
 
-std::size_t grid_positions(const KinematicValuesRequest& request) {
-  const std::size_t axes = request.machine.axes.size();
-  const std::size_t positions = request.positions.value_or(axes > 3 ? 5 : 9);
-  const double poses = std::pow(static_cast<double>(positions), static_cast<double>(axes));
-  if (positions < 2 || poses > kMostGridPoses) {
-    throw InputError({.field = fmt::format("--positions {}", positions)},
-                     fmt::format("{:.0f} poses for {} axes", poses, axes),
-                     "at least 2 positions per axis and at most 1,000,000 poses");
-  }
-  return positions;
-}
-
 void check_values_request(const KinematicValuesRequest& request, const KinematicFormat& format) {
-  if (request.limit_mm) refusal_limit("--limit-um", 1e3 * *request.limit_mm, "um");
-  if (request.limit_rad) refusal_limit("--limit-urad", 1e6 * *request.limit_rad, "urad");
-  if (!(request.least_reduction >= 0 && request.least_reduction <= 1)) {
-    throw InputError({.field = "--least-reduction-percent"}, "out of range", "0 to 100 %");
-  }
+  check_refusal(request.limit_mm, request.limit_rad, request.least_reduction);
   if (!request.tool_carrier) return;
   if (!format.takes_tool_carrier) {
     throw InputError({.field = "--tool-carrier"}, fmt::format("would change nothing in values for {}", format.name),
@@ -166,7 +149,7 @@ KinematicValues make_kinematic_values(const KinematicValuesRequest& request) {
   const NamedNumbers numbers = values.read(text);
   for (KinematicValue& value : made.values) value.actual = numbers.at(value.name) + 0.0;
 
-  made.poses = travel_grid(machine, errors, grid_positions(request), made.grid);
+  made.poses = travel_grid(machine, errors, judged_positions(machine, request.positions), made.grid);
   made.volumetric = volumetric_figures(machine, &errors, covariance, nullptr, stated_grid(machine, {&errors}));
   const std::unique_ptr<CommandCorrection> correction = values.correction(numbers);
   made.before = deviations_with(machine, errors, made.poses, NoCorrection());
