@@ -14,6 +14,7 @@
 #include "abbe/errors/calibrated_machine.h"
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/machine/axis_unit.h"
 
 namespace abbe {
 namespace {
@@ -39,7 +40,7 @@ void check_values_request(const KinematicValuesRequest& request, const Kinematic
                      "--for siemens; or to leave it out");
   }
   if (*request.tool_carrier < 1 || *request.tool_carrier > 999) {
-    throw InputError({.field = "--tool-carrier"}, "out of range", "a number of a tool carrier, 1 to 999");
+    throw InputError({.field = "--tool-carrier"}, "out of range", "the number of a tool carrier, 1 to 999");
   }
 }
 
@@ -98,14 +99,14 @@ void add_uncertainties(const ValuesOfErrors& values, const KinematicValuesReques
 
 void check_value_limits(const KinematicValuesRequest& request, KinematicValues& made) {
   for (const KinematicValue& value : made.values) {
-    const bool length = value.kind == ValueKind::length;
-    const std::optional<double>& limit = length ? request.limit_mm : request.limit_rad;
+    const bool angle = value.kind != ValueKind::length;
+    const std::optional<double>& limit = angle ? request.limit_rad : request.limit_mm;
     const double change = std::abs(value.actual - value.nominal);
     if (!limit || change <= *limit) continue;
-    const double scale = length ? 1e3 : 1e6;
-    made.refused.push_back(fmt::format("a change of {:.3f} {} is above {} {:g}: {}", scale * change,
-                                       length ? "um" : "urad", length ? "--limit-um" : "--limit-urad", scale * *limit,
-                                       value.name));
+    const double scale = micro_per_unit(angle);
+    const char* const unit = micro_unit(angle);
+    made.refused.push_back(fmt::format("a change of {:.3f} {} is above --limit-{} {:g}: {}", scale * change, unit, unit,
+                                       scale * *limit, value.name));
   }
 }
 
@@ -127,7 +128,7 @@ void judge_values(const KinematicValuesRequest& request, KinematicValues& made) 
   if (one_is) return;
   made.refused.push_back(fmt::format(
       "the values would remove {:.2g} % of the displacement ({:.3f} to {:.3f} um rms), less than "
-      "--least-reduction-percent {:g}: the errors are others than {} carries",
+      "--least-reduction-percent {:g}: most errors are not of the kind that {} carries",
       std::max(0.0, 100 * (before - after) / before), 1e3 * before, 1e3 * after, 100 * least, made.format.name));
 }
 
