@@ -317,6 +317,9 @@ TEST_F(KinematicValuesTest, MachinesAndRequestsThatAControlDoesNotHaveAreRefused
   request = request_for("siemens", "trunnion-mill");
   std::swap(request.machine.axes[1], request.machine.axes[2]);
   EXPECT_THAT(refused(request), HasSubstr("a rotary axis carries Y"));
+  request = request_for("siemens", "trunnion-mill");
+  request.machine.axes[request.machine.find_axis("X")].direction = Eigen::Vector3d::UnitZ();
+  EXPECT_THAT(refused(request), HasSubstr("two linear axes are parallel"));
   request = request_for("linuxcnc", "trunnion-mill");
   request.machine.axes[0].primed = false;
   EXPECT_THAT(refused(request), HasSubstr("only one of the rotary axes is primed"));
