@@ -111,6 +111,9 @@ TEST(AerotechLineTable, WhatIsWrongIsRefusedWithItsPlace) {
   EXPECT_THAT(refused(":START 1\n1 2\n:END\n"), HasSubstr("SAMPLEDIST: is missing"));
   EXPECT_THAT(refused(":START 1 SAMPLEDIST=0\n1 2\n:END\n"), HasSubstr("places too close together"));
   EXPECT_THAT(refused(":START 1 SAMPLEDIST=1 SAMPLEDIST=2\n"), HasSubstr("SAMPLEDIST: is given twice"));
+  EXPECT_THAT(refused(":START 1 MASTER=2 MASTER=3\n"), HasSubstr("A.cal:1: MASTER: is given twice"));
+  EXPECT_THAT(refused(":START 1 CORUNIT=METRIC\n:START CORUNIT=METRIC/1000\n"),
+              HasSubstr("A.cal:2: CORUNIT: is given"));
   EXPECT_THAT(refused(":START 1 SAMPLEDIST\n"), HasSubstr("SAMPLEDIST: has no value; expected SAMPLEDIST=value"));
   EXPECT_THAT(refused(":START 1 HOMEDIRECTION=CW\n"), HasSubstr("HOMEDIRECTION: is not read"));
   EXPECT_THAT(refused(":START 1 CORUNIT=INCH\n"), HasSubstr("CORUNIT: unknown unit 'INCH'"));
