@@ -163,6 +163,7 @@ template Option* Subcommand::add_option(const std::string&, unsigned&, const std
 template Option* Subcommand::add_option(const std::string&, unsigned long&, const std::string&);
 template Option* Subcommand::add_option(const std::string&, unsigned long long&, const std::string&);
 template Option* Subcommand::add_option(const std::string&, std::optional<double>&, const std::string&);
+template Option* Subcommand::add_option(const std::string&, std::optional<int>&, const std::string&);
 template Option* Subcommand::add_option(const std::string&, std::optional<std::size_t>&, const std::string&);
 template Option* Subcommand::add_option(const std::string&, std::vector<std::string>&, const std::string&);
 template Option* Subcommand::add_option(const std::string&, std::vector<double>&, const std::string&);

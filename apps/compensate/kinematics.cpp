@@ -26,12 +26,11 @@
 namespace abbe {
 namespace {
 
-constexpr std::size_t kMostToolCarriers = 999;
-
 struct KinematicsArguments {
   std::string machine, errors, format, output;
   std::optional<double> limit_um, limit_urad;
-  std::optional<std::size_t> positions, tool_carrier;
+  std::optional<std::size_t> positions;
+  std::optional<int> tool_carrier;
   double least_reduction_percent = 1;
   bool json = false, dry_run = false, accept_misfit = false;
 };
@@ -50,12 +49,7 @@ int run_kinematics(const KinematicsArguments& arguments) {
   if (arguments.limit_um) request.limit_mm = 1e-3 * *arguments.limit_um;
   if (arguments.limit_urad) request.limit_rad = 1e-6 * *arguments.limit_urad;
   request.positions = arguments.positions;
-  if (arguments.tool_carrier) {
-    if (*arguments.tool_carrier > kMostToolCarriers) {
-      throw InputError({.field = "--tool-carrier"}, "out of range", "a number of a tool carrier, 1 to 999");
-    }
-    request.tool_carrier = static_cast<int>(*arguments.tool_carrier);
-  }
+  request.tool_carrier = arguments.tool_carrier;
   request.least_reduction = 0.01 * arguments.least_reduction_percent;
 
   const KinematicValues made = make_kinematic_values(request);
@@ -97,7 +91,7 @@ void add_compensate_kinematics(Subcommand& compensate, CommandLine& line) {
   command->add_output_file("-o,--output", arguments->output, "File to write", &arguments->dry_run);
   command->add_flag("--dry-run", arguments->dry_run, "Report only; write nothing");
   command->add_option("--tool-carrier", arguments->tool_carrier,
-                      "siemens: write $TC_CARR of the tool carrier of this number instead of machine data");
+                      "siemens: write $TC_CARR of the tool carrier with this number instead of machine data");
   command->add_option("--positions", arguments->positions,
                       "Positions per axis at which the displacement is stated (default 9; 5 with more than 3 axes)");
   command->add_option("--limit-um", arguments->limit_um, "Refuse values if a length changes by more than this, um");

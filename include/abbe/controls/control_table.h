@@ -32,11 +32,13 @@
 //   330.0000000 -0.0078502 -0.0078502
 //   440.0000000 -0.0057812 -0.0057812
 //
-// controls holds correction tables:
+// controls holds correction tables and kinematic values:
 //   control_table.h                     what is asked for, and tables with what they do and do not carry
 //   table_format.h                      the formats, and what each takes
 //   table_text.h, table_map.h           results for people; maps of what a table leaves
 //   lost_motion.h                       where reversal values go
+//   kinematic_values.h                  positions and directions of rotary axes as controls take them
+//   kinematic_values_text.h             the same for people and for programs
 // How tables are made and judged: docs/controller-tables.md.
 
 #include <Eigen/Core>

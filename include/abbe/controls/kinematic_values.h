@@ -19,7 +19,7 @@ namespace abbe {
 ///
 /// Messages name a field by the option of `abbe compensate kinematics` that sets it.
 struct KinematicValuesRequest {
-  std::string format;  ///< --for: a name of kinematic_format_names()
+  std::string format;  ///< --for: a name of kinematic_formats()
   Machine machine;
   ErrorSet errors;
   /// [p, p] of errors.parameters(), mm and rad; 0 x 0: what the errors state of their standard uncertainties.
@@ -28,7 +28,7 @@ struct KinematicValuesRequest {
 
   std::optional<std::size_t> positions;  ///< --positions: per axis of the grid of `poses`; else 9, or 5 above 3 axes
   std::optional<double> limit_mm;        ///< --limit-um: a larger change of a length is refused; above zero
-  std::optional<double> limit_rad;       ///< --limit-urad: of a direction component or an angle
+  std::optional<double> limit_rad;       ///< --limit-urad: the same of a direction component or an angle
   double least_reduction = 0.01;  ///< --least-reduction-percent: share of the error below which values are refused
 };
 

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
 #include <utility>
 
 #include "abbe/compensate/point_correction.h"
@@ -49,11 +52,13 @@ WrittenTables make_aerotech_lines(const TableFormat& format, const Machine& mach
 LatticeOptions plane_options(const Machine& machine, const ErrorSet& errors, const WriterRequest& request,
                              const TableFormat& format) {
   LatticeOptions options = lattice_options(machine, errors, request, format, 3, true);
-  const bool linear = std::all_of(options.inputs.begin(), options.inputs.end(),
-                                  [&](std::size_t axis) { return machine.axes[axis].kind == AxisKind::linear; });
-  if (options.inputs.size() < 2 || !linear) {
-    throw InputError({.field = "--axis"}, fmt::format("{} axes for tables over two axes", options.inputs.size()),
-                     "two or three linear axes that move");
+  const std::string expected = "two or three linear axes that move";
+  for (const std::size_t axis : options.inputs) {
+    if (machine.axes[axis].kind == AxisKind::linear) continue;
+    throw InputError({.field = "--axis " + machine.axes[axis].name}, "is a rotary axis", expected);
+  }
+  if (options.inputs.size() < 2) {
+    throw InputError({.field = "--axis"}, "one axis for tables over two axes", expected);
   }
   if (options.outputs.size() > 3) {
     throw InputError({.field = "--for"}, fmt::format("the machine has {} linear axes", options.outputs.size()),
@@ -119,12 +124,16 @@ WrittenTables make_aerotech_planes(const TableFormat& format, const Machine& mac
                                    const WriterRequest& request) {
   WrittenTables made;
   const LatticeOptions options = plane_options(machine, errors, request, format);
-  const std::size_t pairs = axis_pairs(options.inputs).size();
+  const std::vector<std::array<std::size_t, 2>> pairs = axis_pairs(options.inputs);
   std::vector<std::unique_ptr<CommandCorrection>> parts;
   std::vector<CorrectionLattice> lattices;
-  for (std::size_t index = 0; index < pairs; ++index) {
+  for (std::size_t index = 0; index < pairs.size(); ++index) {
     if (request.nodes > 0) {
-      parts.push_back(std::make_unique<PlaneCorrection>(machine, errors, options, index));
+      LatticeOptions wanted = options;
+      std::erase_if(wanted.outputs, [&](std::size_t output) {
+        return request.left_out.count(plane_name(machine, pairs[index], output)) != 0;
+      });
+      parts.push_back(std::make_unique<PlaneCorrection>(machine, errors, wanted, index));
       continue;
     }
     const std::size_t before = made.tables.size();

@@ -248,6 +248,15 @@ TEST(AerotechPlanes, LeaveOutWhatIsBelowItsUncertaintyAndNameIt) {
   EXPECT_THAT(made.left_out, testing::Not(testing::IsEmpty()));
   for (const TableFigures& table : made.tables) EXPECT_GT(table.standard_uncertainty.value_or(0), 0) << table.name;
   for (const std::string& words : made.left_out) EXPECT_THAT(words, HasSubstr(" for "));
+  EXPECT_THAT(made.left_out, testing::Contains(HasSubstr("Y, Z for Y")));
+  // Most of the effect of EAY is the shift of Y at a height Z, which is in that table.
+  for (const CarriedError& error : made.errors) {
+    if (error.name == "EAY") {
+      EXPECT_LT(error.carried(), 0.6);
+    } else if (error.name == "EXX") {
+      EXPECT_GT(error.carried(), 0.95);
+    }
+  }
 }
 
 TEST(AerotechPlanes, RefuseMachinesAndAxesThatTheyCannotTake) {
@@ -261,10 +270,17 @@ TEST(AerotechPlanes, RefuseMachinesAndAxesThatTheyCannotTake) {
   };
   ControlTableRequest request = mill_request("aerotech-2d");
   request.axes = {"X"};
-  EXPECT_THAT(refused(request), HasSubstr("--axis: 1 axes for tables over two axes; expected two or three linear"));
+  EXPECT_THAT(refused(request), HasSubstr("--axis: one axis for tables over two axes; expected two or three linear"));
+  request.machine = read_machine(std::string(ABBE_SOURCE_DIR) + "/examples/machines/trunnion-mill.machine.toml");
+  request.errors = {};
+  request.axes = {"X", "C"};
+  EXPECT_THAT(refused(request), HasSubstr("--axis C: is a rotary axis; expected two or three linear axes that move"));
   request = mill_request("aerotech-2d");
   request.names = {{"X", "AX1"}};
   EXPECT_THAT(refused(request), HasSubstr("'AX1' is not a number"));
+  request = mill_request("aerotech-2d");
+  request.names = {{"X", "0"}};
+  EXPECT_THAT(refused(request), HasSubstr("--name X=0: axes are counted from 1"));
   request = mill_request("aerotech-2d");
   request.tolerance_rad = 1e-6;
   EXPECT_THAT(refused(request), HasSubstr("--interpolation-urad: would change nothing in tables for aerotech-2d"));

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "abbe/machine/axis_unit.h"
+
 namespace abbe {
 namespace {
 
@@ -23,13 +25,16 @@ const char* carried_word(const CarriedError& error) {
 
 }  // namespace
 
+std::string micro_words(double value, bool is_angle) {
+  return fmt::format("{:.2f} {}", micro_per_unit(is_angle) * value, micro_unit(is_angle));
+}
+
 std::string carried_errors_lines(const std::vector<CarriedError>& errors) {
   std::string text;
   for (const CarriedError& error : errors) {
-    const std::string size =
-        error.is_angle ? fmt::format("{:.2f} urad", as_micro(error.size)) : fmt::format("{:.2f} um", as_um(error.size));
-    text += fmt::format("  {:<8} {:>14}  {:<12} {:8.3f} -> {:.3f} um", error.name, size, carried_word(error),
-                        as_um(error.effect_before), as_um(error.effect_after));
+    text +=
+        fmt::format("  {:<8} {:>14}  {:<12} {:8.3f} -> {:.3f} um", error.name, micro_words(error.size, error.is_angle),
+                    carried_word(error), as_um(error.effect_before), as_um(error.effect_after));
     if (error.turn_before > 1e-12) {
       text += fmt::format(", direction {:.2f} -> {:.2f} urad", as_micro(error.turn_before), as_micro(error.turn_after));
     }
@@ -41,7 +46,7 @@ std::string carried_errors_lines(const std::vector<CarriedError>& errors) {
 nlohmann::ordered_json carried_error_json(const CarriedError& error) {
   nlohmann::ordered_json one;
   one["name"] = error.name;
-  one[error.is_angle ? "size_urad" : "size_um"] = error.is_angle ? as_micro(error.size) : as_um(error.size);
+  one[std::string("size_") + micro_unit(error.is_angle)] = micro_per_unit(error.is_angle) * error.size;
   one["carried"] = carried_word(error);
   one["rms_before_um"] = as_um(error.effect_before);
   one["rms_after_um"] = as_um(error.effect_after);

@@ -8,6 +8,9 @@
 
 namespace abbe {
 
+/// mm or rad in um or urad: "12.30 um".
+std::string micro_words(double value, bool is_angle);
+
 /// A line for each error: its size, what becomes of it in a word, its shift (and turn) before and after.
 std::string carried_errors_lines(const std::vector<CarriedError>& errors);
 

@@ -15,37 +15,17 @@
 #include "abbe/controls/useless_tables.h"
 #include "abbe/controls/writer_request.h"
 #include "abbe/formats/machine/correction_limits.h"
-#include "abbe/formats/text/input_error.h"
 #include "abbe/verify/error_map.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kMostPoses = 1e6;
 /// Nodes of tables that are made for one error alone, to see what of it is carried.
 constexpr std::size_t kNodesForOneError = 33;
 
-std::size_t positions_per_axis(const ControlTableRequest& request) {
-  const std::size_t axes = request.machine.axes.size();
-  if (!request.positions) return axes > 3 ? 5 : 9;
-  const std::size_t positions = *request.positions;
-  double poses = 1;
-  for (std::size_t i = 0; i < axes; ++i) poses *= static_cast<double>(positions);
-  if (positions < 2 || poses > kMostPoses) {
-    throw InputError({.field = fmt::format("--positions {}", positions)},
-                     fmt::format("{:.0f} poses for {} axes", poses, axes),
-                     "at least 2 positions per axis and at most 1,000,000 poses");
-  }
-  return positions;
-}
-
 void check_judgement(const ControlTableRequest& request) {
   check_leave_out(request.leave_out_below, request.errors, request.covariance, request.errors_file);
-  if (request.limit_mm) refusal_limit("--limit-um", 1e3 * *request.limit_mm, "um");
-  if (request.limit_rad) refusal_limit("--limit-urad", 1e6 * *request.limit_rad, "urad");
-  if (!(request.least_reduction >= 0 && request.least_reduction <= 1)) {
-    throw InputError({.field = "--least-reduction-percent"}, "out of range", "0 to 100 %");
-  }
+  check_refusal(request.limit_mm, request.limit_rad, request.least_reduction);
 }
 
 /// What takes the reversal values that the tables do not carry.
@@ -178,7 +158,7 @@ ControlTables make_control_tables(const ControlTableRequest& request) {
   made.format = &format;
   made.tolerance_mm = making.writer.tolerance_mm;
   made.tolerance_rad = making.writer.tolerance_rad;
-  made.poses = travel_grid(machine, errors, positions_per_axis(request), made.grid);
+  made.poses = travel_grid(machine, errors, judged_positions(machine, request.positions), made.grid);
   made.volumetric = volumetric_figures(machine, &errors, covariance, nullptr, stated_grid(machine, {&errors}));
   write_tables(making, made);
   made.settings = making.tables.remarks;

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <charconv>
 
 #include "abbe/controls/kinematic_format.h"
 #include "abbe/formats/text/input_error.h"
@@ -81,7 +81,9 @@ NamedNumbers read_value_rows(const std::string& text) {
     }
     const std::string name = text.substr(begin, commas.at(2) - begin);
     const double unit = name.ends_with("_deg") ? kDegree : 1;
-    numbers[name] = unit * std::stod(text.substr(commas.at(3) + 1, commas.at(4) - commas.at(3) - 1));
+    double value = 0;
+    std::from_chars(text.data() + commas.at(3) + 1, text.data() + commas.at(4), value);
+    numbers[name] = unit * value;
     begin = end + 1;
   }
   return numbers;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
+#include <charconv>
 #include <sstream>
 
 namespace abbe {
@@ -33,10 +33,11 @@ NamedNumbers numbers_of_lines(const std::string& text, const std::string& before
     if (!line.starts_with(before)) continue;
     const std::size_t end = line.find(between, before.size());
     if (end == std::string::npos) continue;
-    const std::string number = line.substr(end + between.size());
-    char* rest = nullptr;
-    const double value = std::strtod(number.c_str(), &rest);
-    if (rest != number.c_str()) numbers[line.substr(before.size(), end - before.size())] = value;
+    double value = 0;
+    const char* const number = line.data() + end + between.size();
+    // Independent of the locale of the program that calls.
+    if (std::from_chars(number, line.data() + line.size(), value).ec != std::errc()) continue;
+    numbers[line.substr(before.size(), end - before.size())] = value;
   }
   return numbers;
 }

@@ -14,11 +14,11 @@
 #include "abbe/errors/calibrated_machine.h"
 #include "abbe/formats/machine/correction_limits.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/machine/axis_unit.h"
 
 namespace abbe {
 namespace {
 
-constexpr double kMostGridPoses = 1e6;
 /// With the values the displacement may be larger by this share before they are refused.
 constexpr double kLarger = 0.02;
 constexpr double kNothingThere = 1e-6;  // mm, root mean square
@@ -32,31 +32,15 @@ const KinematicFormat& kinematic_format(const std::string& name) {
   throw InputError({.field = "--for"}, fmt::format("unknown format '{}'", name), names);
 }
 
-std::size_t grid_positions(const KinematicValuesRequest& request) {
-  const std::size_t axes = request.machine.axes.size();
-  const std::size_t positions = request.positions.value_or(axes > 3 ? 5 : 9);
-  const double poses = std::pow(static_cast<double>(positions), static_cast<double>(axes));
-  if (positions < 2 || poses > kMostGridPoses) {
-    throw InputError({.field = fmt::format("--positions {}", positions)},
-                     fmt::format("{:.0f} poses for {} axes", poses, axes),
-                     "at least 2 positions per axis and at most 1,000,000 poses");
-  }
-  return positions;
-}
-
 void check_values_request(const KinematicValuesRequest& request, const KinematicFormat& format) {
-  if (request.limit_mm) refusal_limit("--limit-um", 1e3 * *request.limit_mm, "um");
-  if (request.limit_rad) refusal_limit("--limit-urad", 1e6 * *request.limit_rad, "urad");
-  if (!(request.least_reduction >= 0 && request.least_reduction <= 1)) {
-    throw InputError({.field = "--least-reduction-percent"}, "out of range", "0 to 100 %");
-  }
+  check_refusal(request.limit_mm, request.limit_rad, request.least_reduction);
   if (!request.tool_carrier) return;
   if (!format.takes_tool_carrier) {
     throw InputError({.field = "--tool-carrier"}, fmt::format("would change nothing in values for {}", format.name),
                      "--for siemens; or to leave it out");
   }
   if (*request.tool_carrier < 1 || *request.tool_carrier > 999) {
-    throw InputError({.field = "--tool-carrier"}, "out of range", "a number of a tool carrier, 1 to 999");
+    throw InputError({.field = "--tool-carrier"}, "out of range", "the number of a tool carrier, 1 to 999");
   }
 }
 
@@ -115,14 +99,14 @@ void add_uncertainties(const ValuesOfErrors& values, const KinematicValuesReques
 
 void check_value_limits(const KinematicValuesRequest& request, KinematicValues& made) {
   for (const KinematicValue& value : made.values) {
-    const bool length = value.kind == ValueKind::length;
-    const std::optional<double>& limit = length ? request.limit_mm : request.limit_rad;
+    const bool angle = value.kind != ValueKind::length;
+    const std::optional<double>& limit = angle ? request.limit_rad : request.limit_mm;
     const double change = std::abs(value.actual - value.nominal);
     if (!limit || change <= *limit) continue;
-    const double scale = length ? 1e3 : 1e6;
-    made.refused.push_back(fmt::format("a change of {:.3f} {} is above {} {:g}: {}", scale * change,
-                                       length ? "um" : "urad", length ? "--limit-um" : "--limit-urad", scale * *limit,
-                                       value.name));
+    const double scale = micro_per_unit(angle);
+    const char* const unit = micro_unit(angle);
+    made.refused.push_back(fmt::format("a change of {:.3f} {} is above --limit-{} {:g}: {}", scale * change, unit, unit,
+                                       scale * *limit, value.name));
   }
 }
 
@@ -144,7 +128,7 @@ void judge_values(const KinematicValuesRequest& request, KinematicValues& made) 
   if (one_is) return;
   made.refused.push_back(fmt::format(
       "the values would remove {:.2g} % of the displacement ({:.3f} to {:.3f} um rms), less than "
-      "--least-reduction-percent {:g}: the errors are others than {} carries",
+      "--least-reduction-percent {:g}: most errors are not of the kind that {} carries",
       std::max(0.0, 100 * (before - after) / before), 1e3 * before, 1e3 * after, 100 * least, made.format.name));
 }
 
@@ -166,7 +150,7 @@ KinematicValues make_kinematic_values(const KinematicValuesRequest& request) {
   const NamedNumbers numbers = values.read(text);
   for (KinematicValue& value : made.values) value.actual = numbers.at(value.name) + 0.0;
 
-  made.poses = travel_grid(machine, errors, grid_positions(request), made.grid);
+  made.poses = travel_grid(machine, errors, judged_positions(machine, request.positions), made.grid);
   made.volumetric = volumetric_figures(machine, &errors, covariance, nullptr, stated_grid(machine, {&errors}));
   const std::unique_ptr<CommandCorrection> correction = values.correction(numbers);
   made.before = deviations_with(machine, errors, made.poses, NoCorrection());

@@ -10,6 +10,7 @@
 #include "abbe/errors/actual_pose.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/text/decimal_comma_for_test.h"
 #include "abbe/formats/text/input_error.h"
 
 namespace abbe {
@@ -316,6 +317,9 @@ TEST_F(KinematicValuesTest, MachinesAndRequestsThatAControlDoesNotHaveAreRefused
   request = request_for("siemens", "trunnion-mill");
   std::swap(request.machine.axes[1], request.machine.axes[2]);
   EXPECT_THAT(refused(request), HasSubstr("a rotary axis carries Y"));
+  request = request_for("siemens", "trunnion-mill");
+  request.machine.axes[request.machine.find_axis("X")].direction = Eigen::Vector3d::UnitZ();
+  EXPECT_THAT(refused(request), HasSubstr("two linear axes are parallel"));
   request = request_for("linuxcnc", "trunnion-mill");
   request.machine.axes[0].primed = false;
   EXPECT_THAT(refused(request), HasSubstr("only one of the rotary axes is primed"));
@@ -331,6 +335,21 @@ TEST_F(KinematicValuesTest, MachinesAndRequestsThatAControlDoesNotHaveAreRefused
   request = request_for("siemens", "trunnion-mill");
   request.limit_mm = 0;
   EXPECT_THAT(refused(request), HasSubstr("--limit-um: 0 is not a limit"));
+}
+
+TEST_F(KinematicValuesTest, AreTheSameInALocaleWithADecimalComma) {
+  for (const std::string format : {"values", "linuxcnc", "siemens", "fanuc"}) {
+    KinematicValuesRequest request = request_for(format, "trunnion-mill");
+    request.errors = errors_of_lines(request.machine, false);
+    const KinematicValues expected = make_kinematic_values(request);
+    if (!test::set_decimal_comma()) GTEST_SKIP() << "no locale with a decimal comma and no localedef to make one";
+    const KinematicValues made = make_kinematic_values(request);
+    test::unset_decimal_comma();
+    EXPECT_EQ(made.file.text, expected.file.text);
+    ASSERT_EQ(made.values.size(), expected.values.size());
+    for (std::size_t k = 0; k < made.values.size(); ++k) EXPECT_EQ(made.values[k].actual, expected.values[k].actual);
+    EXPECT_EQ(made.after.position, expected.after.position);
+  }
 }
 
 TEST_F(KinematicValuesTest, AChangeAboveALimitIsInTheResult) {

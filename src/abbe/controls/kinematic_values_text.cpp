@@ -6,6 +6,7 @@
 
 #include "abbe/controls/carried_text.h"
 #include "abbe/geometry/angle_units.h"
+#include "abbe/machine/axis_unit.h"
 #include "abbe/report/evaluations/statistics_json.h"
 #include "abbe/report/words/volumetric_words.h"
 
@@ -17,11 +18,10 @@ std::string value_line(const KinematicValue& value) {
   const double unit = value.kind == ValueKind::angle ? kDegree : 1;
   const char* const suffix = length ? " mm" : value.kind == ValueKind::angle ? " deg" : "";
   const int places = length ? 4 : 7;
-  const double micro = length ? 1e3 : 1e6;
-  const char* const micro_suffix = length ? "um" : "urad";
+  const double micro = micro_per_unit(!length);
   std::string text =
       fmt::format("  {:<32} {:>14.{}f} -> {:>14.{}f}{}, {:+.2f} {}", value.name, value.nominal / unit, places,
-                  value.actual / unit, places, suffix, micro * (value.actual - value.nominal), micro_suffix);
+                  value.actual / unit, places, suffix, micro * (value.actual - value.nominal), micro_unit(!length));
   if (value.standard_uncertainty) {
     text += fmt::format(" (standard uncertainty {:.2f})", micro * *value.standard_uncertainty);
   }
@@ -37,8 +37,8 @@ nlohmann::ordered_json value_json(const KinematicValue& value) {
   one["nominal" + suffix] = value.nominal / unit;
   one["actual" + suffix] = value.actual / unit;
   if (value.standard_uncertainty) {
-    one[length ? "standard_uncertainty_um" : "standard_uncertainty_urad"] =
-        (length ? 1e3 : 1e6) * *value.standard_uncertainty;
+    one[std::string("standard_uncertainty_") + micro_unit(!length)] =
+        micro_per_unit(!length) * *value.standard_uncertainty;
   }
   return one;
 }

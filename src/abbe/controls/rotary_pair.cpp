@@ -30,12 +30,13 @@ void check_linear_axes(const Machine& machine, const std::string& format) {
     }
     if (found == 3) {
       refuse_chain(format, fmt::format("{} does not move the tool along +X, +Y or +Z of the workpiece", axis.name),
-                   "linear axes along X, Y and Z as ISO 841 counts them");
+                   "linear axes along X, Y and Z with the signs of ISO 841");
     }
     ++along[found];
   }
   if (count != 3 || along[0] != 1 || along[1] != 1 || along[2] != 1) {
-    refuse_chain(format, fmt::format("the machine has {} linear axes", count),
+    refuse_chain(format,
+                 count == 3 ? "two linear axes are parallel" : fmt::format("the machine has {} linear axes", count),
                  "three linear axes, one along each of X, Y and Z");
   }
 }

@@ -10,19 +10,19 @@ namespace {
 constexpr int kLengthDecimals = 6;
 constexpr int kDirectionDecimals = 9;
 
-/// A vector of the control: from where to where, by the kind of machine.
+/// A vector of the control, I1 to I4; from where to where depends on the kind of machine.
 struct OffsetVector {
-  const char* symbol;           ///< "I1"
   int carrier;                  ///< number of its first $TC_CARR
-  const char* machine_data[3];  ///< by RotaryPairKind; null: the kind has none
+  const char* machine_data[3];  ///< $MC_TRAFO5_..., by RotaryPairKind; null: the kind has none
 };
 
-// SINUMERIK Operate Commissioning Manual 6FC5397-1DP40-6BA1 (12/2017), 21.7 "Swiveling".
+// SINUMERIK Operate Commissioning Manual 6FC5397-1DP40-6BA1 (12/2017), 21.7 "Swiveling". PART_OFFSET is MD24500,
+// BASE_TOOL MD24550, JOINT_OFFSET_PART MD24558, JOINT_OFFSET MD24560.
 constexpr OffsetVector kOffsets[] = {
-    {"I1", 1, {nullptr, "24500 PART_OFFSET", "24560 JOINT_OFFSET"}},
-    {"I2", 4, {"24550 BASE_TOOL", "24560 JOINT_OFFSET", "24550 BASE_TOOL"}},
-    {"I3", 15, {"24560 JOINT_OFFSET", "24550 BASE_TOOL", "24558 JOINT_OFFSET_PART"}},
-    {"I4", 18, {"24500 PART_OFFSET", nullptr, "24500 PART_OFFSET"}},
+    {1, {nullptr, "PART_OFFSET", "JOINT_OFFSET"}},             // I1
+    {4, {"BASE_TOOL", "JOINT_OFFSET", "BASE_TOOL"}},           // I2
+    {15, {"JOINT_OFFSET", "BASE_TOOL", "JOINT_OFFSET_PART"}},  // I3
+    {18, {"PART_OFFSET", nullptr, "PART_OFFSET"}},             // I4
 };
 constexpr int kFirstAxisCarrier = 7, kSecondAxisCarrier = 10;
 
@@ -39,7 +39,7 @@ std::vector<std::string> offset_names(const OffsetVector& offset, RotaryPairKind
   const char* const data = offset.machine_data[static_cast<int>(kind)];
   if (data == nullptr) return {};
   if (carrier) return carrier_names(offset.carrier, *carrier);
-  return indexed(fmt::format("$MC_TRAFO5_{}_1", std::string(data).substr(6)));
+  return indexed(fmt::format("$MC_TRAFO5_{}_1", data));
 }
 
 std::vector<std::string> axis_names(bool first, std::optional<int> carrier) {
@@ -149,7 +149,7 @@ KinematicFormat siemens_kinematic_values() {
   format.what = "SINUMERIK TRAORI: machine data $MC_TRAFO5_..., or $TC_CARR of a tool carrier with --tool-carrier";
   format.convention =
       "mm, in the machine coordinate system: the gauge point with all axes at zero is the machine reference point. "
-      "Vectors I1 to I4 and V1, V2 as CYCLE996 and CYCLE800 have them, chain closed. V of a table axis is reversed";
+      "Vectors I1 to I4 and V1, V2 as in CYCLE996 and CYCLE800, chain closed. V of a primed axis is reversed";
   format.unverified =
       "that the machine reference point of I2 (tables) and I3 (mixed) is the gauge point with all axes at zero; check "
       "the values against those in the control before loading";

@@ -18,10 +18,6 @@ namespace {
 double in_micro(double value) { return 1e6 * value; }
 double in_um(double mm) { return 1e3 * mm; }
 
-std::string size_words(double value, bool is_angle) {
-  return is_angle ? fmt::format("{:.2f} urad", in_micro(value)) : fmt::format("{:.2f} um", in_um(value));
-}
-
 std::string position_text(double value, bool is_angle) {
   return is_angle ? fmt::format("{:.6g} deg", value / kDegree) : fmt::format("{:.6g} mm", value);
 }
@@ -53,7 +49,7 @@ std::string table_text(const TableReport& report) {
   for (const TableFigures& table : tables) {
     text += fmt::format("  {:<10} {:>5} {}", table.name, table.nodes, table.nodes == 1 ? "value" : "nodes");
     if (table.step > 0) text += fmt::format(", step {}", position_text(table.step, table.step_is_angle));
-    text += fmt::format("; largest correction {}{}", size_words(table.largest, table.is_angle),
+    text += fmt::format("; largest correction {}{}", micro_words(table.largest, table.is_angle),
                         table.step > 0 ? " at " + position_text(table.largest_at, table.step_is_angle) : "");
     if (table.nodes > 1) {
       text += fmt::format("; between nodes within {}",
@@ -62,7 +58,7 @@ std::string table_text(const TableReport& report) {
     }
     if (!table.within) text += " (ABOVE the limit: no more nodes)";
     if (table.standard_uncertainty) {
-      text += fmt::format("; standard uncertainty up to {}", size_words(*table.standard_uncertainty, table.is_angle));
+      text += fmt::format("; standard uncertainty up to {}", micro_words(*table.standard_uncertainty, table.is_angle));
     }
     text += "\n";
   }
@@ -90,11 +86,11 @@ std::string table_text(const TableReport& report) {
   if (report.partial.is_partial()) text += fmt::format("caution: {}\n", report.partial.caution());
   if (made.largest_mm > 0) {
     text +=
-        fmt::format("largest sum of corrections: {} at {}\n", size_words(made.largest_mm, false), made.largest_mm_at);
+        fmt::format("largest sum of corrections: {} at {}\n", micro_words(made.largest_mm, false), made.largest_mm_at);
   }
   if (made.largest_rad > 0) {
     text +=
-        fmt::format("largest sum of corrections: {} at {}\n", size_words(made.largest_rad, true), made.largest_rad_at);
+        fmt::format("largest sum of corrections: {} at {}\n", micro_words(made.largest_rad, true), made.largest_rad_at);
   }
   for (const std::string& remark : made.settings) text += fmt::format("setting: {}\n", remark);
   for (const std::string& name : report.written) text += fmt::format("{} written\n", name);

@@ -1,15 +1,32 @@
 #include "abbe/controls/travel_grid.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "abbe/compensate/point_correction.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {
 
 constexpr double kAside = 0.19;
+constexpr double kMostPoses = 1e6;
 
 }  // namespace
+
+std::size_t judged_positions(const Machine& machine, const std::optional<std::size_t>& positions) {
+  const std::size_t axes = machine.axes.size();
+  if (!positions) return axes > 3 ? 5 : 9;
+  double poses = 1;
+  for (std::size_t i = 0; i < axes; ++i) poses *= static_cast<double>(*positions);
+  if (*positions < 2 || poses > kMostPoses) {
+    throw InputError({.field = fmt::format("--positions {}", *positions)},
+                     fmt::format("{:.0f} poses for {} axes", poses, axes),
+                     "at least 2 positions per axis and at most 1,000,000 poses");
+  }
+  return *positions;
+}
 
 PoseList travel_grid(const Machine& machine, const ErrorSet& errors, std::size_t count,
                      std::vector<std::size_t>& grid) {

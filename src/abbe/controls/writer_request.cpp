@@ -86,6 +86,9 @@ void check_axis_name(const Machine& machine, const TableFormat& format, const Co
   if (name.empty() || name.size() > 32 || !plain) fail("not a name of letters and digits");
   const bool number = std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
   if (format.axis_names.starts_with("number") && (!number || name.size() > 4)) fail("'" + name + "' is not a number");
+  if (format.axis_names.ends_with("counted from 1") && name.find_first_not_of('0') == std::string::npos) {
+    fail("axes are counted from 1");
+  }
 }
 
 }  // namespace

@@ -16,6 +16,12 @@ namespace abbe {
 /// @throws InputError unless it is a finite number above zero: a limit that cannot be understood is not "no limit"
 double refusal_limit(const char* option, const std::optional<double>& limit, const char* unit);
 
+/// When tables and kinematic values are refused: --limit-um, --limit-urad and --least-reduction-percent.
+/// @param limit_mm, limit_rad  largest change; none: any
+/// @param least_reduction      share of the error, 0 to 1. @throws InputError
+void check_refusal(const std::optional<double>& limit_mm, const std::optional<double>& limit_rad,
+                   double least_reduction);
+
 /// How far rotary axes may turn near a singularity, rad. @throws InputError unless it is above 0 and at most 10 deg
 void check_largest_turn(double largest_turn);
 

@@ -61,6 +61,7 @@ AerotechUnit aerotech_unit(const TableLines& lines, const std::string& field, co
   const std::size_t slash = std::min(unit.find('/'), unit.size());
   const std::string name = unit.substr(0, slash);
   AerotechUnit found;
+  found.given = true;
   found.millimetres = name == "METRIC";
   if (!found.millimetres && name != "PRIMARY") {
     lines.fail(field, fmt::format("unknown unit '{}'", shown_word(name)), expected);

@@ -30,6 +30,7 @@ void read_aerotech_keys(const AerotechLine& line, std::size_t first, const Aerot
 struct AerotechUnit {
   double per_unit = 1;
   bool millimetres = false;  ///< METRIC: not for rotary axes
+  bool given = false;        ///< in the file
 };
 AerotechUnit aerotech_unit(const TableLines& lines, const std::string& field, const std::string* word);
 

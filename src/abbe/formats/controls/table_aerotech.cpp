@@ -40,12 +40,16 @@ struct AerotechTable {
   std::vector<double> values;
 };
 
+void refuse_repeated_key(const TableLines& lines, const std::string& key, bool given) {
+  if (given) lines.fail(key, "is given twice", "one value");
+}
+
 /// Keys that both kinds of tables have. @returns whether it was one
 bool read_common_key(const TableLines& lines, const std::string& key, const std::string* value, AerotechTable& table) {
-  if (key == "POSUNIT") {
-    table.position = aerotech_unit(lines, key, value);
-  } else if (key == "CORUNIT") {
-    table.correction = aerotech_unit(lines, key, value);
+  if (key == "POSUNIT" || key == "CORUNIT") {
+    AerotechUnit& unit = key == "POSUNIT" ? table.position : table.correction;
+    refuse_repeated_key(lines, key, unit.given);
+    unit = aerotech_unit(lines, key, value);
   } else if (key == "NEGCOR" && value == nullptr) {
     table.negated = true;
   } else {
@@ -114,7 +118,7 @@ void read_tables(std::string_view text, const std::string& file, std::string_vie
 
 void set_aerotech_number(const TableLines& lines, const std::string& key, const std::string* value,
                          std::optional<double>& number) {
-  if (number) lines.fail(key, "is given twice", "one value");
+  refuse_repeated_key(lines, key, number.has_value());
   number = lines.value(aerotech_value(lines, key, value), key, kNumberInUnit);
 }
 
@@ -136,6 +140,7 @@ void start_line(const TableLines& lines, const AerotechLine& line, const std::ve
   read_aerotech_keys(line, first, [&](const std::string& key, const std::string* value) {
     if (read_common_key(lines, key, value, table)) return;
     if (key == "MASTER") {
+      refuse_repeated_key(lines, key, table.input != nullptr);
       table.input = aerotech_axis(lines, key, aerotech_value(lines, key, value), axes);
     } else if (key == "SAMPLEDIST") {
       set_aerotech_number(lines, key, value, table.step);
@@ -206,7 +211,7 @@ void start_plane(const TableLines& lines, const AerotechLine& line, const std::v
   read_aerotech_keys(line, first, [&](const std::string& key, const std::string* value) {
     if (read_common_key(lines, key, value, table)) return;
     if (key == "OUTAXIS3") {
-      if (table.outputs.size() > 2) lines.fail(key, "is given twice", "one value");
+      refuse_repeated_key(lines, key, table.outputs.size() > 2);
       add_output(lines, key, aerotech_value(lines, key, value), axes, table);
     } else if (key == "OFFSETROW") {
       set_aerotech_number(lines, key, value, table.row_offset);

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <numbers>
 #include <random>
 
 #include "abbe/formats/controls/table_for_test.h"
@@ -73,14 +72,7 @@ TEST(AerotechLineTable, NamesTheCorrectedAxisAndTheOneThatIsLookedUp) {
 TEST(AerotechLineTable, WhatIsWrittenIsReadBackToItsDigits) {
   std::vector<AxisTable> tables = {test::some_table(0, 0, 38, 1), test::some_table(0, 1, 77, 2),
                                    test::some_table(1, 2, 2, 3)};
-  AxisTable turn;
-  turn.input = turn.output = 3;
-  for (int k = 0; k <= 36; ++k) {
-    turn.positions.push_back(2 * std::numbers::pi * k / 36);
-    turn.forward.push_back(1e-5 * (k % 35));
-  }
-  turn.reverse = turn.forward;
-  tables.push_back(turn);
+  tables.push_back(test::some_turn(3, 35));
   const std::vector<AxisTable> read =
       parse_aerotech_1d(aerotech_1d_text(tables, kNumberedAxes), "X.cal", kNumberedAxes);
   ASSERT_EQ(read.size(), tables.size());
@@ -119,6 +111,9 @@ TEST(AerotechLineTable, WhatIsWrongIsRefusedWithItsPlace) {
   EXPECT_THAT(refused(":START 1\n1 2\n:END\n"), HasSubstr("SAMPLEDIST: is missing"));
   EXPECT_THAT(refused(":START 1 SAMPLEDIST=0\n1 2\n:END\n"), HasSubstr("places too close together"));
   EXPECT_THAT(refused(":START 1 SAMPLEDIST=1 SAMPLEDIST=2\n"), HasSubstr("SAMPLEDIST: is given twice"));
+  EXPECT_THAT(refused(":START 1 MASTER=2 MASTER=3\n"), HasSubstr("A.cal:1: MASTER: is given twice"));
+  EXPECT_THAT(refused(":START 1 CORUNIT=METRIC\n:START CORUNIT=METRIC/1000\n"),
+              HasSubstr("A.cal:2: CORUNIT: is given"));
   EXPECT_THAT(refused(":START 1 SAMPLEDIST\n"), HasSubstr("SAMPLEDIST: has no value; expected SAMPLEDIST=value"));
   EXPECT_THAT(refused(":START 1 HOMEDIRECTION=CW\n"), HasSubstr("HOMEDIRECTION: is not read"));
   EXPECT_THAT(refused(":START 1 CORUNIT=INCH\n"), HasSubstr("CORUNIT: unknown unit 'INCH'"));

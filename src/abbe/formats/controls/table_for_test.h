@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -28,6 +29,18 @@ inline AxisTable some_table(std::size_t input, std::size_t output, std::size_t n
   }
   table.reverse = table.forward;
   return table;
+}
+
+/// A whole turn of an axis for itself in steps of 10 degrees; values repeat themselves after `repeat` nodes.
+inline AxisTable some_turn(std::size_t axis, int repeat) {
+  AxisTable turn;
+  turn.input = turn.output = axis;
+  for (int k = 0; k <= 36; ++k) {
+    turn.positions.push_back(2 * std::numbers::pi * k / 36);
+    turn.forward.push_back(1e-5 * (k % repeat));
+  }
+  turn.reverse = turn.forward;
+  return turn;
 }
 
 inline void expect_near(const AxisTable& read, const AxisTable& table, double position, double value) {

@@ -2,8 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <numbers>
-
 #include "abbe/formats/controls/table_for_test.h"
 
 namespace abbe {
@@ -41,15 +39,8 @@ TEST(SiemensTable, EncoderCompensationHoldsTheErrorBecauseItIsAddedToTheActualPo
 TEST(SiemensTable, WhatIsWrittenIsReadBackToItsDigits) {
   std::vector<AxisTable> tables = {test::some_table(0, 0, 38, 1), test::some_table(0, 1, 77, 2),
                                    test::some_table(1, 1, 5, 3)};
-  AxisTable turn;
-  turn.input = turn.output = 2;
-  turn.modulo = true;
-  for (int k = 0; k <= 36; ++k) {
-    turn.positions.push_back(2 * std::numbers::pi * k / 36);
-    turn.forward.push_back(1e-5 * (k % 36));
-  }
-  turn.reverse = turn.forward;
-  tables.push_back(turn);
+  tables.push_back(test::some_turn(2, 36));
+  tables.back().modulo = true;
   const std::vector<AxisTable> read = parse_siemens_cec(siemens_cec_text(tables, kAxes, 0), "CEC.INI", kAxes);
   ASSERT_EQ(read.size(), tables.size());
   for (std::size_t t = 0; t < read.size(); ++t) test::expect_near(read[t], tables[t], 1e-8, 0.51e-6);

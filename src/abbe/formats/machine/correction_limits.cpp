@@ -20,6 +20,15 @@ double refusal_limit(const char* option, const std::optional<double>& limit, con
   return *limit;
 }
 
+void check_refusal(const std::optional<double>& limit_mm, const std::optional<double>& limit_rad,
+                   double least_reduction) {
+  if (limit_mm) refusal_limit("--limit-um", 1e3 * *limit_mm, "um");
+  if (limit_rad) refusal_limit("--limit-urad", 1e6 * *limit_rad, "urad");
+  if (!(least_reduction >= 0 && least_reduction <= 1)) {
+    throw InputError({.field = "--least-reduction-percent"}, "out of range", "0 to 100 %");
+  }
+}
+
 void check_largest_turn(double largest_turn) {
   if (!(largest_turn > 0 && largest_turn <= 10 * kDegree))
     throw InputError({.field = "--largest-turn-deg"}, "out of range", "more than 0 and at most 10 degrees");

@@ -3,15 +3,13 @@
 
 #include <clocale>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <locale>
 #include <string>
 
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/readings/measurement_file.h"
+#include "abbe/formats/text/decimal_comma_for_test.h"
 #include "abbe/formats/text/json_text.h"
 
 namespace abbe {
@@ -41,37 +39,11 @@ std::string written() {
          json_text({{"a", 1234.5}, {"b", 1000000}});
 }
 
-/// Compiles a locale of its own with a decimal comma, so that the test does not depend on what is installed, and sets
-/// it.
-bool set_decimal_comma() {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "abbe_locale";
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  std::ofstream source(folder / "comma.src");
-  source << "escape_char /\nLC_NUMERIC\ndecimal_point \",\"\nthousands_sep \".\"\ngrouping 3;3\nEND LC_NUMERIC\n";
-  for (const char* category : {"LC_CTYPE", "LC_COLLATE", "LC_MONETARY", "LC_TIME", "LC_MESSAGES"}) {
-    source << category << "\ncopy \"POSIX\"\nEND " << category << "\n";
-  }
-  source.close();
-  const std::string command = "cd '" + folder.string() +
-                              "' && localedef -c --no-archive -i ./comma.src -f ANSI_X3.4-1968 ./comma "
-                              ">/dev/null 2>&1";
-  static_cast<void>(std::system(command.c_str()));  // missing categories are a warning with an exit code
-  ::setenv("LOCPATH", folder.c_str(), 1);
-  if (std::setlocale(LC_ALL, "comma") != nullptr) return true;
-  ::unsetenv("LOCPATH");
-  for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "nl_NL.UTF-8"}) {
-    if (std::setlocale(LC_ALL, name) != nullptr) return true;
-  }
-  return false;
-}
-
 class Locale : public testing::Test {
  protected:
   void TearDown() override {
     std::locale::global(std::locale::classic());
-    std::setlocale(LC_ALL, "C");
-    ::unsetenv("LOCPATH");
+    test::unset_decimal_comma();
   }
 };
 
@@ -84,7 +56,7 @@ TEST_F(Locale, DecimalCommaOfTheStandardLibraryChangesNothing) {
 
 TEST_F(Locale, DecimalCommaOfTheSystemChangesNothing) {
   const std::string expected = written();
-  if (!set_decimal_comma()) GTEST_SKIP() << "no locale with a decimal comma and no localedef to make one";
+  if (!test::set_decimal_comma()) GTEST_SKIP() << "no locale with a decimal comma and no localedef to make one";
   char text[8];
   std::snprintf(text, sizeof text, "%.1f", 1.5);
   ASSERT_STREQ(text, "1,5") << "else the test shows nothing";
