@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/axis_option.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/machine/map_file.h"
@@ -14,7 +15,6 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/study/errors_map.h"
-#include "axis_option.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "machine_options.h"

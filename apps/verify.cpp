@@ -7,12 +7,12 @@
 #include <optional>
 
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/axis_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/study/verification.h"
 #include "abbe/study/verification_page.h"
 #include "abbe/study/verification_text.h"
-#include "axis_option.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"

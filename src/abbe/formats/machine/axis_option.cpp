@@ -1,4 +1,4 @@
-#include "axis_option.h"
+#include "abbe/formats/machine/axis_option.h"
 
 #include <fmt/format.h>
 
