@@ -55,22 +55,7 @@ int run_add(const HistoryCommand& command) {
 
 int run_list(const HistoryCommand& command) {
   const std::vector<KeptCampaign> campaigns = read_history(command.history);
-  if (command.json) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
-    for (const KeptCampaign& one : campaigns) {
-      json.push_back({{"number", one.number},
-                      {"name", one.campaign.name},
-                      {"day", date_text(one.measured)},
-                      {"source", one.source},
-                      {"added", one.added},
-                      {"abbe", one.abbe_version}});
-    }
-    fmt::print("{}", json_text(json));
-    return kDone;
-  }
-  for (const KeptCampaign& one : campaigns) {
-    fmt::print("{:4}  {}  {}  from {}\n", one.number, date_text(one.measured), one.campaign.name, one.source);
-  }
+  fmt::print("{}", command.json ? json_text(history_json(campaigns)) : history_text(campaigns));
   return kDone;
 }
 
@@ -95,17 +80,12 @@ int run_trends(const HistoryCommand& command) {
 }
 
 int run_export(const HistoryCommand& command) {
-  for (const KeptCampaign& one : read_history(command.history)) {
-    if (one.number != command.number) continue;
-    ResultsFolder folder(command.output);
-    for (const auto& [name, contents] : campaign_files(one)) folder.write(name, contents);
-    folder.commit();
-    fmt::print("{} of {} in {}\n", one.campaign.name, date_text(one.measured), command.output);
-    return kDone;
-  }
-  throw InputError({.field = "--campaign"},
-                   fmt::format("there is no campaign {} in {}", command.number, command.history),
-                   "a number that abbe history list shows");
+  const KeptCampaign kept = campaign_of_history(command.history, command.number);
+  ResultsFolder folder(command.output);
+  for (const auto& [name, contents] : campaign_files(kept)) folder.write(name, contents);
+  folder.commit();
+  fmt::print("{} of {} in {}\n", kept.campaign.name, date_text(kept.measured), command.output);
+  return kDone;
 }
 
 using HistoryRun = int (*)(const HistoryCommand&);

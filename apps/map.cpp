@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/axis_option.h"
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/machine/map_file.h"
@@ -14,7 +14,6 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/study/errors_map.h"
-#include "axis_option.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "machine_options.h"
@@ -31,23 +30,6 @@ struct MapOptions {
   bool fit_datum = false, keep_datum = false, accept_uncovered = false, json = false;
 };
 
-/// "X_mm=0:1400:9" or "C_deg=30": from:to:count, or a fixed position.
-void apply_grid_option(const Machine& machine, const std::string& text, std::vector<std::optional<AxisRange>>& grid) {
-  const std::string expected = "AXIS_unit=from:to:count or AXIS_unit=position, such as X_mm=0:1400:9";
-  const auto fail = [&](const std::string& problem) {
-    throw InputError({.field = "--grid " + text}, problem, expected);
-  };
-  const auto [axis, unit, numbers] = axis_numbers_option(machine, "--grid", text, expected);
-  if (grid[axis]) fail("axis " + machine.axes[axis].name + " was given before");
-  if (numbers.size() == 1) {
-    grid[axis] = AxisRange::fixed(numbers[0] * unit);
-  } else if (numbers.size() == 3 && numbers[2] >= 2 && numbers[2] <= 1e6 && numbers[2] == std::floor(numbers[2])) {
-    grid[axis] = AxisRange{numbers[0] * unit, numbers[1] * unit, static_cast<std::size_t>(numbers[2]), 0};
-  } else {
-    fail("one or three numbers are needed, the count a whole number from 2 to 1,000,000");
-  }
-}
-
 std::string extension_of(const std::string& name) { return std::filesystem::path(name).extension().string(); }
 
 ErrorsMapRequest request_of_map(const MapOptions& options) {
@@ -63,7 +45,7 @@ ErrorsMapRequest request_of_map(const MapOptions& options) {
                                        std::filesystem::path(options.poses).filename().string());
   }
   request.grid.resize(request.machine.axes.size());
-  for (const std::string& text : options.grid) apply_grid_option(request.machine, text, request.grid);
+  for (const std::string& text : options.grid) take_grid_option(request.machine, text, request.grid);
   return request;
 }
 

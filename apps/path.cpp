@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/axis_option.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/shapes/curve_file.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/study/planned_path.h"
-#include "axis_option.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"

@@ -1,27 +1,24 @@
 #include <fmt/format.h>
 
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "abbe/formats/files/file_name.h"
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/axis_option.h"
 #include "abbe/formats/machine/machine_file.h"
+#include "abbe/formats/machine/obstacle_option.h"
 #include "abbe/formats/nc/path_program.h"
-#include "abbe/formats/text/ascii_letters.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/formats/text/number_text.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/study/planned_measurement.h"
-#include "axis_option.h"
 #include "ball_probing.h"
 #include "command.h"
 #include "exit_code.h"
@@ -37,7 +34,7 @@ struct ProgramCommand {
   std::string readings, machine, output, sheet, dialect, trigger = "dwell", stop_at = "stations";
   std::vector<std::string> words, start, boxes, meshes, clear_at;
   std::optional<std::size_t> decimals;
-  int trigger_number = -1;
+  int trigger_number = -1;  ///< below zero: not given
   double dwell_s = 2, reading_s = 0, pulse_s = 0.1, feed_mm_per_min = 0, clearance_mm = 0, rotary_speed_deg = 30;
   ToolShape tool;
   double linear_speed = 100;
@@ -46,106 +43,40 @@ struct ProgramCommand {
   BallProbing ball;
 };
 
-/// Carrier and the rest of "table=...".
-struct ObstacleText {
-  Obstacle obstacle;
-  std::string rest;
-};
-
-ObstacleText obstacle_text(const Machine& machine, const std::string& option, const std::string& text,
-                           const std::string& form) {
-  const std::size_t equals = text.find('=');
-  const std::string carrier = text.substr(0, equals);
-  ObstacleText result;
-  if (carrier == "base") {
-    result.obstacle.carrier = ObstacleCarrier::base;
-  } else if (carrier == "table") {
-    result.obstacle.carrier = ObstacleCarrier::table;
-  } else {
-    result.obstacle.carrier = ObstacleCarrier::axis;
-    result.obstacle.axis = machine.find_axis(carrier);
-  }
-  if (equals == std::string::npos || result.obstacle.axis == Machine::npos) {
-    throw InputError({.field = option + " " + text}, "not understood",
-                     form + ", where ON is base, table or an axis of " + machine.chain());
-  }
-  result.rest = text.substr(equals + 1);
-  return result;
-}
-
-Obstacle box_obstacle(const Machine& machine, const std::string& text, std::size_t number) {
-  const std::string option = "--obstacle-box-mm", form = "ON=X0,Y0,Z0,X1,Y1,Z1 in mm";
-  ObstacleText read = obstacle_text(machine, option, text, form);
-  std::array<double, 6> corners{};
-  std::string_view rest = read.rest;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    const std::size_t comma = rest.find(',');
-    const bool is_last = k + 1 == corners.size();
-    if (is_last != (comma == std::string_view::npos) ||
-        parse_number(rest.substr(0, comma), 0, corners[k]) != NumberProblem::none) {
-      throw InputError({.field = option + " " + text}, "not six numbers with commas between them", form);
-    }
-    if (!is_last) rest.remove_prefix(comma + 1);
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (corners[k] != corners[k + 3]) continue;
-    throw InputError({.field = option + " " + text}, "a box without volume", "two opposite corners, " + form);
-  }
-  read.obstacle.name = fmt::format("box {}", number);
-  read.obstacle.mesh = box_mesh({corners[0], corners[1], corners[2]}, {corners[3], corners[4], corners[5]});
-  return std::move(read.obstacle);
-}
-
 std::vector<Obstacle> read_obstacles(const ProgramCommand& command, const Machine& machine) {
   std::vector<Obstacle> obstacles;
   for (const std::string& text : command.boxes) {
-    obstacles.push_back(box_obstacle(machine, text, obstacles.size() + 1));
+    obstacles.push_back(box_obstacle_option(machine, "--obstacle-box-mm", text, obstacles.size() + 1));
   }
-  std::vector<ObstacleText> meshes;
+  std::vector<ObstacleOption> meshes;
   std::vector<std::filesystem::path> files;
   for (const std::string& text : command.meshes) {
-    meshes.push_back(obstacle_text(machine, "--obstacle-mesh", text, "ON=FILE"));
-    files.emplace_back(meshes.back().rest);
+    meshes.push_back(obstacle_option(machine, "--obstacle-mesh", text, "ON=FILE"));
+    files.emplace_back(meshes.back().contents);
   }
   command.step.require_step_among(files);
-  for (ObstacleText& mesh : meshes) {
-    mesh.obstacle.name = file_name(mesh.rest);
+  for (ObstacleOption& mesh : meshes) {
+    mesh.obstacle.name = file_name(mesh.contents);
     mesh.obstacle.mesh =
-        command.step.read_whole(mesh.rest, "all faces of the obstacle, because the tool must keep clear of them").mesh;
+        command.step.read_whole(mesh.contents, "all faces of the obstacle, because the tool must keep clear of them")
+            .mesh;
     obstacles.push_back(std::move(mesh.obstacle));
   }
   return obstacles;
 }
 
-/// Name of a program for controls that want one: capitals, digits and underlines of the name of its file.
-std::string program_name(const std::string& file) {
-  std::string name;
-  for (const char c : std::filesystem::path(file).stem().string()) {
-    name += is_letter(c) || is_digit(c) ? upper_case(c) : '_';
-  }
-  constexpr std::size_t kLongestName = 24;
-  return name.empty() ? "MEASURE" : name.substr(0, kLongestName);
-}
-
 MeasuringProgramOptions program_options(const ProgramCommand& command, const Machine& machine) {
   MeasuringProgramOptions options;
   options.dialect = *nc_dialect(command.dialect);
-  options.name = program_name(command.output);
+  options.name = nc_program_name(command.output);
   options.words = axis_words(machine, command.words, "--word");
   if (command.decimals) options.decimals = static_cast<int>(*command.decimals);
   options.feed = command.feed_mm_per_min / 60;
   options.dwell = command.dwell_s;
   options.reading = command.reading_s;
   options.pulse = command.pulse_s;
-  options.trigger = command.trigger == "output"       ? NcTrigger::output
-                    : command.trigger == "m-function" ? NcTrigger::m_function
-                                                      : NcTrigger::dwell;
-  if (options.trigger != NcTrigger::dwell && command.trigger_number < 0) {
-    throw InputError(
-        {.field = "--trigger-number"}, "missing",
-        options.trigger == NcTrigger::output ? "the number of the output" : "the number of the M function");
-  }
-  options.number = command.trigger_number;
+  options.trigger = *nc_trigger(command.trigger);
+  if (command.trigger_number >= 0) options.number = command.trigger_number;
   options.machine_coordinates = command.machine_coordinates;
   return options;
 }
@@ -156,9 +87,7 @@ MeasurementRequest request_of(const ProgramCommand& command) {
   request.program = program_options(command, request.machine);
   request.readings_file = command.readings;
   request.list = read_reading_list(command.readings, request.machine);
-  request.sections = command.stop_at == "none"     ? MeasurementSections::none
-                     : command.stop_at == "setups" ? MeasurementSections::setups
-                                                   : MeasurementSections::stations;
+  request.sections = *measurement_sections(command.stop_at);
   request.shorten = command.shorten;
   request.start = axis_options(request.machine, "--start", command.start);
   request.obstacles = read_obstacles(command, request.machine);
@@ -172,68 +101,55 @@ MeasurementRequest request_of(const ProgramCommand& command) {
   return request;
 }
 
-void tell_written(const ProgramCommand& command, bool written, const std::string& other) {
-  if (written) fmt::print("{} written\n", command.output);
-  if (written && !other.empty()) fmt::print("{} written\n", other);
-  if (command.dry_run) fmt::print("dry run: nothing written\n");
+/// What is written and printed of a program.
+struct ProgramOutcome {
+  std::string program, refused, text;
+  nlohmann::ordered_json json;
+  std::string other_file, other;  ///< sheet or touches; empty: not wanted
+};
+
+ProgramOutcome measuring_outcome(const ProgramCommand& command) {
+  const PlannedMeasurement planned = plan_measurement(request_of(command));
+  return {planned.program,
+          planned.refused,
+          planned_measurement_text(planned),
+          planned_measurement_json(planned),
+          command.sheet,
+          command.sheet.empty() ? "" : planned_measurement_sheet(planned)};
 }
 
-ProbingRequest probing_request(const ProgramCommand& command) {
-  if (command.dialect != "linuxcnc") {
-    throw InputError({.field = "--probe-ball-mm"}, "touches are written for LinuxCNC only", "--dialect linuxcnc");
-  }
-  const MeasurementRequest measurement = request_of(command);
-  ProbingRequest request;
-  request.machine = measurement.machine;
-  request.list = measurement.list;
-  request.readings_file = command.readings;
-  request.obstacles = measurement.obstacles;
-  request.tool = measurement.tool;
-  request.ways = measurement.ways;
-  request.program.words = measurement.program.words;
-  request.program.decimals = measurement.program.decimals.value_or(request.program.decimals);
-  request.program.feed = measurement.program.feed;
-  request.program.dwell = command.dwell_s;
+ProgramOutcome probing_outcome(const ProgramCommand& command) {
+  ProbingRequest request = probing_request(request_of(command));
   command.ball.take(request);
-  return request;
-}
-
-int run_ball_probing(const ProgramCommand& command) {
-  const PlannedProbing planned = plan_probing(probing_request(command));
-  const bool written = planned.refused.empty() && !command.dry_run;
-  const std::string& touches = command.ball.touches_file();
-  if (written) {
-    write_file_atomically(command.output, planned.program);
-    if (!touches.empty()) write_file_atomically(touches, planned_touches_csv(planned.machine, planned.touches));
-  }
-  if (command.json) {
-    fmt::print("{}", json_text(planned_probing_json(planned)));
-  } else {
-    fmt::print("{}", planned_probing_text(planned));
-    tell_written(command, written, touches);
-  }
-  if (planned.refused.empty()) return kDone;
-  std::fflush(stdout);
-  tell("abbe: {}; nothing written\n", planned.refused);
-  return kNegative;
+  const PlannedProbing planned = plan_probing(request);
+  return {planned.program,
+          planned.refused,
+          planned_probing_text(planned),
+          planned_probing_json(planned),
+          command.ball.touches_file(),
+          planned_touches_csv(planned.machine, planned.touches)};
 }
 
 int run_program_command(const ProgramCommand& command) {
   if (command.output.empty() && !command.dry_run) {
     throw InputError({.field = "-o"}, "missing", "a file for the program, or --dry-run");
   }
-  if (command.ball.is_wanted()) return run_ball_probing(command);
-  const PlannedMeasurement planned = plan_measurement(request_of(command));
-  const bool written = planned.refused.empty() && !command.dry_run;
-  if (written) {
+  const ProgramOutcome planned = command.ball.is_wanted() ? probing_outcome(command) : measuring_outcome(command);
+  std::vector<std::string> written;
+  if (planned.refused.empty() && !command.dry_run) {
     write_file_atomically(command.output, planned.program);
-    if (!command.sheet.empty()) write_file_atomically(command.sheet, planned_measurement_sheet(planned));
+    written.push_back(command.output);
+    if (!planned.other_file.empty()) {
+      write_file_atomically(planned.other_file, planned.other);
+      written.push_back(planned.other_file);
+    }
   }
   if (command.json) {
-    fmt::print("{}", json_text(planned_measurement_json(planned)));
+    fmt::print("{}", json_text(planned.json));
   } else {
-    fmt::print("{}", planned_measurement_text(planned));
-    tell_written(command, written, command.sheet);
+    fmt::print("{}", planned.text);
+    for (const std::string& file : written) fmt::print("{} written\n", file);
+    if (command.dry_run) fmt::print("dry run: nothing written\n");
   }
   if (planned.refused.empty()) return kDone;
   std::fflush(stdout);
@@ -280,13 +196,13 @@ void add_program_command(CommandLine& line) {
   seconds("--dwell-s", options->dwell_s, "Standing still before the trigger");
   seconds("--reading-s", options->reading_s, "Standing still after the trigger, while the instrument reads");
   command->add_option("--trigger", options->trigger, "What tells the instrument that the machine stands")
-      ->check(one_of({"dwell", "m-function", "output"}))
+      ->check(one_of(nc_trigger_names()))
       ->capture_default_str();
   command->add_option("--trigger-number", options->trigger_number, "Number of the M function or of the output")
       ->check(in_range(0, 99999));
   seconds("--pulse-s", options->pulse_s, "How long the output is on");
   command->add_option("--stop-at", options->stop_at, "Stop for the operator at every station, every set-up, or nowhere")
-      ->check(one_of({"stations", "setups", "none"}))
+      ->check(one_of(measurement_section_names()))
       ->capture_default_str();
   command->add_flag("--shorten", options->shorten,
                     "Readings between two stops in an order of short travel (default: that of the file)");

@@ -7,12 +7,12 @@
 #include <optional>
 
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/axis_option.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/study/verification.h"
 #include "abbe/study/verification_page.h"
 #include "abbe/study/verification_text.h"
-#include "axis_option.h"
 #include "command.h"
 #include "errors_for_use.h"
 #include "exit_code.h"
@@ -44,24 +44,6 @@ struct VerifyOptions {
   bool json = false, accept_uncovered = false;
 };
 
-/// "X_mm=-100:100" or "C_deg=30".
-void apply_range(const Machine& machine, const std::string& text, std::vector<std::optional<AxisRange>>& ranges) {
-  const std::string expected = "AXIS_unit=from:to or AXIS_unit=position, such as X_mm=-100:100";
-  const auto [axis, unit, numbers] = axis_numbers_option(machine, "--range", text, expected);
-  if (numbers.size() > 2 || !(numbers.size() == 1 || numbers[0] < numbers[1])) {
-    throw InputError({.field = "--range " + text}, "needs a position, or two with the larger one behind the smaller",
-                     expected);
-  }
-  const Axis& moved = machine.axes[axis];
-  if (!moved.endless && !(numbers.front() * unit >= moved.travel_min && numbers.back() * unit <= moved.travel_max)) {
-    throw InputError({.field = "--range " + text}, "outside the axis's travel",
-                     fmt::format("positions within the travel, {:g} to {:g} in this unit", moved.travel_min / unit,
-                                 moved.travel_max / unit));
-  }
-  ranges[axis] =
-      numbers.size() == 1 ? AxisRange::fixed(numbers[0] * unit) : AxisRange{numbers[0] * unit, numbers[1] * unit, 2, 0};
-}
-
 template <typename Sizes>
 PieceToVerify piece_to_verify(const Machine& machine, const PieceOptions& options, const Sizes& sizes) {
   return {sizes,
@@ -75,7 +57,7 @@ VerificationRequest request_of(const VerifyOptions& options) {
   request.poses = options.poses;
   if (options.seed) request.seed = *options.seed;
   request.ranges.resize(request.machine.axes.size());
-  for (const std::string& text : options.ranges) apply_range(request.machine, text, request.ranges);
+  for (const std::string& text : options.ranges) take_range_option(request.machine, text, request.ranges);
   request.least_reduction = options.least_reduction;
   request.largest_ratio = options.largest_ratio;
   request.reach_mm = options.reach_mm;

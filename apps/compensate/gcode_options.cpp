@@ -1,8 +1,8 @@
 #include "compensate/gcode_options.h"
 
+#include "abbe/formats/machine/axis_option.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/study/program_settings.h"
-#include "axis_option.h"
 
 namespace abbe {
 namespace {

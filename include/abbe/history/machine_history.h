@@ -38,6 +38,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -85,6 +86,14 @@ std::vector<std::int64_t> add_to_history(const std::string& path, const std::vec
 
 /// All campaigns, in the order in which they were measured. @throws InputError also for a history that does not exist
 std::vector<KeptCampaign> read_history(const std::string& path);
+
+/// The campaign of this number. @throws InputError as read_history(), and for a number that is not in the history
+KeptCampaign campaign_of_history(const std::string& path, std::int64_t number);
+
+/// For people: a line with number, date, name and source for each campaign.
+std::string history_text(const std::vector<KeptCampaign>& campaigns);
+/// The same for programs, with the time of adding and the version of Abbe.
+nlohmann::ordered_json history_json(const std::vector<KeptCampaign>& campaigns);
 
 /// Files of a results folder of this campaign, name and contents, as `abbe history export` writes them: machine.toml,
 /// errors.toml, its covariance and summary.json, as far as there are any.

@@ -30,6 +30,7 @@
 
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,11 @@ enum class MeasurementSections {
   setups,    ///< at every set-up
   none       ///< nowhere: all instruments stand there at once
 };
+
+/// "stations", "setups", "none", in this order.
+const std::vector<std::string>& measurement_section_names();
+/// @returns nothing for another name
+std::optional<MeasurementSections> measurement_sections(const std::string& name);
 
 /// Readings that a machine is to be driven to; lengths in mm, angles in rad, times in s.
 ///

@@ -39,6 +39,7 @@
 #include "abbe/machine/machine.h"
 #include "abbe/plan/ways/clear_ways.h"
 #include "abbe/plan/ways/obstacle.h"
+#include "abbe/study/planned_measurement.h"
 
 namespace abbe {
 
@@ -63,6 +64,10 @@ struct ProbingRequest {
   ProbingProgramOptions program;
 };
 
+/// A request with the machine, readings, obstacles, tool, ways, words, decimals, feed and dwell of a measurement.
+/// @throws InputError for another dialect than linuxcnc
+ProbingRequest probing_request(const MeasurementRequest& measurement);
+
 /// The program and its touches, or the reason why there is none.
 struct PlannedProbing {
   Machine machine;
@@ -78,7 +83,7 @@ struct PlannedProbing {
 /// axes the tip comes from the spindle's side, touches along the tool's line, and from the sides; between two touches
 /// it goes over the ball. Every move but the touches is clear of the ball and of the obstacles, every touch of the
 /// latter (ClearWays). Opens no file and prints nothing.
-/// @throws InputError for fewer than four touches, lengths that are not above zero, and as probing_program()
+/// @throws InputError for fewer than four touches, lengths that are not finite and above zero, and as probing_program()
 PlannedProbing plan_probing(const ProbingRequest& request);
 
 /// For people; lines with their ends.

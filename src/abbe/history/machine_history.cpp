@@ -197,6 +197,14 @@ std::vector<KeptCampaign> read_history(const std::string& path) {
   return result;
 }
 
+KeptCampaign campaign_of_history(const std::string& path, std::int64_t number) {
+  for (KeptCampaign& one : read_history(path)) {
+    if (one.number == number) return std::move(one);
+  }
+  throw InputError({.field = "--campaign"}, fmt::format("there is no campaign {} in {}", number, path),
+                   "a number that abbe history list shows");
+}
+
 std::vector<std::pair<std::string, std::string>> campaign_files(const KeptCampaign& campaign) {
   const Machine& machine = campaign.campaign.machine;
   const ErrorsFile& errors = campaign.campaign.errors;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "abbe/formats/files/empty_folder_for_test.h"
@@ -73,6 +74,21 @@ TEST_F(MachineHistory, GivesBackWhatWasAddedInTheOrderOfTime) {
   EXPECT_EQ(kept[1].summary, "{\"format\": 1}\n");
   EXPECT_THAT(kept[1].added, testing::MatchesRegex("20..-..-..T..:..:..Z"));
   EXPECT_FALSE(kept[1].abbe_version.empty());
+}
+
+TEST_F(MachineHistory, IsToldInLinesAndJsonAndByNumber) {
+  add_to_history(file(), {numbered(7), numbered(2)});
+  const std::vector<KeptCampaign> kept = read_history(file());
+  EXPECT_EQ(history_text(kept),
+            "   2  2026-01-03  c2  from results/c2\n"
+            "   1  2026-01-08  c7  from results/c7\n");
+  const nlohmann::ordered_json json = history_json(kept);
+  ASSERT_EQ(json.size(), 2U);
+  EXPECT_EQ(json[0].at("day"), "2026-01-03");
+  EXPECT_EQ(json[1].at("number"), 1);
+  EXPECT_EQ(campaign_of_history(file(), 2).campaign.name, "c2");
+  EXPECT_THAT(message_of([&] { static_cast<void>(campaign_of_history(file(), 3)); }),
+              HasSubstr("--campaign: there is no campaign 3 in "));
 }
 
 TEST_F(MachineHistory, ACampaignIsFilesOfAResultsFolder) {

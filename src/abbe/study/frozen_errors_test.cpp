@@ -9,6 +9,7 @@
 
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/text/message_of.h"
+#include "abbe/study/frozen_file.h"
 
 namespace abbe {
 namespace {
@@ -80,6 +81,20 @@ TEST(FrozenErrorsOfARequest, WhatIsOutOfRangeIsNamedByItsOption) {
     r.leave_out_factor = 1;
   });
   EXPECT_THAT(unknown, HasSubstr("trunnion.errors.toml: no standard uncertainties are stated"));
+}
+
+TEST(AFrozenFile, TellsWhatItIsForAndIsRefusedIfDamaged) {
+  const FrozenErrors result = freeze_errors(trunnion_to_freeze());
+  const CheckedFrozenFile frozen = check_frozen_file(result.bytes(), "mill.abbec");
+  EXPECT_EQ(frozen.axes.size(), trunnion_to_freeze().machine.axes.size());
+  const std::string text = frozen_file_text(frozen);
+  EXPECT_THAT(text, HasSubstr("mill.abbec: frozen compensation of trunnion mill, whole\n"));
+  EXPECT_THAT(text, HasSubstr("  A   travel -120 to 30 deg"));
+  EXPECT_EQ(frozen_file_json(frozen).at("bytes"), result.bytes().size());
+  std::string damaged(result.bytes());
+  damaged.pop_back();
+  EXPECT_THAT(message_of([&] { static_cast<void>(check_frozen_file(damaged, "mill.abbec")); }),
+              HasSubstr("expected a whole file of abbe compensate freeze"));
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ void check_obstacles(const MeasurementRequest& request) {
       throw InputError({.file = obstacle.name}, "has no triangle", "a mesh of what stands in the way");
     }
     if (obstacle.carrier == ObstacleCarrier::axis && obstacle.axis >= request.machine.axes.size()) {
-      throw InputError({.field = "--obstacle-on"}, "the machine has no such axis", request.machine.chain());
+      throw InputError({.field = "--obstacle-mesh"}, "the machine has no such axis", request.machine.chain());
     }
   }
   for (const auto& [axis, position] : request.ways.clear_at) {
@@ -248,6 +248,18 @@ std::vector<MeasuringSection> program_sections(const PlannedMeasurement& planned
 }
 
 }  // namespace
+
+const std::vector<std::string>& measurement_section_names() {
+  static const std::vector<std::string> names = {"stations", "setups", "none"};
+  return names;
+}
+
+std::optional<MeasurementSections> measurement_sections(const std::string& name) {
+  const std::vector<std::string>& names = measurement_section_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<MeasurementSections>(found - names.begin());
+}
 
 std::size_t PlannedMeasurement::ways_around() const {
   return static_cast<std::size_t>(

@@ -57,6 +57,8 @@ TEST(APlannedMeasurement, BringsTheReadingsOfAStationTogether) {
   planned = plan_measurement(request);
   EXPECT_THAT(numbers(planned), ElementsAre(1, 2, 3, 4));
   EXPECT_THAT(planned.program, Not(HasSubstr("M0\n")));
+  EXPECT_EQ(measurement_sections("none"), MeasurementSections::none);
+  EXPECT_FALSE(measurement_sections("readings"));
   // Readings 2 and 3 are at one pose: no block moves between them.
   EXPECT_THAT(planned.program, HasSubstr("(reading 3, station a, target n)\nG4 P2\n"));
 }

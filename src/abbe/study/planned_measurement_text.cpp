@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/files/file_name.h"
+#include "abbe/formats/text/ascii_letters.h"
 #include "abbe/formats/text/list_text.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/pages/measuring_sheet.h"
@@ -65,7 +66,7 @@ MeasuringSheetTable readings_table(const PlannedMeasurement& planned, const Plan
   const bool has_setup = section.setup.empty() && is_stated(planned, &ListedReading::setup);
   const bool has_station = section.station.empty() && is_stated(planned, &ListedReading::station);
   table.caption = fmt::format("{}: {}", section.words, counted(section.count, "reading", "readings"));
-  table.caption[0] = static_cast<char>(table.caption[0] - 'a' + 'A');
+  table.caption[0] = upper_case(table.caption[0]);
   table.headers = {"no.", "time"};
   for (const Axis& axis : planned.machine.axes) {
     table.headers.push_back(axis.name + (axis.kind == AxisKind::rotary ? " / \xC2\xB0" : " / mm"));
@@ -174,7 +175,7 @@ std::string planned_measurement_sheet(const PlannedMeasurement& planned) {
   }
   sheet.notes = planned.notes;
   for (std::string& note : sheet.notes) {
-    if (note[0] >= 'a' && note[0] <= 'z') note[0] = static_cast<char>(note[0] - 'a' + 'A');
+    note[0] = upper_case(note[0]);
     note += ".";
   }
   sheet.tables.push_back(travel_table(planned));

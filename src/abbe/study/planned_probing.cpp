@@ -20,8 +20,12 @@ namespace abbe {
 namespace {
 
 void check_probing(const ProbingRequest& request) {
+  if (!request.ball_centre.allFinite()) {
+    throw InputError({.field = "--probe-ball-mm"}, "the centre is not finite", "X, Y and Z of the centre in mm");
+  }
   const auto above_zero = [](const char* option, double length) {
     if (!(length > 0)) throw InputError({.field = option}, "is not above zero", "a length in mm");
+    if (!std::isfinite(length)) throw InputError({.field = option}, "is not finite", "a length in mm");
   };
   above_zero("--probe-ball-mm", request.ball_radius);
   above_zero("--tip-radius-mm", request.tip_radius);
@@ -189,6 +193,24 @@ class ProbingPlanner {
 };
 
 }  // namespace
+
+ProbingRequest probing_request(const MeasurementRequest& measurement) {
+  if (measurement.program.dialect != NcDialect::linuxcnc) {
+    throw InputError({.field = "--probe-ball-mm"}, "touches are written for LinuxCNC only", "--dialect linuxcnc");
+  }
+  ProbingRequest request;
+  request.machine = measurement.machine;
+  request.list = measurement.list;
+  request.readings_file = measurement.readings_file;
+  request.obstacles = measurement.obstacles;
+  request.tool = measurement.tool;
+  request.ways = measurement.ways;
+  request.program.words = measurement.program.words;
+  request.program.decimals = measurement.program.decimals.value_or(request.program.decimals);
+  request.program.feed = measurement.program.feed;
+  request.program.dwell = measurement.program.dwell;
+  return request;
+}
 
 PlannedProbing plan_probing(const ProbingRequest& request) {
   check_probing(request);

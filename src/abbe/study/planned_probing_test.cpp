@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "abbe/formats/text/input_error.h"
 #include "abbe/machine/chain.h"
 
@@ -62,6 +64,15 @@ TEST(APlannedProbing, SaysWhichReadingCannotBeProbedAndWhy) {
   request.obstacles = {{"clamp", box_mesh({60, 18, 0}, {80, 40, 60}), ObstacleCarrier::table, 0}};
   EXPECT_THAT(plan_probing(request).refused, HasSubstr("r.csv: reading 1 (line 2): the tool touches clamp at"));
   request.touches = 3;
+  EXPECT_THROW(plan_probing(request), InputError);
+  request = ball_request();
+  request.ball_centre.y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(plan_probing(request), InputError);
+  request = ball_request();
+  request.ball_radius = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(plan_probing(request), InputError);
+  request = ball_request();
+  request.program.probing_feed = 0.0004 / 60;
   EXPECT_THROW(plan_probing(request), InputError);
   request = ball_request();
   request.program.log = "a b)";

@@ -25,6 +25,11 @@ enum class NcTrigger {
   output       ///< a digital output is switched on and off
 };
 
+/// "dwell", "m-function", "output", in this order.
+const std::vector<std::string>& nc_trigger_names();
+/// @returns nothing for another name
+std::optional<NcTrigger> nc_trigger(const std::string& name);
+
 /// Blocks in which one reading is taken.
 struct MeasuringStop {
   std::vector<std::vector<double>> via;  ///< poses on the way, [axes] mm or rad
@@ -46,12 +51,15 @@ struct MeasuringProgramOptions {
   double feed = 0;                           ///< mm/s; 0: rapid traverse
   double dwell = 2;                          ///< s, standing still before the trigger
   NcTrigger trigger = NcTrigger::dwell;
-  int number = 0;                     ///< of the M function or the output
+  std::optional<int> number;          ///< of the M function or the output
   double pulse = 0.1;                 ///< s, how long the output is on
   double reading = 0;                 ///< s, standing still after the trigger
   bool machine_coordinates = false;   ///< moves past all zero offsets: G53, SUPA, M91
   std::vector<std::string> comments;  ///< at the top, one line each
 };
+
+/// Name of a program for controls that want one: capitals, digits and underlines of the name of its file.
+std::string nc_program_name(const std::string& file);
 
 /// Decimals that a control takes: 6, Heidenhain and Siemens 4, Fanuc 3 (increment system IS-B).
 int default_decimals(NcDialect dialect);
@@ -64,7 +72,8 @@ std::vector<double> stated_pose(const Machine& machine, const std::vector<double
 /// Every section begins with a text for the operator and a programmed stop (M0), if there are several. A reading is a
 /// move for every pose on the way, a comment, a dwell, a trigger and another dwell. The first move names all axes, all
 /// others those that change.
-/// @throws InputError for an axis without a word that the control has, a trigger that it does not have, and machine
+/// @throws InputError for an axis without a word that the control has, a trigger that it does not have, a trigger
+///   without its number or a number without a trigger, a feed of 0 after rounding to 0.001 mm/min, and machine
 ///   coordinates at a feed where they mean rapid traverse (Fanuc); fields are the options of `abbe program`
 std::string measuring_program(const Machine& machine, const std::vector<MeasuringSection>& sections,
                               const MeasuringProgramOptions& options);

@@ -33,7 +33,9 @@ struct ProbingProgramOptions {
 /// A probing program for LinuxCNC: G38.2 for touches, logged between PROBEOPEN and PROBECLOSE. The control stops with
 /// an error where a touch does not come. Where the machine stands after a touch is not known, so the next move names
 /// the axes that moved for it.
-/// @throws InputError for an axis without a word, and a name of the log with other characters
+/// @throws InputError for an axis without a word, a feed of 0 after rounding to 0.001 mm/min, and a name of the log
+/// with
+///   other characters
 std::string probing_program(const Machine& machine, const std::vector<ProbingStep>& steps,
                             const ProbingProgramOptions& options);
 

@@ -10,19 +10,13 @@
 #include "abbe/formats/nc/program_text.h"
 #include "abbe/formats/text/ascii_letters.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/table_numbers.h"
 
 namespace abbe {
 namespace {
 
-/// Seconds without needless zeros: "2", "0.25".
-std::string seconds_text(double seconds) {
-  std::string text = fixed_number(seconds, 3);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
-
-std::string feed_text(double feed) { return "F" + seconds_text(60 * feed); }
+/// "2", "0.25".
+std::string seconds_text(double seconds) { return trimmed_decimals(seconds, 3); }
 
 std::string joined(const std::vector<StatedWord>& words, const char* sign = "") {
   std::string text;
@@ -30,6 +24,16 @@ std::string joined(const std::vector<StatedWord>& words, const char* sign = "") 
     text += " " + word.word + (word.value[0] == '-' ? "" : sign) + word.value;
   }
   return text;
+}
+
+/// A move of the controls that know G0 and G1.
+/// @param past_offsets  word before a move in machine coordinates
+/// @param at_feed       words of a move at a feed
+std::string g_code_move(const std::vector<StatedWord>& words, const MeasuringProgramOptions& options,
+                        const char* past_offsets, const char* at_feed = "G1") {
+  std::string block = options.machine_coordinates ? past_offsets + std::string(" ") : "";
+  block += (options.feed > 0 ? at_feed : "G0") + joined(words);
+  return options.feed > 0 ? block + " " + feed_text(options.feed) : block;
 }
 
 /// RS274/NGC: T. Kramer, F. Proctor, E. Messina, The NIST RS274NGC Interpreter, NISTIR 6556 (2000); ISO 6983-1.
@@ -42,9 +46,7 @@ class IsoDialect : public MeasuringDialect {
     line("M0");
   }
   void move(const std::vector<StatedWord>& words, const MeasuringProgramOptions& options) override {
-    std::string block = options.machine_coordinates ? "G53 " : "";
-    block += (options.feed > 0 ? "G1" : "G0") + joined(words);
-    line(options.feed > 0 ? block + " " + feed_text(options.feed) : block);
+    line(g_code_move(words, options, "G53"));
   }
   void dwell(double seconds) override {
     if (seconds > 0) line("G4 P" + seconds_text(seconds));
@@ -109,9 +111,7 @@ class SiemensDialect : public MeasuringDialect {
     line("MSG()");
   }
   void move(const std::vector<StatedWord>& words, const MeasuringProgramOptions& options) override {
-    std::string block = options.machine_coordinates ? "SUPA " : "";
-    block += (options.feed > 0 ? "G1" : "G0") + joined(words);
-    line(options.feed > 0 ? block + " " + feed_text(options.feed) : block);
+    line(g_code_move(words, options, "SUPA"));
   }
   void dwell(double seconds) override {
     if (seconds > 0) line("G4 F" + seconds_text(seconds));
@@ -138,9 +138,7 @@ class FanucDialect : public MeasuringDialect {
     line("M0");
   }
   void move(const std::vector<StatedWord>& words, const MeasuringProgramOptions& options) override {
-    std::string block = options.machine_coordinates ? "G53 " : "";
-    block += (options.feed > 0 ? "G1 G9" : "G0") + joined(words);
-    line(options.feed > 0 ? block + " " + feed_text(options.feed) : block);
+    line(g_code_move(words, options, "G53", "G1 G9"));
   }
   /// P counts milliseconds and takes no decimal point.
   void dwell(double seconds) override {
@@ -178,6 +176,14 @@ std::unique_ptr<MeasuringDialect> measuring_dialect(NcDialect dialect) {
     default:
       return std::make_unique<IsoDialect>();
   }
+}
+
+std::string feed_text(double feed, const char* option) {
+  std::string text = trimmed_decimals(60 * feed, 3);
+  if (text == "0") {
+    throw InputError({.field = option}, "is 0 with the three decimals of a program", "0.001 or more");
+  }
+  return "F" + text;
 }
 
 std::string measuring_word(const Axis& axis, const MeasuringProgramOptions& options) {

@@ -40,6 +40,12 @@ class MeasuringDialect {
 
 std::unique_ptr<MeasuringDialect> measuring_dialect(NcDialect dialect);
 
+/// "F3000", mm/min with three decimals at most.
+/// @param feed    mm/s, above zero
+/// @param option  that sets it, for messages
+/// @throws InputError for a feed that these decimals make zero
+std::string feed_text(double feed, const char* option = "--feed-mm-per-min");
+
 /// The word of an axis in a program of that control.
 /// @throws InputError for an axis that has none
 std::string measuring_word(const Axis& axis, const MeasuringProgramOptions& options);

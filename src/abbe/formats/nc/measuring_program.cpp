@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <utility>
 
 #include "abbe/formats/nc/measuring_dialect.h"
 #include "abbe/formats/nc/program_text.h"
+#include "abbe/formats/text/ascii_letters.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/machine/axis_unit.h"
 
@@ -46,12 +48,12 @@ class MeasuringProgramWriter {
       case NcTrigger::dwell:
         break;
       case NcTrigger::m_function:
-        dialect_.m_function(options_.number);
+        dialect_.m_function(*options_.number);
         break;
       case NcTrigger::output:
-        dialect_.output(options_.number, true);
+        dialect_.output(*options_.number, true);
         dialect_.dwell(options_.pulse);
-        dialect_.output(options_.number, false);
+        dialect_.output(*options_.number, false);
         break;
     }
     if (options_.reading > 0) dialect_.dwell(options_.reading);
@@ -90,6 +92,17 @@ OutputRange output_range(NcDialect dialect) {
   return {0, 63, "0 to 63: motion.digital-out-NN"};
 }
 
+void check_trigger_number(const MeasuringProgramOptions& options) {
+  if (options.trigger == NcTrigger::dwell) {
+    if (!options.number) return;
+    throw InputError({.field = "--trigger-number"}, "has no effect without a trigger",
+                     "--trigger m-function or --trigger output with it");
+  }
+  if (options.number) return;
+  throw InputError({.field = "--trigger-number"}, "missing",
+                   options.trigger == NcTrigger::output ? "the number of the output" : "the number of the M function");
+}
+
 /// What the control cannot do.
 void check_options(const MeasuringProgramOptions& options) {
   const std::string dialect = nc_dialect_names()[static_cast<std::size_t>(options.dialect)];
@@ -98,22 +111,32 @@ void check_options(const MeasuringProgramOptions& options) {
     throw InputError({.field = "--trigger output"}, "the dialect " + dialect + " has no words for an output",
                      "--trigger m-function with an M function of the machine's maker, or dwell");
   }
-  if (options.trigger == NcTrigger::m_function && !is_trigger_function(options.number)) {
+  check_trigger_number(options);
+  if (options.trigger == NcTrigger::m_function && !is_trigger_function(*options.number)) {
     throw InputError({.field = "--trigger-number"},
-                     fmt::format("M{} stops or ends programs, or calls them", options.number),
+                     fmt::format("M{} stops or ends programs, or calls them", *options.number),
                      "an M function of the machine's maker from M3 to M99999, but M30, M98 and M99");
   }
   if (options.trigger == NcTrigger::output) {
     const OutputRange range = output_range(options.dialect);
-    if (options.number < range.first || options.number > range.last) {
+    if (*options.number < range.first || *options.number > range.last) {
       throw InputError({.field = "--trigger-number"},
-                       fmt::format("{} is no output of the dialect {}", options.number, dialect), range.words);
+                       fmt::format("{} is no output of the dialect {}", *options.number, dialect), range.words);
     }
   }
+  if (options.feed > 0) static_cast<void>(feed_text(options.feed));
   if (options.dialect == NcDialect::fanuc && options.machine_coordinates && options.feed > 0) {
     throw InputError({.field = "--feed-mm-per-min"}, "G53 of the dialect fanuc is always a rapid move",
                      "no feed, or no --machine-coordinates");
   }
+}
+
+/// The value whose name has this place among the names of all.
+template <class Value>
+std::optional<Value> value_named(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Value>(found - names.begin());
 }
 
 }  // namespace
@@ -124,10 +147,25 @@ const std::vector<std::string>& nc_dialect_names() {
 }
 
 std::optional<NcDialect> nc_dialect(const std::string& name) {
-  const std::vector<std::string>& names = nc_dialect_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return std::nullopt;
-  return static_cast<NcDialect>(found - names.begin());
+  return value_named<NcDialect>(nc_dialect_names(), name);
+}
+
+const std::vector<std::string>& nc_trigger_names() {
+  static const std::vector<std::string> names = {"dwell", "m-function", "output"};
+  return names;
+}
+
+std::optional<NcTrigger> nc_trigger(const std::string& name) {
+  return value_named<NcTrigger>(nc_trigger_names(), name);
+}
+
+std::string nc_program_name(const std::string& file) {
+  std::string name;
+  for (const char c : std::filesystem::path(file).stem().string()) {
+    name += is_letter(c) || is_digit(c) ? upper_case(c) : '_';
+  }
+  constexpr std::size_t kLongestName = 24;
+  return name.empty() ? "MEASURE" : name.substr(0, kLongestName);
 }
 
 int default_decimals(NcDialect dialect) {

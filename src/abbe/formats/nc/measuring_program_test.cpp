@@ -246,13 +246,28 @@ TEST(AMeasuringProgram, RefusesWhatItsControlDoesNotHave) {
   options.trigger = NcTrigger::m_function;
   options.number = 30;
   EXPECT_THAT(message_of_program(small_mill(), options), HasSubstr("M30 stops or ends programs"));
+  options.number.reset();
+  EXPECT_THAT(message_of_program(small_mill(), options),
+              HasSubstr("--trigger-number: missing; expected the number of"));
   options.trigger = NcTrigger::dwell;
+  options.number = 5;
+  EXPECT_THAT(message_of_program(small_mill(), options),
+              HasSubstr("--trigger-number: has no effect without a trigger"));
+  options.number.reset();
+  options.feed = 0.0004 / 60;
+  EXPECT_THAT(message_of_program(small_mill(), options), HasSubstr("--feed-mm-per-min: is 0 with the three decimals"));
   options.machine_coordinates = true;
   options.feed = 10;
   EXPECT_THAT(message_of_program(small_mill(), options), HasSubstr("--feed-mm-per-min"));
   options = of_dialect(NcDialect::iso);
   const Machine numbered = parse_chain("w C1' b X C2 t").machine;
   EXPECT_THAT(message_of_program(numbered, options), HasSubstr("such as --word C1=C"));
+}
+
+TEST(AMeasuringProgram, IsNamedForItsFile) {
+  EXPECT_EQ(nc_program_name("out/trunnion-mill 2.ngc"), "TRUNNION_MILL_2");
+  EXPECT_EQ(nc_program_name(""), "MEASURE");
+  EXPECT_EQ(nc_program_name(std::string(30, 'a') + ".h"), std::string(24, 'A'));
 }
 
 TEST(AStatedPose, IsRoundedAndStaysWithinTheTravel) {

@@ -6,16 +6,10 @@
 #include "abbe/formats/nc/program_text.h"
 #include "abbe/formats/text/ascii_letters.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/table_numbers.h"
 
 namespace abbe {
 namespace {
-
-std::string short_number(double value) {
-  std::string text = fixed_number(value, 4);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
 
 void check_log_name(const std::string& log) {
   const bool is_plain = std::all_of(log.begin(), log.end(), [](char c) {
@@ -50,11 +44,12 @@ std::string probing_program(const Machine& machine, const std::vector<ProbingSte
         last[i] = move.touches ? std::string() : value;
       }
       if (words.empty()) continue;
-      if (move.touches && options.dwell > 0) text += "G4 P" + short_number(options.dwell) + "\n";
-      const double feed = move.touches ? options.probing_feed : options.feed;
-      text += (move.touches ? "G38.2" : feed > 0 ? "G1" : "G0") + words;
-      if (feed > 0) text += " F" + short_number(60 * feed);
-      text += "\n";
+      if (move.touches && options.dwell > 0) text += "G4 P" + trimmed_decimals(options.dwell, 4) + "\n";
+      if (move.touches) {
+        text += "G38.2" + words + " " + feed_text(options.probing_feed, "--probing-feed-mm-per-min") + "\n";
+      } else {
+        text += options.feed > 0 ? "G1" + words + " " + feed_text(options.feed) + "\n" : "G0" + words + "\n";
+      }
     }
   }
   return text + "(PROBECLOSE)\nM30\n";

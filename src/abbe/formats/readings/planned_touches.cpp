@@ -14,6 +14,7 @@
 #include "abbe/formats/text/ascii_letters.h"
 #include "abbe/formats/text/csv_reader.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/list_text.h"
 #include "abbe/formats/text/number_text.h"
 #include "abbe/machine/axis_unit.h"
 
@@ -50,7 +51,8 @@ class TouchLogReader {
     if (!lines_.next()) return false;
     const std::vector<std::string_view> fields = instrument_words(lines_.text());
     if (fields.size() != kLogWords.size()) {
-      throw InputError({.file = file_, .line = lines_.number()}, fmt::format("the line has {} fields", fields.size()),
+      throw InputError({.file = file_, .line = lines_.number()},
+                       "the line has " + counted(fields.size(), "field", "fields"),
                        "9 numbers: X Y Z A B C U V W, as LinuxCNC logs touches");
     }
     pose.resize(places_.size());
@@ -164,7 +166,8 @@ std::string probed_touches_csv(const Machine& machine, const std::vector<Planned
     text += "0," + csv_field(touch.point) + "\n";
   }
   if (count < touches.size()) {
-    throw InputError({.file = log_file}, fmt::format("{} touches are missing at its end", touches.size() - count),
+    throw InputError({.file = log_file},
+                     counted(touches.size() - count, "touch is", "touches are") + " missing at its end",
                      fmt::format("{} lines, as {} has rows", touches.size(), touches_file));
   }
   return text;

@@ -1,4 +1,4 @@
-#include "axis_option.h"
+#include "abbe/formats/machine/axis_option.h"
 
 #include <fmt/format.h>
 
@@ -53,6 +53,39 @@ std::vector<HeldAxis> axis_options(const Machine& machine, const std::string& op
   std::vector<HeldAxis> given;
   for (const std::string& text : texts) given.push_back(axis_option(machine, option, text));
   return given;
+}
+
+void take_range_option(const Machine& machine, const std::string& text, std::vector<std::optional<AxisRange>>& ranges) {
+  const std::string expected = "AXIS_unit=from:to or AXIS_unit=position, such as X_mm=-100:100";
+  const auto [axis, unit, numbers] = axis_numbers_option(machine, "--range", text, expected);
+  if (numbers.size() > 2 || !(numbers.size() == 1 || numbers[0] < numbers[1])) {
+    throw InputError({.field = "--range " + text}, "needs a position, or two with the larger one behind the smaller",
+                     expected);
+  }
+  const Axis& moved = machine.axes[axis];
+  if (!moved.endless && !(numbers.front() * unit >= moved.travel_min && numbers.back() * unit <= moved.travel_max)) {
+    throw InputError({.field = "--range " + text}, "outside the axis's travel",
+                     fmt::format("positions within the travel, {:g} to {:g} in this unit", moved.travel_min / unit,
+                                 moved.travel_max / unit));
+  }
+  ranges[axis] =
+      numbers.size() == 1 ? AxisRange::fixed(numbers[0] * unit) : AxisRange{numbers[0] * unit, numbers[1] * unit, 2, 0};
+}
+
+void take_grid_option(const Machine& machine, const std::string& text, std::vector<std::optional<AxisRange>>& grid) {
+  const std::string expected = "AXIS_unit=from:to:count or AXIS_unit=position, such as X_mm=0:1400:9";
+  const auto fail = [&](const std::string& problem) {
+    throw InputError({.field = "--grid " + text}, problem, expected);
+  };
+  const auto [axis, unit, numbers] = axis_numbers_option(machine, "--grid", text, expected);
+  if (grid[axis]) fail("axis " + machine.axes[axis].name + " was given before");
+  if (numbers.size() == 1) {
+    grid[axis] = AxisRange::fixed(numbers[0] * unit);
+  } else if (numbers.size() == 3 && numbers[2] >= 2 && numbers[2] <= 1e6 && numbers[2] == std::floor(numbers[2])) {
+    grid[axis] = AxisRange{numbers[0] * unit, numbers[1] * unit, static_cast<std::size_t>(numbers[2]), 0};
+  } else {
+    fail("one or three numbers are needed, the count a whole number from 2 to 1,000,000");
+  }
 }
 
 }  // namespace abbe

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "abbe/instruments/measurement_plan.h"
 #include "abbe/machine/inverse_plan.h"
 #include "abbe/machine/machine.h"
 
@@ -31,5 +33,16 @@ HeldAxis axis_option(const Machine& machine, const std::string& option, const st
 /// The same of an option that may be given several times.
 std::vector<HeldAxis> axis_options(const Machine& machine, const std::string& option,
                                    const std::vector<std::string>& texts);
+
+/// "X_mm=-100:100" or "C_deg=30": a range of --range, or a position, within the travel.
+/// @param ranges  [axes] mm or rad; that of the axis is set
+/// @throws InputError
+void take_range_option(const Machine& machine, const std::string& text, std::vector<std::optional<AxisRange>>& ranges);
+
+/// "X_mm=0:1400:9" or "C_deg=30": from, to and count of --grid, or a position. Whether they lie within the travel is
+/// not looked at.
+/// @param grid  [axes] mm or rad; that of the axis is set
+/// @throws InputError also for an axis that has a range already
+void take_grid_option(const Machine& machine, const std::string& text, std::vector<std::optional<AxisRange>>& grid);
 
 }  // namespace abbe

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "abbe/machine/machine.h"
+#include "abbe/plan/ways/obstacle.h"
+
+namespace abbe {
+
+/// An option such as "table=vice.stl".
+struct ObstacleOption {
+  Obstacle obstacle;     ///< what carries it; without name and mesh
+  std::string contents;  ///< behind the equals sign, not empty
+};
+
+/// "ON=CONTENTS", where ON is base, table or the name of an axis.
+/// @param option  how the user calls it, for the error: "--obstacle-mesh"
+/// @param form    what he should have written: "ON=FILE"
+/// @throws InputError
+ObstacleOption obstacle_option(const Machine& machine, const std::string& option, const std::string& text,
+                               const std::string& form);
+
+/// "ON=X0,Y0,Z0,X1,Y1,Z1": two opposite corners of a box, mm, in the frame of what carries it.
+/// @param number  of the box, for its name: "box 1"
+/// @throws InputError also for a box without volume and a coordinate above kLargestInput
+Obstacle box_obstacle_option(const Machine& machine, const std::string& option, const std::string& text,
+                             std::size_t number);
+
+}  // namespace abbe
