@@ -99,8 +99,9 @@ int run_evaluation(const EvaluationOptions& options,
       files.insert(files.begin(), file_name(options.before));
     }
     const CustomerReport report = customer_evaluation(facts, result, earlier ? &*earlier : nullptr, files);
-    if (!options.qif.empty()) write_file_atomically(options.qif, qif_results(report));
+    // The report first: it refuses facts that are not enough for a certificate.
     if (!options.customer_report.empty()) printed = write_customer_report(report, options.customer_report);
+    if (!options.qif.empty()) write_file_atomically(options.qif, qif_results(report));
   }
   const int code = finish_evaluation(result.report, options, result.files);
   if (!options.json) {
