@@ -284,6 +284,9 @@ CustomerReport customer_sections(const ReportFacts& facts, const EvaluationRepor
   table.headers = {local_word(Word::section, language), local_word_with_unit(Word::along, "mm", language),
                    local_word_with_unit(Word::contour_error, kMicrometre, language), "U / µm",
                    local_word_with_unit(Word::rounding, kMicrometre, language)};
+  // Sections whose places are not all stated are drawn by their numbers.
+  const bool are_along = std::all_of(found.answers.begin(), found.answers.end(),
+                                     [](const SectionAnswer& answer) { return answer.along.has_value(); });
   std::vector<PlotPoint> errors;
   for (std::size_t i = 0; i < found.answers.size(); ++i) {
     const SectionAnswer& answer = found.answers[i];
@@ -296,7 +299,7 @@ CustomerReport customer_sections(const ReportFacts& facts, const EvaluationRepor
       }
       row.insert(row.end(),
                  {micro_text(answer.error, language), micro_text(2 * answer.error_uncertainty, language), rounding});
-      errors.push_back({answer.along.value_or(static_cast<double>(i + 1)), 1e3 * answer.error});
+      errors.push_back({are_along ? *answer.along : static_cast<double>(i + 1), 1e3 * answer.error});
     } else {
       row.insert(row.end(), 3, kNothingShown);
     }
@@ -304,7 +307,8 @@ CustomerReport customer_sections(const ReportFacts& facts, const EvaluationRepor
   }
   thin_table_rows(kMostTableRows, table);
   if (!errors.empty()) {
-    XyPlot plot(report.subject, local_word_with_unit(Word::along, "mm", language),
+    XyPlot plot(report.subject,
+                are_along ? local_word_with_unit(Word::along, "mm", language) : local_word(Word::section, language),
                 local_word_with_unit(Word::contour_error, kMicrometre, language));
     plot.level(0, "", {PlotColour::soft, 1});
     plot.line(errors, {PlotColour::first, 1}, "");

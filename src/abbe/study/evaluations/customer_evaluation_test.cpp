@@ -235,6 +235,18 @@ TEST(CustomerEvaluation, LinesShowTheirDeviationsInTheOrderOfTheirPositions) {
   EXPECT_EQ(customer_conformity(report, 1, 0), Conformity::not_judged) << "no uncertainty of a reading is stated";
 }
 
+TEST(CustomerEvaluation, SectionsWithoutPlacesAreDrawnByTheirNumbers) {
+  SectionsTest test;
+  test.readings = read_sections(kExamples + "laser_engraver/sections.csv");
+  const auto drawing_of = [&] {
+    const Evaluation evaluation = evaluate_readings({"sections.csv", test, {}, {}});
+    return customer_evaluation({}, evaluation, nullptr, {}).drawings.at(0).svg;
+  };
+  EXPECT_THAT(drawing_of(), HasSubstr("along the curve / mm"));
+  test.readings.back().along.reset();
+  EXPECT_THAT(drawing_of(), testing::AllOf(HasSubstr(">Section<"), testing::Not(HasSubstr("along the curve"))));
+}
+
 TEST(CustomerEvaluation, OtherKindsCompareTwoStatesOfTheSameAxes) {
   CircularTest test;
   test.nominal_radius = 150;
