@@ -35,9 +35,13 @@ CustomerReport begun_test_report(const ReportFacts& facts, const EvaluationRepor
     return ShownFigure{figure.symbol, test_figure_name(now.kind, figure, facts.language), unit_symbol(figure.unit)};
   });
   report.notes = now.notes;
-  for (const EvaluationFigure& figure : now.figures) {
-    if (!figure.value) report.notes.push_back(figure.symbol + ": " + figure.missing + ".");
-  }
+  const auto note_missing = [&](const EvaluationReport& of, const char* prefix) {
+    for (const EvaluationFigure& figure : of.figures) {
+      if (!figure.value) report.notes.push_back(prefix + figure.symbol + ": " + figure.missing + ".");
+    }
+  };
+  if (before != nullptr) note_missing(*before, "before: ");
+  note_missing(now, before != nullptr ? "after: " : "");
   return report;
 }
 

@@ -247,6 +247,21 @@ TEST(CustomerEvaluation, SectionsWithoutPlacesAreDrawnByTheirNumbers) {
   EXPECT_THAT(drawing_of(), testing::AllOf(HasSubstr(">Section<"), testing::Not(HasSubstr("along the curve"))));
 }
 
+TEST(CustomerEvaluation, NotesSayWhatIsMissingBeforeTheCorrection) {
+  SectionsTest test;
+  test.readings = read_sections(kExamples + "laser_engraver/sections.csv");
+  const Evaluation after = evaluate_readings({"after.csv", test, {}, {}});
+  EXPECT_THAT(customer_evaluation({}, after, nullptr, {}).notes, testing::Not(testing::Contains(HasSubstr("before:"))));
+  Evaluation before = after;
+  before.refused = "1 of 2 sections could not be evaluated";
+  before.report.figures[0].value.reset();
+  before.report.figures[0].missing = "why";
+  const CustomerReport report = customer_evaluation({}, after, &before, {});
+  EXPECT_THAT(report.notes, testing::Contains("before: 1 of 2 sections could not be evaluated."));
+  EXPECT_THAT(report.notes, testing::Contains("before: " + before.report.figures[0].symbol + ": why."));
+  EXPECT_TRUE(report.refusals.empty());
+}
+
 TEST(CustomerEvaluation, OtherKindsCompareTwoStatesOfTheSameAxes) {
   CircularTest test;
   test.nominal_radius = 150;
