@@ -146,7 +146,6 @@ enum class CustomerWord {
   plane_fact,  ///< a condition, like those that follow; {}: text
   radius_fact,
   centre_fact,
-  lines_fact,
   turns_fact,
   length_fact,
   reading_count_fact,

@@ -287,7 +287,6 @@ constexpr WordInLanguages kWords[] = {
     {Word::plane_fact, {"Plane: {}", "Ebene: {}", "平面：{}", "平面：{}"}},
     {Word::radius_fact, {"Nominal radius: {}", "Nennradius: {}", "标称半径：{}", "呼び半径：{}"}},
     {Word::centre_fact, {"Centre: {}", "Mittelpunkt: {}", "圆心：{}", "中心：{}"}},
-    {Word::lines_fact, {"Lines: {}", "Linien: {}", "直线：{}", "直線：{}"}},
     {Word::turns_fact, {"Whole turns: {}", "Ganze Umdrehungen: {}", "整圈数：{}", "全回転数：{}"}},
     {Word::length_fact, {"Measured range: {}", "Messbereich: {}", "测量范围：{}", "測定範囲：{}"}},
     {Word::reading_count_fact,
