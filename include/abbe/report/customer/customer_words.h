@@ -133,7 +133,6 @@ enum class CustomerWord {
   line_deviations,  ///< caption of a table; {}: name of the line, or empty
   from_least_squares,
   from_minimum_zone,
-  from_reference_line,
   section,
   section_errors,  ///< caption of a table
   contour_error,

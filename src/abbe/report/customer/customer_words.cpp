@@ -271,7 +271,6 @@ constexpr WordInLanguages kWords[] = {
     {Word::from_least_squares,
      {"from least-squares line", "von der Ausgleichsgeraden", "相对最小二乘直线", "最小二乗直線から"}},
     {Word::from_minimum_zone, {"from minimum zone", "von der Minimumzone", "相对最小区域", "最小領域から"}},
-    {Word::from_reference_line, {"from reference line", "von der Bezugsgeraden", "相对参考直线", "基準直線から"}},
     {Word::section, {"Section", "Schnitt", "截面", "断面"}},
     {Word::section_errors,
      {"Contour error of the sections", "Konturabweichung der Schnitte", "各截面的轮廓误差", "各断面の輪郭誤差"}},

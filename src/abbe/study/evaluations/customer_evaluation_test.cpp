@@ -235,6 +235,17 @@ TEST(CustomerEvaluation, LinesShowTheirDeviationsInTheOrderOfTheirPositions) {
   EXPECT_EQ(customer_conformity(report, 1, 0), Conformity::not_judged) << "no uncertainty of a reading is stated";
 }
 
+TEST(CustomerEvaluation, LinesOfASquarenessTestNameTheirReference) {
+  SquarenessTest test{read_squareness(kExamples + "evaluate/squareness.csv"), {}};
+  const auto header_of = [&] {
+    const Evaluation evaluation = evaluate_readings({"squareness.csv", test, {}, {}});
+    return customer_evaluation({}, evaluation, nullptr, {}).tables.at(1).headers.at(1);
+  };
+  EXPECT_EQ(header_of(), "from least-squares line / µm");
+  test.options.reference = ReferenceLine::minimum_zone;
+  EXPECT_EQ(header_of(), "from minimum zone / µm");
+}
+
 TEST(CustomerEvaluation, SectionsWithoutPlacesAreDrawnByTheirNumbers) {
   SectionsTest test;
   test.readings = read_sections(kExamples + "laser_engraver/sections.csv");
