@@ -19,7 +19,7 @@ void check_customer_report_name(const std::string& name) {
 void check_qif_name(const std::string& name) {
   const std::string extension = std::filesystem::path(name).extension().string();
   if (extension == ".qif" || extension == ".QIF") return;
-  throw InputError({.file = name, .field = "--qif"}, "is not the name of results in QIF", "a name that ends in .qif");
+  throw InputError({.file = name, .field = "--qif"}, "is not a file name of QIF results", "a name that ends in .qif");
 }
 
 PrintedPage write_customer_report(const CustomerReport& report, const std::string& name) {
@@ -27,7 +27,7 @@ PrintedPage write_customer_report(const CustomerReport& report, const std::strin
     const std::vector<std::string> missing = missing_for_certificate(report.facts);
     if (!missing.empty()) {
       throw InputError({.file = name}, fmt::format("a certificate also needs {} in [report]", fmt::join(missing, ", ")),
-                       "docs/customer-report.md");
+                       "all of them, as docs/customer-report.md says");
     }
     write_file_atomically(name, calibration_certificate(report));
     return {};

@@ -10,7 +10,7 @@ namespace abbe {
 /// @throws InputError for the name of a customer report that ends in none of .pdf, .html and .xml
 void check_customer_report_name(const std::string& name);
 
-/// @throws InputError for the name of results in QIF that does not end in .qif
+/// @throws InputError for a name of QIF results that does not end in .qif
 void check_qif_name(const std::string& name);
 
 /// Writes a report by the ending of its name; .xml is a digital calibration certificate. Where no PDF can be printed,

@@ -38,7 +38,7 @@ void add_run_command(CommandLine& line) {
   command->add_flag("--pdf", options->pdf,
                     "Write the customer report as PDF, too; [report] of the study states its facts");
   command->add_output_file("--qif", options->qif,
-                           "Results in QIF 3.0 to write, with the figures of the customer report; *.qif");
+                           "QIF 3.0 results to write, with the figures of the customer report; *.qif");
   command->add_option("--before", options->before,
                       "Results of the same machine before its correction, for the customer report: a results folder "
                       "of abbe run, or an errors file");

@@ -59,11 +59,13 @@ void add_customer_report_options(Subcommand& command, EvaluationOptions& options
           "Customer report to write, 2 to 4 sheets: *.pdf (printed by Chromium or WeasyPrint) or *.html; *.xml: a "
           "digital calibration certificate")
       ->group("Customer report");
-  command.add_output_file("--qif", options.qif, "The same figures as results in QIF 3.0 to write; *.qif")
+  command
+      .add_output_file("--qif", options.qif, "QIF 3.0 results to write, with the figures of the customer report; *.qif")
       ->group("Customer report");
   command
-      .add_input_file("--facts", options.facts,
-                      "Its facts: a TOML file with the table [report] (customer, machine, tolerances, language, ...)")
+      .add_input_file(
+          "--facts", options.facts,
+          "Facts of both: a TOML file with the table [report] (customer, machine, tolerances, language, ...)")
       ->group("Customer report");
   command.add_input_file("--before", options.before, "Readings before a correction, for figures before and after")
       ->group("Customer report");
@@ -78,7 +80,8 @@ void check_customer_options(const EvaluationOptions& options) {
   if (!options.customer_report.empty() || !options.qif.empty()) return;
   const char* const lone = !options.facts.empty() ? "--facts" : !options.before.empty() ? "--before" : nullptr;
   if (lone == nullptr) return;
-  throw InputError({.field = lone}, "is of a customer report, which is not asked for", "--customer-report or --qif");
+  throw InputError({.field = lone}, "has no effect without a customer report or QIF results",
+                   "also --customer-report or --qif");
 }
 
 }  // namespace
@@ -99,8 +102,9 @@ int run_evaluation(const EvaluationOptions& options,
       files.insert(files.begin(), file_name(options.before));
     }
     const CustomerReport report = customer_evaluation(facts, result, earlier ? &*earlier : nullptr, files);
-    if (!options.qif.empty()) write_file_atomically(options.qif, qif_results(report));
+    // The report first: it refuses facts that are not enough for a certificate.
     if (!options.customer_report.empty()) printed = write_customer_report(report, options.customer_report);
+    if (!options.qif.empty()) write_file_atomically(options.qif, qif_results(report));
   }
   const int code = finish_evaluation(result.report, options, result.files);
   if (!options.json) {

@@ -110,11 +110,13 @@ TEST_F(CustomerReportCommand, CertificatesNeedTheFactsOfTheirSchema) {
   facts = std::regex_replace(facts, std::regex("laboratory = [^\n]*\n"), "");
   folder.write("facts.toml", std::regex_replace(facts, std::regex("number = \"2026-117\"\n"), ""));
   arguments.back() = "other.xml";
+  arguments.insert(arguments.end(), {"--qif", "other.qif"});
   const CommandResult missing = abbe(arguments);
   EXPECT_EQ(missing.exit_code, bad_input);
   EXPECT_THAT(missing.err, HasSubstr("other.xml: a certificate also needs number, laboratory.name, laboratory.address, "
                                      "laboratory.country in [report]"));
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "other.xml"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "other.qif"));
 }
 
 TEST_F(CustomerReportCommand, EvaluationsWriteTheirFiguresInQif) {

@@ -97,7 +97,7 @@ std::string certificate_of(const CustomerDocument& document) {
   const std::vector<std::string> missing = missing_for_certificate(document.report.facts);
   if (!missing.empty()) {
     throw InputError({.field = "facts"}, fmt::format("a certificate also needs {}", fmt::join(missing, ", ")),
-                     "docs/customer-report.md");
+                     "all of them, as docs/customer-report.md says");
   }
   return computed(document.certificate);
 }

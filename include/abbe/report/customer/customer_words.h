@@ -133,7 +133,6 @@ enum class CustomerWord {
   line_deviations,  ///< caption of a table; {}: name of the line, or empty
   from_least_squares,
   from_minimum_zone,
-  from_reference_line,
   section,
   section_errors,  ///< caption of a table
   contour_error,
@@ -146,7 +145,6 @@ enum class CustomerWord {
   plane_fact,  ///< a condition, like those that follow; {}: text
   radius_fact,
   centre_fact,
-  lines_fact,
   turns_fact,
   length_fact,
   reading_count_fact,

@@ -5,8 +5,8 @@
 
 namespace abbe {
 
-/// A customer report as PDF, printed by Chromium with the fonts of its language. It states the day of the measurement
-/// as its date. @throws as print_page()
+/// A customer report as PDF, printed with the fonts of its language. It states the day of the measurement as its date.
+/// @throws as print_page()
 PrintedPage printed_customer_report(const CustomerReport& report);
 
 }  // namespace abbe

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <functional>
 #include <sstream>
 #include <stdexcept>
 
-#include "abbe/formats/text/xml_tree.h"
+#include "abbe/report/customer/customer_documents_for_test.h"
 
 namespace abbe {
 namespace {
@@ -17,21 +16,9 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 ReportFacts complete_facts() {
-  ReportFacts facts;
-  facts.number = "2026-117";
-  facts.customer = "Example & Sons <Tooling>";
-  facts.customer_address = "1 Sample Street";
-  facts.maker = "Sample Machines";
+  ReportFacts facts = facts_for_test();
   facts.model = " SM 1000 ";
-  facts.serial_number = "SM-0417";
-  facts.operator_name = "A. Tester";
-  facts.date = std::chrono::year{2026} / 11 / 28;
-  facts.temperature = 20.3;
-  facts.laboratory = "Sample Laboratory";
-  facts.laboratory_address = "2 Sample Street";
-  facts.laboratory_country = "DE";
   facts.instruments = {{.name = "Laser", .serial_number = "L-1", .certificate = "K-1", .valid_until = {}}};
-  facts.remarks = {"Axis X."};
   return facts;
 }
 
@@ -50,67 +37,44 @@ CustomerReport a_report() {
   return report;
 }
 
-XmlElement parsed_certificate(const std::string& text) {
-  const XmlTree tree = parse_xml(text, local_xml_name);
-  EXPECT_FALSE(tree.problem) << tree.problem->words;
-  return tree.root;
-}
-
-/// All elements of a name, in the order of the document.
-std::vector<const XmlElement*> all_named(const XmlElement& root, const std::string& name) {
-  std::vector<const XmlElement*> found;
-  const std::function<void(const XmlElement&)> search = [&](const XmlElement& element) {
-    if (element.name == name) found.push_back(&element);
-    for (const XmlElement& child : element.children) search(child);
-  };
-  search(root);
-  return found;
-}
-
-std::vector<std::string> names_of_children(const XmlElement& element) {
-  std::vector<std::string> names;
-  for (const XmlElement& child : element.children) names.push_back(child.name);
-  return names;
-}
-
 double number_in(const XmlElement& element, const char* child) {
   return std::strtod(element.child(child)->text.c_str(), nullptr);
 }
 
 TEST(CalibrationCertificate, HasTheElementsInTheOrderOfTheSchema) {
-  const XmlElement root = parsed_certificate(calibration_certificate(a_report()));
+  const XmlElement root = parsed_document(calibration_certificate(a_report()));
   EXPECT_EQ(root.name, "digitalCalibrationCertificate");
   EXPECT_EQ(*root.attribute("schemaVersion"), "3.2.1");
-  EXPECT_THAT(names_of_children(root), ElementsAre("administrativeData", "measurementResults"));
-  EXPECT_THAT(names_of_children(*root.child("administrativeData")),
+  EXPECT_THAT(child_names(root), ElementsAre("administrativeData", "measurementResults"));
+  EXPECT_THAT(child_names(*root.child("administrativeData")),
               ElementsAre("dccSoftware", "coreData", "items", "calibrationLaboratory", "respPersons", "customer",
                           "statements"));
-  EXPECT_THAT(names_of_children(*all_named(root, "coreData")[0]),
+  EXPECT_THAT(child_names(*all_elements(root, "coreData")[0]),
               ElementsAre("countryCodeISO3166_1", "usedLangCodeISO639_1", "mandatoryLangCodeISO639_1",
                           "uniqueIdentifier", "beginPerformanceDate", "endPerformanceDate", "performanceLocation"));
-  EXPECT_THAT(names_of_children(*all_named(root, "item")[0]),
+  EXPECT_THAT(child_names(*all_elements(root, "item")[0]),
               ElementsAre("name", "manufacturer", "model", "identifications"));
-  const std::vector<const XmlElement*> results = all_named(root, "measurementResult");
+  const std::vector<const XmlElement*> results = all_elements(root, "measurementResult");
   ASSERT_EQ(results.size(), 2U);
-  EXPECT_THAT(names_of_children(*results[0]), ElementsAre("name", "usedMethods", "usedSoftware", "measuringEquipments",
-                                                          "influenceConditions", "results"));
+  EXPECT_THAT(child_names(*results[0]), ElementsAre("name", "usedMethods", "usedSoftware", "measuringEquipments",
+                                                    "influenceConditions", "results"));
 }
 
 TEST(CalibrationCertificate, GivesBackFactsFiguresAndVerdicts) {
-  const XmlElement root = parsed_certificate(calibration_certificate(a_report()));
-  EXPECT_EQ(all_named(root, "customer")[0]->child("name")->child("content")->text, "Example & Sons <Tooling>");
-  EXPECT_EQ(all_named(root, "model")[0]->text, "SM 1000");
-  EXPECT_EQ(all_named(root, "beginPerformanceDate")[0]->text, "2026-11-28");
-  const std::vector<const XmlElement*> results = all_named(root, "measurementResult");
-  const std::vector<const XmlElement*> before = all_named(*results[0]->child("results"), "quantity"),
-                                       after = all_named(*results[1]->child("results"), "quantity");
+  const XmlElement root = parsed_document(calibration_certificate(a_report()));
+  EXPECT_EQ(all_elements(root, "customer")[0]->child("name")->child("content")->text, "Example & Sons <Tooling>");
+  EXPECT_EQ(all_elements(root, "model")[0]->text, "SM 1000");
+  EXPECT_EQ(all_elements(root, "beginPerformanceDate")[0]->text, "2026-11-28");
+  const std::vector<const XmlElement*> results = all_elements(root, "measurementResult");
+  const std::vector<const XmlElement*> before = all_elements(*results[0]->child("results"), "quantity"),
+                                       after = all_elements(*results[1]->child("results"), "quantity");
   ASSERT_EQ(before.size(), 3U);  // A, its tolerance, E
   const XmlElement& accuracy = *before[0]->child("real");
   EXPECT_EQ(number_in(accuracy, "value"), 12.34);
   EXPECT_EQ(accuracy.child("unit")->text, "\\micro\\metre");
   EXPECT_EQ(number_in(*accuracy.child("expandedUnc"), "uncertainty"), 1.0);
   EXPECT_EQ(number_in(*accuracy.child("expandedUnc"), "coverageFactor"), 2.0);
-  EXPECT_EQ(all_named(*before[0], "conformity")[0]->text, "fail");
+  EXPECT_EQ(all_elements(*before[0], "conformity")[0]->text, "fail");
   EXPECT_EQ(number_in(*before[1]->child("real"), "value"), 10.0);
   const XmlElement& turn = *before[2];
   EXPECT_EQ(number_in(*turn.child("real"), "value"), -1e-7);
@@ -119,13 +83,13 @@ TEST(CalibrationCertificate, GivesBackFactsFiguresAndVerdicts) {
   EXPECT_THAT(turn.child("description")->child("content")->text, HasSubstr("does not cover all"));
   // After the correction E was not evaluated, and A is within its tolerance.
   ASSERT_EQ(after.size(), 2U);
-  EXPECT_EQ(all_named(*after[0], "conformity")[0]->text, "pass");
+  EXPECT_EQ(all_elements(*after[0], "conformity")[0]->text, "pass");
 }
 
 TEST(CalibrationCertificate, NamesWhatProgramsLookForAsTheExamplesOfPtbDo) {
-  const XmlElement root = parsed_certificate(calibration_certificate(a_report()));
+  const XmlElement root = parsed_document(calibration_certificate(a_report()));
   const auto reference = [&](const char* element) {
-    const std::string* const found = all_named(root, element)[0]->attribute("refType");
+    const std::string* const found = all_elements(root, element)[0]->attribute("refType");
     return found == nullptr ? "" : *found;
   };
   EXPECT_EQ(reference("usedMethod"), "basic_uncertainty");
@@ -143,8 +107,8 @@ TEST(CalibrationCertificate, HasTheUnitsOfAllKindsOfEvaluations) {
                                                         {"″", "\\arcsecond"}};
   for (const auto& [shown, unit] : kUnits) {
     report.figures[0].unit = shown;
-    const XmlElement root = parsed_certificate(calibration_certificate(report));
-    EXPECT_EQ(all_named(*all_named(root, "measurementResult")[0]->child("results"), "unit")[0]->text, unit);
+    const XmlElement root = parsed_document(calibration_certificate(report));
+    EXPECT_EQ(all_elements(*all_elements(root, "measurementResult")[0]->child("results"), "unit")[0]->text, unit);
   }
 }
 
@@ -152,8 +116,8 @@ TEST(CalibrationCertificate, WarningsOfTheReportAreStatements) {
   CustomerReport report = a_report();
   report.is_simulated = true;
   report.refusals = {"The residuals are too large."};
-  const XmlElement root = parsed_certificate(calibration_certificate(report));
-  const std::vector<const XmlElement*> statements = all_named(root, "statement");
+  const XmlElement root = parsed_document(calibration_certificate(report));
+  const std::vector<const XmlElement*> statements = all_elements(root, "statement");
   ASSERT_EQ(statements.size(), 3U);
   std::vector<std::string> sentences;
   for (const XmlElement& content : statements[0]->child("declaration")->children) sentences.push_back(content.text);
@@ -168,14 +132,14 @@ TEST(CalibrationCertificate, ErrorsHaveTheirCovarianceAndTheFactorOfTheirRank) {
   errors.values = {12.5, -3e-5, 0};
   errors.covariance = Eigen::MatrixXd::Zero(3, 3);
   errors.covariance.topLeftCorner<2, 2>() << 4, 0.5, 0.5, 0.25;  // the third is set by convention
-  const XmlElement root = parsed_certificate(calibration_certificate(a_report(), errors));
-  const XmlElement& list = *all_named(root, "realListXMLList").at(0);
+  const XmlElement root = parsed_document(calibration_certificate(a_report(), errors));
+  const XmlElement& list = *all_elements(root, "realListXMLList").at(0);
   EXPECT_EQ(list.child("labelXMLList")->text, "EXX.1 EC0Y EZ0C");
   std::istringstream values(list.child("valueXMLList")->text);
   std::vector<double> read;
   for (double value = 0; values >> value;) read.push_back(value);
   EXPECT_EQ(read, errors.values);
-  const std::vector<const XmlElement*> columns = all_named(list, "column");
+  const std::vector<const XmlElement*> columns = all_elements(list, "column");
   ASSERT_EQ(columns.size(), 3U);
   for (std::size_t j = 0; j < 3; ++j) {
     ASSERT_EQ(columns[j]->children.size(), 3U);
@@ -187,7 +151,7 @@ TEST(CalibrationCertificate, ErrorsHaveTheirCovarianceAndTheFactorOfTheirRank) {
   EXPECT_EQ(columns[0]->children[1].child("unit")->text, "\\micro\\radian\\micro\\metre");
   // Root of the 95 % quantile of chi-square with two degrees of freedom: sqrt(5.991465).
   EXPECT_EQ(list.child("ellipsoidalRegionXMLList")->child("coverageFactor")->text, "2.447747");
-  EXPECT_EQ(all_named(root, "realListXMLList").size(), 1U);
+  EXPECT_EQ(all_elements(root, "realListXMLList").size(), 1U);
 }
 
 TEST(CalibrationCertificate, NamesTheFactsThatItNeeds) {

@@ -11,13 +11,12 @@
 
 namespace abbe {
 
-/// Without anything to show.
+/// In place of a value that is not there.
 inline constexpr const char* kNothingShown = "\xE2\x80\x93";
 
-/// Rows of the table of an evaluation, and of each of two such tables.
+/// Most rows of the table of an evaluation, and of each of two such tables.
 inline constexpr std::size_t kMostTableRows = 60, kMostRowsOfTwoTables = 30;
 
-/// A word in a language as a text.
 std::string local_word(CustomerWord word, ReportLanguage language);
 /// "Target / mm".
 std::string local_word_with_unit(CustomerWord word, const std::string& unit, ReportLanguage language);
@@ -34,8 +33,8 @@ CustomerReport begun_customer_report(const ReportFacts& facts, const EvaluationR
                                      const EvaluationReport* before, CustomerWord subject,
                                      const std::function<ShownFigure(const EvaluationFigure& figure)>& shown);
 
-/// Leaves rows evenly out, the first and the last never, where there are too many for a short form; the caption then
-/// says how many of how many are shown.
+/// Keeps evenly chosen rows, the first and the last among them, if there are more than `most`; the caption then says
+/// how many of how many are shown.
 void thin_table_rows(std::size_t most, CustomerTable& table);
 
 }  // namespace abbe

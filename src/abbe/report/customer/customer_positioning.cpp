@@ -20,14 +20,14 @@ struct Language {
   ReportLanguage language;
   bool rotary;
 
-  std::string word(Word word) const { return std::string(customer_word(word, language)); }
+  std::string word(Word word) const { return local_word(word, language); }
   const char* position_unit() const { return rotary ? "°" : "mm"; }
   const char* deviation_unit() const { return rotary ? "″" : "µm"; }
   std::string position(double value) const { return local_short_number(value * (rotary ? 1 / kDegree : 1), language); }
   std::string deviation(double value) const { return local_number(value * (rotary ? 1 / kArcsec : 1e3), 2, language); }
   /// Before a sentence on one of several things.
   static std::string prefix(const std::string& of) { return of.empty() ? "" : of + ": "; }
-  std::string with_unit(Word word, const char* unit) const { return this->word(word) + " / " + unit; }
+  std::string with_unit(Word word, const char* unit) const { return local_word_with_unit(word, unit, language); }
 };
 
 /// The standard marks directions with arrows: "A↑" of "A+".

@@ -35,18 +35,28 @@ CustomerReport begun_test_report(const ReportFacts& facts, const EvaluationRepor
     return ShownFigure{figure.symbol, test_figure_name(now.kind, figure, facts.language), unit_symbol(figure.unit)};
   });
   report.notes = now.notes;
-  for (const EvaluationFigure& figure : now.figures) {
-    if (!figure.value) report.notes.push_back(figure.symbol + ": " + figure.missing + ".");
-  }
+  const auto note_missing = [&](const EvaluationReport& of, const char* prefix) {
+    for (const EvaluationFigure& figure : of.figures) {
+      if (!figure.value) report.notes.push_back(prefix + figure.symbol + ": " + figure.missing + ".");
+    }
+  };
+  if (before != nullptr) note_missing(*before, "before: ");
+  note_missing(now, before != nullptr ? "after: " : "");
   return report;
+}
+
+/// A fact of the evaluation; empty: it has none of this name.
+std::string fact_of(const EvaluationReport& report, const std::string& name) {
+  for (const auto& [fact, text] : report.facts) {
+    if (fact == name) return text;
+  }
+  return "";
 }
 
 /// A fact of the evaluation as a condition, if it is there.
 void add_fact(const EvaluationReport& from, const std::string& name, Word word, CustomerReport& report) {
-  const ReportLanguage language = report.facts.language;
-  for (const auto& [fact, text] : from.facts) {
-    if (fact == name) report.conditions.push_back(customer_text(word, language, text));
-  }
+  const std::string text = fact_of(from, name);
+  if (!text.empty()) report.conditions.push_back(customer_text(word, report.facts.language, text));
 }
 
 std::string micro_text(double value, ReportLanguage language) { return local_number(1e3 * value, 2, language); }
@@ -206,24 +216,19 @@ CustomerReport customer_circular(const ReportFacts& facts, const EvaluationRepor
                                  const EvaluationReport* before) {
   CustomerReport report = begun_test_report(facts, now, before, Word::circular_test);
   const ReportLanguage language = facts.language;
-  std::string plane;
-  for (const auto& [fact, text] : now.facts) {
-    if (fact == "plane") plane = text;
-  }
   add_fact(now, "plane", Word::plane_fact, report);
   add_fact(now, "nominal radius", Word::radius_fact, report);
   constexpr std::array<std::pair<const char*, Word>, 3> kCentres = {{{"least squares", Word::centre_least_squares},
                                                                      {"minimum zone", Word::centre_minimum_zone},
                                                                      {"instrument", Word::centre_instrument}}};
-  for (const auto& [fact, text] : now.facts) {
-    for (const auto& [centre, word] : kCentres) {
-      if (fact != "centre" || text != centre) continue;
-      report.conditions.push_back(customer_text(Word::centre_fact, language, local_word(word, language)));
-    }
+  const std::string stated_centre = fact_of(now, "centre");
+  for (const auto& [centre, word] : kCentres) {
+    if (stated_centre != centre) continue;
+    report.conditions.push_back(customer_text(Word::centre_fact, language, local_word(word, language)));
   }
   const bool any = result.paths[0].status == CircleStatus::done || result.paths[1].status == CircleStatus::done;
   if (!any) return report;
-  report.drawings.push_back(circular_drawing(result, plane, report));
+  report.drawings.push_back(circular_drawing(result, fact_of(now, "plane"), report));
   report.tables.push_back(circular_table(result, language));
   return report;
 }
@@ -265,12 +270,13 @@ CustomerReport customer_squareness(const ReportFacts& facts, const EvaluationRep
   CustomerReport report = begun_test_report(facts, now, before, Word::squareness_test);
   const ReportLanguage language = facts.language;
   if (result.status != StraightnessStatus::done) return report;
+  const Word from_line =
+      fact_of(now, "reference lines") == "minimum-zone" ? Word::from_minimum_zone : Word::from_least_squares;
   const std::vector<std::string> names = now.figures.front().about;
   for (std::size_t k = 0; k < 2; ++k) {
     const std::string caption = line_caption(k < names.size() ? names[k] : "", language);
     report.drawings.push_back(line_drawing(result.lines[k], caption, language));
-    report.tables.push_back(
-        line_table(caption, {{Word::from_reference_line, &result.lines[k]}}, kMostRowsOfTwoTables, language));
+    report.tables.push_back(line_table(caption, {{from_line, &result.lines[k]}}, kMostRowsOfTwoTables, language));
   }
   return report;
 }
@@ -284,6 +290,9 @@ CustomerReport customer_sections(const ReportFacts& facts, const EvaluationRepor
   table.headers = {local_word(Word::section, language), local_word_with_unit(Word::along, "mm", language),
                    local_word_with_unit(Word::contour_error, kMicrometre, language), "U / µm",
                    local_word_with_unit(Word::rounding, kMicrometre, language)};
+  // Sections whose places are not all stated are drawn by their numbers.
+  const bool are_along = std::all_of(found.answers.begin(), found.answers.end(),
+                                     [](const SectionAnswer& answer) { return answer.along.has_value(); });
   std::vector<PlotPoint> errors;
   for (std::size_t i = 0; i < found.answers.size(); ++i) {
     const SectionAnswer& answer = found.answers[i];
@@ -296,7 +305,7 @@ CustomerReport customer_sections(const ReportFacts& facts, const EvaluationRepor
       }
       row.insert(row.end(),
                  {micro_text(answer.error, language), micro_text(2 * answer.error_uncertainty, language), rounding});
-      errors.push_back({answer.along.value_or(static_cast<double>(i + 1)), 1e3 * answer.error});
+      errors.push_back({are_along ? *answer.along : static_cast<double>(i + 1), 1e3 * answer.error});
     } else {
       row.insert(row.end(), 3, kNothingShown);
     }
@@ -304,7 +313,8 @@ CustomerReport customer_sections(const ReportFacts& facts, const EvaluationRepor
   }
   thin_table_rows(kMostTableRows, table);
   if (!errors.empty()) {
-    XyPlot plot(report.subject, local_word_with_unit(Word::along, "mm", language),
+    XyPlot plot(report.subject,
+                are_along ? local_word_with_unit(Word::along, "mm", language) : local_word(Word::section, language),
                 local_word_with_unit(Word::contour_error, kMicrometre, language));
     plot.level(0, "", {PlotColour::soft, 1});
     plot.line(errors, {PlotColour::first, 1}, "");

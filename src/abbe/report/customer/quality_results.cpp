@@ -19,12 +19,12 @@ namespace {
 constexpr const char* kNoIdentifier = "00000000-0000-0000-0000-000000000000";
 constexpr const char* kNoLargestId = "idMax=\"0\"";
 
-/// A unit as it is shown and as QIF has it; the first of its kind is the primary one.
+/// A unit as it is shown and as QIF has it. The primary ones are um and urad.
 struct ShownUnit {
   const char* shown;
   bool is_angle;
   const char* name;
-  const char* factor;  ///< radians or metres
+  const char* factor;  ///< of a radian or a metre
 };
 constexpr ShownUnit kShownUnits[] = {{"µrad", true, "urad", "0.000001"},
                                      {"″", true, "arcsec", "0.0000048481368110953599"},
@@ -33,7 +33,7 @@ constexpr ShownUnit kShownUnits[] = {{"µrad", true, "urad", "0.000001"},
                                      {"mm", false, "mm", "0.001"},
                                      {"m", false, "m", "1"}};
 
-/// Null for other units than of lengths and angles.
+/// Null if the unit is of neither a length nor an angle.
 const ShownUnit* shown_unit(const CustomerFigure& figure) {
   const auto* const found = std::find_if(std::begin(kShownUnits), std::end(kShownUnits),
                                          [&](const ShownUnit& unit) { return figure.unit == unit.shown; });
@@ -135,7 +135,6 @@ class QifWriter {
     if (attributes.empty()) return;
     xml_.open("Attributes", {{"n", count(attributes.size())}});
     for (const Attribute& one : attributes) {
-      // An element without contents.
       xml_.element(std::string("Attribute") + one.kind, "", {{"name", one.name}, {"value", one.value}});
     }
     xml_.close();

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <functional>
 #include <map>
 #include <set>
 
-#include "abbe/formats/text/xml_tree.h"
+#include "abbe/report/customer/customer_documents_for_test.h"
 
 namespace abbe {
 namespace {
@@ -16,25 +15,12 @@ namespace {
 using testing::ElementsAre;
 
 ReportFacts some_facts() {
-  ReportFacts facts;
-  facts.number = "2026-117";
-  facts.customer = "Example & Sons <Tooling>";
-  facts.customer_address = "1 Sample Street";
-  facts.maker = "Sample Machines";
-  facts.model = "SM 1000";
-  facts.serial_number = "SM-0417";
-  facts.operator_name = "A. Tester";
+  ReportFacts facts = facts_for_test();
   facts.place = "Hall 3";
-  facts.date = std::chrono::year{2026} / 11 / 28;
-  facts.temperature = 20.3;
   facts.temperature_range = {19.9, 20.8};
-  facts.laboratory = "Sample Laboratory";
-  facts.laboratory_address = "2 Sample Street";
-  facts.laboratory_country = "DE";
   facts.instruments = {
       {.name = "Laser", .serial_number = "L-1", .certificate = "K-1", .valid_until = std::chrono::year{2027} / 5 / 31},
       {.name = "Level", .serial_number = "", .certificate = "", .valid_until = {}}};
-  facts.remarks = {"Axis X."};
   return facts;
 }
 
@@ -59,31 +45,6 @@ CustomerReport some_report() {
   return report;
 }
 
-XmlElement parsed_qif(const std::string& text) {
-  const XmlTree tree = parse_xml(text, local_xml_name);
-  EXPECT_FALSE(tree.problem) << tree.problem->words;
-  return tree.root;
-}
-
-void for_each_element(const XmlElement& element, const std::function<void(const XmlElement&)>& call) {
-  call(element);
-  for (const XmlElement& child : element.children) for_each_element(child, call);
-}
-
-std::vector<const XmlElement*> all_elements(const XmlElement& root, const std::string& name) {
-  std::vector<const XmlElement*> found;
-  for_each_element(root, [&](const XmlElement& element) {
-    if (element.name == name) found.push_back(&element);
-  });
-  return found;
-}
-
-std::vector<std::string> child_names(const XmlElement& element) {
-  std::vector<std::string> names;
-  for (const XmlElement& child : element.children) names.push_back(child.name);
-  return names;
-}
-
 const std::string& attribute_of(const XmlElement& element, const std::string& name) {
   for (const XmlElement& one : element.child("Attributes")->children) {
     if (*one.attribute("name") == name) return *one.attribute("value");
@@ -96,7 +57,7 @@ double exact(const std::string& text) { return std::strtod(text.c_str(), nullptr
 TEST(QifResults, HasTheElementsInTheOrderOfTheSchema) {
   const std::string text = qif_results(some_report());
   EXPECT_THAT(text, testing::HasSubstr("<QIFDocument xmlns=\"http://qifstandards.org/xsd/qif3\""));
-  const XmlElement root = parsed_qif(text);
+  const XmlElement root = parsed_document(text);
   EXPECT_EQ(root.name, "QIFDocument");
   EXPECT_EQ(*root.attribute("versionQIF"), "3.0.0");
   EXPECT_THAT(child_names(root), ElementsAre("QPId", "Version", "Header", "StandardsDefinitions", "FileUnits",
@@ -132,7 +93,7 @@ TEST(QifResults, HasTheElementsInTheOrderOfTheSchema) {
 }
 
 TEST(QifResults, IdsAreUniqueAndEveryReferenceHasItsTarget) {
-  const XmlElement root = parsed_qif(qif_results(some_report()));
+  const XmlElement root = parsed_document(qif_results(some_report()));
   std::map<std::string, std::string> names;
   for_each_element(root, [&](const XmlElement& element) {
     if (const std::string* const id = element.attribute("id")) {
@@ -168,7 +129,7 @@ TEST(QifResults, IdsAreUniqueAndEveryReferenceHasItsTarget) {
 }
 
 TEST(QifResults, GivesBackValuesUncertaintiesAndLimitsToTheLastDigit) {
-  const XmlElement root = parsed_qif(qif_results(some_report()));
+  const XmlElement root = parsed_document(qif_results(some_report()));
   const auto lengths = all_elements(root, "UserDefinedLinearCharacteristicMeasurement");
   const auto angles = all_elements(root, "UserDefinedAngularCharacteristicMeasurement");
   ASSERT_EQ(lengths.size(), 4U);  // A and X_0, before and after
@@ -199,7 +160,7 @@ TEST(QifResults, StatusesFollowTheDecisionRule) {
   CustomerReport report = some_report();
   const auto statuses = [&] {
     std::vector<std::string> words;
-    const XmlElement root = parsed_qif(qif_results(report));
+    const XmlElement root = parsed_document(qif_results(report));
     for (const XmlElement* status : all_elements(root, "CharacteristicStatusEnum")) words.push_back(status->text);
     for (const XmlElement* status : all_elements(root, "InspectionStatusEnum")) words.push_back(status->text);
     return words;
@@ -221,7 +182,7 @@ TEST(QifResults, StatesTheFactsAndWarnings) {
   CustomerReport report = some_report();
   report.is_simulated = true;
   report.refusals = {"The residuals are too large."};
-  const XmlElement root = parsed_qif(qif_results(report));
+  const XmlElement root = parsed_document(qif_results(report));
   const XmlElement& traceability = *all_elements(root, "InspectionTraceability")[0];
   EXPECT_EQ(traceability.child("CustomerOrganization")->child("Name")->text, "Example & Sons <Tooling>");
   EXPECT_EQ(traceability.child("InspectionOperator")->child("Name")->text, "A. Tester");
@@ -245,7 +206,7 @@ TEST(QifResults, StatesTheFactsAndWarnings) {
 TEST(QifResults, WithoutFactsAndFiguresItIsStillADocument) {
   CustomerReport report;
   report.states = {{"now", ""}};
-  const XmlElement root = parsed_qif(qif_results(report));
+  const XmlElement root = parsed_document(qif_results(report));
   EXPECT_THAT(child_names(root), ElementsAre("QPId", "Header", "FileUnits", "Results"));
   EXPECT_THAT(child_names(*all_elements(root, "MeasurementResults")[0]),
               ElementsAre("Attributes", "InspectionStatus", "ActualComponentIds"));
@@ -254,11 +215,11 @@ TEST(QifResults, WithoutFactsAndFiguresItIsStillADocument) {
 TEST(QifResults, TheIdentifierFollowsFromTheContents) {
   const std::string first = qif_results(some_report());
   EXPECT_EQ(first, qif_results(some_report()));
-  EXPECT_THAT(parsed_qif(first).child("QPId")->text,
+  EXPECT_THAT(parsed_document(first).child("QPId")->text,
               testing::MatchesRegex("[0-9a-f]{8}-[0-9a-f]{4}-8[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}"));
   CustomerReport other = some_report();
   other.figures[0].states[0].value = 12.34;
-  EXPECT_NE(parsed_qif(first).child("QPId")->text, parsed_qif(qif_results(other)).child("QPId")->text);
+  EXPECT_NE(parsed_document(first).child("QPId")->text, parsed_document(qif_results(other)).child("QPId")->text);
 }
 
 }  // namespace

@@ -82,6 +82,7 @@ CustomerReport customer_evaluation(const ReportFacts& facts, const Evaluation& n
   }
   CustomerReport report = std::visit(ReportMaker{facts, now, before}, now.found);
   if (!now.refused.empty()) report.refusals.push_back(now.refused);
+  if (before != nullptr && !before->refused.empty()) report.notes.push_back("before: " + before->refused + ".");
   report.files = files;
   return report;
 }

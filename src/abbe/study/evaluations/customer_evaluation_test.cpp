@@ -235,6 +235,44 @@ TEST(CustomerEvaluation, LinesShowTheirDeviationsInTheOrderOfTheirPositions) {
   EXPECT_EQ(customer_conformity(report, 1, 0), Conformity::not_judged) << "no uncertainty of a reading is stated";
 }
 
+TEST(CustomerEvaluation, LinesOfASquarenessTestNameTheirReference) {
+  SquarenessTest test{read_squareness(kExamples + "evaluate/squareness.csv"), {}};
+  const auto header_of = [&] {
+    const Evaluation evaluation = evaluate_readings({"squareness.csv", test, {}, {}});
+    return customer_evaluation({}, evaluation, nullptr, {}).tables.at(1).headers.at(1);
+  };
+  EXPECT_EQ(header_of(), "from least-squares line / µm");
+  test.options.reference = ReferenceLine::minimum_zone;
+  EXPECT_EQ(header_of(), "from minimum zone / µm");
+}
+
+TEST(CustomerEvaluation, SectionsWithoutPlacesAreDrawnByTheirNumbers) {
+  SectionsTest test;
+  test.readings = read_sections(kExamples + "laser_engraver/sections.csv");
+  const auto drawing_of = [&] {
+    const Evaluation evaluation = evaluate_readings({"sections.csv", test, {}, {}});
+    return customer_evaluation({}, evaluation, nullptr, {}).drawings.at(0).svg;
+  };
+  EXPECT_THAT(drawing_of(), HasSubstr("along the curve / mm"));
+  test.readings.back().along.reset();
+  EXPECT_THAT(drawing_of(), testing::AllOf(HasSubstr(">Section<"), testing::Not(HasSubstr("along the curve"))));
+}
+
+TEST(CustomerEvaluation, NotesSayWhatIsMissingBeforeTheCorrection) {
+  SectionsTest test;
+  test.readings = read_sections(kExamples + "laser_engraver/sections.csv");
+  const Evaluation after = evaluate_readings({"after.csv", test, {}, {}});
+  EXPECT_THAT(customer_evaluation({}, after, nullptr, {}).notes, testing::Not(testing::Contains(HasSubstr("before:"))));
+  Evaluation before = after;
+  before.refused = "1 of 2 sections could not be evaluated";
+  before.report.figures[0].value.reset();
+  before.report.figures[0].missing = "why";
+  const CustomerReport report = customer_evaluation({}, after, &before, {});
+  EXPECT_THAT(report.notes, testing::Contains("before: 1 of 2 sections could not be evaluated."));
+  EXPECT_THAT(report.notes, testing::Contains("before: " + before.report.figures[0].symbol + ": why."));
+  EXPECT_TRUE(report.refusals.empty());
+}
+
 TEST(CustomerEvaluation, OtherKindsCompareTwoStatesOfTheSameAxes) {
   CircularTest test;
   test.nominal_radius = 150;
