@@ -247,9 +247,14 @@ def test_mistakes_in_a_check_are_named():
         study.check(truth=trunnion())
     with pytest.raises(TypeError):
         study.check({"tracker": 3})
+    one = study.gather()["tracker"]
     with pytest.raises(abbe.InputError, match="nothing is measured"):
-        one = study.gather()["tracker"]
         study.check({"tracker": abbe.Readings(one.instrument, one.positions_mm_rad)})
+    for length in (-5, 0):
+        measured = one.measured_mm_rad.copy()
+        measured[3, 0] = length
+        with pytest.raises(abbe.InputError, match=f"measured: reading 3: the range is {length} mm"):
+            abbe.Readings(one.instrument, one.positions_mm_rad, measured)
 
 
 def test_a_check_stops():
