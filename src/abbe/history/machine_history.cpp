@@ -119,6 +119,16 @@ void require_file_name(const std::string& path) {
   }
 }
 
+/// SQLite takes an empty file for a new database, and does not say that a file is missing.
+void require_contents(const std::string& path) {
+  const char* const expected = "a file that abbe history add has made";
+  std::error_code problem;
+  if (!std::filesystem::exists(path, problem) && !problem) {
+    throw InputError({.file = path}, "there is no such file", expected);
+  }
+  if (std::filesystem::file_size(path, problem) == 0) throw InputError({.file = path}, "the file is empty", expected);
+}
+
 }  // namespace
 
 Date date_of(const std::string& text, const std::string& field) {
@@ -163,6 +173,7 @@ std::vector<std::int64_t> add_to_history(const std::string& path, const std::vec
 
 std::vector<KeptCampaign> read_history(const std::string& path) {
   require_file_name(path);
+  require_contents(path);
   // What a program that was killed has begun is undone by the next one that may write.
   const bool may_write = access(path.c_str(), W_OK) == 0;
   SqliteDatabase database(path, may_write ? SqliteDatabase::Access::write : SqliteDatabase::Access::read);

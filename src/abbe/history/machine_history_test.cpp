@@ -123,8 +123,12 @@ TEST_F(MachineHistory, RefusesAnotherMachine) {
 }
 
 TEST_F(MachineHistory, LeavesFilesOfOthersAlone) {
-  EXPECT_THAT(message_of([&] { read_history(file()); }), HasSubstr("cannot be opened"));
+  EXPECT_THAT(message_of([&] { read_history(file()); }), HasSubstr("mill.history: there is no such file; expected"));
   EXPECT_FALSE(std::filesystem::exists(file()));
+  std::ofstream(file()).close();
+  EXPECT_THAT(message_of([&] { read_history(file()); }), HasSubstr("mill.history: the file is empty; expected"));
+  EXPECT_EQ(std::filesystem::file_size(file()), 0U);
+  EXPECT_THAT(message_of([&] { read_history(folder_.string()); }), HasSubstr("cannot be opened"));
   EXPECT_THAT(message_of([&] { add_to_history((folder_ / "no/mill.history").string(), {numbered(1)}); }),
               HasSubstr("cannot be opened"));
   EXPECT_THAT(message_of([&] { read_history("-"); }), HasSubstr("is not the name of a file"));
