@@ -193,7 +193,7 @@ def test_tables_are_frames(examples_history):
 @bad_input
 def test_bad_days_are_named(tmp_path):
     history = abbe.History(tmp_path / "mill.history")
-    for bad in ("2026-02-30", "March", "", "2026-3-2", numpy.datetime64("NaT"), numpy.datetime64("2026-03"),
+    for bad in ("2026-02-30", "March", "", "2026-3-2", "\ud800", numpy.datetime64("NaT"), numpy.datetime64("2026-03"),
                 numpy.datetime64("2026"), numpy.float64(3), numpy.array([1, 2])):
         with pytest.raises(abbe.InputError, match="dates"):
             history.add([squareness(1)], [bad])
