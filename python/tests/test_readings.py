@@ -257,6 +257,29 @@ def test_mistakes_in_a_check_are_named():
             abbe.Readings(one.instrument, one.positions_mm_rad, measured)
 
 
+@bad_input
+def test_readings_of_another_instrument_are_refused():
+    study = second_tracker()
+    one = study.gather()["tracker"]
+    document = study.to_dict()
+    del document["setup"][0]["measure"]  # coordinates, while the file has ranges and angles
+    cartesian = abbe.Study(study.machine, document, folder=TRACKER.parent)
+    assert cartesian.check().explained
+    with pytest.raises(abbe.InputError, match="range, azimuth, elevation.*expected.*x, y, z"):
+        cartesian.check(cartesian.gather())
+    document = study.to_dict()
+    document["setup"][0]["reflector"][0]["name"] = "another"
+    with pytest.raises(abbe.InputError, match="are of another instrument.*on another"):
+        abbe.Study(study.machine, document, folder=TRACKER.parent).verify(trunnion(), {"tracker": one})
+    bar = {"name": "bar", "instrument": "ball-bar", "spindle_ball_mm": [0, 0, -100], "noise": {"length_um": 1},
+           "ball": [{"name": "table", "centre_mm": [0, 0, 0]}]}
+    mill, other = (abbe.Study(abbe.Machine.from_chain(chain), {"setup": [bar]}) for chain in ("w X' Y' b Z t", "w Y' X' b Z t"))
+    readings = abbe.Readings(other.instruments["bar"], numpy.eye(3) * 100, numpy.full(3, 100.0))
+    assert other.check({"bar": readings}).explained
+    with pytest.raises(abbe.InputError, match="on a machine w Y' X' b Z t"):
+        mill.check({"bar": readings})
+
+
 def test_a_check_stops():
     def fail(*_):
         raise RuntimeError("of the user")
