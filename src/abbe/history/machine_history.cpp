@@ -67,9 +67,16 @@ void make_history(SqliteDatabase& database) {
                    "campaigns of one machine; another machine has a history of its own");
 }
 
+/// One campaign that cannot be read again would make the whole history unreadable.
+void require_readable(const IdentifiedCampaign& one) {
+  const Machine machine = parse_machine(machine_text(one.machine), one.errors_file);
+  static_cast<void>(parse_errors(errors_text(one.machine, one.errors), one.errors_file, machine));
+}
+
 /// What can be wrong with campaigns whatever is in the history: before a file is made.
 void check_campaigns(const std::vector<CampaignToKeep>& campaigns) {
   if (campaigns.empty()) throw InputError({.field = "campaigns"}, "there is nothing to add", "one or more");
+  for (const CampaignToKeep& one : campaigns) require_readable(one.campaign);
   for (std::size_t i = 1; i < campaigns.size(); ++i) {
     const IdentifiedCampaign& one = campaigns[i].campaign;
     const IdentifiedCampaign& first = campaigns[0].campaign;
