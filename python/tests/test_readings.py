@@ -104,6 +104,20 @@ def test_readings_where_errors_are_not_known_are_left_out():
         study.verify(errors)
 
 
+def test_conditions_on_what_is_not_known_say_so():
+    study = second_tracker()
+    one = study.gather()["tracker"]
+    three = abbe.Readings(one.instrument, one.positions_mm_rad[:3], one.measured_mm_rad[:3])
+    result = study.verify(trunnion(), {"tracker": three}, largest_ratio=2)
+    [ratio] = [verdict for verdict in result.verdicts if verdict.name == "ratio"]
+    assert not ratio.met and ratio.text.startswith("NOT known, because there are no more readings")
+    assert result.degrees_of_freedom == 0 and result.ratio == 0 and result.coverage is None
+    levels = abbe.Study.read(EXAMPLES / "three_axis/level-and-autocollimator.study.toml")
+    result = levels.verify(abbe.Errors(levels.machine), least_reduction=2)
+    [reduction] = [verdict for verdict in result.verdicts if verdict.name == "reduction"]
+    assert not reduction.met and reduction.text == "NOT known, because only angles are read" and len(result.after_mm) == 0
+
+
 @bad_input
 def test_mistakes_in_a_verification_are_named(names_argument):
     study, errors = second_tracker(), trunnion()
