@@ -31,8 +31,9 @@ set(abbe_not_sanitized
 # Slow tests, with many repetitions, shapes or commands: two thirds of the time of all unit tests. `make quick` runs them;
 # `make unit`, which is for every change, does not.
 set(abbe_not_unit
-  ChainPlanJacobian.* ComparedCampaigns.AKnownChange* ComparedCampaigns.WithoutAChange* DamagedStepFile.* EdgeSection.* EvaluationOfAContour.* FineRegistration.* FitRivals.* FitSimulation.*
-  FrozenErrorsOfARequest.* LeastSquaresFit.CovarianceIs* LineTables.* LiuPlan.* MonteCarlo.* MoveSplitting.*
+  ChainPlanJacobian.* ComparedCampaigns.AKnownChange* ComparedCampaigns.WithoutAChange* DamagedStepFile.*
+  EdgeSection.* EvaluationOfAContour.* FineRegistration.* FitRivals.* FitSimulation.* FrozenErrorsOfARequest.*
+  LeastSquaresFit.CovarianceIs* LineTables.* LiuPlan.* MonteCarlo.* MoveSplitting.*
   MachineTrends.ErrorsThatStandStill* OrderSelection.* ProgramCorrection.* ProgramReversals.* Registration.*
   ResultsFolder.WritersKilled* RobustFit.* RobustMonteCarlo.* RuntimeTurns.* RuntimeUncertainty.*
   ScanRegistrationOfARequest.* StepFile.* UnexplainedReadings.* WangBallBar.* YinMarks.* YinResults.* YinSections.*)

@@ -38,10 +38,11 @@ def customer_report(result: Evaluation | StudyResult, facts: Facts | None = None
                     files: Sequence[str] = ()) -> CustomerReport:
     """A customer report on an evaluation or on an identification.
 
-    ``facts``: a dictionary with the keys of ``[report]`` (docs/customer-report.md), or a file with that table; of a study
-    also those in its document. Days are texts or :class:`datetime.date`. ``tolerances`` among them are added to those of
-    the evaluation. What is not stated is shown as not stated. ``before``: the same before a correction, an evaluation, or
-    of a study errors, a result or its folder. ``files``: names of the readings, for the last lines; a study knows its own.
+    ``facts``: a dictionary with the keys of ``[report]`` (docs/customer-report.md), or a file with that table; they take
+    the place of those in the document of a study. Days are texts or :class:`datetime.date`. ``tolerances`` among them are
+    added to those of the evaluation. What is not stated is shown as not stated. ``before``: the state before a correction,
+    an evaluation; of a study, errors, a result or its folder. ``files``: names of the files with the readings, which the
+    report lists at its end; a study knows its own.
 
     Raises :class:`abbe.InputError` with the fact that is wrong, and for tolerances of figures that there are not.
 
@@ -55,6 +56,8 @@ def customer_report(result: Evaluation | StudyResult, facts: Facts | None = None
     ('A', ['pass'], '')
     >>> report.write('report.html')
     """
+    if isinstance(files, str):
+        raise TypeError("files is a str; expected a list of names")
     if isinstance(result, Evaluation):
         if before is not None and not isinstance(before, Evaluation):
             raise TypeError(f"before is a {type(before).__name__}; expected an Evaluation")

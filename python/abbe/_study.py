@@ -167,11 +167,12 @@ class Study:
         """What identified errors leave of readings that took no part in their identification: ``abbe verify --readings``.
 
         ``errors``: of this machine, with their covariance if it is known. ``readings`` and ``truth`` as in :meth:`run`.
-        The unknowns of the set-ups are fitted to the readings while the errors are held. ``least_reduction``: the mean
-        residual has to become so many times smaller. ``largest_ratio``: of what is left to what the uncertainties explain.
-        ``errors_file``: name for texts. ``progress(step, done, total)`` is called after each of three steps; Ctrl-C takes
-        effect then. Raises :class:`abbe.InputError`, also for readings that do not determine where the instruments stood,
-        and warns of errors that are marked as not to be trusted.
+        The unknowns of the set-ups are fitted to the readings while the errors are held. ``least_reduction``: how many
+        times smaller the mean residual must become. ``largest_ratio``: what is left may be at most so many times what the
+        uncertainties explain, both root mean square. ``errors_file``: the name of the errors in texts.
+        ``progress(step, done, total)`` is called after each of three steps; Ctrl-C takes effect then. Raises
+        :class:`abbe.InputError`, also for readings that do not determine where the instruments stood, and warns of errors
+        that are marked as not to be trusted.
 
         >>> import abbe, numpy
         >>> mill = abbe.Machine.from_chain("w X' Y' b Z t")

@@ -180,7 +180,8 @@ def test_mistakes_are_named(mill, tmp_path):
         abbe.customer_report(mill, before=abbe.Errors(abbe.Machine.from_chain("w C' X' b Z t")))
     for bad in (lambda: abbe.customer_report(3), lambda: abbe.customer_report(after, before=mill),
                 lambda: abbe.customer_report(mill, before=after), lambda: abbe.customer_report(after, 3),
-                lambda: abbe.customer_report(mill, files=["a.csv"]), lambda: abbe.customer_report(None)):
+                lambda: abbe.customer_report(mill, files=["a.csv"]), lambda: abbe.customer_report(after, files="a.csv"),
+                lambda: abbe.customer_report(None)):
         with pytest.raises(TypeError):
             bad()
 

@@ -193,7 +193,7 @@ def test_tables_are_frames(examples_history):
 @bad_input
 def test_bad_days_are_named(tmp_path):
     history = abbe.History(tmp_path / "mill.history")
-    for bad in ("2026-02-30", "March", "", "2026-3-2", numpy.datetime64("NaT"), numpy.datetime64("2026-03"),
+    for bad in ("2026-02-30", "March", "", "2026-3-2", "\ud800", numpy.datetime64("NaT"), numpy.datetime64("2026-03"),
                 numpy.datetime64("2026"), numpy.float64(3), numpy.array([1, 2])):
         with pytest.raises(abbe.InputError, match="dates"):
             history.add([squareness(1)], [bad])
@@ -225,6 +225,7 @@ def test_bad_days_are_named(tmp_path):
     "no.errors.toml": lambda h: h.add(["no.errors.toml"], DATES[:1], machine=MILL),
     "in the history already": lambda h: h.add([squareness(1)], DATES[2:]),
     "its machine is": lambda h: h.add([squareness(1, chain="w X' b Y Z t")], DATES[2:]),
+    "too large for an error of a machine": lambda h: h.add([squareness(1e12)], DATES[2:]),
     "no two days": lambda h: history_of_one_day().trends(),
 }.items())
 def test_mistakes_are_named(name, call, names_argument, tmp_path):

@@ -104,6 +104,20 @@ def test_readings_where_errors_are_not_known_are_left_out():
         study.verify(errors)
 
 
+def test_conditions_on_what_is_not_known_say_so():
+    study = second_tracker()
+    one = study.gather()["tracker"]
+    three = abbe.Readings(one.instrument, one.positions_mm_rad[:3], one.measured_mm_rad[:3])
+    result = study.verify(trunnion(), {"tracker": three}, largest_ratio=2)
+    [ratio] = [verdict for verdict in result.verdicts if verdict.name == "ratio"]
+    assert not ratio.met and ratio.text.startswith("NOT known, because there are no more readings")
+    assert result.degrees_of_freedom == 0 and result.ratio == 0 and result.coverage is None
+    levels = abbe.Study.read(EXAMPLES / "three_axis/level-and-autocollimator.study.toml")
+    result = levels.verify(abbe.Errors(levels.machine), least_reduction=2)
+    [reduction] = [verdict for verdict in result.verdicts if verdict.name == "reduction"]
+    assert not reduction.met and reduction.text == "NOT known, because only angles are read" and len(result.after_mm) == 0
+
+
 @bad_input
 def test_mistakes_in_a_verification_are_named(names_argument):
     study, errors = second_tracker(), trunnion()
@@ -247,9 +261,37 @@ def test_mistakes_in_a_check_are_named():
         study.check(truth=trunnion())
     with pytest.raises(TypeError):
         study.check({"tracker": 3})
+    one = study.gather()["tracker"]
     with pytest.raises(abbe.InputError, match="nothing is measured"):
-        one = study.gather()["tracker"]
         study.check({"tracker": abbe.Readings(one.instrument, one.positions_mm_rad)})
+    for length in (-5, 0):
+        measured = one.measured_mm_rad.copy()
+        measured[3, 0] = length
+        with pytest.raises(abbe.InputError, match=f"measured: reading 3: the range is {length} mm"):
+            abbe.Readings(one.instrument, one.positions_mm_rad, measured)
+
+
+@bad_input
+def test_readings_of_another_instrument_are_refused():
+    study = second_tracker()
+    one = study.gather()["tracker"]
+    document = study.to_dict()
+    del document["setup"][0]["measure"]  # coordinates, while the file has ranges and angles
+    cartesian = abbe.Study(study.machine, document, folder=TRACKER.parent)
+    assert cartesian.check().explained
+    with pytest.raises(abbe.InputError, match="range, azimuth, elevation.*expected.*x, y, z"):
+        cartesian.check(cartesian.gather())
+    document = study.to_dict()
+    document["setup"][0]["reflector"][0]["name"] = "another"
+    with pytest.raises(abbe.InputError, match="are of another instrument.*on another"):
+        abbe.Study(study.machine, document, folder=TRACKER.parent).verify(trunnion(), {"tracker": one})
+    bar = {"name": "bar", "instrument": "ball-bar", "spindle_ball_mm": [0, 0, -100], "noise": {"length_um": 1},
+           "ball": [{"name": "table", "centre_mm": [0, 0, 0]}]}
+    mill, other = (abbe.Study(abbe.Machine.from_chain(chain), {"setup": [bar]}) for chain in ("w X' Y' b Z t", "w Y' X' b Z t"))
+    readings = abbe.Readings(other.instruments["bar"], numpy.eye(3) * 100, numpy.full(3, 100.0))
+    assert other.check({"bar": readings}).explained
+    with pytest.raises(abbe.InputError, match="on a machine w Y' X' b Z t"):
+        mill.check({"bar": readings})
 
 
 def test_a_check_stops():

@@ -80,8 +80,8 @@ struct KeptCampaign {
 
 /// Adds campaigns, all or none. A history that does not exist is made.
 /// @return their numbers
-/// @throws InputError for a file that is no history, another machine than that of the history, and a campaign that is
-///   in it already
+/// @throws InputError for a file that is no history, another machine than that of the history, a campaign that is in
+///   it already, and errors that a file cannot state, such as those that are not finite
 std::vector<std::int64_t> add_to_history(const std::string& path, const std::vector<CampaignToKeep>& campaigns);
 
 /// All campaigns, in the order in which they were measured. @throws InputError also for a history that does not exist

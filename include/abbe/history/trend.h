@@ -31,6 +31,8 @@ struct Trend {
   /// Value at a time and its standard uncertainty, without the scatter.
   double at(double time_from_last) const { return level + slope * time_from_last; }
   double u_at(double time_from_last) const;
+  /// Expanded uncertainty of a value at a time, with the scatter.
+  double expanded_at(double time_from_last) const;
 };
 
 /// @param values  two or more, at different times; in the order of time

@@ -97,7 +97,7 @@ std::string certificate_of(const CustomerDocument& document) {
   const std::vector<std::string> missing = missing_for_certificate(document.report.facts);
   if (!missing.empty()) {
     throw InputError({.field = "facts"}, fmt::format("a certificate also needs {}", fmt::join(missing, ", ")),
-                     "all of them, as docs/customer-report.md says");
+                     "all facts of a certificate, as docs/customer-report.md lists them");
   }
   return computed(document.certificate);
 }
@@ -143,9 +143,8 @@ void bind_customer_reports(nb::module_& module) {
   add_page(bound, [](const CustomerDocument& d) { return customer_page(d.report); });
   bound
       .def("pdf", &bytes_of_pdf,
-           "The report as PDF, printed by Chromium, which takes some seconds. Raises InputError that says what to "
-           "install "
-           "if\nthere is no Chromium, or no font for the language.")
+           "The report as PDF, printed by Chromium or, where there is none, by WeasyPrint; it takes some seconds. "
+           "Raises\nInputError that says what to install if neither is installed, or no font for the language.")
       .def("certificate_xml", &certificate_of,
            "Digital calibration certificate (DCC 3.2.1), of a study with all identified errors and their covariance; "
            "not\n"

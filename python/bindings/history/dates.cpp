@@ -37,7 +37,12 @@ std::string numpy_day_text(const nb::object& given, const char* name) {
 
 Date day_of(const DayArgument& argument, const char* name) {
   const nb::object& given = argument.source;
-  if (PyUnicode_Check(given.ptr())) return date_of(nb::cast<std::string>(given), name);
+  if (PyUnicode_Check(given.ptr())) {
+    std::string text;
+    // Half a character, which is no UTF-8, cannot be shown either.
+    if (!nb::try_cast(given, text)) throw InputError({.field = name}, "has a text that is not a date", kADay);
+    return date_of(text, name);
+  }
   if (!nb::hasattr(given, "year")) return date_of(numpy_day_text(given, name), name);
   // A datetime.date, and what derives from it. Pandas' missing time is one whose year is NaN.
   std::array<int, 3> numbers{};

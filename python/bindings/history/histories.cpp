@@ -5,8 +5,6 @@
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
-#include <cmath>
-
 #include "abbe/formats/files/results_files.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/history/machine_history.h"

@@ -6,8 +6,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <cmath>
-
 #include "abbe/formats/text/input_error.h"
 #include "abbe/history/machine_trends.h"
 #include "bindings/arrays_of_each.h"
@@ -51,7 +49,7 @@ nb::tuple predicted(const DatedTrend& trend, const DaysArgument& arguments) {
   for (const Date date : dates) {
     const auto days = static_cast<double>((date - trend.dates.back()).count());
     values.push_back(line.at(days));
-    expanded.push_back(line.coverage_factor * std::hypot(line.u_at(days), line.scatter.value_or(0)));
+    expanded.push_back(line.expanded_at(days));
   }
   const std::size_t count = dates.size();
   return nb::make_tuple(array_of(std::move(values), {count}), array_of(std::move(expanded), {count}));
@@ -97,9 +95,8 @@ void add_line(nb::class_<DatedTrend>& bound) {
           "always on a line, or the error is not followed.")
       .def_prop_ro(
           "coverage_factor", [](const DatedTrend& t) { return if_followed(t, t.error.trend.coverage_factor); },
-          "Of the trend's expanded uncertainties: Student's t with n - 2 degrees of freedom if there is a scatter, "
-          "else "
-          "2.")
+          "Of the trend's expanded uncertainties: Student's t with n - 2 degrees of freedom if there is a scatter,\n"
+          "else 2.")
       .def_prop_ro(
           "probability", [](const DatedTrend& t) { return t.error.trend.probability; },
           "Of so large a slope without a drift; None: it is not known.")

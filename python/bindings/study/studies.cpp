@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
@@ -17,6 +18,27 @@
 
 namespace abbe::python {
 namespace {
+
+/// What the numbers of readings are: "ball-bar: length; on table".
+std::string meaning_of(const std::string& word, const Instrument& device) {
+  std::vector<std::string> numbers, items;
+  for (const ReadingComponent& component : device.components()) numbers.push_back(component.name);
+  for (const InstrumentItem& item : device.items()) items.push_back(item.name);
+  return fmt::format("{}: {}; on {}", word, fmt::join(numbers, ", "), fmt::join(items, ", "));
+}
+
+/// Columns and items are known by their places alone, so those of readings must be those of the set-up.
+/// @throws InputError
+void require_readings_of(const Setup& setup, const Machine& machine, const MachineInstrument& given) {
+  const auto refuse = [&](const std::string& theirs, const std::string& own) {
+    throw InputError({.file = setup.name, .field = "readings"}, "are of another instrument (" + theirs + ")", own);
+  };
+  if (given.machine.chain() != machine.chain()) {
+    refuse("on a machine " + given.machine.chain(), "readings on a machine " + machine.chain());
+  }
+  const std::string theirs = meaning_of(given.word, *given.device), own = meaning_of(setup.instrument, *setup.device);
+  if (theirs != own) refuse(theirs, "readings as of the set-up (" + own + ")");
+}
 
 std::shared_ptr<StudyOutcome> run_whole(const Study& study, const std::map<std::string, PythonReadings>& readings,
                                         const MachineErrors* truth, bool accept_misfit, bool map,
@@ -79,6 +101,7 @@ std::shared_ptr<const Study> study_with_data(const Study& study, const std::map<
     if (given.readings.measured.empty()) {
       throw InputError({.file = name, .field = "readings"}, "are a plan, nothing is measured", "readings");
     }
+    require_readings_of(*setup, study.machine, given.instrument);
     setup->data = {
         SetupData{.file = name, .mapping = {}, .readings = std::make_shared<InstrumentReadings>(given.readings)}};
   }

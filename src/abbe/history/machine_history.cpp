@@ -67,9 +67,16 @@ void make_history(SqliteDatabase& database) {
                    "campaigns of one machine; another machine has a history of its own");
 }
 
+/// One campaign that cannot be read again would make the whole history unreadable.
+void require_readable(const IdentifiedCampaign& one) {
+  const Machine machine = parse_machine(machine_text(one.machine), one.errors_file);
+  static_cast<void>(parse_errors(errors_text(one.machine, one.errors), one.errors_file, machine));
+}
+
 /// What can be wrong with campaigns whatever is in the history: before a file is made.
 void check_campaigns(const std::vector<CampaignToKeep>& campaigns) {
   if (campaigns.empty()) throw InputError({.field = "campaigns"}, "there is nothing to add", "one or more");
+  for (const CampaignToKeep& one : campaigns) require_readable(one.campaign);
   for (std::size_t i = 1; i < campaigns.size(); ++i) {
     const IdentifiedCampaign& one = campaigns[i].campaign;
     const IdentifiedCampaign& first = campaigns[0].campaign;
@@ -119,6 +126,16 @@ void require_file_name(const std::string& path) {
   }
 }
 
+/// SQLite takes an empty file for a new database, and does not say that a file is missing.
+void require_contents(const std::string& path) {
+  const char* const expected = "a file that abbe history add has made";
+  std::error_code problem;
+  if (!std::filesystem::exists(path, problem) && !problem) {
+    throw InputError({.file = path}, "there is no such file", expected);
+  }
+  if (std::filesystem::file_size(path, problem) == 0) throw InputError({.file = path}, "the file is empty", expected);
+}
+
 }  // namespace
 
 Date date_of(const std::string& text, const std::string& field) {
@@ -163,6 +180,7 @@ std::vector<std::int64_t> add_to_history(const std::string& path, const std::vec
 
 std::vector<KeptCampaign> read_history(const std::string& path) {
   require_file_name(path);
+  require_contents(path);
   // What a program that was killed has begun is undone by the next one that may write.
   const bool may_write = access(path.c_str(), W_OK) == 0;
   SqliteDatabase database(path, may_write ? SqliteDatabase::Access::write : SqliteDatabase::Access::read);

@@ -138,9 +138,27 @@ TEST_F(MachineHistory, RefusesAnotherMachine) {
   EXPECT_FALSE(std::filesystem::exists(elsewhere));
 }
 
-TEST_F(MachineHistory, LeavesFilesOfOthersAlone) {
-  EXPECT_THAT(message_of([&] { read_history(file()); }), HasSubstr("cannot be opened"));
+TEST_F(MachineHistory, RefusesErrorsThatItCouldNotReadAgain) {
+  CampaignToKeep wrong = numbered(2);
+  wrong.campaign.errors_file = "june";
+  wrong.campaign.errors.errors.locations.at(0).value = 1e6;
+  EXPECT_THAT(message_of([&] {
+                add_to_history(file(), {numbered(1), wrong});
+              }),
+              testing::AllOf(HasSubstr("june:"), HasSubstr("too large for an error of a machine")));
   EXPECT_FALSE(std::filesystem::exists(file()));
+  add_to_history(file(), {numbered(1)});
+  EXPECT_THAT(message_of([&] { add_to_history(file(), {wrong}); }), HasSubstr("too large for an error of a machine"));
+  EXPECT_EQ(read_history(file()).size(), 1U);
+}
+
+TEST_F(MachineHistory, LeavesFilesOfOthersAlone) {
+  EXPECT_THAT(message_of([&] { read_history(file()); }), HasSubstr("mill.history: there is no such file; expected"));
+  EXPECT_FALSE(std::filesystem::exists(file()));
+  std::ofstream(file()).close();
+  EXPECT_THAT(message_of([&] { read_history(file()); }), HasSubstr("mill.history: the file is empty; expected"));
+  EXPECT_EQ(std::filesystem::file_size(file()), 0U);
+  EXPECT_THAT(message_of([&] { read_history(folder_.string()); }), HasSubstr("cannot be opened"));
   EXPECT_THAT(message_of([&] { add_to_history((folder_ / "no/mill.history").string(), {numbered(1)}); }),
               HasSubstr("cannot be opened"));
   EXPECT_THAT(message_of([&] { read_history("-"); }), HasSubstr("is not the name of a file"));

@@ -74,6 +74,8 @@ double Trend::u_at(double t) const {
   return std::sqrt(std::max(0.0, u_level * u_level + 2 * t * covariance + t * t * u_slope * u_slope));
 }
 
+double Trend::expanded_at(double t) const { return coverage_factor * std::hypot(u_at(t), scatter.value_or(0)); }
+
 Trend fit_trend(const std::vector<TimedValue>& values) {
   if (values.size() < 2) throw std::invalid_argument("a trend needs two values");
   for (std::size_t i = 0; i < values.size(); ++i) {

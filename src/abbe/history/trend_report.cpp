@@ -89,9 +89,7 @@ EvaluationPlot trend_plot(const MachineTrends& trends, const ErrorTrend& trend) 
   constexpr int kSteps = 40;
   for (int i = 0; i <= kSteps; ++i) {
     const double t = first + (until - first) * i / kSteps;
-    const double value = trend.trend.at(t - last), u = trend.trend.u_at(t - last);
-    const double scatter = trend.trend.scatter.value_or(0);
-    const double expanded = trend.trend.coverage_factor * std::hypot(u, scatter);
+    const double value = trend.trend.at(t - last), expanded = trend.trend.expanded_at(t - last);
     x.push_back(t / kDaysPerYear);
     low.push_back(shown(trend, value - expanded));
     high.push_back(shown(trend, value + expanded));
@@ -118,9 +116,8 @@ EvaluationPlot trend_plot(const MachineTrends& trends, const ErrorTrend& trend) 
 void add_notes(const MachineTrends& trends, double limit_mm, EvaluationReport& report) {
   if (trends.names.size() == 2) {
     report.notes.emplace_back(
-        "Two campaigns always lie on a line, so the scatter from campaign to campaign is not known, and what is called "
-        "a "
-        "drift may be such scatter.");
+        "Two campaigns always lie on a line, so the scatter from campaign to campaign is not known, and what is "
+        "called a drift may be such scatter.");
   }
   for (const ErrorTrend& one : trends.errors) {
     if (one.not_followed) report.notes.push_back(fmt::format("{} is not followed: {}.", one.name, *one.not_followed));

@@ -18,6 +18,7 @@ TEST(Trend, OfTwoValuesIsTheirDifference) {
   EXPECT_NEAR(trend.u_level, 0.4, 1e-15);
   EXPECT_FALSE(trend.scatter);
   EXPECT_DOUBLE_EQ(trend.coverage_factor, 2);
+  EXPECT_DOUBLE_EQ(trend.expanded_at(5), 2 * trend.u_at(5));
   EXPECT_TRUE(trend.drifts());
   EXPECT_NEAR(trend.u_at(-10), 0.3, 1e-15);  // at the first time, that of the first value
 }
@@ -41,6 +42,7 @@ TEST(Trend, ScatterMakesTheSumOfSquaresItsDegreesOfFreedom) {
     squares += left * left / (one.uncertainty * one.uncertainty + *trend.scatter * *trend.scatter);
   }
   EXPECT_NEAR(squares, 3, 1e-9);
+  EXPECT_DOUBLE_EQ(trend.expanded_at(1), trend.coverage_factor * std::hypot(trend.u_at(1), *trend.scatter));
   EXPECT_NEAR(trend.coverage_factor, 3.307, 1e-3);  // Student's t, 95.45 %, 3 degrees of freedom: GUM, table G.2
 }
 

@@ -81,14 +81,18 @@ void judge(const ReadingsToVerify& request, VerifiedReadings& result) {
   if (request.least_reduction) {
     const bool met = result.reduction() >= *request.least_reduction;
     add("reduction", met,
-        fmt::format("the mean residual becomes {:.1f} times smaller: {} the required {:g} times", result.reduction(),
-                    met ? "at least" : "LESS than", *request.least_reduction));
+        result.after.empty()
+            ? std::string("NOT known, because only angles are read")
+            : fmt::format("the mean residual becomes {:.1f} times smaller: {} the required {:g} times",
+                          result.reduction(), met ? "at least" : "LESS than", *request.least_reduction));
   }
   if (request.largest_ratio) {
     const bool met = result.ratio() > 0 && result.ratio() <= *request.largest_ratio;
     add("ratio", met,
-        fmt::format("what is left is {:.2f} times what the uncertainties explain: {} the permitted {:g} times",
-                    result.ratio(), met ? "within" : "ABOVE", *request.largest_ratio));
+        !(judged.degrees_of_freedom > 0)
+            ? std::string("NOT known, because there are no more readings than unknowns of the set-ups")
+            : fmt::format("what is left is {:.2f} times what the uncertainties explain: {} the permitted {:g} times",
+                          result.ratio(), met ? "within" : "ABOVE", *request.largest_ratio));
   }
 }
 

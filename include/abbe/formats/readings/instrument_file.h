@@ -66,7 +66,7 @@ std::optional<BadOrientation> first_bad_orientation(const Instrument& instrument
 /// As read_instrument_file(), of readings that somebody has already.
 /// @param setup  name of the set-up, for messages
 /// @throws InputError for another number of axes, items or components, commands outside an axis's travel, numbers that
-///   are not finite, orientations that were not measured, and missing uncertainties
+///   are not finite, ranges that are not above zero, orientations that were not measured, and missing uncertainties
 InstrumentFile given_readings(const InstrumentReadings& readings, const Machine& machine,
                               const std::shared_ptr<const Instrument>& device, const std::string& setup,
                               bool noise_from_data);

@@ -6,6 +6,7 @@
 #include "abbe/formats/readings/axis_columns.h"
 #include "abbe/formats/readings/component_columns.h"
 #include "abbe/formats/readings/instrument_file.h"
+#include "abbe/formats/text/input_error.h"
 
 namespace abbe {
 namespace {
@@ -25,6 +26,17 @@ void require_travel(const InstrumentReadings& readings, const Machine& machine, 
     if (!outside) continue;
     throw InputError({.file = setup, .field = machine.axes[i].name},
                      fmt::format("reading {}: {}", outside->row, outside->problem), outside->expected);
+  }
+}
+
+/// As in files: of a tracker that reads ranges and angles.
+void require_ranges(const Instrument& device, const InstrumentReadings& readings, const std::string& setup) {
+  if (device.components()[0].name != "range") return;
+  const std::vector<double>& ranges = readings.measured[0];
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    if (ranges[k] > 0) continue;
+    throw InputError({.file = setup, .field = "measured"}, fmt::format("reading {}: the range is {} mm", k, ranges[k]),
+                     "a range above 0 mm");
   }
 }
 
@@ -74,6 +86,7 @@ InstrumentFile given_readings(const InstrumentReadings& readings, const Machine&
   require_finite(readings.measured, setup, "measured");
   require_finite(readings.uncertainty, setup, "uncertainty");
   require_finite(readings.covariance, setup, "covariance");
+  require_ranges(*device, readings, setup);
   require_orientations(*device, readings, setup);
   require_travel(readings, machine, setup);
   return file;

@@ -4,6 +4,7 @@
 
 #include "abbe/formats/text/message_of.h"
 #include "abbe/instruments/ball_bar.h"
+#include "abbe/instruments/trackers/laser_tracker.h"
 #include "abbe/machine/chain.h"
 
 namespace abbe {
@@ -44,6 +45,24 @@ TEST(InstrumentFile, NeedsNoItemWhereThereIsOne) {
   EXPECT_EQ(readings.item, std::vector<std::uint16_t>{0});
   EXPECT_DOUBLE_EQ(readings.measured[0][0], 100);
   EXPECT_DOUBLE_EQ(readings.poses.axis[0][0], std::numbers::pi / 2);
+}
+
+TEST(InstrumentFile, GivenRangesAreAboveZero) {
+  const TrackerSetup setup{{TrackerStation{}}, {Reflector{}}};
+  const auto polar = std::make_shared<const LaserTracker>("room", setup, TrackerMeasure::range_and_angles);
+  const auto cartesian = std::make_shared<const LaserTracker>("room", setup, TrackerMeasure::cartesian);
+  InstrumentReadings readings;
+  for (int k = 0; k < 3; ++k) readings.append({0, 1, 2}, 0);
+  readings.measured = {{1000, 1000, 1000}, {-1, 0, 1}, {0, -0.5, 0.5}};
+  const auto message_with = [&](double range, const std::shared_ptr<const Instrument>& device) {
+    readings.measured[0][1] = range;
+    return message_of([&] { static_cast<void>(given_readings(readings, turntable(), device, "room", false)); });
+  };
+  EXPECT_EQ(message_with(-5, polar), "room: measured: reading 1: the range is -5 mm; expected a range above 0 mm");
+  EXPECT_EQ(message_with(0, polar), "room: measured: reading 1: the range is 0 mm; expected a range above 0 mm");
+  EXPECT_NO_THROW(static_cast<void>(given_readings(readings, turntable(), cartesian, "room", false)));
+  readings.measured[0][1] = 1e-3;
+  EXPECT_NO_THROW(static_cast<void>(given_readings(readings, turntable(), polar, "room", false)));
 }
 
 TEST(InstrumentFile, SaysWhatIsWrong) {
