@@ -1,5 +1,6 @@
 #include "abbe/geometry/fits/shape_start.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

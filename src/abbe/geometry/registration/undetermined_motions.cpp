@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "abbe/geometry/decompositions.h"
 #include "abbe/geometry/registration/fine_registration.h"
+#include "abbe/geometry/singular_values.h"
 
 namespace abbe {
 
