@@ -38,10 +38,9 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
 int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& options,
                       const std::vector<std::pair<std::string, std::string>>& files) {
   if (!options.output.empty()) {
-    ResultsFolder folder(options.output);
-    for (const auto& [name, contents] : evaluation_files(report)) folder.write(name, contents);
-    for (const auto& [name, contents] : files) folder.write(name, contents);
-    folder.commit();
+    std::vector<std::pair<std::string, std::string>> all = evaluation_files(report);
+    all.insert(all.end(), files.begin(), files.end());
+    write_result_files(options.output, all);
   }
   if (options.json) {
     fmt::print("{}", json_text(evaluation_json(report)));

@@ -87,7 +87,7 @@ def test_readings_as_arrays_and_plans():
     touching = planned(readings=positions, obstacle_boxes_mm=[("table", (-400, -400, 0, 400, 400, 600))])
     assert touching.refused.startswith("readings: at reading 1 the tool touches box 1")
     plan = abbe.Study.read(EXAMPLES / "trunnion/trunnion.study.toml").plan()
-    assert numpy.allclose(planned(readings=plan).positions_mm_rad, plan.positions_mm_rad, atol=1e-7)
+    assert numpy.allclose(planned(readings=plan, stop_at="none").positions_mm_rad, plan.positions_mm_rad, atol=2e-6)
 
 
 def test_ways_that_are_not_clear_are_refused(tmp_path):

@@ -36,7 +36,8 @@ TEST(AFileOfACustomerReport, IsCheckedByTheEndingOfItsName) {
   EXPECT_THAT(message("pdf"), HasSubstr("a name that ends in .pdf, .html, or .xml"));
   EXPECT_NO_THROW(check_qif_name("a.qif"));
   EXPECT_NO_THROW(check_qif_name("A.QIF"));
-  EXPECT_THAT(message_of([] { check_qif_name("a.xml"); }), HasSubstr("a.xml: --qif: is not a file name of QIF results"));
+  EXPECT_THAT(message_of([] { check_qif_name("a.xml"); }),
+              HasSubstr("a.xml: --qif: is not a file name of QIF results"));
 }
 
 TEST(AFileOfACustomerReport, IsAPageOrACertificateByItsName) {
