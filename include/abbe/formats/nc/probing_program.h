@@ -34,8 +34,7 @@ struct ProbingProgramOptions {
 /// an error where a touch does not come. Where the machine stands after a touch is not known, so the next move names
 /// the axes that moved for it.
 /// @throws InputError for an axis without a word, a feed of 0 after rounding to 0.001 mm/min, and a name of the log
-/// with
-///   other characters
+///   with other characters than those above
 std::string probing_program(const Machine& machine, const std::vector<ProbingStep>& steps,
                             const ProbingProgramOptions& options);
 
