@@ -4,13 +4,14 @@
 #include <string>
 
 #include "abbe/formats/files/standard_input.h"
+#include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/errors_file.h"
+#include "abbe/formats/machine/file_kind.h"
 #include "abbe/formats/machine/machine_file.h"
-#include "abbe/formats/machine/toml_kind.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/report/words/machine_check_words.h"
-#include "check_frozen.h"
+#include "abbe/study/frozen_file.h"
 #include "check_geometry.h"
 #include "check_study_file.h"
 #include "command.h"
@@ -75,7 +76,9 @@ void add_check_command(CommandLine& line) {
         const char* const why = "a frozen compensation contains its errors and units";
         for (const Option* const option : {errors_option, unit}) refuse_if_given(option, why);
         options->geometry.step.refuse(why);
-        return check_frozen(options->file, options->json);
+        const CheckedFrozenFile frozen = check_frozen_file(read_text_file(options->file), options->file);
+        fmt::print("{}", options->json ? json_text(frozen_file_json(frozen)) : frozen_file_text(frozen));
+        return kDone;
       }
       if (!options->file.empty() && is_study_file(options->file)) {
         const char* const why = "a study states its machine, errors and units";

@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
-#include "abbe/formats/files/text_file.h"
-#include "abbe/formats/shapes/ending.h"
-#include "abbe/formats/shapes/ply_file.h"
+#include "abbe/formats/machine/file_kind.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
@@ -26,25 +23,12 @@ std::optional<FileLength> unit_of(const GeometryCheckOptions& options) {
   return unit;
 }
 
-/// True for a PLY or OBJ file that has points but no faces.
-bool has_points_only(const std::string& file) {
-  const MappedFile mapped(file);
-  if (is_ply(mapped.text())) return parse_ply(mapped.text(), file).triangles.cols() == 0;
-  // An OBJ file is read as a mesh; if it has no faces, that is said.
-  return false;
-}
-
 }  // namespace
-
-bool is_geometry_file(const std::string& file) {
-  const std::string name = with_ending(std::filesystem::path(file));
-  return has_mesh_extension(name) || has_point_cloud_extension(name);
-}
 
 int check_geometry(const GeometryCheckOptions& options) {
   const std::optional<FileLength> unit = unit_of(options);
   options.step.require_step_among({options.file});
-  if (has_point_cloud_extension(with_ending(std::filesystem::path(options.file))) || has_points_only(options.file)) {
+  if (has_points_only(options.file)) {
     PointCloudOptions reading;
     reading.unit = unit;
     const CheckedCloud cloud = checked_cloud(read_point_cloud(options.file, reading));

@@ -13,9 +13,6 @@ struct GeometryCheckOptions {
   bool json = false;
 };
 
-/// True for the extensions of point clouds and meshes.
-bool is_geometry_file(const std::string& file);
-
 /// Reads a point cloud or a mesh and says what it is. @returns kNegative for a mesh in which inside and outside are not
 /// told apart everywhere or of which faces were left out. @throws InputError
 int check_geometry(const GeometryCheckOptions& options);

@@ -19,11 +19,11 @@
 #include "abbe/formats/files/kept_inputs.h"
 #include "abbe/formats/files/mapped_inputs.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/nearest_word.h"
 #include "abbe/formats/text/not_finite.h"
 #include "abbe/formats/text/utf8.h"
 #include "exit_code.h"
 #include "messages.h"
-#include "nearest_word.h"
 #include "options.h"
 
 namespace abbe {

@@ -35,10 +35,9 @@ int run_compare(const CompareCommand& command) {
   Progress progress("comparing campaigns");
   const ComparedCampaigns result = compare_campaigns(request, {.progress = progress.callback()});
   if (!command.output.empty()) {
-    ResultsFolder folder(command.output);
-    for (const auto& [name, contents] : evaluation_files(result.report)) folder.write(name, contents);
-    for (const auto& [name, contents] : comparison_files(result)) folder.write(name, contents);
-    folder.commit();
+    std::vector<std::pair<std::string, std::string>> files = evaluation_files(result.report);
+    for (auto& file : comparison_files(result)) files.push_back(std::move(file));
+    write_result_files(command.output, files);
   }
   if (command.json) {
     fmt::print("{}", json_text(evaluation_json(result.report)));

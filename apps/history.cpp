@@ -65,11 +65,7 @@ int run_trends(const HistoryCommand& command) {
   request.page = !command.output.empty();
   Progress progress("comparing campaigns");
   const MachineTrends trends = find_trends(request, {.progress = progress.callback()});
-  if (!command.output.empty()) {
-    ResultsFolder folder(command.output);
-    for (const auto& [name, contents] : evaluation_files(trends.report)) folder.write(name, contents);
-    folder.commit();
-  }
+  if (!command.output.empty()) write_result_files(command.output, evaluation_files(trends.report));
   if (command.json) {
     fmt::print("{}", json_text(evaluation_json(trends.report)));
   } else {
@@ -81,9 +77,7 @@ int run_trends(const HistoryCommand& command) {
 
 int run_export(const HistoryCommand& command) {
   const KeptCampaign kept = campaign_of_history(command.history, command.number);
-  ResultsFolder folder(command.output);
-  for (const auto& [name, contents] : campaign_files(kept)) folder.write(name, contents);
-  folder.commit();
+  write_result_files(command.output, campaign_files(kept));
   fmt::print("{} of {} in {}\n", kept.campaign.name, date_text(kept.measured), command.output);
   return kDone;
 }

@@ -6,7 +6,6 @@
 #include "abbe/formats/machine/errors_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
-#include "abbe/machine/axis_unit.h"
 #include "abbe/study/report_parameters.h"
 #include "abbe/study/run_study.h"
 #include "abbe/study/summary.h"
@@ -63,19 +62,7 @@ void add_identify_command(CommandLine& line) {
         return study_exit_code(study, result);
       }
       fmt::print("{}", study_text(study, result, options->parameters ? nullptr : "--parameters"));
-      if (options->parameters && result.usable()) {
-        const Identification& identified = result.identification;
-        fmt::print("\n{:<24} {:>16} {:>16}\n", "parameter", "value", "u");
-        for (std::size_t p = 0; p < identified.parameters.size(); ++p) {
-          const bool angle = identified.parameters[p].is_angle;
-          const bool pure = identified.parameters[p].is_pure_number;
-          const double unit = pure ? kPurePerUnit : micro_per_unit(angle);
-          fmt::print("{:<24} {:>16.4f} {:>16.4f} {}\n", identified.parameters[p].name,
-                     unit * identified.estimates[static_cast<Eigen::Index>(p)],
-                     unit * identified.standard_uncertainties[static_cast<Eigen::Index>(p)],
-                     pure ? kPureUnit : micro_unit(angle));
-        }
-      }
+      if (options->parameters && result.usable()) fmt::print("\n{}", parameters_text(result));
       if (!options->output.empty() && result.usable()) fmt::print("\n{} written\n", options->output);
       tell_distrust(study, result);
       return study_exit_code(study, result);

@@ -11,7 +11,6 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/machine/map_file.h"
 #include "abbe/formats/readings/measurement_file.h"
-#include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/study/errors_map.h"
 #include "command.h"
@@ -29,8 +28,6 @@ struct MapOptions {
   std::vector<std::string> grid, outputs;
   bool fit_datum = false, keep_datum = false, accept_uncovered = false, json = false;
 };
-
-std::string extension_of(const std::string& name) { return std::filesystem::path(name).extension().string(); }
 
 ErrorsMapRequest request_of_map(const MapOptions& options) {
   ErrorsMapRequest request;
@@ -54,15 +51,8 @@ int run_map(const MapOptions& options) {
   Progress progress("mapping the volumetric error");
   const ErrorsMap map = map_errors(request, {.progress = progress.callback()});
   const MapData data = errors_map_data(map);
-  const std::string vtk = map_is_structured(data) ? ".vts" : ".vtu";
-  for (const std::string& output : options.outputs) {
-    if (extension_of(output) == ".csv" || extension_of(output) == vtk) continue;
-    throw InputError({.file = output}, "unknown kind of map file",
-                     "a name ending in .csv, or in " + vtk + " for these poses");
-  }
-  for (const std::string& output : options.outputs) {
-    write_file_atomically(output, extension_of(output) == ".csv" ? map_csv(data) : map_vtk(data));
-  }
+  for (const std::string& output : options.outputs) require_map_name(output, data);
+  for (const std::string& output : options.outputs) write_file_atomically(output, map_text(output, data));
   if (options.json) {
     fmt::print("{}", json_text(errors_map_json(map)));
   } else {

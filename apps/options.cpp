@@ -9,8 +9,8 @@
 
 #include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/nearest_word.h"
 #include "messages.h"
-#include "nearest_word.h"
 
 namespace abbe {
 namespace {

@@ -54,11 +54,7 @@ int run_register(const RegisterCommand& command) {
     Progress progress("registering");
     result = register_scan(std::move(request), {.progress = progress.callback()});
   }
-  if (!command.output.empty()) {
-    ResultsFolder folder(command.output);
-    for (const auto& [name, contents] : scan_registration_files(result)) folder.write(name, contents);
-    folder.commit();
-  }
+  if (!command.output.empty()) write_result_files(command.output, scan_registration_files(result));
   if (command.json) {
     fmt::print("{}", json_text(scan_registration_json(result)));
   } else {

@@ -4,13 +4,14 @@
 
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/report/customer/customer_report_file.h"
 #include "abbe/study/customer_study.h"
 #include "abbe/study/results.h"
 #include "abbe/study/run_study.h"
 #include "abbe/study/summary.h"
 #include "command.h"
-#include "customer_report_file.h"
 #include "exit_code.h"
+#include "messages.h"
 #include "options.h"
 #include "progress.h"
 #include "study_outcome.h"
@@ -86,7 +87,11 @@ void add_run_command(CommandLine& line) {
         const int uncovered = tell_left_out(result.map->left_out(), options->accept_uncovered);
         if (code == kDone) code = uncovered;
       }
-      if (customer && tell_exceeded_tolerances(*customer) && code == kDone) code = kNegative;
+      const std::string exceeded = customer ? exceeded_tolerances(*customer) : std::string();
+      if (!exceeded.empty()) {
+        tell("abbe: out of tolerance: {}\n", exceeded);
+        if (code == kDone) code = kNegative;
+      }
       require_printed(study.output / "customer-report.pdf", study.output / "customer-report.html", printed);
       return code;
     };

@@ -1,14 +1,10 @@
-#include "abbe/machine/test_piece.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
 
 #include "abbe/formats/files/results_folder.h"
-#include "abbe/formats/shapes/curve_file.h"
 #include "abbe/formats/text/input_error.h"
-#include "abbe/study/test_piece_sizes.h"
 #include "command.h"
 #include "exit_code.h"
 #include "messages.h"
@@ -24,13 +20,14 @@ struct TestPieceOptions {
   double feed_mm_per_min = 1200, chord_um = 1;
 };
 
+/// @param text_of  cone_frustum_csv() or s_shape_csv()
 template <typename Piece>
-int write_piece(const TestPieceOptions& options, const char* what, const std::string& from, Piece sizes) {
+int write_piece(const TestPieceOptions& options, Piece sizes,
+                std::string (*text_of)(const TestPieceSizes& sizes, const TestPiece& piece)) {
   sizes.feed = options.feed_mm_per_min / 60;
   sizes.chord_tolerance = options.chord_um / 1000;
   const TestPiece piece = test_piece_of(sizes);
-  std::string text = fmt::format("# {}: {}\n# tool of {} mm diameter\n", what, from, options.sizes.tool_diameter_mm);
-  text += curve_csv(piece.curve);
+  const std::string text = text_of(options.sizes, piece);
   if (options.output.empty()) {
     print_file(text);
     return kDone;
@@ -71,25 +68,13 @@ void add_test_piece_command(CommandLine& line) {
   add_common(*cone, *options);
   add_cone_frustum_sizes(*cone, options->sizes);
   cone->callback([&line, options] {
-    line.run = [options] {
-      const TestPieceSizes& sizes = options->sizes;
-      return write_piece(*options, "cone frustum",
-                         fmt::format("base {} mm, half apex angle {} deg, inclination {} deg", sizes.base_diameter_mm,
-                                     sizes.half_apex_deg, sizes.inclination_deg),
-                         cone_frustum_of(sizes));
-    };
+    line.run = [options] { return write_piece(*options, cone_frustum_of(options->sizes), &cone_frustum_csv); };
   });
   Subcommand* s = command->add_subcommand("s-shape", "Wall in the shape of an S (in the manner of ISO 10791-7, M4)");
   add_common(*s, *options);
   add_s_shape_sizes(*s, options->sizes);
   s->callback([&line, options] {
-    line.run = [options] {
-      const TestPieceSizes& sizes = options->sizes;
-      return write_piece(*options, "S shape",
-                         fmt::format("length {} mm, amplitude {} mm, lean {} deg, twist {} deg", sizes.length_mm,
-                                     sizes.amplitude_mm, sizes.lean_deg, sizes.twist_deg),
-                         s_shape_of(sizes));
-    };
+    line.run = [options] { return write_piece(*options, s_shape_of(options->sizes), &s_shape_csv); };
   });
 }
 

@@ -9,6 +9,7 @@
 
 #include "abbe/formats/files/kept_inputs.h"
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/machine/axis_option.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/formats/text/input_error.h"
@@ -34,18 +35,6 @@ struct PosesCommand {
   bool dry_run = false, json = false, accept_misfit = false;
 };
 
-std::vector<std::size_t> held_axes(const PosesCommand& command, const Machine& machine) {
-  std::vector<std::size_t> held;
-  for (const std::string& name : command.hold) {
-    const std::size_t axis = machine.find_axis(name);
-    if (axis == Machine::npos) {
-      throw InputError({.field = "--hold " + name}, "the machine has no such axis", machine.chain());
-    }
-    held.push_back(axis);
-  }
-  return held;
-}
-
 int run_poses(const PosesCommand& command) {
   if (command.output.empty() && !command.dry_run)
     throw InputError({.field = "-o"}, "missing", "a file for the corrected commands (*.csv), or --dry-run");
@@ -59,7 +48,7 @@ int run_poses(const PosesCommand& command) {
   request.leave_out_factor = command.leave_out_factor;
   request.limit_um = command.limit_um;
   request.largest_turn = command.largest_turn_deg * kDegree;
-  request.held = held_axes(command, request.machine);
+  request.held = axes_named(request.machine, "--hold", command.hold);
   const CorrectedCommands result = correct_commands(request);
   const bool written = result.refused.empty() && !command.dry_run;
   if (written) write_file_atomically(command.output, corrected_commands_csv(result));

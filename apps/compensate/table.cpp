@@ -124,7 +124,7 @@ int run_table(const TableCommand& command) {
   std::vector<std::string> written;
   if (!made.says_no() && !command.dry_run) written = write_tables(command, made);
   if (made.refused.empty() && !command.map.empty()) {
-    write_file_atomically(command.map, extension == ".csv" ? map_csv(map) : map_vtk(map));
+    write_file_atomically(command.map, map_text(command.map, map));
     written.push_back(command.map);
   }
   const TableReport report{request.machine, made, partial_errors(request.machine, file), written};

@@ -9,11 +9,11 @@
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/json_text.h"
+#include "abbe/report/customer/customer_report_file.h"
 #include "abbe/report/customer/quality_results.h"
 #include "abbe/report/pages/evaluation_files.h"
 #include "abbe/report/words/evaluation_text.h"
 #include "abbe/study/evaluations/customer_evaluation.h"
-#include "customer_report_file.h"
 #include "exit_code.h"
 #include "options.h"
 
@@ -38,10 +38,9 @@ Subcommand* add_evaluation(Subcommand& evaluate, const std::string& kind, const 
 int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& options,
                       const std::vector<std::pair<std::string, std::string>>& files) {
   if (!options.output.empty()) {
-    ResultsFolder folder(options.output);
-    for (const auto& [name, contents] : evaluation_files(report)) folder.write(name, contents);
-    for (const auto& [name, contents] : files) folder.write(name, contents);
-    folder.commit();
+    std::vector<std::pair<std::string, std::string>> all = evaluation_files(report);
+    all.insert(all.end(), files.begin(), files.end());
+    write_result_files(options.output, all);
   }
   if (options.json) {
     fmt::print("{}", json_text(evaluation_json(report)));
@@ -75,7 +74,7 @@ namespace {
 
 /// Before anything is computed. @throws InputError
 void check_customer_options(const EvaluationOptions& options) {
-  if (!options.customer_report.empty()) check_customer_report_name(options.customer_report);
+  if (!options.customer_report.empty()) check_customer_report_name(options.customer_report, "--customer-report");
   if (!options.qif.empty()) check_qif_name(options.qif);
   if (!options.customer_report.empty() || !options.qif.empty()) return;
   const char* const lone = !options.facts.empty() ? "--facts" : !options.before.empty() ? "--before" : nullptr;

@@ -1,7 +1,5 @@
 #include "test_piece/sizes.h"
 
-#include "abbe/formats/text/input_error.h"
-#include "abbe/geometry/angle_units.h"
 #include "options.h"
 
 namespace abbe {
@@ -19,17 +17,6 @@ void add_common(Subcommand& piece, TestPieceSizes& sizes, const char* centre, co
   piece.add_option("--azimuth-deg", sizes.azimuth_deg, "Turn of the piece about Z")
       ->check(in_range(-360.0, 360.0))
       ->capture_default_str();
-}
-
-/// What both pieces have.
-template <typename Piece>
-void take_common(const TestPieceSizes& sizes, Piece& piece, Eigen::Vector3d& centre) {
-  if (sizes.centre_mm.size() != 3 && !sizes.centre_mm.empty()) {
-    throw InputError({.field = "--centre-mm"}, "not three numbers", "x y z in the workpiece frame, mm");
-  }
-  if (!sizes.centre_mm.empty()) centre = Eigen::Vector3d::Map(sizes.centre_mm.data());
-  if (sizes.height_mm > 0) piece.height = sizes.height_mm;
-  piece.tool_radius = sizes.tool_diameter_mm / 2;
 }
 
 }  // namespace
@@ -61,27 +48,6 @@ void add_s_shape_sizes(Subcommand& piece, TestPieceSizes& sizes) {
   piece.add_option("--twist-deg", sizes.twist_deg, "Lean of the wall at the crests, to either side")
       ->check(in_range(-45.0, 45.0))
       ->capture_default_str();
-}
-
-ConeFrustum cone_frustum_of(const TestPieceSizes& sizes) {
-  ConeFrustum frustum;
-  take_common(sizes, frustum, frustum.base_centre);
-  frustum.base_diameter = sizes.base_diameter_mm;
-  frustum.half_apex_angle = sizes.half_apex_deg * kDegree;
-  frustum.inclination = sizes.inclination_deg * kDegree;
-  frustum.lean_azimuth = sizes.azimuth_deg * kDegree;
-  return frustum;
-}
-
-SShape s_shape_of(const TestPieceSizes& sizes) {
-  SShape shape;
-  take_common(sizes, shape, shape.centre);
-  shape.length = sizes.length_mm;
-  shape.amplitude = sizes.amplitude_mm;
-  shape.lean = sizes.lean_deg * kDegree;
-  shape.twist = sizes.twist_deg * kDegree;
-  shape.azimuth = sizes.azimuth_deg * kDegree;
-  return shape;
 }
 
 }  // namespace abbe

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     import pandas
 
     from ._core import (Axis, ComparedPair, Comparison, Errors, Evaluation, FittedCircles, FittedShape, HistoryTrends,
-                        ImportedTable, Readings, ScanDeviations, StudyPlan, StudyResult, VerifiedReadings)
+                        ImportedTable, PlannedMeasurement, Readings, ScanDeviations, StudyPlan, StudyResult,
+                        VerifiedReadings)
 
     Reported = Comparison | Evaluation | FittedShape | FittedCircles | HistoryTrends | ScanDeviations | VerifiedReadings
 
@@ -77,6 +78,17 @@ def readings_frame(readings: Readings) -> pandas.DataFrame:
         if values is not None:
             for index, name in enumerate(readings.instrument.components):
                 columns[prefix + name] = values[:, index]
+    frame: pandas.DataFrame = _pandas().DataFrame(columns)
+    return frame
+
+
+def measurement_frame(planned: PlannedMeasurement) -> pandas.DataFrame:
+    """A row for each reading, in the order of the program."""
+    columns: dict[str, object] = {"number": [reading.number for reading in planned.readings]}
+    for name in ("setup", "station", "target", "point"):
+        columns[name] = [getattr(reading, name) for reading in planned.readings]
+    columns.update(_commands(planned.positions_mm_rad, planned.machine.axes))
+    columns["finished_s"] = planned.finished_s
     frame: pandas.DataFrame = _pandas().DataFrame(columns)
     return frame
 

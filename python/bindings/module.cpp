@@ -46,6 +46,7 @@ NB_MODULE(_core, module) {
   bind_corrected_commands(module);
   bind_corrected_program(module);
   bind_control_tables(module);
+  bind_kinematic_values(module);
   bind_maps(module);
   bind_verifications(module);
   bind_curves(module);
@@ -61,6 +62,8 @@ NB_MODULE(_core, module) {
   bind_deviations(module);
   bind_scan_points(module);
   bind_planned_scans(module);
+  bind_planned_measurements(module);
+  bind_planned_probings(module);
   bind_imported_tables(module);
   bind_comparisons(module);
   bind_histories(module);

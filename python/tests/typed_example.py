@@ -117,6 +117,24 @@ def distances(part: abbe.Mesh, points: numpy.typing.NDArray[numpy.float64]) -> n
     return part.closest(points + shifted.matrix[:3, 3]).distance_mm
 
 
+def program_of(machine: abbe.Machine, readings: abbe.StudyPlan | Path | numpy.typing.ArrayLike, fixture: abbe.Mesh) -> str:
+    planned: abbe.PlannedMeasurement = abbe.plan_measurement(
+        machine, readings, "siemens", start={"X_mm": 0}, obstacle_boxes_mm=[("table", (0, 0, 0, 10, 10, 10))],
+        obstacle_meshes=[("base", fixture), ("X", Path("vice.stl"))])
+    touches: abbe.PlannedProbing = abbe.plan_probing(machine, readings, (80, 0, 60, 12.5), words={"C1": "C"})
+    if planned.program is None or touches.program is None:
+        raise SystemExit(planned.refused or touches.refused)
+    last: abbe.PlannedReading = planned.readings[-1]
+    print(f"{last.target}: {planned.finished_s[last.number - 1]:.0f} s", touches.readings_csv("0 0 0 0 0 0 0 0 0"))
+    return planned.program
+
+
+def rotary_axes(errors: abbe.Errors) -> dict[str, float]:
+    made: abbe.KinematicValues = abbe.kinematic_values(errors, "siemens", tool_carrier=1)
+    changes = {value.name: value.actual_mm_rad - value.nominal_mm_rad for value in made.values}
+    return {} if made.file is None else changes
+
+
 def scanned(part: abbe.Mesh, machine: abbe.Machine) -> numpy.ndarray:
     planned: abbe.PlannedScan = abbe.plan_scan(part, machine, along_mm=1, beyond_planes_mm=[(0, 0, 1, 0)])
     return abbe.scan_points(machine, planned.positions_mm_rad, numpy.zeros(len(planned))).points_mm

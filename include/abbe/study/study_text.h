@@ -11,4 +11,7 @@ namespace abbe {
 ///                   the first of them are printed; null: print all
 std::string study_text(const Study& study, const StudyResult& result, const char* shows_all);
 
+/// Every identified parameter with its standard uncertainty in um, urad or um/m, a line each below a heading.
+std::string parameters_text(const StudyResult& result);
+
 }  // namespace abbe

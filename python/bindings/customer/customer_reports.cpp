@@ -10,6 +10,7 @@
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/toml_table.h"
 #include "abbe/report/customer/calibration_certificate.h"
+#include "abbe/report/customer/customer_report_file.h"
 #include "abbe/report/customer/printed_report.h"
 #include "abbe/report/words/evaluation_text.h"
 #include "abbe/study/customer_study.h"
@@ -110,11 +111,8 @@ std::string pdf_of(const CustomerDocument& document) {
 }
 
 void write_document(const CustomerDocument& document, const std::filesystem::path& path, bool overwrite) {
+  check_customer_report_name(path.string(), "path");
   const std::string ending = path.extension().string();
-  if (ending != ".pdf" && ending != ".html" && ending != ".xml") {
-    throw InputError({.file = path.string(), .field = "path"}, "is not the name of a PDF, a page or a certificate",
-                     "a name that ends in .pdf, .html, or .xml for a digital calibration certificate");
-  }
   refuse_existing(path, overwrite);
   const std::string contents = ending == ".pdf"    ? pdf_of(document)
                                : ending == ".html" ? customer_page(document.report)

@@ -46,9 +46,7 @@ nb::dict files_by_name(const ResultFiles& files) {
 void write_results_folder(const std::filesystem::path& folder, const ResultFiles& files, bool overwrite) {
   refuse_existing(folder, overwrite);
   const nb::gil_scoped_release release;
-  ResultsFolder results(folder);
-  for (const auto& [name, contents] : files) results.write(name, contents);
-  results.commit();
+  write_result_files(folder, files);
 }
 
 const EvaluationFigure& figure_named(const EvaluationReport& report, const std::string& symbol) {

@@ -121,6 +121,11 @@ NamedMesh mesh_of(const MeshArgument& argument, const std::optional<std::string>
   return {computed([&] { return read_mesh(path, options); }), path.string()};
 }
 
+const TriangleMesh& whole_mesh(const NamedMesh& mesh, const char* expected) {
+  if (mesh.file().left_out.empty()) return mesh.mesh();
+  throw InputError({.file = mesh.name()}, "faces are left out: " + mesh.file().left_out.front(), expected);
+}
+
 RigidTransform rigid_transform(const ArrayLike& argument, const char* name) {
   const Rows rows(argument, name, 4, "a rigid transform, mm");
   if (rows.count() != 4 || rows.single()) throw InputError({.field = name}, "has another shape", "shape (4, 4), mm");

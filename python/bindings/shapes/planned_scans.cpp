@@ -29,19 +29,14 @@ struct ScanArguments {
   double readings_per_second;
 };
 
-double within(const char* name, double value, double low, double high) {
-  if (value >= low && value <= high) return value;
-  throw InputError({.field = name}, fmt::format("is {}", value), fmt::format("{} to {}", low, high));
-}
-
 ScanPlanOptions options_of(const ScanArguments& given) {
-  const auto positive = [](const char* name, double value) { return within(name, value, 1e-9, 1e6); };
+  const auto positive = [](const char* name, double value) { return number_within(name, value, 1e-9, 1e6); };
   ScanPlanOptions scan;
   scan.along = positive("along_mm", given.along_mm);
   scan.between = positive("between_mm", given.between_mm);
-  scan.largest_turn = within("turn_between_deg", given.turn_between_deg, 0.1, 20) * kDegree;
-  scan.crease_angle = within("crease_deg", given.crease_deg, 1, 90) * kDegree;
-  scan.largest_angle = within("largest_angle_deg", given.largest_angle_deg, 2, 85) * kDegree;
+  scan.largest_turn = number_within("turn_between_deg", given.turn_between_deg, 0.1, 20) * kDegree;
+  scan.crease_angle = number_within("crease_deg", given.crease_deg, 1, 90) * kDegree;
+  scan.largest_angle = number_within("largest_angle_deg", given.largest_angle_deg, 2, 85) * kDegree;
   scan.range = 1e-3 * positive("range_um", given.range_um);
   scan.working_distance = positive("working_distance_mm", given.working_distance_mm);
   scan.probe_radius = positive("probe_radius_mm", given.probe_radius_mm);
@@ -53,11 +48,9 @@ ScanPlanOptions options_of(const ScanArguments& given) {
   return scan;
 }
 
-/// The mesh of all faces: the probe must keep clear of every one. @throws InputError if faces are left out
+/// The mesh of all faces. @throws InputError if faces are left out
 TriangleMesh whole(const NamedMesh& mesh) {
-  if (mesh.file().left_out.empty()) return mesh.mesh();
-  throw InputError({.file = mesh.name()}, "faces are left out: " + mesh.file().left_out.front(),
-                   "all faces of the part and the stage, because the probe must keep clear of them");
+  return whole_mesh(mesh, "all faces of the part and the stage, because the probe must keep clear of them");
 }
 
 Eigen::Vector3d triple(const Triple& numbers, const char* name) {

@@ -58,6 +58,9 @@ using MeshArgument = std::variant<NamedMesh, std::filesystem::path>;
 /// Reads it if it is a path. @param unit  for a file that states none
 NamedMesh mesh_of(const MeshArgument& argument, const std::optional<std::string>& unit);
 
+/// Its triangles. @throws InputError if faces were left out  @param expected  for the message: all of what
+const TriangleMesh& whole_mesh(const NamedMesh& mesh, const char* expected);
+
 /// Enters a scan and its part, each read where it is a path, with their names.
 template <class Request>
 void enter_scan_and_part(const PointsArgument& scan, const std::optional<std::string>& unit, const MeshArgument& part,

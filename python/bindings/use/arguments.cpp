@@ -10,6 +10,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/nc/path_program.h"
 #include "abbe/formats/text/json_text.h"
 #include "abbe/machine/axis_unit.h"
 #include "abbe/report/evaluations/partial_errors.h"
@@ -94,6 +95,24 @@ std::vector<std::optional<AxisRange>> axis_ranges(const Machine& machine, const 
     result[named.axis] = range_of(argument, key, numbers, named.unit, with_count);
   }
   return result;
+}
+
+double number_within(const char* name, double value, double low, double high) {
+  if (value >= low && value <= high) return value;
+  throw InputError({.field = name}, fmt::format("is {}", value), fmt::format("{} to {}", low, high));
+}
+
+double feed_of(const std::optional<double>& feed_mm_per_min) {
+  if (!feed_mm_per_min) return 0;
+  if (*feed_mm_per_min > 0 && std::isfinite(*feed_mm_per_min)) return *feed_mm_per_min / 60;
+  throw InputError({.field = "feed_mm_per_min"}, fmt::format("is {}", *feed_mm_per_min), "above zero");
+}
+
+std::map<std::string, std::string> program_words(const Machine& machine,
+                                                 const std::map<std::string, std::string>& words) {
+  std::vector<std::string> texts;
+  for (const auto& [axis, word] : words) texts.push_back(axis + "=" + word);
+  return axis_words(machine, texts, "words");
 }
 
 std::size_t axis_index(const Machine& machine, const std::string& name) {

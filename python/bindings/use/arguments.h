@@ -39,6 +39,16 @@ std::vector<HeldAxis> axis_positions(const Machine& machine, const char* argumen
 std::vector<std::optional<AxisRange>> axis_ranges(const Machine& machine, const char* argument,
                                                   const AxisRanges& ranges, bool with_count);
 
+/// A number from low to high, both included. @throws InputError
+double number_within(const char* name, double value, double low, double high);
+
+/// mm/s; 0 if none is given. @throws InputError for a feed that is not above zero
+double feed_of(const std::optional<double>& feed_mm_per_min);
+
+/// Words of axes in a program, {"C1": "C"}, as axis_words() checks them. @throws InputError
+std::map<std::string, std::string> program_words(const Machine& machine,
+                                                 const std::map<std::string, std::string>& words);
+
 /// Index of an axis. @throws KeyError of Python
 std::size_t axis_index(const Machine& machine, const std::string& name);
 std::vector<std::size_t> axis_indices(const Machine& machine, const std::vector<std::string>& names);

@@ -11,6 +11,7 @@
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/geometry/angle_units.h"
 #include "bindings/files.h"
+#include "bindings/use/carried_figures.h"
 #include "bindings/use/table_result.h"
 
 namespace abbe::python {
@@ -131,8 +132,6 @@ void bind_figures(nb::class_<TableResult>& bound) {
       .def_prop_ro(
           "tables", [](const TableResult& r) { return r.made.tables; }, "Figures of every table.")
       .def_prop_ro(
-          "settings", [](const TableResult& r) { return r.made.settings; }, "What has to be set at the control.")
-      .def_prop_ro(
           "left_out", [](const TableResult& r) { return r.made.left_out; },
           "Tables that were left out because of their uncertainty.")
       .def_prop_ro(
@@ -146,25 +145,6 @@ void bind_figures(nb::class_<TableResult>& bound) {
             return notes;
           },
           "Where reversal values are, or what of the control takes them.")
-      .def_prop_ro(
-          "errors", [](const TableResult& r) { return r.made.errors; }, "What becomes of every error alone.")
-      .def_ro("partial", &TableResult::partial, "What the errors do not state.")
-      .def_prop_ro(
-          "positions_mm_rad", [](const TableResult& r) { return copied_poses(r.made.poses); },
-          nb::sig("def positions_mm_rad(self) -> numpy.ndarray"),
-          "[n, axes] commands between the nodes, at which before, after and ideal are stated.")
-      .def_prop_ro(
-          "grid", [](const TableResult& r) { return r.made.grid; }, "Positions per axis of positions_mm_rad.")
-      .def_prop_ro(
-          "before", [](const TableResult& r) { return r.made.before; }, "Deviations without tables.")
-      .def_prop_ro(
-          "after", [](const TableResult& r) { return r.made.after; }, "Deviations with these tables.")
-      .def_prop_ro(
-          "ideal", [](const TableResult& r) { return r.made.ideal; }, "Deviations with the best that the axes can do.")
-      .def_prop_ro("ideal_not_reached", [](const TableResult& r) { return r.made.ideal_not_reached; })
-      .def_prop_ro(
-          "volumetric_mm", [](const TableResult& r) { return r.made.volumetric; },
-          "Volumetric error that the errors predict over the stated grid.")
       .def_prop_ro(
           "left_by_tables_mm", [](const TableResult& r) { return r.made.left_by_tables; },
           "Volumetric error that these tables leave, the datum fitted.")
@@ -197,22 +177,11 @@ void bind_control_tables(nb::module_& module) {
           nb::sig("def files(self) -> dict[str, str]"),
           "Texts of the files by their names; empty where says_no, and where there is nothing to correct.")
       .def_prop_ro(
-          "refused",
-          [](const TableResult& r) {
-            std::vector<std::string> reasons;
-            for (const std::string& reason : r.made.refused) reasons.push_back(argument_words(reason));
-            return reasons;
-          },
-          "Why the tables must not be used, a sentence each.")
-      .def_prop_ro(
           "too_few_nodes", [](const TableResult& r) { return argument_words(r.made.too_few_nodes); },
           "Why not, although nothing is refused: there is no room for the nodes that are needed.")
       .def_prop_ro(
-          "says_no", [](const TableResult& r) { return r.made.says_no(); }, "Whether there are no tables to be used.")
-      .def_prop_ro(
           "format", [](const TableResult& r) { return r.made.format; }, nb::rv_policy::copy,
           "The format that the tables are in.")
-      .def_ro("machine", &TableResult::machine)
       .def(
           "map_csv", [](const TableResult& r) { return map_csv(control_table_map(r.machine, r.made)); },
           "Map of the deviations without tables, with tables and ideal, as CSV.")
@@ -249,6 +218,7 @@ void bind_control_tables(nb::module_& module) {
                            r.made.tables.size(), r.made.says_no() ? ", refused" : "");
       });
   bind_figures(bound);
+  add_carried_figures(bound, "tables", "without tables", "with these tables");
   module.def(
       "control_tables",
       [](const MachineErrors& errors, const std::string& format, AxisPositions at, std::vector<std::string> axes,

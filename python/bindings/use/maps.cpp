@@ -44,12 +44,8 @@ ErrorsMap map_of(const MachineErrors& errors, const MachineErrors* minus, const 
 
 void write_map(const ErrorsMap& map, const std::filesystem::path& path, bool overwrite) {
   const MapData data = errors_map_data(map);
-  const std::string extension = path.extension().string(), vtk = map_is_structured(data) ? ".vts" : ".vtu";
-  if (extension != ".csv" && extension != vtk) {
-    throw InputError({.file = path.string()}, "unknown kind of map file",
-                     "a name ending in .csv, or in " + vtk + " for these poses");
-  }
-  write_text(path, extension == ".csv" ? map_csv(data) : map_vtk(data), overwrite);
+  require_map_name(path.string(), data);
+  write_text(path, map_text(path.string(), data), overwrite);
 }
 
 VolumetricFigures figures_of(const MachineErrors& errors, const MachineErrors* truth, const AxisRanges& grid) {

@@ -38,10 +38,7 @@ PlannedPath plan_path_of(const Machine& machine, const NamedCurve& curve, const 
   request.curve = curve_on(curve, machine);
   if (request.curve.points.empty()) throw InputError({.field = "curve"}, "has no points", "a curve");
   request.curve_file = curve.file;
-  if (feed_mm_per_min && !(*feed_mm_per_min > 0 && std::isfinite(*feed_mm_per_min))) {
-    throw InputError({.field = "feed_mm_per_min"}, fmt::format("is {}", *feed_mm_per_min), "above zero");
-  }
-  request.feed = feed_mm_per_min.value_or(0) / 60;
+  request.feed = feed_of(feed_mm_per_min);
   request.retract = not_below_zero(retract_mm, "retract_mm");
   request.tolerance = 1e-3 * not_below_zero(tolerance_um, "tolerance_um");
   request.held = axis_positions(machine, "hold", hold);
@@ -60,12 +57,10 @@ std::string program_of_path(const PlannedPath& planned, const std::string& name,
   if (decimals < 1 || decimals > 12) {
     throw InputError({.field = "decimals"}, fmt::format("is {}", decimals), "1 to 12");
   }
-  std::vector<std::string> texts;
-  for (const auto& [axis, word] : words) texts.push_back(axis + "=" + word);
   PathProgramOptions options;
   options.decimals = decimals;
   options.inverse_time = !feed_per_minute;
-  options.words = axis_words(planned.machine, texts, "words");
+  options.words = program_words(planned.machine, words);
   options.comments = comments;
   return planned_path_file(planned, name, options);
 }

@@ -127,11 +127,6 @@ double way_time(const MeasurementRequest& request, const std::vector<double>& fr
   return request.program.feed > 0 ? std::max(time, std::sqrt(squared) / request.program.feed) : time;
 }
 
-/// "reading 12 (line 14)"
-std::string reading_words(const PlannedReading& reading) {
-  return fmt::format("reading {} (line {})", reading.number, reading.listed.line);
-}
-
 std::string reading_comment(const PlannedReading& reading, const std::string& what) {
   std::string words = fmt::format("reading {}", reading.number);
   if (!reading.listed.point.empty()) words += ", point " + reading.listed.point;
@@ -164,21 +159,22 @@ class MeasurementWays {
       time_ += standing;
       reading.finished = time_;
       at = reading.pose;
-      from = reading_words(reading);
+      from = words(reading);
     }
     planned_.time = time_;
     return true;
   }
 
  private:
+  static std::string words(const PlannedReading& reading) { return reading_words(reading.number, reading.listed); }
+
   bool reaches(const std::optional<std::vector<double>>& at, const std::string& from, PlannedReading& reading) {
     const auto touched = [&](const WayCollision& collision) {
       return fmt::format("touches {} at {}", planned_.obstacles[collision.obstacle],
                          position_words(planned_.machine, collision.pose, "{:.3f}"));
     };
     if (const std::optional<WayCollision> here = ways_.standing(reading.pose)) {
-      planned_.refused =
-          fmt::format("{}: at {} the tool {}", planned_.readings_file, reading_words(reading), touched(*here));
+      planned_.refused = fmt::format("{}: at {} the tool {}", planned_.readings_file, words(reading), touched(*here));
       return false;
     }
     if (!at) return true;
@@ -197,8 +193,8 @@ class MeasurementWays {
     }
     const bool may_retract = request_.ways.clearance > 0 || !request_.ways.clear_at.empty();
     planned_.refused = fmt::format(
-        "{}: on the straight way from {} to {} the tool {}, and {}", planned_.readings_file, from,
-        reading_words(reading), touched(*way.collision),
+        "{}: on the straight way from {} to {} the tool {}, and {}", planned_.readings_file, from, words(reading),
+        touched(*way.collision),
         may_retract ? "no way with it retracted is clear either" : "neither --clearance-mm nor --clear-at is given");
     return false;
   }

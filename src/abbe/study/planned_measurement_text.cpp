@@ -145,7 +145,8 @@ nlohmann::ordered_json planned_measurement_json(const PlannedMeasurement& planne
     nlohmann::ordered_json one = {{"words", section.words}};
     for (std::size_t k = section.first; k < section.first + section.count; ++k) {
       const PlannedReading& reading = planned.readings[k];
-      nlohmann::ordered_json entry = {{"number", reading.number}, {"line", reading.listed.line}};
+      nlohmann::ordered_json entry = {{"number", reading.number}};
+      if (reading.listed.line > 0) entry["line"] = reading.listed.line;
       entry["pose"] = pose_json(reading.pose);
       for (const std::vector<double>& pose : reading.via) entry["via"].push_back(pose_json(pose));
       entry["finished_s"] = reading.finished;

@@ -74,7 +74,7 @@ class ProbingPlanner {
     std::vector<ProbingStep> steps;
     for (std::size_t k = 0; k < request_.list.readings.size(); ++k) {
       const ListedReading& reading = request_.list.readings[k];
-      words_ = fmt::format("reading {} (line {})", k + 1, reading.line);
+      words_ = reading_words(k + 1, reading);
       std::optional<ProbingStep> step = ball(reading, fmt::format("reading {}", k + 1));
       if (!step) return std::nullopt;
       steps.push_back(std::move(*step));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,21 @@ TEST(RunStudy, TheResultDoesNotNeedTheStudyThatItIsOf) {
   EXPECT_FALSE(result.map);
   const Study study = dials();
   EXPECT_EQ(study_text(study, result, nullptr), study_text(study, run_study(study, {.map = false}), nullptr));
+}
+
+TEST(RunStudy, ListsEveryParameterWithItsUncertainty) {
+  const StudyResult result = run_study(dials(), {.map = false});
+  ASSERT_FALSE(result.identification.parameters.empty());
+  const std::string text = parameters_text(result);
+  EXPECT_EQ(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')),
+            1 + result.identification.parameters.size());
+  const auto& first = result.identification.parameters.front();
+  char line[200];
+  std::snprintf(line, sizeof line, "\n%-24s %16.4f %16.4f %s\n", first.name.c_str(),
+                (first.is_angle ? 1e6 : 1e3) * result.identification.estimates[0],
+                (first.is_angle ? 1e6 : 1e3) * result.identification.standard_uncertainties[0],
+                first.is_angle ? "urad" : "um");
+  EXPECT_NE(text.find(line), std::string::npos) << line << text;
 }
 
 TEST(RunStudy, StopsInEveryStep) {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "abbe/machine/axis_unit.h"
 #include "abbe/report/words/volumetric_words.h"
 #include "abbe/study/advice.h"
 #include "abbe/study/coverage.h"
@@ -132,6 +133,20 @@ std::string study_text(const Study& study, const StudyResult& result, const char
   }
   text += advice_text(result, shows_all);
   text += not_identified_remedies_text(result);
+  return text;
+}
+
+std::string parameters_text(const StudyResult& result) {
+  const Identification& identified = result.identification;
+  std::string text = fmt::format("{:<24} {:>16} {:>16}\n", "parameter", "value", "u");
+  for (std::size_t p = 0; p < identified.parameters.size(); ++p) {
+    const bool angle = identified.parameters[p].is_angle, pure = identified.parameters[p].is_pure_number;
+    const double unit = pure ? kPurePerUnit : micro_per_unit(angle);
+    const auto at = static_cast<Eigen::Index>(p);
+    text +=
+        fmt::format("{:<24} {:>16.4f} {:>16.4f} {}\n", identified.parameters[p].name, unit * identified.estimates[at],
+                    unit * identified.standard_uncertainties[at], pure ? kPureUnit : micro_unit(angle));
+  }
   return text;
 }
 

@@ -5,6 +5,8 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace abbe {
 
@@ -49,6 +51,10 @@ class ResultsFolder {
   std::unique_ptr<UnfinishedOutput> unfinished_;
   std::set<std::string> files_;
 };
+
+/// Files, by names and contents, as a folder of results. @throws InputError as ResultsFolder
+void write_result_files(const std::filesystem::path& folder,
+                        const std::vector<std::pair<std::string, std::string>>& files);
 
 /// One file that appears whole or not at all; an older file of that name stays until then. Through a link the file it
 /// leads to is written. @throws InputError, also where the name is that of a folder or a device, or of a file that is

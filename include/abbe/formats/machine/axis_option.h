@@ -34,6 +34,12 @@ HeldAxis axis_option(const Machine& machine, const std::string& option, const st
 std::vector<HeldAxis> axis_options(const Machine& machine, const std::string& option,
                                    const std::vector<std::string>& texts);
 
+/// Axes by their names, as an option that may be given several times has them.
+/// @param option  how the user calls it, for the error: "--hold"
+/// @throws InputError for a name that the machine does not have
+std::vector<std::size_t> axes_named(const Machine& machine, const std::string& option,
+                                    const std::vector<std::string>& names);
+
 /// "X_mm=-100:100" or "C_deg=30": a range of --range, or a position, within the travel.
 /// @param ranges  [axes] mm or rad; that of the axis is set
 /// @throws InputError

@@ -34,6 +34,11 @@ std::string map_csv(const MapData& map);
 /// (.vtu) of single points. Field names carry the unit: "before (um)".
 std::string map_vtk(const MapData& map);
 
+/// What a file of this name holds: map_csv() of .csv, else map_vtk().
+std::string map_text(const std::string& name, const MapData& map);
+/// @throws InputError for a name that does not end in .csv, nor as map_vtk() of this map has it
+void require_map_name(const std::string& name, const MapData& map);
+
 /// True for a grid with at most three directions of more than one point.
 bool map_is_structured(const MapData& map);
 

@@ -200,6 +200,12 @@ void ResultsFolder::put_in_place() {
   }
 }
 
+void write_result_files(const fs::path& folder, const std::vector<std::pair<std::string, std::string>>& files) {
+  ResultsFolder results(folder);
+  for (const auto& [name, contents] : files) results.write(name, contents);
+  results.commit();
+}
+
 void write_file_atomically(const fs::path& name, std::string_view contents) {
   StreamedFile file(name);
   file.append(contents);

@@ -52,6 +52,17 @@ int status_of_child(Action&& action) {
   return status;
 }
 
+TEST(ResultsFolder, TakesFilesByNamesAndContents) {
+  const fs::path folder = test::empty_folder("abbe_result_files");
+  write_result_files(folder / "r", {{"a.json", "one"}, {"maps/b.csv", "two"}});
+  EXPECT_EQ(contents(folder / "r/a.json"), "one");
+  EXPECT_EQ(contents(folder / "r/maps/b.csv"), "two");
+  EXPECT_THROW(write_result_files(folder / "r", {{"a.json", "three"}, {"../c", "four"}}), InputError);
+  EXPECT_EQ(contents(folder / "r/a.json"), "one") << "whole or not at all";
+  EXPECT_FALSE(fs::exists(folder / "c"));
+  fs::remove_all(folder);
+}
+
 TEST(ResultsFolder, AppearsWholeAndReplacesTheOldOne) {
   const fs::path folder = test::empty_folder("abbe_results");
   write_result(folder / "r", "one");

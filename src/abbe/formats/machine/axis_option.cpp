@@ -55,6 +55,17 @@ std::vector<HeldAxis> axis_options(const Machine& machine, const std::string& op
   return given;
 }
 
+std::vector<std::size_t> axes_named(const Machine& machine, const std::string& option,
+                                    const std::vector<std::string>& names) {
+  std::vector<std::size_t> axes;
+  for (const std::string& name : names) {
+    axes.push_back(machine.find_axis(name));
+    if (axes.back() != Machine::npos) continue;
+    throw InputError({.field = option + " " + name}, "the machine has no such axis", machine.chain());
+  }
+  return axes;
+}
+
 void take_range_option(const Machine& machine, const std::string& text, std::vector<std::optional<AxisRange>>& ranges) {
   const std::string expected = "AXIS_unit=from:to or AXIS_unit=position, such as X_mm=-100:100";
   const auto [axis, unit, numbers] = axis_numbers_option(machine, "--range", text, expected);

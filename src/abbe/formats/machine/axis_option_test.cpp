@@ -9,7 +9,9 @@
 namespace abbe {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 class AnAxisOption : public testing::Test {
  protected:
@@ -30,6 +32,15 @@ class AnAxisOption : public testing::Test {
   }
   Machine machine_;
 };
+
+TEST_F(AnAxisOption, MayBeNamesOfAxesAlone) {
+  EXPECT_THAT(axes_named(machine_, "--hold", {"Z", "C"}), ElementsAre(2U, 0U));
+  EXPECT_THAT(axes_named(machine_, "--hold", {}), IsEmpty());
+  EXPECT_THAT(message_of([&] {
+                static_cast<void>(axes_named(machine_, "--hold", {"X", "Q"}));
+              }),
+              HasSubstr("--hold Q: the machine has no such axis; expected w C' b X Z t"));
+}
 
 TEST_F(AnAxisOption, IsARangeInTheUnitOfItsAxisOrAPosition) {
   const auto range = ranges("X_mm=-100:200");

@@ -9,8 +9,10 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 
 #include "abbe/formats/text/csv_reader.h"
+#include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/number_text.h"
 
 namespace abbe {
@@ -187,6 +189,18 @@ std::string map_vtk(const MapData& map) {
             data_array("UInt8", "types", 1, std::vector<std::uint8_t>(map.count(), kVertex)) + "</Cells>\n";
   }
   return text + fmt::format("</Piece>\n</{}>\n</VTKFile>\n", type);
+}
+
+std::string map_text(const std::string& name, const MapData& map) {
+  return std::filesystem::path(name).extension() == ".csv" ? map_csv(map) : map_vtk(map);
+}
+
+void require_map_name(const std::string& name, const MapData& map) {
+  const std::string extension = std::filesystem::path(name).extension().string();
+  const std::string vtk = map_is_structured(map) ? ".vts" : ".vtu";
+  if (extension == ".csv" || extension == vtk) return;
+  throw InputError({.file = name}, "unknown kind of map file",
+                   "a name ending in .csv, or in " + vtk + " for these poses");
 }
 
 }  // namespace abbe

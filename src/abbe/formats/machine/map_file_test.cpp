@@ -1,10 +1,11 @@
 #include "abbe/formats/machine/map_file.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cstring>
 
 #include "abbe/formats/text/csv_reader.h"
+#include "abbe/formats/text/message_of.h"
 
 namespace abbe {
 namespace {
@@ -84,6 +85,21 @@ TEST(MapFile, ScatteredPointsAreAnUnstructuredVtkFile) {
   EXPECT_EQ(decoded(text, "point (mm)").size(), 18U);
   map.grid = {2, 2, 2, 2};
   EXPECT_FALSE(map_is_structured(map));
+}
+
+TEST(MapFile, IsOfTheKindThatItsNameSays) {
+  MapData map = map_of_six();
+  EXPECT_EQ(map_text("a/map.csv", map), map_csv(map));
+  EXPECT_EQ(map_text("map.vts", map), map_vtk(map));
+  EXPECT_NO_THROW(require_map_name("map.csv", map));
+  EXPECT_NO_THROW(require_map_name("map.vts", map));
+  const auto message = [&](const std::string& name) { return message_of([&] { require_map_name(name, map); }); };
+  EXPECT_THAT(message("map.vtu"), testing::HasSubstr("map.vtu: unknown kind of map file; expected a name ending in "
+                                                     ".csv, or in .vts for these poses"));
+  EXPECT_THAT(message("csv"), testing::HasSubstr("unknown kind"));
+  map.grid.clear();
+  EXPECT_NO_THROW(require_map_name("map.vtu", map));
+  EXPECT_THAT(message("map.vts"), testing::HasSubstr("or in .vtu for these poses"));
 }
 
 }  // namespace

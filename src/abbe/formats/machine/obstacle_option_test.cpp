@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "abbe/formats/text/message_of.h"
 #include "abbe/machine/chain.h"
 
@@ -37,6 +39,19 @@ TEST(AnObstacleOption, IsRefusedWithTheFormThatWasExpected) {
   EXPECT_THAT(message("base=0,0,0,1,1,1,1"), HasSubstr("not six numbers"));
   EXPECT_THAT(message("base=0,0,0,1,1,0"), HasSubstr("without volume"));
   EXPECT_THAT(message("base=0,0,0,1,1,1e200"), HasSubstr("too large"));
+}
+
+TEST(ABoxAsAnObstacle, IsRefusedWithTheNameOfItsField) {
+  const Machine machine = parse_chain("w C' b X Z t").machine;
+  const auto message = [&](const std::array<double, 6>& corners) {
+    return message_of([&] { static_cast<void>(box_obstacle({}, corners, 1, "boxes", "(x0, y0, z0, x1, y1, z1)")); });
+  };
+  EXPECT_THAT(message({0, 0, 0, 1, 1, 0}),
+              HasSubstr("boxes: a box without volume; expected two opposite corners, (x0"));
+  EXPECT_THAT(message({0, 0, 0, 1, 1, std::numeric_limits<double>::quiet_NaN()}), HasSubstr("boxes: too large"));
+  EXPECT_THAT(message({-std::numeric_limits<double>::infinity(), 0, 0, 1, 1, 1}), HasSubstr("boxes: too large"));
+  EXPECT_FALSE(obstacle_on(machine, "Q").has_value());
+  EXPECT_EQ(obstacle_on(machine, "X")->axis, 1U);
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 #include "abbe/formats/readings/reading_list.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
-#include "abbe/errors/poses.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/readings/axis_columns.h"
 #include "abbe/formats/text/csv_header.h"
@@ -117,6 +118,24 @@ ReadingList parse_reading_list(std::string_view text, const std::string& file, c
 ReadingList read_reading_list(const std::filesystem::path& path, const Machine& machine) {
   const MappedFile file(path);
   return parse_reading_list(file.text(), path.string(), machine);
+}
+
+ReadingList listed_readings(const PoseList& poses, const std::string& name, const Machine& machine) {
+  if (poses.count() == 0) throw InputError({.field = name}, "has no reading", "a row for every reading");
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    const std::optional<OutsideTravel> outside = first_outside_travel(machine.axes[i], poses.axis[i]);
+    if (!outside) continue;
+    throw InputError({.field = name}, fmt::format("reading {}: {}", outside->row + 1, outside->problem),
+                     outside->expected);
+  }
+  ReadingList list;
+  for (std::size_t k = 0; k < poses.count(); ++k) list.readings.emplace_back().pose = poses.pose(k);
+  return list;
+}
+
+std::string reading_words(std::size_t number, const ListedReading& reading) {
+  return reading.line == 0 ? fmt::format("reading {}", number)
+                           : fmt::format("reading {} (line {})", number, reading.line);
 }
 
 }  // namespace abbe

@@ -65,5 +65,34 @@ TEST(AReadingList, IsRefusedWithTheLineAndWhatWasExpected) {
   EXPECT_THAT(refusal("C_deg;X_mm;Z_mm\n0;1;2\n"), HasSubstr("not separated by commas"));
 }
 
+TEST(AReadingList, IsAlsoMadeOfPosesThatAreInNoFile) {
+  const Machine machine = parse_chain("w C' b X Z t").machine;
+  const auto refusal_of = [&](const PoseList& poses) {
+    try {
+      listed_readings(poses, "positions", machine);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  PoseList poses;
+  poses.append({90 * kDegree, 1.5, -2});
+  poses.append({0, 250, 3});
+  const ReadingList list = listed_readings(poses, "positions", machine);
+  ASSERT_EQ(list.readings.size(), 2U);
+  EXPECT_EQ(list.readings[0].pose, poses.pose(0));
+  EXPECT_EQ(list.readings[1].pose, poses.pose(1));
+  EXPECT_EQ(list.readings[1].line, 0U);
+  EXPECT_TRUE(list.what.empty());
+  poses.append({0, 251, 3});
+  EXPECT_THAT(refusal_of(poses), HasSubstr("positions: reading 3: 251 mm is outside the travel of axis X"));
+  EXPECT_THAT(refusal_of({}), HasSubstr("positions: has no reading"));
+}
+
+TEST(AReading, IsNamedWithItsLineIfItHasOne) {
+  EXPECT_EQ(reading_words(12, listed("C_deg,X_mm,Z_mm\n0,1,2\n").readings[0]), "reading 12 (line 2)");
+  EXPECT_EQ(reading_words(3, {}), "reading 3");
+}
+
 }  // namespace
 }  // namespace abbe

@@ -1,16 +1,45 @@
-#include "abbe/formats/machine/toml_kind.h"
+#include "abbe/formats/machine/file_kind.h"
 
 #include <gmock/gmock.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "abbe/formats/files/temporary_file_for_test.h"
 #include "abbe/formats/text/message_of.h"
 
 namespace abbe {
 namespace {
 
+using test::TemporaryFile;
 using testing::HasSubstr;
+
+TEST(TheKindOfAFile, IsToldByItsName) {
+  for (const char* const name : {"a.stl", "b.OBJ", "c.step", "d.stp", "e.ply", "f.xyz", "g.csv", "h.pcd", "i.e57"}) {
+    EXPECT_TRUE(is_geometry_file(name)) << name;
+    EXPECT_FALSE(is_frozen_file(name)) << name;
+  }
+  for (const char* const name : {"mill.machine.toml", "mill.abbec", "stl", ""}) EXPECT_FALSE(is_geometry_file(name));
+  EXPECT_TRUE(is_frozen_file("mill.abbec"));
+  EXPECT_FALSE(is_frozen_file("abbec"));
+}
+
+TEST(TheKindOfAFile, SaysWhetherThereAreOnlyPoints) {
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string corners = "0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_TRUE(has_points_only("points.xyz"));
+  const TemporaryFile points(header + "end_header\n" + corners, "_points.ply");
+  EXPECT_TRUE(has_points_only(points.path().string()));
+  const TemporaryFile faces(
+      header + "element face 1\nproperty list uchar int vertex_indices\nend_header\n" + corners + "3 0 1 2\n",
+      "_faces.ply");
+  EXPECT_FALSE(has_points_only(faces.path().string()));
+  const TemporaryFile object("v 0 0 0\nv 1 0 0\nv 0 1 0\n", ".obj");
+  EXPECT_FALSE(has_points_only(object.path().string())) << "it is read as a mesh, which says that there is no face";
+  const TemporaryFile damaged(header, "_damaged.ply");
+  EXPECT_THAT(message_of([&] { has_points_only(damaged.path().string()); }), HasSubstr("_damaged.ply"));
+}
 
 class TomlKinds : public testing::Test {
  protected:

@@ -1,18 +1,18 @@
-#include "customer_report_file.h"
+#include "abbe/report/customer/customer_report_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/report/customer/calibration_certificate.h"
-#include "messages.h"
 
 namespace abbe {
 
-void check_customer_report_name(const std::string& name) {
+void check_customer_report_name(const std::string& name, const char* field) {
   const std::string extension = std::filesystem::path(name).extension().string();
   if (extension == ".pdf" || extension == ".html" || extension == ".xml") return;
-  throw InputError({.file = name, .field = "--customer-report"}, "is not the name of a PDF, a page or a certificate",
+  throw InputError({.file = name, .field = field}, "is not the name of a PDF, a page or a certificate",
                    "a name that ends in .pdf, .html, or .xml for a digital calibration certificate");
 }
 
@@ -53,13 +53,6 @@ void require_printed(const std::filesystem::path& pdf, const std::filesystem::pa
   if (printed.problem.empty()) return;
   throw InputError({.file = pdf.string()},
                    fmt::format("not written, {}; {} is written instead", printed.problem, html.filename().string()));
-}
-
-bool tell_exceeded_tolerances(const CustomerReport& report) {
-  const std::string symbols = exceeded_tolerances(report);
-  if (symbols.empty()) return false;
-  tell("abbe: out of tolerance: {}\n", symbols);
-  return true;
 }
 
 }  // namespace abbe

@@ -1,4 +1,4 @@
-#include "nearest_word.h"
+#include "abbe/formats/text/nearest_word.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "abbe/formats/machine/toml_kind.h"
+#include "abbe/formats/machine/file_kind.h"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,9 @@
 #include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/files/text_file.h"
 #include "abbe/formats/shapes/ending.h"
+#include "abbe/formats/shapes/mesh_file.h"
+#include "abbe/formats/shapes/ply_file.h"
+#include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/input_error.h"
 
 namespace abbe {
@@ -46,6 +49,24 @@ bool is_of_kind(const OtherKind& kind, const std::string& name, std::string_view
 }
 
 }  // namespace
+
+bool is_geometry_file(const std::string& file) {
+  const std::string name = with_ending(std::filesystem::path(file));
+  return has_mesh_extension(name) || has_point_cloud_extension(name);
+}
+
+bool has_points_only(const std::string& file) {
+  if (has_point_cloud_extension(with_ending(std::filesystem::path(file)))) return true;
+  const MappedFile mapped(file);
+  return is_ply(mapped.text()) && parse_ply(mapped.text(), file).triangles.cols() == 0;
+}
+
+bool is_frozen_file(const std::string& file) {
+  if (file != kStandardInput) return std::filesystem::path(file).extension() == ".abbec";
+  return MappedFile(file).text().starts_with(
+      "\x89"
+      "ABBEC");
+}
 
 bool is_study_file(const std::string& file) {
   const std::string name = std::filesystem::path(file).filename().string();
