@@ -42,7 +42,7 @@ def test_a_value_is_the_axis_with_its_location_errors():
     assert shift == pytest.approx(14, abs=1e-3) and values["C,machine,x_mm"].kind == "length"
     assert values["C,machine,x_mm"].standard_uncertainty_mm_rad == pytest.approx(0.8e-3)
     assert len(values) == len(found) and {value.kind for value in found.values()} == {"length", "direction", "angle"}
-    carried = {error.name: error.carried() for error in values.errors}
+    carried = {error.name: error.carried for error in values.errors}
     assert carried["EX0C"] == pytest.approx(1, abs=1e-3) and carried["EXX"] == pytest.approx(0, abs=1e-3)
     with pytest.raises(KeyError, match="nothing"):
         values["nothing"]

@@ -208,8 +208,7 @@ void bind_planned_measurements(nb::module_& module) {
       ">>> program = abbe.plan_measurement(mill, [[0, 0, 0], [100, 50, -20]], 'linuxcnc', dwell_s=3)\n"
       ">>> program.refused, len(program), program.time_s\n"
       "('', 2, 7.0)\n"
-      ">>> print('\\n'.join(program.program.splitlines()[-6:-2]))\n"
-      "G4 P3\n"
+      ">>> print('\\n'.join(program.program.splitlines()[-4:-1]))\n"
       "(reading 2)\n"
       "G0 X100.000000 Y50.000000 Z-20.000000\n"
       "G4 P3\n");
