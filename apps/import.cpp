@@ -102,8 +102,8 @@ int run_import(const ImportCommand& command) {
     if (is_written) fmt::print("{} written\n", command.output);
   }
   if (result.is_certain()) return kDone;
-  tell("abbe: {}: {}what is uncertain has to be confirmed: by options, --accept-uncertain, or a mapping file\n",
-       command.file, command.output.empty() ? "" : command.output + " is not written; ");
+  tell("abbe: {}: {}{}\n", command.file, command.output.empty() ? "" : command.output + " is not written; ",
+       what_to_do_next(result));
   return kNegative;
 }
 
@@ -127,7 +127,7 @@ void add_import_command(CommandLine& line) {
   app->add_input_file("file", command->file, "Table or file of an instrument, as text, also compressed by gzip")
       ->required();
   app->add_option("--as", command->kind,
-                  "What it becomes: points, tracker, positioning or circular (default: by its columns)")
+                  "What it becomes: points, tracker, positioning, circular or temperatures (default: by its columns)")
       ->check(one_of(import_kind_names()));
   add_machine(*app, command->machine, "Machine whose commands the table of a tracker has (*.machine.toml)");
   app->add_input_file("--mapping", command->mapping, "Mapping to use: nothing is proposed (*.import.toml)");

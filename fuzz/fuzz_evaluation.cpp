@@ -5,12 +5,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "abbe/formats/evaluations/evaluation_circular_file.h"
 #include "abbe/formats/evaluations/evaluation_line_file.h"
 #include "abbe/formats/evaluations/evaluation_positioning.h"
 #include "abbe/formats/evaluations/evaluation_rotation_file.h"
+#include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/machine/linkage_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/verify/evaluations/circular_diagnosis.h"
@@ -97,12 +101,27 @@ void linkage(std::string_view text) {
   }
 }
 
+/// A table that another program wrote keeps its lines.
+void readable(std::string_view text) {
+  const std::vector<abbe::CsvColumn> wanted = {{"position", abbe::Quantity::length},
+                                               {"deviation", abbe::Quantity::length},
+                                               {"angle", abbe::Quantity::angle, false, false},
+                                               {"line", abbe::Quantity::dimensionless, true, false}};
+  const std::optional<std::string> plain = abbe::plain_table(text, "fuzz.csv", wanted, {});
+  if (!plain) return;
+  const std::size_t open = text.empty() || text.ends_with('\n') ? 0 : 1;
+  if (std::count(plain->begin(), plain->end(), '\n') !=
+      std::count(text.begin(), text.end(), '\n') + static_cast<std::ptrdiff_t>(open)) {
+    std::abort();
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   // One line for every kind of evaluation.
-  for (const auto read : {positioning, diagonals, circular, rotation, straightness, squareness, linkage}) {
+  for (const auto read : {positioning, diagonals, circular, rotation, straightness, squareness, linkage, readable}) {
     try {
       read(text);
     } catch (const abbe::InputError&) {

@@ -74,6 +74,62 @@ TEST_F(ImportOfInstruments, UnitsThatALaserDoesNotStateHaveToBeConfirmed) {
   EXPECT_THAT(folder.read("inch.csv"), HasSubstr("direction,target_mm,deviation_um\n+,127.0000000,26.9240\n"));
 }
 
+TEST_F(ImportOfInstruments, WithoutReadingsAreShownAndNotWritten) {
+  const CommandResult bar = imported(kSamples + "ballbar.b5r", {"-o", "bar.csv"}, ExitCode::computation_says_no);
+  EXPECT_THAT(bar.out, HasSubstr("\nno readings\nstated: test: XY 360 degrees 150 mm\nstated: plane: XY\n"));
+  EXPECT_THAT(bar.out, HasSubstr("stated: AF_SQUARENESS: -14.2 um/m\n"));
+  EXPECT_THAT(bar.out, HasSubstr("UNCERTAIN: where such a file has its readings is not publicly described"));
+  EXPECT_THAT(bar.err, HasSubstr("bar.csv is not written; there are no readings"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "bar.csv"));
+  const CommandResult devices = imported(kSamples + "devices.xml", {}, ExitCode::computation_says_no);
+  EXPECT_THAT(devices.out, HasSubstr("stated: Rotary C: endless rotary axis, along or about (0, 0, 1), at (400, 250, "
+                                     "-500) mm, carried by Linear X\n"));
+  EXPECT_THAT(devices.out, HasSubstr("stated: chain: Linear Y, Linear X, Rotary C\nstated: chain: Linear Z\n"));
+  const nlohmann::json json =
+      nlohmann::json::parse(imported(kSamples + "devices.xml", {"--json"}, ExitCode::computation_says_no).out);
+  EXPECT_EQ(json.at("rows"), 0);
+  EXPECT_FALSE(json.at("certain").get<bool>());
+  EXPECT_THAT(imported(kSamples + "devices.xml", {"--accept-uncertain", "-o", "a.csv"}, ExitCode::bad_input).err,
+              HasSubstr("--accept-uncertain: there are no readings to be written"));
+  EXPECT_THAT(imported(kSamples + "ballbar.b5r", {"--write-mapping", "a.import.toml"}, ExitCode::bad_input).err,
+              HasSubstr("there are no readings, so there is no mapping"));
+}
+
+TEST_F(ImportOfInstruments, PositioningReadingsOfEcmcAreEvaluated) {
+  const std::string sample = kSamples + "positioning-ecmc.dat";
+  const CommandResult doubted = imported(sample, {"-o", "e.csv"}, ExitCode::computation_says_no);
+  EXPECT_THAT(doubted.out, HasSubstr("UNCERTAIN: the description of the form calls FWD forward"));
+  imported(sample, {"--accept-uncertain", "-o", "e.csv", "--write-mapping", "e.import.toml"});
+  EXPECT_THAT(folder.read("e.csv"), HasSubstr("run,direction,target_mm,actual_mm\n1,+,-20,-20.000656\n"));
+  const nlohmann::json figures = evaluated({"evaluate", "positioning", "e.csv", "--json"}).at("figures");
+  // A reversal of 8 um and a slope of 20 um/m over 40 mm, with noise of 1 um in means of three.
+  EXPECT_NEAR(figures.at("B").at("value_um").get<double>(), 8, 3);
+  EXPECT_LT(figures.at("B_mean").at("value_um").get<double>(), 0);
+  // The other way round by a mapping.
+  std::string mapping = folder.read("e.import.toml");
+  const std::string direction = "from = \"direction\"\n";
+  ASSERT_NE(mapping.find(direction), std::string::npos) << mapping;
+  mapping.insert(mapping.find(direction) + direction.size(), "positive = [\"-\"]\nnegative = [\"+\"]\n");
+  folder.write("other.import.toml", mapping);
+  imported(sample, {"--mapping", "other.import.toml", "-o", "other.csv"});
+  const nlohmann::json other = evaluated({"evaluate", "positioning", "other.csv", "--json"}).at("figures");
+  EXPECT_EQ(other.at("B_mean").at("value_um").get<double>(), -figures.at("B_mean").at("value_um").get<double>());
+}
+
+TEST_F(ImportOfInstruments, TemperaturesOfAnAgentAreASeries) {
+  imported(kSamples + "streams.xml", {"--format", "mtconnect-temperatures", "-o", "t.csv"});
+  EXPECT_EQ(folder.read("t.csv"), "time,sensor,temperature_degC\n2026-05-04T10:19:50.000Z,X Xtemp,22.5\n");
+}
+
+TEST_F(ImportOfInstruments, FilesOfKnownProgramsAreNamed) {
+  folder.write("sa.txt", "// SA\nA::grp::p1 1.5 2 3\nA::grp::p2 4 5.5 6\nA::grp::p3 4 5 6\n");
+  EXPECT_THAT(imported("sa.txt", {}, ExitCode::bad_input).err, HasSubstr("point list of SpatialAnalyzer"));
+  EXPECT_THAT(imported("sa.txt", {"--as", "points", "--accept-uncertain", "-o", "sa.csv"}).out, HasSubstr("3 rows"));
+  EXPECT_THAT(folder.read("sa.csv"), HasSubstr("A::grp::p2,4,5.5,6\n"));
+  folder.write("log.txt", "SINUMERIK 840D sl\nmeasuring cycle CYCLE977\nno values\n");
+  EXPECT_THAT(imported("log.txt", {}, ExitCode::bad_input).err, HasSubstr("protocol of measuring cycles of Siemens"));
+}
+
 TEST_F(ImportOfInstruments, ProbedPointsOfLinuxCncAreFitted) {
   const std::vector<std::string> sure = {"--format", "linuxcnc-probe", "--length-unit", "mm"};
   std::vector<std::string> options = sure;

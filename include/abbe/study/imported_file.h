@@ -38,6 +38,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "abbe/formats/import/foreign_text.h"
@@ -80,6 +81,8 @@ struct ImportedTable {
   ImportedRows rows;                    ///< its CSV was read back by the reader of its kind
   bool doubts_accepted = false;
 
+  /// False of a file of an instrument that only states something.
+  bool has_readings() const { return !columns.empty(); }
   /// All doubts, with the column that they are about.
   std::vector<std::string> doubts() const;
   /// Whether nothing is in doubt that was not accepted.
@@ -92,9 +95,12 @@ struct ImportedTable {
 ImportedTable import_table(const ImportRequest& request);
 
 /// The mapping as a file, with the reasons as comments; import_table() with it gives the same CSV.
+/// @throws InputError if the file has no readings
 std::string imported_mapping_text(const ImportedTable& result);
 /// For people; lines with their ends.
 std::string imported_table_text(const ImportedTable& result);
+/// What somebody has to do with a result that is not certain, for the command.
+std::string_view what_to_do_next(const ImportedTable& result);
 /// For programs.
 nlohmann::ordered_json imported_table_json(const ImportedTable& result);
 

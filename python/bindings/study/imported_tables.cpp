@@ -301,8 +301,9 @@ void bind_imported_tables(nb::module_& module) {
       nb::arg("mirrored") = nb::none(), nb::arg("accept_uncertain") = false, nb::arg("file") = "",
       "A table of readings that another program wrote, or a file of an instrument, as Abbe reads it: `abbe import`.\n\n"
       "table: a file, or its contents as bytes. format: 'table', 'renishaw-laser', 'linuxcnc-probe', 'qif',\n"
-      "'mtconnect', 'dmis', 'heidenhain-table'; default: by the contents. kind: 'points', 'tracker', 'positioning',\n"
-      "'circular'; default: by the columns.\n"
+      "'mtconnect', 'mtconnect-temperatures', 'mtconnect-devices', 'dmis', 'heidenhain-table', 'ecmc-positioning',\n"
+      "'renishaw-ballbar'; default: by the contents. kind: 'points', 'tracker', 'positioning', 'circular',\n"
+      "'temperatures'; default: by the columns.\n"
       "machine: a Machine or its file, whose commands the table of a tracker has. mapping: a mapping file, its "
       "contents\n"
       "as bytes, or an ImportedTable; then nothing is proposed, and nothing is in doubt. encoding: 'utf-8', "

@@ -99,7 +99,7 @@ const std::map<std::string, FitMethod>& fit_methods_by_name() {
 }
 
 PointsToFit read_points_to_fit(const std::string& file, const PointCloudOptions& options) {
-  if (file_extension(with_ending(file)) == ".stl") {
+  if (file_extension(without_gz(with_ending(std::filesystem::path(file)))) == ".stl") {
     MeshFile mesh = read_mesh(file, {options.unit, options.threads});
     return {file,
             {std::move(mesh.mesh.vertices), Eigen::Matrix3Xd(3, 0)},

@@ -8,6 +8,7 @@
 
 #include "abbe/formats/evaluations/evaluation_circular_file.h"
 #include "abbe/formats/evaluations/evaluation_positioning.h"
+#include "abbe/formats/import/known_program.h"
 #include "abbe/formats/readings/measurement_file.h"
 #include "abbe/formats/shapes/point_cloud_file.h"
 #include "abbe/formats/text/input_error.h"
@@ -57,10 +58,10 @@ void take_mapping(const ImportRequest& request, ImportedTable& result) {
   }
 }
 
-void take_proposal(const ImportRequest& request, ImportedTable& result) {
-  result.found = find_layout(request.text.text, request.file, request.hints.layout);
+void propose(const ImportRequest& request, const ImportHints& hints, ImportedTable& result) {
   ProposedMapping proposed = propose_mapping(request.text.text, request.file, result.found, request.kind,
-                                             request.machine ? &*request.machine : nullptr, request.hints);
+                                             request.machine ? &*request.machine : nullptr, hints);
+  result.mapping = {};
   result.mapping.kind = proposed.kind;
   result.mapping.layout = result.found.layout;
   if (request.text.given) result.mapping.encoding = request.text.encoding;
@@ -68,6 +69,34 @@ void take_proposal(const ImportRequest& request, ImportedTable& result) {
   result.kind_reason = std::move(proposed.reason);
   result.columns = std::move(proposed.columns);
   result.not_read = std::move(proposed.not_read);
+}
+
+void propose_table(const ImportRequest& request, ImportedTable& result) {
+  result.found = find_layout(request.text.text, request.file, request.hints.layout);
+  ImportHints hints = request.hints;
+  if (request.machine && result.found.layout.header_line == 0) {
+    // Of columns without names the machine has to tell whether they are angles: try_polar().
+    hints.clockwise.reset();
+    hints.zenith.reset();
+  }
+  propose(request, hints, result);
+}
+
+/// As propose_table(); what it refuses may be a file of a known program.
+void take_proposal(const ImportRequest& request, ImportedTable& result) {
+  try {
+    propose_table(request, result);
+  } catch (const InputError& error) {
+    const std::optional<KnownProgram> known = known_program(request.text.text);
+    if (!known || error.place().file != request.file) throw;
+    throw InputError(error.place(), fmt::format("{}; {}", error.problem(), known->what), std::string(known->advice));
+  }
+}
+
+CsvColumn label_column(const char* name) {
+  CsvColumn column{name, Quantity::dimensionless, true};
+  column.is_label = true;
+  return column;
 }
 
 /// The readings of a tracker; nothing for other kinds.
@@ -84,6 +113,11 @@ std::optional<MeasurementTable> read_back(const ImportedTable& result, const Mac
       return std::nullopt;
     case ImportKind::circular:
       parse_circular(csv, kWrittenName, kAnyRadius);
+      return std::nullopt;
+    case ImportKind::temperatures:
+      read_csv(csv, kWrittenName,
+               {label_column("time"), label_column("sensor"), {"temperature_degC", Quantity::dimensionless}}, {},
+               threads);
       return std::nullopt;
   }
   return std::nullopt;
@@ -163,6 +197,59 @@ void drop_proved_doubts(const Machine& machine, const MeasurementTable& table, I
   }
 }
 
+double fit_mm(const FrameSense& sense) { return std::min(sense.right_mm, sense.left_mm); }
+
+/// Ways to take a tracker's three numbers as angles and a distance. Which way is up makes no difference to a fit.
+std::vector<PolarOrder> polar_orders(const ImportHints& hints) {
+  using Units = std::vector<std::string>;
+  const Units angles = hints.angle_unit.empty() ? Units{"deg", "gon", "rad"} : Units{hints.angle_unit};
+  const Units lengths = hints.length_unit.empty() ? Units{"mm", "m", "inch"} : Units{hints.length_unit};
+  std::vector<PolarOrder> orders;
+  for (const bool range_first : {false, true}) {
+    for (const std::string& angle : angles) {
+      for (const std::string& length : lengths) orders.push_back({range_first, angle, length});
+    }
+  }
+  return orders;
+}
+
+/// Columns without names that are proposed as coordinates may be azimuth, elevation and range: the machine tells.
+/// @param readings  of the coordinates; replaced by those of the better reading
+/// @returns whether they are
+bool try_polar(const ImportRequest& request, const Machine& machine, ImportedTable& result,
+               std::optional<MeasurementTable>& readings) {
+  const FrameSense cartesian = frame_sense(machine, *readings);
+  if (cartesian.is_proof() || !request.hints.mirrored.empty()) return false;
+  double best = fit_mm(cartesian) / 10;
+  ImportHints hints = request.hints;
+  std::optional<PolarOrder> chosen;
+  for (const PolarOrder& order : polar_orders(request.hints)) {
+    ImportedTable other;
+    other.found = result.found;
+    hints.polar = order;
+    try {
+      propose(request, hints, other);
+      const std::optional<MeasurementTable> polar = convert(request, machine, other);
+      const FrameSense sense = frame_sense(machine, *polar);
+      if (sense.readings < 6 || !(200 * fit_mm(sense) < sense.extent_mm) || !(fit_mm(sense) < best)) continue;
+      best = fit_mm(sense);
+      chosen = order;
+    } catch (const InputError&) {
+      continue;  // numbers that cannot be angles or distances
+    }
+  }
+  if (!chosen) return false;
+  hints.polar = *chosen;
+  propose(request, hints, result);
+  readings = convert(request, machine, result);
+  result.found.reasons.push_back(
+      fmt::format("{}: so the nominal machine fits to {:.3g} mm, and to {:.3g} mm if they are x, y and z",
+                  chosen->range_first ? "the last three numbers are range, azimuth and elevation"
+                                      : "the last three numbers are azimuth, elevation and range",
+                  best, fit_mm(cartesian)));
+  return true;
+}
+
 /// Lets the commands of the machine decide whether the frame is right-handed, and whether the columns are what they are
 /// taken for. @returns whether the mapping changed
 bool judge_by_machine(const ImportRequest& request, const Machine& machine, const MeasurementTable& table,
@@ -207,7 +294,12 @@ ImportedTable import_table(const ImportRequest& request) {
   result.packed = request.text.packed;
   result.doubts_accepted = request.accept_doubts;
   if (const std::optional<InstrumentRows> rows = take_instrument(request, result)) {
-    convert(request, *rows, result);
+    if (result.has_readings()) {
+      convert(request, *rows, result);
+    } else if (request.accept_doubts) {
+      throw InputError({.file = request.file, .field = "--accept-uncertain"}, "there are no readings to be written",
+                       "no such option");
+    }
     return result;
   }
   if (request.mapping) {
@@ -216,7 +308,12 @@ ImportedTable import_table(const ImportRequest& request) {
     take_proposal(request, result);
   }
   const Machine& machine = machine_of_import(request);
-  const std::optional<MeasurementTable> readings = convert(request, machine, result);
+  std::optional<MeasurementTable> readings = convert(request, machine, result);
+  if (!request.mapping && readings && result.found.layout.header_line == 0) {
+    const bool is_polar = try_polar(request, machine, result, readings);
+    // An option about angles that the table does not have is refused.
+    if (!is_polar && (request.hints.clockwise || request.hints.zenith)) propose(request, request.hints, result);
+  }
   if (!request.mapping && readings && judge_by_machine(request, machine, *readings, result)) {
     convert(request, machine, result);
   }

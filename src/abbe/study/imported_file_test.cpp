@@ -112,6 +112,79 @@ TEST(ImportedTableOfARequest, IsTheSameByTheMappingThatItProposes) {
   EXPECT_THAT(wrong.doubts()[0], HasSubstr("only with it reversed"));
 }
 
+/// The rows of the example of a total station without what stands above them.
+/// @param range_first  the last column comes before the angles
+std::string rows_without_header(bool range_first) {
+  const std::string text = read_foreign_text(test::example_file("import/total-station.txt")).text;
+  std::string rows;
+  for (std::size_t at = text.find("P1;"); at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    std::string line = text.substr(at, end - at);
+    if (line.ends_with('\r')) line.pop_back();
+    if (range_first) {
+      const std::size_t range = line.rfind(';'), angles = line.rfind(';', line.rfind(';', range - 1) - 1);
+      line = line.substr(0, angles) + line.substr(range) + line.substr(angles, range - angles);
+    }
+    rows += line + '\n';
+    at = end == std::string::npos ? text.size() : end + 1;
+  }
+  return rows;
+}
+
+TEST(ImportedTableOfARequest, WithoutNamesIsPolarWhereThatFitsTheMachine) {
+  ImportRequest request;
+  request.file = test::example_file("import/total-station.txt");
+  request.text = read_foreign_text(request.file);
+  request.machine = read_machine(test::example_file("machines/three-axis-mill.machine.toml"));
+  const std::string expected = import_table(request).rows.csv;
+  for (const bool range_first : {false, true}) {
+    request.text = decode_foreign_text(rows_without_header(range_first), "t.txt");
+    const ImportedTable result = import_table(request);
+    EXPECT_TRUE(result.is_certain()) << imported_table_text(result);
+    EXPECT_EQ(result.rows.csv, expected);
+    EXPECT_THAT(imported_table_text(result),
+                HasSubstr(range_first ? "the last three numbers are range, azimuth and elevation: so the nominal "
+                                        "machine fits to 0.01"
+                                      : "the last three numbers are azimuth, elevation and range: so the nominal "
+                                        "machine fits to 0.01"));
+    const ImportMapping mapping = parse_import_mapping(imported_mapping_text(result), "m.import.toml");
+    ImportRequest again = request;
+    again.mapping = mapping;
+    EXPECT_EQ(import_table(again).rows.csv, expected);
+  }
+  request.hints.clockwise = true;
+  EXPECT_EQ(import_table(request).rows.csv, expected);
+  // Coordinates stay coordinates, and have no azimuth.
+  request.text = decode_foreign_text(
+      "0 0 0 1 2 3\n100 0 0 101 2 3\n0 100 0 1 102 3\n0 0 -100 1 2 -97\n100 100 0 101 102 3\n0 100 -50 1 102 -47\n"
+      "100 0 -30 101 2 -27\n",
+      "t.txt");
+  EXPECT_THAT(message_of([&] { import_table(request); }), HasSubstr("--azimuth: the table has no azimuth"));
+  request.hints.clockwise.reset();
+  EXPECT_EQ(import_table(request).mapping.columns[3].name, "measured_x_mm");
+}
+
+TEST(ImportedTableOfARequest, NominalAndMeasuredAreCommandsAndReadingsOfATracker) {
+  ImportRequest request;
+  request.file = test::example_file("import/nominal-measured.csv");
+  const std::string text = read_foreign_text(request.file).text;
+  request.machine = read_machine(test::example_file("machines/three-axis-mill.machine.toml"));
+  std::string first;
+  for (const char* const header :
+       {"Name,NomX,NomY,NomZ,MeasX,MeasY,MeasZ", "Name,Nom X,Nom Y,Nom Z,Meas X,Meas Y,Meas Z",
+        "Name,Xnom,Ynom,Znom,Xact,Yact,Zact", "Name,X_nom,Y_nom,Z_nom,X_act,Y_act,Z_act",
+        "Point,X-Nominal,Y-Nominal,Z-Nominal,X-Measured,Y-Measured,Z-Measured",
+        "Punkt,SollX,SollY,SollZ,IstX,IstY,IstZ", "NAME,NOMX,NOMY,NOMZ,MEASX,MEASY,MEASZ"}) {
+    request.text = decode_foreign_text(header + text.substr(text.find('\n')), "t.csv");
+    const ImportedTable result = import_table(request);
+    EXPECT_TRUE(result.is_certain()) << imported_table_text(result);
+    if (first.empty()) first = result.rows.csv;
+    EXPECT_EQ(result.rows.csv, first) << header;
+  }
+  EXPECT_THAT(first, HasSubstr("point,X_mm,Y_mm,Z_mm,measured_x_mm,measured_y_mm,measured_z_mm\nP1,60.0,40.0,-400.0,"
+                               "1041.252,860.582,-670.002\n"));
+}
+
 TEST(ImportedTableOfARequest, OfAnotherEncodingKeepsItInItsMapping) {
   ImportRequest request;
   request.file = "t.txt";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/list_text.h"
 #include "abbe/formats/text/utf8.h"
 #include "abbe/study/imported_file.h"
@@ -55,6 +56,9 @@ nlohmann::ordered_json layout_json(const TableLayout& layout) {
 }  // namespace
 
 std::string imported_mapping_text(const ImportedTable& result) {
+  if (!result.has_readings()) {
+    throw InputError({.file = result.file}, "there are no readings, so there is no mapping", "no --write-mapping");
+  }
   std::vector<std::vector<std::string>> remarks;
   for (const ProposedColumn& column : result.columns) {
     std::vector<std::string>& lines = remarks.emplace_back();
@@ -76,7 +80,9 @@ std::string imported_table_text(const ImportedTable& result) {
     text += fmt::format("  {}: {}\n", format->words, result.format_reason);
   }
   for (const std::string& reason : result.found.reasons) text += fmt::format("  {}\n", reason);
-  text += fmt::format("\nread as {} ({}):\n", import_kind_name(result.mapping.kind), result.kind_reason);
+  text += result.has_readings()
+              ? fmt::format("\nread as {} ({}):\n", import_kind_name(result.mapping.kind), result.kind_reason)
+              : "\nno readings\n";
   std::size_t width = 0;
   for (const ProposedColumn& column : result.columns) width = std::max(width, column.column.name.size());
   for (const ProposedColumn& column : result.columns) {
@@ -95,6 +101,7 @@ std::string imported_table_text(const ImportedTable& result) {
   for (const std::string& doubt : result.found.doubts) {
     text += fmt::format("{}: {}\n", result.doubts_accepted ? "accepted" : "UNCERTAIN", doubt);
   }
+  if (!result.has_readings()) return text;
   const ImportedRows& rows = result.rows;
   text += "\n" + counted(rows.rows, "row", "rows");
   if (rows.blank_lines > 0) text += "; passed over: " + counted(rows.blank_lines, "blank line", "blank lines");
@@ -103,6 +110,12 @@ std::string imported_table_text(const ImportedTable& result) {
                         counted(rows.comment_lines, "comment line", "comment lines"));
   }
   return text + "\n";
+}
+
+std::string_view what_to_do_next(const ImportedTable& result) {
+  return result.has_readings()
+             ? "what is uncertain has to be confirmed: by options, --accept-uncertain, or a mapping file"
+             : "there are no readings";
 }
 
 nlohmann::ordered_json imported_table_json(const ImportedTable& result) {

@@ -15,4 +15,10 @@ inline std::string file_extension(const std::filesystem::path& path) {
   return extension;
 }
 
+/// "scan.csv" of "scan.csv.gz": the name of what gzip packed.
+inline std::filesystem::path without_gz(std::filesystem::path path) {
+  if (file_extension(path) == ".gz" && path.has_stem()) path.replace_extension();
+  return path;
+}
+
 }  // namespace abbe

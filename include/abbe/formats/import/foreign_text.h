@@ -32,6 +32,9 @@ struct ForeignTextOptions {
   std::size_t largest_unpacked = std::size_t{1} << 30;  ///< bytes; a few kilobytes of gzip can unpack to terabytes
 };
 
+/// Whether bytes are UTF-8, with a byte order mark or without one.
+bool is_in_utf8(std::string_view bytes);
+
 /// Finds the encoding from a byte order mark, from the zero bytes of UTF-16, or from whether the bytes are UTF-8; what
 /// is none of these is Windows-1252. Unpacks gzip first, whatever the name of the file.
 /// @param file  name for messages

@@ -15,10 +15,11 @@ enum class ImportKind {
   points,       ///< x, y, z: a point cloud, as abbe fit and abbe register read it
   tracker,      ///< commands of a machine and what a tracker measured there (measurement_file.h)
   positioning,  ///< deviations at target positions, as abbe evaluate positioning reads them
-  circular      ///< ball bar or grid encoder on a circle, as abbe evaluate circular reads them
+  circular,     ///< ball bar or grid encoder on a circle, as abbe evaluate circular reads them
+  temperatures  ///< temperatures of sensors by time; nothing of Abbe reads them yet
 };
 
-/// "points", "tracker", "positioning", "circular".
+/// "points", "tracker", "positioning", "circular", "temperatures".
 std::string_view import_kind_name(ImportKind kind);
 std::optional<ImportKind> import_kind_named(std::string_view name);
 std::vector<std::string> import_kind_names();

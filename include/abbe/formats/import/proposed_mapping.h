@@ -13,13 +13,20 @@
 
 namespace abbe {
 
+/// A tracker's readings without names of columns, taken as azimuth, elevation and range instead of coordinates.
+struct PolarOrder {
+  bool range_first = false;             ///< range, azimuth, elevation
+  std::string angle_unit, length_unit;  ///< of azimuth and elevation, and of range; empty: by their ranges
+};
+
 /// What the caller knows of a table. What is given is no longer in doubt.
 struct ImportHints {
   LayoutHints layout{};
   std::string length_unit{}, angle_unit{};  ///< of columns that state none, such as "inch" and "gon"; empty: not known
   std::optional<bool> clockwise{};          ///< azimuths count clockwise, seen from above
   std::optional<bool> zenith{};             ///< vertical angles count from the zenith
-  std::string mirrored{};  ///< coordinate of a left-handed frame to be reversed: "x", "y" or "z"; or empty
+  std::string mirrored{};             ///< coordinate of a left-handed frame to be reversed: "x", "y" or "z"; or empty
+  std::optional<PolarOrder> polar{};  ///< to be tried; only of columns without names
 };
 
 /// A column with the reason why it is read so.

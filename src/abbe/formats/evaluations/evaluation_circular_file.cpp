@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/text/placed_table.h"
 
 namespace abbe {
@@ -150,8 +150,9 @@ class CircularReader {
 }  // namespace
 
 CircularFile read_circular(const std::filesystem::path& path, double nominal_radius, const ColumnMapping& mapping) {
-  const MappedFile file(path);
-  return parse_circular(file.text(), path.string(), nominal_radius, mapping);
+  return read_readable_table(path, circular_columns(), mapping, [&](std::string_view text) {
+    return parse_circular(text, path.string(), nominal_radius, mapping);
+  });
 }
 
 CircularFile parse_circular(std::string_view text, const std::string& file, double nominal_radius,

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/text/placed_table.h"
 
 namespace abbe {
@@ -71,8 +71,8 @@ std::array<LineReadings, 2> squareness_of(const PlacedTable& csv) {
 }  // namespace
 
 LineReadings read_straightness(const std::filesystem::path& path, const ColumnMapping& mapping) {
-  const MappedFile file(path);
-  return parse_straightness(file.text(), path.string(), mapping);
+  return read_readable_table(path, line_columns(false), mapping,
+                             [&](std::string_view text) { return parse_straightness(text, path.string(), mapping); });
 }
 
 LineReadings parse_straightness(std::string_view text, const std::string& file, const ColumnMapping& mapping) {
@@ -82,8 +82,8 @@ LineReadings parse_straightness(std::string_view text, const std::string& file, 
 LineReadings parse_straightness(const NamedColumns& columns) { return straightness_of({columns, line_columns(false)}); }
 
 std::array<LineReadings, 2> read_squareness(const std::filesystem::path& path, const ColumnMapping& mapping) {
-  const MappedFile file(path);
-  return parse_squareness(file.text(), path.string(), mapping);
+  return read_readable_table(path, line_columns(true), mapping,
+                             [&](std::string_view text) { return parse_squareness(text, path.string(), mapping); });
 }
 
 std::array<LineReadings, 2> parse_squareness(std::string_view text, const std::string& file,

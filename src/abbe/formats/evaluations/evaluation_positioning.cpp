@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/text/placed_table.h"
 
 namespace abbe {
@@ -187,13 +187,13 @@ std::vector<DiagonalReadings> parse_diagonals(const NamedColumns& columns) {
 }
 
 PositioningFile read_positioning(const std::filesystem::path& path, const ColumnMapping& mapping) {
-  const MappedFile file(path);
-  return parse_positioning(file.text(), path.string(), mapping);
+  return read_readable_table(path, wanted_columns(false), mapping,
+                             [&](std::string_view text) { return parse_positioning(text, path.string(), mapping); });
 }
 
 std::vector<DiagonalReadings> read_diagonals(const std::filesystem::path& path, const ColumnMapping& mapping) {
-  const MappedFile file(path);
-  return parse_diagonals(file.text(), path.string(), mapping);
+  return read_readable_table(path, wanted_columns(true), mapping,
+                             [&](std::string_view text) { return parse_diagonals(text, path.string(), mapping); });
 }
 
 }  // namespace abbe

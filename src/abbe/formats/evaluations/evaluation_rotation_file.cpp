@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/text/placed_table.h"
 #include "abbe/geometry/angle_units.h"
 
@@ -61,8 +61,8 @@ RotationReadings rotation_of(PlacedTable csv) {
 }  // namespace
 
 RotationReadings read_rotation(const std::filesystem::path& path, const ColumnMapping& mapping) {
-  const MappedFile file(path);
-  return parse_rotation(file.text(), path.string(), mapping);
+  return read_readable_table(path, rotation_columns(), mapping,
+                             [&](std::string_view text) { return parse_rotation(text, path.string(), mapping); });
 }
 
 RotationReadings parse_rotation(std::string_view text, const std::string& file, const ColumnMapping& mapping) {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/text/placed_table.h"
 #include "abbe/geometry/angle_units.h"
 
@@ -60,8 +60,8 @@ std::vector<SectionReadings> sections_of(const PlacedTable& csv) {
 }  // namespace
 
 std::vector<SectionReadings> read_sections(const std::filesystem::path& path, const ColumnMapping& mapping) {
-  const MappedFile file(path);
-  return parse_sections(file.text(), path.string(), mapping);
+  return read_readable_table(path, section_columns(), mapping,
+                             [&](std::string_view text) { return parse_sections(text, path.string(), mapping); });
 }
 
 std::vector<SectionReadings> parse_sections(std::string_view text, const std::string& file,

@@ -55,6 +55,16 @@ bool is_own_name(const ImportColumn& wanted, const ColumnFacts& file) {
   return has_unit ? unit_of_name(file.header, wanted.base, wanted.quantity) != nullptr : file.header == wanted.base;
 }
 
+/// Also where nothing stands between the words: "NomX" and "Xnom". Two letters, such as "ux", are another name.
+bool is_same_word(const std::string& known, const std::string& word) {
+  constexpr std::size_t kLeast = 5;  // "x nom"
+  if (known == word) return true;
+  if (known.size() < kLeast || word.find(' ') != std::string::npos) return false;
+  std::string joined = known;
+  joined.erase(std::remove(joined.begin(), joined.end(), ' '), joined.end());
+  return joined == word;
+}
+
 double score_of(const ImportColumn& wanted, const ColumnFacts& file) {
   if (file.name.empty() || !can_be(wanted, file)) return 0;
   if (is_own_name(wanted, file)) return kOwnName;
@@ -62,7 +72,8 @@ double score_of(const ImportColumn& wanted, const ColumnFacts& file) {
   if (!wanted.exact_word.empty() && word == small_letters(wanted.exact_word)) {
     return comparable_word(file.name, true) == wanted.exact_word ? kOwnCase : kOtherCase;
   }
-  const auto found = std::find(wanted.words.begin(), wanted.words.end(), word);
+  const auto found = std::find_if(wanted.words.begin(), wanted.words.end(),
+                                  [&](const std::string& known) { return is_same_word(known, word); });
   if (found == wanted.words.end()) return 0;
   return kKnownWord - kNextWord * static_cast<double>(found - wanted.words.begin());
 }
@@ -255,7 +266,7 @@ ColumnMatch match_by_names(ImportKind kind, const std::vector<ImportColumn>& wan
 }
 
 ColumnMatch match_by_order(ImportKind kind, const std::vector<ImportColumn>& wanted,
-                           const std::vector<ColumnFacts>& file) {
+                           const std::vector<ColumnFacts>& file, const PolarOrder* polar) {
   ColumnMatch match = empty_match(wanted.size());
   std::vector<std::size_t> numbers, ordered;
   std::size_t text = kNoSource;
@@ -267,8 +278,14 @@ ColumnMatch match_by_order(ImportKind kind, const std::vector<ImportColumn>& wan
     }
   }
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (is_taken_by_order(wanted[i])) ordered.push_back(i);
+    if (polar == nullptr ? is_taken_by_order(wanted[i]) : wanted[i].required || wanted[i].group == "polar") {
+      ordered.push_back(i);
+    }
     if (wanted[i].holds == ImportColumn::Holds::label) match.source[i] = text;
+  }
+  // Of the columns of a kind, range comes before azimuth and elevation.
+  if (polar != nullptr && !polar->range_first && ordered.size() >= 3) {
+    std::rotate(ordered.end() - 3, ordered.end() - 2, ordered.end());
   }
   // A tracker's columns count; behind three coordinates there may be anything.
   const bool fits = kind == ImportKind::points ? numbers.size() >= ordered.size()

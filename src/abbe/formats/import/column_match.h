@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "abbe/formats/import/import_kind.h"
+#include "abbe/formats/import/proposed_mapping.h"
 #include "abbe/formats/import/table_facts.h"
 
 namespace abbe {
@@ -27,8 +28,9 @@ struct ColumnMatch {
 ColumnMatch match_by_names(ImportKind kind, const std::vector<ImportColumn>& wanted,
                            const std::vector<ColumnFacts>& file);
 /// Of a file without a header: numbers in their order. Everything is in doubt.
+/// @param polar  null: the point of a tracker is in coordinates
 ColumnMatch match_by_order(ImportKind kind, const std::vector<ImportColumn>& wanted,
-                           const std::vector<ColumnFacts>& file);
+                           const std::vector<ColumnFacts>& file, const PolarOrder* polar = nullptr);
 
 /// A column that has the name of a wanted one and a unit that is none of its quantity.
 struct WrongUnit {

@@ -73,6 +73,14 @@ class ColumnDecision {
       because(fmt::format("{} as given", given));
       return *foreign_unit_named(given);
     }
+    if (hints_.polar && wanted_.group == "polar") {
+      const PolarOrder& polar = *hints_.polar;
+      const std::string& tried = wanted_.quantity == Quantity::length ? polar.length_unit : polar.angle_unit;
+      if (!tried.empty()) {
+        doubt(fmt::format("states no unit; {} is tried", tried));
+        return *foreign_unit_named(tried);
+      }
+    }
     return wanted_.quantity == Quantity::length ? unit_of_length() : unit_of_angle();
   }
 

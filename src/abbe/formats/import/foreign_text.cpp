@@ -196,6 +196,11 @@ std::vector<std::string> encoding_names() {
   return names;
 }
 
+bool is_in_utf8(std::string_view bytes) {
+  return !bytes.starts_with(kUtf16LeMark) && !bytes.starts_with(kUtf16BeMark) && !utf16_by_zeros(bytes) &&
+         first_not_utf8(bytes) == std::string_view::npos;
+}
+
 ForeignText decode_foreign_text(std::string_view bytes, const std::string& file, const ForeignTextOptions& options) {
   ForeignText result;
   std::string unpacked;

@@ -14,7 +14,8 @@ namespace {
 using Words = std::vector<std::string>;
 using Holds = ImportColumn::Holds;
 
-constexpr std::array<std::string_view, 4> kImportKinds = {"points", "tracker", "positioning", "circular"};
+constexpr std::array<std::string_view, 5> kImportKinds = {"points", "tracker", "positioning", "circular",
+                                                          "temperatures"};
 
 /// "soll ?" for one letter or name of an axis.
 Words with_name(std::initializer_list<const char*> patterns, std::string_view name) {
@@ -204,6 +205,18 @@ std::vector<ImportColumn> circular_columns_of_import() {
   return columns;
 }
 
+/// Temperatures have a unit of their own, which is a part of the name.
+std::vector<ImportColumn> temperature_columns() {
+  return {{"time", Quantity::dimensionless, Holds::name, true, "", {"time", "timestamp", "zeit", "zeitpunkt"}},
+          {"sensor", Quantity::dimensionless, Holds::name, true, "", {"sensor", "fühler", "channel", "kanal"}},
+          {"temperature_degC",
+           Quantity::dimensionless,
+           Holds::number,
+           true,
+           "",
+           {"temperature degc", "temperatur degc", "temperature celsius", "temperature °c"}}};
+}
+
 std::vector<ImportColumn> positioning_columns() {
   const Words target = {"target",       "target position",  "soll",         "sollposition", "sollwert",
                         "nominal",      "nominal position", "commanded",    "command",      "programmed",
@@ -263,6 +276,8 @@ std::vector<ImportColumn> import_columns(ImportKind kind, const Machine& machine
       return tracker_columns(machine);
     case ImportKind::circular:
       return circular_columns_of_import();
+    case ImportKind::temperatures:
+      return temperature_columns();
     case ImportKind::positioning:
       break;
   }

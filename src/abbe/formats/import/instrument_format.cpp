@@ -45,6 +45,11 @@ const std::vector<InstrumentFormat>& instrument_formats() {
       {"dmis", "DMIS output file", recognise_dmis_output, read_dmis_output},
       {"heidenhain-table", "table of a Heidenhain control", recognise_heidenhain_table, read_heidenhain_table},
       {"linuxcnc-probe", "probe log of LinuxCNC", recognise_linuxcnc_probe, read_linuxcnc_probe},
+      {"ecmc-positioning", "file of positioning readings of ecmc", recognise_ecmc_positioning, read_ecmc_positioning},
+      {"mtconnect-temperatures", "answer of an MTConnect agent", recognise_mtconnect_temperatures,
+       read_mtconnect_temperatures},
+      {"mtconnect-devices", "description of devices by an MTConnect agent", recognise_mtconnect_devices,
+       read_mtconnect_devices},
   };
   return formats;
 }

@@ -70,14 +70,6 @@ TEST(InstrumentFormats, PutWhatIsCertainBeforeWhatIsPossible) {
   EXPECT_FALSE(recognise_instrument("BEGIN A.TAB\n")->recognition.certain);
 }
 
-TEST(BallBarResults, AreRefusedWithWhatCanBeDone) {
-  EXPECT_EQ(
-      refusal_of("renishaw-ballbar",
-                 "<BALLBAR>\n<FEATURE NAME=\"AF_CIRCULARITY\" DT=\"UT_LENGTH_UM\">4</FEATURE>\n</BALLBAR>\n"),
-      "t:2: FEATURE: results of a Renishaw ball bar: where such a file has its readings is not publicly described; "
-      "expected the readings as a table with direction, angle and deviation or radius (--as circular)");
-}
-
 TEST(LinuxCncProbeLog, HasNinePositionsInEveryLine) {
   const InstrumentTable table = read_as("linuxcnc-probe",
                                         "1.500000 -2.000000 3.250000 0.000000 0.000000 0.000000 0.000000 0.000000 "

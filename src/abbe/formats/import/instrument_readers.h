@@ -28,6 +28,17 @@ InstrumentTable read_qif_results(std::string_view text, const std::string& file,
 std::optional<Recognition> recognise_mtconnect_streams(std::string_view text);
 InstrumentTable read_mtconnect_streams(std::string_view text, const std::string& file, const ImportHints& hints);
 
+std::optional<Recognition> recognise_mtconnect_devices(std::string_view text);
+InstrumentTable read_mtconnect_devices(std::string_view text, const std::string& file, const ImportHints& hints);
+
+std::optional<Recognition> recognise_mtconnect_temperatures(std::string_view text);
+InstrumentTable read_mtconnect_temperatures(std::string_view text, const std::string& file, const ImportHints& hints);
+/// Whether an answer of an agent has temperatures and no positions.
+bool has_only_temperatures(std::string_view text);
+
+std::optional<Recognition> recognise_ecmc_positioning(std::string_view text);
+InstrumentTable read_ecmc_positioning(std::string_view text, const std::string& file, const ImportHints& hints);
+
 std::optional<Recognition> recognise_dmis_output(std::string_view text);
 InstrumentTable read_dmis_output(std::string_view text, const std::string& file, const ImportHints& hints);
 

@@ -147,7 +147,7 @@ class StreamsReader {
 }  // namespace
 
 std::optional<Recognition> recognise_mtconnect_streams(std::string_view text) {
-  if (!begins_with_element(text, "MTConnectStreams")) return std::nullopt;
+  if (!begins_with_element(text, "MTConnectStreams") || has_only_temperatures(text)) return std::nullopt;
   return Recognition{"XML with the root MTConnectStreams"};
 }
 

@@ -60,8 +60,9 @@ class Proposer {
     KindMatch result;
     result.kind = kind;
     result.wanted = import_columns(kind, machine_ == nullptr ? Machine() : *machine_);
+    const PolarOrder* const polar = hints_.polar && kind == ImportKind::tracker ? &*hints_.polar : nullptr;
     result.match =
-        has_header() ? match_by_names(kind, result.wanted, facts_) : match_by_order(kind, result.wanted, facts_);
+        has_header() ? match_by_names(kind, result.wanted, facts_) : match_by_order(kind, result.wanted, facts_, polar);
     return result;
   }
 

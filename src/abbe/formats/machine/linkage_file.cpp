@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/text/number_text.h"
 #include "abbe/formats/text/placed_table.h"
 #include "abbe/geometry/angle_units.h"
@@ -201,8 +201,8 @@ LinkageReadings parse_linkage(const NamedColumns& columns) {
 }
 
 LinkageReadings read_linkage(const std::filesystem::path& path, const ColumnMapping& mapping) {
-  const MappedFile file(path);
-  return parse_linkage(file.text(), path.string(), mapping);
+  return read_readable_table(path, linkage_columns(), mapping,
+                             [&](std::string_view text) { return parse_linkage(text, path.string(), mapping); });
 }
 
 std::string linkage_text(const LinkageReadings& r) {

@@ -6,6 +6,7 @@
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/shapes/obj_file.h"
 #include "abbe/formats/shapes/ply_file.h"
@@ -50,7 +51,7 @@ MeshFile mesh_of_obj(std::string_view contents, const std::string& file, const M
 }  // namespace
 
 MeshFile parse_mesh(std::string_view contents, const std::string& file, const MeshFileOptions& options) {
-  const std::string extension = file_extension(with_ending(file, contents));
+  const std::string extension = file_extension(without_gz(with_ending(file, contents)));
   if (is_step(contents)) {
     throw InputError({file, 0, 0, ""}, "a STEP file is read from the disk only", "STL, PLY or OBJ");
   }
@@ -67,8 +68,8 @@ MeshFile parse_mesh(std::string_view contents, const std::string& file, const Me
 }
 
 MeshFile read_mesh(const std::filesystem::path& path, const MeshFileOptions& options) {
-  const MappedFile file(path);
-  if (is_step(file.text())) return read_step(path, options);
+  const UnpackedFile file(path);
+  if (is_step(file.text()) && !file.is_packed()) return read_step(path, options);
   return parse_mesh(file.text(), path.string(), options);
 }
 

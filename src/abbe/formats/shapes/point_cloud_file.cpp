@@ -7,7 +7,7 @@
 
 #include "abbe/formats/files/file_extension.h"
 #include "abbe/formats/files/standard_input.h"
-#include "abbe/formats/files/text_file.h"
+#include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/shapes/e57_file.h"
 #include "abbe/formats/shapes/ending.h"
 #include "abbe/formats/shapes/obj_file.h"
@@ -23,16 +23,21 @@
 namespace abbe {
 namespace {
 
-PointCloudFile parse_csv_cloud(std::string_view contents, const std::string& file, const PointCloudOptions& options) {
+std::vector<CsvColumn> cloud_columns(bool in_plane) {
   std::vector<CsvColumn> wanted;
   for (const char* name : {"x", "y"}) wanted.push_back({name, Quantity::length});
-  wanted.push_back({"z", Quantity::length, false, !options.in_plane});
+  wanted.push_back({"z", Quantity::length, false, !in_plane});
   for (const char* name : {"nx", "ny", "nz"}) wanted.push_back({name, Quantity::dimensionless, false, false});
   wanted.push_back({"deviation", Quantity::length, false, false});
   CsvColumn name{"point", Quantity::dimensionless, true, false};
   name.is_label = true;
   wanted.push_back(name);
-  CsvTable table = read_csv(contents, file, wanted, options.mapping, options.threads);
+  return wanted;
+}
+
+PointCloudFile parse_plain_csv_cloud(std::string_view contents, const std::string& file,
+                                     const PointCloudOptions& options) {
+  CsvTable table = read_csv(contents, file, cloud_columns(options.in_plane), options.mapping, options.threads);
   std::size_t normals = 0;
   for (std::size_t k = 3; k < 6; ++k) normals += table.columns[k].present ? 1U : 0U;
   if (normals != 0 && normals != 3) {
@@ -70,14 +75,58 @@ PointCloudFile parse_csv_cloud(std::string_view contents, const std::string& fil
   return result;
 }
 
+PointCloudFile parse_csv_cloud(std::string_view contents, const std::string& file, const PointCloudOptions& options) {
+  if (options.unit) {
+    throw InputError({file, 0, 0, "unit"}, "a CSV file states the unit of each column in its header", "no unit");
+  }
+  return parse_readable_table(contents, file, cloud_columns(options.in_plane), options.mapping,
+                              [&](std::string_view text) { return parse_plain_csv_cloud(text, file, options); });
+}
+
+bool has_names(const ColumnMapping& mapping) { return !mapping.columns.empty() || !mapping.ignore.empty(); }
+
+[[noreturn]] void refuse_mapping(const std::string& file) {
+  throw InputError({file, 0, 0, ""}, "its columns cannot be named or left out: this is not a CSV file",
+                   "a CSV file, whose first line has the names of its columns");
+}
+
+/// Numbers between blanks; or else as other programs separate them, or a table with a header.
+PointCloudFile parse_xyz_cloud(std::string_view contents, const std::string& file, const PointCloudOptions& options) {
+  PointCloudFile result;
+  result.unit = agreed_unit(std::nullopt, options.unit, file);
+  result.format = "XYZ";
+  const double factor = millimetres(result.unit.length);
+  const auto parse = [&](std::string_view text) {
+    return parse_xyz(text, file, kLargestInput / factor, options.threads);
+  };
+  const auto as_table = [&] { return plain_table(contents, file, cloud_columns(options.in_plane), options.mapping); };
+  if (has_names(options.mapping)) {
+    const std::optional<std::string> table = as_table();
+    if (!table) refuse_mapping(file);
+    return parse_csv_cloud(*table, file, options);
+  }
+  std::optional<std::string> plain;
+  try {
+    result.cloud = parse(contents);
+  } catch (const InputError&) {
+    const std::optional<std::string> table = as_table();
+    if (table) return parse_csv_cloud(*table, file, options);
+    plain = plain_points(contents, file);
+    if (!plain) throw;
+  }
+  if (plain) result.cloud = parse(*plain);
+  result.cloud.points *= factor;
+  return result;
+}
+
 }  // namespace
 
 PointCloudFile parse_point_cloud(std::string_view contents, const std::string& file, const PointCloudOptions& options) {
-  const std::string extension = file_extension(with_ending(file, contents));
-  if (extension != ".csv" && !(options.mapping.columns.empty() && options.mapping.ignore.empty())) {
-    throw InputError({file, 0, 0, ""}, "its columns cannot be named or left out: this is not a CSV file",
-                     "a CSV file, whose first line has the names of its columns");
-  }
+  const std::string extension = file_extension(without_gz(with_ending(file, contents)));
+  const bool is_shape = is_e57(contents) || is_pcd(contents) || is_ply(contents) || is_binary_stl(contents) ||
+                        extension == ".e57" || extension == ".pcd" || extension == ".ply" || extension == ".obj" ||
+                        extension == ".stl";
+  if (is_shape && has_names(options.mapping)) refuse_mapping(file);
   if (is_e57(contents) || extension == ".e57") return parse_e57(contents, file, options.unit, options.threads);
   if (is_pcd(contents) || extension == ".pcd") return parse_pcd(contents, file, options.unit);
   PointCloudFile result;
@@ -95,12 +144,7 @@ PointCloudFile parse_point_cloud(std::string_view contents, const std::string& f
     result.unit = obj.unit;
     return result;
   }
-  if (extension == ".csv") {
-    if (options.unit) {
-      throw InputError({file, 0, 0, "unit"}, "a CSV file states the unit of each column in its header", "no unit");
-    }
-    return parse_csv_cloud(contents, file, options);
-  }
+  if (extension == ".csv") return parse_csv_cloud(contents, file, options);
   if (extension == ".stl" || is_binary_stl(contents)) {
     throw InputError({file, 0, 0, ""}, "this is an STL file, a mesh", "a point cloud: XYZ, CSV, PLY, PCD, E57 or OBJ");
   }
@@ -108,17 +152,16 @@ PointCloudFile parse_point_cloud(std::string_view contents, const std::string& f
     refuse_contents(file, contents, "a point cloud", {".xyz", ".csv", ".ply", ".pcd", ".e57", ".obj"});
   }
   if (extension == ".ply") throw InputError({file, 1, 0, ""}, "this is not a PLY file", "a first line 'ply'");
-  result.unit = agreed_unit(std::nullopt, options.unit, file);
-  const double factor = millimetres(result.unit.length);
-  result.cloud = parse_xyz(contents, file, kLargestInput / factor, options.threads);
-  result.cloud.points *= factor;
-  result.format = "XYZ";
-  return result;
+  return parse_xyz_cloud(contents, file, options);
 }
 
 PointCloudFile read_point_cloud(const std::filesystem::path& path, const PointCloudOptions& options) {
-  const MappedFile file(path);
-  return parse_point_cloud(file.text(), path.string(), options);
+  const UnpackedFile file(path);
+  const std::string name = path.string();
+  const bool is_text =
+      !is_e57(file.text()) && !is_pcd(file.text()) && !is_ply(file.text()) && !is_binary_stl(file.text());
+  const std::optional<std::string> decoded = is_text ? text_in_utf8(file.text(), name) : std::nullopt;
+  return parse_point_cloud(decoded ? std::string_view(*decoded) : file.text(), name, options);
 }
 
 bool has_point_cloud_extension(const std::filesystem::path& path) {

@@ -122,8 +122,8 @@ TEST(PointCloudFile, BadLinesAreNamed) {
   EXPECT_EQ(message_of([] { parse_point_cloud("1 2 3 4\n", "a.xyz"); }),
             "a.xyz:1:1: the line has 4 numbers; expected 3: x y z, or 6: x y z and a unit normal; other columns need a "
             "CSV file with a header");
-  EXPECT_EQ(message_of([] { parse_point_cloud("1,2,3\n", "a.xyz"); }),
-            "a.xyz:1:1: x: '1,2,3' is not a number; expected numbers with a point between spaces; comma-separated "
+  EXPECT_EQ(message_of([] { parse_point_cloud("12,x 3 4\n", "a.xyz"); }),
+            "a.xyz:1:1: x: '12,x' is not a number; expected numbers with a point between spaces; comma-separated "
             "values are read from .csv files with a header x_mm,y_mm,z_mm");
   EXPECT_EQ(message_of([] { parse_point_cloud("# nothing\n", "a.xyz"); }),
             "a.xyz: there are no points in the file; expected lines of three numbers");
