@@ -8,7 +8,7 @@
 namespace abbe {
 
 void tell_distrust(const Study& study, const StudyResult& result) {
-  if (study.identification && !result.usable()) tell("abbe: {}\n", study_verdict(study, result));
+  if (!result.usable() && says_no(study, result)) tell("abbe: {}\n", study_verdict(study, result));
   for (const Distrust& reason : result.distrusted) tell("abbe: not to be trusted: {}\n", reason.text);
   if (result.distrusted.empty()) return;
   tell("abbe: {}\n", result.misfit_accepted

@@ -246,7 +246,9 @@ def test_nothing_explains_noise():
 
 def test_few_readings_and_simulated_ones_are_no_mistake():
     study = second_tracker()
-    assert study.check(spoiled(study, lambda c, m: (c[:5], m[:5] * [2, 1, 1]))).explained
+    assert study.check(spoiled(study, lambda c, m: (c[:3], m[:3] * [2, 1, 1]))).explained
+    [place] = study.check(spoiled(study, lambda c, m: (c[:5], m[:5] * [2, 1, 1]))).unexplained
+    assert place.causes == [] and "too few to try the usual mistakes" in place.text()
     seen = []
     simulated = abbe.Study.read(EXAMPLES / "aguado/aguado.study.toml").check(progress=lambda *step: seen.append(step))
     assert simulated.explained and simulated.to_dict()["simulated"] is True and seen

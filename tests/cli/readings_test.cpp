@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -87,6 +88,55 @@ TEST_F(ReadingsAgainstTheMachine, CheckNamesWhatWouldExplainThem) {
   const CommandResult run = abbe({"run", with_errors, "-o", "results"});
   EXPECT_EQ(run.exit_code, ExitCode::computation_says_no);
   EXPECT_THAT(run.out, HasSubstr("if the commands of Y and X are swapped\n"));
+}
+
+TEST_F(ReadingsAgainstTheMachine, WhatNothingExplainsIsNotCalledExplained) {
+  // The offset of the reflector is open in this study.
+  const std::vector<std::function<void(std::vector<double>&)>> changes = {[row = 0](std::vector<double>& of) mutable {
+                                                                            of[6] = std::fmod(37.0 * row * row, 360);
+                                                                            of[7] = std::fmod(23.0 * row * row, 80);
+                                                                            ++row;
+                                                                          },
+                                                                          [](std::vector<double>& of) {
+                                                                            of[0] /= 25.4;  // X and Z alone are in inch
+                                                                            of[2] /= 25.4;
+                                                                          }};
+  for (const auto& change : changes) {
+    const CommandResult result = abbe({"check", study_of(change)});
+    EXPECT_EQ(result.exit_code, ExitCode::computation_says_no) << result.out;
+    EXPECT_THAT(result.out, HasSubstr("none of the usual mistakes would explain that"));
+    EXPECT_THAT(result.out, Not(HasSubstr("the nominal machine explains")));
+  }
+}
+
+TEST_F(ReadingsAgainstTheMachine, CheckFindsATrackerThatWasMoved) {
+  const CommandResult result = abbe({"check", study_of([row = 0](std::vector<double>& of) mutable {
+                                       if (row++ >= 30) of[6] += 40;
+                                     })});
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.out, HasSubstr("mm if front moved after reading 29\n"));
+}
+
+TEST_F(ReadingsAgainstTheMachine, CheckDoesNotSayThatTheMachineExplainsWhatItCannotJudge) {
+  const CommandResult result = abbe({"check", kFolder + "three_axis/level-and-autocollimator.study.toml"});
+  EXPECT_EQ(result.exit_code, ExitCode::done) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("they cannot be judged by the nominal machine\n"));
+  EXPECT_THAT(result.out, Not(HasSubstr("the nominal machine explains")));
+}
+
+TEST_F(ReadingsAgainstTheMachine, RunWithoutAnIdentificationSaysWhatIsWrong) {
+  const std::string study = study_of([](std::vector<double>& row) { row[6] = -row[6]; });
+  const CommandResult result = abbe({"run", study, "-o", "results"});
+  EXPECT_EQ(result.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(result.out, HasSubstr("if the azimuth counts clockwise\n"));
+  EXPECT_THAT(result.err, HasSubstr("the nominal machine does not explain the readings"));
+  const CommandResult json = abbe({"run", study, "-o", "json", "--json"});
+  EXPECT_EQ(json.exit_code, ExitCode::computation_says_no);
+  EXPECT_THAT(nlohmann::json::parse(json.out)["warnings"].dump(), HasSubstr("the azimuth counts clockwise"));
+  EXPECT_EQ(abbe({"run", study, "-o", "accepted", "--accept-misfit"}).exit_code, ExitCode::done);
+  const CommandResult good = abbe({"run", kSecondTracker, "-o", "good"});
+  EXPECT_EQ(good.exit_code, ExitCode::done) << good.err;
+  EXPECT_THAT(good.out, Not(HasSubstr("warning")));
 }
 
 TEST_F(ReadingsAgainstTheMachine, CheckRefusesWhatAStudyHasNoUseFor) {

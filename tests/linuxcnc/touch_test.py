@@ -123,7 +123,12 @@ def main():
 
 
 def judge(errors):
-    """Every hidden error within four standard uncertainties of what was found, and these small."""
+    """The hidden errors are within the uncertainties of what was found, and these are small.
+
+    k = 2 covers 95.45 %: of eight errors, six or more are within it but for 0.5 % of all runs. All are within k = 3.5 but
+    for 0.4 %. Nothing in a run is random except when the probe is looked at.
+    """
+    within = 0
     found = {location["name"]: location for location in errors["location"]}
     check(set(found) == set(HIDDEN), f"found {sorted(found)}")
     for name, hidden in HIDDEN.items():
@@ -131,8 +136,12 @@ def judge(errors):
         true = hidden * (1e3 if unit == "um" else 1e6)
         value, uncertainty = found[name][f"value_{unit}"], found[name][f"standard_uncertainty_{unit}"]
         print(f"{name}: hidden {true:.2f}, found {value:.2f}, u {uncertainty:.2f} {unit}")
-        check(abs(value - true) <= 4 * uncertainty, f"{name} is not what is hidden")
+        off = abs(value - true) / uncertainty
+        within += off <= 2
+        check(off <= 3.5, f"{name} is not what is hidden")
         check(uncertainty < (2 if unit == "um" else 15), f"{name} is hardly determined")
+    print(f"{within} of {len(HIDDEN)} within k = 2")
+    check(within >= 6, "too many errors are outside their expanded uncertainties")
 
 
 main()

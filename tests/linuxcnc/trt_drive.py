@@ -12,6 +12,11 @@ def drive(operation, job, say):
     world = [f"axis.{letter}.pos-cmd" for letter in job["letters"].lower()]
     operation.switch_on()
     operation.mdi("G21 G90 G49 G61")
+    if job["switched"]:
+        # The interpreter takes over the world of the other kinematics (LinuxCNC, "Switchable Kinematics").
+        hal.set_p("motion.switchkins-type", "1")
+        operation.cycles(20)
+        operation.mdi("M66 E0 L0")
     operation.mdi("T1 M6")
     operation.mdi("G43 H1")
 

@@ -34,10 +34,11 @@ struct CampaignSetup {
   std::shared_ptr<const Instrument> start;   ///< as the identification starts: `device` until find_start_values()
   std::shared_ptr<const Instrument> truth;   ///< simulation: as it really is
   InstrumentReadings readings;
-  InstrumentReadings exact;                      ///< simulation: the same readings without noise and outliers
-  std::vector<std::uint32_t> outliers;           ///< simulation: readings made to outliers
-  std::size_t hidden = 0;                        ///< simulation: sights left out for lack of a line of sight
-  std::vector<std::string> contradictions;       ///< in words, where a file of readings and the study differ
+  InstrumentReadings exact;                 ///< simulation: the same readings without noise and outliers
+  std::vector<std::uint32_t> outliers;      ///< simulation: readings made to outliers
+  std::size_t hidden = 0;                   ///< simulation: sights left out for lack of a line of sight
+  std::vector<std::string> contradictions;  ///< in words, where a file of readings and the study differ
+  std::size_t judged_places = 0;  ///< by find_start_values(): from where readings can be compared with the machine
   std::vector<UnexplainedReadings> unexplained;  ///< by find_start_values(): the nominal machine does not explain them
 
   const PoseList& poses() const { return readings.poses; }
@@ -67,6 +68,8 @@ struct Campaign {
   std::vector<std::string> notes;     ///< what was done, for the report's assumptions
 
   std::size_t reading_count() const;
+  /// Once find_start_values() has judged: false if readings of any place do not fit the nominal machine.
+  bool is_explained() const;
 };
 
 /// True errors of a simulated study: from its file, or drawn and scaled.

@@ -13,6 +13,8 @@ struct StudyCheck {
 
   /// False if readings of any place do not fit the nominal machine: see unexplained_readings().
   bool is_explained() const;
+  /// Places whose readings can be compared with the nominal machine before anything is identified.
+  std::size_t judged_places() const;
 };
 
 /// Reads or simulates the readings of a study and finds where instruments stood. @throws InputError

@@ -304,8 +304,9 @@ TEST_F(KinematicValuesTest, UncertaintiesOfADifferenceAreThoseOfBothAxes) {
 }
 
 TEST_F(KinematicValuesTest, MachinesAndRequestsThatAControlDoesNotHaveAreRefusedWithTheReason) {
-  EXPECT_THAT(refused(request_for("linuxcnc", "swivel-head-mill")),
-              HasSubstr("--for linuxcnc: both rotary axes are in the head; expected the chain of xyzac-trt-kins"));
+  EXPECT_THAT(
+      refused(request_for("linuxcnc", "swivel-head-mill")),
+      HasSubstr("--for linuxcnc: B carries the head, not C along Z; expected the chain of a kinematics module"));
   EXPECT_THAT(refused(request_for("linuxcnc", "head-table-mill")), HasSubstr("one rotary axis is in the head"));
   EXPECT_THAT(refused(request_for("values", "three-axis-mill")), HasSubstr("the machine has no rotary axis"));
   EXPECT_THAT(refused(request_for("siemens", "three-axis-mill")),
@@ -332,6 +333,9 @@ TEST_F(KinematicValuesTest, MachinesAndRequestsThatAControlDoesNotHaveAreRefused
   EXPECT_THAT(refused(request), HasSubstr("--tool-carrier: out of range"));
   request = request_for("tnc", "trunnion-mill");
   EXPECT_EQ(refused(request), "--for: unknown format 'tnc'; expected values, linuxcnc, siemens, fanuc");
+  EXPECT_THAT(
+      refused(request_for("heidenhain", "trunnion-mill")),
+      HasSubstr("no public source has them (docs/kinematic-values.md, \"Left out\"); expected values, which has"));
   request = request_for("siemens", "trunnion-mill");
   request.limit_mm = 0;
   EXPECT_THAT(refused(request), HasSubstr("--limit-um: 0 is not a limit"));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "abbe/formats/text/input_error.h"
@@ -15,8 +16,8 @@ constexpr double kParallel = 1e-9;
   throw InputError({.field = "--for " + format}, why, expected + "; --for values takes every machine");
 }
 
-/// Linear axes: one along each of X, Y, Z, positive where the tool moves that way against the workpiece.
-void check_linear_axes(const Machine& machine, const std::string& format) {
+/// One along each of X, Y, Z, positive where the tool moves that way against the workpiece.
+void check_linear_directions(const Machine& machine, const std::string& format) {
   std::vector<std::size_t> along(3, 0);
   std::size_t count = 0;
   for (const Axis& axis : machine.axes) {
@@ -43,6 +44,22 @@ void check_linear_axes(const Machine& machine, const std::string& format) {
 
 }  // namespace
 
+void require_linear_axes(const Machine& machine, const std::string& format) {
+  check_linear_directions(machine, format);
+  // From the workpiece to the bed, and from the bed to the tool: rotary axes are outside.
+  const std::size_t table_axes = machine.workpiece_axis_count();
+  const auto is_rotary = [](const Axis& axis) { return axis.kind == AxisKind::rotary; };
+  const auto begin = machine.axes.begin(), bed = begin + static_cast<std::ptrdiff_t>(table_axes);
+  for (auto axis = begin; axis != machine.axes.end(); ++axis) {
+    if (is_rotary(*axis)) continue;
+    const bool carried = axis < bed ? std::any_of(axis + 1, bed, is_rotary) : std::any_of(bed, axis, is_rotary);
+    if (carried) {
+      refuse_chain(format, fmt::format("a rotary axis carries {}", axis->name),
+                   "rotary axes next to the workpiece and to the tool");
+    }
+  }
+}
+
 RotaryPair rotary_pair(const Machine& machine, const std::string& format) {
   std::vector<std::size_t> of_table, of_head;
   const std::size_t table_axes = machine.workpiece_axis_count();
@@ -54,17 +71,7 @@ RotaryPair rotary_pair(const Machine& machine, const std::string& format) {
     refuse_chain(format, fmt::format("the machine has {} rotary {}", count, count == 1 ? "axis" : "axes"),
                  "two rotary axes");
   }
-  check_linear_axes(machine, format);
-  // From the workpiece to the bed, and from the bed to the tool: rotary axes are outside.
-  for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-    if (machine.axes[i].kind != AxisKind::linear) continue;
-    const bool carried =
-        i < table_axes ? !of_table.empty() && i < of_table.back() : !of_head.empty() && i > of_head.front();
-    if (carried) {
-      refuse_chain(format, fmt::format("a rotary axis carries {}", machine.axes[i].name),
-                   "rotary axes next to the workpiece and to the tool");
-    }
-  }
+  require_linear_axes(machine, format);
   if (of_table.size() == 2) return {RotaryPairKind::table, of_table[1], of_table[0]};
   if (of_head.size() == 2) return {RotaryPairKind::head, of_head[0], of_head[1]};
   return {RotaryPairKind::mixed, of_head[0], of_table[0]};

@@ -17,6 +17,11 @@ struct RotaryPair {
 };
 
 /// @param format  for messages: "siemens"
+/// @throws InputError with the reason for a machine that has not three linear axes along X, Y and Z which move the tool
+///   in their positive direction against the workpiece, or a linear axis that a rotary one carries
+void require_linear_axes(const Machine& machine, const std::string& format);
+
+/// @param format  for messages: "siemens"
 /// @throws InputError with the reason for a machine that has not two rotary axes and three linear axes along X, Y and
 ///   Z which move the tool in their positive direction against the workpiece, or a linear axis that a rotary one
 ///   carries

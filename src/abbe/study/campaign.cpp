@@ -184,6 +184,11 @@ std::size_t Campaign::reading_count() const {
   return count;
 }
 
+bool Campaign::is_explained() const {
+  return std::all_of(setups.begin(), setups.end(),
+                     [](const CampaignSetup& setup) { return setup.unexplained.empty(); });
+}
+
 ErrorSet true_errors(const Study& study) {
   const Simulation& simulation = *study.simulation;
   if (simulation.errors) return *simulation.errors;
@@ -264,7 +269,9 @@ void find_start_values(const Machine& machine, Campaign& campaign) {
     for (const std::string& message : setup.contradictions) tell(message);
     StartedInstrument started = setup.device->started(machine, setup.readings);
     for (const std::string& message : started.warnings) tell(message);
-    setup.unexplained = unexplained_readings(machine, *setup.device, setup.readings, started);
+    JudgedReadings judged = judge_readings(machine, *setup.device, setup.readings, started);
+    setup.judged_places = judged.places;
+    setup.unexplained = std::move(judged.unexplained);
     for (const UnexplainedReadings& place : setup.unexplained) tell(place.words());
     setup.start = std::move(started.instrument);
   }

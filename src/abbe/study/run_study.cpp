@@ -40,7 +40,12 @@ StudyResult run_study(const Study& study, const RunOptions& options) {
     return progress;
   };
   result.campaign = gather_readings(study, begin(StudyStep::gather));
-  if (!study.identification) return result;
+  if (!study.identification) {
+    // Simulated readings are as good as the study; measured ones can contradict it.
+    if (!study.simulation) find_start_values(study.machine, result.campaign);
+    result.warnings = result.campaign.warnings;
+    return result;
+  }
   identify_study(study, result, begin(StudyStep::identify), options.stop, options.summation);
   if (!result.usable()) {
     judge_trust(study, result);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "abbe/formats/text/list_text.h"
@@ -10,9 +9,12 @@
 
 namespace abbe {
 
-bool StudyCheck::is_explained() const {
-  return std::all_of(campaign.setups.begin(), campaign.setups.end(),
-                     [](const CampaignSetup& setup) { return setup.unexplained.empty(); });
+bool StudyCheck::is_explained() const { return campaign.is_explained(); }
+
+std::size_t StudyCheck::judged_places() const {
+  std::size_t places = 0;
+  for (const CampaignSetup& setup : campaign.setups) places += setup.judged_places;
+  return places;
 }
 
 StudyCheck check_study(const Study& study, const ProgressCallback& progress) {
@@ -30,7 +32,11 @@ std::string study_check_text(const Study& study, const StudyCheck& check) {
                         counted(setup.reading_count(), "reading", "readings"));
   }
   for (const std::string& warning : check.campaign.warnings) text += fmt::format("warning: {}\n", warning);
-  if (check.is_explained()) text += "the nominal machine explains the readings of all places that can be judged\n";
+  if (check.judged_places() == 0) {
+    text += "no place of a tracker is sought from enough readings: they cannot be judged by the nominal machine\n";
+  } else if (check.is_explained()) {
+    text += "the nominal machine explains the readings of all places that can be judged\n";
+  }
   return text;
 }
 
@@ -41,6 +47,7 @@ nlohmann::ordered_json study_check_json(const Study& study, const StudyCheck& ch
   for (const CampaignSetup& setup : check.campaign.setups) {
     nlohmann::ordered_json one = {{"name", setup.name}, {"instrument", setup.instrument}};
     one["readings"] = setup.reading_count();
+    one["judged_places"] = setup.judged_places;
     one["unexplained"] = nlohmann::ordered_json::array();
     for (const UnexplainedReadings& place : setup.unexplained) {
       one["unexplained"].push_back({{"place", place.place},

@@ -73,7 +73,9 @@ std::string prediction_covers(const StudyResult& result) {
 }
 
 std::string study_verdict(const Study& study, const StudyResult& result) {
-  if (!study.identification) return "";
+  if (!study.identification) {
+    return result.campaign.is_explained() ? "" : "No use: the nominal machine does not explain the readings.";
+  }
   if (!result.usable()) {
     return fmt::format("No result: {}.", result.identification.message.empty()
                                              ? status_text(result.identification.status)

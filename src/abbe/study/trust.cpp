@@ -139,7 +139,7 @@ ErrorsFile identified_errors_file(const Study& study, const StudyResult& result)
 }
 
 bool says_no(const Study& study, const StudyResult& result) {
-  if (!study.identification) return false;
+  if (!study.identification) return !result.campaign.is_explained() && !result.misfit_accepted;
   return !result.usable() || (!result.distrusted.empty() && !result.misfit_accepted);
 }
 

@@ -10,24 +10,17 @@
 #include <utility>
 
 #include "abbe/study/axis_mistakes.h"
+#include "abbe/study/place_parts.h"
 
 namespace abbe {
 namespace {
 
-constexpr std::size_t kFewestOfPlace = 6;
 constexpr std::size_t kMostTried = 300;     // that every mistake is tried on
-constexpr std::size_t kMostInOrder = 2000;  // in which the end of a part is looked for
-constexpr double kExplainedShare = 0.8, kExplainedExtent = 0.03;
+constexpr std::size_t kMostInOrder = 2000;  // by which a place is judged
+constexpr double kExplainedShare = 0.8;
 constexpr double kMendedShare = 0.9;
+constexpr std::size_t kMostMistakes = 100;
 constexpr double kAsGood = 3;  // causes up to this factor above the best cannot be told from it
-constexpr std::size_t kMostParts = 8;
-
-std::vector<std::size_t> evenly_chosen(const std::vector<std::size_t>& readings, std::size_t most) {
-  const std::size_t count = std::min(readings.size(), most);
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(readings[i * readings.size() / count]);
-  return chosen;
-}
 
 /// How well the place that was found explains readings.
 struct PlaceFit {
@@ -60,6 +53,16 @@ PlaceFit place_fit(const Machine& machine, const StartedInstrument& started, con
   return result;
 }
 
+/// The most readings one after the other that are not explained.
+std::size_t longest_misfit(const PlaceFit& fit) {
+  std::size_t longest = 0, run = 0;
+  for (const std::uint8_t explained : fit.explained) {
+    run = explained != 0 ? 0 : run + 1;
+    longest = std::max(longest, run);
+  }
+  return longest;
+}
+
 /// What would explain the readings, and how well.
 struct Explanation {
   std::string words;
@@ -72,16 +75,26 @@ class MistakeSearch {
                 const StartFit& present, const PlaceFit& as_read)
       : machine_(machine), instrument_(instrument), readings_(readings), present_(present), as_read_(as_read) {}
 
+  /// Without causes.
+  UnexplainedReadings as_read() const {
+    return {.place = present_.place,
+            .readings = present_.readings.size(),
+            .share = as_read_.share,
+            .rms_mm = as_read_.rms_mm,
+            .causes = {},
+            .set_up_is_open = present_.rough};
+  }
+
   UnexplainedReadings search() const {
-    UnexplainedReadings result{.place = present_.place,
-                               .readings = present_.readings.size(),
-                               .share = as_read_.share,
-                               .rms_mm = as_read_.rms_mm,
-                               .causes = {}};
-    std::vector<Explanation> found = mistakes();
+    UnexplainedReadings result = as_read();
+    std::vector<Explanation> found;
+    const bool explained = as_read_.explains(kExplainedShare);
+    // A move is one cause, and so comes before combinations of mistakes.
+    if (!explained) found = mistakes(1, 1);
     if (found.empty()) {
       if (std::optional<Explanation> moved = interruptions()) found.push_back(*std::move(moved));
     }
+    if (!explained && found.empty()) found = mistakes(2, kMostMistakes);
     if (found.empty()) return result;
     result.mended_rms_mm = found.front().rms_mm;
     for (const Explanation& one : found) result.mended_rms_mm = std::min(result.mended_rms_mm, one.rms_mm);
@@ -123,11 +136,12 @@ class MistakeSearch {
   }
 
   /// The fewest mistakes that explain the readings, all that do.
-  std::vector<Explanation> mistakes() const {
+  std::vector<Explanation> mistakes(std::size_t fewest, std::size_t largest) const {
     const std::vector<std::size_t> chosen = evenly_chosen(present_.readings, kMostTried);
     const std::vector<ReadingMistake> measured = instrument_.usual_mistakes();
     const std::vector<AxisMistake> axes = axis_mistakes(machine_);
-    const std::size_t most = std::max<std::size_t>(2, measured.empty() ? 0 : measured.back().words.size());
+    const std::size_t most =
+        std::min(largest, std::max<std::size_t>(2, measured.empty() ? 0 : measured.back().words.size()));
     std::vector<Explanation> found;
     const auto attempt = [&](const ReadingMistake* mistake, const AxisMistake* axis) {
       const PlaceFit fit = fit_without(chosen, mistake, axis);
@@ -137,7 +151,7 @@ class MistakeSearch {
       if (axis != nullptr) words.push_back(axis->words);
       found.push_back({fmt::format("{}", fmt::join(words, ", and ")), fit.rms_mm});
     };
-    for (std::size_t count = 1; count <= most && found.empty(); ++count) {
+    for (std::size_t count = fewest; count <= most && found.empty(); ++count) {
       for (const ReadingMistake& mistake : measured) {
         if (mistake.words.size() == count) attempt(&mistake, nullptr);
         if (mistake.words.size() != 1 || count != 2) continue;
@@ -149,67 +163,21 @@ class MistakeSearch {
     return found;
   }
 
-  /// Parts of the readings, in their order, that fit by themselves.
+  /// That the place moved, where each part of the readings fits by itself.
   std::optional<Explanation> interruptions() const {
-    const std::vector<std::size_t> all = evenly_chosen(present_.readings, kMostInOrder);
-    double worst = 0;
+    const std::optional<PlaceParts> parts = parts_of_place(machine_, instrument_, readings_, present_);
+    if (!parts) return std::nullopt;
     std::vector<std::string> after;
-    for (std::size_t begin = 0; begin < all.size();) {
-      if (begin + kFewestOfPlace > all.size()) return std::nullopt;
-      const PartFit part = longest_part(all, begin);
-      if (part.end == begin) return std::nullopt;
-      worst = std::max(worst, part.rms_mm);
-      if (part.end == all.size()) break;
-      after.push_back(place_in_order(all[part.end - 1], all[part.end]));
-      if (after.size() == kMostParts) return std::nullopt;
-      begin = part.end;
-    }
-    if (after.empty()) return std::nullopt;
-    return Explanation{
-        fmt::format("{} {} {}", present_.place, instrument_.interruption_words(), fmt::join(after, " and ")), worst};
-  }
-
-  struct PartFit {
-    std::size_t end = 0;
-    double rms_mm = 0;
-  };
-
-  /// The longest part from `begin` on that fits but for a few outliers: a longer one has readings from elsewhere.
-  /// @returns end = begin: none fits
-  PartFit longest_part(const std::vector<std::size_t>& all, std::size_t begin) const {
-    PartFit part{begin, 0};
-    const auto fits = [&](std::size_t end) {
-      const std::vector<std::size_t> chosen(all.begin() + static_cast<std::ptrdiff_t>(begin),
-                                            all.begin() + static_cast<std::ptrdiff_t>(end));
-      const PlaceFit fit = fit_without(chosen, nullptr, nullptr);
-      const auto bad = static_cast<std::size_t>(std::count(fit.explained.begin(), fit.explained.end(), 0));
-      const std::size_t most_bad = std::max<std::size_t>(1, chosen.size() * 3 / 100);
-      // Readings on a line determine no place, and contradict none.
-      if (fit.determined && bad > most_bad) return false;
-      // The part ends with the last reading that fits.
-      std::size_t last = chosen.size();
-      while (fit.determined && last > 0 && end < all.size() && fit.explained[last - 1] == 0) --last;
-      part = {begin + last, fit.rms_mm};
-      return true;
-    };
-    if (fits(all.size())) return part;
-    std::size_t good = begin + kFewestOfPlace, bad = all.size();
-    if (!fits(good)) return {begin, 0};
-    while (good + 1 < bad) {
-      const std::size_t middle = good + (bad - good) / 2;
-      (fits(middle) ? good : bad) = middle;
-    }
-    return part;
-  }
-
-  std::string place_in_order(std::size_t last, std::size_t next) const {
-    const auto named = [&](std::size_t k) {
+    for (std::size_t p = 1; p < parts->begins.size(); ++p) {
+      const std::size_t last = present_.readings[parts->begins[p] - 1];
       const std::vector<std::string>& names = readings_.point_name;
-      return names.empty() || names[k].empty() ? fmt::format("{}", k) : fmt::format("{} ({})", k, names[k]);
-    };
-    const auto at = std::find(present_.readings.begin(), present_.readings.end(), last);
-    if (at + 1 != present_.readings.end() && *(at + 1) == next) return "after reading " + named(last);
-    return fmt::format("between readings {} and {}", named(last), named(next));
+      after.push_back("after reading " + (names.empty() || names[last].empty()
+                                              ? std::to_string(last)
+                                              : fmt::format("{} ({})", last, names[last])));
+    }
+    return Explanation{
+        fmt::format("{} {} {}", present_.place, instrument_.interruption_words(), fmt::join(after, " and ")),
+        parts->rms_mm};
   }
 
   const Machine& machine_;
@@ -225,23 +193,33 @@ std::string UnexplainedReadings::words() const {
   std::string text = share == 0 ? fmt::format("{}: none of its {} readings fits the nominal machine", place, readings)
                                 : fmt::format("{}: only {:.0f} % of its {} readings fit the nominal machine", place,
                                               100 * share, readings);
-  if (causes.empty()) return text + "; none of the usual mistakes would explain that";
+  if (readings < kFewestOfPlace) return text + "; they are too few to try the usual mistakes";
+  if (causes.empty()) {
+    text += "; none of the usual mistakes would explain that";
+    return set_up_is_open ? text + ", but a number of the set-up may be far from where the study begins" : text;
+  }
   text += fmt::format("; they fit to {:.3g} mm if ", mended_rms_mm);
   if (causes.size() == 1) return text + causes.front();
   return text + fmt::format("one of these holds: {}", fmt::join(causes, "; "));
 }
 
-std::vector<UnexplainedReadings> unexplained_readings(const Machine& machine, const Instrument& instrument,
-                                                      const InstrumentReadings& readings,
-                                                      const StartedInstrument& started) {
-  std::vector<UnexplainedReadings> result;
+JudgedReadings judge_readings(const Machine& machine, const Instrument& instrument, const InstrumentReadings& readings,
+                              const StartedInstrument& started) {
+  JudgedReadings result;
   for (const StartFit& fit : started.fits) {
-    if (!fit.determined || fit.readings.size() < kFewestOfPlace) continue;
+    const bool few = fit.readings.size() < kFewestOfPlace;
+    // Some place explains any few readings; where none does, they contradict the machine.
+    if (!fit.determined || (few && fit.found)) continue;
+    ++result.places;
     const PlaceFit as_read =
         place_fit(machine, started, fit, readings.subset(evenly_chosen(fit.readings, kMostInOrder)));
-    if (as_read.explains(kExplainedShare)) continue;
-    UnexplainedReadings place = MistakeSearch(machine, instrument, readings, fit, as_read).search();
-    if (!place.causes.empty() || !fit.rough) result.push_back(std::move(place));
+    const bool explained = as_read.explains(kExplainedShare);
+    if (explained && longest_misfit(as_read) < kFewestOfPlace) continue;
+    const MistakeSearch search(machine, instrument, readings, fit, as_read);
+    UnexplainedReadings place = few ? search.as_read() : search.search();
+    // Readings that do not fit but lie scattered are outliers.
+    if (explained && place.causes.empty()) continue;
+    result.unexplained.push_back(std::move(place));
   }
   return result;
 }

@@ -37,7 +37,7 @@ class Spoiled {
   std::vector<UnexplainedReadings> unexplained() const {
     const CampaignSetup& setup = campaign_.setups.front();
     const StartedInstrument started = setup.device->started(study_.machine, setup.readings);
-    return unexplained_readings(study_.machine, *setup.device, setup.readings, started);
+    return judge_readings(study_.machine, *setup.device, setup.readings, started).unexplained;
   }
   /// Of its only station.
   std::vector<std::string> causes() const {

@@ -10,6 +10,8 @@
 #include "abbe/formats/text/message_of.h"
 #include "abbe/report/words/evaluation_text.h"
 #include "abbe/study/example_file_for_test.h"
+#include "abbe/study/run_study.h"
+#include "abbe/study/trust.h"
 
 namespace abbe {
 namespace {
@@ -118,6 +120,96 @@ TEST(VerifiedReadings, WithoutUncertaintiesOfTheErrorsSaySo) {
   const VerifiedReadings result = verify_readings(request);
   EXPECT_FALSE(result.uncertainties_known);
   EXPECT_THAT(evaluation_text(result.report), HasSubstr("states no uncertainties: only those of the readings count"));
+}
+
+/// Trackers on the trunnion mill: one station and two reflectors of the identification, and one of each that it never
+/// saw. The offset of the new reflector is open and stated 40 mm off.
+Study with_new_stations(const Machine& machine, const ErrorSet& truth, std::uint64_t seed) {
+  Study study = parse_study(R"(
+name = "new stations"
+machine = "trunnion-mill.machine.toml"
+[simulate]
+errors = "of-the-request.errors.toml"
+[[setup]]
+name = "tracker"
+instrument = "tracker"
+mounted_on = "workpiece"
+measure = "range-angles"
+noise = { range_um = 2, range_um_per_m = 0.5, angle_arcsec = 2 }
+[[setup.station]]
+name = "table"
+pose = { position_mm = [150, -150, 60], angles_deg = [0, 0, 30] }
+[[setup.station]]
+name = "corner"
+pose = { position_mm = [-180, 160, 90], angles_deg = [10, -5, 200] }
+[[setup.reflector]]
+name = "S1"
+offset_mm = [60, 0, -120]
+[[setup.reflector]]
+name = "S2"
+offset_mm = [-30, 55, -60]
+[[setup.reflector]]
+name = "stylus"
+offset_mm = [25, 0, -150]
+true_offset_mm = [0, 5, -180]
+estimate_offset = true
+[[setup.plan]]
+kind = "random"
+points = 40
+station = "table"
+axis.X = { range_mm = [-200, 200] }
+axis.Y = { range_mm = [-200, 200] }
+axis.Z = { range_mm = [-400, -100] }
+axis.A = { range_deg = [-60, 30] }
+axis.C = {}
+[[setup.plan]]
+kind = "random"
+points = 40
+station = "corner"
+axis.X = { range_mm = [-200, 200] }
+axis.Y = { range_mm = [-200, 200] }
+axis.Z = { range_mm = [-400, -100] }
+axis.A = { range_deg = [-60, 30] }
+axis.C = {}
+)",
+                            "new.study.toml", machine);
+  study.seed = seed;
+  study.simulation->errors_file.reset();
+  study.simulation->errors = truth;
+  return study;
+}
+
+TEST(VerifiedReadings, OfReflectorsAndStationsThatTheIdentificationNeverSawAreExplained) {
+  const Study identification = read_study(test::example_file("trunnion/trunnion.study.toml"));
+  const StudyResult found = run_study(identification, {.map = false});
+  ASSERT_TRUE(found.usable());
+  ReadingsToVerify request;
+  request.errors_file = "errors.toml";
+  request.identified = identified_errors_file(identification, found);
+  double chi_square = 0, degrees = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    request.study = with_new_stations(identification.machine, *found.campaign.truth, seed);
+    const VerifiedReadings result = verify_readings(request);
+    EXPECT_FALSE(result.says_no()) << seed << ": " << evaluation_text(result.report);
+    EXPECT_GT(result.reduction(), 3) << seed;
+    EXPECT_EQ(result.readings, 240U);  // 40 poses, three reflectors, two stations
+    // Six numbers of each station and three of the reflector are fitted.
+    const double used = static_cast<double>(result.readings - result.left_out().count());
+    EXPECT_NEAR(result.judged.degrees_of_freedom, 3 * used - 15, 1e-9);
+    chi_square += result.judged.chi_square;
+    degrees += result.judged.degrees_of_freedom;
+  }
+  EXPECT_NEAR(chi_square / degrees, 1, 0.05);
+  // After a change of the machine the same stations and reflectors contradict its errors.
+  ErrorSet changed = *found.campaign.truth;
+  ASSERT_FALSE(changed.motions.empty());
+  for (ErrorMotion& motion : changed.motions) {
+    if (motion.axis == identification.machine.find_axis("X") && motion.component == Component::X) {
+      motion.coefficients[1] += 20e-3;
+    }
+  }
+  request.study = with_new_stations(identification.machine, changed, 1);
+  EXPECT_TRUE(verify_readings(request).says_no());
 }
 
 }  // namespace

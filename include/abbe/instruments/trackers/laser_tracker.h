@@ -40,7 +40,7 @@ class LaserTracker : public EquationInstrument<LaserTracker, 9, 3> {
 
   double standard_uncertainty(const InstrumentReadings& readings, std::size_t reading,
                               std::size_t component) const override;
-  /// Poses of the stations that are estimated: find_station_poses().
+  /// Poses of the stations that are estimated: find_station_poses(); open offsets where those stated are far off.
   StartedInstrument started(const Machine& machine, const InstrumentReadings& readings) const override;
   /// Mirrored frames, clockwise and zenith angles, swapped angles, and units.
   std::vector<ReadingMistake> usual_mistakes() const override;

@@ -11,6 +11,7 @@
 #include "abbe/instruments/equation_instrument_inline.h"
 #include "abbe/instruments/instrument_simulation.h"
 #include "abbe/instruments/trackers/tracker_observations.h"
+#include "abbe/instruments/trackers/tracker_offset_start.h"
 #include "abbe/instruments/trackers/tracker_residual.h"
 #include "abbe/instruments/trackers/tracker_simulation.h"
 #include "abbe/instruments/trackers/tracker_start.h"
@@ -163,17 +164,14 @@ double LaserTracker::standard_uncertainty(const InstrumentReadings& readings, st
 
 StartedInstrument LaserTracker::started(const Machine& machine, const InstrumentReadings& readings) const {
   TrackerSetup present = setup();
-  TrackerStart found = find_station_poses(machine, ErrorSet{}, present, tracker_readings(readings));
+  TrackerStart found = find_poses_and_offsets(machine, *this, readings, present);
   StartedInstrument result;
   for (std::size_t s = 0; s < found.stations.size(); ++s) {
     const StationStart& station = found.stations[s];
     if (station.readings == 0) continue;
     StartFit fit{.place = given_.stations[s].name, .readings = {}, .extent_mm = station.extent_mm};
     for (std::size_t k = 0; k < readings.count(); ++k) {
-      if (station_of(readings.item[k]) != s) continue;
-      fit.readings.push_back(k);
-      const Reflector& reflector = given_.reflectors[target_of(readings.item[k])];
-      fit.rough |= reflector.estimate_offset && reflector.offset_standard_uncertainty.isZero();
+      if (station_of(readings.item[k]) == s) fit.readings.push_back(k);
     }
     fit.found = station.status == BestFitStatus::ok;
     fit.determined = fit.found || station.status == BestFitStatus::no_consensus;
