@@ -15,9 +15,10 @@ bool StudyCheck::is_explained() const {
                      [](const CampaignSetup& setup) { return setup.unexplained.empty(); });
 }
 
-StudyCheck check_study(const Study& study, const ProgressCallback& progress) {
+StudyCheck check_study(const Study& study, const JobOptions& options) {
   check_customer_report(study);
-  StudyCheck check{gather_readings(study, progress)};
+  StudyCheck check{gather_readings(study, options)};
+  stop_if_asked(options.stop);
   find_start_values(study.machine, check.campaign);
   return check;
 }
