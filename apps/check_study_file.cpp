@@ -14,11 +14,8 @@ namespace abbe {
 
 int check_study_file(const std::string& file, bool json) {
   const Study study = read_study(file);
-  StepProgress progress;
-  const StudyCheck check = check_study(study, [&](std::size_t done, std::size_t total) {
-    progress.show(step_words(study, StudyStep::gather), done, total);
-  });
-  progress.end();
+  // The line of the progress is gone before anything is printed.
+  const StudyCheck check = check_study(study, {.progress = Progress(step_words(study, StudyStep::gather)).callback()});
   fmt::print("{}", json ? json_text(study_check_json(study, check)) : study_check_text(study, check));
   return check.is_explained() ? kDone : kNegative;
 }

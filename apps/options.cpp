@@ -10,6 +10,7 @@
 #include "abbe/formats/files/standard_input.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/formats/text/nearest_word.h"
+#include "abbe/formats/text/wrapped_text.h"
 #include "messages.h"
 
 namespace abbe {
@@ -355,8 +356,8 @@ ParseResult Program::parse(int argc, const char* const* argv) {
     // Help and version come this way too, with code 0.
     std::ostringstream shown, problem;
     const int code = app_->exit(error, shown, problem);
-    fmt::print("{}", shown.str());
-    tell_text(problem.str().empty() ? "" : "abbe: " + problem.str());
+    fmt::print("{}", wrapped_help(shown.str(), 120, "abbe "));
+    tell_text(prefixed_lines("abbe: ", problem.str()));
     return code == 0 ? ParseResult::shown : ParseResult::refused;
   }
   if (const std::vector<std::string> extras = extra_words(*app_); !extras.empty()) {

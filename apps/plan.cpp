@@ -36,7 +36,7 @@ void add_plan_command(CommandLine& line) {
       StudyPlan result;
       {
         Progress progress("planning");
-        result = plan_study(study, [&](double share) { progress(static_cast<std::size_t>(1000 * share), 1000); });
+        result = plan_study(study, {.progress = progress.callback()});
       }
       const bool done = result.plan.status == PlanningStatus::done;
       if (done && !options->output.empty()) write_file_atomically(options->output, plan_csv(study, result));

@@ -33,7 +33,7 @@ void add_simulate_command(CommandLine& line) {
       Campaign campaign;
       {
         Progress progress("simulating readings");
-        campaign = gather_readings(study, progress.callback());
+        campaign = gather_readings(study, {.progress = progress.callback()});
       }
       ResultsFolder folder(options->output);
       for (const CampaignSetup& setup : campaign.setups) {

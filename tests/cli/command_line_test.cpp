@@ -2,6 +2,7 @@
 
 #include <regex>
 
+#include "abbe/formats/text/utf8.h"
 #include "cli/all_commands.h"
 #include "cli/command_test.h"
 
@@ -18,6 +19,18 @@ TEST_F(CommandLine, HelpIsOnStandardOutputAndShowsAnExample) {
   EXPECT_THAT(result.out, HasSubstr("Example"));
   EXPECT_THAT(result.out, HasSubstr("abbe run"));
   EXPECT_EQ(result.err, "");
+}
+
+TEST_F(CommandLine, NoLineOfHelpIsWiderThan120Columns) {
+  std::vector<CommandWithHelp> all = all_commands([this](const auto& words) { return abbe(words); });
+  all.push_back({{"--help-all"}, abbe({"--help-all"}).out});
+  EXPECT_GT(all.size(), 20U);
+  for (const CommandWithHelp& one : all) {
+    std::istringstream lines(one.help);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(characters_in(line), 120U) << testing::PrintToString(one.words) << ": " << line;
+    }
+  }
 }
 
 TEST_F(CommandLine, AnUnknownSubcommandIsBadInput) {

@@ -40,6 +40,10 @@ std::vector<std::string> example_lines(const std::string& help) {
   for (std::string line; std::getline(stream, line);) {
     if (line.starts_with("Example")) below = true;
     if (!below || !line.starts_with("  abbe ")) continue;
+    // A long one goes on below, as in a shell.
+    for (std::string more; line.ends_with(" \\") && std::getline(stream, more);) {
+      line = line.substr(0, line.size() - 1) + more.substr(more.find_first_not_of(' '));
+    }
     line = line.substr(2);
     lines.push_back(line.substr(0, line.find("   ")));
   }

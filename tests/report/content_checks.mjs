@@ -104,6 +104,35 @@ async function listsOf(page, data, expect) {
   for (const text of [identification.strategy, identification.loss]) expect(!text || words.includes(text), `the identification does not say ${text}`);
 }
 
+/// Sparklines: one in each row; the line passes through the values, to one scale; the last mark says whether it is within its limits.
+async function sparklinesOf(page, data, expect) {
+  const tables = [...(data.evaluation?.tables ?? []), ...(data.tables ?? [])].filter((table) => table.sparklines);
+  const drawn = await page.$$eval('table:not(.paper-only) .sparkline', (all) => all.map((e) => ({
+    row: e.closest('tr').firstElementChild.textContent, label: e.getAttribute('aria-label'),
+    line: e.querySelector('.line.value')?.getAttribute('d') ?? '', band: Boolean(e.querySelector('.band')),
+    limits: e.querySelectorAll('.control-limit').length, marks: e.querySelectorAll('.end-mark').length, beyond: e.querySelectorAll('.beyond').length})));
+  const wanted = tables.flatMap((table) => table.rows.map((row, i) => ({name: String(row[0]), ...table.sparklines[i]})));
+  expect(drawn.length === wanted.length, `${drawn.length} sparklines for ${wanted.length} rows`);
+  for (const [k, one] of wanted.entries()) {
+    const shown = drawn[k];
+    if (!shown) break;
+    const values = one.value.filter(isNumber);
+    const last = one.value[one.value.length - 1], low = one.control_low?.at(-1), high = one.control_high?.at(-1);
+    const beyond = isNumber(low) && isNumber(high) && (last < low || last > high);
+    expect(shown.row === one.name && shown.label.startsWith(one.name), `the sparkline of ${one.name} is in the row ${shown.row}`);
+    expect(shown.marks === (values.length ? 1 : 0) && shown.beyond === (beyond ? 1 : 0), `${one.name}: the last mark of the sparkline is wrong`);
+    expect(shown.band === Boolean(values.length && one.expanded_uncertainty?.some((u) => u > 0)), `${one.name}: the band of the sparkline is wrong`);
+    expect(shown.limits === [one.control_low, one.control_high].filter((v) => v?.some(isNumber)).length, `${one.name}: ${shown.limits} limits in the sparkline`);
+    const points = [...shown.line.matchAll(/[ML](\S+) ([\d.-]+)/g)].map((m) => [Number(m[1]), Number(m[2])]);
+    expect(points.length === (values.length > 1 ? values.length : 0), `${one.name}: ${points.length} points for ${values.length} values`);
+    if (points.length < 2) continue;
+    // The scale of the two values that are farthest apart holds for all.
+    const [from, to] = [values.indexOf(Math.min(...values)), values.indexOf(Math.max(...values))];
+    const scale = values[to] > values[from] ? (points[to][1] - points[from][1]) / (values[to] - values[from]) : 0;
+    expect(scale <= 0 && points.every((p, i) => Math.abs(p[1] - points[from][1] - scale * (values[i] - values[from])) < 0.21), `${one.name}: the line does not pass through the values`);
+  }
+}
+
 /// Rotations and uncertainty on the map: own legend, own statistics, one colour scale for both views.
 export async function mapChoicesOf(page, data, expect, shot, compareFigures) {
   const heading = await page.textContent('#map-title'), wanted = `Map of the ${data.map.quantity ?? 'volumetric error'}`;
@@ -157,5 +186,6 @@ export async function mapChoicesOf(page, data, expect, shot, compareFigures) {
 export async function contentOf(page, data, expect) {
   await residualsOf(page, data, expect);
   await monteCarloOf(page, data, expect);
+  await sparklinesOf(page, data, expect);
   await listsOf(page, data, expect);
 }

@@ -271,7 +271,11 @@ const edge = {
   parameters: {name: ['EXX[P0]', 'EXX[P1]'], value: [0, null]},
   residuals: {setups: [{name: 'empty', reading: [], components: [{name: 'x', normalised: []}]}, {name: 'null', reading: [0], components: [{name: 'x', unit: 'um', normalised: [null], residual: [null]}, {name: 'y', normalised: [0]}]}, {name: 'none', reading: []}]},
   identification: {singular_values: [0, 0], history: {iteration: [0], chi_square: [0]}, order_selection: {label: ['1'], held_out_normalised_rms: [null]}, gauge: [{parameters: ['EXX[P0]']}]},
-  tables: [{title: 'Nothing', columns: [], rows: []}], advice: [{text: 'Everything.'}],
+  tables: [{title: 'Nothing', columns: [], rows: []},
+    {title: 'Courses', columns: ['error', 'unit'], rows: [['none', 'um'], ['one', 'um'], ['still', 'um'], ['gaps', 'urad'], ['beyond', 'um']], sparklines: [
+      {days: [], value: []}, {days: [0], value: [0], expanded_uncertainty: [1]}, {days: [0, 90, 90], value: [1, 1, 1], expanded_uncertainty: [0, 0, 0], control_low: [null, 1, 1], control_high: [null, 1, 1]},
+      {days: [0, 90, 180], value: [0, null, -1e6], control_low: [null, null, -2e6], control_high: [null, null, 0]},
+      {days: [0, 90, 180], value: [0, -3, 40], expanded_uncertainty: [2, 2, 2], control_low: [null, -6, -17], control_high: [null, 6, 5]}], note: 'In um and urad.'}], advice: [{text: 'Everything.'}],
 };
 
 const [, , dataFile, pageFile, templateFile] = process.argv;

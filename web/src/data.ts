@@ -229,7 +229,18 @@ export interface DataTable {
   title: string;
   columns: string[];
   rows: (string | number | boolean | null)[][];
+  /// For each row, drawn in a second column.
+  sparklines?: SparklineData[];
   note?: string;
+}
+
+/// The course of one value, in the unit of its row.
+export interface SparklineData {
+  days: number[];
+  value: (number | null)[];
+  expanded_uncertainty?: (number | null)[];
+  control_low?: (number | null)[];
+  control_high?: (number | null)[];
 }
 
 /// An evaluation by a standard or of a scan; values carry their units in the keys: value_um, tolerance_um.

@@ -4,7 +4,7 @@ import {Evaluation, EvaluationFigure, findQuantity} from './data';
 import {html, section} from './dom';
 import {drawing} from './drawings';
 import {fixed, prose} from './format';
-import {dataTable} from './table';
+import {tableWithNote} from './table';
 
 /// As evaluation_report.cpp names them; "not proven": the tolerance lies within the guard band.
 const kVerdicts: Record<string, string> = {
@@ -42,7 +42,7 @@ export function evaluationSection(evaluation: Evaluation): HTMLElement {
       uncertainty && number(find(figure, 'expanded_uncertainty')?.value ? figure : {symbol: ''}, 'expanded_uncertainty', 'uncertainty'), html('td', {role: 'cell'}, value?.unit ?? ''),
       tolerance && number(figure, 'tolerance', 'tolerance'), tolerance && html('td', {role: 'cell', class: `verdict-of ${kVerdicts[verdict] ?? ''}`}, verdict));
   });
-  part.append(...(evaluation.tables ?? []).map((table) => dataTable(table.title, table.columns, table.rows)));
+  part.append(...(evaluation.tables ?? []).flatMap(tableWithNote));
   // A page may have drawings and no figures.
   if (figures.length) {
     part.append(html('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Figures'}, html('table', {class: 'figures', role: 'table'},

@@ -1,8 +1,9 @@
 // Tables: plain ones, and the parameter table that sorts and filters.
 
-import {DataTable, Parameters, unitText} from './data';
+import {DataTable, Parameters, SparklineData, unitText} from './data';
 import {field, html, section} from './dom';
 import {alike, count, grouped, number, prose, withUncertainty} from './format';
+import {sparkline} from './sparkline';
 
 type Cell = string | number | boolean | null;
 
@@ -43,8 +44,18 @@ export function columnsOnPaper(columns: string[], rows: string[][]): number[][] 
 /// Head of a column of a producer without Greek letters: "value in um" becomes "value in µm".
 const withGreekUnit = (name: string) => name.replace(/(^| in | \/ |\()u(m|rad)\b/g, '$1µ$2');
 
-export function dataTable(caption: string, columns: string[], rows: Cell[][]): HTMLElement {
-  const isNumeric = (cell: unknown) => typeof cell === 'number' || (typeof cell === 'string' && /^-?\d[\d.]*(e[-+]?\d+)?$/.test(cell));
+/// `row` with `cell` in the second column.
+const withSecond = <T>(row: T[], cell: T): T[] => [row[0], cell, ...row.slice(1)];
+
+/// A sparkline is as wide as a word of so many letters.
+const kSparkline = 'x'.repeat(26);
+
+/// @param sparklines  of each row, in a second column; or none
+export function dataTable(caption: string, heads: string[], cells: Cell[][], sparklines?: SparklineData[]): HTMLElement {
+  const hasSparklines = Boolean(sparklines?.length) && heads.length > 0;
+  const columns = hasSparklines ? withSecond(heads, 'course') : heads;
+  const rows = hasSparklines ? cells.map((row) => withSecond<Cell>(row, '')) : cells;
+  const isNumeric = (cell: unknown) => typeof cell === 'number' || (typeof cell === 'string' && /^-?\d[\d.]*(e[-+]?\d+)?( \u00b1 \d[\d.]*)?$/.test(cell));
   const isMissing = (cell: unknown) => cell === null || cell === '';
   const isNumber = columns.map((_, i) => rows.some((row) => typeof row[i] === 'number') || (rows.some((row) => isNumeric(row[i])) && rows.every((row) => isNumeric(row[i]) || isMissing(row[i]))));
   const asPrinted = (text: string) => text.replace('-', '\u2212').replace(/^(\u2212?)([\d.]+)$/, (_, sign, digits) => sign + grouped(digits));
@@ -55,22 +66,30 @@ export function dataTable(caption: string, columns: string[], rows: Cell[][]): H
   const style = (i: number) => (isNumber[i] ? 'number' : wordy[i] ? 'words' : '');
   // A short first column names the rows and stays in view beside those that scroll; a long one would hide them.
   const named = columns.length > 1 && written.every((row) => row[0].length <= kLongestName);
-  const cell = (row: string[], i: number) => (i === 0 && named ? html('th', {scope: 'row', class: style(i)}, row[i]) : html('td', {class: style(i)}, row[i]));
+  const cell = (row: string[], i: number, k: number) => {
+    if (i === 1 && hasSparklines) return html('td', {class: 'course'}, sparklines![k] && sparkline(sparklines![k], row[0]));
+    return i === 0 && named ? html('th', {scope: 'row', class: style(i)}, row[i]) : html('td', {class: style(i)}, row[i]);
+  };
   const table = (kept: number[], name: string, where: string) => html('table', {class: `data ${where} ${named ? '' : 'unnamed'}`},
     html('caption', {}, name),
     html('thead', {}, html('tr', {}, ...kept.map((i) => html('th', {scope: 'col', class: `${isNumber[i] ? 'number' : ''}${columns[i].length > kLongestName ? ' long-head' : ''}`}, withGreekUnit(columns[i]))))),
-    html('tbody', {}, ...written.map((row) => html('tr', {}, ...kept.map((i) => cell(row, i))))));
+    html('tbody', {}, ...written.map((row, k) => html('tr', {}, ...kept.map((i) => cell(row, i, k))))));
   const all = columns.map((_, i) => i);
-  const groups = columnsOnPaper(columns, written);
+  const groups = columnsOnPaper(columns, hasSparklines ? written.map(([first, , ...others]) => [first, kSparkline, ...others]) : written);
   return html('div', {class: `scroll${rows.length > kShort ? ' long' : ''}`, tabindex: 0, role: 'region', 'aria-label': caption}, table(all, prose(caption), groups.length > 1 ? 'screen-only' : ''),
     ...(groups.length > 1 ? groups.map((kept, i) => table(kept, `${prose(caption)} (${i + 1} of ${groups.length})`, 'paper-only')) : []));
+}
+
+/// A table and what is said below it.
+export function tableWithNote(table: DataTable): HTMLElement[] {
+  const drawn = dataTable(table.title, table.columns, table.rows, table.sparklines);
+  return table.note ? [drawn, html('p', {class: 'note'}, prose(table.note))] : [drawn];
 }
 
 export function tablesSection(tables: DataTable[], title: string): HTMLElement {
   const part = section('tables', title);
   for (const table of tables) {
-    part.append(dataTable(table.title, table.columns, table.rows));
-    if (table.note) part.append(html('p', {class: 'note'}, prose(table.note)));
+    part.append(...tableWithNote(table));
   }
   return part;
 }

@@ -33,7 +33,8 @@ struct ErrorTrend {
   Trend trend;
   bool drifts = false;
   double per_year = 0, expanded_per_year = 0;  ///< slope and its expanded uncertainty
-  std::optional<Expected> expected;            ///< of the last value by the earlier ones
+  std::vector<Expected> predicted;             ///< [values - 1] what the values before each later one predict for it
+  std::optional<Expected> expected;            ///< the last of these: of the last value
   double at_tool = 0;                          ///< displacement of the functional point per unit of the error, mm
   std::optional<Date> due;                     ///< when the limit may be reached; none: not in 20 years
 };

@@ -10,6 +10,7 @@
 #include "abbe/formats/study/study.h"
 #include "abbe/identify/trust/reading_facts.h"
 #include "abbe/instruments/instrument.h"
+#include "abbe/study/job_options.h"
 #include "abbe/study/unexplained_readings.h"
 
 namespace abbe {
@@ -78,8 +79,13 @@ ErrorSet true_errors(const Study& study);
 /// True if readings are to say from which side the axes came: some axis has a reversal value, or one is identified.
 bool approach_matters(const Study& study, const ErrorSet& truth);
 
-/// Reads or simulates all readings. Start values are not yet looked for. @throws InputError
-Campaign gather_readings(const Study& study, const ProgressCallback& progress = {});
+/// Reads or simulates all readings. Start values are not yet looked for.
+/// @param options  progress in poses of a plan that is simulated, from one thread at a time; a file is read whole
+/// before
+///   a stop is looked at
+/// @throws InputError
+/// @throws Stopped
+Campaign gather_readings(const Study& study, const JobOptions& options = {});
 
 /// Readings of the first set-up's instrument that are for validation only, from the study's held-out file.
 /// @throws InputError

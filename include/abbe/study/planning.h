@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -13,6 +13,7 @@
 #include "abbe/identify/problem.h"
 #include "abbe/instruments/instrument.h"
 #include "abbe/plan/readings/planning.h"
+#include "abbe/study/job_options.h"
 #include "abbe/study/not_identified.h"
 
 namespace abbe {
@@ -33,7 +34,7 @@ struct CandidateReading {
 ///
 /// An instrument that can be read anywhere may be read at any pose; one whose points meet follows with the linear axes
 /// (PoseFreedom::together). All others, and those with a [[setup.plan]] that are no trackers, may be read where their
-/// plans say: a bar on its circles, a laser along its lines.
+/// plans say: a bar on its circles, a laser along its lines. The model owns what it needs of the study.
 class PlanningModel {
  public:
   /// @param errors  of zero, with the ranges over which they are to be known; null: those of the study
@@ -88,7 +89,7 @@ class PlanningModel {
            Candidates& result) const;
   InstrumentReadings sight_plan(const Sight& sight, const PoseList& poses, Candidates& result) const;
 
-  const Study& study_;
+  Study study_;
   ErrorSet errors_;
   std::vector<std::shared_ptr<const Instrument>> devices_;
   std::vector<Sight> sights_;
@@ -157,9 +158,11 @@ struct StudyPlan {
 };
 
 /// Chooses readings for a study with a [plan] table. Where setting an instrument up takes time, every combination of up
-/// to six set-ups is tried, and the best one is planned. @throws InputError
-/// @param progress  share done, 0 to 1
-StudyPlan plan_study(const Study& study, const std::function<void(double)>& progress = {});
+/// to six set-ups is tried, and the best one is planned.
+/// @param options  progress in thousandths of the work, called from one thread
+/// @throws InputError
+/// @throws Stopped
+StudyPlan plan_study(const Study& study, const JobOptions& options = {});
 
 /// When each reading is finished, s from the start: setting up, moves of the slowest axis, settling, reading.
 /// @param readings  in their order
@@ -170,7 +173,8 @@ double uncertainty_with_prior(const PlanningModel& model, const PlanningCandidat
                               const Eigen::MatrixXd& predictions);
 
 /// Looks for the grids that one would really take: for every number of the curve, for the plan's and for larger ones.
+/// @throws Stopped
 void compare_with_grids(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
-                        StudyPlan& result);
+                        StudyPlan& result, const std::stop_token& stop = {});
 
 }  // namespace abbe

@@ -17,8 +17,10 @@ struct StudyCheck {
   std::size_t judged_places() const;
 };
 
-/// Reads or simulates the readings of a study and finds where instruments stood. @throws InputError
-StudyCheck check_study(const Study& study, const ProgressCallback& progress = {});
+/// Reads or simulates the readings of a study and finds where instruments stood. Progress as gather_readings().
+/// @throws InputError
+/// @throws Stopped
+StudyCheck check_study(const Study& study, const JobOptions& options = {});
 
 /// For people; lines with their ends.
 std::string study_check_text(const Study& study, const StudyCheck& check);

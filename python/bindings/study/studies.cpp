@@ -62,8 +62,7 @@ std::map<std::string, PythonReadings> gather(const Study& study, const std::map<
                                              const MachineErrors* truth, const nb::object& progress) {
   const auto complete = study_with_data(study, readings, truth);
   const Campaign campaign = job_result(progress, [&](const JobControl& control) {
-    const JobOptions job = control.options(step_words(*complete, StudyStep::gather));
-    return gather_readings(*complete, stoppable_progress(job));
+    return gather_readings(*complete, control.options(step_words(*complete, StudyStep::gather)));
   });
   std::map<std::string, PythonReadings> result;
   for (const CampaignSetup& setup : campaign.setups) {
@@ -76,12 +75,8 @@ std::map<std::string, PythonReadings> gather(const Study& study, const std::map<
 std::shared_ptr<PlanOutcome> plan(const Study& study, const nb::object& progress) {
   auto outcome = std::make_shared<PlanOutcome>();
   outcome->study = std::make_shared<Study>(study);
-  run_job(progress, [&](const JobControl& control) {
-    outcome->plan = plan_study(*outcome->study, [&](double share) {
-      stop_if_asked(control.stop);
-      control.progress("planning", static_cast<std::size_t>(1000 * share), 1000);
-    });
-  });
+  run_job(progress,
+          [&](const JobControl& control) { outcome->plan = plan_study(*outcome->study, control.options("planning")); });
   return outcome;
 }
 

@@ -32,7 +32,7 @@ CheckedStudy check_of(const Study& given, const std::map<std::string, PythonRead
                       const MachineErrors* truth, const nb::object& progress) {
   const auto study = study_with_data(given, readings, truth);
   return {study, job_result(progress, [&](const JobControl& control) {
-            return check_study(*study, stoppable_progress(control.options(step_words(*study, StudyStep::gather))));
+            return check_study(*study, control.options(step_words(*study, StudyStep::gather)));
           })};
 }
 

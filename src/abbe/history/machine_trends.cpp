@@ -97,7 +97,11 @@ class TrendSearch {
     trend.drifts = trend.trend.drifts();
     trend.per_year = kDaysPerYear * trend.trend.slope;
     trend.expanded_per_year = kDaysPerYear * trend.trend.coverage_factor * trend.trend.u_slope;
-    trend.expected = expected_last(trend.values);
+    for (std::size_t k = 2; k <= trend.values.size(); ++k) {
+      trend.predicted.push_back(
+          expected_last({trend.values.begin(), trend.values.begin() + static_cast<std::ptrdiff_t>(k)}));
+    }
+    trend.expected = trend.predicted.back();
     if (limit_ > 0 && trend.at_tool > 0) {
       const std::optional<double> days =
           time_to_limit(trend.trend, trend.values.back().uncertainty, limit_ / trend.at_tool, kLongestDays);

@@ -93,7 +93,41 @@ TEST(MachineTrends, AJumpIsNoDriftAndIsSaid) {
   EXPECT_GT(*jumped.trend.scatter, 5e-3);
   EXPECT_THAT(
       evaluation_text(trends.report),
-      HasSubstr("EXX has changed by -59.8 um up to the last campaign; the earlier campaigns predict 1.3 +- 2.2 um."));
+      HasSubstr(
+          "EXX has changed by -59.8 \xC2\xB5m up to the last campaign; the earlier campaigns predict 1.3 \xC2\xB1 2.2 "
+          "\xC2\xB5m."));
+}
+
+TEST(MachineTrends, ControlLimitsOfEachCampaignComeFromThoseBeforeIt) {
+  TrendRequest request;
+  request.campaigns = quarterly(7, 0, 60e-3, 9);
+  const MachineTrends trends = find_trends(request);
+  const ErrorTrend& error = trend_named(trends, "EXX");
+  ASSERT_EQ(error.predicted.size(), 6U);
+  // Of the second campaign: the first one, with the uncertainties of both.
+  EXPECT_EQ(error.predicted[0].value, 0);
+  EXPECT_NEAR(error.predicted[0].expanded, 2 * std::hypot(error.values[0].uncertainty, error.values[1].uncertainty),
+              1e-12);
+  EXPECT_EQ(error.predicted.back().expanded, error.expected->expanded);
+  // The campaigns after the third do not reach back: the same limits as of a history that ends with it.
+  request.campaigns.erase(request.campaigns.begin() + 3, request.campaigns.end());
+  const MachineTrends first_three = find_trends(request);
+  const ErrorTrend& earlier = trend_named(first_three, "EXX");
+  ASSERT_EQ(earlier.at, error.at);
+  EXPECT_NEAR(earlier.expected->value, error.predicted[1].value, 1e-9);
+  EXPECT_NEAR(earlier.expected->expanded, error.predicted[1].expanded, 1e-9);
+
+  const EvaluationTable& table = trends.report.tables.front();
+  ASSERT_EQ(table.sparklines.size(), table.rows.size());
+  const auto row = std::find_if(table.rows.begin(), table.rows.end(),
+                                [](const std::vector<std::string>& cells) { return cells[0] == "EXX"; });
+  const Sparkline& course = table.sparklines[static_cast<std::size_t>(row - table.rows.begin())];
+  EXPECT_EQ(course.days[6], 546);
+  EXPECT_NEAR(course.value[6], 1e3 * error.values[6].value, 1e-9);
+  EXPECT_NEAR(course.expanded[6], 2e3 * error.values[6].uncertainty, 1e-9);
+  EXPECT_FALSE(course.low[0]);
+  EXPECT_NEAR(*course.high[6] - *course.low[6], 2e3 * error.expected->expanded, 1e-9);
+  EXPECT_GT(*course.low[6], course.value[6]);
 }
 
 TEST(MachineTrends, TwoCampaignsSayThatTheScatterIsNotKnown) {

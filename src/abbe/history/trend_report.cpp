@@ -19,11 +19,14 @@ double shown(const ErrorTrend& trend, double value) { return value * (trend.is_a
 /// With one decimal, and no minus before a zero.
 std::string tenths(double value) { return fmt::format("{:.1f}", std::round(10 * value) / 10 + 0.0); }
 
+/// In keys.
 const char* unit_of(const ErrorTrend& trend) { return trend.is_angle ? "urad" : "um"; }
+/// For people.
+std::string symbol_of(const ErrorTrend& trend) { return unit_symbol(unit_of(trend)); }
 
-/// "-3.2 +- 1.1 um", rounded as in tables.
+/// "-3.2 \u00b1 1.1", rounded as in tables.
 std::string with_uncertainty(const ErrorTrend& trend, double value, double expanded) {
-  return tenths(shown(trend, value)) + " +- " + tenths(shown(trend, expanded));
+  return tenths(shown(trend, value)) + " \xC2\xB1 " + tenths(shown(trend, expanded));
 }
 
 std::string place_of(const ErrorTrend& trend) {
@@ -43,13 +46,34 @@ std::string verdict_words(const ErrorTrend& trend) {
   return words;
 }
 
+/// The values of an error with k = 2, and the control limits of all but the first.
+Sparkline course_of(const ErrorTrend& trend) {
+  Sparkline course;
+  for (std::size_t k = 0; k < trend.values.size(); ++k) {
+    const TimedValue& one = trend.values[k];
+    course.days.push_back(one.time);
+    course.value.push_back(shown(trend, one.value));
+    course.expanded.push_back(shown(trend, 2 * one.uncertainty));
+    course.low.emplace_back();
+    course.high.emplace_back();
+    if (k == 0) continue;
+    const Expected& expected = trend.predicted[k - 1];
+    course.low.back() = shown(trend, expected.value - expected.expanded);
+    course.high.back() = shown(trend, expected.value + expected.expanded);
+  }
+  return course;
+}
+
 EvaluationTable trend_table(const MachineTrends& trends, double limit_mm) {
   EvaluationTable table{
       .caption = "Errors over the campaigns, largest drift at the tool first",
       .headers = {"error", "at", "unit", "change since first", "drift per year", "scatter", "verdict"},
       .rows = {},
       .with_figures = true,
-      .in_text = true};
+      .in_text = true,
+      .note =
+          "Course: change since the first campaign, with its expanded uncertainty (band, k = 2) and its control "
+          "limits (dashed), which are what the earlier campaigns predict. Each row has a scale of its own."};
   if (limit_mm > 0) table.headers.emplace_back("limit reached");
   std::vector<const ErrorTrend*> order;
   for (const ErrorTrend& one : trends.errors) {
@@ -61,11 +85,12 @@ EvaluationTable trend_table(const MachineTrends& trends, double limit_mm) {
   for (const ErrorTrend* const one : order) {
     const TimedValue& last = one->values.back();
     const double u = std::hypot(last.uncertainty, one->values.front().uncertainty);
-    table.rows.push_back({one->name, place_of(*one), unit_of(*one), with_uncertainty(*one, last.value, 2 * u),
+    table.rows.push_back({one->name, place_of(*one), symbol_of(*one), with_uncertainty(*one, last.value, 2 * u),
                           with_uncertainty(*one, one->per_year, one->expanded_per_year),
                           one->trend.scatter ? tenths(shown(*one, *one->trend.scatter)) : "not known",
                           verdict_words(*one)});
     if (limit_mm > 0) table.rows.back().push_back(due_words(*one, limit_mm));
+    table.sparklines.push_back(course_of(*one));
   }
   return table;
 }
@@ -81,7 +106,7 @@ EvaluationTable campaign_table(const MachineTrends& trends) {
 EvaluationPlot trend_plot(const MachineTrends& trends, const ErrorTrend& trend) {
   XyPlot plot(fmt::format("{}: {}", trend.name, trend.words),
               fmt::format("years since {}", date_text(trends.dates.front())),
-              fmt::format("change of {} in {}", trend.name, unit_of(trend)));
+              fmt::format("change of {} in {}", trend.name, symbol_of(trend)));
   const double last = trend.values.back().time, first = trend.values.front().time;
   const double until = last + 0.25 * (last - first);
   std::vector<double> x, low, high;
@@ -97,13 +122,21 @@ EvaluationPlot trend_plot(const MachineTrends& trends, const ErrorTrend& trend) 
   }
   plot.band(x, low, high, {PlotColour::first, 1, false, 0.2}, "trend with its expanded uncertainty and the scatter");
   plot.line(line, {PlotColour::first, 1.5, false, 1});
-  std::vector<PlotPoint> points;
+  std::vector<PlotPoint> points, lower, upper;
   for (const TimedValue& one : trend.values) {
     const double t = one.time / kDaysPerYear;
     points.push_back({t, shown(trend, one.value)});
     plot.line({{t, shown(trend, one.value - 2 * one.uncertainty)}, {t, shown(trend, one.value + 2 * one.uncertainty)}},
               {PlotColour::second, 1, false, 1});
   }
+  const Sparkline course = course_of(trend);
+  for (std::size_t k = 1; k < points.size(); ++k) {
+    lower.push_back({points[k].x, *course.low[k]});
+    upper.push_back({points[k].x, *course.high[k]});
+  }
+  const PlotStyle limit{PlotColour::limit, 1, true, 1};
+  plot.line(lower, limit, "control limits: what the earlier campaigns predict");
+  plot.line(upper, limit);
   plot.points(points, Marker::circle, {PlotColour::second, 1, false, 1}, "campaigns, k = 2");
   return {.name = "trend-" + trend.name,
           .caption = trend.at ? fmt::format("Change since the first campaign at {}", place_of(trend))
@@ -124,13 +157,13 @@ void add_notes(const MachineTrends& trends, double limit_mm, EvaluationReport& r
     if (!one.expected || one.expected->is_within) continue;
     report.notes.push_back(
         fmt::format("{} has changed by {} {} up to the last campaign; the earlier campaigns predict {} {}.", one.name,
-                    tenths(shown(one, one.values.back().value)), unit_of(one),
-                    with_uncertainty(one, one.expected->value, one.expected->expanded), unit_of(one)));
+                    tenths(shown(one, one.values.back().value)), symbol_of(one),
+                    with_uncertainty(one, one.expected->value, one.expected->expanded), symbol_of(one)));
   }
   if (limit_mm > 0 && trends.next) {
     report.notes.push_back(
-        fmt::format("Measure again by {}: by then {} alone may have moved the tool by {:g} um since the last campaign.",
-                    date_text(*trends.next), trends.next_error, 1e3 * limit_mm));
+        fmt::format("Measure again by {}: by then {} alone may have moved the tool by {:g} {} since the last campaign.",
+                    date_text(*trends.next), trends.next_error, 1e3 * limit_mm, unit_symbol("um")));
   }
 }
 
@@ -146,6 +179,12 @@ nlohmann::ordered_json trend_json(const ErrorTrend& one, double limit_mm) {
     json["days"].push_back(value.time);
     json["change_" + unit].push_back(shown(one, value.value));
     json["standard_uncertainty_" + unit].push_back(shown(one, value.uncertainty));
+  }
+  // Nothing predicts the first value.
+  json["control_low_" + unit] = json["control_high_" + unit] = nlohmann::ordered_json::array({nullptr});
+  for (const Expected& expected : one.predicted) {
+    json["control_low_" + unit].push_back(shown(one, expected.value - expected.expanded));
+    json["control_high_" + unit].push_back(shown(one, expected.value + expected.expanded));
   }
   json["drift_" + unit + "_per_year"] = shown(one, one.per_year);
   json["drift_expanded_uncertainty_" + unit + "_per_year"] = shown(one, one.expanded_per_year);
@@ -187,7 +226,8 @@ EvaluationReport trend_report(const MachineTrends& trends, const TrendRequest& r
   report.facts = {{"campaigns", fmt::format("{}, {} to {}", trends.names.size(), date_text(trends.dates.front()),
                                             date_text(trends.dates.back()))}};
   if (request.limit_mm > 0) {
-    report.facts.emplace_back("limit", fmt::format("{:g} um at the tool, for each error", 1e3 * request.limit_mm));
+    report.facts.emplace_back(
+        "limit", fmt::format("{:g} {} at the tool, for each error", 1e3 * request.limit_mm, unit_symbol("um")));
     report.facts.emplace_back("measure again by", trends.next ? date_text(*trends.next) : "not in 20 years");
   }
   report.tables = {trend_table(trends, request.limit_mm), campaign_table(trends)};

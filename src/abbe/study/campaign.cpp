@@ -42,8 +42,8 @@ void refuse_unreadable(const Machine& machine, const Instrument& device, const I
   }
 }
 
-void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet& truth,
-                    const ProgressCallback& progress, CampaignSetup& result) {
+void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet& truth, const JobOptions& job,
+                    CampaignSetup& result) {
   const Setup& setup = study.setups[setup_index];
   RandomStream random(study.seed, kTruthStream + setup_index);
   result.truth = setup.device->truth(random);
@@ -60,11 +60,11 @@ void simulate_setup(const Study& study, std::size_t setup_index, const ErrorSet&
     options.outlier_mm = study.simulation->outliers.size;
     options.readings_per_pose = planned.per_pose;
     options.threads = study.threads;
-    options.progress = progress;
+    options.progress = stoppable_progress(job);
     const SimulatedInstrument simulated = result.truth->simulate(study.machine, truth, plan, options);
     options.noise_factor = 0;
     options.outlier_fraction = 0;
-    options.progress = nullptr;
+    options.progress = stoppable_progress({.stop = job.stop});
     if (setup.device->may_miss()) {
       refuse_unreadable(study.machine, *result.truth,
                         setup.device->simulate(study.machine, ErrorSet{}, plan, options).readings, setup.name, "",
@@ -103,8 +103,9 @@ bool same_components(const Instrument& a, const Instrument& b) {
                     [](const ReadingComponent& one, const ReadingComponent& other) { return one.name == other.name; });
 }
 
-void read_setup_files(const Study& study, const Setup& setup, CampaignSetup& result) {
+void read_setup_files(const Study& study, const Setup& setup, const std::stop_token& stop, CampaignSetup& result) {
   for (const SetupData& data : setup.data) {
+    stop_if_asked(stop);
     InstrumentFile file =
         data.readings ? given_readings(*data.readings, study.machine, result.device, setup.name, setup.noise_from_data)
                       : read_file(study, setup, result.device, data);
@@ -219,19 +220,20 @@ bool approach_matters(const Study& study, const ErrorSet& truth) {
   return !truth.reversals.empty() || (study.identification && !study.identification->reversals.empty());
 }
 
-Campaign gather_readings(const Study& study, const ProgressCallback& progress) {
+Campaign gather_readings(const Study& study, const JobOptions& options) {
   Campaign campaign;
   if (study.simulation) campaign.truth = true_errors(study);
   for (std::size_t i = 0; i < study.setups.size(); ++i) {
+    stop_if_asked(options.stop);
     const Setup& setup = study.setups[i];
     CampaignSetup result;
     result.name = setup.name;
     result.instrument = setup.instrument;
     result.device = setup.device;
     if (campaign.truth) {
-      simulate_setup(study, i, *campaign.truth, progress, result);
+      simulate_setup(study, i, *campaign.truth, options, result);
     } else {
-      read_setup_files(study, setup, result);
+      read_setup_files(study, setup, options.stop, result);
     }
     result.start = result.device;
     if (result.hidden > 0) {

@@ -30,6 +30,9 @@ constexpr double kAtAnEnd = 0.4;
 constexpr double kLeastCost_s = 1e-3;
 constexpr std::size_t kMostTogether = 6;
 
+/// Takes the share of the work that is done, 0 to 1, and throws Stopped where that was asked for.
+using ShareCallback = std::function<void(double)>;
+
 /// How far a plan is worked out.
 enum class PlanningDepth {
   choice,  ///< readings and their uncertainty
@@ -148,9 +151,10 @@ double root_mean_square(const PlanValue& value, const Eigen::MatrixXd& predictio
 
 /// As many candidates as the plan has, without any choice.
 void try_at_random(const PlanningSpace& space, const Eigen::MatrixXd& predictions, std::uint64_t seed,
-                   StudyPlan& result) {
+                   const std::stop_token& stop, StudyPlan& result) {
   std::vector<double> found;
   for (std::size_t draw = 0; draw < kRandomDraws; ++draw) {
+    stop_if_asked(stop);
     RandomStream random(seed + 2, draw);
     std::vector<std::size_t> order(space.count());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -220,7 +224,9 @@ void add_costs(const Study& study, PlanningModel::Candidates& candidates) {
   }
 }
 
-StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const std::function<void(double)>& progress) {
+StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const ShareCallback& progress,
+                          const std::stop_token& stop) {
+  progress(0);
   auto whole_model = std::make_unique<const PlanningModel>(study);
   const PlanningStudy& plan = *study.planning;
   const PoseList poses =
@@ -263,7 +269,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const std::fu
     options.criterion = PlanningCriterion::variance;
     options.functionals = plan.goal == PlanningGoal::volumetric ? predictions : model.parameter_rows();
   }
-  if (progress) options.progress = [&](double share) { progress(0.6 * share); };
+  options.progress = [&](double share) { progress(0.6 * share); };
 
   const double sights = static_cast<double>(std::max<std::size_t>(1, model.sight_count()));
   const double quickest = plan.reading + plan.settle / sights;
@@ -309,12 +315,12 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const std::fu
     result.with_prior = uncertainty_with_prior(model, rows_of(result.plan.chosen), predictions);
     return result;
   }
-  try_at_random(*space, predictions, study.seed, result);
+  try_at_random(*space, predictions, study.seed, stop, result);
 
   const bool may_stand_anywhere =
       !plan.grid && model.sights_stand_anywhere() &&
       std::none_of(plan.axes.begin(), plan.axes.end(), [](const AxisRange& range) { return range.step > 0; });
-  options.progress = nullptr;
+  options.progress = [&stop](double) { stop_if_asked(stop); };
   for (int round = 0; round < kRefinements && may_stand_anywhere; ++round) {
     PlanningModel::Candidates around =
         model.readings_at(poses_around(plan, result.readings, study.seed * 31 + static_cast<std::uint64_t>(round)));
@@ -337,7 +343,7 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const std::fu
     candidates = std::move(around);
     space = std::move(space_around);
     result.refinements = round + 1;
-    if (progress) progress(0.6 + 0.2 * (round + 1) / kRefinements);
+    progress(0.6 + 0.2 * (round + 1) / kRefinements);
   }
   result.uncertainty = root_mean_square(value_of(*space, result.plan.chosen, predictions), predictions);
   result.with_prior = uncertainty_with_prior(model, rows_of(result.plan.chosen), predictions);
@@ -359,12 +365,12 @@ StudyPlan plan_all_setups(const Study& study, PlanningDepth depth, const std::fu
     result.curve.push_back(point);
   }
   say_what_is_enough(plan, result);
-  if (progress) progress(0.85);
+  progress(0.85);
   if (model.sights_stand_anywhere() && !model.has_given_readings()) {
-    compare_with_grids(model, *space, predictions, result);
+    compare_with_grids(model, *space, predictions, result, stop);
   }
   result.not_identified = find_not_in_model(study, model.errors());
-  if (progress) progress(1);
+  progress(1);
   return result;
 }
 
@@ -384,7 +390,8 @@ Study with_setups(const Study& study, std::size_t subset) {
 
 /// Which instruments are worth setting up: every combination of them is planned, and the one counts whose predicted
 /// uncertainty, with the weak prior for what it does not see, is smallest.
-std::vector<SetupChoice> try_combinations(const Study& study, const std::function<void(double)>& progress) {
+std::vector<SetupChoice> try_combinations(const Study& study, const ShareCallback& progress,
+                                          const std::stop_token& stop) {
   std::vector<SetupChoice> choices;
   const std::size_t combinations = (std::size_t{1} << study.setups.size()) - 1;
   for (std::size_t subset = 1; subset <= combinations; ++subset) {
@@ -396,14 +403,15 @@ std::vector<SetupChoice> try_combinations(const Study& study, const std::functio
       set_up += part.planning->set_up_of(setup.name);
     }
     if (set_up < part.planning->time) {
-      const StudyPlan plan = plan_all_setups(part, PlanningDepth::choice, {});
+      const auto within = [&stop](double) { stop_if_asked(stop); };
+      const StudyPlan plan = plan_all_setups(part, PlanningDepth::choice, within, stop);
       choice.possible = plan.plan.status == PlanningStatus::done;
       choice.readings = plan.readings.size();
       choice.time = plan.time;
       choice.with_prior = plan.with_prior;
     }
     choices.push_back(std::move(choice));
-    if (progress) progress(0.5 * static_cast<double>(subset) / static_cast<double>(combinations));
+    progress(0.5 * static_cast<double>(subset) / static_cast<double>(combinations));
   }
   return choices;
 }
@@ -428,16 +436,20 @@ std::vector<double> reading_times(const Study& study, const std::vector<Candidat
   return times;
 }
 
-StudyPlan plan_study(const Study& study, const std::function<void(double)>& progress) {
+StudyPlan plan_study(const Study& study, const JobOptions& options) {
+  const ShareCallback progress = [report = stoppable_progress(options)](double share) {
+    constexpr std::size_t kParts = 1000;
+    report(static_cast<std::size_t>(kParts * share), kParts);
+  };
   if (!study.planning) throw InputError({.field = "plan"}, "there is nothing to plan", "a table [plan]");
   check_costs(study);
   const bool set_up_costs = std::any_of(study.planning->setups.begin(), study.planning->setups.end(),
                                         [](const PlannedSetup& setup) { return setup.set_up > 0; });
   const std::size_t setups = study.setups.size();
   if (!set_up_costs || study.planning->time <= 0 || setups < 2 || setups > kMostTogether) {
-    return plan_all_setups(study, PlanningDepth::whole, progress);
+    return plan_all_setups(study, PlanningDepth::whole, progress, options.stop);
   }
-  std::vector<SetupChoice> choices = try_combinations(study, progress);
+  std::vector<SetupChoice> choices = try_combinations(study, progress, options.stop);
   const auto worse = [](const SetupChoice& a, const SetupChoice& b) {
     return a.possible != b.possible ? b.possible : a.with_prior > b.with_prior;
   };
@@ -447,8 +459,7 @@ StudyPlan plan_study(const Study& study, const std::function<void(double)>& prog
     if ((best.subset >> s & 1) != 0) kept.push_back(s);
   }
   const auto rest = [&](double share) { progress(0.5 + 0.5 * share); };
-  StudyPlan plan = plan_all_setups(with_setups(study, best.subset), PlanningDepth::whole,
-                                   progress ? std::function<void(double)>(rest) : nullptr);
+  StudyPlan plan = plan_all_setups(with_setups(study, best.subset), PlanningDepth::whole, rest, options.stop);
   for (CandidateReading& reading : plan.readings) reading.setup = kept[reading.setup];
   plan.combinations = std::move(choices);
   return plan;

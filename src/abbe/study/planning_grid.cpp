@@ -48,11 +48,12 @@ void thin(std::vector<T>& list, std::size_t most) {
 class GridSearch {
  public:
   GridSearch(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
-             StudyPlan& result)
+             StudyPlan& result, const std::stop_token& stop)
       : model_(model),
         space_(space),
         predictions_(predictions),
         result_(result),
+        stop_(stop),
         ranges_(model.study().planning->axes),
         prior_(model.weak_prior() + model.known().transpose() * model.known()) {
     const double all = static_cast<double>(result.candidates + result.hidden);
@@ -87,6 +88,7 @@ class GridSearch {
     add_composite(number, grids);
     std::vector<Tried> tried;
     for (const Grid& grid : grids) {
+      stop_if_asked(stop_);
       PlanningModel::Candidates readings = model_.readings_at(grid.poses, grid.sight);
       const std::size_t count = readings.readings.size();
       if (count < number || static_cast<double>(count) > kMostOfTheNumber * static_cast<double>(number)) continue;
@@ -284,6 +286,7 @@ class GridSearch {
   const PlanningSpace& space_;
   const Eigen::MatrixXd& predictions_;
   StudyPlan& result_;
+  std::stop_token stop_;
   const std::vector<AxisRange>& ranges_;
   Eigen::MatrixXd prior_;
   double visible_ = 1;
@@ -304,8 +307,8 @@ double uncertainty_with_prior(const PlanningModel& model, const PlanningCandidat
 }
 
 void compare_with_grids(const PlanningModel& model, const PlanningSpace& space, const Eigen::MatrixXd& predictions,
-                        StudyPlan& result) {
-  GridSearch(model, space, predictions, result).run();
+                        StudyPlan& result, const std::stop_token& stop) {
+  GridSearch(model, space, predictions, result, stop).run();
 }
 
 }  // namespace abbe

@@ -39,7 +39,7 @@ StudyResult run_study(const Study& study, const RunOptions& options) {
     progress(0, 1);
     return progress;
   };
-  result.campaign = gather_readings(study, begin(StudyStep::gather));
+  result.campaign = gather_readings(study, {.progress = begin(StudyStep::gather), .stop = options.stop});
   if (!study.identification) {
     // Simulated readings are as good as the study; measured ones can contradict it.
     if (!study.simulation) find_start_values(study.machine, result.campaign);

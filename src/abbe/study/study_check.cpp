@@ -17,9 +17,10 @@ std::size_t StudyCheck::judged_places() const {
   return places;
 }
 
-StudyCheck check_study(const Study& study, const ProgressCallback& progress) {
+StudyCheck check_study(const Study& study, const JobOptions& options) {
   check_customer_report(study);
-  StudyCheck check{gather_readings(study, progress)};
+  StudyCheck check{gather_readings(study, options)};
+  stop_if_asked(options.stop);
   find_start_values(study.machine, check.campaign);
   return check;
 }

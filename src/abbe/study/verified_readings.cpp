@@ -120,7 +120,7 @@ VerifiedReadings verify_readings(const ReadingsToVerify& request, const JobOptio
   const auto progress = stoppable_progress(options);
   constexpr std::size_t kSteps = 3;
   progress(0, kSteps);
-  Campaign campaign = gather_readings(request.study);
+  Campaign campaign = gather_readings(request.study, {.stop = options.stop});
   find_start_values(request.study.machine, campaign);
 
   VerifiedReadings result;

@@ -59,9 +59,10 @@ struct CustomerReport {
   std::vector<CustomerTable> tables;
   std::vector<std::string> explanations;  ///< below the figures, in the language of the report
   bool is_simulated = false;
-  std::vector<std::string> refusals;    ///< why the result must not be used as it is, in English; on the first sheet
+  /// Why the result must not be used as it is, on the first sheet; in English, shown as customer_note() has it.
+  std::vector<std::string> refusals;
   std::vector<std::string> conditions;  ///< of the evaluation, in the language of the report
-  std::vector<std::string> notes;       ///< the same in English, where there are no words for them
+  std::vector<std::string> notes;       ///< of the evaluation in English, shown as customer_note() has them
   std::vector<std::string> files;       ///< names of what was evaluated
 };
 

@@ -86,13 +86,22 @@ std::string figure_text(const EvaluationFigure& figure, double value);
 /// The unit as written for people: "µm", "arcsec".
 std::string unit_symbol(const std::string& unit);
 
+/// The course of one value over time, which a page draws in a cell of a table.
+struct Sparkline {
+  std::vector<double> days;                      ///< ascending
+  std::vector<double> value, expanded;           ///< [days] and its expanded uncertainty; in the unit of the row
+  std::vector<std::optional<double>> low, high;  ///< [days] control limits; none where nothing predicts the value
+};
+
 /// Rows of texts under headers.
 struct EvaluationTable {
   std::string caption;
   std::vector<std::string> headers;
   std::vector<std::vector<std::string>> rows;
-  bool with_figures = false;  ///< a page shows it with the figures, not among the details
-  bool in_text = false;       ///< evaluation_text() shows it before the figures
+  bool with_figures = false;            ///< a page shows it with the figures, not among the details
+  bool in_text = false;                 ///< evaluation_text() shows it before the figures
+  std::vector<Sparkline> sparklines{};  ///< [rows] or none; a page shows them in the second column
+  std::string note{};                   ///< a page shows it below the table
 };
 
 struct EvaluationPlot {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "abbe/report/customer/customer_notes.h"
 #include "abbe/report/customer/customer_report.h"
 #include "abbe/report/customer/customer_style.h"
 #include "abbe/report/customer/customer_words.h"
@@ -143,7 +144,8 @@ class CustomerPage {
     if (report_.is_simulated) lines.push_back(word(Word::simulated));
     if (!report_.refusals.empty()) lines.push_back(word(Word::must_not_be_used));
     for (const std::string& refusal : report_.refusals) {
-      lines.push_back(fmt::format("<span lang=\"en\">{}</span>", xml_text(refusal)));
+      const std::optional<std::string> known = customer_note(refusal, language_);
+      lines.push_back(known ? xml_text(*known) : fmt::format("<span lang=\"en\">{}</span>", xml_text(refusal)));
     }
     const std::string exceeded = exceeded_tolerances(report_);
     if (!exceeded.empty()) lines.push_back(xml_text(customer_text(Word::out_of_tolerance, language_, exceeded)));
@@ -268,13 +270,15 @@ class CustomerPage {
       for (const std::string& line : lines) text += fmt::format("<li>{}</li>\n", xml_text(line));
       return text + "</ul>\n";
     };
+    std::vector<std::string> known = report_.conditions, others;
+    for (const std::string& note : report_.notes) {
+      const std::optional<std::string> own = customer_note(note, language_);
+      (own ? known : others).push_back(own.value_or(note));
+    }
     std::string text = fmt::format("<section class=\"notes\">\n<h2>{}</h2>\n", word(Word::notes));
-    if (!report_.conditions.empty()) text += list(report_.conditions, "");
-    if (!report_.notes.empty()) {
-      if (language_ != ReportLanguage::english) {
-        text += fmt::format("<p>{}{}</p>\n", word(Word::notes_in_english), colon());
-      }
-      text += list(report_.notes, " lang=\"en\"");
+    if (!known.empty()) text += list(known, "");
+    if (!others.empty()) {
+      text += fmt::format("<p>{}{}</p>\n", word(Word::notes_in_english), colon()) + list(others, " lang=\"en\"");
     }
     return text + "</section>\n";
   }

@@ -10,6 +10,7 @@
 
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
+#include "abbe/report/customer/customer_notes.h"
 #include "abbe/report/customer/customer_parts.h"
 #include "abbe/report/customer/local_numbers.h"
 #include "abbe/report/drawings/svg_plot.h"
@@ -56,7 +57,10 @@ std::string fact_of(const EvaluationReport& report, const std::string& name) {
 /// A fact of the evaluation as a condition, if it is there.
 void add_fact(const EvaluationReport& from, const std::string& name, Word word, CustomerReport& report) {
   const std::string text = fact_of(from, name);
-  if (!text.empty()) report.conditions.push_back(customer_text(word, report.facts.language, text));
+  if (!text.empty()) {
+    const ReportLanguage language = report.facts.language;
+    report.conditions.push_back(customer_text(word, language, customer_note_argument(text, language)));
+  }
 }
 
 std::string micro_text(double value, ReportLanguage language) { return local_number(1e3 * value, 2, language); }

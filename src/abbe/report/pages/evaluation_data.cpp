@@ -2,7 +2,38 @@
 
 #include <nlohmann/json.hpp>
 
+#include "abbe/report/evaluations/machine_json.h"
+
 namespace abbe {
+namespace {
+
+/// Null where there is none.
+nlohmann::json drawn(const std::vector<std::optional<double>>& values) {
+  nlohmann::json result = nlohmann::json::array();
+  for (const std::optional<double>& value : values) {
+    result.push_back(value ? nlohmann::json(for_drawing(*value)) : nlohmann::json());
+  }
+  return result;
+}
+
+nlohmann::json drawn(const std::vector<double>& values) {
+  return drawn(std::vector<std::optional<double>>(values.begin(), values.end()));
+}
+
+nlohmann::json table_data(const EvaluationTable& table) {
+  nlohmann::json data{{"title", table.caption}, {"columns", table.headers}, {"rows", table.rows}};
+  if (!table.note.empty()) data["note"] = table.note;
+  for (const Sparkline& one : table.sparklines) {
+    data["sparklines"].push_back({{"days", one.days},
+                                  {"value", drawn(one.value)},
+                                  {"expanded_uncertainty", drawn(one.expanded)},
+                                  {"control_low", drawn(one.low)},
+                                  {"control_high", drawn(one.high)}});
+  }
+  return data;
+}
+
+}  // namespace
 
 nlohmann::json drawing_data(const EvaluationPlot& plot) {
   if (plot.beside) return {{"caption", plot.caption}, {"svg", plot.picture.narrow}, {"beside", true}};
@@ -37,7 +68,7 @@ nlohmann::json evaluation_data(const EvaluationReport& report) {
   data["tables"] = nlohmann::json::array();
   for (const EvaluationTable& table : report.tables) {
     nlohmann::json& place = table.with_figures ? evaluation["tables"] : data["tables"];
-    place.push_back({{"title", table.caption}, {"columns", table.headers}, {"rows", table.rows}});
+    place.push_back(table_data(table));
   }
   if (report.page.is_object()) data.update(report.page);
   return data;
