@@ -116,7 +116,7 @@ TEST_F(BadInput, FilesOfAnotherKindAreToldByTheirNames) {
   expect_refused({"run", machine}, machine + problem + ".study.toml");
   folder.write("errors.toml", "chain = \"w b X Y Z t\"\n");
   expect_refused({"run", "errors.toml"}, "errors.toml" + problem + ".study.toml");
-  expect_refused({"run"}, "abbe: study is required\nabbe: Run with --help or --help-all for more information.\n");
+  expect_refused({"run"}, "study is required\nabbe: Run with --help or --help-all for more information.");
 }
 
 TEST_F(BadInput, ErrorsOfAnotherMachine) {

@@ -81,8 +81,7 @@ bool approach_matters(const Study& study, const ErrorSet& truth);
 
 /// Reads or simulates all readings. Start values are not yet looked for.
 /// @param options  progress in poses of a plan that is simulated, from one thread at a time; a file is read whole
-/// before
-///   a stop is looked at
+///   before a stop is looked at
 /// @throws InputError
 /// @throws Stopped
 Campaign gather_readings(const Study& study, const JobOptions& options = {});

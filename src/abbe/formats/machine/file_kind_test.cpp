@@ -57,7 +57,10 @@ class TomlKinds : public testing::Test {
   }
 
  private:
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "abbe_toml_kinds";
+  // Tests may run at the same time.
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("abbe_toml_kinds_") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(TomlKinds, AStudyIsToldByItsNameOrItsSetUps) {

@@ -30,7 +30,11 @@ void add_wrapped(std::string_view line, std::size_t width, std::string_view comm
   while (at < line.size()) {
     // A word with the blanks before it.
     const std::size_t word = std::min(line.find_first_not_of(' ', at), line.size());
-    const std::size_t next = std::min(line.find(' ', word), line.size());
+    std::size_t next = std::min(line.find(' ', word), line.size());
+    if (!is_command && characters_in(line.substr(word, next - word)) + indent > width) {
+      // A list without blanks may be broken behind its commas.
+      next = std::min(line.find(',', word), next - 1) + 1;
+    }
     const std::string_view part = line.substr(at, next - at);
     const bool is_last = next == line.size();
     if (has_word && characters_in(shown) + characters_in(part) + (is_last ? 0 : end.size()) > width) {

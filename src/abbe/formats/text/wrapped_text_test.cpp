@@ -33,6 +33,11 @@ TEST(WrappedHelp, KeepsALongWordWhole) {
   EXPECT_EQ(wrapped_help("aaaaaaaaaaaa", 5, "abbe "), "aaaaaaaaaaaa");
 }
 
+TEST(WrappedHelp, BreaksALongListBehindItsCommas) {
+  EXPECT_EQ(wrapped_help("  {one,two,three,four}", 12, "abbe "), "  {one,two,\n    three,\n    four}");
+  EXPECT_EQ(wrapped_help("  abbe a,b,c,d,e,f", 10, "abbe "), "  abbe \\\n      a,b,c,d,e,f") << "shells would not";
+}
+
 TEST(WrappedHelp, CountsCharactersAndNotBytes) {
   EXPECT_EQ(wrapped_help("\xC2\xB5m \xC2\xB5m \xC2\xB5m", 8, "abbe "), "\xC2\xB5m \xC2\xB5m \xC2\xB5m");
 }
