@@ -15,13 +15,14 @@ if(ABBE_WARNINGS OR ABBE_WERROR)
     # Nor does a local name hide one of another source; GCC and the units of single sources keep the warning.
     $<$<AND:$<CXX_COMPILER_ID:Clang>,$<BOOL:${ABBE_UNITY}>>:-Wno-shadow>
     # False alarms of GCC 12 on strings that are put together (its bugs 105329 and 105651).
-    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds;-Wno-restrict>
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow>
     # Nor does it know at -O1, with which the development build is compiled, what inlining would have told it.
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:RelWithDebInfo>>:-Wno-maybe-uninitialized>)
 else()
-  # The one of these that GCC gives unasked.
+  # Those of these that GCC gives unasked.
   target_compile_options(abbe_common_flags INTERFACE
-    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ABBE_UNITY}>>:-Wno-subobject-linkage>)
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${ABBE_UNITY}>>:-Wno-subobject-linkage>
+    $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-stringop-overflow>)
 endif()
 target_compile_options(abbe_common_flags INTERFACE
   # The same bits on every machine and at every optimisation level.
