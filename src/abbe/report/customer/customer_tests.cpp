@@ -29,36 +29,6 @@ constexpr int kShownAngles = 24;
 constexpr std::size_t kMostMotionsInTable = 6;
 constexpr std::size_t kMostMotionDrawings = 2;
 
-CustomerReport begun_test_report(const ReportFacts& facts, const EvaluationReport& now, const EvaluationReport* before,
-                                 Word subject) {
-  CustomerReport report = begun_customer_report(facts, now, before, subject, [&](const EvaluationFigure& figure) {
-    return ShownFigure{figure.symbol, test_figure_name(now.kind, figure, facts.language), unit_symbol(figure.unit)};
-  });
-  report.notes = now.notes;
-  const auto note_missing = [&](const EvaluationReport& of, const char* prefix) {
-    for (const EvaluationFigure& figure : of.figures) {
-      if (!figure.value) report.notes.push_back(prefix + figure.symbol + ": " + figure.missing + ".");
-    }
-  };
-  if (before != nullptr) note_missing(*before, "before: ");
-  note_missing(now, before != nullptr ? "after: " : "");
-  return report;
-}
-
-/// A fact of the evaluation; empty: it has none of this name.
-std::string fact_of(const EvaluationReport& report, const std::string& name) {
-  for (const auto& [fact, text] : report.facts) {
-    if (fact == name) return text;
-  }
-  return "";
-}
-
-/// A fact of the evaluation as a condition, if it is there.
-void add_fact(const EvaluationReport& from, const std::string& name, Word word, CustomerReport& report) {
-  const std::string text = fact_of(from, name);
-  if (!text.empty()) report.conditions.push_back(customer_text(word, report.facts.language, text));
-}
-
 std::string micro_text(double value, ReportLanguage language) { return local_number(1e3 * value, 2, language); }
 
 /// The element nearest to an angle of a circle, if one is within half a step of those that are shown.
