@@ -21,6 +21,7 @@ void add_evaluate_command(CommandLine& line) {
   add_evaluate_squareness(*command, line);
   add_evaluate_contour(*command, line);
   add_evaluate_linkage(*command, line);
+  add_evaluate_thermal(*command, line);
 }
 
 }  // namespace abbe

@@ -14,11 +14,14 @@
 #include "abbe/formats/evaluations/evaluation_line_file.h"
 #include "abbe/formats/evaluations/evaluation_positioning.h"
 #include "abbe/formats/evaluations/evaluation_rotation_file.h"
+#include "abbe/formats/evaluations/evaluation_thermal_file.h"
 #include "abbe/formats/import/readable_table.h"
 #include "abbe/formats/machine/linkage_file.h"
 #include "abbe/formats/text/input_error.h"
 #include "abbe/verify/evaluations/circular_diagnosis.h"
 #include "abbe/verify/evaluations/squareness.h"
+#include "abbe/verify/thermal/etve.h"
+#include "abbe/verify/thermal/spindle_distortion.h"
 
 namespace {
 
@@ -116,12 +119,41 @@ void readable(std::string_view text) {
   }
 }
 
+void require_response(const abbe::FirstOrderResponse& response) {
+  if (response.status != abbe::ResponseStatus::done) return;
+  if (!(response.time_constant > 0) || !std::isfinite(response.uncertainty) || !std::isfinite(response.change)) {
+    std::abort();
+  }
+}
+
+void thermal(std::string_view text) {
+  const abbe::ThermalReadings readings = abbe::parse_thermal(text, "fuzz.csv");
+  const abbe::EtveEvaluation etve = abbe::evaluate_etve(readings, {}, 100);
+  for (const abbe::EtveSensor& one : etve.sensors) {
+    if (!std::isfinite(one.etve.value) || one.hourly.value > one.etve.value * (1 + 1e-9)) std::abort();
+  }
+  const abbe::SpindleRun run{etve.from, etve.to, etve.to};
+  if (!abbe::unread_sensor(readings, run).empty()) return;
+  for (const auto& one : abbe::evaluate_spindle_distortion(readings, run, {}, 100).sensors) {
+    require_response(one.warming);
+  }
+}
+
+void axis_distortion(std::string_view text) {
+  const abbe::AxisDistortionReadings readings = abbe::parse_axis_distortion(text, "fuzz.csv");
+  for (const abbe::AxisExpansion& one : abbe::evaluate_axis_distortion(readings, {}).expansions) {
+    if (!std::isfinite(one.range.value) || !std::isfinite(one.expansion)) std::abort();
+    require_response(one.response);
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   // One line for every kind of evaluation.
-  for (const auto read : {positioning, diagonals, circular, rotation, straightness, squareness, linkage, readable}) {
+  for (const auto read : {positioning, diagonals, circular, rotation, straightness, squareness, linkage, readable,
+                          thermal, axis_distortion}) {
     try {
       read(text);
     } catch (const abbe::InputError&) {

@@ -50,7 +50,7 @@ int finish_evaluation(const EvaluationReport& report, const EvaluationOptions& o
 int run_evaluation(const EvaluationOptions& options,
                    const std::function<TestToEvaluate(const std::string& file)>& test_of);
 
-// One per kind; each leaves its work in line.run.
+// One per kind, or for all of a kind; each leaves its work in line.run.
 void add_evaluate_positioning(Subcommand& evaluate, CommandLine& line);
 void add_evaluate_diagonals(Subcommand& evaluate, CommandLine& line);
 void add_evaluate_circular(Subcommand& evaluate, CommandLine& line);
@@ -59,5 +59,6 @@ void add_evaluate_straightness(Subcommand& evaluate, CommandLine& line);
 void add_evaluate_squareness(Subcommand& evaluate, CommandLine& line);
 void add_evaluate_contour(Subcommand& evaluate, CommandLine& line);
 void add_evaluate_linkage(Subcommand& evaluate, CommandLine& line);
+void add_evaluate_thermal(Subcommand& evaluate, CommandLine& line);
 
 }  // namespace abbe

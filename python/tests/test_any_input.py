@@ -34,6 +34,7 @@ TAKES_ARRAYS = {
     "correct_commands": lambda array: abbe.correct_commands(ERRORS, array),
     "evaluate_circular": lambda array: abbe.evaluate_circular({"angle_deg": array, "deviation_um": array}, radius_mm=100),
     "evaluate_straightness": lambda array: abbe.evaluate_straightness({"position_mm": array, "deviation_um": array}),
+    "evaluate_etve": lambda array: abbe.evaluate_etve({"time_s": array, "X_um": array, "air_degC": array}),
     "frozen": FROZEN.correct,
     "tool of frozen": lambda array: FROZEN.correct(numpy.zeros((2, 4)), tool_mm=array),
     "frozen bytes": lambda array: abbe.FrozenCompensation(array.tobytes()),

@@ -44,6 +44,18 @@ KINDS = {
                    EVALUATE / "squareness.csv",
                    lambda r, **more: abbe.evaluate_squareness(r, u_reading_um=0.3, u_square_urad=1, square_urad=-3,
                                                               **more)),
+    "etve": (["etve", "--plane-distance-mm", 150, "--u-reading-um", 0.1, "--length-mm", 500,
+              "--workpiece-expansion-um-per-m-K", 23, "--u-scale-expansion-um-per-m-K", 1,
+              "--scale-expansion-um-per-m-K", 8], EVALUATE / "etve.csv",
+             lambda r, **more: abbe.evaluate_etve(r, options={
+                 "plane_distance_mm": 150, "u_reading_um": 0.1, "length_mm": 500,
+                 "workpiece_expansion_um_per_m_K": 23, "u_scale_expansion_um_per_m_K": 1,
+                 "scale_expansion_um_per_m_K": 8}, **more)),
+    "spindle": (["spindle-distortion", "--stop-min", 240, "--plane-distance-mm", 150], EVALUATE / "spindle.csv",
+                lambda r, **more: abbe.evaluate_spindle_distortion(r, options={"stop_min": 240,
+                                                                               "plane_distance_mm": 150}, **more)),
+    "axis": (["axis-distortion", "--u-reading-um", 0.1], EVALUATE / "axis_warming.csv",
+             lambda r, **more: abbe.evaluate_axis_distortion(r, options={"u_reading_um": 0.1}, **more)),
     "sections": (["contour", "--u-height-um", 2, "--u-across-um", 1], ENGRAVER / "sections.csv",
                  lambda r, **more: abbe.evaluate_sections(r, u_height_um=2, u_across_um=1, **more)),
     "linkage": (["linkage", "--exit-to-axis-mm", 120, "--board-mm", 4, "--machine",
@@ -228,7 +240,8 @@ BAD_COLUMNS = {
 def test_bad_readings_are_named(bad):
     for function in (abbe.evaluate_positioning, abbe.evaluate_diagonals, abbe.evaluate_rotation,
                      abbe.evaluate_straightness,
-                     abbe.evaluate_squareness, abbe.evaluate_sections, lambda r: abbe.evaluate_circular(r, 100),
+                     abbe.evaluate_squareness, abbe.evaluate_sections, abbe.evaluate_etve,
+                     abbe.evaluate_spindle_distortion, abbe.evaluate_axis_distortion, lambda r: abbe.evaluate_circular(r, 100),
                      lambda r: abbe.evaluate_linkage(r, 120, 4)):
         with pytest.raises(abbe.InputError) as error:
             function(BAD_COLUMNS[bad])
@@ -262,6 +275,10 @@ def test_the_place_of_a_bad_reading_is_its_row():
     ("uncertainty", lambda: abbe.evaluate_positioning(EVALUATE / "linear.csv", uncertainty={"instrument_mm": 1})),
     ("uncertainty", lambda: abbe.evaluate_positioning(EVALUATE / "linear.csv", uncertainty={"instrument_um": -1})),
     ("arcsec", lambda: abbe.evaluate_positioning(EVALUATE / "linear.csv", uncertainty={"instrument_arcsec": 1})),
+    ("options", lambda: abbe.evaluate_etve(EVALUATE / "etve.csv", options={"u_reading_mm": 1})),
+    ("u_reading_um is -1", lambda: abbe.evaluate_etve(EVALUATE / "etve.csv", options={"u_reading_um": -1})),
+    ("stop_min", lambda: abbe.evaluate_spindle_distortion(EVALUATE / "spindle.csv", options={"stop_min": -5})),
+    ("length_mm", lambda: abbe.evaluate_etve(EVALUATE / "etve.csv", options={"scale_expansion_um_per_m_K": 8})),
     ("feature", lambda: abbe.evaluate_sections(ENGRAVER / "sections.csv", feature="hole")),
     ("beam_tilt_deg", lambda: abbe.evaluate_sections(ENGRAVER / "sections.csv", beam_tilt_deg=31)),
     ("accuracy", lambda: abbe.evaluate_linkage(ENGRAVER / "five-steps.csv", 120, 4, accuracy={"u_q_um": 1})),
@@ -280,6 +297,21 @@ def test_the_place_of_a_bad_reading_is_its_row():
 ])
 def test_bad_arguments_are_named(name, call, names_argument):
     names_argument(name, call)
+
+
+def test_thermal_numbers():
+    spindle = abbe.evaluate_spindle_distortion(EVALUATE / "spindle.csv",
+                                               options={"stop_min": 240, "plane_distance_mm": 150}).numbers
+    assert [sensor.name for sensor in spindle.sensors] == ["X1", "Y1", "X2", "Y2", "Z", "A", "B"]
+    assert spindle.sensors[5].unit == "rad" and spindle.temperatures[0].unit == "degC"
+    assert spindle.warming[4].status == "done" and spindle.stop_s == 240 * 60
+    assert spindle.warming[4].time_constant_s == pytest.approx(45 * 60, abs=3 * spindle.warming[4].uncertainty_s)
+    etve = abbe.evaluate_etve({"time_h": [0, 1], "Z_um": [0, numpy.pi]}).numbers
+    assert etve.sensors[0].time_s.tolist() == [0, 3600] and len(etve.sensors[0]) == 2 and etve.temperatures == []
+    axis = abbe.evaluate_axis_distortion(EVALUATE / "axis_warming.csv").numbers
+    assert axis.targets_mm.tolist() == [50, 250, 450] and axis.directions == [""] * 3
+    assert axis.expansions[0].expansion == pytest.approx(43.6e-6, rel=0.03)
+    assert axis.expansions[0].response.status == "done" and len(axis.sensors[0][0]) == 37
 
 
 @bad_input

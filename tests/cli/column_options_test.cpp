@@ -103,6 +103,7 @@ INSTANTIATE_TEST_SUITE_P(
                       "position_mm",
                       "at",
                       {"evaluate", "straightness", "{}", "--json"}},
+        RenamedColumn{"etve", "evaluate/etve.csv", "Z_um", "probe", {"evaluate", "etve", "{}", "--json"}},
         RenamedColumn{
             "squareness", "evaluate/squareness.csv", "line", "arm", {"evaluate", "squareness", "{}", "--json"}},
         RenamedColumn{

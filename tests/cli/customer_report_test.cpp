@@ -205,6 +205,15 @@ TEST_F(CustomerReportCommand, EveryKindOfEvaluationHasOne) {
       {{"linkage", engraver + "five-steps.csv", "--exit-to-axis-mm", "120", "--board-mm", "4"},
        "Geometriegrößen einer Lasergraviermaschine",
        "Versatz des Strahls gegen die Achse A"},
+      {{"etve", examples + "evaluate/etve.csv", "--u-reading-um", "0.1"},
+       "Abweichung durch Änderung der Umgebungstemperatur",
+       "ETVE von Z über die Prüfung"},
+      {{"spindle-distortion", examples + "evaluate/spindle.csv", "--stop-min", "240"},
+       "Thermische Verformung durch die drehende Spindel",
+       "Änderungen über der Zeit"},
+      {{"axis-distortion", examples + "evaluate/axis_warming.csv"},
+       "Thermische Verformung durch die bewegte Achse",
+       "P1 = 50 mm, P2 = 250 mm, P3 = 450 mm"},
   };
   int number = 0;
   for (const Kind& kind : kinds) {

@@ -362,6 +362,9 @@ const kUnits: [string, string][] = [
   ['_min', 'min'],
   ['_percent', '%'],
   ['_um_per_m', 'µm/m'],
+  ['_ms', 'ms'],
+  ['_K', 'K'],
+  ['_K_per_h', 'K/h'],
 ];
 
 /// A unit as it is written in data, as it is written for people.

@@ -40,7 +40,8 @@ void bind_evaluations(nb::module_& module) {
                 evaluation.found);
           },
           nb::sig("def numbers(self) -> PositioningNumbers | DiagonalsNumbers | CircularNumbers | RotationNumbers | "
-                  "StraightnessNumbers | SquarenessNumbers | SectionNumbers | ContourNumbers | LinkageNumbers"),
+                  "StraightnessNumbers | SquarenessNumbers | SectionNumbers | ContourNumbers | LinkageNumbers | "
+                  "EtveNumbers | SpindleDistortionNumbers | AxisDistortionNumbers"),
           "Results as numbers and arrays in mm and rad; the class depends on the test.")
       .def_ro("refused", &Evaluation::refused,
               "Why the figures are not those requested; empty if they are. An exceeded tolerance is no reason.")
@@ -53,6 +54,7 @@ void bind_evaluations(nb::module_& module) {
       });
   bind_axis_tests(module);
   bind_contour_tests(module);
+  bind_thermal_tests(module);
 }
 
 }  // namespace abbe::python

@@ -32,5 +32,7 @@ void bind_contour_numbers(nb::module_& module);
 /// Functions that evaluate tests of axes, and of curves and linkages.
 void bind_axis_tests(nb::module_& module);
 void bind_contour_tests(nb::module_& module);
+/// Classes and functions of thermal tests.
+void bind_thermal_tests(nb::module_& module);
 
 }  // namespace abbe::python

@@ -10,14 +10,17 @@ namespace abbe {
 
 /// What a number in a file measures; decides which unit suffixes its name may have.
 enum class Quantity {
-  dimensionless,      ///< no suffix
-  length,             ///< inside mm
-  angle,              ///< inside rad
-  length_per_length,  ///< inside mm per mm; a noise growing with distance
-  time,               ///< inside s
-  length_squared,     ///< inside mm^2
-  angle_squared,      ///< inside rad^2
-  length_angle,       ///< inside mm rad; a covariance of a length and an angle
+  dimensionless,           ///< no suffix
+  length,                  ///< inside mm
+  angle,                   ///< inside rad
+  length_per_length,       ///< inside mm per mm; a noise growing with distance
+  time,                    ///< inside s
+  length_squared,          ///< inside mm^2
+  angle_squared,           ///< inside rad^2
+  length_angle,            ///< inside mm rad; a covariance of a length and an angle
+  temperature,             ///< inside degC
+  temperature_difference,  ///< inside K
+  temperature_rate,        ///< inside K/s
 };
 
 /// A unit as written at the end of a name: inside value = text * 10^decimal_shift * factor.

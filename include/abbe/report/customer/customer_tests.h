@@ -7,6 +7,9 @@
 #include "abbe/verify/evaluations/squareness.h"
 #include "abbe/verify/evaluations/straightness.h"
 #include "abbe/verify/parts/contour_sections.h"
+#include "abbe/verify/thermal/axis_distortion.h"
+#include "abbe/verify/thermal/etve.h"
+#include "abbe/verify/thermal/spindle_distortion.h"
 
 namespace abbe {
 
@@ -43,6 +46,18 @@ CustomerReport customer_contour_points(const ReportFacts& facts, const Evaluatio
 
 /// Linkage of a laser engraver: its parameters.
 CustomerReport customer_linkage(const ReportFacts& facts, const EvaluationReport& now, const EvaluationReport* before);
+
+/// Environmental temperature variation error, with the displacements and angles over time.
+CustomerReport customer_etve(const ReportFacts& facts, const EvaluationReport& now, const EtveEvaluation& evaluation,
+                             const EvaluationReport* before);
+
+/// Thermal distortion by a rotating spindle, with the displacements and angles over time.
+CustomerReport customer_spindle_distortion(const ReportFacts& facts, const EvaluationReport& now,
+                                           const SpindleDistortion& distortion, const EvaluationReport* before);
+
+/// Thermal distortion by a moving linear axis, with the changes at the targets over time.
+CustomerReport customer_axis_distortion(const ReportFacts& facts, const EvaluationReport& now,
+                                        const AxisDistortion& distortion, const EvaluationReport* before);
 
 /// Name of a figure of one of these evaluations in a language; that of the figure where there are no words for it.
 /// @param kind  as EvaluationReport::kind

@@ -122,6 +122,9 @@ enum class CustomerWord {
   squareness_test,
   contour_test,
   linkage_test,
+  etve_test,
+  spindle_distortion_test,
+  axis_distortion_test,
   clockwise,
   counterclockwise,
   angle,
@@ -151,6 +154,15 @@ enum class CustomerWord {
   centre_least_squares,
   centre_minimum_zone,
   centre_instrument,
+  time,
+  displacement,
+  changes_over_time,  ///< caption of a table
+  stop,               ///< of a spindle
+  first_order,        ///< response
+  duration_fact,      ///< a condition, like those that follow; {}: text
+  rotation_fact,
+  cooling_fact,
+  targets_fact,
   count_  ///< number of words
 };
 

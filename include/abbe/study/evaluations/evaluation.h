@@ -30,6 +30,7 @@
 //   axis_tests.h     positioning, diagonals, circular tests, axes of rotation, straightness, squareness
 //   contour_tests.h  engraved curves: cross-sections of them, and points on them
 //   linkage_tests.h  the five steps of a laser engraver
+//   thermal_tests.h  thermal effects of ISO 230-3
 //
 // The report as JSON: evaluation_json(); as a page: evaluation_files(). Figures: docs/evaluate.md.
 
@@ -43,12 +44,14 @@
 #include "abbe/study/evaluations/axis_tests.h"
 #include "abbe/study/evaluations/contour_tests.h"
 #include "abbe/study/evaluations/linkage_tests.h"
+#include "abbe/study/evaluations/thermal_tests.h"
 
 namespace abbe {
 
 /// One of the tests that there are.
-using TestToEvaluate = std::variant<PositioningTest, DiagonalsTest, CircularTest, RotationTest, StraightnessTest,
-                                    SquarenessTest, SectionsTest, ContourPointsTest, LinkageTest>;
+using TestToEvaluate =
+    std::variant<PositioningTest, DiagonalsTest, CircularTest, RotationTest, StraightnessTest, SquarenessTest,
+                 SectionsTest, ContourPointsTest, LinkageTest, EtveTest, SpindleDistortionTest, AxisDistortionTest>;
 
 /// Readings of a test, and the tolerances of its figures.
 ///
@@ -61,9 +64,9 @@ struct EvaluationRequest {
 };
 
 /// The numerical results of a test, from which its report is made; mm and rad.
-using EvaluatedNumbers =
-    std::variant<PositioningEvaluation, DiagonalsEvaluation, CircularEvaluation, RotationResult, StraightnessEvaluation,
-                 Squareness, SectionsEvaluation, ContourPointsEvaluation, LinkageEvaluation>;
+using EvaluatedNumbers = std::variant<PositioningEvaluation, DiagonalsEvaluation, CircularEvaluation, RotationResult,
+                                      StraightnessEvaluation, Squareness, SectionsEvaluation, ContourPointsEvaluation,
+                                      LinkageEvaluation, EtveEvaluation, SpindleDistortion, AxisDistortion>;
 
 /// What the readings say. It needs nothing of the request that it answers.
 struct Evaluation {

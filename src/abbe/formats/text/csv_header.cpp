@@ -129,6 +129,20 @@ bool csv_take_field(std::string_view& line, std::string_view& field, std::string
   return true;
 }
 
+CsvNames csv_names(std::string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  CsvNames found;
+  std::string_view header;
+  for (std::size_t at = 0; at < text.size() && csv_is_passed_over(header); ++found.line) {
+    header = csv_next_line(text, at);
+  }
+  if (csv_is_passed_over(header)) return {};
+  std::string unquoted;
+  std::string_view field;
+  for (bool more = true; more && csv_take_field(header, field, unquoted, more);) found.names.emplace_back(field);
+  return found;
+}
+
 std::vector<CsvFileColumn> csv_match_header(std::string_view header, const std::string& file, std::size_t line,
                                             const std::vector<CsvColumn>& wanted, const ColumnMapping& mapping) {
   std::vector<CsvFileColumn> columns;

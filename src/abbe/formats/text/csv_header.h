@@ -27,6 +27,13 @@ std::string_view csv_trimmed(std::string_view field);
 /// Takes one field off a line. @returns false if a quote is not closed or is followed by more text
 bool csv_take_field(std::string_view& line, std::string_view& field, std::string& unquoted, bool& more);
 
+/// The names of a header, for readers that do not know all names beforehand.
+struct CsvNames {
+  std::size_t line = 0;            ///< of the header; 0: there is none
+  std::vector<std::string> names;  ///< as written; up to the first that cannot be read
+};
+CsvNames csv_names(std::string_view text);
+
 /// Matches the header with what is wanted. @throws InputError
 std::vector<CsvFileColumn> csv_match_header(std::string_view header, const std::string& file, std::size_t line,
                                             const std::vector<CsvColumn>& wanted, const ColumnMapping& mapping);

@@ -16,7 +16,7 @@ constexpr std::array<Unit, 3> kLength = {{{"mm", 0, 1}, {"um", -3, 1}, {"m", 3, 
 constexpr std::array<Unit, 5> kAngle = {
     {{"rad", 0, 1}, {"mrad", -3, 1}, {"urad", -6, 1}, {"deg", 0, kDegree}, {"arcsec", 0, kArcsec}}};
 constexpr std::array<Unit, 2> kLengthPerLength = {{{"mm_per_m", -3, 1}, {"um_per_m", -6, 1}}};
-constexpr std::array<Unit, 2> kTime = {{{"s", 0, 1}, {"ms", -3, 1}}};
+constexpr std::array<Unit, 4> kTime = {{{"s", 0, 1}, {"ms", -3, 1}, {"min", 0, 60}, {"h", 0, 3600}}};
 constexpr std::array<Unit, 2> kLengthSquared = {{{"mm2", 0, 1}, {"um2", -6, 1}}};
 constexpr std::array<Unit, 5> kAngleSquared = {{{"rad2", 0, 1},
                                                 {"mrad2", -6, 1},
@@ -25,9 +25,20 @@ constexpr std::array<Unit, 5> kAngleSquared = {{{"rad2", 0, 1},
                                                 {"arcsec2", 0, kArcsec* kArcsec}}};
 constexpr std::array<Unit, 4> kLengthAngle = {
     {{"mm_rad", 0, 1}, {"um_urad", -9, 1}, {"um_arcsec", -3, kArcsec}, {"mm_arcsec", 0, kArcsec}}};
-constexpr std::array<Quantity, 8> kQuantities = {
-    Quantity::dimensionless, Quantity::length,         Quantity::angle,         Quantity::length_per_length,
-    Quantity::time,          Quantity::length_squared, Quantity::angle_squared, Quantity::length_angle};
+constexpr std::array<Unit, 1> kTemperature = {{{"degC", 0, 1}}};
+constexpr std::array<Unit, 1> kTemperatureDifference = {{{"K", 0, 1}}};
+constexpr std::array<Unit, 1> kTemperatureRate = {{{"K_per_h", 0, 1.0 / 3600}}};
+constexpr std::array<Quantity, 11> kQuantities = {Quantity::dimensionless,
+                                                  Quantity::length,
+                                                  Quantity::angle,
+                                                  Quantity::length_per_length,
+                                                  Quantity::time,
+                                                  Quantity::length_squared,
+                                                  Quantity::angle_squared,
+                                                  Quantity::length_angle,
+                                                  Quantity::temperature,
+                                                  Quantity::temperature_difference,
+                                                  Quantity::temperature_rate};
 
 /// Edits from one spelling to the other: insert, remove, replace, exchange neighbours (1 each), change case (0.5).
 double spelling_distance(std::string_view a, std::string_view b) {
@@ -70,6 +81,12 @@ std::span<const Unit> units_of(Quantity quantity) {
       return kAngleSquared;
     case Quantity::length_angle:
       return kLengthAngle;
+    case Quantity::temperature:
+      return kTemperature;
+    case Quantity::temperature_difference:
+      return kTemperatureDifference;
+    case Quantity::temperature_rate:
+      return kTemperatureRate;
   }
   assert(false);
   return kDimensionless;
@@ -104,6 +121,12 @@ std::string_view quantity_words(Quantity quantity) {
       return "a squared angle";
     case Quantity::length_angle:
       return "a length times an angle";
+    case Quantity::temperature:
+      return "a temperature";
+    case Quantity::temperature_difference:
+      return "a temperature difference";
+    case Quantity::temperature_rate:
+      return "a rate of change of a temperature";
   }
   assert(false);
   return "";

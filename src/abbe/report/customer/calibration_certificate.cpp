@@ -31,7 +31,10 @@ std::string si_unit(const std::string& shown) {
                                                                    {"°", "\\degree"},
                                                                    {"m", "\\metre"},
                                                                    {"µm/m", "\\micro\\metre\\per\\metre"},
-                                                                   {"ms", "\\milli\\second"}};
+                                                                   {"ms", "\\milli\\second"},
+                                                                   {"min", "\\minute"},
+                                                                   {"K", "\\kelvin"},
+                                                                   {"K/h", "\\kelvin\\per\\hour"}};
   for (const auto& [name, unit] : kUnits) {
     if (shown == name) return unit;
   }

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "abbe/report/customer/customer_notes.h"
+#include "abbe/report/customer/customer_tests.h"
+
 namespace abbe {
 namespace {
 
@@ -55,6 +58,37 @@ CustomerReport begun_customer_report(const ReportFacts& facts, const EvaluationR
     report.figures.push_back(std::move(added));
   }
   return report;
+}
+
+CustomerReport begun_test_report(const ReportFacts& facts, const EvaluationReport& now, const EvaluationReport* before,
+                                 Word subject) {
+  CustomerReport report = begun_customer_report(facts, now, before, subject, [&](const EvaluationFigure& figure) {
+    return ShownFigure{figure.symbol, test_figure_name(now.kind, figure, facts.language), unit_symbol(figure.unit)};
+  });
+  report.notes = now.notes;
+  const auto note_missing = [&](const EvaluationReport& of, const char* prefix) {
+    for (const EvaluationFigure& figure : of.figures) {
+      if (!figure.value) report.notes.push_back(prefix + figure.symbol + ": " + figure.missing + ".");
+    }
+  };
+  if (before != nullptr) note_missing(*before, "before: ");
+  note_missing(now, before != nullptr ? "after: " : "");
+  return report;
+}
+
+std::string fact_of(const EvaluationReport& report, const std::string& name) {
+  for (const auto& [fact, text] : report.facts) {
+    if (fact == name) return text;
+  }
+  return "";
+}
+
+void add_fact(const EvaluationReport& from, const std::string& name, Word word, CustomerReport& report) {
+  const std::string text = fact_of(from, name);
+  if (!text.empty()) {
+    const ReportLanguage language = report.facts.language;
+    report.conditions.push_back(customer_text(word, language, customer_note_argument(text, language)));
+  }
 }
 
 void thin_table_rows(std::size_t most, CustomerTable& table) {

@@ -33,6 +33,16 @@ CustomerReport begun_customer_report(const ReportFacts& facts, const EvaluationR
                                      const EvaluationReport* before, CustomerWord subject,
                                      const std::function<ShownFigure(const EvaluationFigure& figure)>& shown);
 
+/// The same of a test whose figures have names by test_figure_name(), with the notes of the evaluation and the reasons
+/// of missing figures.
+CustomerReport begun_test_report(const ReportFacts& facts, const EvaluationReport& now, const EvaluationReport* before,
+                                 CustomerWord subject);
+
+/// A fact of the evaluation; empty: it has none of this name.
+std::string fact_of(const EvaluationReport& report, const std::string& name);
+/// A fact of the evaluation as a condition, if it is there.
+void add_fact(const EvaluationReport& from, const std::string& name, CustomerWord word, CustomerReport& report);
+
 /// Keeps evenly chosen rows, the first and the last among them, if there are more than `most`; the caption then says
 /// how many of how many are shown.
 void thin_table_rows(std::size_t most, CustomerTable& table);

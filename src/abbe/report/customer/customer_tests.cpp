@@ -10,7 +10,6 @@
 
 #include "abbe/geometry/angle_units.h"
 #include "abbe/machine/axis_unit.h"
-#include "abbe/report/customer/customer_notes.h"
 #include "abbe/report/customer/customer_parts.h"
 #include "abbe/report/customer/local_numbers.h"
 #include "abbe/report/drawings/svg_plot.h"
@@ -29,39 +28,6 @@ constexpr int kShownAngles = 24;
 /// More columns do not fit on a sheet.
 constexpr std::size_t kMostMotionsInTable = 6;
 constexpr std::size_t kMostMotionDrawings = 2;
-
-CustomerReport begun_test_report(const ReportFacts& facts, const EvaluationReport& now, const EvaluationReport* before,
-                                 Word subject) {
-  CustomerReport report = begun_customer_report(facts, now, before, subject, [&](const EvaluationFigure& figure) {
-    return ShownFigure{figure.symbol, test_figure_name(now.kind, figure, facts.language), unit_symbol(figure.unit)};
-  });
-  report.notes = now.notes;
-  const auto note_missing = [&](const EvaluationReport& of, const char* prefix) {
-    for (const EvaluationFigure& figure : of.figures) {
-      if (!figure.value) report.notes.push_back(prefix + figure.symbol + ": " + figure.missing + ".");
-    }
-  };
-  if (before != nullptr) note_missing(*before, "before: ");
-  note_missing(now, before != nullptr ? "after: " : "");
-  return report;
-}
-
-/// A fact of the evaluation; empty: it has none of this name.
-std::string fact_of(const EvaluationReport& report, const std::string& name) {
-  for (const auto& [fact, text] : report.facts) {
-    if (fact == name) return text;
-  }
-  return "";
-}
-
-/// A fact of the evaluation as a condition, if it is there.
-void add_fact(const EvaluationReport& from, const std::string& name, Word word, CustomerReport& report) {
-  const std::string text = fact_of(from, name);
-  if (!text.empty()) {
-    const ReportLanguage language = report.facts.language;
-    report.conditions.push_back(customer_text(word, language, customer_note_argument(text, language)));
-  }
-}
 
 std::string micro_text(double value, ReportLanguage language) { return local_number(1e3 * value, 2, language); }
 

@@ -47,6 +47,7 @@ std::string unit_symbol(const std::string& unit) {
   if (unit == "um_per_m") return "\xC2\xB5m/m";
   if (unit == "urad") return "\xC2\xB5rad";
   if (unit == "deg") return "\xC2\xB0";
+  if (unit == "K_per_h") return "K/h";
   return unit;
 }
 

@@ -68,6 +68,15 @@ struct ReportMaker {
   CustomerReport operator()(const LinkageEvaluation&) const {
     return customer_linkage(facts, now.report, report_before());
   }
+  CustomerReport operator()(const EtveEvaluation& found) const {
+    return customer_etve(facts, now.report, found, report_before());
+  }
+  CustomerReport operator()(const SpindleDistortion& found) const {
+    return customer_spindle_distortion(facts, now.report, found, report_before());
+  }
+  CustomerReport operator()(const AxisDistortion& found) const {
+    return customer_axis_distortion(facts, now.report, found, report_before());
+  }
 };
 
 }  // namespace

@@ -142,6 +142,20 @@ std::vector<Evaluation> other_evaluations() {
   linkage.readings.exit_to_axis = 120;
   linkage.readings.board_thickness = 4;
   all.push_back(evaluate_readings({"five-steps.csv", linkage, {}, {}}));
+  EtveTest etve;
+  etve.readings = read_thermal(kExamples + "evaluate/etve.csv");
+  etve.plane_distance = 150;
+  etve.displacement_uncertainty = 1e-4;
+  etve.length = 500;
+  etve.workpiece_expansion = 23e-6;
+  all.push_back(evaluate_readings({"etve.csv", etve, {"ETVE_Z_um=20"}, {}}));
+  SpindleDistortionTest spindle;
+  spindle.readings = read_thermal(kExamples + "evaluate/spindle.csv");
+  spindle.stop = 240 * 60;
+  spindle.plane_distance = 150;
+  all.push_back(evaluate_readings({"spindle.csv", spindle, {}, {}}));
+  AxisDistortionTest axis{read_axis_distortion(kExamples + "evaluate/axis_warming.csv"), 1e-4, 0};
+  all.push_back(evaluate_readings({"axis_warming.csv", axis, {}, {}}));
   return all;
 }
 

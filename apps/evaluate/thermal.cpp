@@ -1,0 +1,58 @@
+#include "command.h"
+#include "evaluate/evaluate.h"
+#include "options.h"
+
+namespace abbe {
+namespace {
+
+const std::string kSensorColumns =
+    "  time_min        or time_s, time_h\n"
+    "  NAME_um         displacement of a sensor of any name, such as X1_um, Z_um; or NAME_mm\n"
+    "  NAME_urad       angle, such as A_urad\n"
+    "  NAME_degC       temperature, such as air_degC";
+
+/// A thermal test with the numbers that its library lists. @param read  readings of a file
+template <class Test, class Read>
+void add_test(Subcommand& evaluate, CommandLine& line, const std::string& kind, const std::string& description,
+              const std::string& columns, const std::string& example, std::span<const TestNumber<Test>> numbers,
+              const Read& read) {
+  auto options = std::make_shared<EvaluationOptions>();
+  auto values = std::make_shared<std::vector<double>>();
+  Subcommand* app = add_evaluation(evaluate, kind, description, columns, "Z_um=probe",
+                                   "  abbe evaluate " + kind + " examples/evaluate/" + example, *options);
+  add_customer_report_options(*app, *options);
+  for (const auto& number : numbers) values->push_back(Test().*number.value);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    app->add_option(numbers[i].option, (*values)[i], numbers[i].words)->check(in_range(numbers[i].from, numbers[i].to));
+  }
+  app->callback([&line, options, values, numbers, read] {
+    line.run = [options, values, numbers, read] {
+      return run_evaluation(*options, [&](const std::string& file) {
+        Test test{read(file, options->columns.mapping())};
+        for (std::size_t i = 0; i < numbers.size(); ++i) test.*numbers[i].value = (*values)[i] * numbers[i].unit;
+        return test;
+      });
+    };
+  });
+}
+
+}  // namespace
+
+void add_evaluate_thermal(Subcommand& evaluate, CommandLine& line) {
+  const auto sensors = [](const std::string& file, const ColumnMapping& mapping) {
+    return read_thermal(file, mapping);
+  };
+  add_test(evaluate, line, "etve", "Environmental temperature variation error (ISO 230-3)", kSensorColumns,
+           "etve.csv --plane-distance-mm 150 --u-reading-um 0.1", etve_numbers(), sensors);
+  add_test(evaluate, line, "spindle-distortion", "Thermal distortion by a rotating spindle (ISO 230-3)", kSensorColumns,
+           "spindle.csv --stop-min 240", spindle_distortion_numbers(), sensors);
+  add_test(evaluate, line, "axis-distortion", "Thermal distortion by a moving linear axis (ISO 230-3)",
+           "  target_mm       position at which the axis was read\n"
+           "  deviation_um    actual minus target; or actual_mm\n"
+           "  direction       optional, + or -: from which side the target was approached\n" +
+               kSensorColumns,
+           "axis_warming.csv --tolerance d_L_um=20", axis_distortion_numbers(),
+           [](const auto& file, const auto& mapping) { return read_axis_distortion(file, mapping); });
+}
+
+}  // namespace abbe

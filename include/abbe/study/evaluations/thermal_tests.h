@@ -1,0 +1,72 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "abbe/formats/evaluations/evaluation_thermal_file.h"
+#include "abbe/verify/thermal/axis_distortion.h"
+#include "abbe/verify/thermal/etve.h"
+#include "abbe/verify/thermal/spindle_distortion.h"
+
+namespace abbe {
+
+// Thermal tests of ISO 230-3 for evaluate_readings(); lengths in mm, angles in rad, times in s, temperatures in degC.
+// Definitions: docs/evaluate-thermal.md.
+
+/// A number that a user may state about a test.
+template <class Test>
+struct TestNumber {
+  const char* option;   ///< of `abbe evaluate`: "--u-reading-um"
+  double Test::*value;  ///< not a number: not stated
+  double unit;          ///< of the option's value
+  double from, to;      ///< range of the option's value
+  const char* words;    ///< what it is
+};
+
+/// A number that has not been stated.
+inline constexpr double kNotStated = std::numeric_limits<double>::quiet_NaN();
+
+/// Environmental temperature variation error, and the uncertainty of a measured length by temperature.
+///
+/// Refused: numbers about the length without the length itself or without any uncertainty or coefficient; no
+/// temperature of a body that has a coefficient, neither stated nor read.
+struct EtveTest {
+  ThermalReadings readings;
+  double plane_distance = kNotStated;   ///< from the first plane of sensors to the second, along Z
+  double displacement_uncertainty = 0;  ///< standard, of a reading, as the next two; 0: not stated
+  double angle_uncertainty = 0;
+  double temperature_uncertainty = 0;
+  double length = kNotStated;               ///< of what is measured
+  double workpiece_expansion = kNotStated;  ///< coefficient, 1/K, as its standard uncertainty
+  double workpiece_expansion_uncertainty = kNotStated;
+  double workpiece_temperature = kNotStated;  ///< mean; not stated: that of all sensors of a temperature
+  double workpiece_temperature_uncertainty = kNotStated;
+  double scale_expansion = kNotStated;  ///< of the scale that measures it, as the next three
+  double scale_expansion_uncertainty = kNotStated;
+  double scale_temperature = kNotStated;
+  double scale_temperature_uncertainty = kNotStated;
+};
+std::span<const TestNumber<EtveTest>> etve_numbers();
+
+/// Thermal distortion by a rotating spindle. Refused: a stop that is not after the start, a sensor that was not read
+/// from the start to the stop.
+struct SpindleDistortionTest {
+  ThermalReadings readings;
+  double start = kNotStated;  ///< of the rotation, as the file counts its time; else the first reading
+  double stop = kNotStated;   ///< else the last reading: there is no cooling
+  double plane_distance = kNotStated;
+  double displacement_uncertainty = 0;
+  double angle_uncertainty = 0;
+};
+std::span<const TestNumber<SpindleDistortionTest>> spindle_distortion_numbers();
+
+/// Thermal distortion by a moving linear axis.
+struct AxisDistortionTest {
+  AxisDistortionReadings readings;
+  double displacement_uncertainty = 0;
+  double angle_uncertainty = 0;
+};
+std::span<const TestNumber<AxisDistortionTest>> axis_distortion_numbers();
+
+}  // namespace abbe
