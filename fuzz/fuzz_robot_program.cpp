@@ -11,6 +11,7 @@
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/robot/robot_program.h"
 #include "abbe/formats/text/input_error.h"
+#include "abbe/formats/text/number_text.h"
 
 namespace {
 
@@ -57,6 +58,10 @@ void check_program(const std::string& text, abbe::RobotLanguage language) {
           values.push_back(0);
         }
       }
+    }
+    // The nearest way to write an angle may be beyond what a reader takes.
+    for (const double value : values) {
+      if (std::abs(value) > 0.9 * abbe::kLargestInput) return;
     }
     other.push_back(values);
   }

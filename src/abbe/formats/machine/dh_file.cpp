@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -59,6 +60,16 @@ DhJoint read_joint(TomlTable& table, std::size_t index) {
   return joint;
 }
 
+/// What makes the machine of an arm unusable, or a machine file that could not be read; empty if nothing does.
+std::string arm_problem(const DhArm& arm) {
+  const Machine machine = machine_from_dh(arm);
+  const std::vector<MachineProblem> problems = find_problems(machine);
+  if (!problems.empty()) return problems.front().text();
+  double largest = std::max(machine.tool_reference.cwiseAbs().maxCoeff(), machine.tool_offset.cwiseAbs().maxCoeff());
+  for (const Axis& axis : machine.axes) largest = std::max(largest, axis.point.cwiseAbs().maxCoeff());
+  return largest > kLargestInput ? fmt::format("the lengths add up to {:.3g} mm", largest) : "";
+}
+
 RigidTransform read_frame(TomlTable& root, std::string_view key) {
   auto table = root.optional_table(key);
   if (!table) return {};
@@ -84,7 +95,8 @@ DhArm toml_arm(const std::string& text, const std::string& file) {
   }
   if (arm.joints.empty()) root.fail("joint", "there is none", "a table [[joint]] for each row");
   root.finish();
-  for (const MachineProblem& problem : find_problems(machine_from_dh(arm))) root.fail("joint", problem.text());
+  const std::string problem = arm_problem(arm);
+  if (!problem.empty()) root.fail("joint", problem);
   return arm;
 }
 
@@ -148,7 +160,8 @@ DhArm csv_arm(const std::string& text, const std::string& file) {
     arm.joints.push_back(joint);
   }
   if (arm.joints.empty()) throw InputError({file, 0, 0, ""}, "no rows below the header", "a row for each joint");
-  for (const MachineProblem& problem : find_problems(machine_from_dh(arm))) throw InputError({file}, problem.text());
+  const std::string problem = arm_problem(arm);
+  if (!problem.empty()) throw InputError({file}, problem);
   return arm;
 }
 

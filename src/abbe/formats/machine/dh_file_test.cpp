@@ -98,6 +98,9 @@ TEST(DhFile, MistakesAreNamed) {
   EXPECT_THAT(message("reversed = true", "coupled_to = \"A2\""), HasSubstr("coupled joints are not supported"));
   EXPECT_THAT(message("reversed = true", "endless = true"), HasSubstr("a linear joint cannot be endless"));
   EXPECT_THAT(message("reversed = true", "name = \"A2\""), HasSubstr("the letter stands for a rotary axis"));
+  EXPECT_THAT(message("origin_mm = [0, 0, 100]\n[tool]\nangles_deg = [0, 90, 0]\n[[joint]]\na_mm = 300",
+                      "origin_mm = [9e8, 0, 0]\n[[joint]]\na_mm = 9e8"),
+              HasSubstr("the lengths add up to 1.8e+09 mm"));
   const auto csv = [](const std::string& rows) {
     return message_of(
         [&] { parse_dh_arm("convention,a_mm,alpha_deg,d_mm,theta_deg,smallest_deg,largest_deg\n" + rows, "t.csv"); });
