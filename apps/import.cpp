@@ -10,6 +10,7 @@
 
 #include "abbe/formats/files/results_folder.h"
 #include "abbe/formats/files/text_file.h"
+#include "abbe/formats/machine/dh_file.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/nc/path_program.h"
 #include "abbe/formats/readings/planned_touches.h"
@@ -29,7 +30,7 @@ struct ImportCommand {
   std::string file, format, machine, mapping, output, written_mapping, touches;
   std::vector<std::string> words;
   std::string kind, encoding, separator, decimal, length_unit, angle_unit, azimuth, vertical, mirrored;
-  bool accept_uncertain = false, json = false;
+  bool accept_uncertain = false, json = false, dh = false;
 };
 
 /// The value of an option that has one of several words.
@@ -87,7 +88,15 @@ int run_touches(const ImportCommand& command) {
   return kDone;
 }
 
+/// A Denavit-Hartenberg table as a machine file.
+int run_dh(const ImportCommand& command) {
+  write_file_atomically(command.output, dh_machine_text(read_dh_arm(command.file), command.file));
+  fmt::print("{} written\n", command.output);
+  return kDone;
+}
+
 int run_import(const ImportCommand& command) {
+  if (command.dh) return run_dh(command);
   if (!command.touches.empty()) return run_touches(command);
   const ImportedTable result = import_table(request_of(command));
   // A mapping is written with what is in doubt, to be looked at; readings that may be wrong are not.
@@ -168,11 +177,15 @@ void add_import_command(CommandLine& line) {
       "--touches", command->touches,
       "The file is a log of LinuxCNC, and these are the touches of its program (abbe program --touches): they become "
       "readings of a touch probe");
-  // The form of a log and of its touches is known.
+  Option* const dh = app->add_flag(
+      "--dh", command->dh, "The file is a Denavit-Hartenberg table (*.dh.toml, *.csv): it becomes a machine file");
+  dh->needs("--output")->excludes("--touches")->excludes("--machine")->excludes("--json");
+  // The form of a log and of its touches is known, and that of a table of joints.
   for (const char* other :
        {"--as", "--mapping", "--format", "--encoding", "--separator", "--decimal", "--length-unit", "--angle-unit",
         "--azimuth", "--vertical", "--mirrored", "--accept-uncertain", "--write-mapping"}) {
     touches->excludes(other);
+    dh->excludes(other);
   }
   app->add_option("--word", command->words, "Word of an axis in that program, AXIS=WORD (C1=C); repeatable")
       ->needs("--touches");

@@ -9,6 +9,7 @@
 
 #include "abbe/formats/files/kept_inputs.h"
 #include "abbe/formats/files/results_folder.h"
+#include "abbe/formats/files/text_file.h"
 #include "abbe/formats/machine/axis_option.h"
 #include "abbe/formats/machine/machine_file.h"
 #include "abbe/formats/readings/measurement_file.h"
@@ -16,6 +17,7 @@
 #include "abbe/formats/text/json_text.h"
 #include "abbe/geometry/angle_units.h"
 #include "abbe/study/corrected_commands.h"
+#include "abbe/study/corrected_robot_program.h"
 #include "command.h"
 #include "compensate/compensate.h"
 #include "errors_for_use.h"
@@ -35,9 +37,31 @@ struct PosesCommand {
   bool dry_run = false, json = false, accept_misfit = false;
 };
 
+int run_robot_program(const PosesCommand& command, RobotLanguage language) {
+  RobotProgramRequest request;
+  request.machine_file = command.machine;
+  request.machine = read_machine(command.machine);
+  request.errors = read_errors_for_use(command.errors, request.machine, command.accept_misfit);
+  request.program = parse_robot_program(read_text_file(command.poses), language, command.poses);
+  if (!command.output.empty()) refuse_input_as_output(command.output);
+  request.leave_out_factor = command.leave_out_factor;
+  request.limit_um = command.limit_um;
+  request.largest_turn = command.largest_turn_deg * kDegree;
+  request.held = axes_named(request.machine, "--hold", command.hold);
+  const CorrectedRobotProgram result = correct_robot_program(request);
+  const bool written = result.refused.empty() && !command.dry_run;
+  if (written) write_file_atomically(command.output, result.text);
+  fmt::print("{}", command.json ? json_text(corrected_robot_json(request, result, command.output, written))
+                                : corrected_robot_text(request, result, command.output, written));
+  std::fflush(stdout);
+  if (!result.refused.empty()) tell("abbe: {}; nothing written\n", result.refused);
+  return result.refused.empty() ? kDone : kNegative;
+}
+
 int run_poses(const PosesCommand& command) {
   if (command.output.empty() && !command.dry_run)
     throw InputError({.field = "-o"}, "missing", "a file for the corrected commands (*.csv), or --dry-run");
+  if (const auto language = robot_language_of(command.poses)) return run_robot_program(command, *language);
   CommandsRequest request;
   request.machine_file = command.machine;
   request.errors_file = command.errors;
@@ -83,11 +107,12 @@ void add_compensate_poses(Subcommand& compensate, CommandLine& line) {
       "Every row of the output has a status: reached; orientation left or turn limited (the point is exact, and the\n"
       "remaining orientation error is stated); position left, outside travel, not covered or not converged (exit code "
       "1).\n"
-      "See docs/compensation.md.");
-  command->add_input_file("poses", options->poses, "CSV with one column of commands per axis (X_mm, C_deg, ...)")
+      "A robot program (*.mod, *.src, *.dat, *.ls, *.script) is written again with corrected positions.\n"
+      "See docs/compensation.md and docs/robot-programs.md.");
+  command->add_input_file("poses", options->poses, "CSV with a column of commands per axis, or a robot program")
       ->required();
   add_machine_and_errors(*command, options->machine, options->errors);
-  command->add_output_file("-o,--output", options->output, "CSV to write: corrected commands, status, what is left",
+  command->add_output_file("-o,--output", options->output, "CSV (commands, status, what is left) or program to write",
                            &options->dry_run);
   command->add_option("--hold", options->hold, "Axis that keeps its commands; repeatable");
   command

@@ -24,8 +24,16 @@ Eigen::Matrix3d rotation_from_error_angles(const Eigen::Vector3d& angles) {
 }
 
 Eigen::Vector3d error_angles_from_rotation(const Eigen::Matrix3d& r) {
-  return {std::atan2(r(2, 1), r(2, 2)), std::atan2(-r(2, 0), std::hypot(r(2, 1), r(2, 2))),
-          std::atan2(r(1, 0), r(0, 0))};
+  const double across = std::hypot(r(2, 1), r(2, 2));
+  const double x = across > 0 ? std::atan2(r(2, 1), r(2, 2)) : 0.0;
+  const double y = std::atan2(-r(2, 0), across);
+  // Near EB = +-pi/2 only a sum of the others counts, and each alone has few digits: EC then has to fit EA, as the
+  // second column (-sin EC, cos EC, 0) of r Rx(EA)'.
+  if (across < 0.1) {
+    const Eigen::Vector3d column = std::cos(x) * r.col(1) - std::sin(x) * r.col(2);
+    return {x, y, std::atan2(0.0 - column.x(), column.y())};
+  }
+  return {x, y, std::atan2(r(1, 0), r(0, 0))};
 }
 
 Eigen::Matrix3d error_angle_axes(const Eigen::Vector3d& angles) {

@@ -33,6 +33,18 @@ TEST(Rotation, ErrorAnglesAndRotationVectorAreInverted) {
   }
 }
 
+TEST(Rotation, ErrorAnglesKeepTheRotationWhereOnlyASumOfThemCounts) {
+  std::mt19937_64 generator(2);
+  for (const double off : {0.0, 1e-16, 1e-12, 1e-6, 1e-3, 1e-1}) {
+    for (const double quarter : {std::numbers::pi / 2, -std::numbers::pi / 2}) {
+      Eigen::Vector3d angles = random_vector(generator, 1);
+      angles.y() = quarter + off;
+      const Eigen::Matrix3d rotation = rotation_from_error_angles(angles);
+      EXPECT_LE((rotation_from_error_angles(error_angles_from_rotation(rotation)) - rotation).norm(), 1e-14) << off;
+    }
+  }
+}
+
 TEST(Rotation, RotationVectorIsAccurateNearHalfATurn) {
   const Eigen::Vector3d axis = Eigen::Vector3d(1, -2, 3).normalized();
   for (double gap : {1e-3, 1e-6, 1e-9}) {
